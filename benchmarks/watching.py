@@ -30,7 +30,7 @@ sys.path.insert(0, str(ROOT))
 from benchmarks.monte_carlo_tables import write_between_marks  # noqa: E402
 from shaftprint.catalogue import structure  # noqa: E402
 from shaftprint.distributions import NORMAL_95  # noqa: E402
-from shaftprint.drift import Candidate, Finding, differ  # noqa: E402
+from shaftprint.drift import Finding, SizedCause, differ  # noqa: E402
 from shaftprint.fingerprint import GAUGE_ZERO, Fingerprint, read_fingerprint, write_fingerprint  # noqa: E402
 from shaftprint.identify import Settings  # noqa: E402
 from shaftprint.report import Difference, differences  # noqa: E402
@@ -391,7 +391,7 @@ def _row(change: Change, size: float, pairs: Sequence[tuple[Fingerprint, Fingerp
     )
 
 
-def _candidates(finding: Finding) -> tuple[Candidate, ...]:
+def _candidates(finding: Finding) -> tuple[SizedCause, ...]:
     change = finding.changes[0] if finding.changes else finding.nearest
     return () if change is None else change.candidates
 

@@ -12,12 +12,12 @@ quantity         unit   meaning
 from shaftprint.drift._along import Whitened, p_value_of_largest, whitened
 from shaftprint.drift._causes import ALL_CAUSES, CAUSES, Cause
 from shaftprint.drift._differ import LOAD_REPEATABILITY, differ
-from shaftprint.drift._finding import Candidate, Change, Finding
+from shaftprint.drift._finding import Finding, ShipChange, SizedCause
 from shaftprint.drift._history import EVENTS, DatedTest, Event, History, history_of
 from shaftprint.drift._pair import Pair, pair_of
 from shaftprint.drift._shared_errors import FieldChange, SharedErrors, shared_errors
 from shaftprint.drift._visible import VisibleChange, visible_changes
-from shaftprint.drift._watch import Course, Drift, WatchFinding, watch
+from shaftprint.drift._watch import DatedCause, Drift, WatchFinding, watch
 from shaftprint.drift._words import course_text, finding_sentences, size_text, watch_sentences
 
 __all__ = [
@@ -25,10 +25,8 @@ __all__ = [
     "CAUSES",
     "EVENTS",
     "LOAD_REPEATABILITY",
-    "Candidate",
     "Cause",
-    "Change",
-    "Course",
+    "DatedCause",
     "DatedTest",
     "Drift",
     "Event",
@@ -37,6 +35,8 @@ __all__ = [
     "History",
     "Pair",
     "SharedErrors",
+    "ShipChange",
+    "SizedCause",
     "VisibleChange",
     "WatchFinding",
     "Whitened",

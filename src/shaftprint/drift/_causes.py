@@ -6,6 +6,7 @@ better than each number. The directions follow from the roles of the numbers. Th
 fingerprint: which numbers its scale moves depends on what was known beforehand (``JointNumbers.loadings``).
 """
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Final
@@ -14,6 +15,7 @@ from shaftprint.catalogue import ShipRole
 from shaftprint.models import Role
 
 PERCENT, MILLISECONDS = 100.0, 1000.0
+_LARGEST_LOGARITHM = 10.0
 GAUGE_SCALE: Final = "gauge scale"
 """Source of the budget that is a cause too."""
 
@@ -40,6 +42,14 @@ class Cause:
     def unit(self) -> str:
         """Unit in which its size is stated."""
         return "%" if self.is_share else "ms"
+
+    def stated(self, size: float, std: float) -> tuple[float, float]:
+        """Return a size and its deviation as they are stated: shares of logarithms, times as they are."""
+        if not self.is_share:
+            return size, std
+        # a cause that has nothing to do with a large change may ask for any size
+        factor = math.exp(min(size, _LARGEST_LOGARITHM))
+        return factor - 1.0, factor * std
 
 
 CAUSES: tuple[Cause, ...] = (

@@ -1,13 +1,12 @@
 """Whether a ship has changed between two tests, and what: judged along causes, not number by number."""
 
-import math
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from shaftprint.drift._along import Whitened, p_value_of_largest, whitened
 from shaftprint.drift._causes import Cause
-from shaftprint.drift._finding import Candidate, Change, Finding
+from shaftprint.drift._finding import Finding, ShipChange, SizedCause, odds_against
 from shaftprint.drift._pair import pair_of
 
 if TYPE_CHECKING:
@@ -19,7 +18,6 @@ LOAD_REPEATABILITY = 0.005
 """Standard deviation of the torque that one propeller takes at one speed from day to day, as a share, beside what the
 windows of a test show of it. No test of one day tells it; see docs/watching.md."""
 MOST_CHANGES = 3
-_LARGEST_LOGARITHM, _LARGEST_EXPONENT = 10.0, 700.0
 
 OF_EARLIER_VERSION = "a fingerprint of an earlier version has no joint covariance; identify its recording again"
 NOT_TOLD = "no number of both fingerprints can be judged"
@@ -51,7 +49,7 @@ def differ(first: "Fingerprint", other: "Fingerprint", *, load_repeatability: fl
     except np.linalg.LinAlgError:
         return _nothing(NOT_DETERMINED, pair.left_out)
     chosen: list[int] = []
-    changes: list[Change] = []
+    changes: list[ShipChange] = []
     nearest = _largest(white, pair.causes, chosen)
     while nearest is not None and nearest.p_value <= UNLIKELY and len(changes) < MOST_CHANGES:
         changes.append(nearest)
@@ -70,7 +68,7 @@ def _nothing(because: str, left_out: dict[str, str]) -> Finding:
     return Finding(changes=(), nearest=None, rest_p_value=None, names=(), left_out=left_out, because=because)
 
 
-def _largest(white: Whitened, causes: tuple[Cause, ...], chosen: list[int]) -> Change | None:
+def _largest(white: Whitened, causes: tuple[Cause, ...], chosen: list[int]) -> ShipChange | None:
     """Return the clearest further change beside those that are chosen; None where no cause is left."""
     scores = white.scores(tuple(chosen))
     ordered = [at for at in np.argsort(-np.abs(scores), kind="stable").tolist() if at not in chosen and scores[at]]
@@ -80,19 +78,10 @@ def _largest(white: Whitened, causes: tuple[Cause, ...], chosen: list[int]) -> C
     candidates = []
     for at in ordered:
         size, std = (float(column[-1]) for column in white.sizes((*chosen, at)))
-        share = causes[at].is_share
-        # a cause that has nothing to do with a large change may ask for any size
-        factor = math.exp(min(size, _LARGEST_LOGARITHM))
-        candidates.append(
-            Candidate(
-                cause=causes[at],
-                # of a logarithm
-                size=factor - 1.0 if share else size,
-                std=factor * std if share else std,
-                score=float(scores[at]),
-                odds=math.exp(min(0.5 * (best**2 - float(scores[at]) ** 2), _LARGEST_EXPONENT)),
-            )
-        )
-    return Change(
+        score = float(scores[at])
+        size, std = causes[at].stated(size, std)
+        odds = odds_against(score, best)
+        candidates.append(SizedCause(cause=causes[at], size=size, std=std, score=score, odds=odds))
+    return ShipChange(
         candidates=tuple(candidates), p_value=p_value_of_largest(best, white.cosines(tuple(chosen), tuple(ordered)))
     )

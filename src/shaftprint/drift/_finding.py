@@ -1,12 +1,15 @@
 """What two tests say about a change of the ship: the nouns of the room."""
 
+import math
 from dataclasses import dataclass
 
 from shaftprint.drift._causes import Cause
 
+_LARGEST_EXPONENT = 700.0
+
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Candidate:
+class SizedCause:
     """A cause, and how well it explains the difference of two tests."""
 
     cause: Cause
@@ -26,17 +29,23 @@ class Candidate:
         return self.cause.more if self.size > 0.0 else self.cause.less
 
 
+def odds_against(score: float, best: float) -> float:
+    """Return how much more likely a difference is under the cause with the best score than under another."""
+    # beyond that a float has no number
+    return math.exp(min(0.5 * (best**2 - score**2), _LARGEST_EXPONENT))
+
+
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Change:
+class ShipChange:
     """One change that was found, with all causes that may have made it."""
 
-    candidates: tuple[Candidate, ...]
+    candidates: tuple[SizedCause, ...]
     """Causes, the most likely first, each by itself beside the changes found before."""
     p_value: float
     """Probability that chance alone makes the largest score that large or larger."""
 
     @property
-    def best(self) -> Candidate:
+    def best(self) -> SizedCause:
         """The most likely cause."""
         return self.candidates[0]
 
@@ -45,9 +54,9 @@ class Change:
 class Finding:
     """What differs between two tests of one ship, judged along causes."""
 
-    changes: tuple[Change, ...]
+    changes: tuple[ShipChange, ...]
     """Changes beyond chance, the clearest first; empty where none is seen."""
-    nearest: Change | None
+    nearest: ShipChange | None
     """What comes next, within chance; None where no cause could be judged."""
     rest_p_value: float | None
     """Probability that chance alone leaves as much or more beside the changes; small where something else has changed

@@ -11,7 +11,6 @@ twenty tests. That probability is drawn, with the covariance that the tests stat
 """
 
 import itertools
-import math
 from dataclasses import dataclass, replace
 from datetime import timedelta
 from typing import Literal, TypeAlias
@@ -20,8 +19,8 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.distributions import normal_cdf
-from shaftprint.drift._causes import Cause
 from shaftprint.drift._differ import LOAD_REPEATABILITY, MOST_CHANGES, NOT_DETERMINED, NOT_TOLD, UNLIKELY
+from shaftprint.drift._finding import SizedCause, odds_against
 from shaftprint.drift._history import SECONDS_PER_YEAR, History
 from shaftprint.drift._series import Series, series_of
 
@@ -32,8 +31,6 @@ HORIZON = 20
 """Tests over which false alarms are counted: five years of quarterly tests."""
 DRAWS = 2000
 QUARTER_A = 0.25
-# A size of a logarithm, and of the logarithm of odds, beyond which nobody asks.
-_LARGEST_LOGARITHM, _LARGEST_EXPONENT = 10.0, 700.0
 # What is left of a column that lies in others is rounding.
 _ROUNDING = 1e-6
 # Scores that differ by less are the same.
@@ -41,41 +38,26 @@ _DIGITS = 9
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Course:
-    """A cause, when it began to act and how, and how well that explains the history."""
+class DatedCause(SizedCause):
+    """A cause, when it began to act and how: the size of a ramp is that in a year."""
 
-    cause: Cause
-    """What may have changed."""
     shape: Shape
     """Whether it changed once or goes on."""
     since: int
     """Place of the first test with the changed ship (step), or of the last one before it began (ramp)."""
-    size: float
-    """By how much, if it is this alone: a share, or a time [s]; of a ramp in a year."""
-    std: float
-    """Standard deviation of the size."""
-    score: float
-    """Size over standard deviation."""
-    odds: float
-    """Likelihood of the history under the best course over that under this one; 1 for the best."""
-
-    @property
-    def words(self) -> str:
-        """What has happened to the ship, by the sign of the size."""
-        return self.cause.more if self.size > 0.0 else self.cause.less
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Drift:
     """One change of a ship in its history, with the best course of each cause."""
 
-    courses: tuple[Course, ...]
+    courses: tuple[DatedCause, ...]
     """The best course of each cause, the most likely first."""
     p_value: float
     """Probability that an unchanged ship reaches such a score in any test up to the horizon."""
 
     @property
-    def best(self) -> Course:
+    def best(self) -> DatedCause:
         """The most likely course."""
         return self.courses[0]
 
@@ -196,7 +178,7 @@ class _Search:
             courses=tuple(courses),
         )
 
-    def beside(self, course: Course) -> "_Search":
+    def beside(self, course: DatedCause) -> "_Search":
         """Return the search for a further change beside one that was found."""
         found = self.courses.index((self.series.causes.index(course.cause), course.shape, course.since))
         return replace(self, free=np.column_stack([self.free, self.columns[:, found]]))
@@ -220,18 +202,12 @@ class _Search:
         courses = tuple(self._course(at, float(sizes[at]), float(stds[at]), scores, top) for at in best.values())
         return Drift(courses=courses, p_value=self._p_value(top, noise))
 
-    def _course(self, at: int, size: float, std: float, scores: FloatArray, top: float) -> Course:
-        cause, shape, since = self.courses[at]
-        share = self.series.causes[cause].is_share
-        factor = math.exp(min(size, _LARGEST_LOGARITHM))
-        return Course(
-            cause=self.series.causes[cause],
-            shape=shape,
-            since=since,
-            size=factor - 1.0 if share else size,
-            std=factor * std if share else std,
-            score=float(scores[at]),
-            odds=math.exp(min(0.5 * (top**2 - float(scores[at]) ** 2), _LARGEST_EXPONENT)),
+    def _course(self, at: int, size: float, std: float, scores: FloatArray, top: float) -> DatedCause:
+        number, shape, since = self.courses[at]
+        cause, score = self.series.causes[number], float(scores[at])
+        size, std = cause.stated(size, std)
+        return DatedCause(
+            cause=cause, shape=shape, since=since, size=size, std=std, score=score, odds=odds_against(score, top)
         )
 
     def _directions(self, tests: int) -> tuple[FloatArray, FloatArray]:

@@ -4,9 +4,9 @@ from collections.abc import Iterable, Sequence
 
 from shaftprint.digits import p_value_text, plain_letters, stated
 from shaftprint.drift._causes import MILLISECONDS, PERCENT, Cause
-from shaftprint.drift._finding import Candidate, Change, Finding
+from shaftprint.drift._finding import Finding, ShipChange, SizedCause
 from shaftprint.drift._history import History
-from shaftprint.drift._watch import Course, Drift, WatchFinding
+from shaftprint.drift._watch import DatedCause, Drift, WatchFinding
 
 # Causes whose likelihoods differ by less than this factor are named together.
 ALIKE = 3.0
@@ -43,13 +43,13 @@ def finding_sentences(finding: Finding) -> tuple[str, ...]:
     return tuple(sentences)
 
 
-def size_text(candidate: Candidate) -> str:
+def size_text(candidate: SizedCause) -> str:
     """Return the size of a change with its standard deviation, without a sign, as sentences have it."""
     factor = PERCENT if candidate.cause.is_share else MILLISECONDS
     return stated(factor * abs(candidate.size), factor * candidate.std, candidate.cause.unit)
 
 
-def _of_change(change: Change) -> str:
+def _of_change(change: ShipChange) -> str:
     alike = [one for one in change.candidates if one.odds < ALIKE]
     named = ", or ".join(f"{one.words}, by {size_text(one)}" for one in alike)
     rest = change.candidates[len(alike) :]
@@ -91,7 +91,7 @@ def watch_sentences(finding: WatchFinding, history: History) -> tuple[str, ...]:
     return (*sentences, *(f"Beside it {_of_drift(drift, days)}" for drift in finding.drifts[1:]))
 
 
-def course_text(course: Course, days: Sequence[str]) -> str:
+def course_text(course: DatedCause, days: Sequence[str]) -> str:
     """Return what a course says: what has happened, by how much, and since when.
 
     Parameters

@@ -5,7 +5,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from shaftprint.drift import ALL_CAUSES, Candidate, differ, watch_sentences
+from shaftprint.drift import ALL_CAUSES, SizedCause, differ, watch_sentences
 from shaftprint.report._page import Page, write_page
 from shaftprint.report.comparison import course_table, history_table, source_table
 from shaftprint.report.figures import history_chart
@@ -81,12 +81,12 @@ def render_history(
     return write_page(directory, page, pictures=pictures, overwrite=overwrite, progress=None)
 
 
-def sizes_of_tests(history: "History", *, load_repeatability: float) -> dict[str, list[Candidate | None]]:
+def sizes_of_tests(history: "History", *, load_repeatability: float) -> dict[str, list[SizedCause | None]]:
     """Return the size of each cause of every test against the first one, by the name of the cause."""
     if not history.tests:
         return {}
     first = history.tests[0].fingerprint
-    rows: list[Mapping[str, Candidate]] = []
+    rows: list[Mapping[str, SizedCause]] = []
     for test in history.tests[1:]:
         finding = differ(first, test.fingerprint, load_repeatability=load_repeatability)
         change = finding.changes[0] if finding.changes else finding.nearest
@@ -96,7 +96,7 @@ def sizes_of_tests(history: "History", *, load_repeatability: float) -> dict[str
 
 
 def _sections(
-    history: "History", finding: "WatchFinding", sizes: Mapping[str, Sequence[Candidate | None]]
+    history: "History", finding: "WatchFinding", sizes: Mapping[str, Sequence[SizedCause | None]]
 ) -> list[Section]:
     pictures = (
         [

@@ -6,7 +6,7 @@ from shaftprint.drift import size_text
 from shaftprint.tables import Table, numbers, p_value_text, plain, texts
 
 if TYPE_CHECKING:
-    from shaftprint.drift import Candidate, Change, Finding
+    from shaftprint.drift import Finding, ShipChange, SizedCause
 
 MOST_ODDS = 1000.0
 
@@ -31,7 +31,7 @@ def cause_table(name: str, finding: "Finding") -> Table:
     )
 
 
-def _cells(change: "Change", one: "Candidate", place: int) -> tuple[str, ...]:
+def _cells(change: "ShipChange", one: "SizedCause", place: int) -> tuple[str, ...]:
     odds = f"> {MOST_ODDS:g} : 1" if one.odds > MOST_ODDS else f"{plain(one.odds, 1)} : 1"
     sign = "−" if one.size < 0.0 else ""
     return (

@@ -7,7 +7,7 @@ from shaftprint.digits import with_deviation
 from shaftprint.tables import Column, Table, numbers, p_value_text, plain, texts
 
 if TYPE_CHECKING:
-    from shaftprint.drift import Candidate, Course, History, WatchFinding
+    from shaftprint.drift import DatedCause, History, SizedCause, WatchFinding
 
 PERCENT, MILLISECONDS = 100.0, 1000.0
 MOST_ODDS = 1000.0
@@ -52,13 +52,13 @@ def course_table(finding: "WatchFinding", history: "History") -> Table:
     )
 
 
-def _size(one: "Course") -> str:
+def _size(one: "DatedCause") -> str:
     factor = PERCENT if one.cause.is_share else MILLISECONDS
     unit = f"{one.cause.unit}/year" if one.shape == "ramp" else one.cause.unit
     return f"{with_deviation(factor * one.size, factor * one.std)} {unit}"
 
 
-def history_table(history: "History", sizes: "Mapping[str, Sequence[Candidate | None]]") -> Table:
+def history_table(history: "History", sizes: "Mapping[str, Sequence[SizedCause | None]]") -> Table:
     """Return every test with the size of the causes that vary most, and what was done to the ship, in order of time.
 
     Parameters
@@ -89,7 +89,7 @@ def history_table(history: "History", sizes: "Mapping[str, Sequence[Candidate | 
     )
 
 
-def _cell(one: "Candidate | None") -> str:
+def _cell(one: "SizedCause | None") -> str:
     if one is None:
         return NOT_THERE
     factor = PERCENT if one.cause.is_share else MILLISECONDS

@@ -12,13 +12,13 @@ from shaftprint.report.charts import Chart, Mark, Panel, Points, Scale, Straight
 if TYPE_CHECKING:
     from datetime import datetime
 
-    from shaftprint.drift import Candidate, History
+    from shaftprint.drift import History, SizedCause
 
 PERCENT, MILLISECONDS = 100.0, 1000.0
 PANEL_PX = 150
 
 
-def history_chart(history: "History", sizes: "Mapping[str, Sequence[Candidate | None]]") -> Chart:
+def history_chart(history: "History", sizes: "Mapping[str, Sequence[SizedCause | None]]") -> Chart:
     """Return the size of each cause in every test with its 95 % interval, the first test being zero.
 
     Parameters
@@ -43,7 +43,7 @@ def history_chart(history: "History", sizes: "Mapping[str, Sequence[Candidate | 
     return Chart(panels=panels, heights_px=(PANEL_PX,))
 
 
-def _panel(name: str, years: FloatArray, column: "Sequence[Candidate | None]", events: Sequence[float]) -> Panel:
+def _panel(name: str, years: FloatArray, column: "Sequence[SizedCause | None]", events: Sequence[float]) -> Panel:
     there = [(year, one) for year, one in zip(years, column, strict=True) if one is not None]
     share = there[0][1].cause.is_share
     factor = PERCENT if share else MILLISECONDS
