@@ -35,6 +35,12 @@ def test_units_of_the_numbers_do_not_matter():
     assert other.rest_p_value() == pytest.approx(plain.rest_p_value())
 
 
+@pytest.mark.parametrize("covariance", [np.ones((2, 2)), np.diag([1.0, 0.0]), np.array([[1.0, np.nan], [np.nan, 1.0]])])
+def test_a_covariance_that_fixes_a_number_exactly_is_refused(covariance):
+    with pytest.raises(np.linalg.LinAlgError):
+        whitened(np.zeros(2), covariance, np.eye(2))
+
+
 def test_what_a_chosen_direction_explains_is_left_to_none():
     directions = np.array([[1.0, 0.0, 2.0], [1.0, 1.0, 2.0], [0.0, 0.0, 0.0]])
     white = whitened(np.array([3.0, 3.0, 0.5]), np.eye(3), directions)

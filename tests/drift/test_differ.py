@@ -144,3 +144,26 @@ def test_a_fingerprint_of_an_earlier_version_is_said(before):
     earlier = before.model_copy(update={"joint": None})
     (sentence,) = finding_sentences(differ(before, earlier))
     assert "has no joint covariance; identify its recording again" in sentence
+
+
+def test_a_number_that_was_held_is_left_out(before):
+    own = [list(row) for row in before.joint.own_covariance]
+    place = before.joint.names.index("I_up")
+    for at in range(len(own)):
+        own[at][place] = own[place][at] = 0.0
+    held = before.model_copy(
+        update={"joint": before.joint.model_copy(update={"own_covariance": tuple(map(tuple, own))})}
+    )
+    finding = differ(before, held)
+    assert finding.left_out == {"I_up": "it was held"}
+    assert finding.changes == ()
+
+
+def test_numbers_of_which_one_follows_from_another_are_not_judged_together(before):
+    size = len(before.joint.names)
+    same = tuple((1e-4,) * size for _ in range(size))
+    joint = before.joint.model_copy(update={"own_covariance": same, "loadings": {}})
+    twin = before.model_copy(update={"joint": joint})
+    assert (
+        differ(twin, twin, load_repeatability=0.0).because == "the covariance of the numbers is not positive definite"
+    )

@@ -208,3 +208,44 @@ def test_what_is_measured_of_noise_may_not_be_changed():
     spectrum = NoiseSpectrum.model_validate(noise_spectra({1000.0: LEVELS})[0].model_dump())
     with pytest.raises(ValueError, match="frozen"):
         spectrum.engine_speed_rpm = 2.0
+
+
+def _first_row(joint, value):
+    joint["own_covariance"][0][0] = value
+
+
+@pytest.mark.parametrize(
+    ("spoil", "message"),
+    [
+        (lambda joint: joint["names"].__setitem__(0, "\x1b[31mred"), r"joint: expected names of its numbers, found"),
+        (lambda joint: joint["names"].__setitem__(0, joint["names"][1]), r"expected each name once"),
+        (lambda joint: joint["own_covariance"].pop(), r"own_covariance: expected 9 rows of 9"),
+        (lambda joint: _first_row(joint, "NaN"), r"own_covariance: expected finite numbers"),
+        (lambda joint: _first_row(joint, "Infinity"), r"own_covariance: expected finite numbers"),
+        (lambda joint: _first_row(joint, -1.0), r"own_covariance: expected"),
+        (lambda joint: joint["loadings"].update(TVC=[1.0]), r"loadings of 'TVC': expected 9 finite numbers"),
+        (lambda joint: joint["loadings"].update({"prior of g": ["NaN"] * 9}), r"loadings of 'prior of g': expected 9"),
+    ],
+)
+def test_a_joint_covariance_that_cannot_be_is_refused(of_legs, path, spoil, message):
+    write_changed(of_legs, path, lambda content: spoil(content["joint"]))
+    with pytest.raises(FingerprintError, match=message):
+        read_fingerprint(path)
+
+
+def test_the_joint_covariance_adds_up_to_what_each_number_is_known_to(fingerprint):
+    """The test's own part and the squares of what was stated beforehand are the variance of the budget."""
+    joint = fingerprint.joint
+    own = np.diag(np.array(joint.own_covariance))
+    stated = sum(np.array(change) ** 2 for change in joint.loadings.values())
+    for name, variance in zip(joint.names, own + stated, strict=True):
+        assert variance == pytest.approx(fingerprint.quantity(name).std ** 2, rel=1e-9), name
+
+
+def test_the_scale_of_the_gauge_moves_torques_in_newton_metres_alike(fingerprint, vessel):
+    """I_dn and K_Q are made of the torque that the gauge shows: two per cent of scale are two per cent of each."""
+    scale = vessel.sensors.shaft_torque.scale_std_fraction
+    moved = dict(zip(fingerprint.joint.names, fingerprint.joint.loadings["gauge scale"], strict=True))
+    for name in ("I_dn", "K_Q"):
+        assert moved[name] == pytest.approx(scale * fingerprint.quantity(name).value, rel=1e-6)
+    assert moved["t_d"] == pytest.approx(0.0, abs=1e-3)

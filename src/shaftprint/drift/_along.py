@@ -99,6 +99,8 @@ def whitened(difference: FloatArray, covariance: FloatArray, directions: FloatAr
     """
     # numbers of different units: factor the correlation
     scale = np.sqrt(np.diag(covariance))
+    if not np.all(np.isfinite(covariance)) or not np.all(scale > 0.0):
+        raise np.linalg.LinAlgError("expected finite numbers and positive variances")
     factor = np.linalg.cholesky(covariance / scale[:, None] / scale)
     solved = np.linalg.solve(factor, np.column_stack([difference, directions]) / scale[:, None])
     return Whitened(difference=solved[:, 0], directions=solved[:, 1:])

@@ -26,6 +26,7 @@ SHARES = (ShipRole.TORQUE, ShipRole.ACTUATOR_FREQUENCY, ShipRole.ACTUATOR_DAMPIN
 """Roles of numbers that are larger than zero, beside those of physical values."""
 NOT_POSITIVE = "it is not larger than zero"
 AT_BOUND = "the search stopped at its bound"
+HELD = "it was held"
 NOT_IN_ALL = "it is not in all fingerprints"
 
 
@@ -105,6 +106,8 @@ def _doubt(name: str, fingerprint: "Fingerprint") -> str:
     """Return why a number of a fingerprint is not judged; empty where it is."""
     if fingerprint.joint is None or name not in fingerprint.joint.names:
         return NOT_IN_ALL
+    if fingerprint.joint.covariance_of((name,))[0, 0] <= 0.0:
+        return HELD
     number = fingerprint.quantity(name)
     kinds = (reason.kind for reason in fingerprint.verdict.reasons)
     if doubt := next((AFFECTED[kind][1] for kind in kinds if depends_on(_estimate(number), kind)), ""):
