@@ -18,7 +18,7 @@ from shaftprint.drift._pair import Pair, pair_of
 from shaftprint.drift._shared_errors import FieldChange, SharedErrors, shared_errors
 from shaftprint.drift._visible import VisibleChange, visible_changes
 from shaftprint.drift._watch import DatedCause, Drift, WatchFinding, watch
-from shaftprint.drift._words import course_text, finding_sentences, size_text, watch_sentences
+from shaftprint.drift._words import finding_sentences, watch_sentences
 
 __all__ = [
     "ALL_CAUSES",
@@ -40,14 +40,12 @@ __all__ = [
     "VisibleChange",
     "WatchFinding",
     "Whitened",
-    "course_text",
     "differ",
     "finding_sentences",
     "history_of",
     "p_value_of_largest",
     "pair_of",
     "shared_errors",
-    "size_text",
     "visible_changes",
     "watch",
     "watch_sentences",

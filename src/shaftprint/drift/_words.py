@@ -43,15 +43,15 @@ def finding_sentences(finding: Finding) -> tuple[str, ...]:
     return tuple(sentences)
 
 
-def size_text(candidate: SizedCause) -> str:
+def _size_text(one: SizedCause) -> str:
     """Return the size of a change with its standard deviation, without a sign, as sentences have it."""
-    factor = PERCENT if candidate.cause.is_share else MILLISECONDS
-    return stated(factor * abs(candidate.size), factor * candidate.std, candidate.cause.unit)
+    factor = PERCENT if one.cause.is_share else MILLISECONDS
+    return stated(factor * abs(one.size), factor * one.std, one.cause.unit)
 
 
 def _of_change(change: ShipChange) -> str:
     alike = [one for one in change.candidates if one.odds < ALIKE]
-    named = ", or ".join(f"{one.words}, by {size_text(one)}" for one in alike)
+    named = ", or ".join(f"{one.words}, by {_size_text(one)}" for one in alike)
     rest = change.candidates[len(alike) :]
     odds = f" Odds {_odds(rest[0].odds)} against {rest[0].words}." if rest else ""
     told = (
@@ -91,7 +91,7 @@ def watch_sentences(finding: WatchFinding, history: History) -> tuple[str, ...]:
     return (*sentences, *(f"Beside it {_of_drift(drift, days)}" for drift in finding.drifts[1:]))
 
 
-def course_text(course: DatedCause, days: Sequence[str]) -> str:
+def _course_text(course: DatedCause, days: Sequence[str]) -> str:
     """Return what a course says: what has happened, by how much, and since when.
 
     Parameters
@@ -101,17 +101,16 @@ def course_text(course: DatedCause, days: Sequence[str]) -> str:
     days
         When each test was made, in words.
     """
-    factor = PERCENT if course.cause.is_share else MILLISECONDS
-    size = stated(factor * abs(course.size), factor * course.std, course.cause.unit)
+    size = f"{course.words}, by {_size_text(course)}"
     if course.shape == "ramp":
-        return f"{course.words}, by {size} a year since {days[course.since]}"
-    return f"{course.words}, by {size}, between {days[course.since - 1]} and {days[course.since]}"
+        return f"{size} a year since {days[course.since]}"
+    return f"{size}, between {days[course.since - 1]} and {days[course.since]}"
 
 
 def _of_drift(drift: Drift, days: Sequence[str]) -> str:
     alike = [one for one in drift.courses if one.odds < ALIKE]
     rest = drift.courses[len(alike) :]
-    named = ", or ".join(course_text(one, days) for one in alike)
+    named = ", or ".join(_course_text(one, days) for one in alike)
     odds = f" Odds {_odds(rest[0].odds)} against {rest[0].words}." if rest else ""
     told = "" if len(alike) == 1 else f" These tests hardly tell them apart: {_ways(one.cause for one in alike)}."
     return f"{named}.{odds}{told}"

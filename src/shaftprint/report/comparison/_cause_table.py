@@ -2,12 +2,13 @@
 
 from typing import TYPE_CHECKING
 
-from shaftprint.drift import size_text
+from shaftprint.digits import with_deviation
 from shaftprint.tables import Table, numbers, p_value_text, plain, texts
 
 if TYPE_CHECKING:
     from shaftprint.drift import Finding, ShipChange, SizedCause
 
+PERCENT, MILLISECONDS = 100.0, 1000.0
 MOST_ODDS = 1000.0
 
 
@@ -33,14 +34,19 @@ def cause_table(name: str, finding: "Finding") -> Table:
 
 def _cells(change: "ShipChange", one: "SizedCause", place: int) -> tuple[str, ...]:
     odds = f"> {MOST_ODDS:g} : 1" if one.odds > MOST_ODDS else f"{plain(one.odds, 1)} : 1"
-    sign = "−" if one.size < 0.0 else ""
     return (
         one.words,
-        f"{sign}{size_text(one)}",
+        sized(one),
         plain(one.score, 1),
         odds if place else "–",
         p_value_text(change.p_value) if place == 0 else "",
     )
+
+
+def sized(one: "SizedCause") -> str:
+    """Return size and deviation of a cause with its sign, as tables have them."""
+    factor = PERCENT if one.cause.is_share else MILLISECONDS
+    return f"{with_deviation(factor * one.size, factor * one.std)} {one.cause.unit}"
 
 
 def _note(finding: "Finding") -> str:

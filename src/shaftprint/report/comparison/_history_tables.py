@@ -3,14 +3,12 @@
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from shaftprint.digits import with_deviation
+from shaftprint.report.comparison._cause_table import MOST_ODDS, sized
 from shaftprint.tables import Column, Table, numbers, p_value_text, plain, texts
 
 if TYPE_CHECKING:
     from shaftprint.drift import DatedCause, History, SizedCause, WatchFinding
 
-PERCENT, MILLISECONDS = 100.0, 1000.0
-MOST_ODDS = 1000.0
 MOST_CAUSES = 4
 NOT_THERE = "–"
 
@@ -53,9 +51,7 @@ def course_table(finding: "WatchFinding", history: "History") -> Table:
 
 
 def _size(one: "DatedCause") -> str:
-    factor = PERCENT if one.cause.is_share else MILLISECONDS
-    unit = f"{one.cause.unit}/year" if one.shape == "ramp" else one.cause.unit
-    return f"{with_deviation(factor * one.size, factor * one.std)} {unit}"
+    return f"{sized(one)}/year" if one.shape == "ramp" else sized(one)
 
 
 def history_table(history: "History", sizes: "Mapping[str, Sequence[SizedCause | None]]") -> Table:
@@ -90,7 +86,4 @@ def history_table(history: "History", sizes: "Mapping[str, Sequence[SizedCause |
 
 
 def _cell(one: "SizedCause | None") -> str:
-    if one is None:
-        return NOT_THERE
-    factor = PERCENT if one.cause.is_share else MILLISECONDS
-    return f"{with_deviation(factor * one.size, factor * one.std)} {one.cause.unit}"
+    return NOT_THERE if one is None else sized(one)
