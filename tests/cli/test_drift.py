@@ -51,6 +51,12 @@ def test_an_unchanged_line_and_a_line_whose_governor_was_exchanged_have_no_drift
     assert "governor" in result.output.partition("2023-09-01")[2].splitlines()[0]
 
 
+def test_a_step_goes_on_to_no_limit(run, years):
+    printed = " ".join(run("drift", *years(), "--limit", "proportional=30%", "--limit", "delay=20ms").output.split())
+    assert "proportional gain of the governor, 30 %: no ramp of it is seen" in printed
+    assert "delay of governor and fuel, 20 ms: no ramp of it is seen" in printed
+
+
 def test_the_document_holds_the_course_with_all_digits(run, years):
     document = json.loads(run("drift", *years(), "--json").output)
     best = document["result"]["finding"]["drifts"][0]["courses"][0]
@@ -63,6 +69,8 @@ def test_the_document_holds_the_course_with_all_digits(run, years):
     ("arguments", "message"),
     [
         (("--event", "paint=2023-01-01"), "expected KIND=DATE with one of docking"),
+        (("--limit", "paint=10%"), "expected the beginning of one of injection or turbocharger"),
+        (("--limit", "propeller=ten"), "expected a number of % after propeller="),
         (("--event", "docking=yesterday"), "'yesterday' does not match the formats"),
         (("--event", "docking=2023-01-01", "--time-zone", "Mars/Olympus"), "expected UTC, an offset such as +02:00"),
         (("--event", "docking=2023-03-26T02:30", "--time-zone", "Europe/Amsterdam"), "show 2023-03-26 02:30:00 never"),

@@ -8,7 +8,7 @@ import pytest
 from tests.drift.test_differ import PRIORS
 from tests.known_fits import TRUTH, fitted, taken
 
-from shaftprint.drift import Event, differ, history_of, watch, watch_sentences
+from shaftprint.drift import CAUSES, Event, differ, history_of, limit_sentence, time_to_limit, watch, watch_sentences
 from shaftprint.errors import FingerprintError
 from shaftprint.identify import Settings
 
@@ -73,6 +73,31 @@ def test_a_ramp_is_found_with_its_slope_and_beginning(base):
     assert best.size == pytest.approx(np.expm1(0.03), rel=1e-6)
     assert "by 3.0" in watch_sentences(finding, history)[0]
     assert "a year since 2024-07-01" in watch_sentences(finding, history)[0]
+
+
+def test_the_time_to_a_limit_carries_the_slope_on(base):
+    """Three per cent a year in logarithms since 2024-07-01 are six per cent after ln 1.06 / 0.03 = 1.942 years."""
+    tests = [made(place, base, I_dn=float(np.exp(0.03 * max(place - 2, 0) / 4.0))) for place in range(12)]
+    history, finding = looked_at(tests)
+    best = finding.drifts[0].best
+    when = time_to_limit(best, 0.06, history)
+    begin = history.tests[2].at
+    year = timedelta(days=365.25)
+    assert (when.at - begin) / year == pytest.approx(np.log(1.06) / 0.03, rel=1e-6)
+    std = best.std / (1.0 + best.size)
+    assert (when.earliest - begin) / year == pytest.approx(np.log(1.06) / (0.03 + 1.96 * std), rel=1e-3)
+    assert (when.latest - begin) / year == pytest.approx(np.log(1.06) / (0.03 - 1.96 * std), rel=1e-3)
+    assert time_to_limit(replace(best, std=0.1), 0.06, history).latest is None
+    sentence = limit_sentence(finding, best.cause, 0.06, history)
+    assert sentence.startswith(
+        "inertia behind the gauge, 6 %: reached on 2026-06-10 if it goes on as it did (95 % interval 2026-0"
+    )
+    other = next(cause for cause in CAUSES if cause.name == "propeller")
+    assert "no ramp of it is seen" in limit_sentence(finding, other, 0.1, history)
+    with pytest.raises(FingerprintError, match="expected a limit above zero and below 100 %, found 0"):
+        time_to_limit(best, 0.0, history)
+    with pytest.raises(FingerprintError, match="expected a ramp, found a step"):
+        time_to_limit(replace(best, shape="step"), 0.06, history)
 
 
 def test_what_was_done_to_the_governor_is_no_drift_of_it(base):

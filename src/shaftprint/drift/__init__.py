@@ -16,9 +16,10 @@ from shaftprint.drift._finding import Finding, ShipChange, SizedCause
 from shaftprint.drift._history import EVENTS, DatedTest, Event, History, history_of
 from shaftprint.drift._pair import Pair, pair_of
 from shaftprint.drift._shared_errors import FieldChange, SharedErrors, shared_errors
+from shaftprint.drift._time_to_limit import TimeToLimit, time_to_limit
 from shaftprint.drift._visible import VisibleChange, visible_changes
 from shaftprint.drift._watch import DatedCause, Drift, WatchFinding, watch
-from shaftprint.drift._words import finding_sentences, watch_sentences
+from shaftprint.drift._words import finding_sentences, limit_sentence, watch_sentences
 
 __all__ = [
     "ALL_CAUSES",
@@ -37,15 +38,18 @@ __all__ = [
     "SharedErrors",
     "ShipChange",
     "SizedCause",
+    "TimeToLimit",
     "VisibleChange",
     "WatchFinding",
     "Whitened",
     "differ",
     "finding_sentences",
     "history_of",
+    "limit_sentence",
     "p_value_of_largest",
     "pair_of",
     "shared_errors",
+    "time_to_limit",
     "visible_changes",
     "watch",
     "watch_sentences",

@@ -6,6 +6,7 @@ from shaftprint.digits import p_value_text, plain_letters, stated
 from shaftprint.drift._causes import MILLISECONDS, PERCENT, Cause
 from shaftprint.drift._finding import Finding, ShipChange, SizedCause
 from shaftprint.drift._history import History
+from shaftprint.drift._time_to_limit import time_to_limit
 from shaftprint.drift._watch import DatedCause, Drift, WatchFinding
 
 # Causes whose likelihoods differ by less than this factor are named together.
@@ -89,6 +90,29 @@ def watch_sentences(finding: WatchFinding, history: History) -> tuple[str, ...]:
         return (f"No change beyond chance in {len(days)} tests from {days[0]} to {days[-1]}.",)
     sentences = [f"Yes: {_of_drift(finding.drifts[0], days)}"]
     return (*sentences, *(f"Beside it {_of_drift(drift, days)}" for drift in finding.drifts[1:]))
+
+
+def limit_sentence(finding: WatchFinding, cause: Cause, limit: float, history: History) -> str:
+    """Return when a cause reaches a limit if it goes on as it did, in a sentence.
+
+    Parameters
+    ----------
+    finding
+        What ``watch`` has found.
+    cause, limit
+        Which cause, and the size that it must not pass: a share, or a time [s].
+    history
+        The tests in which it was found.
+    """
+    factor = PERCENT if cause.is_share else MILLISECONDS
+    asked = f"{cause.name}, {factor * limit:g} {cause.unit}"
+    ramps = (drift.best for drift in finding.drifts if drift.best.cause == cause and drift.best.shape == "ramp")
+    course = next(ramps, None)
+    if course is None:
+        return f"{asked}: no ramp of it is seen, so that nothing can be said of the time."
+    when = time_to_limit(course, limit, history)
+    days = [f"{one:%Y-%m-%d}" if one is not None else "later" for one in (when.at, when.earliest, when.latest)]
+    return f"{asked}: reached on {days[0]} if it goes on as it did (95 % interval {days[1]} to {days[2]})."
 
 
 def _course_text(course: DatedCause, days: Sequence[str]) -> str:

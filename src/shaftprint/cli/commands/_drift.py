@@ -10,13 +10,24 @@ from shaftprint.cli._dates import DATE_FORMATS, zone_option
 from shaftprint.cli._store_options import instant, store_option
 from shaftprint.cli._terminal import answer, echo, say
 from shaftprint.cli.output import REPORT, fingerprint_at, force_option, give, output_folder, print_tables
-from shaftprint.drift import EVENTS, LOAD_REPEATABILITY, Event, History, history_of, watch, watch_sentences
+from shaftprint.drift import (
+    ALL_CAUSES,
+    EVENTS,
+    LOAD_REPEATABILITY,
+    Cause,
+    Event,
+    History,
+    history_of,
+    limit_sentence,
+    watch,
+    watch_sentences,
+)
 from shaftprint.fingerprint import Fingerprint
 from shaftprint.report import course_table, history_table, render_history, sizes_of_tests
 from shaftprint.store import line_history, open_store
 
 FEWEST = 2
-PERCENT = 100.0
+PERCENT, MILLISECONDS = 100.0, 1000.0
 SEED = 1
 
 
@@ -34,6 +45,26 @@ class EventAt(click.ParamType):  # type: ignore[type-arg]
         return kind, at
 
 
+class LimitOf(click.ParamType):  # type: ignore[type-arg]
+    """A cause and the size that it must not pass, such as ``propeller=10%``."""
+
+    name = "limit"
+
+    def convert(self, value: object, param: click.Parameter | None, ctx: click.Context | None) -> tuple[Cause, float]:
+        """Return the cause and the size, a share or a time [s]."""
+        word, _, size = str(value).partition("=")
+        found = [cause for cause in ALL_CAUSES if word and cause.name.startswith(word.strip())]
+        if len(found) != 1:
+            names = ", ".join(cause.name for cause in ALL_CAUSES)
+            self.fail(f"expected the beginning of one of {names}, found {word!r}.", param, ctx)
+        (cause,) = found
+        number = size.strip().removesuffix(cause.unit)
+        try:
+            return cause, float(number) / (PERCENT if cause.is_share else MILLISECONDS)
+        except ValueError:
+            self.fail(f"expected a number of {cause.unit} after {word}=, found {size!r}.", param, ctx)
+
+
 @click.command("drift")
 @click.argument("tests", metavar="SHIP|FINGERPRINT...", nargs=-1, required=True)
 @store_option
@@ -45,6 +76,14 @@ class EventAt(click.ParamType):  # type: ignore[type-arg]
     type=EventAt(),
     metavar="KIND=DATE",
     help=f"What was done to the ship: {', '.join(EVENTS)}; numbers that it concerns begin anew. May be repeated.",
+)
+@click.option(
+    "--limit",
+    "limits",
+    multiple=True,
+    type=LimitOf(),
+    metavar="CAUSE=SIZE",
+    help="When a slow change reaches a size, such as propeller=10% or delay=20ms; the first words of a cause will do.",
 )
 @zone_option("Zone of dates of events without an offset, such as Europe/Amsterdam; UTC by default.")
 @click.option(
@@ -64,6 +103,7 @@ def command(
     *,
     line: str | None,
     events: tuple[tuple[str, datetime], ...],
+    limits: tuple[tuple[Cause, float], ...],
     zone: tzinfo | None,
     load_percent: float,
     output: Path | None,
@@ -83,6 +123,8 @@ def command(
         with output_folder(output, of="drift", force=force) as folder:
             render_history(folder, title, history, finding, now=datetime.now(UTC), load_repeatability=load)
     answer(f"Has the ship changed? {' '.join(watch_sentences(finding, history))}")
+    for cause, size in limits:
+        answer(limit_sentence(finding, cause, size, history))
     give("finding", finding)
     _print_history(history, load)
     print_tables([] if finding.because else [course_table(finding, history)])
