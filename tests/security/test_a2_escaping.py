@@ -300,7 +300,8 @@ def test_a_fingerprint_as_tables_holds_no_formula(run, forged, tmp_path):
     def change(content):
         for quantity in (*content["parameters"], *content["physical"], *content["combinations"]):
             quantity["unit"], quantity["meaning"] = "=1+1", "@SUM(A1)\x1b"
-        content["physical"][0]["name"] = "+cmd"
+        place = content["joint"]["names"].index(content["physical"][0]["name"])
+        content["physical"][0]["name"] = content["joint"]["names"][place] = "+cmd"
 
     result = run("export", "csv", forged(change), "-o", tmp_path / "out.csv")
     assert result.exit_code == 0, result.stderr
