@@ -9,6 +9,7 @@ from datetime import UTC, datetime
 
 import pytest
 
+from shaftprint.drift import differ, finding_sentences
 from shaftprint.fingerprint import SourceFile, take_fingerprint
 from shaftprint.report import change_in_words, differences
 from shaftprint.tug import Noise, Tug, sail
@@ -58,3 +59,20 @@ def test_only_what_has_changed_is_named(tested, first, later, name):
         assert words.startswith("Yes: ")
         assert [one.outcome for one in found if one.first.name == name] == ["differs"]
         assert f"{name} by " in words
+
+
+def test_the_cause_is_named_with_its_size(tested, first):
+    assert differ(first, tested(LATER, seed=32)).changes == ()
+    best = differ(first, tested(FOULED, seed=32)).changes[0].best
+    assert best.cause.name == "propeller"
+    assert abs(best.size - 0.08) < 3.0 * best.std
+    assert best.std < 0.02
+
+
+def test_a_cause_that_could_not_be_judged_is_not_excluded(tested, first):
+    """Without the builder's inertia the search stops where the delay is zero: 20 ms more look like another gain."""
+    assert first.quantity("t_d").at_bound
+    finding = differ(first, tested(LONGER_DELAY, seed=32))
+    assert finding.left_out["t_d"] == "the search stopped at its bound"
+    assert [cause.name for cause in finding.not_judged] == ["delay of governor and fuel"]
+    assert finding_sentences(finding)[-1] == ("Not excluded, since it could not be judged: delay of governor and fuel.")

@@ -61,6 +61,7 @@ def differ(first: "Fingerprint", other: "Fingerprint", *, load_repeatability: fl
         rest_p_value=white.rest_p_value(tuple(chosen)),
         names=pair.names,
         left_out=pair.left_out,
+        not_judged=pair.not_judged,
     )
 
 

@@ -65,5 +65,7 @@ class Finding:
     """Numbers that were judged together."""
     left_out: dict[str, str]
     """Why others were not, by name."""
+    not_judged: tuple[Cause, ...] = ()
+    """Causes of numbers that were left out: they are not excluded."""
     because: str = ""
     """Why nothing could be judged; empty where something was."""

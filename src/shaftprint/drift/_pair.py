@@ -5,6 +5,7 @@ difference is what each test left open, and of what was stated beforehand only w
 files state the same scale of the gauge, its error moves both tests alike (``_shared_errors``).
 """
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -44,6 +45,8 @@ class Pair:
     """Its covariance where nothing changed, shape (numbers, numbers)."""
     causes: tuple[Cause, ...]
     """What may have moved these numbers."""
+    not_judged: tuple[Cause, ...]
+    """What may have moved numbers that were left out: it is not excluded."""
     directions: FloatArray
     """What a change of each cause by 1, or by a second, does to the numbers; shape (numbers, causes)."""
 
@@ -86,7 +89,36 @@ def pair_of(first: "Fingerprint", other: "Fingerprint", *, load_repeatability: f
         covariance=_covariance(before, after, shared_errors(first, other).common, unmoved=alike(first, other))
         + 2.0 * np.diag(load**2),
         causes=causes,
+        not_judged=not_judged(causes, doubts, (first, other)),
         directions=directions,
+    )
+
+
+def not_judged(
+    causes: tuple[Cause, ...], doubts: Mapping[str, str], fingerprints: "Sequence[Fingerprint]"
+) -> tuple[Cause, ...]:
+    """Return the causes that move numbers which were left out, so that they are not excluded.
+
+    Parameters
+    ----------
+    causes
+        Those that are judged.
+    doubts
+        Why each number is not judged; empty where it is.
+    fingerprints
+        Fingerprints that have these numbers.
+    """
+    roles = {
+        one.quantity(name).role
+        for one in fingerprints
+        if one.joint is not None
+        for name in one.joint.names
+        if doubts[name]
+    }
+    return tuple(
+        cause
+        for cause in CAUSES
+        if cause not in causes and any(role in alike for alike in cause.roles for role in roles)
     )
 
 

@@ -10,7 +10,7 @@ from shaftprint.arrays import FloatArray
 from shaftprint.catalogue import ShipRole
 from shaftprint.drift._causes import GAUGE_SCALE, Cause
 from shaftprint.drift._history import EVENTS, SECONDS_PER_YEAR, History
-from shaftprint.drift._pair import SingleTest, alike, directions_of, doubts_of, single_test
+from shaftprint.drift._pair import SingleTest, alike, directions_of, doubts_of, not_judged, single_test
 from shaftprint.drift._shared_errors import is_common
 
 if TYPE_CHECKING:
@@ -37,6 +37,8 @@ class Series:
     """What may have moved the numbers."""
     directions: FloatArray
     """What a change of each cause by 1, or by a second, does to the numbers of a test; shape (numbers, causes)."""
+    not_judged: tuple[Cause, ...]
+    """What may have moved numbers that were left out: it is not excluded."""
 
 
 def series_of(history: History, *, made: int, load_repeatability: float) -> Series:
@@ -69,6 +71,7 @@ def series_of(history: History, *, made: int, load_repeatability: float) -> Seri
         baseline=_baseline(history, roles),
         causes=causes,
         directions=directions,
+        not_judged=not_judged(causes, doubts, fingerprints),
     )
 
 

@@ -19,6 +19,7 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.distributions import normal_cdf
+from shaftprint.drift._causes import Cause
 from shaftprint.drift._differ import LOAD_REPEATABILITY, MOST_CHANGES, NOT_DETERMINED, NOT_TOLD, UNLIKELY
 from shaftprint.drift._finding import SizedCause, odds_against
 from shaftprint.drift._history import SECONDS_PER_YEAR, History
@@ -74,6 +75,8 @@ class WatchFinding:
     """Numbers that were judged together."""
     left_out: dict[str, str]
     """Why others were not, by name."""
+    not_judged: tuple[Cause, ...] = ()
+    """Causes of numbers that were left out: they are not excluded."""
     because: str = ""
     """Why nothing could be judged; empty where something was."""
 
@@ -118,7 +121,13 @@ def watch(
         drifts.append(nearest)
         search = search.beside(nearest.best)
         nearest = search.nearest(noise)
-    return WatchFinding(drifts=tuple(drifts), nearest=nearest, names=series.names, left_out=series.left_out)
+    return WatchFinding(
+        drifts=tuple(drifts),
+        nearest=nearest,
+        names=series.names,
+        left_out=series.left_out,
+        not_judged=series.not_judged,
+    )
 
 
 def _nothing(because: str, left_out: dict[str, str]) -> WatchFinding:

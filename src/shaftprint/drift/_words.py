@@ -36,12 +36,18 @@ def finding_sentences(finding: Finding) -> tuple[str, ...]:
                 f"Perhaps: {count} numbers, judged together, differ by more than chance ({_p(rest)}), and by none of "
                 "the causes that are known; look at each number, and at the conditions of both tests.",
             )
-        return (f"No: {count} numbers of the ship, judged together, agree within chance.",)
+        return (f"No: {count} numbers of the ship, judged together, agree within chance.", *_open(finding.not_judged))
     sentences = [f"Yes: {_of_change(finding.changes[0])}"]
     sentences += [f"Beside it {_of_change(change)}" for change in finding.changes[1:]]
     if unexplained:
         sentences.append(f"That does not explain all of the difference ({_p(rest)}): look at each number too.")
-    return tuple(sentences)
+    return (*sentences, *_open(finding.not_judged))
+
+
+def _open(causes: Sequence[Cause]) -> tuple[str, ...]:
+    """Return what could not be judged, and may be it all the same."""
+    names = " and ".join(cause.name for cause in causes)
+    return (f"Not excluded, since it could not be judged: {names}.",) if causes else ()
 
 
 def _size_text(one: SizedCause) -> str:
@@ -87,9 +93,11 @@ def watch_sentences(finding: WatchFinding, history: History) -> tuple[str, ...]:
         return (f"It cannot be told: {finding.because}.",)
     days = [f"{test.at:%Y-%m-%d}" for test in history.tests]
     if not finding.drifts:
-        return (f"No change beyond chance in {len(days)} tests from {days[0]} to {days[-1]}.",)
+        unchanged = f"No change beyond chance in {len(days)} tests from {days[0]} to {days[-1]}."
+        return (unchanged, *_open(finding.not_judged))
     sentences = [f"Yes: {_of_drift(finding.drifts[0], days)}"]
-    return (*sentences, *(f"Beside it {_of_drift(drift, days)}" for drift in finding.drifts[1:]))
+    further = (f"Beside it {_of_drift(drift, days)}" for drift in finding.drifts[1:])
+    return (*sentences, *further, *_open(finding.not_judged))
 
 
 def limit_sentence(finding: WatchFinding, cause: Cause, limit: float, history: History) -> str:
