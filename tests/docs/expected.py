@@ -232,6 +232,13 @@ def expect_explanation(folder, printed, words):
     assert read_fingerprint(place / "fingerprint.json").structure == "GAUGE-CLOSED"
 
 
+def expect_history(folder, printed, words):
+    # the inertia of the last spring came with the docking before it
+    assert printed.startswith("Has the ship changed? No change beyond chance in 4 tests from 2023-03-01 to 2026-03-01.")
+    assert "docking" in printed.partition("2025-05-01")[2].splitlines()[0]
+    assert (folder / after(words, "-o") / "index.html").is_file()
+
+
 def expect_comparison(folder, printed, words):
     assert "result-2026 compared with result-2025" in printed
     said = {line.split()[0]: line for line in printed.splitlines() if line.split()}
@@ -283,4 +290,5 @@ EXPECTED = {
     "validate": expect_validation,
     "explain": expect_explanation,
     "compare": expect_comparison,
+    "drift": expect_history,
 } | {f"export {name}": expect for name, expect in EXPORTS.items()}
