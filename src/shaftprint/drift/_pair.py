@@ -60,7 +60,7 @@ class SingleTest:
     own: FloatArray
     """Covariance that the test left open, shape (numbers, numbers)."""
     loadings: dict[str, FloatArray]
-    """ShipChange of the numbers for one standard deviation of each source that was stated, shape (numbers,) each."""
+    """Change of the numbers for one standard deviation of each source that was stated, shape (numbers,) each."""
 
 
 def pair_of(first: "Fingerprint", other: "Fingerprint", *, load_repeatability: float) -> Pair | None:

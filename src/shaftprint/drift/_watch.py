@@ -19,6 +19,7 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.distributions import normal_cdf
+from shaftprint.drift._along import whitened
 from shaftprint.drift._causes import Cause
 from shaftprint.drift._differ import LOAD_REPEATABILITY, MOST_CHANGES, NOT_DETERMINED, NOT_TOLD, UNLIKELY
 from shaftprint.drift._finding import SizedCause, odds_against
@@ -173,17 +174,15 @@ class _Search:
             for cause, direction in enumerate(series.directions.T):
                 courses += [(cause, shape, at) for at in range(len(growths))]
                 columns += [np.kron(growth, direction) for growth in growths]
-        scale = np.sqrt(np.diag(series.covariance))
-        factor = np.linalg.cholesky(series.covariance / scale[:, None] / scale)
-        stacked = np.column_stack([series.values.reshape(-1), series.baseline, np.array(columns).T]) / scale[:, None]
-        white = np.linalg.solve(factor, stacked)
+        stacked = np.column_stack([series.baseline, np.array(columns).T])
+        white = whitened(series.values.reshape(-1), series.covariance, stacked)
         free = series.baseline.shape[1]
         return cls(
             series=series,
             tests=tests,
-            values=white[:, 0],
-            free=white[:, 1 : 1 + free],
-            columns=white[:, 1 + free :],
+            values=white.difference,
+            free=white.directions[:, :free],
+            columns=white.directions[:, free:],
             courses=tuple(courses),
         )
 
