@@ -6,10 +6,11 @@ import click
 
 from shaftprint.cli._drive_judge import compare_on_the_bench
 from shaftprint.cli._drive_options import drive_fingerprint_at, is_drive_place
+from shaftprint.cli._load_option import load_repeatability_option
 from shaftprint.cli._own_structure import OWN_FILE_HELP, TypedName, chosen_structures
 from shaftprint.cli._terminal import answer, echo, say
 from shaftprint.cli.output import FINGERPRINT, REPORT, fingerprint_at, force_option, give, output_folder, print_tables
-from shaftprint.drift import LOAD_REPEATABILITY, Finding, differ, finding_sentences
+from shaftprint.drift import Finding, differ, finding_sentences
 from shaftprint.fingerprint import Fingerprint
 from shaftprint.report import (
     Difference,
@@ -42,15 +43,7 @@ PERCENT = 100.0
     metavar="NAME",
     help=f"Structure of a fingerprint that is not a shipped one: {OWN_FILE_HELP}.",
 )
-@click.option(
-    "--load-repeatability",
-    "load_percent",
-    type=click.FloatRange(min=0.0),
-    default=PERCENT * LOAD_REPEATABILITY,
-    show_default=True,
-    metavar="PERCENT",
-    help="Standard deviation of the propeller's torque at one speed from day to day.",
-)
+@load_repeatability_option
 @click.option("--each-number", is_flag=True, help="Judge each number by itself, not all of them along causes.")
 @click.option("-o", "--output", type=click.Path(path_type=Path), help="Folder for a report on the comparison.")
 @force_option

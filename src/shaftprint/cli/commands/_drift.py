@@ -7,13 +7,13 @@ import click
 import numpy as np
 
 from shaftprint.cli._dates import DATE_FORMATS, zone_option
+from shaftprint.cli._load_option import load_repeatability_option
 from shaftprint.cli._store_options import instant, store_option
 from shaftprint.cli._terminal import answer, echo, say
 from shaftprint.cli.output import REPORT, fingerprint_at, force_option, give, output_folder, print_tables
 from shaftprint.drift import (
     ALL_CAUSES,
     EVENTS,
-    LOAD_REPEATABILITY,
     Cause,
     Event,
     History,
@@ -86,15 +86,7 @@ class LimitOf(click.ParamType):  # type: ignore[type-arg]
     help="When a slow change reaches a size, such as propeller=10% or delay=20ms; the first words of a cause will do.",
 )
 @zone_option("Zone of dates of events without an offset, such as Europe/Amsterdam; UTC by default.")
-@click.option(
-    "--load-repeatability",
-    "load_percent",
-    type=click.FloatRange(min=0.0),
-    default=PERCENT * LOAD_REPEATABILITY,
-    show_default=True,
-    metavar="PERCENT",
-    help="Standard deviation of the propeller's torque at one speed from day to day.",
-)
+@load_repeatability_option
 @click.option("-o", "--output", type=click.Path(path_type=Path), help="Folder for a page with a chart over the years.")
 @force_option
 def command(

@@ -33,14 +33,18 @@ def cause_table(name: str, finding: "Finding") -> Table:
 
 
 def _cells(change: "ShipChange", one: "SizedCause", place: int) -> tuple[str, ...]:
-    odds = f"> {MOST_ODDS:g} : 1" if one.odds > MOST_ODDS else f"{plain(one.odds, 1)} : 1"
     return (
         one.words,
         sized(one),
         plain(one.score, 1),
-        odds if place else "–",
+        odds_text(one) if place else "–",
         p_value_text(change.p_value) if place == 0 else "",
     )
+
+
+def odds_text(one: "SizedCause") -> str:
+    """Return the odds against a cause, as tables have them."""
+    return f"> {MOST_ODDS:g} : 1" if one.odds > MOST_ODDS else f"{plain(one.odds, 1)} : 1"
 
 
 def sized(one: "SizedCause") -> str:

@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from shaftprint.report.comparison._cause_table import MOST_ODDS, sized
+from shaftprint.report.comparison._cause_table import odds_text, sized
 from shaftprint.tables import Column, Table, numbers, p_value_text, plain, texts
 
 if TYPE_CHECKING:
@@ -31,7 +31,7 @@ def course_table(finding: "WatchFinding", history: "History") -> Table:
             _size(one),
             f"ramp since {days[one.since]}" if one.shape == "ramp" else f"step by {days[one.since]}",
             plain(one.score, 1),
-            (f"> {MOST_ODDS:g} : 1" if one.odds > MOST_ODDS else f"{plain(one.odds, 1)} : 1") if place else NOT_THERE,
+            odds_text(one) if place else NOT_THERE,
             "" if place else p_value_text(drift.p_value),
         )
         for drift in drifts
