@@ -52,7 +52,7 @@ def true_values(truth: Truth, signals: Signals, ship: Ship) -> dict[str, float]:
 
     Deviations of the torque are shown ``scale`` times as large and divided by the shown mean, in which the zero is.
     What is shown without the zero is a point of the propeller law, whatever the load of the day; of the zero the torque
-    at the mean speed holds a share, one over the harmonic mean of the square of the swinging speed.
+    at the mean speed holds a share that is more than 1 where the speed swings.
     """
     point, true = signals.working_point, truth.normalised
     torque = truth.shaft_torque_nm * ship.scale / point.shaft_torque_nm
@@ -60,7 +60,7 @@ def true_values(truth: Truth, signals: Signals, ship: Ship) -> dict[str, float]:
     values = {
         **{name: both * true[name] for name in ("K_p", "K_i", "tau_dn", "tau_up", "g")},
         **{name: true[name] for name in ("t_d", "omega_n", "zeta", "t_sp")},
-        "k_q": true["k_q"] * (1.0 - ship.scale * ship.zero_nm / (point.harmonic_mean_square * point.shaft_torque_nm)),
+        "k_q": true["k_q"] * (1.0 - ship.scale * ship.zero_nm * point.zero_share / point.shaft_torque_nm),
         "c_set": truth.set_point_slope_rpm_per_v / (60.0 * signals.calibration.slope_rev_s_per_v),
         "t_gauge": ship.late_s,
         "v": 1.0,

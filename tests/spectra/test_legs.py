@@ -52,9 +52,10 @@ def made_leg(
     order_late_s=0.0,
     tracked=ORDER,
     second=0.0,
+    added=0.0,
 ):
-    """Signals of the leg: u = sum of its lines, n = H u, M_s = (1 + wander) (1 + n)^2 + inertia, and noise."""
-    time_s = np.arange(round(90.0 * RATE_HZ)) / RATE_HZ
+    """Signals of the leg: u = sum of its lines, n = H u, M_s = (1 + wander) (1 + n)^2 + inertia + added, and noise."""
+    time_s = np.arange(round((leg.stop_s + 8.0) * RATE_HZ)) / RATE_HZ
     set_point, speed, change = (np.zeros(time_s.size) for _ in range(3))
     for harmonic, amplitude_v, phase_rad in zip(leg.harmonics, leg.amplitudes_v, leg.phases_rad, strict=True):
         omega = 2.0 * np.pi * harmonic / (leg.period_s * (1.0 + clock_ratio))
@@ -71,11 +72,11 @@ def made_leg(
     turns = tracked.per_turn * SPEED_REV_S * np.cumsum(1.0 + speed) / RATE_HZ
     turns = np.interp(time_s - order_late_s, time_s, turns)
     load = load * (1.0 + order * np.cos(2.0 * np.pi * turns + 0.7))
-    torque = load * (1.0 + speed) ** 2 + INERTIA_S * change
+    torque = load * (1.0 + speed) ** 2 + INERTIA_S * change + added
     if noise:
         torque += noise * rng.standard_normal(time_s.size)
         speed = speed + 0.1 * noise * rng.standard_normal(time_s.size)
-    inside = slice(round(10.0 * RATE_HZ), round((10.0 + PERIOD_S * periods) * RATE_HZ))
+    inside = slice(round(10.0 * RATE_HZ), round((10.0 + leg.period_s * periods) * RATE_HZ))
     mean = float(np.mean(torque[inside]) / np.mean((1.0 + speed[inside]) ** 2))
     point = WorkingPoint(
         engine_speed_rev_s=SPEED_REV_S,
@@ -112,7 +113,7 @@ def made_leg(
         strips=(),
         step_delays=(),
         repairs=(),
-        legs=(LegState(name="M1", start_s=10.0, period_s=PERIOD_S, periods=periods, working_point=point),),
+        legs=(LegState(name="M1", start_s=10.0, period_s=leg.period_s, periods=periods, working_point=point),),
         mode="shaftprint",
         recording_sha256="",
         recording_name="made",
@@ -149,8 +150,31 @@ def test_the_stated_covariance_is_the_scatter_over_repeats():
         distances.append(np.einsum("ka,kab,kb->k", real, np.linalg.inv(response.covariance), real))
     # r^T C^-1 r has the mean 4 at every line; 60 repeats know the mean of six lines to 0.15
     assert np.mean(distances) == pytest.approx(4.0, abs=0.5)
-    # 36 complex samples; at the slowest line, whose neighbours reach far in octaves, they count less
-    assert response.degrees_of_freedom[1:].min() > 65.0
+    # 12 complex samples at least; at the slowest line, whose neighbours reach far in octaves, they count less
+    assert response.degrees_of_freedom[1:].min() > 21.0
+
+
+@pytest.mark.slow
+def test_the_noise_of_a_surge_is_stated_under_the_line_that_it_meets():
+    """A surge of 0.09 Hz as a tug has it at its mooring, under a line of 0.1 Hz, in five periods of 30 s."""
+    rng = np.random.default_rng(7)
+    leg = LEG.model_copy(update={"period_s": 30.0, "stop_s": 10.0 + 5 * 30.0})
+    campaign = CAMPAIGN.model_copy(update={"duration_s": 170.0, "multisines": (leg,)})
+    samples = round((leg.stop_s + 8.0) * RATE_HZ)
+    frequency = np.fft.rfftfreq(samples, 1.0 / RATE_HZ) / 0.09
+    hump = 1.0 / np.abs(1.0 - frequency**2 + 0.3j * frequency)
+    squares, stated = [], []
+    for _ in range(60):
+        surge = 2e-3 * np.fft.irfft(hump * np.fft.rfft(rng.standard_normal(samples)), samples)
+        response = estimate_legs(made_leg(noise=0.002, added=surge, leg=leg, periods=5, rng=rng), campaign)[
+            "M1"
+        ].response
+        error = (response.response[:, 0] - _expected(response))[1]
+        squares.append(np.abs(error) ** 2)
+        std = np.sqrt(np.diagonal(response.covariance, axis1=1, axis2=2))
+        stated.append(std[:, 1] ** 2 + std[:, 3] ** 2)
+    ratio = np.mean(stated, axis=0) / np.mean(squares, axis=0)
+    assert 0.6 < ratio[1] < 1.6, ratio
 
 
 def test_the_wander_of_the_load_is_no_noise_under_the_lines():

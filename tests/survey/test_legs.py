@@ -43,10 +43,10 @@ def test_inertia_times_and_gains_go_with_speed_over_torque():
 
 
 def test_zero_of_the_gauge_under_a_swinging_speed():
-    """``mean(M / u^2)`` with ``M = m u^2 + z`` is ``m + z mean(1 / u^2)``, whose slope is ``2 m`` over that."""
-    swinging = replace(OTHER, harmonic_mean_square=1.02)
+    """With ``M = m u^2 + z`` the working point is ``m + z share``, and the slope ``2 m`` over that."""
+    swinging = replace(OTHER, zero_share=1.04)
     other = structure_at(GAUGE, swinging, main=MAIN)
-    without_zero = 850.0 - 51.0 / 1.02
+    without_zero = 850.0 - 51.0 * 1.04
     assert other.factors["k_q"] * 1.94 + other.offsets["k_q"] == pytest.approx(2.0 * without_zero / 850.0)
 
 

@@ -19,9 +19,8 @@ class WorkingPoint:
     """Mean set-point voltage [V] of the stretches that were used."""
     load_std: float
     """Standard deviation of the mean load ``M_s0 / n_0^2`` over its value [-]: the load of a propeller wanders."""
-    harmonic_mean_square: float = 1.0
-    """One over the mean of ``(n_0 / n)^2`` where ``M_s0`` was measured [-]: a zero of the gauge adds its torque
-    over this to ``M_s0``."""
+    zero_share: float = 1.0
+    """Share of a zero of the gauge that is in ``M_s0`` [-]: more than 1 where the speed swung."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

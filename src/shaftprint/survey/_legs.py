@@ -84,7 +84,7 @@ def structure_at(
         structure,
         speed_share=point.engine_speed_rev_s / main.engine_speed_rev_s,
         torque_share=torque_share,
-        shown_share=torque_share * point.harmonic_mean_square / main.harmonic_mean_square,
+        shown_share=torque_share * main.zero_share / point.zero_share,
         rack_share=rack_share,
     )
 
@@ -110,9 +110,7 @@ def leg_pairs(
                 structure,
                 speed_share=leg.working_point.engine_speed_rev_s / speed_rev_s,
                 torque_share=leg.working_point.shaft_torque_nm / shaft_torque_nm,
-                shown_share=leg.working_point.harmonic_mean_square
-                * leg.working_point.shaft_torque_nm
-                / shaft_torque_nm,
+                shown_share=leg.working_point.shaft_torque_nm / (leg.working_point.zero_share * shaft_torque_nm),
             ),
             leg.spectra.response.of_outputs(*structure.outputs),
         )

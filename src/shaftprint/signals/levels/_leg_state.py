@@ -1,11 +1,9 @@
 """The working point of a leg and the line of the set point through several, from whole periods alone.
 
 Over whole periods the mean speed is that of the mean set point, since the governor integrates its error, and nothing
-has to stand still: ``n_0`` is the mean speed and ``M_0 = mean(M_s (n_0 / n)^2)``, the torque at ``n_0`` of a propeller
-whose torque goes with the square of the speed. The load of the leg is 1 by definition. In ``mean(M_s)`` over
-``mean((n / n_0)^2)`` the load at high speed would count more than at low: noise of the torque at the lines would be in
-``M_0`` and in the lines, related to each other. Several levels give the line from volts to speed; a single leg gives it
-by its slow lines, at which the speed follows the set point.
+has to stand still: ``n_0`` is the mean speed and ``M_0`` the torque at ``n_0`` of a propeller whose torque goes with
+the square of the speed (``normalisation.mean_load``). The load of the leg is 1 by definition. Several levels give the
+line from volts to speed; a single leg gives it by its slow lines, at which the speed follows the set point.
 
 The standard deviation of a mean is that of the coefficients beside it: below the first line there is nothing but noise.
 """
@@ -18,7 +16,7 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.errors import SignalError
-from shaftprint.normalisation import propeller_torque
+from shaftprint.normalisation import mean_load, propeller_torque
 from shaftprint.signals._signals import SetPointCalibration
 from shaftprint.signals._working_points import LegState, WorkingPoint
 from shaftprint.signals.levels._dc_scale import LowLines, zero_frequency_ratio
@@ -79,7 +77,6 @@ def leg_state(samples: LegSamples) -> LegState:
         )
     speed = float(samples.speed_rev_s.mean())
     square = (samples.speed_rev_s / speed) ** 2
-    harmonic_mean_square = float(1.0 / np.mean(1.0 / square))
     of_propeller, _ = propeller_torque(
         samples.speed_rev_s / speed,
         samples.torque_nm,
@@ -87,7 +84,8 @@ def leg_state(samples: LegSamples) -> LegState:
         periods=periods.periods,
         period_s=periods.period_s,
     )
-    torque = float(np.mean(of_propeller / square))
+    duration_s = periods.periods * periods.period_s
+    torque = mean_load(of_propeller, square, duration_s=duration_s)
     speed_std = _std_of_mean(samples.speed_rev_s, periods.periods)
     load_std = _std_of_mean(samples.torque_nm / (torque * square), periods.periods)
     point = WorkingPoint(
@@ -97,7 +95,7 @@ def leg_state(samples: LegSamples) -> LegState:
         shaft_torque_std_nm=abs(torque) * float(np.hypot(load_std, 2.0 * speed_std / speed)),
         set_point_v=float(samples.set_point_v.mean()),
         load_std=load_std,
-        harmonic_mean_square=harmonic_mean_square,
+        zero_share=mean_load(np.ones_like(square), square, duration_s=duration_s),
     )
     return LegState(
         name=samples.leg.name,

@@ -12,7 +12,7 @@ delay of the gauge are those that the lines show. Without these ``w`` would foll
 import numpy as np
 
 from shaftprint.arrays import BoolArray, FloatArray, IntArray
-from shaftprint.normalisation import propeller_torque
+from shaftprint.normalisation import mean_load, propeller_torque
 
 # The load of a propeller at the quay wanders in tens of seconds, and with the surge against the mooring, 0.1 to 0.2 Hz.
 # Up to 1 Hz noise of the gauge passes for wander: errors of k_q in five minutes were 1.3 times as large as stated.
@@ -53,7 +53,7 @@ def load_wander(speed: FloatArray, torque: FloatArray, lines: IntArray, period_s
         speed.ravel(), torque.ravel(), harmonics=lines.tolist(), periods=periods, period_s=period_s
     )
     # the torque is 1 at the mean load: what the slope lacks of that is what the zero adds to it
-    zero = (1.0 - slope) / float(np.mean(1.0 / square))
+    zero = (1.0 - slope) / mean_load(np.ones_like(square), square, duration_s=periods * period_s)
     load = np.fft.rfft((of_propeller - zero) / (slope * square))
     kept = np.zeros_like(load)
     bins = np.setdiff1d(np.arange(1, np.searchsorted(hertz, _GAUGE_NOISE_HZ[1])), periods * lines)
