@@ -10,7 +10,7 @@ from datetime import datetime, timedelta, tzinfo
 from shaftprint.arguments import refusing_none
 from shaftprint.errors import StoreError
 from shaftprint.store._add import NOTHING_STATED
-from shaftprint.store._job import JOB_STATES, LEASE_S, Job, JobCounts, JobRequest, JobState
+from shaftprint.store._job import JOB_STATES, LEASE_S, Job, JobCounts, JobRequest
 from shaftprint.store._nouns import Added, Ship
 from shaftprint.store._record import record_of
 from shaftprint.store._stated import Stated
