@@ -56,19 +56,24 @@ def say_what_was_done(store: Store, worked: Worked) -> None:
     give("worked", worked)
     died = f", {worked.died} times a process died" if worked.died else ""
     lost = f", {worked.lost} were done by others meanwhile" if worked.lost else ""
-    answer(
-        f"Jobs done here: {worked.done}; refused: {worked.refused}{died}{lost}. The fingerprints are in {store.name}."
-    )
+    counts = f"Jobs done here: {worked.done}; refused: {worked.refused}{died}{lost}"
+    answer(f"{counts}. The fingerprints are in {store.name}.")
 
 
 def say_refusals(refused: tuple[Job, ...]) -> None:
     """Print which recordings were refused, and why."""
     if not refused:
         return
-    sentences = [f"job {one.id}, {recording_of(one)}: {one.sentence}" for one in refused[:MOST_SHOWN]]
+    sentences = [_refusal(one) for one in refused[:MOST_SHOWN]]
     if len(refused) > MOST_SHOWN:
         sentences.append(f"and {len(refused) - MOST_SHOWN} more: shaftprint fleet status --json names all.")
     print_findings("Refused", sentences, is_answer=True)
+
+
+def _refusal(job: Job) -> str:
+    recording, sentence = recording_of(job), job.sentence or "nobody said why"
+    # most sentences name their file
+    return f"job {job.id}, {sentence}" if sentence.startswith(recording) else f"job {job.id}, {recording}: {sentence}"
 
 
 def say_counts(store: Store, counts: JobCounts) -> None:

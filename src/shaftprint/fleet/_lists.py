@@ -53,7 +53,7 @@ def recordings_in(folder: str | Path, **facts: Any) -> tuple[JobArguments, ...]:
 
 @refusing_none(SettingsError)
 def recordings_of_list(path: str | Path, **facts: Any) -> tuple[JobArguments, ...]:
-    """Return the recordings of a list: a table in CSV with one row for each, under a line with the names of ``COLUMNS``.
+    """Return the recordings of a list: a table in CSV with a row for each, under a line with names out of ``COLUMNS``.
 
     Parameters
     ----------
@@ -91,18 +91,15 @@ def _rows(file: Path) -> list[dict[str, str]]:
     except OSError as refusal:
         raise SettingsError(f"{file}: expected a list in CSV, but it cannot be read: {reason(refusal)}.") from None
     except UnicodeDecodeError:
-        raise SettingsError(
-            f"{file}: expected a list in CSV in UTF-8, found other letters; save it as UTF-8."
-        ) from None
+        raise SettingsError(f"{file}: expected a list in CSV in UTF-8, found others; save it as UTF-8.") from None
     lines = text.splitlines()
     # a program set to a language with decimal commas writes semicolons
     delimiter = ";" if lines and lines[0].count(";") > lines[0].count(",") else ","
     try:
-        table = [
-            row for row in csv.reader(lines, delimiter=delimiter, strict=True) if any(cell.strip() for cell in row)
-        ]
+        cells = list(csv.reader(lines, delimiter=delimiter, strict=True))
     except csv.Error as fault:
         raise SettingsError(f"{file}: expected a list in CSV, found something else: {fault}.") from None
+    table = [row for row in cells if any(cell.strip() for cell in row)]
     names = [name.strip().lower().replace("-", "_") for name in (table[0] if table else [])]
     _expect_names(file, names)
     return [_row(file, names, row, number) for number, row in enumerate(table[1:], start=2)]

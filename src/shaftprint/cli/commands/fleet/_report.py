@@ -46,7 +46,5 @@ def command(number: int, url: str, output: Path, *, force: bool, no_progress: bo
 
 def _document(store: Store, done: Job) -> bytes:
     if done.result is None:
-        raise StoreError(
-            f"job {done.id}: expected one that is done, found it {done.state}; see shaftprint fleet status."
-        )
+        raise StoreError(f"job {done.id}: expected one that is done, found it {done.state}; shaftprint work does it.")
     return document(store, done.result)

@@ -21,9 +21,7 @@ from shaftprint.store import Job, Store, jobs, open_store
 @click.option("--campaign", metavar="TEXT", help="Campaign file, or a shipped name such as thesis.")
 @click.option("--structure", metavar="NAME", help="Model structure.  [default: GAUGE-CLOSED]")
 @click.option("--ship", metavar="NAME", help="Name of the ship, where the vessel file does not say it.")
-@click.option(
-    "--imo", type=int, metavar="NUMBER", help="IMO number of the ship, where the vessel file does not say it."
-)
+@click.option("--imo", type=int, metavar="NUMBER", help="Its IMO number, where the vessel file does not say it.")
 @click.option("--line", metavar="NAME", help="Shaft line, such as port, where the vessel file does not say it.")
 @click.option("--time-zone", "time_zone", metavar="ZONE", help="Zone of the loggers' clocks, where files state none.")
 @store_option
@@ -33,6 +31,7 @@ from shaftprint.store import Job, Store, jobs, open_store
 @click.pass_context
 def command(
     context: click.Context,
+    /,
     recordings: Path,
     url: str,
     processes: int,
