@@ -115,7 +115,7 @@ def serial(asked: Sequence[Job], kept: Path) -> tuple[dict[str, str], float]:
     for one in missing:
         survey = survey_of_job(JobArguments.model_validate(one.args), tell=lambda step: None)
         found[one.key] = comparable(fingerprint_document(survey.fingerprint))
-    per_job_s = (time.process_time() - begin) / max(len(missing), 1)
+    per_job_s = (time.process_time() - begin) / len(missing) if missing else 0.0
     if missing:
         kept.write_text(json.dumps(found))
     return found, per_job_s

@@ -99,9 +99,7 @@ def _wait(distributed: Any, client: Any, futures: list[Any], address: str) -> No
             alone_s = 0.0 if client.nthreads() else alone_s + _LOOK_S
         else:
             return
-    raise StoreError(
-        f"--dask {address[:100]}: all workers of the cluster are gone; start dask worker, then the same command goes on."
-    )
+    raise StoreError(f"--dask {address[:100]}: all workers are gone; start dask worker, and this command once more.")
 
 
 def _dask() -> Any:
