@@ -18,7 +18,7 @@ import sys
 import tempfile
 import threading
 import time
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
@@ -29,7 +29,7 @@ ROOT = Path(__file__).resolve().parent.parent
 # Run as a file, the folder of the benchmarks is on the path, not the one above.
 sys.path.insert(0, str(ROOT))
 
-from benchmarks.fleet_peers import peers  # noqa: E402
+from benchmarks.fleet_peers import cpu_ticks, peers  # noqa: E402
 from benchmarks.monte_carlo_tables import write_between_marks  # noqa: E402
 from benchmarks.timing import print_table  # noqa: E402
 from shaftprint.campaign import load_campaign  # noqa: E402
@@ -146,16 +146,42 @@ def started_by(process: int) -> list[int]:
     return [int(one) for text in texts for one in text.split()]
 
 
+class CpuClock:
+    """The CPU time of processes and of all that they started, whatever has become of them [s].
+
+    On a computer that others use too, ten seconds of a clock on the wall may be one of work: kills by that clock would
+    let no process come to an end. By this one a run is disturbed as on a computer of its own.
+    """
+
+    def __init__(self) -> None:
+        self._seen: dict[int, float] = {}
+
+    def read(self, processes: Iterable[int]) -> float:
+        """Return what has been used so far."""
+        waiting = list(processes)
+        while waiting:
+            process = waiting.pop()
+            self._seen[process] = max(self._seen.get(process, 0.0), cpu_ticks(process) / os.sysconf("SC_CLK_TCK"))
+            waiting += started_by(process)
+        return sum(self._seen.values())
+
+    def wait(self, processes: Callable[[], Iterable[int]], seconds: float, ended: Callable[[], bool]) -> None:
+        """Wait until so much more has been used, or all has ended."""
+        until = self.read(processes()) + seconds
+        while self.read(processes()) < until and not ended():
+            time.sleep(0.5)
+
+
 def disturbed(url: str, list_file: Path, rng: random.Random, *, every_s: float) -> Kills:
     """Let a run and a second worker do all jobs while processes are killed; what is killed is started again."""
     begin, counts, retried = time.monotonic(), {"computing": 0, "workers": 0, "parents": 0}, 0
     run = ("fleet", "run", str(list_file), "--store", url, "--processes", "1", "--no-progress")
     other = ("work", "--store", url, "--processes", "1", "--no-progress")
     words = {"parents": run, "workers": other}
-    running = {name: command(*some) for name, some in words.items()}
+    running, clock = {name: command(*some) for name, some in words.items()}, CpuClock()
     try:
         while True:
-            time.sleep(every_s)
+            clock.wait(lambda: [one.pid for one in running.values()], 2.0 * every_s, lambda: _is_over(url))
             with open_store(url) as store:
                 if job_counts(store).open == 0:
                     retried += (again := retry(store))
@@ -180,6 +206,11 @@ def disturbed(url: str, list_file: Path, rng: random.Random, *, every_s: float) 
             process.terminate()
             process.wait()
     return Kills(**counts, retried=retried, wall_s=time.monotonic() - begin)
+
+
+def _is_over(url: str) -> bool:
+    with open_store(url) as store:
+        return job_counts(store).open == 0
 
 
 def undisturbed(url: str, asked: Sequence[JobArguments], processes: int) -> tuple[float, float, float]:
@@ -213,11 +244,12 @@ def on_dask(url: str, rng: random.Random, *, every_s: float) -> tuple[int, float
     """Let a Dask cluster of two worker processes do the jobs while they are killed; return kills and wall [s]."""
     from distributed import LocalCluster
 
-    begin, kills, ended = time.monotonic(), 0, threading.Event()
+    begin, kills, ended, clock = time.monotonic(), 0, threading.Event(), CpuClock()
     with LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster:
         thread = threading.Thread(target=lambda: (work_on_dask(cluster.scheduler_address, url), ended.set()))
         thread.start()
-        while not ended.wait(every_s) and thread.is_alive():
+        while thread.is_alive() and not ended.is_set():
+            clock.wait(lambda: [one.pid for one in cluster.workers.values() if one.pid], 2.0 * every_s, ended.is_set)
             # one that is just being started has nothing to lose, and Dask gives its place up when it dies
             pids = [one.pid for one in cluster.workers.values() if one.status.name == "running" and one.pid is not None]
             if len(pids) == 2:
@@ -311,7 +343,9 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--recordings", type=int, default=40, help="recordings that are sailed")
     parser.add_argument("--jobs", type=int, default=1000, help="jobs that are made of them")
-    parser.add_argument("--kill-every", type=float, default=10.0, help="how often one is killed [s]; 0: leave out")
+    parser.add_argument(
+        "--kill-every", type=float, default=10.0, help="seconds of both cores between kills; 0: leave out"
+    )
     parser.add_argument("--pairs", type=int, default=40, help="jobs done by one process and by two; 0: leave out")
     parser.add_argument("--dask", type=int, default=40, help="jobs done on Dask; 0: leave out")
     parser.add_argument("--peers", type=int, default=8, help="recordings for the peers; 0: leave out")
