@@ -318,8 +318,13 @@ def _beside(asked: Sequence[JobArguments], scratch: Path) -> list[Row]:
         (f"{len(asked)} recordings, two processes over one, wall, load {load:.1f}", "1.8", f"{one[0] / two[0]:.2f}"),
         ("the same by CPU, as if the cores were free", "1.8", f"{2.0 * sum(one[1:]) / sum(two[1:]):.2f}"),
         ("ledger, store, pipes: CPU of a recording, one and two processes", "5 ms", _both(one[1], two[1], 1e3, "ms")),
+        ("largest process of the arithmetic", "400 MB", f"{_largest_mb():.0f} MB"),
         ("arithmetic with its start: CPU of a recording, likewise", "", _both(one[2], two[2], 1.0, "s")),
     ]
+
+
+def _largest_mb() -> float:
+    return resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024.0
 
 
 def _both(one_s: float, two_s: float, factor: float, unit: str) -> str:
@@ -344,7 +349,7 @@ def main() -> None:
     parser.add_argument("--recordings", type=int, default=40, help="recordings that are sailed")
     parser.add_argument("--jobs", type=int, default=1000, help="jobs that are made of them")
     parser.add_argument(
-        "--kill-every", type=float, default=10.0, help="seconds of both cores between kills; 0: leave out"
+        "--kill-every", type=float, default=10.0, help="seconds of two cores between kills; 0: none"
     )
     parser.add_argument("--pairs", type=int, default=40, help="jobs done by one process and by two; 0: leave out")
     parser.add_argument("--dask", type=int, default=40, help="jobs done on Dask; 0: leave out")
