@@ -53,6 +53,8 @@ SECTIONS = {
     },
     "Keep over the years": {
         "store": "Keep the fingerprints of many ships, with their history.",
+        "fleet": "Identify many recordings, and keep their fingerprints in a store.",
+        "work": "Do the jobs of a store on this computer.",
     },
 }
 
