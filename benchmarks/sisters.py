@@ -32,6 +32,7 @@ from shaftprint.fingerprint import Fingerprint, Quantity, read_fingerprint, writ
 from shaftprint.identify import Settings  # noqa: E402
 from shaftprint.survey import fingerprint_of, fit, load_trial, measure, priors_of  # noqa: E402
 from shaftprint.tug import ShipWork, SimulatedFleet, Tolerances, sail_test, simulated_fleet, with_works  # noqa: E402
+from shaftprint.vessel import load_vessel  # noqa: E402
 
 DOCUMENT = ROOT / "docs" / "watching.md"
 BEGIN, END = ("<!-- tables of benchmarks/sisters.py: begin -->", "<!-- tables of benchmarks/sisters.py: end -->")
@@ -39,8 +40,10 @@ SEED, STRUCTURE = 73, "GAUGE-CLOSED"
 SHIPS, TESTS, HALF_YEAR = 8, 3, timedelta(days=182.625)
 FIRST = datetime(2021, 1, 1, tzinfo=UTC)
 P_ACTION, I_ACTION = "governor proportional action", "governor integral action"
+TIMES = ("t_d", "t_sp")
 ALIKE = 3.0
-SOUND_POOL, ODD_POOL = 40, 20
+SOUND_SHIPS, ODD_SHIPS = range(24), range(40, 52)
+"""Ships of the pool: as they were built, and with a proportional gain of the governor that is 5 % lower."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -103,7 +106,9 @@ def built(fingerprint: Fingerprint, factors: dict[str, float], added_s: dict[str
     )
 
 
-def as_built(fingerprint: Fingerprint, tolerances: Tolerances, rng: np.random.Generator) -> tuple[dict, dict]:
+def as_built(
+    gauge: dict[str, float], tolerances: Tolerances, rng: np.random.Generator
+) -> tuple[dict[str, float], dict[str, float]]:
     """Return factors and added times of the numbers of one ship within tolerances."""
     drawn = {field.name: float(rng.normal(0.0, getattr(tolerances, field.name))) for field in fields(tolerances)}
     shares = {
@@ -113,12 +118,25 @@ def as_built(fingerprint: Fingerprint, tolerances: Tolerances, rng: np.random.Ge
         "I_dn": drawn["inertia"],
     }  # fmt: skip
     factors = {name: float(np.exp(share)) for name, share in shares.items()}
-    # the gauge of each ship has its own scale, which moves what the fingerprint says that it moves
-    joint, stated = fingerprint.joint, 0.02
-    for name, change in zip(joint.names, joint.loadings["gauge scale"], strict=True):
-        share = drawn["gauge_scale"] / stated * change / fingerprint.quantity(name).value
-        factors[name] = factors.get(name, 1.0) * float(np.exp(share))
-    return factors, {"t_d": drawn["governor_delay_s"], "t_sp": drawn["set_point_latency_s"]}
+    added_s = {"t_d": drawn["governor_delay_s"], "t_sp": drawn["set_point_latency_s"]}
+    # the gauge of each ship has its own scale, which moves what fingerprints say that it moves
+    for name, change in gauge.items():
+        effect = drawn["gauge_scale"] * change
+        if name in TIMES:
+            added_s[name] += effect
+        else:
+            factors[name] = factors.get(name, 1.0) * float(np.exp(effect))
+    return factors, added_s
+
+
+def gauge_effects(kept: Sequence[Fingerprint]) -> dict[str, float]:
+    """Return by how much numbers move for a share of the scale of the gauge, in the mean: shares, times."""
+    stated = load_vessel("stan-tug-1205").sensors.shaft_torque.scale_std_fraction
+    joints = [one.joint for one in kept if one.joint is not None]
+    changes = np.mean([joint.loadings["gauge scale"] for joint in joints], axis=0) / stated
+    names = joints[0].names
+    values = [1.0 if name in TIMES else float(np.mean([one.quantity(name).value for one in kept])) for name in names]
+    return dict(zip(names, changes / values, strict=True))
 
 
 def drawn_class(
@@ -126,10 +144,11 @@ def drawn_class(
 ) -> tuple[Sister, ...]:
     """Return the sisters of one class, the first of which may be the odd one."""
     rng = np.random.default_rng([SEED, number])
+    gauge = gauge_effects(kept)
     order = iter(rng.permutation(len(kept))[: SHIPS * TESTS])
     ships = []
     for place in range(SHIPS):
-        factors, added_s = as_built(kept[0], tolerances, rng)
+        factors, added_s = as_built(gauge, tolerances, rng)
         if odd is not None and place == 0:
             factors = {name: factors.get(name, 1.0) * odd.factors.get(name, 1.0) for name in factors | odd.factors}
             added_s = {name: added_s.get(name, 0.0) + odd.added_s.get(name, 0.0) for name in added_s | odd.added_s}
@@ -201,13 +220,13 @@ def drawn_rows(kept: Sequence[Fingerprint], classes: int) -> Iterator[tuple[str,
 
 
 def pool_of_ships() -> SimulatedFleet:
-    """Return sound ships and, after them, ships whose governor has a proportional gain 5 % lower."""
-    names = tuple(f"ship {at}" for at in range(SOUND_POOL + ODD_POOL))
+    """Return the ships of the pool."""
+    names = tuple(f"ship {at}" for at in range(ODD_SHIPS.stop))
     fleet = simulated_fleet(
         load_trial("stan-tug-1205", "short").vessel, names, launched=FIRST, rng=np.random.default_rng(SEED)
     )
     lower = ShipWork(kind="governor-changed", at=FIRST, proportional=0.95)
-    ships = [with_works(ship, lower) if at >= SOUND_POOL else ship for at, ship in enumerate(fleet.ships)]
+    ships = [with_works(ship, lower) if at in ODD_SHIPS else ship for at, ship in enumerate(fleet.ships)]
     return replace(fleet, ships=tuple(ships))
 
 
@@ -238,15 +257,15 @@ def _renamed(sources: Sequence, ship: int, test: int) -> Iterator:
 
 def sailed_row(folder: Path, pool: ProcessPoolExecutor, classes: int) -> Iterator[tuple[str, ...]]:
     """Yield the rows of the second table: classes of the pool, with and without an odd ship."""
-    places = [(ship, test) for ship in range(SOUND_POOL + ODD_POOL) for test in range(TESTS)]
+    places = [(ship, test) for ship in (*SOUND_SHIPS, *ODD_SHIPS) for test in range(TESTS)]
     tests = dict(zip(places, map(read_fingerprint, pool.map(partial(sailed, folder), places)), strict=True))
     trusted = {place: one for place, one in tests.items() if one.verdict.trustworthy}
     sisters = {
         ship: _sister(f"ship {ship}", [trusted[ship, test] for test in range(TESTS) if (ship, test) in trusted])
-        for ship in range(SOUND_POOL + ODD_POOL)
+        for ship in (*SOUND_SHIPS, *ODD_SHIPS)
     }
-    sound = [sisters[ship] for ship in range(SOUND_POOL) if sisters[ship].tests]
-    weaker = [sisters[ship] for ship in range(SOUND_POOL, SOUND_POOL + ODD_POOL) if sisters[ship].tests]
+    sound = [sisters[ship] for ship in SOUND_SHIPS if sisters[ship].tests]
+    weaker = [sisters[ship] for ship in ODD_SHIPS if sisters[ship].tests]
     for odd in (None, GOVERNOR):
         outcomes = []
         for number in range(classes):
@@ -272,7 +291,8 @@ def main() -> None:
     text += "\n".join(_lines(drawn_rows(kept, options.classes)))
     with ProcessPoolExecutor(options.processes, mp_context=get_context("spawn")) as pool:
         text += (
-            f"\n\nSailed: {SOUND_POOL} sound ships and {ODD_POOL} with a lower gain, from which classes are drawn.\n\n"
+            f"\n\nSailed: {len(SOUND_SHIPS)} sound ships and {len(ODD_SHIPS)} with a lower gain, of which classes are "
+            "drawn.\n\n"
         )
         text += "\n".join(_lines(sailed_row(options.folder, pool, options.classes))) + "\n"
     print(text)

@@ -75,13 +75,13 @@ def spread_of(numbers: ClassNumbers, ships: tuple[int, ...]) -> Spread:
     level = np.tile(np.eye(size, dtype=np.float64), (len(ships), 1))
     scale = 1.0
     for _ in range(_ROUNDS):
-        within, _mean = _projection(tests + max(scale, _LEAST_SCALE) * built, level)
+        within, _effects = _projection(tests + max(scale, _LEAST_SCALE) * built, level)
         form = within @ built @ within
         of_built = float(np.sum(form * built))
         scale = max((float(values @ form @ values) - float(np.sum(form * tests))) / of_built, 0.0)
     total = tests + scale * built
     both = form @ total
-    _within, mean = _projection(tests + max(scale, _LEAST_SCALE) * built, level)
+    _differences, mean = _projection(tests + max(scale, _LEAST_SCALE) * built, level)
     weights = np.zeros((size, numbers.covariance.shape[0]))
     weights[:, rows] = mean
     return Spread(

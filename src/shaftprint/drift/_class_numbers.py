@@ -22,7 +22,8 @@ NEWEST_TESTS = 3
 """Tests of a ship that stand for it, the newest ones."""
 OTHER_TOLERANCES: Final[dict["Role", float]] = {
     ShipRole.ACTUATOR_DAMPING: 0.03,
-    ShipRole.INERTIA_UPSTREAM: 0.005,
+    # a test finds what the builder states
+    ShipRole.INERTIA_UPSTREAM: 0.0,
 }
 """Standard deviations between sister ships of numbers that no cause moves alone."""
 _USUAL_TOLERANCE = 0.01

@@ -15,6 +15,7 @@ place in a history, and it stays. What is not in a document is refused or stated
 
 from shaftprint.store._add import add, add_document
 from shaftprint.store._check import check
+from shaftprint.store._class_histories import class_histories
 from shaftprint.store._document import MOST_BYTES, document_sha256, inflated
 from shaftprint.store._event import record_event
 from shaftprint.store._export import export_store
@@ -63,6 +64,7 @@ __all__ = [
     "add",
     "add_document",
     "check",
+    "class_histories",
     "create_store",
     "document",
     "document_sha256",
