@@ -21,6 +21,7 @@ from shaftprint.drift._class_finding import (
 )
 from shaftprint.drift._class_numbers import NEWEST_TESTS, Sister, sister_of
 from shaftprint.drift._differ import LOAD_REPEATABILITY, differ
+from shaftprint.drift._discoveries import discoveries
 from shaftprint.drift._finding import Finding, ShipChange, SizedCause
 from shaftprint.drift._history import EVENTS, DatedTest, Event, History, history_of
 from shaftprint.drift._pair import Pair, pair_of
@@ -63,6 +64,7 @@ __all__ = [
     "WatchFinding",
     "Whitened",
     "differ",
+    "discoveries",
     "finding_sentences",
     "history_of",
     "judge_sisters",

@@ -69,7 +69,7 @@ CAUSES: tuple[Cause, ...] = (
         more="a higher proportional gain of the governor",
         told_by="read the gains in the control unit",
         roles=((ShipRole.PROPORTIONAL_GAIN,),),
-        tolerance=0.003,
+        tolerance=0.005,
     ),
     Cause(
         name="integral gain of the governor",
@@ -77,7 +77,7 @@ CAUSES: tuple[Cause, ...] = (
         more="a higher integral gain of the governor",
         told_by="read the gains in the control unit",
         roles=((ShipRole.INTEGRAL_GAIN,),),
-        tolerance=0.003,
+        tolerance=0.005,
     ),
     Cause(
         name="delay of governor and fuel",
@@ -111,7 +111,7 @@ CAUSES: tuple[Cause, ...] = (
         more="more propeller torque at the same speed: fouled, damaged, or more draught",
         told_by="look at the propeller, and note draught and water of each test",
         roles=((ShipRole.TORQUE,),),
-        tolerance=0.015,
+        tolerance=0.025,
     ),
     Cause(
         name="inertia behind the gauge",

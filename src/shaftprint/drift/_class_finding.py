@@ -85,10 +85,6 @@ class ClassFinding:
 
     ships: tuple[ShipStanding, ...]
     """Every ship; empty where nothing could be judged."""
-    scale: float
-    """Variance between ships over that of the tolerances that are assumed."""
-    scale_std: float
-    """Its standard deviation."""
     causes: tuple[CauseSpread, ...]
     """How they differ along each cause."""
     numbers: tuple[NumberSpread, ...]

@@ -70,8 +70,9 @@ class ClassNumbers:
     """Mean of the tests of each ship: logarithms, and times [s]; shape (ships, numbers)."""
     covariance: FloatArray
     """What the tests leave open of them, those of one ship together, shape (ships * numbers,) squared."""
-    tolerance: FloatArray
-    """Covariance of the numbers of one ship among sisters as they are built, shape (numbers, numbers)."""
+    building: FloatArray
+    """What one standard deviation of each tolerance of building does to the numbers, those of the causes first; shape
+    (numbers, tolerances)."""
     causes: tuple[Cause, ...]
     """What may have moved the numbers."""
     directions: FloatArray
@@ -106,7 +107,7 @@ def class_numbers(ships: Sequence[Sister], *, load_repeatability: float) -> Clas
         left_out={name: doubt for name, doubt in doubts.items() if doubt},
         values=weights @ np.array([one.values for one in singles]),
         covariance=mean @ covariance @ mean.T,
-        tolerance=_tolerance(roles, causes, directions),
+        building=_building(roles, causes, directions),
         causes=causes,
         directions=directions,
         not_judged=not_judged(causes, doubts, tests),
@@ -145,13 +146,14 @@ def _covariance(ships: Sequence[Sister], singles: Sequence[SingleTest], own: Seq
     return covariance
 
 
-def _tolerance(roles: "dict[str, Role | None]", causes: Sequence[Cause], directions: FloatArray) -> FloatArray:
-    """Return the covariance of the numbers among ships as they are built, each cause within its tolerance."""
+def _building(roles: "dict[str, Role | None]", causes: Sequence[Cause], directions: FloatArray) -> FloatArray:
+    """Return what tolerances of building do to the numbers: those of the causes, and of numbers that no cause moves."""
     alone = [any(len(one.roles) == 1 and role in one.roles[0] for one in causes) for role in roles.values()]
     others = [
         0.0 if moved or role is None else OTHER_TOLERANCES.get(role, _USUAL_TOLERANCE)
         for moved, role in zip(alone, roles.values(), strict=True)
     ]
-    along = directions * np.array([cause.tolerance for cause in causes])
-    covariance: FloatArray = along @ along.T + np.diag(np.square(others))
-    return covariance
+    of_causes = directions * np.array([cause.tolerance for cause in causes])
+    of_numbers = np.diag(others)[:, np.array(others) > 0.0]
+    building: FloatArray = np.column_stack([of_causes, of_numbers])
+    return building

@@ -14,7 +14,15 @@ import numpy as np
 from shaftprint.arrays import FloatArray
 from shaftprint.distributions import deviations, f_tail, normal_cdf
 from shaftprint.drift._along import p_value_of_largest
-from shaftprint.drift._between_ships import Departure, Spread, departure_of, prediction, shrunk, spread_of
+from shaftprint.drift._between_ships import (
+    Departure,
+    Spread,
+    between_ships,
+    departure_of,
+    prediction,
+    shrunk,
+    spread_of,
+)
 from shaftprint.drift._causes import Cause
 from shaftprint.drift._class_finding import CauseSpread, ClassFinding, NumberSpread, ShipNumber, ShipSize, ShipStanding
 from shaftprint.drift._class_numbers import ClassNumbers, Sister, class_numbers
@@ -54,8 +62,6 @@ def judge_sisters(ships: Sequence[Sister], *, load_repeatability: float = LOAD_R
                 ShipStanding(name=ship.name, tests=len(ship.tests), is_odd=at in odd, change=change)
                 for at, (ship, change) in enumerate(zip(ships, changes, strict=True))
             ),
-            scale=spread.scale,
-            scale_std=math.sqrt(spread.scale_variance),
             causes=_cause_spreads(numbers, spread),
             numbers=_number_spreads(ships, numbers, spread),
             names=numbers.names,
@@ -67,9 +73,7 @@ def judge_sisters(ships: Sequence[Sister], *, load_repeatability: float = LOAD_R
 
 
 def _nothing(because: str, left_out: dict[str, str] | None = None) -> ClassFinding:
-    return ClassFinding(
-        ships=(), scale=0.0, scale_std=0.0, causes=(), numbers=(), names=(), left_out=left_out or {}, because=because
-    )
+    return ClassFinding(ships=(), causes=(), numbers=(), names=(), left_out=left_out or {}, because=because)
 
 
 def _judged(numbers: ClassNumbers) -> tuple[list[ShipChange], tuple[int, ...]]:
@@ -117,16 +121,19 @@ def _normal_score(score: float, freedom: float) -> float:
 def _cause_spreads(numbers: ClassNumbers, spread: Spread) -> tuple[CauseSpread, ...]:
     """Return how sisters differ along each cause, and where each ship stands, as if it were that cause alone."""
     departures = [departure_of(numbers, ship, spread) for ship in range(len(numbers.values))]
+    effects = shrunk(numbers, spread)
     spreads = []
     for at, (cause, direction) in enumerate(zip(numbers.causes, numbers.directions.T, strict=True)):
-        sizes = [_size(one, direction, cause, spread.scale * cause.tolerance**2) for one in departures]
+        variance = float(spread.scales[at]) * cause.tolerance**2
+        own = (cause.tolerance * effects[:, at]).tolist()
+        sizes = [_size(*one, direction=direction, cause=cause) for one in zip(departures, own, strict=True)]
         half = [
             deviations(_COVERAGE, float(one.freedom[at])) * float(one.white.sizes((at,))[1][0]) for one in departures
         ]
         spreads.append(
             CauseSpread(
                 cause=cause,
-                std=math.sqrt(spread.scale) * cause.tolerance,
+                std=math.sqrt(variance),
                 half_width=float(np.median(half)),
                 ships=tuple(sizes),
             )
@@ -134,23 +141,21 @@ def _cause_spreads(numbers: ClassNumbers, spread: Spread) -> tuple[CauseSpread, 
     return tuple(spreads)
 
 
-def _size(departure: Departure, direction: FloatArray, cause: Cause, tolerance_variance: float) -> ShipSize:
+def _size(departure: Departure, effect: float, *, direction: FloatArray, cause: Cause) -> ShipSize:
     along = np.linalg.solve(departure.covariance, direction)
     information = float(along @ direction)
     size, std = cause.stated(
         float(along @ departure.difference) / information,
         math.sqrt(float(along @ departure.measured @ along)) / information,
     )
-    return ShipSize(
-        size=size, std=std, shrunk=cause.stated(tolerance_variance * float(along @ departure.difference), 0.0)[0]
-    )
+    return ShipSize(size=size, std=std, shrunk=cause.stated(effect, 0.0)[0])
 
 
 def _number_spreads(ships: Sequence[Sister], numbers: ClassNumbers, spread: Spread) -> tuple[NumberSpread, ...]:
     """Return each number of the class: its mean, where a new sister's lies, and every ship's."""
     first = ships[0].tests[0].fingerprint
     variance, freedom = prediction(numbers, spread)
-    effects = shrunk(numbers, spread)
+    effects, between = shrunk(numbers, spread) @ numbers.building.T, between_ships(numbers, spread)
     departures = [departure_of(numbers, ship, spread) for ship in range(len(ships))]
     found = []
     for at, name in enumerate(numbers.names):
@@ -168,13 +173,13 @@ def _number_spreads(ships: Sequence[Sister], numbers: ClassNumbers, spread: Spre
             )
             for ship, one in enumerate(departures)
         ]
-        between = math.sqrt(spread.scale * float(numbers.tolerance[at, at]))
+        std = math.sqrt(float(between[at, at]))
         found.append(
             NumberSpread(
                 name=name,
                 unit=quantity.unit,
                 mean=unscaled(mean),
-                std=between * (unscaled(mean) if unscaled is math.exp else 1.0),
+                std=std * (unscaled(mean) if unscaled is math.exp else 1.0),
                 interval_95=(unscaled(mean - half), unscaled(mean + half)),
                 ships=tuple(own),
             )

@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING
 
-from shaftprint.digits import to_digit_of, with_deviation
+from shaftprint.digits import to_digit_of
 from shaftprint.report.comparison._cause_table import odds_text, sized
 from shaftprint.tables import Table, numbers, p_value_text, plain, texts
 
@@ -70,11 +70,7 @@ def cause_spread_table(finding: "ClassFinding") -> Table:
         title="How much sisters differ along each cause",
         columns=(*texts("cause"), *numbers("deviation between ships", "95 % of new sisters, tested alike")),
         rows=tuple(rows),
-        note=(
-            f"Variance between ships over that of the tolerances assumed: "
-            f"{with_deviation(finding.scale, finding.scale_std)}. The scale of each gauge is as uncertain as its "
-            "vessel file states."
-        ),
+        note="The scale of each gauge is as uncertain as its vessel file states.",
     )
 
 
