@@ -42,7 +42,7 @@ FIRST = datetime(2021, 1, 1, tzinfo=UTC)
 P_ACTION, I_ACTION = "governor proportional action", "governor integral action"
 TIMES = ("t_d", "t_sp")
 ALIKE = 3.0
-SOUND_SHIPS, ODD_SHIPS = range(24), range(40, 52)
+SOUND_SHIPS, ODD_SHIPS = range(10), range(40, 50)
 """Ships of the pool: as they were built, and with a proportional gain of the governor that is 5 % lower."""
 
 

@@ -29,7 +29,7 @@ LAUNCHED = datetime(2021, 3, 1, 8, 0, tzinfo=UTC)
 HALF_YEAR = timedelta(days=182.625)
 TESTS, DOCKED, LOWERED = 10, 4.6, 6.5
 """Tests of each ship, a half year apart; half years after which ships are docked, and that governor is set."""
-PROPORTIONAL, INJECTION_PER_YEAR, FOULING_PER_YEAR = 0.95, 0.02, 0.02
+PROPORTIONAL, INJECTION_PER_YEAR, FOULING_PER_YEAR = 0.92, 0.02, 0.02
 MOST_PROCESSES = 8
 
 

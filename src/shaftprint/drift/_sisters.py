@@ -35,6 +35,8 @@ FEWEST_SISTERS = 4
 """Ships that a class has at least: three others tell how much ships differ."""
 _COVERAGE = 0.95
 _FARTHEST, _BISECTIONS = 38.0, 60
+# Degrees of freedom beyond which Student's t is the normal distribution.
+_NORMAL = 1000.0
 
 
 def judge_sisters(ships: Sequence[Sister], *, load_repeatability: float = LOAD_REPEATABILITY) -> ClassFinding:
@@ -94,18 +96,24 @@ def _judged(numbers: ClassNumbers) -> tuple[list[ShipChange], tuple[int, ...]]:
 
 def _change(departure: Departure, causes: Sequence[Cause]) -> ShipChange:
     """Return the departure of a ship from its class, with every cause by itself."""
-    scores = [
-        math.copysign(_normal_score(score, freedom), score)
-        for score, freedom in zip(departure.white.scores().tolist(), departure.freedom.tolist(), strict=True)
-    ]
-    best = max(map(abs, scores))
+    scores, freedom = departure.white.scores().tolist(), departure.freedom.tolist()
+    ordered = sorted(range(len(causes)), key=lambda place: -abs(scores[place]))
+    best = ordered[0]
     candidates = []
-    for at in sorted(range(len(causes)), key=lambda place: -abs(scores[place])):
+    for at in ordered:
         size, std = (float(column[0]) for column in departure.white.sizes((at,)))
         size, std = causes[at].stated(size, std)
-        odds = odds_against(scores[at], best)
+        odds = _student_odds(scores[at], scores[best], freedom[best])
         candidates.append(SizedCause(cause=causes[at], size=size, std=std, score=scores[at], odds=odds))
-    return ShipChange(candidates=tuple(candidates), p_value=p_value_of_largest(best, departure.white.cosines()))
+    largest = max(_normal_score(score, own) for score, own in zip(scores, freedom, strict=True))
+    return ShipChange(candidates=tuple(candidates), p_value=p_value_of_largest(largest, departure.white.cosines()))
+
+
+def _student_odds(score: float, best: float, freedom: float) -> float:
+    """Return the likelihood under the best cause over that under another, where the variance was told by few ships."""
+    if freedom > _NORMAL:
+        return odds_against(score, abs(best))
+    return float(((freedom + best**2) / (freedom + score**2)) ** (0.5 * (freedom + 1.0)))
 
 
 def _normal_score(score: float, freedom: float) -> float:
