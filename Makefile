@@ -12,13 +12,16 @@ PYTHON ?= $(shell for p in $(PYTHONS); do \
 ROOMS := signals spectra models catalogue simulation identify
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test test-all lint docs bench wheel offline lock clean
+.PHONY: help demo demo-fleet test test-all lint docs bench wheel offline lock clean
 
 help: ## Say what can be made
-	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "  make %-8s %s\n", $$1, $$2}' $(firstword $(MAKEFILE_LIST))
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "  make %-10s %s\n", $$1, $$2}' $(firstword $(MAKEFILE_LIST))
 
 demo: $(VENV)/run ## Sail the simulated tug and identify it; results in demo/
 	$(BIN)/shaftprint demo -o demo
+
+demo-fleet: $(VENV)/store ## Eight sister ships over five years in a store; demo-fleet/
+	$(BIN)/shaftprint demo --fleet -o demo-fleet
 
 # each core has a worker of its own; only the tests of the calculating rooms are traced, which doubles their time
 QUICK := not slow and not wrong_recordings
@@ -57,7 +60,7 @@ lock: $(VENV)/bin/python ## Choose new versions for requirements/ (needs the net
 	PATH="$(CURDIR)/$(BIN):$$PATH" requirements/lock
 
 clean: ## Delete the environment and everything that was made
-	rm -rf $(VENV) dist build demo .coverage* .pytest_cache .mypy_cache .ruff_cache .hypothesis .import_linter_cache
+	rm -rf $(VENV) dist build demo demo-fleet .coverage* .pytest_cache .mypy_cache .ruff_cache .hypothesis .import_linter_cache
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +
 
 $(VENV)/bin/python:
@@ -67,7 +70,7 @@ $(VENV)/bin/python:
 
 # One stamp a set of requirements; the project itself is installed so that changes to src/ take effect at once.
 # The lists are complete: pip resolves nothing, or a newer release of what a dependency asks for by an extra would stop it.
-$(VENV)/run $(VENV)/test $(VENV)/lint $(VENV)/docs $(VENV)/benchmark: $(VENV)/%: requirements/%.txt pyproject.toml | $(VENV)/bin/python
+$(VENV)/run $(VENV)/store $(VENV)/test $(VENV)/lint $(VENV)/docs $(VENV)/benchmark: $(VENV)/%: requirements/%.txt pyproject.toml | $(VENV)/bin/python
 	@echo "Installing requirements/$*.txt into $(VENV) (a minute or two) ..."
 	@$(PIP) install --quiet --no-deps --require-hashes --requirement requirements/$*.txt
 	@$(PIP) install --quiet --no-deps --no-build-isolation --editable .

@@ -35,18 +35,27 @@ from shaftprint.fingerprint import GAUGE_ZERO, Fingerprint, read_fingerprint, wr
 from shaftprint.identify import Settings  # noqa: E402
 from shaftprint.report import Difference, differences  # noqa: E402
 from shaftprint.survey import Trial, fingerprint_of, fit, load_trial, measure, priors_of  # noqa: E402
-from shaftprint.tug import Noise, Tug, sail  # noqa: E402
-from shaftprint.vessel import Vessel  # noqa: E402
+from shaftprint.tug import (  # noqa: E402
+    Tug,
+    in_water,
+    on_another_day,
+    sail,
+    sea_water_kg_m3,
+    with_delay,
+    with_gains,
+    with_inertia,
+    with_injection,
+    with_load,
+    zero_taken,
+)
+from shaftprint.vessel import load_vessel  # noqa: E402
 
 DOCUMENT = ROOT / "docs" / "watching.md"
 BEGIN, END = ("<!-- tables of benchmarks/watching.py: begin -->", "<!-- tables of benchmarks/watching.py: end -->")
 STRUCTURE = "GAUGE-CLOSED"
 SEED = 29
 REFERENCE = Tug.stan_tug_1205()
-TORQUE_NM = 1725.0
-WATER_KG_M2 = 17.0 / 100.0
-# From test to test: the torque of the propeller as a share, the zero of the gauge [N m], the set point [V: 5 rpm].
-LOAD, ZERO_NM, SET_POINT_V = 0.005, 60.0, 0.02
+VESSEL = load_vessel("stan-tug-1205")
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -70,41 +79,28 @@ class Change:
 
 
 def weaker_injection(tug: Tug, percent: float) -> Tug:
-    """Return a ship whose rack gives less torque: the governor, unchanged, moves a larger rack by as much."""
-    left = 1.0 - percent / 100.0
-    return replace(
-        tug, proportional_gain=left * tug.proportional_gain, integral_gain_per_s=left * tug.integral_gain_per_s
-    )
+    """Return a ship whose rack gives less torque."""
+    return with_injection(tug, 1.0 - percent / 100.0)
 
 
 def lower_gain(tug: Tug, percent: float) -> Tug:
     """Return a ship whose governor has a lower proportional gain."""
-    return replace(tug, proportional_gain=(1.0 - percent / 100.0) * tug.proportional_gain)
+    return with_gains(tug, proportional=1.0 - percent / 100.0)
 
 
 def longer_delay(tug: Tug, milliseconds: float) -> Tug:
     """Return a ship whose fuel comes later."""
-    return replace(tug, governor_delay_s=tug.governor_delay_s + 1e-3 * milliseconds)
+    return with_delay(tug, 1e-3 * milliseconds)
 
 
 def fouled_propeller(tug: Tug, percent: float) -> Tug:
-    """Return a ship whose propeller takes more torque at the same speed; gains are normalised with that torque."""
-    return with_load(tug, 1.0 + percent / 100.0)
-
-
-def with_load(tug: Tug, factor: float) -> Tug:
-    """Return a ship whose propeller takes so many times the torque at the same speed."""
-    return replace(
-        tug,
-        shaft_torque_nm=factor * (tug.shaft_torque_nm or TORQUE_NM),
-        proportional_gain=tug.proportional_gain / factor,
-        integral_gain_per_s=tug.integral_gain_per_s / factor,
-    )
+    """Return a ship whose propeller takes more torque at the same speed."""
+    return with_load(tug, 1.0 + percent / 100.0, VESSEL)
 
 
 def heavier_propeller(tug: Tug, percent: float) -> Tug:
     """Return a ship with more inertia behind the gauge."""
-    return replace(tug, entrained_water_kg_m2=percent * WATER_KG_M2)
+    return with_inertia(tug, 1.0 + percent / 100.0, VESSEL)
 
 
 ACTIONS = ("governor proportional action", "v K_p / (tau_up + tau_dn)")
@@ -154,9 +150,7 @@ CHANGES = (
     ),
 )
 DEADBAND_RPM, INFLOW_GAIN, INFLOW_TIME_S = 1.0, 0.3, 0.3
-# K_Q of a ship at bollard pull by draught [1/m] (two per cent a metre) and by the water, from 5 to 25 degrees.
-DRAUGHT_M, TORQUE_PER_M = 0.3, 0.02
-WATER_C, DENSITY_PER_C, DENSITY_15 = (5.0, 25.0), -2.1e-4, 1025.9
+DRAUGHT_M, WATER_C = 0.3, (5.0, 25.0)
 # Ships with something that the model does not know, and whether draught and water are others in each test.
 OTHERS = {
     f"deadband of the governor of {DEADBAND_RPM:g} rpm": (
@@ -173,41 +167,17 @@ HEADER = (
 ALIKE = 3.0
 
 
-def other_day(tug: Tug, rng: np.random.Generator) -> Tug:
-    """Return a ship on another day: other water, another zero of the gauge, the helm not quite where it was."""
-    noise = Noise()
-    tug = with_load(tug, 1.0 + rng.normal(0.0, LOAD))
-    return replace(
-        tug,
-        noise=replace(
-            noise,
-            inflow_rms=noise.inflow_rms * rng.uniform(0.7, 1.5),
-            surge_rms=noise.surge_rms * rng.uniform(0.5, 3.0),
-            combustion_rms=noise.combustion_rms * rng.uniform(0.8, 1.2),
-            hunting_rms=noise.hunting_rms * rng.uniform(0.7, 1.3),
-        ),
-        torque_zero_offset_nm=float(rng.normal(0.0, ZERO_NM)),
-        set_point_offset_v=tug.set_point_offset_v + float(rng.normal(0.0, SET_POINT_V)),
-    )
-
-
-def zero_taken(trial: Trial, tug: Tug, rng: np.random.Generator, seed: int) -> Trial:
-    """Return the trial with the zero of that day in its vessel file, as well as that file says it can be taken."""
-    gauge = trial.vessel.sensors.shaft_torque
-    # what the channel shows without torque, in the sign of the vessel file: it is subtracted
-    zero_nm = gauge.zero_nm + tug.torque_zero_offset_nm + float(rng.normal(0.0, gauge.zero_std_nm or 0.0))
-    content = trial.vessel.model_dump()
-    content["sensors"]["shaft_torque"]["zero_nm"] = zero_nm
+def with_zero_of_the_day(trial: Trial, tug: Tug, rng: np.random.Generator, seed: int) -> Trial:
+    """Return the trial with the zero of that day in its vessel file."""
     another = {"sha256": f"{seed:064x}"}
     sources = tuple(one.model_copy(update=another) if one.role == "vessel" else one for one in trial.sources)
-    return replace(trial, vessel=Vessel.model_validate(content), sources=sources)
+    return replace(trial, vessel=zero_taken(trial.vessel, tug, rng), sources=sources)
 
 
 def other_water(trial: Trial, tug: Tug, rng: np.random.Generator) -> tuple[Trial, Tug]:
     """Return the ship at another draught in other water, of which the density was measured and the draught was not."""
-    density = DENSITY_15 * (1.0 + DENSITY_PER_C * (float(rng.uniform(*WATER_C)) - 15.0))
-    factor = density / trial.vessel.water_density_kg_m3
-    tug = with_load(tug, factor * (1.0 + TORQUE_PER_M * float(rng.uniform(-DRAUGHT_M, DRAUGHT_M))))
+    density = sea_water_kg_m3(float(rng.uniform(*WATER_C)))
+    tug = in_water(tug, trial.vessel, density_kg_m3=density, deeper_m=float(rng.uniform(-DRAUGHT_M, DRAUGHT_M)))
     return replace(trial, vessel=trial.vessel.model_copy(update={"water_density_kg_m3": density})), tug
 
 
@@ -223,13 +193,13 @@ def tested(tug: Tug, campaign: str, seed: int, *, waters: bool) -> Fingerprint:
     """Return the fingerprint of one test of a ship, as ``shaftprint identify`` makes it."""
     trial, chosen = load_trial("stan-tug-1205", campaign), structure(STRUCTURE)
     rng = np.random.default_rng([SEED, seed])
-    tug = other_day(tug, rng)
+    tug = on_another_day(tug, trial.vessel, rng)
     if waters:
         trial, tug = other_water(trial, tug, rng)
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "recording.nc"
         sail(trial.vessel, trial.campaign, path, tug=tug, seed=seed)
-        trial = zero_taken(trial, tug, rng, seed)
+        trial = with_zero_of_the_day(trial, tug, rng, seed)
         measured = measure(path, trial, mode="shaftprint")
     settings = {STRUCTURE: Settings(priors=priors_of(chosen, trial.vessel, measured.signals))}
     (found,) = fit([chosen], measured, settings=settings, rng=np.random.default_rng(seed))

@@ -20,7 +20,7 @@ room            nouns                       verbs
 ``simulation``  ``Trace``                   ``simulate``, ``simulate_exactly``, ``equilibrium``, ``linearise``
 ``validation``  ``Validation``              ``validate``
 ``fingerprint`` ``Fingerprint``             ``take_fingerprint``, ``read_fingerprint``, ``write_fingerprint``
-``drift``       ``Finding``                 ``differ``, ``finding_sentences``
+``drift``       ``Finding``                 ``differ``, ``watch``, ``judge_sisters``
 ``design``      ``Plan``, ``Wish``, ``Limits`` ``design_campaign``, ``assumed_ship``, ``limits_from_vessel``
 ``rehearsal``                               ``rehearse_on_tug``
 ``export``      ``ExportedModel``           ``exported_model``, ``write_fmu``, ``write_matlab``, ``write_modelica``

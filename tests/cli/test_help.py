@@ -38,6 +38,7 @@ def test_commands_are_those_that_were_asked_for():
         "compare",
         "compare-structures",
         "drift",
+        "sisters",
         "structures",
         "sensitivity",
         "inertia",

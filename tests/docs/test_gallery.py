@@ -15,7 +15,8 @@ def test_every_chart_is_drawn_or_it_is_said_where():
     elsewhere = set(re.findall(r"`(\w+_chart)`", PAGES[GALLERY].partition("## Drawn elsewhere")[2]))
     assert drawn | elsewhere == CHARTS
     assert not drawn & elsewhere
-    assert len(elsewhere) <= 6
+    # that of sisters needs a class of ships
+    assert len(elsewhere) <= 7
 
 
 def test_what_is_drawn_with_the_thesis_is_drawn_there():

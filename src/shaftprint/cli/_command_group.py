@@ -43,6 +43,7 @@ SECTIONS = {
         "show": "Print a saved fingerprint.",
         "compare": "Compare fingerprints: what differs, and whether by more than chance.",
         "drift": "Watch a line over the years: what has changed, since when, and how fast.",
+        "sisters": "Hold the ships of a class against each other: who is other, and in what.",
         "validate": "Validate a model on chirps and steps that it was not identified from.",
         "compare-structures": "Compare model structures on a recording: which explains it best, and why.",
         "explain": "Explain the numbers of the thesis' method on one recording.",

@@ -11,11 +11,23 @@ quantity         unit   meaning
 
 from shaftprint.drift._along import Whitened, p_value_of_largest, whitened
 from shaftprint.drift._causes import ALL_CAUSES, CAUSES, Cause
+from shaftprint.drift._class_finding import (
+    CauseSpread,
+    ClassFinding,
+    NumberSpread,
+    ShipNumber,
+    ShipSize,
+    ShipStanding,
+)
+from shaftprint.drift._class_numbers import NEWEST_TESTS, Sister, sister_of
 from shaftprint.drift._differ import LOAD_REPEATABILITY, differ
+from shaftprint.drift._discoveries import discoveries
 from shaftprint.drift._finding import Finding, ShipChange, SizedCause
 from shaftprint.drift._history import EVENTS, DatedTest, Event, History, history_of
 from shaftprint.drift._pair import Pair, pair_of
 from shaftprint.drift._shared_errors import FieldChange, SharedErrors, shared_errors
+from shaftprint.drift._sister_words import sister_sentences
+from shaftprint.drift._sisters import FEWEST_SISTERS, judge_sisters
 from shaftprint.drift._time_to_limit import TimeToLimit, time_to_limit
 from shaftprint.drift._visible import VisibleChange, visible_changes
 from shaftprint.drift._watch import DatedCause, Drift, WatchFinding, watch
@@ -25,8 +37,12 @@ __all__ = [
     "ALL_CAUSES",
     "CAUSES",
     "EVENTS",
+    "FEWEST_SISTERS",
     "LOAD_REPEATABILITY",
+    "NEWEST_TESTS",
     "Cause",
+    "CauseSpread",
+    "ClassFinding",
     "DatedCause",
     "DatedTest",
     "Drift",
@@ -34,21 +50,30 @@ __all__ = [
     "FieldChange",
     "Finding",
     "History",
+    "NumberSpread",
     "Pair",
     "SharedErrors",
     "ShipChange",
+    "ShipNumber",
+    "ShipSize",
+    "ShipStanding",
+    "Sister",
     "SizedCause",
     "TimeToLimit",
     "VisibleChange",
     "WatchFinding",
     "Whitened",
     "differ",
+    "discoveries",
     "finding_sentences",
     "history_of",
+    "judge_sisters",
     "limit_sentence",
     "p_value_of_largest",
     "pair_of",
     "shared_errors",
+    "sister_of",
+    "sister_sentences",
     "time_to_limit",
     "visible_changes",
     "watch",

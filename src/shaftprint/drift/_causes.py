@@ -37,6 +37,8 @@ class Cause:
     different structures, such as the inertias, stands together."""
     is_share: bool = True
     """Whether its size is a share of the numbers; else it is a time [s]."""
+    tolerance: float = 0.0
+    """Standard deviation between sister ships as they are built, in the unit of the size; see docs/watching.md."""
 
     @property
     def unit(self) -> str:
@@ -59,6 +61,7 @@ CAUSES: tuple[Cause, ...] = (
         more="more torque for the same rack: injection or turbocharger",
         told_by="log the fuel rack in the next test",
         roles=((ShipRole.PROPORTIONAL_GAIN,), (ShipRole.INTEGRAL_GAIN,)),
+        tolerance=0.01,
     ),
     Cause(
         name="proportional gain of the governor",
@@ -66,6 +69,7 @@ CAUSES: tuple[Cause, ...] = (
         more="a higher proportional gain of the governor",
         told_by="read the gains in the control unit",
         roles=((ShipRole.PROPORTIONAL_GAIN,),),
+        tolerance=0.005,
     ),
     Cause(
         name="integral gain of the governor",
@@ -73,6 +77,7 @@ CAUSES: tuple[Cause, ...] = (
         more="a higher integral gain of the governor",
         told_by="read the gains in the control unit",
         roles=((ShipRole.INTEGRAL_GAIN,),),
+        tolerance=0.005,
     ),
     Cause(
         name="delay of governor and fuel",
@@ -81,6 +86,7 @@ CAUSES: tuple[Cause, ...] = (
         told_by="test at two speeds, which tell the delay from the latency of the set point",
         roles=((ShipRole.LOOP_DELAY,),),
         is_share=False,
+        tolerance=1e-3,
     ),
     Cause(
         name="latency of the set point",
@@ -89,6 +95,7 @@ CAUSES: tuple[Cause, ...] = (
         told_by="test at two speeds, which tell the delay from the latency of the set point",
         roles=((ShipRole.SET_POINT_LATENCY,),),
         is_share=False,
+        tolerance=1e-3,
     ),
     Cause(
         name="fuel actuator",
@@ -96,6 +103,7 @@ CAUSES: tuple[Cause, ...] = (
         more="a faster fuel actuator",
         told_by="log the fuel rack in the next test",
         roles=((ShipRole.ACTUATOR_FREQUENCY,),),
+        tolerance=0.01,
     ),
     Cause(
         name="propeller",
@@ -103,6 +111,7 @@ CAUSES: tuple[Cause, ...] = (
         more="more propeller torque at the same speed: fouled, damaged, or more draught",
         told_by="look at the propeller, and note draught and water of each test",
         roles=((ShipRole.TORQUE,),),
+        tolerance=0.025,
     ),
     Cause(
         name="inertia behind the gauge",
@@ -110,6 +119,7 @@ CAUSES: tuple[Cause, ...] = (
         more="more inertia behind the torque gauge",
         told_by="look at the propeller",
         roles=((ShipRole.INERTIA_DOWNSTREAM, ShipRole.INERTIA),),
+        tolerance=0.005,
     ),
 )
 """What moves numbers by their roles."""

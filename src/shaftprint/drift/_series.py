@@ -1,6 +1,6 @@
 """All tests of a history as one vector of numbers with its covariance: what ``watch`` looks for changes in."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -14,6 +14,7 @@ from shaftprint.drift._pair import SingleTest, alike, directions_of, doubts_of, 
 from shaftprint.drift._shared_errors import is_common
 
 if TYPE_CHECKING:
+    from shaftprint.fingerprint import Fingerprint
     from shaftprint.models import Role
 
 
@@ -78,22 +79,22 @@ def series_of(history: History, *, made: int, load_repeatability: float) -> Seri
 def _covariance(history: History, singles: list[SingleTest], load: FloatArray, made: int) -> FloatArray:
     size, count = len(load), len(singles)
     covariance = np.zeros((count * size, count * size))
-    for at, own in enumerate(_own_covariances(history, singles, made)):
+    tests = [test.fingerprint for test in history.tests]
+    for at, own in enumerate(own_covariances(tests, singles, made)):
         place = slice(at * size, (at + 1) * size)
         covariance[place, place] = own + load
-    for stated in _stated_errors(history, singles):
+    for stated in stated_errors(tests, singles, lambda source, one, other: is_common(source, tests[one], tests[other])):
         along = stated.reshape(-1)
         covariance += np.outer(along, along)
     return covariance
 
 
-def _own_covariances(history: History, singles: list[SingleTest], made: int) -> Iterator[FloatArray]:
+def own_covariances(tests: "Sequence[Fingerprint]", singles: Sequence[SingleTest], made: int) -> Iterator[FloatArray]:
     """Yield what each test left open, of the mean shape of all tests with the same lines and structure.
 
     In its tightest directions a covariance holds at its own estimates alone: each test's turns a little as these move
     along the valley of delay and gains. Taken as they are, many of them would cut each other's ellipsoids to a point.
     """
-    tests = [test.fingerprint for test in history.tests]
     variances = np.array([np.diag(one.own) for one in singles])
     for at in range(len(tests)):
         one = min(at, made - 1)
@@ -104,14 +105,15 @@ def _own_covariances(history: History, singles: list[SingleTest], made: int) -> 
         yield noisy[kin.index(one)] * shape
 
 
-def _stated_errors(history: History, singles: list[SingleTest]) -> Iterator[FloatArray]:
+def stated_errors(
+    tests: "Sequence[Fingerprint]", singles: Sequence[SingleTest], shared: Callable[[str, int, int], bool]
+) -> Iterator[FloatArray]:
     """Yield what each error that was stated beforehand does to the tests that share it, shape (tests, numbers)."""
-    tests = [test.fingerprint for test in history.tests]
     for source in dict.fromkeys(name for one in singles for name in one.loadings):
         left = [at for at, one in enumerate(singles) if source in one.loadings]
         while left:
             first = left[0]
-            sharing = [at for at in left if at == first or is_common(source, tests[first], tests[at])]
+            sharing = [at for at in left if at == first or shared(source, first, at)]
             left = [at for at in left if at not in sharing]
             moved = np.zeros((len(singles), len(singles[0].values)))
             for at in sharing:

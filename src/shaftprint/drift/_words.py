@@ -36,21 +36,24 @@ def finding_sentences(finding: Finding) -> tuple[str, ...]:
                 f"Perhaps: {count} numbers, judged together, differ by more than chance ({_p(rest)}), and by none of "
                 "the causes that are known; look at each number, and at the conditions of both tests.",
             )
-        return (f"No: {count} numbers of the ship, judged together, agree within chance.", *_open(finding.not_judged))
+        return (
+            f"No: {count} numbers of the ship, judged together, agree within chance.",
+            *open_sentences(finding.not_judged),
+        )
     sentences = [f"Yes: {_of_change(finding.changes[0])}"]
     sentences += [f"Beside it {_of_change(change)}" for change in finding.changes[1:]]
     if unexplained:
         sentences.append(f"That does not explain all of the difference ({_p(rest)}): look at each number too.")
-    return (*sentences, *_open(finding.not_judged))
+    return (*sentences, *open_sentences(finding.not_judged))
 
 
-def _open(causes: Sequence[Cause]) -> tuple[str, ...]:
+def open_sentences(causes: Sequence[Cause]) -> tuple[str, ...]:
     """Return what could not be judged, and may be it all the same."""
     names = " and ".join(cause.name for cause in causes)
     return (f"Not excluded, since it could not be judged: {names}.",) if causes else ()
 
 
-def _size_text(one: SizedCause) -> str:
+def size_text(one: SizedCause) -> str:
     """Return the size of a change with its standard deviation, without a sign, as sentences have it."""
     factor = PERCENT if one.cause.is_share else MILLISECONDS
     return stated(factor * abs(one.size), factor * one.std, one.cause.unit)
@@ -58,20 +61,22 @@ def _size_text(one: SizedCause) -> str:
 
 def _of_change(change: ShipChange) -> str:
     alike = [one for one in change.candidates if one.odds < ALIKE]
-    named = ", or ".join(f"{one.words}, by {_size_text(one)}" for one in alike)
+    named = ", or ".join(f"{one.words}, by {size_text(one)}" for one in alike)
     rest = change.candidates[len(alike) :]
-    odds = f" Odds {_odds(rest[0].odds)} against {rest[0].words}." if rest else ""
+    odds = f" Odds {odds_text(rest[0].odds)} against {rest[0].words}." if rest else ""
     told = (
-        "" if len(alike) == 1 else f" This pair of tests hardly tells them apart: {_ways(one.cause for one in alike)}."
+        ""
+        if len(alike) == 1
+        else f" This pair of tests hardly tells them apart: {ways_text(one.cause for one in alike)}."
     )
     return f"{named}.{odds}{told}"
 
 
-def _odds(odds: float) -> str:
+def odds_text(odds: float) -> str:
     return f"more than {MOST_ODDS:g} : 1" if odds > MOST_ODDS else f"{odds:.0f} : 1"
 
 
-def _ways(causes: Iterable[Cause]) -> str:
+def ways_text(causes: Iterable[Cause]) -> str:
     return "; ".join(dict.fromkeys(cause.told_by for cause in causes))
 
 
@@ -94,10 +99,10 @@ def watch_sentences(finding: WatchFinding, history: History) -> tuple[str, ...]:
     days = [f"{test.at:%Y-%m-%d}" for test in history.tests]
     if not finding.drifts:
         unchanged = f"No change beyond chance in {len(days)} tests from {days[0]} to {days[-1]}."
-        return (unchanged, *_open(finding.not_judged))
+        return (unchanged, *open_sentences(finding.not_judged))
     sentences = [f"Yes: {_of_drift(finding.drifts[0], days)}"]
     further = (f"Beside it {_of_drift(drift, days)}" for drift in finding.drifts[1:])
-    return (*sentences, *further, *_open(finding.not_judged))
+    return (*sentences, *further, *open_sentences(finding.not_judged))
 
 
 def limit_sentence(finding: WatchFinding, cause: Cause, limit: float, history: History) -> str:
@@ -133,7 +138,7 @@ def _course_text(course: DatedCause, days: Sequence[str]) -> str:
     days
         When each test was made, in words.
     """
-    size = f"{course.words}, by {_size_text(course)}"
+    size = f"{course.words}, by {size_text(course)}"
     if course.shape == "ramp":
         return f"{size} a year since {days[course.since]}"
     return f"{size}, between {days[course.since - 1]} and {days[course.since]}"
@@ -143,6 +148,6 @@ def _of_drift(drift: Drift, days: Sequence[str]) -> str:
     alike = [one for one in drift.courses if one.odds < ALIKE]
     rest = drift.courses[len(alike) :]
     named = ", or ".join(_course_text(one, days) for one in alike)
-    odds = f" Odds {_odds(rest[0].odds)} against {rest[0].words}." if rest else ""
-    told = "" if len(alike) == 1 else f" These tests hardly tell them apart: {_ways(one.cause for one in alike)}."
+    odds = f" Odds {odds_text(rest[0].odds)} against {rest[0].words}." if rest else ""
+    told = "" if len(alike) == 1 else f" These tests hardly tell them apart: {ways_text(one.cause for one in alike)}."
     return f"{named}.{odds}{told}"

@@ -16,6 +16,7 @@ torque                    N m        at the gauge
 Every ``plot_*`` function returns a matplotlib ``Figure`` that belongs to nobody else; ``save_chart`` writes it.
 """
 
+from shaftprint.report._class_page import render_class
 from shaftprint.report._comparison import render_comparison
 from shaftprint.report._curve import Curve, closed_loop_curve, open_loop_curve
 from shaftprint.report._drive_page import render_drive
@@ -26,11 +27,14 @@ from shaftprint.report._render import render_pdf, render_report
 from shaftprint.report.charts import Chart, save_chart
 from shaftprint.report.comparison import (
     Difference,
+    cause_spread_table,
     cause_table,
     course_table,
     difference_table,
     differences,
     history_table,
+    number_spread_table,
+    sister_table,
     stated_table,
     vessel_file_sentences,
 )
@@ -60,6 +64,7 @@ from shaftprint.report.figures import (
     signal_chart,
     signal_to_noise_chart,
     simulation_chart,
+    sister_chart,
     staircase_chart,
     step_chart,
     strip_chart,
@@ -88,6 +93,7 @@ __all__ = [
     "budget_chart",
     "calibration_chart",
     "campaign_chart",
+    "cause_spread_table",
     "cause_table",
     "change_in_words",
     "chirp_chart",
@@ -112,12 +118,14 @@ __all__ = [
     "limit_chart",
     "missing_damping_chart",
     "mode_chart",
+    "number_spread_table",
     "nyquist_chart",
     "open_loop_chart",
     "open_loop_curve",
     "outlier_chart",
     "plot",
     "profile_chart",
+    "render_class",
     "render_comparison",
     "render_drive",
     "render_history",
@@ -131,6 +139,8 @@ __all__ = [
     "signal_chart",
     "signal_to_noise_chart",
     "simulation_chart",
+    "sister_chart",
+    "sister_table",
     "sizes_of_tests",
     "staircase_chart",
     "stated_table",

@@ -16,6 +16,7 @@ that make fingerprints stand in the same database: one is done exactly when its 
 
 from shaftprint.store._add import add, add_document
 from shaftprint.store._check import check
+from shaftprint.store._class_histories import class_histories
 from shaftprint.store._document import MOST_BYTES, document_sha256, inflated
 from shaftprint.store._event import record_event
 from shaftprint.store._export import export_store
@@ -87,6 +88,7 @@ __all__ = [
     "add_document",
     "check",
     "claim",
+    "class_histories",
     "create_store",
     "document",
     "document_sha256",

@@ -17,6 +17,16 @@ inertias                     kg m2      referred to the propeller shaft, split a
 ============================ ========== ==========================================================================
 """
 
+from shaftprint.tug._changes import (
+    in_water,
+    on_another_day,
+    sea_water_kg_m3,
+    with_delay,
+    with_gains,
+    with_inertia,
+    with_injection,
+    with_load,
+)
 from shaftprint.tug._ideal import IdealSignals, simulate_signals
 from shaftprint.tug._like_stan_tug import like_stan_tug_1205
 from shaftprint.tug._linearise import linearised_response
@@ -24,6 +34,16 @@ from shaftprint.tug._noise import Noise
 from shaftprint.tug._sail import sail
 from shaftprint.tug._sail_as import sail_as
 from shaftprint.tug._sailing import Sailing
+from shaftprint.tug._simulated_fleet import (
+    SailedTest,
+    SimulatedFleet,
+    Tolerances,
+    as_built,
+    sail_test,
+    simulated_fleet,
+    zero_taken,
+)
+from shaftprint.tug._simulated_ship import ShipWork, SimulatedShip, Wear, ship_at, vessel_at, with_works
 from shaftprint.tug._truth import StripTruth, Truth, normalised_truth, read_truth, truth_path
 from shaftprint.tug._tug import Tug
 from shaftprint.tug.sensors import Fault
@@ -32,16 +52,37 @@ __all__ = [
     "Fault",
     "IdealSignals",
     "Noise",
+    "SailedTest",
     "Sailing",
+    "ShipWork",
+    "SimulatedFleet",
+    "SimulatedShip",
     "StripTruth",
+    "Tolerances",
     "Truth",
     "Tug",
+    "Wear",
+    "as_built",
+    "in_water",
     "like_stan_tug_1205",
     "linearised_response",
     "normalised_truth",
+    "on_another_day",
     "read_truth",
     "sail",
     "sail_as",
+    "sail_test",
+    "sea_water_kg_m3",
+    "ship_at",
     "simulate_signals",
+    "simulated_fleet",
     "truth_path",
+    "vessel_at",
+    "with_delay",
+    "with_gains",
+    "with_inertia",
+    "with_injection",
+    "with_load",
+    "with_works",
+    "zero_taken",
 ]

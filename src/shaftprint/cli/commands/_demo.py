@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from datetime import UTC, datetime
 from pathlib import Path
 
 import click
@@ -11,11 +12,14 @@ import numpy as np
 from shaftprint.cli._demo_summary import print_summary
 from shaftprint.cli._demo_truth import fingerprint_truth
 from shaftprint.cli._fingerprint_tables import print_fingerprint
+from shaftprint.cli._fleet_answers import print_answers, print_commands
+from shaftprint.cli._fleet_demo import all_tested, fleet_of_the_demo, tests_of_the_demo
 from shaftprint.cli._results import print_comparison, print_paths, write_results
 from shaftprint.cli._signal_tables import print_lines
 from shaftprint.cli._terminal import echo, say
 from shaftprint.cli.output import Steps, force_option, no_progress_option, output_folder, print_table, progress
 from shaftprint.spectra import FrequencyResponse
+from shaftprint.store import add, create_store, record_event
 from shaftprint.survey import (
     Survey,
     ThesisMode,
@@ -33,24 +37,54 @@ from shaftprint.tug import Truth, sail
 
 VESSEL = "stan-tug-1205"
 FULL, SHORT = "thesis", "short"
-RECORDING = "recording.nc"
+RECORDING, STORE = "recording.nc", "fleet.db"
 
 
 @click.command("demo")
 @click.option(
-    "-o", "--output", type=click.Path(path_type=Path), default=Path("demo"), show_default=True,
-    help="Folder for the recording and the results.",
+    "-o", "--output", type=click.Path(path_type=Path),
+    help="Folder for the recording and the results: demo, with --fleet demo-fleet.",
 )  # fmt: skip
 @click.option("--seed", type=click.IntRange(min=0), default=1, show_default=True, help="Seed of noise and starts.")
 @click.option("--short", is_flag=True, help="Sail a test of 14 minutes instead of the thesis' one of three hours.")
+@click.option("--fleet", is_flag=True, help="Fill a store with eight sister ships over five years.")
+@click.option("--keep-recordings", is_flag=True, help="With --fleet: keep the 80 raw recordings, 0.8 GB.")
 @force_option
 @no_progress_option
-def command(output: Path, seed: int, short: bool, force: bool, no_progress: bool) -> None:
+def command(
+    output: Path | None, seed: int, short: bool, *, fleet: bool, keep_recordings: bool, force: bool, no_progress: bool
+) -> None:
     """Simulate the Stan Tug 1205 and identify it from its recording.
 
     The raw recording is written as a logger would write it, and the fingerprint is identified from that
     file alone. The truth is opened at the end, to be printed beside what was found.
+
+    With --fleet eight sister ships are tested twice a year for five years, and their fingerprints put into a store:
+    propellers foul and are cleaned in dock, one governor is set lower, one injection wears.
     """
+    if fleet:
+        _fleet(output or Path("demo-fleet"), seed=seed, keep=keep_recordings, force=force, no_progress=no_progress)
+    else:
+        _ship(output or Path("demo"), seed=seed, short=short, force=force, no_progress=no_progress)
+
+
+def _fleet(output: Path, *, seed: int, keep: bool, force: bool, no_progress: bool) -> None:
+    """Sail, identify and keep the tests of the fleet, and say what its store tells."""
+    with output_folder(output, of="demo", force=force) as folder, create_store(str(folder / STORE)) as store:
+        fleet, tests = fleet_of_the_demo(seed), tests_of_the_demo()
+        with progress(hidden=no_progress) as steps:
+            steps.begin(f"{len(tests)} tests of {len(fleet.ships)} ships", total=float(len(tests)))
+            for path in all_tested(tests, folder, seed=seed, recordings=folder if keep else None):
+                add(store, path, now=datetime.now(UTC))
+                steps.advance(1.0)
+        noted = [(ship.name, work) for ship in fleet.ships for work in ship.works if work.is_noted]
+        for name, work in noted:
+            record_event(store, name, work.kind, at=work.at)
+        print_answers(store)
+    print_commands(output / STORE)
+
+
+def _ship(output: Path, *, seed: int, short: bool, force: bool, no_progress: bool) -> None:
     campaign = SHORT if short else FULL
     trial = load_trial(VESSEL, campaign)
     with output_folder(output, of="demo", force=force) as folder:

@@ -3,6 +3,7 @@
 from shaftprint.report.comparison._cause_table import cause_table
 from shaftprint.report.comparison._differences import Difference, differences
 from shaftprint.report.comparison._history_tables import course_table, history_table
+from shaftprint.report.comparison._sister_tables import cause_spread_table, number_spread_table, sister_table
 from shaftprint.report.comparison._tables import (
     beside_table,
     condition_table,
@@ -15,12 +16,15 @@ from shaftprint.report.comparison._vessel_file_words import vessel_file_sentence
 __all__ = [
     "Difference",
     "beside_table",
+    "cause_spread_table",
     "cause_table",
     "condition_table",
     "course_table",
     "difference_table",
     "differences",
     "history_table",
+    "number_spread_table",
+    "sister_table",
     "source_table",
     "stated_table",
     "vessel_file_sentences",

@@ -26,6 +26,7 @@ from shaftprint.report.figures._scan import scan_chart
 from shaftprint.report.figures._sensitivity import parameter_steps, sensitivity_chart
 from shaftprint.report.figures._signal_to_noise import THESIS_LIMIT_DB, signal_to_noise_chart
 from shaftprint.report.figures._simulation import SimulatedSignal, simulation_chart
+from shaftprint.report.figures._sisters import sister_chart
 from shaftprint.report.figures._step_band import step_chart
 from shaftprint.report.figures._steps import delay_chart
 from shaftprint.report.figures._time_series import chirp_chart, excitation_chart, signal_chart, staircase_chart
@@ -74,6 +75,7 @@ __all__ = [
     "signal_chart",
     "signal_to_noise_chart",
     "simulation_chart",
+    "sister_chart",
     "spread",
     "staircase_chart",
     "step_chart",

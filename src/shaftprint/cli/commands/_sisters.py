@@ -1,0 +1,71 @@
+"""``shaftprint sisters``: the ships of a class against each other."""
+
+from datetime import UTC, datetime
+from pathlib import Path
+
+import click
+
+from shaftprint.cli._load_option import load_repeatability_option
+from shaftprint.cli._store_options import store_option
+from shaftprint.cli._terminal import answer, echo, say
+from shaftprint.cli.output import REPORT, force_option, give, output_folder, print_tables
+from shaftprint.drift import NEWEST_TESTS, Sister, history_of, judge_sisters, sister_of, sister_sentences
+from shaftprint.report import cause_spread_table, number_spread_table, render_class, sister_table
+from shaftprint.store import LineHistory, class_histories, open_store
+
+PERCENT = 100.0
+
+
+@click.command("sisters")
+@click.argument("class_name", metavar="CLASS")
+@store_option
+@click.option("--line", metavar="NAME", help="Shaft line of the ships, such as port; all of them by default.")
+@click.option(
+    "--newest", type=click.IntRange(min=1), default=NEWEST_TESTS, show_default=True, metavar="COUNT",
+    help="Tests that stand for a ship, the newest ones since the last thing that was done to it.",
+)  # fmt: skip
+@load_repeatability_option
+@click.option("-o", "--output", type=click.Path(path_type=Path), help="Folder for a page with a chart of the ships.")
+@force_option
+def command(
+    class_name: str,
+    url: str,
+    *,
+    line: str | None,
+    newest: int,
+    load_percent: float,
+    output: Path | None,
+    force: bool,
+) -> None:
+    """Hold the ships of a class against each other: who is other, and in what.
+
+    Takes the CLASS that ships of the store have in common. Each ship is held against what the others tell, along the
+    causes of drift, with how much sisters differ as they are built.
+    """
+    with open_store(url) as store:
+        lines = class_histories(store, class_name, line=line)
+    ships = _sisters(lines, newest)
+    finding = judge_sisters(ships, load_repeatability=load_percent / PERCENT)
+    if output is not None:
+        with output_folder(output, of="sisters", force=force) as folder:
+            render_class(folder, class_name, ships, finding, now=datetime.now(UTC))
+    answer(f"Is a ship other than its sisters? {' '.join(sister_sentences(finding))}")
+    give("finding", finding)
+    if not finding.because:
+        print_tables([sister_table(finding), cause_spread_table(finding), number_spread_table(finding)])
+    if output is not None:
+        echo(f"Report: {output / REPORT}")
+
+
+def _sisters(lines: tuple[LineHistory, ...], newest: int) -> tuple[Sister, ...]:
+    """Return the lines that have a test that can be judged, and say which have none."""
+    several = len({one.line.position for one in lines}) > 1
+    ships = []
+    for one in lines:
+        name = f"{one.line.ship.name}, {one.line.position}" if several else one.line.ship.name
+        history = history_of(one.fingerprints, one.events)
+        if history.tests:
+            ships.append(sister_of(name, history, newest=newest))
+        else:
+            say(f"Left out: {name}, none of its tests can be judged.")
+    return tuple(ships)

@@ -1,0 +1,240 @@
+"""How much sister ships differ, and how far one of them is from the others: empirical Bayes in closed form.
+
+Numbers of ship ``s`` are ``y_s = mu + b_s + e_s``: ``e_s`` with the covariance ``C`` that its tests state, ``b_s``
+with ``R``, the sum of ``k_d t_d t_d'`` over the tolerances of building, each in the direction of its cause. How much
+of each there is in this class, ``k_d``, is what the ships themselves tell. With ``V`` the covariance of all ships, ``P
+= V^-1 - V^-1 X (X' V^-1 X)^-1 X' V^-1`` and ``X`` the common mean, the quadratic forms ``y' P K_d P y`` with ``K_d =
+t_d t_d'`` in each ship have the expectations ``tr(P K_d P C) + sum of k_e tr(P K_d P K_e)``, linear equations of which
+the ``k`` are the solution (C. R. Rao, "Estimation of variance and covariance components: MINQUE theory", Journal of
+Multivariate Analysis 1, 1971). Twice the inverse of their matrix is the covariance of the solution.
+
+Eight ships cannot tell a spread of each cause: one is told by seven differences, and a limit of Student's t with six
+degrees of freedom is twice that of the normal distribution. So each ``k_d`` is drawn to the one ``k`` of all causes as
+far as they look alike (``_moderation``): with ships that differ as the tolerances say, they are told together.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from shaftprint.arrays import FloatArray
+from shaftprint.drift._along import Whitened, whitened
+from shaftprint.drift._class_numbers import ClassNumbers
+from shaftprint.drift._moderation import worth_of_common
+
+# The weights are worked out with the scales of the time before, and not quite without a spread.
+_ROUNDS, _LEAST_SCALE = 2, 0.05
+_MOST_FREEDOM = 1e6
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Spread:
+    """How much some ships of a class differ."""
+
+    ships: tuple[int, ...]
+    """Places of the ships that tell it."""
+    scales: FloatArray
+    """Variance between ships over that of each tolerance, 1 where they differ as it says; shape (tolerances,)."""
+    scale_covariance: FloatArray
+    """Its covariance, shape (tolerances, tolerances)."""
+    mean: FloatArray
+    """Mean of the class, shape (numbers,)."""
+    weights: FloatArray
+    """How it follows from the numbers of all ships, shape (numbers, ships * numbers)."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Departure:
+    """How far one ship is from the class that others tell."""
+
+    white: Whitened
+    """Its difference and the directions of causes, in coordinates in which a sister's difference is white."""
+    freedom: FloatArray
+    """Degrees of freedom of the score of each cause, whose variance is in part an estimate; shape (causes,)."""
+    difference: FloatArray
+    """Ship minus class mean, shape (numbers,)."""
+    covariance: FloatArray
+    """Of that difference in a sound sister, shape (numbers, numbers)."""
+    measured: FloatArray
+    """What of it is not the spread of ships: their tests, shape (numbers, numbers)."""
+
+
+def between_ships(numbers: ClassNumbers, spread: Spread) -> FloatArray:
+    """Return the covariance of the numbers of one ship among its sisters, shape (numbers, numbers)."""
+    covariance: FloatArray = (numbers.building * spread.scales) @ numbers.building.T
+    return covariance
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class _Forms:
+    """The quadratic forms of some ships, one for each tolerance, worked out at one choice of the scales."""
+
+    surplus: FloatArray
+    """What they are beyond what the tests leave open, shape (tolerances,)."""
+    sensitivity: FloatArray
+    """What the scales do to them, shape (tolerances, tolerances)."""
+    ratios: FloatArray
+    """What they are over what they are expected to be with these scales, shape (tolerances,)."""
+
+
+def spread_of(numbers: ClassNumbers, ships: tuple[int, ...]) -> Spread:
+    """Return how much some ships of a class differ, and their mean.
+
+    Parameters
+    ----------
+    numbers
+        Numbers of all ships of the class.
+    ships
+        Places of those that tell it, two at least.
+    """
+    size, count = numbers.building.shape
+    common = np.ones(count)
+    for _ in range(_ROUNDS):
+        forms = _forms(numbers, ships, common)
+        common = np.full(count, max(forms.surplus.sum() / forms.sensitivity.sum(), 0.0))
+    forms = _forms(numbers, ships, common)
+    stated = np.diag(forms.sensitivity) > 0.0
+    freedom = len(ships) - 1.0
+    worth = worth_of_common(forms.ratios[stated], freedom)
+    scales = common
+    for _ in range(_ROUNDS):
+        forms = _forms(numbers, ships, scales)
+        # a cause without a tolerance keeps the common scale
+        drawn = np.where(stated, np.diag(forms.sensitivity), 1.0) * worth / freedom
+        inverse = np.linalg.inv(forms.sensitivity + np.diag(drawn))
+        scales = np.maximum(inverse @ (forms.surplus + drawn * common), 0.0)
+    by_common = inverse @ drawn
+    rows = _rows(ships, size)
+    weights = np.zeros((size, numbers.covariance.shape[0]))
+    _within, weights[:, rows] = _projection(numbers, ships, scales)
+    return Spread(
+        ships=ships,
+        scales=scales,
+        scale_covariance=2.0 * inverse + 2.0 / forms.sensitivity.sum() * np.outer(by_common, by_common),
+        mean=weights[:, rows] @ numbers.values[list(ships)].reshape(-1),
+        weights=weights,
+    )
+
+
+def _forms(numbers: ClassNumbers, ships: tuple[int, ...], scales: FloatArray) -> _Forms:
+    """Return the quadratic forms of some ships at one choice of the scales."""
+    count = numbers.building.shape[1]
+    rows = _rows(ships, numbers.building.shape[0])
+    within, _mean = _projection(numbers, ships, scales)
+    built = np.kron(np.eye(len(ships)), numbers.building)
+    seen = built.T @ within
+    values = (seen @ numbers.values[list(ships)].reshape(-1)).reshape(len(ships), count)
+    tests = np.diag(seen @ numbers.covariance[np.ix_(rows, rows)] @ seen.T).reshape(len(ships), count)
+    between = (seen @ built).reshape(len(ships), count, len(ships), count)
+    form = (values**2).sum(axis=0)
+    expected = np.diag(seen @ built).reshape(len(ships), count).sum(axis=0)
+    return _Forms(
+        surplus=form - tests.sum(axis=0),
+        sensitivity=(between**2).sum(axis=(0, 2)),
+        ratios=form / np.where(expected > 0.0, expected, 1.0),
+    )
+
+
+def _rows(ships: tuple[int, ...], size: int) -> "np.ndarray[tuple[int], np.dtype[np.intp]]":
+    return np.concatenate([np.arange(at * size, (at + 1) * size) for at in ships])
+
+
+def _projection(numbers: ClassNumbers, ships: tuple[int, ...], scales: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return what weighs differences from the mean, and what makes the mean."""
+    size = numbers.building.shape[0]
+    rows = _rows(ships, size)
+    one = (numbers.building * np.maximum(scales, _LEAST_SCALE)) @ numbers.building.T
+    covariance = numbers.covariance[np.ix_(rows, rows)] + np.kron(np.eye(len(ships)), one)
+    level = np.tile(np.eye(size, dtype=np.float64), (len(ships), 1))
+    inverse = np.asarray(np.linalg.inv(covariance), dtype=np.float64)
+    mean = np.asarray(np.linalg.solve(level.T @ inverse @ level, level.T @ inverse), dtype=np.float64)
+    return inverse - inverse @ level @ mean, mean
+
+
+def departure_of(numbers: ClassNumbers, ship: int, spread: Spread) -> Departure:
+    """Return how far a ship is from the class that others tell.
+
+    Parameters
+    ----------
+    numbers
+        Numbers of all ships of the class.
+    ship
+        Place of the ship.
+    spread
+        What others tell; the ship may be among them, for its distance from a mean that it has a part in.
+
+    Raises
+    ------
+    numpy.linalg.LinAlgError
+        If the covariance is not positive definite.
+    """
+    size, count = numbers.values.shape[1], len(numbers.values)
+    against = -spread.weights
+    against[:, ship * size : (ship + 1) * size] += np.eye(size)
+    measured = against @ numbers.covariance @ against.T
+    built = (against @ np.kron(np.eye(count), numbers.building)).reshape(size, count, -1)
+    covariance = measured + np.einsum("pst,t,qst->pq", built, spread.scales, built)
+    difference = numbers.values[ship] - spread.mean
+    along = np.linalg.solve(covariance, numbers.directions)
+    # what each tolerance adds to the variance of each score
+    added = (np.einsum("pd,pst->dst", along, built) ** 2).sum(axis=1)
+    return Departure(
+        white=whitened(difference, covariance, numbers.directions),
+        freedom=_freedom(np.einsum("pd,pd->d", along, numbers.directions), added, spread),
+        difference=difference,
+        covariance=covariance,
+        measured=measured,
+    )
+
+
+def _freedom(variance: FloatArray, added: FloatArray, spread: Spread) -> FloatArray:
+    """Return the degrees of freedom of variances that are in part estimated, by their own variances (Satterthwaite).
+
+    Parameters
+    ----------
+    variance
+        The variances, shape (variances,).
+    added
+        What each tolerance, at a scale of 1, adds to them; shape (variances, tolerances).
+    spread
+        What the scales are, and how well they are known.
+    """
+    relative = np.einsum("dt,tu,du->d", added, spread.scale_covariance, added) / np.maximum(variance, 1e-300) ** 2
+    # no fewer than if it were told by itself
+    freedom: FloatArray = np.maximum(2.0 / np.maximum(relative, 2.0 / _MOST_FREEDOM), len(spread.ships) - 1.0)
+    return freedom
+
+
+def prediction(numbers: ClassNumbers, spread: Spread) -> tuple[FloatArray, FloatArray]:
+    """Return variance and degrees of freedom of each true number of a new sister about the mean; shape (numbers,) each.
+
+    Parameters
+    ----------
+    numbers
+        Numbers of all ships of the class.
+    spread
+        What its ships tell.
+    """
+    count, size = numbers.values.shape
+    mean = np.diag(spread.weights @ numbers.covariance @ spread.weights.T)
+    built = (spread.weights @ np.kron(np.eye(count), numbers.building)).reshape(size, count, -1)
+    added = numbers.building**2 + (built**2).sum(axis=1)
+    variance = mean + added @ spread.scales
+    return variance, _freedom(variance, added, spread)
+
+
+def shrunk(numbers: ClassNumbers, spread: Spread) -> FloatArray:
+    """Return what each tolerance most likely did to each ship, in standard deviations of the tolerance.
+
+    It is the expectation where the difference from the mean is known: drawn to the mean as far as tests are uncertain,
+    and shared among the tolerances. Shape (ships, tolerances); times ``building`` it is in the numbers.
+    """
+    size = len(numbers.names)
+    rows = []
+    for ship in range(len(numbers.values)):
+        departure = departure_of(numbers, ship, spread)
+        own = np.linalg.solve(departure.covariance, departure.difference)
+        # of a ship that has a part in the mean, the covariance of effect and difference is smaller by that part
+        part = spread.weights[:, ship * size : (ship + 1) * size]
+        rows.append(spread.scales * (numbers.building.T @ (np.eye(size) - part).T @ own))
+    return np.array(rows)

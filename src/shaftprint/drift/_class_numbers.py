@@ -1,0 +1,159 @@
+"""The newest tests of sister ships as one vector of numbers with its covariance, and how ships may differ as built."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from shaftprint.arrays import FloatArray
+from shaftprint.catalogue import ShipRole
+from shaftprint.drift._causes import GAUGE_SCALE, Cause
+from shaftprint.drift._history import DatedTest, History
+from shaftprint.drift._pair import SingleTest, directions_of, doubts_of, not_judged, single_test
+from shaftprint.drift._series import own_covariances, stated_errors
+from shaftprint.drift._shared_errors import is_common
+from shaftprint.fingerprint import BEHIND
+
+if TYPE_CHECKING:
+    from shaftprint.models import Role
+
+NEWEST_TESTS = 3
+"""Tests of a ship that stand for it, the newest ones."""
+OTHER_TOLERANCES: Final[dict["Role", float]] = {
+    ShipRole.ACTUATOR_DAMPING: 0.03,
+    # a test finds what the builder states
+    ShipRole.INERTIA_UPSTREAM: 0.0,
+}
+"""Standard deviations between sister ships of numbers that no cause moves alone."""
+_USUAL_TOLERANCE = 0.01
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Sister:
+    """A ship of a class with the tests that stand for it."""
+
+    name: str
+    """What it is called."""
+    tests: tuple[DatedTest, ...]
+    """Its tests, the earliest first."""
+
+
+def sister_of(name: str, history: History, *, newest: int = NEWEST_TESTS) -> Sister:
+    """Return a ship with its newest tests, none of which was made before the last thing that was done to it.
+
+    Where no test was made since, the newest one stands for it.
+
+    Parameters
+    ----------
+    name
+        What it is called.
+    history
+        Its tests, and what was done to it.
+    newest
+        How many tests stand for it at most.
+    """
+    last = max((event.at for event in history.events), default=None)
+    since = tuple(test for test in history.tests if last is None or test.at >= last)
+    return Sister(name=name, tests=(since or history.tests[-1:])[-newest:])
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class ClassNumbers:
+    """The numbers of all ships of a class."""
+
+    names: tuple[str, ...]
+    """Numbers that are judged together."""
+    left_out: dict[str, str]
+    """Why others are not, by name."""
+    values: FloatArray
+    """Mean of the tests of each ship: logarithms, and times [s]; shape (ships, numbers)."""
+    covariance: FloatArray
+    """What the tests leave open of them, those of one ship together, shape (ships * numbers,) squared."""
+    building: FloatArray
+    """What one standard deviation of each tolerance of building does to the numbers, those of the causes first; shape
+    (numbers, tolerances)."""
+    causes: tuple[Cause, ...]
+    """What may have moved the numbers."""
+    directions: FloatArray
+    """What a change of each cause by 1, or by a second, does to the numbers; shape (numbers, causes)."""
+    not_judged: tuple[Cause, ...]
+    """What may have moved numbers that were left out: it is not excluded."""
+
+
+def class_numbers(ships: Sequence[Sister], *, load_repeatability: float) -> ClassNumbers:
+    """Return the numbers that all tests of all ships have, a mean of each ship.
+
+    Parameters
+    ----------
+    ships
+        Ships of one class, each with one test at least.
+    load_repeatability
+        Standard deviation of the torque that a propeller takes at one speed from day to day, as a share.
+    """
+    tests = [test.fingerprint for ship in ships for test in ship.tests]
+    doubts = doubts_of(*tests)
+    names = tuple(name for name, doubt in doubts.items() if not doubt)
+    roles = {name: tests[0].quantity(name).role for name in names}
+    singles = [single_test(one, names) for one in tests]
+    load = np.diag([(load_repeatability * (role == ShipRole.TORQUE)) ** 2 for role in roles.values()])
+    own = list(own_covariances(tests, singles, len(tests)))
+    weights = _weights(ships, own)
+    mean = np.kron(weights, np.eye(len(names)))
+    covariance = _covariance(ships, singles, [one + load for one in own])
+    causes, directions = directions_of(roles, singles[0].loadings.get(GAUGE_SCALE))
+    return ClassNumbers(
+        names=names,
+        left_out={name: doubt for name, doubt in doubts.items() if doubt},
+        values=weights @ np.array([one.values for one in singles]),
+        covariance=mean @ covariance @ mean.T,
+        building=_building(roles, causes, directions),
+        causes=causes,
+        directions=directions,
+        not_judged=not_judged(causes, doubts, tests),
+    )
+
+
+def _weights(ships: Sequence[Sister], own: Sequence[FloatArray]) -> FloatArray:
+    """Return by how much each test counts in the mean of its ship, shape (ships, tests)."""
+    precise = np.array([1.0 / np.trace(one) for one in own])
+    of_ship = np.repeat(np.arange(len(ships)), [len(ship.tests) for ship in ships])
+    weights = np.where(of_ship == np.arange(len(ships))[:, None], precise, 0.0)
+    normalised: FloatArray = weights / weights.sum(axis=1, keepdims=True)
+    return normalised
+
+
+def _covariance(ships: Sequence[Sister], singles: Sequence[SingleTest], own: Sequence[FloatArray]) -> FloatArray:
+    """Return the covariance of all tests: what each left open, and what was stated of several in common.
+
+    A drawing or an engine type is the same in all ships, a sensor is one of its ship.
+    """
+    tests = [test.fingerprint for ship in ships for test in ship.tests]
+    of_ship = [place for place, ship in enumerate(ships) for _ in ship.tests]
+    count, size = len(tests), len(own[0])
+    covariance = np.zeros((count * size, count * size))
+    for at, one in enumerate(own):
+        place = slice(at * size, (at + 1) * size)
+        covariance[place, place] = one
+
+    def shared(source: str, one: int, other: int) -> bool:
+        same = source not in BEHIND or of_ship[one] == of_ship[other]
+        return same and is_common(source, tests[one], tests[other])
+
+    for moved in stated_errors(tests, singles, shared):
+        along = moved.reshape(-1)
+        covariance += np.outer(along, along)
+    return covariance
+
+
+def _building(roles: "dict[str, Role | None]", causes: Sequence[Cause], directions: FloatArray) -> FloatArray:
+    """Return what tolerances of building do to the numbers: those of the causes, and of numbers that no cause moves."""
+    alone = [any(len(one.roles) == 1 and role in one.roles[0] for one in causes) for role in roles.values()]
+    others = [
+        0.0 if moved or role is None else OTHER_TOLERANCES.get(role, _USUAL_TOLERANCE)
+        for moved, role in zip(alone, roles.values(), strict=True)
+    ]
+    of_causes = directions * np.array([cause.tolerance for cause in causes])
+    of_numbers = np.diag(others)[:, np.array(others) > 0.0]
+    building: FloatArray = np.column_stack([of_causes, of_numbers])
+    return building
