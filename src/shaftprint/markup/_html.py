@@ -5,7 +5,7 @@ import re
 from markupsafe import Markup, escape
 
 from shaftprint.digits import typographic
-from shaftprint.report.notation._symbols import is_symbol, name_parts
+from shaftprint.markup._symbols import is_symbol, name_parts
 from shaftprint.tables import Symbol, Table
 
 _SYMBOL = re.compile(r"\b(?:(?:[A-Za-z]|tau|omega)_[A-Za-z0-9]+|zeta)\b")
