@@ -12,7 +12,7 @@ from shaftprint.escape import html_value
 from shaftprint.markup._html import cell_html, sentence_html
 
 if TYPE_CHECKING:
-    from shaftprint.tables import Table
+    from shaftprint.plain_table import Table
 
 TABLE: Final = "table.html.j2"
 """Template of a table; on a phone each row becomes a card."""
