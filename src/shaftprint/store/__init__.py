@@ -36,6 +36,7 @@ from shaftprint.store._nouns import (
     StoredNumber,
     Trial,
 )
+from shaftprint.store._overview import LineNow, LineRecords, line_records, lines_now, stored_fingerprint
 from shaftprint.store._record import Record, record_of
 from shaftprint.store._stated import Stated
 from shaftprint.store._store import Store, create_store, open_store, upgrade_store
@@ -52,6 +53,8 @@ __all__ = [
     "Imported",
     "Line",
     "LineHistory",
+    "LineNow",
+    "LineRecords",
     "LineSummary",
     "Record",
     "Ship",
@@ -71,10 +74,13 @@ __all__ = [
     "import_store",
     "inflated",
     "line_history",
+    "line_records",
+    "lines_now",
     "network_file_system",
     "newest",
     "open_store",
     "record_event",
     "record_of",
+    "stored_fingerprint",
     "upgrade_store",
 ]

@@ -5,6 +5,7 @@ It needs SQLAlchemy; the room asks for it when a store is opened, and not before
 
 from shaftprint.store.database._damage import database_faults
 from shaftprint.store.database._database import Database, connect
+from shaftprint.store.database._lines_now import fingerprint_called, line_states
 from shaftprint.store.database._location import Location, location_of
 from shaftprint.store.database._reader import Reader, ShipRow
 from shaftprint.store.database._schema import MIGRATIONS, create, expect_current, upgrade
@@ -24,6 +25,8 @@ __all__ = [
     "create",
     "database_faults",
     "expect_current",
+    "fingerprint_called",
+    "line_states",
     "location_of",
     "upgrade",
 ]
