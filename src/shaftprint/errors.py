@@ -18,6 +18,7 @@
     ├── PublicationError      a folder into which results cannot be put, or not as a whole
     ├── ReportError           a report that cannot be written
     ├── StoreError            a store of fingerprints that cannot be used, or a record that it refuses
+    │   └── DatabaseError     a database that is busy, full, damaged or not reached: another time it may do
     ├── ServerError           a server that cannot be started, or a request that it refuses
     └── ExportError           a model that cannot be written for another program
 
@@ -91,6 +92,10 @@ class StoreError(ShaftprintError):
 
 class ServerError(ShaftprintError):
     """A server of pages cannot be started, or refuses what was asked of it."""
+
+
+class DatabaseError(StoreError):
+    """The database of a store is busy, full, damaged or not reached; nothing is wrong with the record."""
 
 
 class ExportError(ShaftprintError):

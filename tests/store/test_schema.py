@@ -18,8 +18,8 @@ LATER = """
 import sqlalchemy as sa
 from alembic import op
 
-revision = "0002"
-down_revision = "0001"
+revision = "0003"
+down_revision = "0002"
 
 
 def upgrade():
@@ -67,9 +67,9 @@ def later_program(tmp_path, monkeypatch):
     def become(more=""):
         folder = tmp_path / "migrations"
         shutil.copytree(database.MIGRATIONS, folder)
-        (folder / "versions" / "_0002_sea_state.py").write_text(LATER.format(more=more), encoding="utf-8")
+        (folder / "versions" / "_0003_sea_state.py").write_text(LATER.format(more=more), encoding="utf-8")
         for name in ("MIGRATIONS", "HEAD"):
-            value = folder if name == "MIGRATIONS" else "0002"
+            value = folder if name == "MIGRATIONS" else "0003"
             monkeypatch.setattr(f"shaftprint.store.database._schema.{name}", value)
 
     return become
@@ -79,15 +79,15 @@ def test_an_earlier_store_is_upgraded(store, url, put, later_program, monkeypatc
     put(store)
     store.close()
     later_program()
-    with pytest.raises(StoreError, match=r"expected a store of schema 0002, found the earlier 0001; .* store upgrade"):
+    with pytest.raises(StoreError, match=r"expected a store of schema 0003, found the earlier 0002; .* store upgrade"):
         open_store(url)
-    assert upgrade_store(url) == ("0001", "0002")
-    assert upgrade_store(url) == ("0002", "0002")
+    assert upgrade_store(url) == ("0002", "0003")
+    assert upgrade_store(url) == ("0003", "0003")
     with open_store(url) as opened:
         assert len(history(opened, "Meander").entries) == 1
         assert check(opened) == ()
     monkeypatch.undo()
-    with pytest.raises(StoreError, match=r"expected a store of schema 0001, found the later 0002; use the version"):
+    with pytest.raises(StoreError, match=r"expected a store of schema 0002, found the later 0003; use the version"):
         open_store(url)
 
 

@@ -10,7 +10,8 @@ low, high           as stated   95 % interval; none at an open end
 =================== =========== ==================================================================================
 
 A document is kept byte by byte, never changed and never deleted: another fingerprint of the same recording takes its
-place in a history, and it stays. What is not in a document is refused or stated by hand, and nothing is guessed.
+place in a history, and it stays. What is not in a document is refused or stated by hand, and nothing is guessed. Jobs
+that make fingerprints stand in the same database: one is done exactly when its fingerprint is kept.
 """
 
 from shaftprint.store._add import add, add_document
@@ -18,8 +19,23 @@ from shaftprint.store._check import check
 from shaftprint.store._document import MOST_BYTES, document_sha256, inflated
 from shaftprint.store._event import record_event
 from shaftprint.store._export import export_store
+from shaftprint.store._hashes import file_hashes
 from shaftprint.store._history import document, history, newest
 from shaftprint.store._import import Imported, import_store
+from shaftprint.store._job import JOB_STATES, LEASE_S, MOST_TRIES, Job, JobCounts, JobRequest, JobState
+from shaftprint.store._ledger import (
+    claim,
+    enqueue,
+    finish,
+    give_back,
+    has_open_jobs,
+    job,
+    job_counts,
+    jobs,
+    refuse,
+    renew,
+    retry,
+)
 from shaftprint.store._line_history import LineHistory, line_history
 from shaftprint.store._mounts import NETWORK, network_file_system
 from shaftprint.store._nouns import (
@@ -42,8 +58,11 @@ from shaftprint.store._stated import Stated
 from shaftprint.store._store import Store, create_store, open_store, upgrade_store
 
 __all__ = [
+    "JOB_STATES",
     "KINDS",
+    "LEASE_S",
     "MOST_BYTES",
+    "MOST_TRIES",
     "NETWORK",
     "Added",
     "Event",
@@ -51,6 +70,10 @@ __all__ = [
     "History",
     "HistoryEntry",
     "Imported",
+    "Job",
+    "JobCounts",
+    "JobRequest",
+    "JobState",
     "Line",
     "LineHistory",
     "LineNow",
@@ -66,13 +89,22 @@ __all__ = [
     "add",
     "add_document",
     "check",
+    "claim",
     "create_store",
     "document",
     "document_sha256",
+    "enqueue",
     "export_store",
+    "file_hashes",
+    "finish",
+    "give_back",
+    "has_open_jobs",
     "history",
     "import_store",
     "inflated",
+    "job",
+    "job_counts",
+    "jobs",
     "line_history",
     "line_records",
     "lines_now",
@@ -81,6 +113,9 @@ __all__ = [
     "open_store",
     "record_event",
     "record_of",
+    "refuse",
+    "renew",
+    "retry",
     "stored_fingerprint",
     "upgrade_store",
 ]

@@ -146,7 +146,9 @@ class Kept:
 
     def uploads(self) -> tuple[Upload, ...]:
         """Return all uploads, the newest first."""
-        with self._rows("select id, imo, ship, line, name, size, sha256, person, at from upload order by at desc") as rows:
+        with self._rows(
+            "select id, imo, ship, line, name, size, sha256, person, at from upload order by at desc"
+        ) as rows:
             names = Upload.__slots__
             return tuple(Upload(**dict(zip(names, row, strict=True))) for row in rows)
 
@@ -162,7 +164,10 @@ class Kept:
     def jobs(self) -> dict[int, KeptJob]:
         """Return what is known of the jobs that were asked for here, by their numbers."""
         with self._rows("select id, imo, ship, line, name, person, at, args from job") as rows:
-            return {row[0]: KeptJob(**dict(zip(KeptJob.__slots__, (*row[:-1], json.loads(row[-1])), strict=True))) for row in rows}
+            return {
+                row[0]: KeptJob(**dict(zip(KeptJob.__slots__, (*row[:-1], json.loads(row[-1])), strict=True)))
+                for row in rows
+            }
 
     def put_job(self, one: KeptJob) -> None:
         """Keep for which line a job was asked."""

@@ -5,6 +5,8 @@ It needs SQLAlchemy; the room asks for it when a store is opened, and not before
 
 from shaftprint.store.database._damage import database_faults
 from shaftprint.store.database._database import Database, connect
+from shaftprint.store.database._hashes import Hashes
+from shaftprint.store.database._ledger import Ledger
 from shaftprint.store.database._lines_now import fingerprint_called, line_states
 from shaftprint.store.database._location import Location, location_of
 from shaftprint.store.database._reader import Reader, ShipRow
@@ -17,6 +19,8 @@ __all__ = [
     "METADATA",
     "MIGRATIONS",
     "Database",
+    "Hashes",
+    "Ledger",
     "Location",
     "Reader",
     "ShipRow",

@@ -10,6 +10,8 @@ import sqlalchemy as sa
 
 from shaftprint.errors import StoreError
 from shaftprint.store._mounts import network_file_system
+from shaftprint.store.database._hashes import Hashes
+from shaftprint.store.database._ledger import Ledger
 from shaftprint.store.database._location import Location
 from shaftprint.store.database._reader import Reader
 from shaftprint.store.database._refusals import refusals_in_words
@@ -46,20 +48,27 @@ class Database:
                 yield connection
 
     @contextlib.contextmanager
-    def writing(self) -> Iterator[sa.Connection]:
-        """Give the one connection that writes; what it wrote is on the disk when the block has ended, or not there."""
+    def writing(self, *, alone: bool = True) -> Iterator[sa.Connection]:
+        """Give the one connection that writes; what it wrote is on the disk when the block has ended, or not there.
+
+        Parameters
+        ----------
+        alone
+            Whether other writers wait. In PostgreSQL those do not need to that lock single rows; SQLite has one anyway.
+        """
         with refusals_in_words(self.location, busy_s=self.busy_s), self.engine.connect() as connection:
             connection = connection.execution_options(**{_BEGIN: "BEGIN IMMEDIATE"})
             with connection.begin():
                 if not self.is_file:
-                    self._wait_for_other_writers(connection)
+                    self._prepare_to_write(connection, alone=alone)
                 yield connection
 
-    def _wait_for_other_writers(self, connection: sa.Connection) -> None:
+    def _prepare_to_write(self, connection: sa.Connection, *, alone: bool) -> None:
         connection.exec_driver_sql(f"SET LOCAL lock_timeout = {round(1000 * self.busy_s)}")
         # an acknowledged record is on the disk of the server, whatever its settings
         connection.exec_driver_sql("SET LOCAL synchronous_commit = on")
-        connection.execute(sa.select(sa.func.pg_advisory_xact_lock(_WRITERS)))
+        if alone:
+            connection.execute(sa.select(sa.func.pg_advisory_xact_lock(_WRITERS)))
 
     @contextlib.contextmanager
     def unlocked(self) -> Iterator[Any]:
@@ -78,6 +87,14 @@ class Database:
     def writer(self, connection: sa.Connection) -> Writer:
         """Return what writes through a connection."""
         return Writer(connection)
+
+    def ledger(self, connection: sa.Connection) -> Ledger:
+        """Return what changes jobs through a connection."""
+        return Ledger(connection)
+
+    def hashes(self, connection: sa.Connection) -> Hashes:
+        """Return what remembers the SHA-256 of files through a connection."""
+        return Hashes(connection)
 
     def close(self) -> None:
         """End its connections."""

@@ -7,7 +7,7 @@ from typing import Final
 
 import sqlalchemy as sa
 
-from shaftprint.errors import StoreError
+from shaftprint.errors import DatabaseError
 from shaftprint.store.database._location import Location
 
 _DAMAGED: Final = "it is damaged; put a backup in its place, and see with shaftprint store check what is wrong"
@@ -41,7 +41,7 @@ def refusals_in_words(location: Location, *, busy_s: float) -> Iterator[None]:
         yield
     except (sa.exc.SQLAlchemyError, sqlite3.Error, OverflowError, UnicodeError) as error:
         original = getattr(error, "orig", None) or error
-        raise StoreError(f"{location.shown}: {_in_words(original, location, busy_s)}.") from None
+        raise DatabaseError(f"{location.shown}: {_in_words(original, location, busy_s)}.") from None
 
 
 def _in_words(error: BaseException, location: Location, busy_s: float) -> str:

@@ -2,7 +2,7 @@
 
 Numbers stand in a narrow table whose primary key is fingerprint and quantity, and the newest is found by a query: a
 table of newest ones would be written by all. Every row but those numbers, which are held against their document,
-carries the SHA-256 of its own content.
+carries the SHA-256 of its own content; those of jobs, which change while they are worked on, do not.
 """
 
 from datetime import datetime
@@ -13,7 +13,7 @@ import sqlalchemy as sa
 from shaftprint.errors import StoreError
 from shaftprint.store._stated import utc_iso
 
-HEAD: Final = "0001"
+HEAD: Final = "0002"
 """Name of the newest schema, which this version of the program reads and writes."""
 VERSION_TABLE: Final = "shaftprint_schema"
 """Where a database says which schema it has: a name that no other program has."""
@@ -75,8 +75,8 @@ def _number(name: str) -> sa.Column[float]:
     return sa.Column(name, sa.Double, nullable=True)
 
 
-def _time(name: str) -> sa.Column[datetime]:
-    return sa.Column(name, Utc, nullable=False)
+def _time(name: str, *, nullable: bool = False) -> sa.Column[datetime]:
+    return sa.Column(name, Utc, nullable=nullable)
 
 
 SHIP: Final = sa.Table(
@@ -199,4 +199,29 @@ VALUE: Final = sa.Table(
     _number("high"),
     sa.Column("trusted", sa.Boolean, nullable=False),
     sqlite_with_rowid=False,
+)
+JOB: Final = sa.Table(
+    "job",
+    METADATA,
+    _id(),
+    sa.Column("key", sa.Text, nullable=False, unique=True),
+    *(_text(name) for name in ("kind", "args", "version", "state")),
+    sa.Column("tries", sa.Integer, nullable=False),
+    _time("enqueued_at"),
+    *(_time(name, nullable=True) for name in ("ended_at", "lease_until")),
+    *(_text(name, nullable=True) for name in ("owner", "progress", "sentence")),
+    # done without a result in the store cannot be
+    sa.Column("result", sa.Text, sa.ForeignKey("fingerprint.sha256"), nullable=True),
+)
+OPEN_JOB: Final = sa.text("state IN ('waiting', 'running')")
+"""Where a job is still to be done; word by word as its index has it, or SQLite would not use that."""
+sa.Index("job_open", JOB.c.id, sqlite_where=OPEN_JOB, postgresql_where=OPEN_JOB)
+sa.Index("job_state", JOB.c.state, JOB.c.id)
+HASHED_FILE: Final = sa.Table(
+    "hashed_file",
+    METADATA,
+    sa.Column("path", sa.Text, primary_key=True),
+    sa.Column("size", sa.BigInteger, nullable=False),
+    # numbers of 64 bits without a sign, which no database has
+    *(_text(name) for name in ("mtime_ns", "inode", "sha256")),
 )

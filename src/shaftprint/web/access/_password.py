@@ -14,10 +14,7 @@ _HASHER: Final = PasswordHasher(time_cost=2, memory_cost=19 * 1024, parallelism=
 # one at a time: who asks often must not take the memory of all
 _ONE: Final = threading.Lock()
 # of no password
-_NOBODY: Final = (
-    "$argon2id$v=19$m=19456,t=2,p=1$izlkW+WQCnQcHL/Duf1aGA"
-    "$dVueET7NL6ObqkUjyEQG9O6tZukhlYOF0mQTjg7d+9w"
-)
+_NOBODY: Final = "$argon2id$v=19$m=19456,t=2,p=1$izlkW+WQCnQcHL/Duf1aGA$dVueET7NL6ObqkUjyEQG9O6tZukhlYOF0mQTjg7d+9w"
 
 
 def hashed(password: str) -> str:

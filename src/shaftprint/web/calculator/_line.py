@@ -85,4 +85,3 @@ def _strip(name: str, column: "list[SizedCause | None]", history: "History") -> 
             for test, one in there
         ],
     }
-

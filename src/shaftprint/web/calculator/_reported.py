@@ -33,9 +33,7 @@ def reported(
         Where the report goes.
     """
     began = None if tested_at is None else datetime.fromisoformat(tested_at)
-    survey = run(
-        Path(recording), vessel, campaign, structures=(structure,), conditions=conditions, tested_at=began
-    )
+    survey = run(Path(recording), vessel, campaign, structures=(structure,), conditions=conditions, tested_at=began)
     with read_recording(Path(recording)) as opened:
         page = render_report(folder, survey, recording=opened, overwrite=True)
     if not page.exists():
