@@ -2,7 +2,7 @@
 
 from shaftprint.web.access._audit import Audit
 from shaftprint.web.access._password import LONGEST, SHORTEST, hashed, is_right
-from shaftprint.web.access._person import ALL, LOCAL, Person, Role
+from shaftprint.web.access._person import ALL, LOCAL, NOBODY, Person, Role
 from shaftprint.web.access._sessions import COOKIE, LONGEST_S, Session, Sessions
 from shaftprint.web.access._throttle import Throttle
 from shaftprint.web.access._users import ROLES, Users, read_users, with_user
@@ -13,6 +13,7 @@ __all__ = [
     "LOCAL",
     "LONGEST",
     "LONGEST_S",
+    "NOBODY",
     "ROLES",
     "SHORTEST",
     "Audit",

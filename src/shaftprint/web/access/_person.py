@@ -51,3 +51,5 @@ class Person:
 
 LOCAL: Final = Person(name="this computer", role=Role.OWNER, ships=(ALL,))
 """Who asks where nobody signs in: a server that only its own computer reaches."""
+NOBODY: Final = Person(name="", role=Role.READER, ships=())
+"""Who asks for the page on which one signs in."""

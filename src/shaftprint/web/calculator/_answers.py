@@ -13,12 +13,12 @@ from shaftprint.web.calculator._inspected import inspected
 from shaftprint.web.calculator._limits import limit_memory
 from shaftprint.web.calculator._line import judged_line
 from shaftprint.web.calculator._reported import reported
-from shaftprint.web.calculator._settings_files import settings_said
+from shaftprint.web.calculator._submitted import submitted
 
 KINDS: Final[Mapping[str, Callable[..., dict[str, Any]]]] = {
     "line": judged_line,
     "compare": compared,
-    "settings": settings_said,
+    "submit": submitted,
     "inspect": inspected,
     "report": reported,
 }

@@ -1,41 +1,28 @@
-"""The report of one test, made when somebody asks for it: the recording is identified once more, as it was."""
+"""The report of one test, made when somebody asks for it: the recording is identified once more, as its job did."""
 
-from datetime import datetime
 from pathlib import Path
 from typing import Any
 
-from shaftprint.errors import ServerError
+import numpy as np
+
+from shaftprint.fleet import arguments_of, survey_of_job
 from shaftprint.recording import read_recording
 from shaftprint.report import render_report
-from shaftprint.survey import run
+from shaftprint.survey import judged
 
 
-def reported(
-    recording: str,
-    vessel: str,
-    campaign: str,
-    conditions: str | None,
-    structure: str,
-    tested_at: str | None,
-    folder: str,
-) -> dict[str, Any]:
+def reported(arguments: dict[str, Any], folder: str) -> dict[str, Any]:
     """Write the report of a test into a folder.
 
     Parameters
     ----------
-    recording, vessel, campaign, conditions
-        Files of the test.
-    structure
-        Name of a structure that comes with the program.
-    tested_at
-        When the recording began, where somebody stated it.
+    arguments
+        Those of its job.
     folder
         Where the report goes.
     """
-    began = None if tested_at is None else datetime.fromisoformat(tested_at)
-    survey = run(Path(recording), vessel, campaign, structures=(structure,), conditions=conditions, tested_at=began)
-    with read_recording(Path(recording)) as opened:
+    job = arguments_of(arguments, named="report")
+    survey = judged(survey_of_job(job, tell=lambda _: None), rng=np.random.default_rng(job.seed))
+    with read_recording(Path(job.recording)) as opened:
         page = render_report(folder, survey, recording=opened, overwrite=True)
-    if not page.exists():
-        raise ServerError("The report was not written.")
     return {"page": page.name}
