@@ -53,6 +53,7 @@ _ROOMS = (
     "errors",
     "export",
     "fingerprint",
+    "fleet",
     "identify",
     "limits",
     "models",

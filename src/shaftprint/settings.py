@@ -150,6 +150,13 @@ def load_settings(path_or_name: str | Path, model_class: type[_Model], *, shippe
         return read_settings(path, model_class)
 
 
+def settings_content(path_or_name: str | Path, *, shipped: Traversable) -> bytes:
+    """Return the bytes of a settings file that has been loaded before, from a path or by the name of a shipped one."""
+    if str(path_or_name) in shipped_names(shipped):
+        return _shipped_file(str(path_or_name), shipped).read_bytes()
+    return Path(path_or_name).read_bytes()
+
+
 def _shipped_file(name: str, shipped: Traversable) -> Traversable:
     """Return a file that comes with the package."""
     names = shipped_names(shipped)

@@ -27,6 +27,7 @@ from shaftprint.fingerprint._fingerprint import Fingerprint, Quality, SourceFile
 from shaftprint.fingerprint._inertia import inertia_beside
 from shaftprint.fingerprint._joint_numbers import JointNumbers
 from shaftprint.fingerprint._json_file import (
+    fingerprint_document,
     fingerprint_sha256,
     parse_fingerprint,
     read_fingerprint,
@@ -70,6 +71,7 @@ __all__ = [
     "clock_findings",
     "clock_influences",
     "drive_fingerprint_content",
+    "fingerprint_document",
     "fingerprint_sha256",
     "identified_model",
     "inertia_beside",

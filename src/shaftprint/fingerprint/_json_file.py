@@ -28,15 +28,16 @@ def write_fingerprint(fingerprint: Fingerprint, path: str | Path) -> None:
     FingerprintError
         If the file cannot be written.
     """
-    write_bytes(Path(path), _content(fingerprint), noun="fingerprint", error=FingerprintError)
+    write_bytes(Path(path), fingerprint_document(fingerprint), noun="fingerprint", error=FingerprintError)
 
 
 def fingerprint_sha256(fingerprint: Fingerprint) -> str:
     """Return the SHA-256 of the file that ``write_fingerprint`` writes, hexadecimal."""
-    return hashlib.sha256(_content(fingerprint)).hexdigest()
+    return hashlib.sha256(fingerprint_document(fingerprint)).hexdigest()
 
 
-def _content(fingerprint: Fingerprint) -> bytes:
+def fingerprint_document(fingerprint: Fingerprint) -> bytes:
+    """Return the content of the file that ``write_fingerprint`` writes."""
     # bytes, not text: the same on every system
     return (fingerprint.model_dump_json(indent=2) + "\n").encode()
 

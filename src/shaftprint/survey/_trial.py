@@ -9,7 +9,7 @@ from typing import Literal
 from shaftprint.campaign import Campaign, TrialConditions, load_campaign, load_trial_conditions
 from shaftprint.fingerprint import SourceFile
 from shaftprint.notebook import Shown
-from shaftprint.settings import shipped_names
+from shaftprint.settings import settings_content
 from shaftprint.vessel import Vessel, load_vessel
 
 
@@ -66,10 +66,7 @@ def load_trial(
 
 def settings_text(kind: Literal["vessel", "campaign"], path_or_name: str) -> bytes:
     """Return the content of a settings file that has been loaded before."""
-    shipped = files(f"shaftprint.{kind}") / "shipped"
-    if path_or_name in shipped_names(shipped):
-        return (shipped / f"{path_or_name.replace('-', '_')}.toml").read_bytes()
-    return Path(path_or_name).read_bytes()
+    return settings_content(path_or_name, shipped=files(f"shaftprint.{kind}") / "shipped")
 
 
 def _source(kind: Literal["vessel", "campaign"], path_or_name: str) -> SourceFile:

@@ -1,0 +1,128 @@
+"""What a job of the fleet works on: one recording, the files that belong to it, and what is known of ship and water."""
+
+from datetime import datetime
+from pathlib import Path
+from typing import Annotated, Any, Final
+
+from pydantic import Field, ValidationError, field_validator
+
+from shaftprint.campaign import TrialConditions
+from shaftprint.errors import SettingsError, StoreError
+from shaftprint.settings import Name, PositiveInteger, Settings
+from shaftprint.store import Stated
+from shaftprint.vessel import ImoNumber, ShortName
+
+OF_CONDITIONS: Final = tuple(TrialConditions.model_fields)
+"""Facts of a test that no recording shows; they go into the fingerprint."""
+
+
+class JobArguments(Settings):
+    """One recording to be identified."""
+
+    recording: Name
+    """Path of the recording, as every computer that works sees it."""
+    vessel: Name
+    """Path of the vessel file, or the name of a shipped one."""
+    campaign: Name
+    """Path of the campaign file, or the name of a shipped one."""
+    structure: Name = "GAUGE-CLOSED"
+    """Name of a shipped structure. Files with structures of one's own are programs, and no job runs them."""
+    legs: tuple[Name, ...] = ()
+    """Names of the legs of the campaign to use; all where there are none."""
+    starts: PositiveInteger = 50
+    """Starts of the search."""
+    seed: Annotated[int, Field(strict=True, ge=0, le=2**63 - 1)] = 1
+    """Seed of the starts."""
+    ship: ShortName | None = None
+    """Name of the ship, where the vessel file does not say it."""
+    imo: ImoNumber | None = None
+    """Its IMO number, where the vessel file does not say it."""
+    line: ShortName | None = None
+    """Its shaft line, where the vessel file does not say it."""
+    conditions: TrialConditions = TrialConditions()
+    """When, where and in what water the test was made."""
+    sha256: dict[str, str] = Field(default_factory=dict)
+    """SHA-256 of recording, vessel file and campaign file when the job was asked for."""
+
+    @field_validator("legs", mode="before")
+    @classmethod
+    def _from_json(cls, value: Any) -> Any:
+        return tuple(value) if isinstance(value, list) else value
+
+    @property
+    def stated(self) -> Stated:
+        """What is stated of the ship beside its fingerprint."""
+        return Stated(ship=self.ship, imo_number=self.imo, line=self.line)
+
+    def settings(self) -> dict[str, Any]:
+        """Return what the result depends on besides the content of the files, as JSON has it."""
+        return self.model_dump(mode="json", exclude={"recording", "vessel", "campaign", "sha256"})
+
+
+def arguments_of(content: Any, *, named: str) -> JobArguments:
+    """Return the arguments that a ledger holds.
+
+    Raises
+    ------
+    StoreError
+        If they are not those of such a job.
+    """
+    try:
+        return JobArguments.model_validate(content)
+    except ValidationError as error:
+        first = error.errors()[0]
+        field = ".".join(map(str, first["loc"])) or "arguments"
+        raise StoreError(f"{named}: {field}: {first['msg']}; expected what shaftprint fleet run puts in.") from None
+
+
+def job_arguments(
+    recording: str | Path, vessel: str | Path, campaign: str | Path, *, named: str, **facts: Any
+) -> JobArguments:
+    """Return arguments for a recording, with paths that do not depend on the folder one is in.
+
+    Parameters
+    ----------
+    recording, vessel, campaign
+        The files; vessel and campaign may be shipped names.
+    named
+        Where they are stated, for errors.
+    facts
+        Other fields of ``JobArguments`` and of ``TrialConditions``; those that are None count as not stated.
+
+    Raises
+    ------
+    SettingsError
+        If a field cannot be used.
+    """
+    known = {name: value for name, value in facts.items() if value is not None}
+    conditions = {name: known.pop(name) for name in OF_CONDITIONS if name in known}
+    began = conditions.get("tested_at")
+    if isinstance(began, str):
+        conditions["tested_at"] = _moment(began, named=named)
+    try:
+        return JobArguments(
+            recording=str(Path(recording).absolute()),
+            vessel=_absolute(vessel),
+            campaign=_absolute(campaign),
+            conditions=TrialConditions(**conditions),
+            **known,
+        )
+    except ValidationError as error:
+        first = error.errors()[0]
+        field = ".".join(map(str, first["loc"])) or "conditions"
+        raise SettingsError(f"{named}: {field}: {first['msg']}.") from None
+
+
+def _absolute(path_or_name: str | Path) -> str:
+    text = str(path_or_name)
+    is_path = isinstance(path_or_name, Path) or text.endswith(".toml") or "/" in text or "\\" in text
+    return str(Path(text).absolute()) if is_path else text
+
+
+def _moment(text: str, *, named: str) -> datetime:
+    try:
+        return datetime.fromisoformat(text)
+    except ValueError:
+        raise SettingsError(
+            f"{named}: tested_at: expected a time such as 2026-03-31T09:30+02:00, found {text[:40]!r}."
+        ) from None

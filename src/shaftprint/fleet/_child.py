@@ -1,0 +1,83 @@
+"""The process in which recordings are identified: one line of JSON for each comes in, and its document goes out.
+
+It knows no database. So what crashes it, or takes all of the memory, leaves the ledger and the other jobs alone.
+"""
+
+import json
+import os
+import queue
+import signal
+import sys
+import threading
+from contextlib import suppress
+from pathlib import Path
+from typing import Any, TextIO
+
+from shaftprint.errors import ShaftprintError
+from shaftprint.fingerprint import fingerprint_document
+from shaftprint.fleet._arguments import arguments_of
+from shaftprint.fleet._identify import survey_of_job
+
+# Linux ends this process rather than another one where memory runs out.
+_OOM = Path("/proc/self/oom_score_adj")
+
+
+def main() -> None:
+    """Identify what is asked for until nobody asks any more."""
+    # the worker decides what an interruption means
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    with suppress(OSError):
+        _OOM.write_text("500", encoding="ascii")
+    answers = _answers()
+    for line in iter(_lines().get, None):
+        _say(answers, _outcome(line, answers))
+
+
+def _answers() -> TextIO:
+    """Return the way back; what a library prints goes elsewhere."""
+    answers = os.fdopen(os.dup(1), "w", encoding="ascii", newline="\n")
+    os.dup2(2, 1)
+    return answers
+
+
+def _lines() -> "queue.Queue[str]":
+    """Return what is asked for, line by line; the process ends with the worker that asks."""
+    lines: queue.Queue[str] = queue.Queue()
+
+    def read() -> None:
+        for line in sys.stdin:
+            lines.put(line)
+        # the worker is gone: what is being computed here has no one to take it
+        os._exit(0)
+
+    threading.Thread(target=read, daemon=True).start()
+    return lines
+
+
+def _outcome(line: str, answers: TextIO) -> dict[str, Any]:
+    try:
+        arguments = arguments_of(json.loads(line), named="job")
+        survey = survey_of_job(arguments, tell=lambda step: _say(answers, {"progress": step}))
+        return {"document": fingerprint_document(survey.fingerprint).decode()}
+    except ShaftprintError as error:
+        return {"refused": str(error)}
+    except MemoryError:
+        # as if the system had ended it; what is left of the process is of no use
+        os._exit(1)
+    except Exception as error:
+        return {
+            "refused": f"the program failed: {type(error).__name__}: {error}; this is a fault of shaftprint, not of "
+            "the recording: please report it."
+        }
+
+
+def _say(answers: TextIO, message: dict[str, Any]) -> None:
+    try:
+        answers.write(json.dumps(message) + "\n")
+        answers.flush()
+    except OSError:
+        os._exit(0)
+
+
+if __name__ == "__main__":
+    main()
