@@ -53,6 +53,7 @@ SECTIONS = {
     },
     "Keep over the years": {
         "store": "Keep the fingerprints of many ships, with their history.",
+        "serve": "Serve pages of the store: how each ship stands, histories, comparisons, uploads and jobs.",
     },
 }
 

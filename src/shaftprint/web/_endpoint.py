@@ -72,7 +72,7 @@ async def _answered(address: Address, asked: Asked) -> Response:
                 asked.check_token(asked.request.headers[TOKEN_HEAD])
         return answer_of(asked, await address.answer(asked))
     except HTTPException as refused:
-        sentence = NOT_THERE if refused.status_code == 404 else str(refused.detail)  # noqa: PLR2004
+        sentence = NOT_THERE if refused.status_code == 404 else str(refused.detail)
         response = refusal(sentence, refused.status_code, api=asked.is_api, asked=asked)
         response.headers.update(refused.headers or {})
         return response
@@ -127,4 +127,3 @@ def _plain(origin: str) -> str:
 def twin_of(path: str) -> str:
     """Return the path of the twin of a page."""
     return f"{API}/ships" if path == "/" else f"{API}{path}"
-

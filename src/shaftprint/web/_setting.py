@@ -48,7 +48,8 @@ def table_of(content: dict[str, Any]) -> Table:
         for one in content["columns"]
     )
     rows = tuple(
-        (Symbol(row[0]) if is_symbol else row[0], *row[1:]) for row, is_symbol in zip(content["rows"], symbols, strict=True)
+        (Symbol(row[0]) if is_symbol else row[0], *row[1:])
+        for row, is_symbol in zip(content["rows"], symbols, strict=True)
     )
     return Table(title=content["title"], columns=columns, rows=rows, note=content.get("note", ""))
 
@@ -75,17 +76,24 @@ def page_of(asked: Asked | None, said: Shown) -> str:
         What it says.
     """
     person = None if asked is None else asked.person
-    return _environment().get_template(said.template).render(
-        title=said.title,
-        data=said.data,
-        drawn=said.drawn,
-        person=person,
-        may_test=person is not None and person.role >= Role.TESTER,
-        may_audit=person is not None and person.role >= Role.OWNER,
-        signs_in=asked is not None and asked.service.sessions.users is not None,
-        folders=asked is not None and person is not None and person.sees_all and bool(asked.service.serving.folders),
-        token="" if asked is None else asked.session.token,
-        path="" if asked is None else asked.request.url.path,
+    return (
+        _environment()
+        .get_template(said.template)
+        .render(
+            title=said.title,
+            data=said.data,
+            drawn=said.drawn,
+            person=person,
+            may_test=person is not None and person.role >= Role.TESTER,
+            may_audit=person is not None and person.role >= Role.OWNER,
+            signs_in=asked is not None and asked.service.sessions.users is not None,
+            folders=asked is not None
+            and person is not None
+            and person.sees_all
+            and bool(asked.service.serving.folders),
+            token="" if asked is None else asked.session.token,
+            path="" if asked is None else asked.request.url.path,
+        )
     )
 
 
@@ -103,4 +111,3 @@ _HEADINGS = {404: "Nothing is here", 403: "Not allowed", 413: "Too large", 421: 
 def _json(data: Any, status: int) -> Response:
     text = json.dumps(data, ensure_ascii=False, allow_nan=False, separators=(",", ":"))
     return Response(text.encode("utf-8", "replace"), status_code=status, media_type="application/json")
-

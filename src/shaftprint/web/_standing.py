@@ -8,7 +8,15 @@ from shaftprint.digits import with_deviation
 from shaftprint.store import LineNow
 
 Look: TypeAlias = Literal["fine", "look", "bad", "open"]
-WORDS: Final = ("changed", "not trustworthy", "test overdue", "unchanged", "cannot be told", "being judged", "no test yet")
+WORDS: Final = (
+    "changed",
+    "not trustworthy",
+    "test overdue",
+    "unchanged",
+    "cannot be told",
+    "being judged",
+    "no test yet",
+)
 """What a line may be, in the order in which somebody wants to hear of it."""
 
 

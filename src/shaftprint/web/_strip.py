@@ -82,7 +82,9 @@ def strip(
         "above": f"{_ABOVE_PX:.1f}",
         "text": f"{HEIGHT_PX - 5}",
         "years": axis.ticks,
-        "ticks": [{"y": height(one), "text": _tick(one, step), "zero": zero and abs(one) < 0.01 * step} for one in ticks],
+        "ticks": [
+            {"y": height(one), "text": _tick(one, step), "zero": zero and abs(one) < 0.01 * step} for one in ticks
+        ],
         "events": [{"x": axis.place(one["at"]), "text": str(one["number"])} for one in events],
         "points": [_point(one, axis, height) for one in known],
     }

@@ -53,7 +53,7 @@ class Sessions:
             content = self._signer().loads(cookie, max_age=LONGEST_S)
         except BadData:
             return None
-        if not isinstance(content, list) or len(content) != 3 or not all(isinstance(one, str) for one in content):  # noqa: PLR2004
+        if not isinstance(content, list) or len(content) != 3 or not all(isinstance(one, str) for one in content):
             return None
         number, name, stamp = content
         if number in self._ended:

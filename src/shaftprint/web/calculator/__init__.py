@@ -5,5 +5,6 @@ nothing that calculates, and opens no file of a user.
 """
 
 from shaftprint.web.calculator._client import Calculator
+from shaftprint.web.calculator._limits import limit_memory
 
-__all__ = ["Calculator"]
+__all__ = ["Calculator", "limit_memory"]

@@ -49,6 +49,6 @@ def _answer(question: dict[str, Any]) -> dict[str, Any]:
         return {"refused": "It needs more memory than a process of the server may take."}
     except OSError as refusal:
         return {"refused": f"A file cannot be read or written: {refusal.strerror or 'no reason is known'}."}
-    except Exception as fault:  # noqa: BLE001
+    except Exception as fault:
         # one strange file must not end what others ask; the kind is enough to find it
         return {"refused": f"It cannot be read: {type(fault).__name__}; the file is damaged or of an unusual kind."}

@@ -151,7 +151,9 @@ def _drawn(records: LineRecords, found: dict[str, Any] | None, stale: bool) -> d
     causes, numbers = [], []
     if axis is not None:
         for one in [] if found is None else found["strips"]:
-            causes.append({"title": one["name"], "unit": one["unit"], "drawn": strip(one["points"], axis, events, zero=True)})
+            causes.append(
+                {"title": one["name"], "unit": one["unit"], "drawn": strip(one["points"], axis, events, zero=True)}
+            )
         for name, unit, points in _series(records):
             numbers.append({"title": name, "unit": unit_text(unit), "drawn": strip(points, axis, events, zero=False)})
     headings, rows = _number_rows(records)
@@ -159,7 +161,7 @@ def _drawn(records: LineRecords, found: dict[str, Any] | None, stale: bool) -> d
         "stale": stale and bool(records.entries),
         "causes": causes,
         "numbers": numbers[:MOST_STRIPS],
-        "headings": headings,
+        "headings_text": [f"{name} [{unit}]" if unit else name for name, unit in headings],
         "rows": rows,
         "kinds": KINDS,
         "api": f"/api/v1{line_address(records.line, records.ship_id)}",
@@ -240,4 +242,3 @@ def _moment(text: str, zone: str) -> datetime:
     except ValueError as fault:
         what = f"Expected a date, such as 2026-05-01 or 2026-05-01T08:00, and a zone: {fault}."
         raise HTTPException(400, what) from None
-

@@ -36,7 +36,12 @@ def report_state(asked: Asked, one: StoredFingerprint) -> dict[str, Any]:
     if making is not None:
         words = {"waiting": "is being made", "done": "is made", "refused": "was refused"}
         sentence = making.sentence if making.state == "refused" else ""
-        return {"state": making.state, "word": words[making.state], "sentence": sentence, "address": f"{address}/index.html"}
+        return {
+            "state": making.state,
+            "word": words[making.state],
+            "sentence": sentence,
+            "address": f"{address}/index.html",
+        }
     can = _job_of(asked, one.sha256) is not None
     return {"state": "none" if can else "impossible", "word": "", "sentence": "", "address": f"{address}/index.html"}
 
@@ -65,7 +70,9 @@ async def make_report(asked: Asked) -> Moved:
     if there is None or there.state == "refused":
         folder = asked.service.reports / one.sha256
         asked.service.kept.put_making(
-            Making(key=key, kind="report", args={"arguments": args, "folder": str(folder)}, state="waiting", sentence="")
+            Making(
+                key=key, kind="report", args={"arguments": args, "folder": str(folder)}, state="waiting", sentence=""
+            )
         )
         asked.note("asked for a report", one.line, sha256=one.sha256)
         asked.service.making.wake()

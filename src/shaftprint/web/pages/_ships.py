@@ -29,9 +29,11 @@ def _ships(asked: Asked) -> Shown:
     kind, sought = asked.query("kind"), asked.query("q").strip()
     chosen = [row for row in rows if (not kind or row.standing.kind == kind) and _matches(row.line, sought)]
     # those that need somebody first; among them the newest test
-    chosen.sort(key=lambda row: (WORDS.index(row.standing.kind), -(row.line.tested_at or asked.service.now()).timestamp()))
+    chosen.sort(
+        key=lambda row: (WORDS.index(row.standing.kind), -(row.line.tested_at or asked.service.now()).timestamp())
+    )
     pages = max(1, -(-len(chosen) // MOST_ROWS))
-    page = min(max(1, int(text) if (text := asked.query("page", "1")).isdecimal() and len(text) < 7 else 1), pages)  # noqa: PLR2004
+    page = min(max(1, int(text) if (text := asked.query("page", "1")).isdecimal() and len(text) < 7 else 1), pages)
     shown = chosen[(page - 1) * MOST_ROWS : page * MOST_ROWS]
     return Shown(
         template="ships.html.j2",

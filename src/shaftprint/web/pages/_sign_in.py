@@ -24,7 +24,9 @@ async def sign_in_form(asked: Asked) -> Shown | Moved:
 async def session(asked: Asked) -> Shown:
     """Return who is signed in, and the token for what a program sends."""
     person = asked.session.person
-    said = None if person is None else {"name": person.name, "role": person.role.name.lower(), "ships": list(person.ships)}
+    said = (
+        None if person is None else {"name": person.name, "role": person.role.name.lower(), "ships": list(person.ships)}
+    )
     return Shown(template="refused.html.j2", title="Session", data={"person": said, "token": asked.session.token})
 
 
@@ -51,7 +53,9 @@ async def sign_in(asked: Asked) -> Response:
         asked.note("gave a wrong password", name=name)
         if asked.is_api:
             raise HTTPException(401, _WRONG)
-        return answer_of(asked, _form(asked, after=_own_path(asked.fields.get("next", "/")), sentence=_WRONG, status=401))
+        return answer_of(
+            asked, _form(asked, after=_own_path(asked.fields.get("next", "/")), sentence=_WRONG, status=401)
+        )
     throttle.succeeded(*keys)
     return _signed_in(asked, person)
 
