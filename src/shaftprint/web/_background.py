@@ -1,11 +1,9 @@
 """What a server does beside its pages: it judges lines that have something new, and makes what was asked for."""
 
-import asyncio
-import contextlib
 import logging
 import shutil
 from collections.abc import Awaitable, Callable
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -15,6 +13,7 @@ from shaftprint.errors import ShaftprintError
 from shaftprint.store import LineNow, lines_now
 from shaftprint.web._asked import line_key
 from shaftprint.web._kept import Making
+from shaftprint.web._waking import Waking
 from shaftprint.web.calculator import Calculator
 
 if TYPE_CHECKING:
@@ -24,23 +23,6 @@ PAUSE_S: Final = 30.0
 """How often the store is looked at for what others have put in [s]."""
 _SUMMARY: Final = ("word", "causes", "because", "since")
 _LOG = logging.getLogger("shaftprint.web")
-
-
-@dataclass(slots=True)
-class Waking:
-    """A bell for something that sleeps."""
-
-    _bell: asyncio.Event = field(default_factory=asyncio.Event)
-
-    def wake(self) -> None:
-        """Let it look at once whether there is something to do."""
-        self._bell.set()
-
-    async def sleep(self, longest_s: float) -> None:
-        """Sleep until somebody wakes it, or for some time."""
-        with contextlib.suppress(TimeoutError):
-            await asyncio.wait_for(self._bell.wait(), longest_s)
-        self._bell.clear()
 
 
 async def keep_judging(service: "Service") -> None:

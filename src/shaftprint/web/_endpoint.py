@@ -1,4 +1,4 @@
-"""One way through all endpoints: who asks, may he, is the form his own, then the answer or a refusal in one sentence."""
+"""One way through all endpoints: who asks, may he, is the form his own, then the answer or a refusal."""
 
 import logging
 from collections.abc import Awaitable, Callable
@@ -17,7 +17,7 @@ from shaftprint.web._setting import answer_of, refusal
 from shaftprint.web.access import COOKIE, LONGEST_S, NOBODY, Role
 
 Answer: TypeAlias = Callable[[Asked], Awaitable[Shown | Moved | Response]]
-TOKEN_HEAD: Final = "x-csrf-token"
+TOKEN_HEAD: Final = "x-csrf-token"  # noqa: S105 - the name of a head
 """Head in which a program carries its token."""
 NOT_THERE: Final = "There is no such page, ship or test, or it was not given to you."
 _LOG = logging.getLogger("shaftprint.web")

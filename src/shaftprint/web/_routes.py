@@ -32,7 +32,8 @@ ADDRESSES: Final = (
     Address(path="/jobs/{id}/retry", answer=pages.retry_job, method="POST", least=Role.TESTER),
     Address(path="/upload", answer=pages.upload_form, least=Role.TESTER),
     Address(path="/upload", answer=pages.upload, method="POST", least=Role.TESTER, streams=True, twin=False),
-    Address(path=f"{API}/recordings/{{name}}", answer=pages.put_recording, method="PUT", least=Role.TESTER, streams=True, twin=False),
+    Address(path=f"{API}/recordings/{{name}}", answer=pages.put_recording, method="PUT", least=Role.TESTER,
+            streams=True, twin=False),
     Address(path="/recordings/{id}", answer=pages.recording),
     Address(path="/recordings/{id}/look", answer=pages.look, method="POST", least=Role.TESTER),
     Address(path="/folders", answer=pages.folder, least=Role.TESTER),
@@ -50,11 +51,11 @@ ADDRESSES: Final = (
 
 def application(service: Service) -> Starlette:
     """Return the server's application, without what stands before it."""
-    routes = []
-    for one in ADDRESSES:
-        handle = endpoint(one, service)
-        for path in (one.path, *((twin_of(one.path),) if one.twin else ())):
-            routes.append(Route(path, handle, methods=[one.method]))
+    routes = [
+        Route(path, endpoint(one, service), methods=[one.method])
+        for one in ADDRESSES
+        for path in (one.path, *((twin_of(one.path),) if one.twin else ()))
+    ]
     handlers = {404: _not_there, 405: _not_there}
     return Starlette(routes=routes, exception_handlers=handlers)
 

@@ -11,9 +11,9 @@ from typing import Self
 from shaftprint.errors import ServerError
 from shaftprint.files import reason
 from shaftprint.store import Store, open_store
-from shaftprint.web._background import Waking
 from shaftprint.web._kept import Kept
 from shaftprint.web._settings import Serving
+from shaftprint.web._waking import Waking
 from shaftprint.web.access import Audit, Sessions, Throttle, Users, read_users
 from shaftprint.web.calculator import Calculator
 

@@ -74,6 +74,8 @@ def _said(line: LineNow, found: tuple[str, dict[str, Any]] | None) -> tuple[str,
     if causes:
         note = change_words(causes[0]) + (f", and {len(causes) - 1} more" if len(causes) > 1 else "")
         return "changed", f"changed: {causes[0]['name']}", "look", note
+    if line.tests == 1:
+        return "cannot be told", "one test only", "open", "from two tests on a change can be seen"
     if summary.get("because"):
         return "cannot be told", "cannot be told", "open", summary["because"]
     return "unchanged", f"unchanged since {str(summary.get('since'))[:7]}", "fine", ""

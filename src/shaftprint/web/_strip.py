@@ -1,6 +1,6 @@
 """Strip charts as drawings of the page itself: places along time in per cent, heights in pixels, no script.
 
-A policy that forbids attributes of style leaves places to the attributes of the drawing; in per cent they fit every width.
+A policy that forbids attributes of style leaves places to attributes of the drawing; in per cent they fit any width.
 """
 
 import math

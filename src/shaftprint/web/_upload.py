@@ -52,8 +52,8 @@ def checked_name(name: str) -> str:
     if Path(plain).suffix.lower() in _PROGRAMS:
         raise HTTPException(
             400,
-            f"{plain}: expected a recording or a settings file; programs and archives are not taken. Structures of your "
-            "own are programs: use them with shaftprint identify.",
+            f"{plain}: expected a recording or a settings file; programs and archives are not taken. Structures of "
+            "your own are programs: use them with shaftprint identify.",
         )
     return plain
 

@@ -42,7 +42,7 @@ def judged_line(ship: str, line: str) -> dict[str, Any]:
         "because": finding.because,
         "since": f"{history.tests[0].at:%Y-%m-%d}" if history.tests else None,
         "sentences": list(watch_sentences(finding, history)),
-        "left_out": {name: why for name, why in (history.left_out | finding.left_out).items()},
+        "left_out": history.left_out | finding.left_out,
         "earlier": len(known.fingerprints) - len(newest),
         "courses": _courses(finding, history),
         "strips": [_strip(name, column, history) for name, column in sizes.items()],

@@ -46,7 +46,7 @@ def records_called(asked: Asked, ship: str, position: str) -> LineRecords | None
     where = {"ship_id": int(number)} if ship.startswith(_NAMED) else {"imo_number": int(number)}
     if where.get("imo_number", 0) >= 2**31:
         return None
-    found = line_records(asked.service.store, position=position, **where)  # type: ignore[arg-type]
+    found = line_records(asked.service.store, position=position, **where)
     return found if found is not None and asked.person.sees(found.line.ship) else None
 
 
@@ -102,7 +102,7 @@ def _next_test(records: LineRecords, standing: Standing, asked: Asked) -> str:
     if standing.kind == "not trustworthy":
         return "Next test: now; the newest one cannot be used."
     if standing.kind == "changed":
-        return "Next test: soon, to see whether it goes on; what tells the causes apart stands above."
+        return "Next test: soon, to see whether it goes on."
     if standing.overdue:
         return f"Next test: now; it was due on {due:%Y-%m-%d}."
     if len(records.entries) == 1:
@@ -148,14 +148,24 @@ def _drawn(records: LineRecords, found: dict[str, Any] | None, stale: bool) -> d
     moments = [one.fingerprint.trial.tested_at for one in records.entries] + [one.at for one in records.events]
     axis = TimeAxis.over(moments)
     events = [{"at": one.at, "number": place} for place, one in enumerate(records.events, start=1)]
+    seen = {} if found is None else {one["name"]: one["words"] for one in found["causes"]}
     causes, numbers = [], []
+    if axis is not None and found is not None:
+        # what was seen first
+        causes = [
+            {
+                "title": one["name"],
+                "unit": one["unit"],
+                "seen": one["name"] in seen,
+                "drawn": strip(one["points"], axis, events, zero=True),
+            }
+            for one in sorted(found["strips"], key=lambda one: one["name"] not in seen)
+        ]
     if axis is not None:
-        for one in [] if found is None else found["strips"]:
-            causes.append(
-                {"title": one["name"], "unit": one["unit"], "drawn": strip(one["points"], axis, events, zero=True)}
-            )
-        for name, unit, points in _series(records):
-            numbers.append({"title": name, "unit": unit_text(unit), "drawn": strip(points, axis, events, zero=False)})
+        numbers = [
+            {"title": name, "unit": unit_text(unit), "drawn": strip(points, axis, events, zero=False)}
+            for name, unit, points in _series(records)
+        ]
     headings, rows = _number_rows(records)
     return {
         "stale": stale and bool(records.entries),

@@ -122,5 +122,6 @@ def _row(number: StoredNumber) -> list[str]:
     value, std, low, high = (
         float("nan") if one is None else one for one in (number.value, number.std, number.low, number.high)
     )
-    usable = "yes" if number.trusted else "no"
+    # the verdict does not speak of what was calibrated
+    usable = "–" if number.kind == "calibration" else "yes" if number.trusted else "no"
     return [number.name, with_deviation(value, std), interval(low, high, std), unit_text(number.unit) or "–", usable]
