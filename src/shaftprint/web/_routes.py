@@ -49,15 +49,18 @@ ADDRESSES: Final = (
 """Every address with what answers, and the least role that may ask."""
 
 
-def application(service: Service) -> Starlette:
-    """Return the server's application, without what stands before it."""
-    routes = [
+def routes_of(service: Service) -> list[Route]:
+    """Return every route of a server: each address, and its twin for programs."""
+    return [
         Route(path, endpoint(one, service), methods=[one.method])
         for one in ADDRESSES
         for path in (one.path, *((twin_of(one.path),) if one.twin else ()))
     ]
-    handlers = {404: _not_there, 405: _not_there}
-    return Starlette(routes=routes, exception_handlers=handlers)
+
+
+def application(service: Service) -> Starlette:
+    """Return the server's application, without what stands before it."""
+    return Starlette(routes=routes_of(service), exception_handlers={404: _not_there, 405: _not_there})
 
 
 async def _not_there(request: Request, refused: Exception) -> Response:
