@@ -114,8 +114,9 @@ def test_every_page_forbids_scripts_and_styles_within_it_and_has_none(site):
     browser = site.person("owner-all")
     sha = site.shas[ADA][1]
     job, upload = site.jobs[ADA], site.uploads[ADA]
-    for path in ("/", f"/ships/{ADA}/port", f"/trials/{sha}", f"/compare?a={sha}&b={site.shas[ADA][0]}", "/jobs",
-                 f"/jobs/{job}", "/upload", f"/recordings/{upload}", "/audit", "/nothing", "/classes/Stan%20Tug%201205"):  # fmt: skip
+    paths = ("/", f"/ships/{ADA}/port", f"/trials/{sha}", f"/compare?a={sha}&b={site.shas[ADA][0]}", "/jobs", "/upload",
+             f"/jobs/{job}", f"/recordings/{upload}", "/audit", "/nothing", "/classes/Stan%20Tug%201205")  # fmt: skip
+    for path in paths:
         answer = browser.get(path)
         policy = answer.heads["content-security-policy"]
         assert "default-src 'self'" in policy

@@ -67,8 +67,10 @@ def test_a_form_that_is_cut_off_leaves_nothing(site):
 @pytest.mark.parametrize(
     ("name", "status"),
     [
-        ("../../etc/passwd", 201), ("..%2f..%2fx.nc", 201), ("C:\\x\\log.nc", 201), ("log.nc", 201), (".hidden.nc", 201),
-        ("my_line.py", 400), ("a.PY", 400), ("all.zip", 400), ("x.pickle", 400), ("", 400), ("..", 400), ("n" * 200, 400),
+        ("../../etc/passwd", 201), ("..%2f..%2fx.nc", 201), ("C:\\x\\log.nc", 201), ("log.nc", 201),
+        (".hidden.nc", 201),
+        ("my_line.py", 400), ("a.PY", 400), ("all.zip", 400), ("x.pickle", 400), ("", 400), ("..", 400),
+        ("n" * 200, 400),
         ("a\nb.nc", 201), ("a\u202eb.nc", 201),
     ],
 )  # fmt: skip

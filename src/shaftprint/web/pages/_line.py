@@ -6,7 +6,17 @@ from typing import Any, Final
 from starlette.exceptions import HTTPException
 
 from shaftprint.digits import unit_text, with_deviation
-from shaftprint.store import KINDS, Event, HistoryEntry, LineNow, LineRecords, StoredNumber, line_records, record_event
+from shaftprint.store import (
+    KINDS,
+    Event,
+    HistoryEntry,
+    LineNow,
+    LineRecords,
+    StoredNumber,
+    line_records,
+    lines_now,
+    record_event,
+)
 from shaftprint.web._asked import Asked, Moved, NotThere, Shown, line_address, line_key
 from shaftprint.web._standing import Standing, standing_of
 from shaftprint.web._strip import TimeAxis, strip
@@ -221,6 +231,7 @@ async def new_event(asked: Asked) -> Moved:
     at = _moment(asked.fields.get("at", ""), asked.fields.get("zone", ""))
     numbers = [one.strip() for one in asked.fields.get("numbers", "").split(",") if one.strip()]
     ship = records.line.ship
+    await asked.read(_expect_own_name, asked, records)
     kind = asked.fields.get("what", "")
     ((_, is_new),) = await asked.read(
         record_event,
@@ -236,6 +247,21 @@ async def new_event(asked: Asked) -> Moved:
     asked.service.judging.wake()
     to = line_address(records.line, records.ship_id)
     return Moved(to=f"{to}#events", data={"kind": kind, "at": at.isoformat(), "new": is_new}, status=201)
+
+
+def _expect_own_name(asked: Asked, records: LineRecords) -> None:
+    """Refuse a ship that can only be called by a name that another one has too: nobody is told of that other one.
+
+    Raises
+    ------
+    HTTPException
+        If it is so.
+    """
+    ship = records.line.ship
+    if ship.imo_number is None:
+        others = (one.line.ship for one in lines_now(asked.service.store) if one.ship_id != records.ship_id)
+        if any(other.name == ship.name for other in others):
+            raise HTTPException(409, "The name of this ship does not tell it from all others; it needs an IMO number.")
 
 
 def _moment(text: str, zone: str) -> datetime:
