@@ -51,6 +51,8 @@ def test_commands_are_those_that_were_asked_for():
         "validate",
         "new",
         "store",
+        "fleet",
+        "work",
     }
 
 

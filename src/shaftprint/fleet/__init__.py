@@ -12,20 +12,26 @@ computer, several computers, an existing Dask cluster, only takes jobs from it.
 """
 
 from shaftprint.fleet._arguments import JobArguments, arguments_of, job_arguments
-from shaftprint.fleet._identify import survey_of_job
+from shaftprint.fleet._dask import work_on_dask, work_until_empty
 from shaftprint.fleet._lane import Event
+from shaftprint.fleet._lists import COLUMNS, ENDINGS, recordings_in, recordings_of_list
 from shaftprint.fleet._submit import request_of, submit
 from shaftprint.fleet._work import LIMIT_S, Worked, work
 
 __all__ = [
+    "COLUMNS",
+    "ENDINGS",
     "LIMIT_S",
     "Event",
     "JobArguments",
     "Worked",
     "arguments_of",
     "job_arguments",
+    "recordings_in",
+    "recordings_of_list",
     "request_of",
     "submit",
-    "survey_of_job",
     "work",
+    "work_on_dask",
+    "work_until_empty",
 ]

@@ -10,7 +10,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any, Final
 
-_PROGRAM: Final = "shaftprint.fleet._child"
+_PROGRAM: Final = "shaftprint.fleet.computing"
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

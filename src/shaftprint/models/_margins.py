@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -54,7 +55,13 @@ def margins(structure: Structure, values: ArrayLike) -> Margins:
     StructureError
         If the structure has no feedback loop.
     """
-    table = np.asarray(values, dtype=np.float64)
+    return _margins(structure, tuple(np.asarray(values, dtype=np.float64).tolist()))
+
+
+# A fingerprint asks five times for the margins of one estimate: verdict, findings, numbers.
+@lru_cache(maxsize=8)
+def _margins(structure: Structure, values: tuple[float, ...]) -> Margins:
+    table = np.array(values)
     omega, gain = swept(loop_of(structure), structure, table)
 
     def loop(at: FloatArray) -> ComplexArray:

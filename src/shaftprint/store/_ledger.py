@@ -10,7 +10,7 @@ from datetime import datetime, timedelta, tzinfo
 from shaftprint.arguments import refusing_none
 from shaftprint.errors import StoreError
 from shaftprint.store._add import NOTHING_STATED
-from shaftprint.store._job import JOB_STATES, LEASE_S, Job, JobCounts, JobRequest, JobState
+from shaftprint.store._job import JOB_STATES, LEASE_S, Job, JobCounts, JobRequest
 from shaftprint.store._nouns import Added, Ship
 from shaftprint.store._record import record_of
 from shaftprint.store._stated import Stated
@@ -114,7 +114,7 @@ def finish(
     StoreError
         If the fingerprint cannot be kept, whoever tries: a reason to refuse the job.
     """
-    record = record_of(document, stated, zone=zone, named=f"job {job.id}")
+    record = record_of(document, stated, zone=zone, named=str(job.args.get("recording", f"job {job.id}")))
     ship = Ship(name=record.ship.name, imo_number=record.ship.imo_number, class_name=record.ship.class_name)
     with store.database.writing() as connection:
         ledger = store.database.ledger(connection)
@@ -154,7 +154,7 @@ def give_back(store: Store, job: Job, *, died: bool = False, now: datetime | Non
 
 @refusing_none(StoreError)
 def jobs(
-    store: Store, *, states: Collection[JobState] = JOB_STATES, after: int = 0, most: int | None = None
+    store: Store, *, states: Collection[str] = JOB_STATES, after: int = 0, most: int | None = None
 ) -> tuple[Job, ...]:
     """Return jobs in some states in the order of their numbers, at most so many above a number."""
     unknown = sorted(set(states) - set(JOB_STATES))

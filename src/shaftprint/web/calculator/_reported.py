@@ -5,7 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from shaftprint.fleet import arguments_of, survey_of_job
+from shaftprint.fleet import arguments_of
+from shaftprint.fleet.computing import survey_of_job
 from shaftprint.recording import read_recording
 from shaftprint.report import render_report
 from shaftprint.survey import judged
@@ -22,7 +23,8 @@ def reported(arguments: dict[str, Any], folder: str) -> dict[str, Any]:
         Where the report goes.
     """
     job = arguments_of(arguments, named="report")
-    survey = judged(survey_of_job(job, tell=lambda _: None), rng=np.random.default_rng(job.seed))
+    rng = np.random.default_rng(job.seed)
+    survey = judged(survey_of_job(job, tell=lambda _: None, rng=rng), rng=rng)
     with read_recording(Path(job.recording)) as opened:
         page = render_report(folder, survey, recording=opened, overwrite=True)
     return {"page": page.name}

@@ -34,7 +34,13 @@ class Told:
         """Do nothing."""
 
 
-def survey_of_job(arguments: JobArguments, *, tell: Callable[[str], None], now: datetime | None = None) -> Survey:
+def survey_of_job(
+    arguments: JobArguments,
+    *,
+    tell: Callable[[str], None],
+    now: datetime | None = None,
+    rng: np.random.Generator | None = None,
+) -> Survey:
     """Return the survey of the recording of a job, not judged yet.
 
     Parameters
@@ -45,6 +51,8 @@ def survey_of_job(arguments: JobArguments, *, tell: Callable[[str], None], now: 
         Is told each step.
     now
         When the fingerprint is made.
+    rng
+        For the starts of the search; of the seed of the job where it is not given.
 
     Raises
     ------
@@ -58,7 +66,7 @@ def survey_of_job(arguments: JobArguments, *, tell: Callable[[str], None], now: 
         arguments.campaign,
         structures=(shipped_structure(arguments.structure),),
         settings=_settings_of(arguments.starts),
-        rng=np.random.default_rng(arguments.seed),
+        rng=np.random.default_rng(arguments.seed) if rng is None else rng,
         now=now,
         conditions=arguments.conditions,
         legs=arguments.legs,

@@ -16,7 +16,7 @@ from typing import Any, TextIO
 from shaftprint.errors import ShaftprintError
 from shaftprint.fingerprint import fingerprint_document
 from shaftprint.fleet._arguments import arguments_of
-from shaftprint.fleet._identify import survey_of_job
+from shaftprint.fleet.computing._identify import survey_of_job
 
 # Linux ends this process rather than another one where memory runs out.
 _OOM = Path("/proc/self/oom_score_adj")

@@ -1,0 +1,1 @@
+"""The actions of ``shaftprint fleet``, one file each."""

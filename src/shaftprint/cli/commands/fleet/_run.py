@@ -1,0 +1,76 @@
+"""``shaftprint fleet run``: recordings into the ledger, and workers that identify them."""
+
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
+
+import click
+
+from shaftprint.cli._command_group import NOT_REACHED
+from shaftprint.cli._fleet_options import say_refusals, say_what_was_done, work_here, work_options
+from shaftprint.cli._store_options import store_option
+from shaftprint.cli._terminal import answer
+from shaftprint.cli.output import give, no_progress_option
+from shaftprint.fleet import Worked, recordings_in, recordings_of_list, submit, work_on_dask
+from shaftprint.store import Job, Store, jobs, open_store
+
+
+@click.command("run")
+@click.argument("recordings", metavar="FOLDER|LIST.csv", type=click.Path(path_type=Path, exists=True))
+@click.option("--vessel", metavar="TEXT", help="Vessel file, or a shipped name such as stan-tug-1205.")
+@click.option("--campaign", metavar="TEXT", help="Campaign file, or a shipped name such as thesis.")
+@click.option("--structure", metavar="NAME", help="Model structure.  [default: GAUGE-CLOSED]")
+@click.option("--ship", metavar="NAME", help="Name of the ship, where the vessel file does not say it.")
+@click.option("--imo", type=int, metavar="NUMBER", help="Its IMO number, where the vessel file does not say it.")
+@click.option("--line", metavar="NAME", help="Shaft line, such as port, where the vessel file does not say it.")
+@click.option("--time-zone", "time_zone", metavar="ZONE", help="Zone of the loggers' clocks, where files state none.")
+@store_option
+@work_options
+@click.option("--dask", "address", metavar="URL", help="Scheduler of a Dask cluster whose workers do it instead.")
+@no_progress_option
+@click.pass_context
+def command(
+    context: click.Context,
+    /,
+    recordings: Path,
+    url: str,
+    processes: int,
+    minutes: float,
+    address: str | None,
+    *,
+    no_progress: bool,
+    **facts: Any,
+) -> None:
+    """Identify the recordings of a folder or a list, and keep their fingerprints.
+
+    The first line of a list names its columns: recording, and where they differ vessel, campaign, ship, imo, line,
+    tested-at, time-zone, place, draught-m and so on; options hold for rows that say nothing. What is done already is
+    not done again, so the same command goes on with a run that was ended. --processes 0 leaves the work to others.
+    """
+    found = recordings_in(recordings, **facts) if recordings.is_dir() else recordings_of_list(recordings, **facts)
+    with open_store(url) as store:
+        asked = submit(store, found, now=datetime.now(UTC))
+        ids = {one.id for one in asked}
+        is_open = [one for one in asked if one.state in ("waiting", "running")]
+        give("asked", {"recordings": len(found), "jobs": len(ids), "to_do": len({one.id for one in is_open})})
+        answer(f"Recordings: {len(found)}; to be identified: {len({one.id for one in is_open})}.")
+        if is_open and processes:
+            worked = _worked(store, url, address, processes=processes, minutes=minutes, hidden=no_progress)
+            say_what_was_done(store, worked)
+        refused = tuple(one for one in _now(store, ids) if one.state == "refused")
+    say_refusals(refused)
+    if refused:
+        context.exit(NOT_REACHED)
+
+
+def _worked(store: Store, url: str, address: str | None, *, processes: int, minutes: float, hidden: bool) -> Worked:
+    if address is None:
+        return work_here(store, processes=processes, wait=False, minutes=minutes, hidden=hidden)
+    return work_on_dask(address, url, limit_s=60.0 * minutes)
+
+
+def _now(store: Store, ids: set[int]) -> tuple[Job, ...]:
+    """Return jobs as they stand now, with all digits for JSON."""
+    found = tuple(one for one in jobs(store) if one.id in ids)
+    give("jobs", found)
+    return found
