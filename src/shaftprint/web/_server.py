@@ -60,7 +60,8 @@ async def _serve(service: Service, begun: Callable[[str], None]) -> None:
         port=serving.listen.port,
         ssl_certfile=files[0],
         ssl_keyfile=files[1],
-        log_level="warning",
+        # not each strange request: whoever sends many must not fill the disk
+        log_level="error",
         access_log=False,
         server_header=False,
         date_header=False,

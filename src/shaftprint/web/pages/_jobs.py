@@ -46,7 +46,9 @@ def _jobs(asked: Asked) -> Shown:
             found.append(content_of(asked, one, kept.get(one.id)))
     open_ones = sum(one["state"] in {"waiting", "running"} for one in found)
     refused = sum(one["state"] == "refused" for one in found)
-    headline = f"{open_ones} open, {refused} refused" if found else "No job was asked for"
+    counts = {"open": open_ones, "refused": refused, "done": len(found) - open_ones - refused}
+    said = [f"{count} {word}" for word, count in counts.items() if count]
+    headline = ", ".join(said) if found else "No job was asked for"
     return Shown(template="jobs.html.j2", title="Jobs", data={"headline": headline, "jobs": found})
 
 
@@ -158,6 +160,7 @@ async def _told(asked: Asked, content: dict[str, Any], seen: str) -> AsyncIterat
                 silent_s = 0.0
                 yield ": still here\n\n"
             if content["state"] in {"done", "refused"}:
+                asked.service.judging.wake()
                 return
             await asyncio.sleep(POLL_S)
             silent_s += POLL_S

@@ -189,7 +189,11 @@ def choices_of(settings: list[dict[str, str]]) -> dict[str, Any]:
     """Return what may be chosen in the form of a job."""
     shipped = {"vessel": VESSELS, "campaign": CAMPAIGNS}
     chosen = {
-        kind: [*settings, *({"value": one, "words": f"{one} (comes with shaftprint)"} for one in names)]
+        # files that are called so first
+        kind: [
+            *sorted(settings, key=lambda one: kind not in one["words"].lower()),
+            *({"value": one, "words": f"{one} (comes with shaftprint)"} for one in names),
+        ]
         for kind, names in shipped.items()
     }
     return chosen | {"structures": STRUCTURES}
