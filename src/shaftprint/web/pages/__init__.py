@@ -6,7 +6,17 @@ from shaftprint.web.pages._compare import compare
 from shaftprint.web.pages._folders import folder
 from shaftprint.web.pages._jobs import job, job_events, jobs, new_job, retry_job
 from shaftprint.web.pages._line import line, new_event
-from shaftprint.web.pages._recordings import look, put_recording, recording, upload, upload_form
+from shaftprint.web.pages._recordings import (
+    CAMPAIGNS,
+    STRUCTURES,
+    VESSELS,
+    is_imo_number,
+    look,
+    put_recording,
+    recording,
+    upload,
+    upload_form,
+)
 from shaftprint.web.pages._reports import make_report, report_file
 from shaftprint.web.pages._ships import ships
 from shaftprint.web.pages._sign_in import session, sign_in, sign_in_form, sign_out
@@ -14,10 +24,14 @@ from shaftprint.web.pages._static import static
 from shaftprint.web.pages._trial import fingerprint_document, trial
 
 __all__ = [
+    "CAMPAIGNS",
+    "STRUCTURES",
+    "VESSELS",
     "audit",
     "compare",
     "fingerprint_document",
     "folder",
+    "is_imo_number",
     "job",
     "job_events",
     "jobs",

@@ -17,9 +17,10 @@ from shaftprint.web._upload import SETTINGS, Taken, checked_name, expect_room, i
 from shaftprint.web.access import Role
 from shaftprint.web.pages._line import records_called
 
-VESSELS: Final = ("stan-tug-1205",)
-CAMPAIGNS: Final = ("short", "thesis")
-STRUCTURES: Final = ("GAUGE-CLOSED",)
+# as their rooms have them, which would load far more; a test holds both together
+VESSELS: Final = ("stan-tug-1205", "stan-tug-1205-ecu")
+CAMPAIGNS: Final = ("12min", "5min", "short", "thesis", "transit", "two-speeds")
+STRUCTURES: Final = ("GAUGE-CLOSED", "GAUGE-CORE", "GAUGE-OPEN", "GAUGE-INFLOW", "GAUGE-ECU")
 _LONGEST_WORD: Final = 100
 _MOST_CHOICES: Final = 500
 
@@ -98,7 +99,7 @@ def line_of(asked: Asked, fields: dict[str, str]) -> Line:
     name, number = fields.get("ship", "").strip(), fields.get("imo", "").strip().upper().removeprefix("IMO").strip()
     if not name or not chosen or max(len(name), len(chosen)) > _LONGEST_WORD or not (name + chosen).isprintable():
         raise HTTPException(400, "Expected a line from the list, or the name of a ship and of its shaft line.")
-    if number and not _is_imo_number(number):
+    if number and not is_imo_number(number):
         raise HTTPException(
             400, f"Expected an IMO number, seven digits of which the last checks the others, found {number[:20]!r}."
         )
@@ -108,7 +109,8 @@ def line_of(asked: Asked, fields: dict[str, str]) -> Line:
     return Line(ship=ship, position=chosen)
 
 
-def _is_imo_number(text: str) -> bool:
+def is_imo_number(text: str) -> bool:
+    """Return whether a text can be the IMO number of a ship."""
     # as vessel.is_imo_number, which would load far more (IMO resolution A.1117(30)); a test holds both together
     digits = 7
     if not (text.isascii() and text.isdecimal() and len(text) == digits) or text[0] == "0":
