@@ -19,6 +19,7 @@ HERE = Path(__file__).parent
 sys.path.insert(0, str(HERE.parents[1]))
 
 from benchmarks.served_fleet import LIVES, fill  # noqa: E402
+
 from shaftprint.store import create_store  # noqa: E402
 from shaftprint.web import Listen, Serving, serve  # noqa: E402
 

@@ -61,6 +61,7 @@ class Service:
         ShaftprintError
             If the store, the users or the server's own folder cannot be used.
         """
+        _expect_there(serving)
         users = None
         if serving.users is not None:
             if not read_users(serving.users):
@@ -101,6 +102,15 @@ class Service:
         await self.bench.close()
         self.kept.close()
         self.store.close()
+
+
+def _expect_there(serving: Serving) -> None:
+    for folder in serving.folders:
+        if not folder.is_dir():
+            raise ServerError(f"--folder: expected a folder, found none at {folder}.")
+    for file in serving.certificate or ():
+        if not file.is_file():
+            raise ServerError(f"--certificate and --key: expected a file, found none at {file}.")
 
 
 def _prepared(state: Path) -> bytes:

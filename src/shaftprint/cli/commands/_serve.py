@@ -34,17 +34,15 @@ _MEGABYTE: Final = 2**20
     help="Folder for uploads, reports and what the server itself keeps.",
 )  # fmt: skip
 @click.option(
-    "--folder", "folders", multiple=True, type=click.Path(exists=True, file_okay=False, path_type=Path),
+    "--folder", "folders", multiple=True, type=click.Path(path_type=Path),
     help="Folder whose recordings may be identified where they lie. May be repeated.",
 )  # fmt: skip
 @click.option(
     "--host", "hosts", multiple=True, metavar="NAME", help="A name by which browsers reach it. May be repeated."
 )
 @click.option("--workers", type=click.IntRange(0, 64), default=1, show_default=True, help="Processes that identify.")
-@click.option(
-    "--certificate", type=click.Path(exists=True, dir_okay=False, path_type=Path), help="Certificate for TLS."
-)
-@click.option("--key", type=click.Path(exists=True, dir_okay=False, path_type=Path), help="Key of the certificate.")
+@click.option("--certificate", type=click.Path(path_type=Path), help="Certificate for TLS.")
+@click.option("--key", type=click.Path(path_type=Path), help="Key of the certificate.")
 @click.option("--behind-tls", is_flag=True, help="A proxy on this computer speaks TLS in front of it.")
 @click.option(
     "--overdue-days", type=click.IntRange(1, 3650), default=365, show_default=True,
