@@ -91,6 +91,21 @@ def test_an_earlier_store_is_upgraded(store, url, put, later_program, monkeypatc
         open_store(url)
 
 
+def test_a_store_of_the_first_schema_gets_its_tables_of_jobs(store, url, put):
+    put(store)
+    with store.database.writing() as connection:
+        connection.execute(sa.text("DROP TABLE job"))
+        connection.execute(sa.text("DROP TABLE hashed_file"))
+        connection.execute(sa.text("UPDATE shaftprint_schema SET version_num = '0001'"))
+    store.close()
+    with pytest.raises(StoreError, match=r"found the earlier 0001; bring it up to date with shaftprint store upgrade"):
+        open_store(url)
+    assert upgrade_store(url) == ("0001", "0002")
+    with open_store(url) as opened:
+        test_the_tables_are_those_of_the_migrations(opened)
+        assert len(history(opened, "Meander").entries) == 1
+
+
 def test_an_upgrade_that_fails_changes_nothing(store, url, put, later_program, monkeypatch):
     put(store)
     store.close()

@@ -1,9 +1,10 @@
 """What the commands have in common that work on the jobs of a store."""
 
+import contextlib
 import os
 import signal
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import click
@@ -38,9 +39,8 @@ def work_options(command: Callable[..., Any]) -> Callable[..., Any]:
 
 def work_here(store: Store, *, processes: int, wait: bool, minutes: float, hidden: bool) -> Worked:
     """Do the jobs of a store in processes of this computer, with a bar for all of them."""
-    signal.signal(signal.SIGTERM, _interrupt)
     total, lock = job_counts(store).open, threading.Lock()
-    with progress(hidden=hidden) as steps:
+    with _ended_like_ctrl_c(), progress(hidden=hidden) as steps:
         steps.begin("Identifying", total=float(total) or None)
 
         def report(event: Event) -> None:
@@ -95,6 +95,15 @@ def recording_of(job: Job) -> str:
     return str(job.args.get("recording", "-"))
 
 
-def _interrupt(number: int, frame: object) -> None:
-    """End as an interruption does: jobs that are not done are given back."""
-    raise KeyboardInterrupt
+@contextlib.contextmanager
+def _ended_like_ctrl_c() -> Iterator[None]:
+    """Let a request to end be an interruption: jobs that are not done are given back."""
+
+    def interrupt(number: int, frame: object) -> None:
+        raise KeyboardInterrupt
+
+    before = signal.signal(signal.SIGTERM, interrupt)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, before)

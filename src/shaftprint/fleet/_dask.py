@@ -2,12 +2,16 @@
 
 import importlib
 from importlib.util import find_spec
-from typing import Any
+from typing import Any, Final
 
+from shaftprint import __version__
 from shaftprint.arguments import refusing_none
 from shaftprint.errors import StoreError
 from shaftprint.fleet._work import LIMIT_S, Worked, work
-from shaftprint.store import open_store
+from shaftprint.store import job_counts, open_store
+
+_WAIT_S: Final = 60.0
+_LOOK_S: Final = 5.0
 
 
 def work_until_empty(url: str, limit_s: float = LIMIT_S) -> dict[str, int]:
@@ -35,7 +39,7 @@ def work_on_dask(address: str, url: str, *, limit_s: float = LIMIT_S) -> Worked:
     Returns
     -------
     worked
-        What those did that came to their end.
+        What those did that came to their end; jobs of those that died are done all the same.
 
     Raises
     ------
@@ -49,20 +53,53 @@ def work_on_dask(address: str, url: str, *, limit_s: float = LIMIT_S) -> Worked:
         raise StoreError(
             f"--dask {address[:100]}: expected the scheduler of a Dask cluster, but it is not reached: {error}."
         ) from None
-    with client:
-        threads = client.nthreads()
-        if not threads:
-            raise StoreError(f"--dask {address[:100]}: expected a cluster with workers, found none; start dask worker.")
-        # not pinned to a worker: where one dies, Dask begins its task on another, which finds what is left
-        futures = [
-            client.submit(work_until_empty, url, limit_s, pure=False, retries=10) for _ in range(sum(threads.values()))
-        ]
-        distributed.wait(futures)
-        ended = [future.result() for future in futures if future.status == "finished"]
-        failed = [future.exception() for future in futures if future.status != "finished"]
-    if not ended:
-        raise StoreError(f"--dask {address[:100]}: no worker came to its end: {failed[0]}.")
-    return Worked(**{name: sum(one[name] for one in ended) for name in ended[0]})
+    with client, open_store(url) as store:
+        ended: list[dict[str, int]] = []
+        while True:
+            before = job_counts(store, version=__version__).open
+            futures = _started(client, address, url, limit_s)
+            _wait(distributed, client, futures, address)
+            ended += [future.result() for future in futures if future.status == "finished"]
+            after = job_counts(store, version=__version__).open
+            if not after:
+                break
+            if after >= before:
+                failed = [future.exception() for future in futures if future.status != "finished"]
+                raise StoreError(
+                    f"--dask {address[:100]}: {after} jobs are left, and no worker did any of them: "
+                    f"{failed[0] if failed else 'they wait for another version of shaftprint'}."
+                )
+    return Worked(**{name: sum(one[name] for one in ended) for name in ("done", "refused", "died", "lost")})
+
+
+def _started(client: Any, address: str, url: str, limit_s: float) -> list[Any]:
+    """Let every thread of a cluster work.
+
+    Dask gives a task up after some of its workers died, whoever is to blame. That is no matter: what is left to do the
+    ledger says, and workers are started anew.
+    """
+    try:
+        client.wait_for_workers(1, timeout=_WAIT_S)
+    except (OSError, TimeoutError):
+        raise StoreError(
+            f"--dask {address[:100]}: expected a cluster with workers, found none; start dask worker."
+        ) from None
+    threads = sum(client.nthreads().values())
+    # not pinned to a worker: where one dies, Dask begins its task on another, which finds what is left
+    return [client.submit(work_until_empty, url, limit_s, pure=False) for _ in range(max(threads, 1))]
+
+
+def _wait(distributed: Any, client: Any, futures: list[Any], address: str) -> None:
+    """Wait until no worker of a cluster works; where it has none for a minute, say so: Dask itself waits for ever."""
+    alone_s = 0.0
+    while alone_s < _WAIT_S:
+        try:
+            distributed.wait(futures, timeout=_LOOK_S)
+        except TimeoutError:
+            alone_s = 0.0 if client.nthreads() else alone_s + _LOOK_S
+        else:
+            return
+    raise StoreError(f"--dask {address[:100]}: all workers are gone; start dask worker, and this command once more.")
 
 
 def _dask() -> Any:

@@ -9,10 +9,10 @@ from shaftprint.cli._command_group import LazyGroup
 
 # The one-line help of every action; asking its file for it would import what it needs.
 ACTIONS = {
-    "run": "Identify the recordings of a folder or a list.",
-    "status": "Show how many jobs wait, run, are done or were refused.",
-    "retry": "Let refused jobs wait again.",
-    "report": "Write the report of one job.",
+    "run": "Identify the recordings of a folder or a list, and keep their fingerprints.",
+    "status": "Show how many jobs wait, run, are done or were refused, and why.",
+    "retry": "Let refused jobs wait again: those with some numbers, or all.",
+    "report": "Write the report of one job, as identify does.",
 }
 
 

@@ -1,0 +1,34 @@
+"""A store and recordings for fleet runs."""
+
+import pytest
+from click.testing import CliRunner
+
+from shaftprint.cli import shaftprint
+from shaftprint.store import create_store
+
+pytest.importorskip("sqlalchemy", reason="the store is an extra: pip install shaftprint[store]")
+pytest.importorskip("alembic", reason="the store is an extra: pip install shaftprint[store]")
+
+
+@pytest.fixture
+def url(tmp_path):
+    """Where a store may be made."""
+    return str(tmp_path / "fleet.db")
+
+
+@pytest.fixture
+def store(url):
+    """An empty store in a file."""
+    with create_store(url) as made:
+        yield made
+
+
+@pytest.fixture
+def run():
+    """Call the program with arguments; errors that are not foreseen come through."""
+
+    def call(*arguments, **options):
+        words = [str(argument) for argument in arguments]
+        return CliRunner().invoke(shaftprint, words, catch_exceptions=False, **options)
+
+    return call
