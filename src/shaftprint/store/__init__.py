@@ -52,7 +52,7 @@ from shaftprint.store._nouns import (
     StoredNumber,
     Trial,
 )
-from shaftprint.store._overview import LineNow, LineRecords, line_records, lines_now, stored_fingerprint
+from shaftprint.store._overview import LineNow, LineRecords, line_records, lines_now, store_state, stored_fingerprint
 from shaftprint.store._record import Record, record_of
 from shaftprint.store._stated import Stated
 from shaftprint.store._store import Store, create_store, open_store, upgrade_store
@@ -116,6 +116,7 @@ __all__ = [
     "refuse",
     "renew",
     "retry",
+    "store_state",
     "stored_fingerprint",
     "upgrade_store",
 ]

@@ -78,6 +78,14 @@ def lines_now(store: Store, *, number: str | None = None) -> tuple[LineNow, ...]
 
 
 @refusing_none(StoreError)
+def store_state(store: Store) -> str:
+    """Return a word that changes with every fingerprint and event that is put into a store."""
+    part = part_with_database()
+    with store.database.reading() as connection:
+        return str(part.store_state(connection))
+
+
+@refusing_none(StoreError)
 def line_records(store: Store, *, position: str, imo_number: int | None = None, ship_id: int = 0) -> LineRecords | None:
     """Return all that is kept of one line; None where there is no such line.
 

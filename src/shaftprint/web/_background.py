@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Final
 from starlette.concurrency import run_in_threadpool
 
 from shaftprint.errors import ShaftprintError
-from shaftprint.store import LineNow, lines_now
+from shaftprint.store import LineNow
 from shaftprint.web._asked import line_key
 from shaftprint.web._kept import Making
 from shaftprint.web._waking import Waking
@@ -50,7 +50,7 @@ async def _keep_on(service: "Service", bell: Waking, work: Callable[["Service"],
 
 
 async def _judge_new(service: "Service") -> None:
-    lines = await run_in_threadpool(lines_now, service.store)
+    lines = await run_in_threadpool(service.lines.now)
     states = {line: state for line, (state, _) in service.kept.summaries().items()}
     new = [one for one in lines if one.tests and states.get(_key(one)) != one.state]
     # the line that was tested last first: somebody waits for it

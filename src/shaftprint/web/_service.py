@@ -12,6 +12,7 @@ from shaftprint.errors import ServerError
 from shaftprint.files import reason
 from shaftprint.store import Store, open_store
 from shaftprint.web._kept import Kept
+from shaftprint.web._lines import Lines
 from shaftprint.web._settings import Serving
 from shaftprint.web._waking import Waking
 from shaftprint.web.access import Audit, Sessions, Throttle, Users, read_users
@@ -41,6 +42,8 @@ class Service:
     """Who has to wait before he may try a password again."""
     audit: Audit
     """Who did what."""
+    lines: Lines
+    """The lines of the store."""
     desk: Calculator
     """What pages wait for."""
     bench: Calculator
@@ -80,6 +83,7 @@ class Service:
             kept=kept,
             sessions=Sessions(key=key, users=users, _ended=kept.ended()),
             throttle=Throttle(),
+            lines=Lines(store=store),
             audit=Audit(path=serving.state / "audit.jsonl"),
             desk=Calculator(store=serving.store, most_memory=serving.most_memory),
             bench=Calculator(store=serving.store, most_memory=serving.most_memory),

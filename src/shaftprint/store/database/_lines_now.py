@@ -6,7 +6,7 @@ import sqlalchemy as sa
 
 from shaftprint.store._nouns import Line, StoredFingerprint
 from shaftprint.store.database._reader import Reader
-from shaftprint.store.database._tables import EVENT, FINGERPRINT, LINE, TRIAL
+from shaftprint.store.database._tables import EVENT, FINGERPRINT, LINE, SHIP, TRIAL
 
 
 def line_states(connection: sa.Connection, lines: Collection[int] | None = None) -> dict[int, str]:
@@ -34,6 +34,15 @@ def line_states(connection: sa.Connection, lines: Collection[int] | None = None)
         for line, last, count in connection.execute(query).all():
             found.setdefault(line, []).append(f"{last}-{count}")
     return {line: "/".join(parts) for line, parts in found.items()}
+
+
+def store_state(connection: sa.Connection) -> str:
+    """Return a word that changes with every fingerprint and event that is put in; it looks at the ends of indices only.
+
+    A ship gets another name with a fingerprint only.
+    """
+    tables = (FINGERPRINT, EVENT, LINE, SHIP)
+    return "/".join(str(connection.execute(sa.select(sa.func.max(one.c.id))).scalar() or 0) for one in tables)
 
 
 def fingerprint_called(reader: Reader, sha256: str) -> StoredFingerprint | None:

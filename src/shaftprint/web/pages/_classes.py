@@ -1,12 +1,14 @@
 """Sister ships: a number of the newest test of every line of a class."""
 
-from typing import Any
+from typing import Any, Final
+
+from starlette.exceptions import HTTPException
 
 from shaftprint.digits import interval, unit_text, with_deviation
-from shaftprint.store import LineNow, lines_now
+from shaftprint.store import LineNow
 from shaftprint.web._asked import Asked, NotThere, Shown, line_address
 
-NUMBERS = ("K_Q", "I_dn", "governor proportional action", "governor integral action")
+NUMBERS: Final = ("K_Q", "I_dn", "governor proportional action", "governor integral action")
 
 
 async def sister_class(asked: Asked) -> Shown:
@@ -16,9 +18,11 @@ async def sister_class(asked: Asked) -> Shown:
 
 def _class(asked: Asked) -> Shown:
     name, number = asked.named("name"), asked.query("number", NUMBERS[0])
+    if number not in NUMBERS:
+        raise HTTPException(400, f"Expected one of {', '.join(NUMBERS)}, found another number.")
     lines = [
         one
-        for one in lines_now(asked.service.store, number=number)
+        for one in asked.service.lines.now(number)
         if one.line.ship.class_name == name and asked.person.sees(one.line.ship)
     ]
     if not lines:

@@ -14,7 +14,6 @@ from shaftprint.store import (
     LineRecords,
     StoredNumber,
     line_records,
-    lines_now,
     record_event,
 )
 from shaftprint.web._asked import Asked, Moved, NotThere, Shown, line_address, line_key
@@ -259,7 +258,7 @@ def _expect_own_name(asked: Asked, records: LineRecords) -> None:
     """
     ship = records.line.ship
     if ship.imo_number is None:
-        others = (one.line.ship for one in lines_now(asked.service.store) if one.ship_id != records.ship_id)
+        others = (one.line.ship for one in asked.service.lines.now() if one.ship_id != records.ship_id)
         if any(other.name == ship.name for other in others):
             raise HTTPException(409, "The name of this ship does not tell it from all others; it needs an IMO number.")
 

@@ -8,7 +8,7 @@ from typing import Any, Final
 from starlette.exceptions import HTTPException
 from starlette.responses import Response
 
-from shaftprint.store import Line, Ship, lines_now
+from shaftprint.store import Line, Ship
 from shaftprint.web._asked import Asked, Moved, NotThere, Shown, ship_word
 from shaftprint.web._kept import Making, Upload
 from shaftprint.web._multipart import form_with_file
@@ -34,7 +34,7 @@ def _upload_form(asked: Asked) -> Shown:
     uploads = [_content(one) for one in uploads_of(asked)]
     choices = [
         {"value": f"{ship_word(one.line.ship, one.ship_id)}/{one.line.position}", "words": _words(one.line)}
-        for one in lines_now(asked.service.store)
+        for one in asked.service.lines.now()
         if asked.person.sees(one.line.ship)
     ]
     return Shown(

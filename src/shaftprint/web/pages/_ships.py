@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import Any, Final
 from urllib.parse import quote
 
-from shaftprint.store import LineNow, lines_now
+from shaftprint.store import LineNow
 from shaftprint.web._asked import Asked, Shown, line_address, line_key
 from shaftprint.web._standing import WORDS, Standing, standing_of
 
@@ -69,7 +69,7 @@ def rows_of(asked: Asked) -> list[_Row]:
                 one, found.get(line_key(one.line.ship, one.line.position)), now=now, overdue_days=overdue
             ),
         )
-        for one in lines_now(asked.service.store)
+        for one in asked.service.lines.now()
         if asked.person.sees(one.line.ship)
     ]
 

@@ -5,7 +5,7 @@ from typing import Any
 from starlette.responses import Response
 
 from shaftprint.digits import interval, unit_text, with_deviation
-from shaftprint.store import HistoryEntry, LineRecords, StoredFingerprint, StoredNumber, document, lines_now
+from shaftprint.store import HistoryEntry, LineRecords, StoredFingerprint, StoredNumber, document
 from shaftprint.web._asked import Asked, NotThere, Shown, line_address, ship_word
 from shaftprint.web.pages._fingerprint import fingerprint_of
 from shaftprint.web.pages._line import records_called
@@ -74,7 +74,7 @@ def _records(asked: Asked, one: StoredFingerprint) -> LineRecords:
     if ship.imo_number is not None:
         found = records_called(asked, str(ship.imo_number), one.line.position)
     else:
-        known = [row.ship_id for row in lines_now(asked.service.store) if row.line == one.line]
+        known = [row.ship_id for row in asked.service.lines.now() if row.line == one.line]
         found = records_called(asked, ship_word(ship, known[0]), one.line.position) if known else None
     if found is None:
         raise NotThere
