@@ -6,6 +6,7 @@ docs/serve.md.
 """
 
 import argparse
+import asyncio
 import contextlib
 import http.client
 import json
@@ -28,9 +29,12 @@ ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT))
 
 from benchmarks.monte_carlo_tables import write_between_marks  # noqa: E402
+from benchmarks.mutations import mutated  # noqa: E402
 from benchmarks.store import fill, ships  # noqa: E402
 from benchmarks.timing import print_table  # noqa: E402
+from shaftprint.errors import ServerError  # noqa: E402
 from shaftprint.store import create_store, document, history, open_store  # noqa: E402
+from shaftprint.web.calculator import Calculator  # noqa: E402
 
 DOCUMENT = ROOT / "docs" / "serve.md"
 BEGIN, END = ("<!-- table of benchmarks/serve.py: begin -->", "<!-- table of benchmarks/serve.py: end -->")
@@ -299,38 +303,6 @@ def _samples(server: Running) -> list[bytes]:
     return [*samples, *(6 * [put.encode() + content])]
 
 
-WORDS = (
-    b"\0", b"%00", b"../", b"%2e%2e%2f", b"\r\n", b"'\"<>", b"\xff\xfe", b"A" * 3000, b"-1", b"9" * 40, b"{", b"%",
-    b"\xe2\x80\xae", b"--frontier", b"filename=", b"Transfer-Encoding: chunked\r\n", b"Host: evil\r\n", b"//",
-    b"T25:61", b'name="token"', b"id-", b"\xd8\x00", b"NaN",
-)  # fmt: skip
-"""What attacks are made of."""
-
-
-def mutated(raw: bytes, rng: random.Random) -> bytes:
-    """Return bytes with a few changes: letters, parts left out, doubled, moved, cut off, or dangerous words put in."""
-    content = bytearray(raw)
-    for _ in range(rng.choice((1, 1, 2, 3, 8))):
-        at = rng.randrange(len(content) + 1)
-        end = min(len(content), at + rng.choice((1, 4, 30)))
-        match rng.randrange(6):
-            case 0 if at < len(content):
-                content[at] = rng.randrange(256)
-            case 1:
-                del content[at:end]
-            case 2:
-                content[at:at] = content[at:end]
-            case 3:
-                content[at:at] = rng.choice(WORDS)
-            case 4:
-                content[at:end] = rng.randbytes(end - at)
-            case _ if rng.random() < 0.2:
-                del content[at:]
-        if not content:
-            break
-    return bytes(content)
-
-
 def _status(port: int, raw: bytes) -> str:
     """Return the status of what comes back to raw bytes; a connection that is closed is an answer too."""
     try:
@@ -349,6 +321,35 @@ def _status(port: int, raw: bytes) -> str:
     except OSError:
         return "closed"
     return answer[9:12].decode("latin-1") if answer.startswith(b"HTTP/1.1 ") else "closed"
+
+
+def looks(folder: Path, recording: Path, count: int, seed: int) -> list[tuple[str, str, str]]:
+    """Look into mutated recordings as the page of an upload does: each is read or refused, and no process dies."""
+    rng = random.Random(seed)  # noqa: S311
+    whole = recording.read_bytes()
+    lines = "\n".join(f"{0.01 * place:.2f},{rng.random():.4f},{rng.random():.4f}" for place in range(500))
+    samples = [(".nc", whole), (".csv", f"time [s],U [V],M_s [N m]\n{lines}\n".encode())]
+    answers = asyncio.run(_looked(folder, [(ending, mutated(content, rng)) for ending, content in samples * count]))
+    shown = ", ".join(f"{kind}: {number}" for kind, number in sorted(Counter(answers).items()))
+    died = sum(one == "died" for one in answers)
+    return [(f"{len(answers)} mutated recordings looked into: processes that died", "0", f"{died} ({shown})")]
+
+
+async def _looked(folder: Path, contents: Sequence[tuple[str, bytes]]) -> list[str]:
+    calculator, found = Calculator(store=str(folder / "small.db"), most_memory=4096 * MEGABYTE), []
+    for ending, content in contents:
+        path = folder / f"mutated{ending}"
+        path.write_bytes(content)
+        try:
+            await calculator.ask({"kind": "inspect", "path": str(path)}, longest_s=600.0)
+        except ServerError as refused:
+            sentence = str(refused)
+            strange = "It cannot be read: " in sentence
+            found.append("died" if "has died" in sentence else "refused without a reason" if strange else "refused")
+        else:
+            found.append("read")
+    await calculator.close()
+    return found
 
 
 def kills(folder: Path, recording: Path, *, count: int, seed: int) -> list[tuple[str, str, str]]:
@@ -438,6 +439,7 @@ def main() -> None:
     parser.add_argument("--store", type=Path, help="a store that was filled by benchmarks/store.py before")
     parser.add_argument("--requests", type=int, default=10_000, help="mutated requests and uploads")
     parser.add_argument("--recording", type=Path, help="recording of the campaign short, for the kills")
+    parser.add_argument("--looks", type=int, default=50, help="mutated recordings of each of two formats")
     parser.add_argument("--kills", type=int, default=20, help="how often server or workers are killed")
     parser.add_argument("--seed", type=int, default=1, help="of mutations and kills")
     parser.add_argument("--write", action="store_true", help=f"put the table into {DOCUMENT.relative_to(ROOT)}")
@@ -458,6 +460,7 @@ def main() -> None:
         rows += pages(full, folder / "pages")
         rows += fuzz(small, folder, options.requests, options.seed)
         if options.recording is not None:
+            rows += looks(folder, options.recording, options.looks, options.seed)
             rows += kills(folder, options.recording, count=options.kills, seed=options.seed)
     finally:
         shutil.rmtree(folder, ignore_errors=True)
