@@ -43,7 +43,7 @@ MEGABYTE = 2**20
 PORT_LINE = "Open http://127.0.0.1:"
 UPLOAD_MB = 135
 AT_A_TIME = 250
-PATIENCE_S = 0.5
+PATIENCE_S = 0.1
 JOB = {"vessel": "stan-tug-1205", "campaign": "short", "tested_at": "2026-11-01T10:00+01:00"}
 
 

@@ -61,8 +61,10 @@ class Service:
 
         Raises
         ------
-        ShaftprintError
-            If the store, the users or the server's own folder cannot be used.
+        ServerError
+            If the users, a folder or the server's own folder cannot be used.
+        StoreError
+            If the store cannot be used.
         """
         _expect_there(serving)
         users = None
