@@ -74,6 +74,7 @@ _ROOMS = (
     "units",
     "validation",
     "vessel",
+    "web",
 )
 
 _INNER_ROOMS = (
@@ -85,9 +86,11 @@ _INNER_ROOMS = (
     "escape",
     "files",
     "kernels",
+    "markup",
     "memory",
     "normalisation",
     "notebook",
+    "plain_table",
     "publication",
     "reasons",
     "spelling",

@@ -20,10 +20,12 @@ from shaftprint import fleet as fleet
 from shaftprint import identify as identify
 from shaftprint import kernels as kernels
 from shaftprint import limits as limits
+from shaftprint import markup as markup
 from shaftprint import memory as memory
 from shaftprint import models as models
 from shaftprint import normalisation as normalisation
 from shaftprint import notebook as notebook
+from shaftprint import plain_table as plain_table
 from shaftprint import propeller as propeller
 from shaftprint import publication as publication
 from shaftprint import reasons as reasons
@@ -44,6 +46,7 @@ from shaftprint import tug as tug
 from shaftprint import units as units
 from shaftprint import validation as validation
 from shaftprint import vessel as vessel
+from shaftprint import web as web
 from shaftprint import zones as zones
 from shaftprint.survey import run as open_survey  # noqa: F401
 

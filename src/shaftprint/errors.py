@@ -19,6 +19,7 @@
     ├── ReportError           a report that cannot be written
     ├── StoreError            a store of fingerprints that cannot be used, or a record that it refuses
     │   └── DatabaseError     a database that is busy, full, damaged or not reached: another time it may do
+    ├── ServerError           a server that cannot be started, or a request that it refuses
     └── ExportError           a model that cannot be written for another program
 
 Every message says which file, channel, second or field, what was expected, what was found and what to do.
@@ -87,6 +88,10 @@ class ReportError(ShaftprintError):
 
 class StoreError(ShaftprintError):
     """A store of fingerprints cannot be used, or a record cannot be kept in it."""
+
+
+class ServerError(ShaftprintError):
+    """A server of pages cannot be started, or refuses what was asked of it."""
 
 
 class DatabaseError(StoreError):

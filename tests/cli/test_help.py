@@ -22,6 +22,9 @@ HEAVY = (
     "tomlkit",
     "sqlalchemy",
     "alembic",
+    "starlette",
+    "uvicorn",
+    "argon2",
 )
 
 
@@ -54,6 +57,7 @@ def test_commands_are_those_that_were_asked_for():
         "store",
         "fleet",
         "work",
+        "serve",
     }
 
 

@@ -20,7 +20,8 @@ LIBRARY = (ROOT / "docs" / "library.md").read_text(encoding="utf-8")
 # what the rooms are made with: given, but not offered to who completes a name in a session
 INNER = {
     *("arguments", "arrays", "digits", "distributions", "escape", "files"),
-    *("kernels", "memory", "normalisation", "notebook", "publication", "reasons", "spelling", "zones"),
+    *("kernels", "markup", "memory", "normalisation", "notebook", "plain_table", "publication", "reasons"),
+    *("spelling", "zones"),
 }
 
 

@@ -83,7 +83,8 @@ def test_a_reader_that_a_package_names_so_is_used(acme):
 
 
 def test_toml_is_of_a_page_with_a_check_of_its_own():
-    assert {page.values[0] for page in of("toml")} == {"docs/drives.md", "docs/formats.md", "docs/legs.md"}
+    known = {"docs/drives.md", "docs/formats.md", "docs/legs.md", "docs/serve.md"}
+    assert {page.values[0] for page in of("toml")} == known
 
 
 def test_the_campaign_of_the_page_on_legs_is_one():
@@ -92,6 +93,16 @@ def test_the_campaign_of_the_page_on_legs_is_one():
     # as its comments say
     multisine, binary = campaign.legs
     assert (multisine.periods, binary.length_of_period_s) == (4, 126 * 0.25)
+
+
+def test_the_users_of_the_page_on_the_server_can_be_read(tmp_path):
+    access = pytest.importorskip("shaftprint.web.access")
+    ((_, text),) = (block for block in blocks("docs/serve.md") if block[0] == "toml")
+    hashed = access.hashed("twelve letters")
+    (tmp_path / "users.toml").write_text(text.replace("$argon2id$...", hashed), encoding="utf-8")
+    (anna,) = access.read_users(tmp_path / "users.toml").values()
+    assert (anna.role.name, anna.ships) == ("TESTER", ("9074729",))
+    assert access.is_right("twelve letters", anna.password)
 
 
 def test_the_drives_of_their_page_have_structures():

@@ -10,10 +10,10 @@ from shaftprint.catalogue import structure
 from shaftprint.identify import Settings, Unweighted, identify
 from shaftprint.identify.comparison import compare_fits
 from shaftprint.identify.fit import scan
+from shaftprint.markup import cell_html
 from shaftprint.reasons import Reason
 from shaftprint.report import scan_chart
 from shaftprint.report.charts import as_plain
-from shaftprint.report.notation import cell_html
 from shaftprint.report.sections import (
     comparison_section,
     number_section,

@@ -5,7 +5,7 @@ import pytest
 
 from shaftprint.catalogue import structure
 from shaftprint.fingerprint import Quantity
-from shaftprint.report.notation import sentence_html, symbol_html
+from shaftprint.markup import sentence_html, symbol_html
 from shaftprint.report.sections import fit_section
 from shaftprint.tables import (
     Table,

@@ -54,6 +54,7 @@ SECTIONS = {
     },
     "Keep over the years": {
         "store": "Keep the fingerprints of many ships, with their history.",
+        "serve": "Serve pages of the store: how each ship stands, histories, comparisons, uploads and jobs.",
         "fleet": "Identify many recordings, and keep their fingerprints in a store.",
         "work": "Do the jobs of a store on this computer.",
     },

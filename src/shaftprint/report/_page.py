@@ -11,26 +11,25 @@ import importlib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime
-from importlib.resources import files
+from functools import partial
 from importlib.util import find_spec
 from pathlib import Path
 from types import MappingProxyType
 
-from jinja2 import DictLoader, Environment, StrictUndefined, Template
+from jinja2 import Template
 from markupsafe import Markup
 
 from shaftprint.errors import ReportError
-from shaftprint.escape import html_value
+from shaftprint.markup import environment, shown_table, style_sheet, template_text
 from shaftprint.report._chart_files import ChartFiles, write_charts, write_scripts
 from shaftprint.report._folder import PAGE, PDF, report_written_whole
 from shaftprint.report.charts import plotly_script, plotly_sheets
-from shaftprint.report.notation import cell_html, sentence_html
 from shaftprint.report.sections import Cover, Section
 from shaftprint.tables import Table
 
-TEMPLATE, TABLE_TEMPLATE, CHART_TEMPLATE = "report.html.j2", "table.html.j2", "chart.html.j2"
-TEMPLATES = (TEMPLATE, TABLE_TEMPLATE, CHART_TEMPLATE, "sketch.svg.j2")
-STYLES = ("report.css", "charts.css")
+TEMPLATE, CHART_TEMPLATE = "report.html.j2", "chart.html.j2"
+TEMPLATES = (TEMPLATE, CHART_TEMPLATE, "sketch.svg.j2")
+CHART_STYLE = "charts.css"
 SCRIPTS = ("report.js", "layout.js", "charts.js")
 # Loaded when a PDF is asked for: it needs a library that not everybody has.
 PAPER = "shaftprint.report.paper"
@@ -147,10 +146,10 @@ def expect_reportlab() -> None:
 
 def _html(page: Page, charts: Mapping[str, ChartFiles], scripts: Sequence[str], empty_sheets: Sequence[str]) -> str:
     names = [picture.name for section in page.sections for picture in section.pictures]
-    style = "".join(_template(name) for name in STYLES)
-    environment = _environment()
-    table_template, chart_template = (environment.get_template(name) for name in (TABLE_TEMPLATE, CHART_TEMPLATE))
-    return environment.get_template(TEMPLATE).render(
+    style = style_sheet() + _template(CHART_STYLE)
+    filled = environment({name: _template(name) for name in TEMPLATES})
+    chart_template = filled.get_template(CHART_TEMPLATE)
+    return filled.get_template(TEMPLATE).render(
         title=page.title,
         subtitle=page.subtitle,
         created=page.created,
@@ -165,27 +164,12 @@ def _html(page: Page, charts: Mapping[str, ChartFiles], scripts: Sequence[str], 
         first_chart=charts[names[0]] if names else None,
         scripts=scripts,
         empty_sheets=empty_sheets,
-        shown=lambda table: _shown(table_template, table=table),
+        shown=partial(shown_table, filled),
         drawn=lambda picture: _shown(chart_template, picture=picture, chart=charts[picture.name]),
         # The style sheet is ours and holds nothing of the user's.
         style=Markup(style),  # noqa: S704
         policy=_policy(style),
     )
-
-
-def _environment() -> Environment:
-    """Return what fills the templates in: whatever it writes is escaped here, and nowhere else."""
-    environment = Environment(
-        loader=DictLoader({name: _template(name) for name in TEMPLATES}),
-        autoescape=True,
-        finalize=html_value,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    environment.filters["symbols"] = sentence_html
-    environment.filters["cell"] = cell_html
-    return environment
 
 
 def _shown(template: Template, **content: object) -> Markup:
@@ -207,4 +191,4 @@ def _digest(text: str) -> str:
 
 
 def _template(name: str) -> str:
-    return (files(__package__) / "templates" / name).read_text(encoding="utf-8")
+    return template_text(__package__, name)

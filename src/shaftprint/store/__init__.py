@@ -53,6 +53,7 @@ from shaftprint.store._nouns import (
     StoredNumber,
     Trial,
 )
+from shaftprint.store._overview import LineNow, LineRecords, line_records, lines_now, store_state, stored_fingerprint
 from shaftprint.store._record import Record, record_of
 from shaftprint.store._stated import Stated
 from shaftprint.store._store import Store, create_store, open_store, upgrade_store
@@ -76,6 +77,8 @@ __all__ = [
     "JobState",
     "Line",
     "LineHistory",
+    "LineNow",
+    "LineRecords",
     "LineSummary",
     "Record",
     "Ship",
@@ -105,6 +108,8 @@ __all__ = [
     "job_counts",
     "jobs",
     "line_history",
+    "line_records",
+    "lines_now",
     "network_file_system",
     "newest",
     "open_store",
@@ -113,5 +118,7 @@ __all__ = [
     "refuse",
     "renew",
     "retry",
+    "store_state",
+    "stored_fingerprint",
     "upgrade_store",
 ]

@@ -6,9 +6,9 @@ from typing import Any
 
 from shaftprint.arguments import refusing_none
 from shaftprint.errors import FingerprintError, StoreError
-from shaftprint.fingerprint import parse_fingerprint
 from shaftprint.store._document import document_sha256, inflated
 from shaftprint.store._history import SHOWN_HASH
+from shaftprint.store._late_rooms import fingerprint_room
 from shaftprint.store._nouns import Fault, StoredFingerprint, StoredNumber
 from shaftprint.store._record import numbers_of
 from shaftprint.store._store import Store, part_with_database
@@ -67,7 +67,7 @@ def _fault(one: StoredFingerprint, kept: Any, numbers: list[StoredNumber] | None
     if document_sha256(content) != one.sha256:
         return "its document has another SHA-256 than it had"
     try:
-        expected = numbers_of(parse_fingerprint(content, named="document"), named="document")
+        expected = numbers_of(fingerprint_room().parse_fingerprint(content, named="document"), named="document")
     except (FingerprintError, StoreError) as error:
         return f"its document is no fingerprint: {error}"
     if numbers is None:

@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING, Any
 from shaftprint.arguments import refusing_none
 from shaftprint.errors import FingerprintError, StoreError
 from shaftprint.files import reason
+from shaftprint.store._late_rooms import vessel_room
 from shaftprint.store._lines import HEADER, LONGEST_LINE, record_of_line
 from shaftprint.store._nouns import KINDS, Event, Line, Ship
 from shaftprint.store._record import Record, record_of
 from shaftprint.store._stated import Stated
 from shaftprint.store._store import Store
 from shaftprint.store._text import LONGEST_TEXT, expect_short
-from shaftprint.vessel import is_imo_number
 
 if TYPE_CHECKING:
     from shaftprint.store.database import Writer
@@ -123,7 +123,7 @@ def _records(file: Path) -> Iterator[tuple[str, dict[str, Any]]]:
 
 def _ship(content: Mapping[str, Any], class_name: object = None) -> Ship:
     number = content["imo_number"]
-    if number is not None and (type(number) is not int or not is_imo_number(number)):
+    if number is not None and (type(number) is not int or not vessel_room().is_imo_number(number)):
         raise StoreError(f"expected an IMO number, found {str(number)[:40]!r}")
     of_class = None if class_name is None else _short(class_name, "class of ships")
     return Ship(name=_short(content["name"], "name of a ship"), imo_number=number, class_name=of_class)

@@ -1,14 +1,18 @@
 """The tests of one line as ``drift`` takes them: fingerprints with their times, and what was done between them."""
 
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 from shaftprint.arguments import refusing_none
-from shaftprint.drift import Event
 from shaftprint.errors import StoreError
-from shaftprint.fingerprint import Fingerprint, parse_fingerprint
 from shaftprint.store._history import SHOWN_HASH, document, history
+from shaftprint.store._late_rooms import drift_room, fingerprint_room
 from shaftprint.store._nouns import Line
 from shaftprint.store._store import Store
+
+if TYPE_CHECKING:
+    from shaftprint.drift import Event
+    from shaftprint.fingerprint import Fingerprint
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -17,9 +21,9 @@ class LineHistory:
 
     line: Line
     """The line."""
-    fingerprints: dict[str, Fingerprint] = field(repr=False)
+    fingerprints: "dict[str, Fingerprint]" = field(repr=False)
     """Its fingerprints, none of which was superseded, by the time of their test."""
-    events: tuple[Event, ...]
+    events: "tuple[Event, ...]"
     """What was done to it."""
 
 
@@ -49,15 +53,16 @@ def line_history(store: Store, ship: str, *, line: str | None = None) -> LineHis
             f"{'name it with --line' if lines else 'add its fingerprints with shaftprint store add'}."
         )
     fingerprints: dict[str, Fingerprint] = {}
+    parse, event_of = fingerprint_room().parse_fingerprint, drift_room().Event
     for entry in found.entries:
         kept = entry.fingerprint
         name = f"{kept.trial.tested_at:%Y-%m-%d %H:%M}"
         name = f"{name} {kept.sha256[:SHOWN_HASH]}" if name in fingerprints else name
-        fingerprint = parse_fingerprint(document(store, kept.sha256), named=name)
+        fingerprint = parse(document(store, kept.sha256), named=name)
         conditions = fingerprint.conditions.model_copy(update={"tested_at": kept.trial.tested_at})
         fingerprints[name] = fingerprint.model_copy(update={"conditions": conditions})
     events = tuple(
-        Event(kind=event.kind, at=event.at, numbers=event.numbers, note=event.note)
+        event_of(kind=event.kind, at=event.at, numbers=event.numbers, note=event.note)
         for event in found.events
         if event.line.position == lines[0]
     )

@@ -4,10 +4,18 @@ from dataclasses import dataclass
 from datetime import datetime
 from typing import Final, Literal
 
-from shaftprint.drift import EVENTS
-
-KINDS: Final = tuple(EVENTS)
-"""What may have been done to a line between two tests; ``other`` says it in its note."""
+KINDS: Final = (
+    "docking",
+    "propeller-polished",
+    "propeller-changed",
+    "governor-changed",
+    "injectors-changed",
+    "gauge-calibrated",
+    "program-changed",
+    "other",
+)
+"""What may have been done to a line between two tests, as ``drift`` knows it, which would load far more; a test holds
+both against each other. ``other`` says it in its note."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

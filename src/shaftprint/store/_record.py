@@ -5,21 +5,24 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from datetime import datetime, tzinfo
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from shaftprint.errors import StoreError
-from shaftprint.fingerprint import WATER, Fingerprint, Quantity, ShipIdentity, SourceFile, parse_fingerprint
 from shaftprint.store._document import document_sha256, expect_length
+from shaftprint.store._late_rooms import fingerprint_room
 from shaftprint.store._nouns import StoredNumber, Trial
 from shaftprint.store._stated import Stated, ship_of, tested_when
 from shaftprint.store._text import LONGEST_TEXT, expect_short
+
+if TYPE_CHECKING:
+    from shaftprint.fingerprint import Fingerprint, Quantity, ShipIdentity, SourceFile
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Record:
     """A fingerprint as it is put into the store."""
 
-    ship: ShipIdentity
+    ship: "ShipIdentity"
     """Ship and line."""
     trial: Trial
     """The test."""
@@ -65,7 +68,8 @@ def record_of(document: bytes, stated: Stated, *, zone: tzinfo | None = None, na
         If the document is no fingerprint.
     """
     expect_length(document, named=named)
-    fingerprint = parse_fingerprint(document, named=named)
+    room = fingerprint_room()
+    fingerprint: Fingerprint = room.parse_fingerprint(document, named=named)
     conditions = fingerprint.conditions
     tested_at = tested_when(conditions, stated.tested_at, zone, named=named)
     needs_time = conditions.tested_at is None or conditions.tested_at.tzinfo is None
@@ -79,7 +83,7 @@ def record_of(document: bytes, stated: Stated, *, zone: tzinfo | None = None, na
             tested_at=tested_at,
             place=conditions.place or None,
             recording_sha256=_recording(fingerprint.sources),
-            **{name: getattr(conditions, name) for name in WATER},
+            **{name: getattr(conditions, name) for name in room.WATER},
         ),
         document=document,
         sha256=document_sha256(document),
@@ -93,7 +97,7 @@ def record_of(document: bytes, stated: Stated, *, zone: tzinfo | None = None, na
     )
 
 
-def _recording(sources: Sequence[SourceFile]) -> str | None:
+def _recording(sources: "Sequence[SourceFile]") -> str | None:
     """Return the SHA-256 that stands for the recordings of a test."""
     hashes = sorted(one.sha256.lower() for one in sources if one.role == "recording")
     if len(hashes) == 1 and len(hashes[0]) == hashlib.sha256().digest_size * 2 and hashes[0].isalnum():
@@ -101,12 +105,12 @@ def _recording(sources: Sequence[SourceFile]) -> str | None:
     return hashlib.sha256("\n".join(hashes).encode(errors="replace")).hexdigest() if hashes else None
 
 
-def _hash(source: SourceFile, named: str) -> str:
+def _hash(source: "SourceFile", named: str) -> str:
     expect_short(source.sha256, "SHA-256", named=named)
     return source.sha256
 
 
-def numbers_of(fingerprint: Fingerprint, *, named: str) -> tuple[StoredNumber, ...]:
+def numbers_of(fingerprint: "Fingerprint", *, named: str) -> tuple[StoredNumber, ...]:
     """Return the numbers of a fingerprint as they are kept, each name of a kind once.
 
     Raises
@@ -125,7 +129,7 @@ def numbers_of(fingerprint: Fingerprint, *, named: str) -> tuple[StoredNumber, .
     return tuple(found.values())
 
 
-def _number(kind: str, quantity: Quantity, *, trusted: bool, named: str) -> StoredNumber:
+def _number(kind: str, quantity: "Quantity", *, trusted: bool, named: str) -> StoredNumber:
     expect_short(quantity.name, "name of a number", named=named)
     expect_short(quantity.unit, "unit", named=named)
     low, high = quantity.limits_95

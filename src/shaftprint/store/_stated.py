@@ -2,13 +2,15 @@
 
 from dataclasses import dataclass
 from datetime import UTC, datetime, tzinfo
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from shaftprint.errors import StoreError
-from shaftprint.fingerprint import Conditions, ShipIdentity
+from shaftprint.store._late_rooms import fingerprint_room, vessel_room
 from shaftprint.store._text import expect_short
-from shaftprint.vessel import is_imo_number
 from shaftprint.zones import in_zone, utc_text
+
+if TYPE_CHECKING:
+    from shaftprint.fingerprint import Conditions, ShipIdentity
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -36,7 +38,7 @@ def utc_iso(moment: datetime) -> str:
     return moment.astimezone(UTC).isoformat(timespec="microseconds").replace("+00:00", "Z")
 
 
-def tested_when(conditions: Conditions, stated: datetime | None, zone: tzinfo | None, *, named: str) -> datetime:
+def tested_when(conditions: "Conditions", stated: datetime | None, zone: tzinfo | None, *, named: str) -> datetime:
     """Return when a test was made: as its document says, else as stated; nothing is guessed.
 
     Raises
@@ -75,7 +77,7 @@ def _instant(shown: datetime, zone: tzinfo | None, *, named: str) -> datetime:
         raise StoreError(f"{named}: {error}; state it with --tested-at and its offset.") from None
 
 
-def ship_of(conditions: Conditions, stated: Stated, *, named: str) -> ShipIdentity:
+def ship_of(conditions: "Conditions", stated: Stated, *, named: str) -> "ShipIdentity":
     """Return ship and line of a fingerprint: as its document says, what it leaves open as stated.
 
     Raises
@@ -83,7 +85,7 @@ def ship_of(conditions: Conditions, stated: Stated, *, named: str) -> ShipIdenti
     StoreError
         If neither says it, or they differ.
     """
-    if stated.imo_number is not None and not is_imo_number(stated.imo_number):
+    if stated.imo_number is not None and not vessel_room().is_imo_number(stated.imo_number):
         raise StoreError(
             f"--imo: expected seven digits of which the last checks the others, found {stated.imo_number}."
         )
@@ -99,7 +101,10 @@ def ship_of(conditions: Conditions, stated: Stated, *, named: str) -> ShipIdenti
     class_name = None if document is None else document.class_name
     for text, what in ((name, "name of a ship"), (line, "shaft line"), (class_name, "class of ships")):
         expect_short(text, what, named=named)
-    return ShipIdentity(name=name, imo_number=number, class_name=class_name, line=line)
+    identity: ShipIdentity = fingerprint_room().ShipIdentity(
+        name=name, imo_number=number, class_name=class_name, line=line
+    )
+    return identity
 
 
 def _agreed(document: str | None, stated: str | None, option: str, noun: str, *, named: str) -> str:

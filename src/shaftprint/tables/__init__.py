@@ -15,6 +15,7 @@ its letters (±, a true minus sign, a narrow space between thousands) into those
 """
 
 from shaftprint.digits import interval, p_value_text, plain, rounded, to_digit_of, unit_text, with_deviation
+from shaftprint.plain_table import MEANING, Column, Symbol, Table, numbers, texts
 from shaftprint.tables._conditions import ship_text, tested_text, water_facts
 from shaftprint.tables._drive import (
     drive_assumed_table,
@@ -67,7 +68,6 @@ from shaftprint.tables._signals import (
     window_table,
 )
 from shaftprint.tables._structures import fits_table, structure_tables
-from shaftprint.tables._table import MEANING, Column, Symbol, Table, numbers, texts
 from shaftprint.tables._validation import excerpt_name, misfit_table, models_table, step_number_table
 
 __all__ = [

@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from shaftprint.digits import p_value_text, rounded, stated, unit_text, with_deviation
-from shaftprint.tables._table import MEANING, Symbol, Table, numbers, texts
+from shaftprint.plain_table import MEANING, Symbol, Table, numbers, texts
 
 if TYPE_CHECKING:
     from shaftprint.bench import DriveDifference, TimeComparison, ValidatedRecord

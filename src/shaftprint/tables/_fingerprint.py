@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from shaftprint.digits import fine_unit, interval, p_value_text, plain, rounded, to_digit_of, unit_text, with_deviation
 from shaftprint.distributions import NORMAL_95
-from shaftprint.tables._table import MEANING, Column, Symbol, Table, numbers, texts
+from shaftprint.plain_table import MEANING, Column, Symbol, Table, numbers, texts
 
 if TYPE_CHECKING:
     from shaftprint.fingerprint import Fingerprint, Quality, Quantity

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from shaftprint.digits import plain, rounded, unit_text, with_deviation
-from shaftprint.tables._table import Table, numbers, texts
+from shaftprint.plain_table import Table, numbers, texts
 
 if TYPE_CHECKING:
     from shaftprint.torsion import ExpectedInertia, ExpectedValue, InertiaComparison, Modes, TwoMasses

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from shaftprint.digits import plain
-from shaftprint.tables._table import Table, numbers, texts
+from shaftprint.plain_table import Table, numbers, texts
 
 if TYPE_CHECKING:
     from shaftprint.design import LimitUse

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from shaftprint.digits import fine_unit, interval, plain, rounded, unit_text, with_deviation
 from shaftprint.distributions import NORMAL_95
-from shaftprint.tables._table import Symbol, Table, numbers, texts
+from shaftprint.plain_table import Symbol, Table, numbers, texts
 from shaftprint.units import SECONDS_PER_MINUTE
 
 if TYPE_CHECKING:

@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from shaftprint.digits import plain, rounded, with_deviation
-from shaftprint.tables._table import Table, numbers, texts
+from shaftprint.plain_table import Table, numbers, texts
 from shaftprint.units import MILLI, PPM
 
 if TYPE_CHECKING:

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shaftprint.digits import plain, with_deviation
-from shaftprint.tables._table import Column, Symbol, Table, numbers, texts
+from shaftprint.plain_table import Column, Symbol, Table, numbers, texts
 from shaftprint.units import MILLI, SECONDS_PER_MINUTE
 
 if TYPE_CHECKING:

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from shaftprint.digits import p_value_text, plain, rounded, with_deviation
-from shaftprint.tables._table import Table, numbers, texts
+from shaftprint.plain_table import Table, numbers, texts
 
 if TYPE_CHECKING:
     from shaftprint.identify import Identification

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from shaftprint.digits import p_value_text, plain, rounded, with_deviation
-from shaftprint.tables._table import Symbol, Table, numbers, texts
+from shaftprint.plain_table import Symbol, Table, numbers, texts
 from shaftprint.units import MILLI
 
 if TYPE_CHECKING:

@@ -3,7 +3,7 @@
 from typing import TypeAlias
 
 from shaftprint.escape import html_text
-from shaftprint.report.notation import mathtext, plain_label, symbol_html
+from shaftprint.markup import mathtext, plain_label, symbol_html
 from shaftprint.tables import Symbol, unit_text
 
 Text: TypeAlias = str | tuple[str, ...]

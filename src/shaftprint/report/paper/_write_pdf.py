@@ -15,8 +15,8 @@ from reportlab.platypus import Image, KeepTogether, ListFlowable, PageBreak, Sim
 from reportlab.platypus import Table as Grid
 
 from shaftprint.escape import printable
+from shaftprint.markup import cell_html
 from shaftprint.report.charts import draw
-from shaftprint.report.notation import cell_html
 from shaftprint.report.paper._looks import CELL_PT, MARGIN_MM, PAPER_COLOURS, WIDTH_MM, Looks, make_looks
 from shaftprint.report.paper._sketch_drawing import sketch_drawing
 

@@ -4,8 +4,8 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from shaftprint.fingerprint import clock_influences
+from shaftprint.markup import name_parts
 from shaftprint.report.figures import THESIS_LIMIT_DB, signal_to_noise_chart
-from shaftprint.report.notation import name_parts
 from shaftprint.report.sections._clocks import clock_sentences
 from shaftprint.report.sections._sections import Inputs, Picture, Section
 from shaftprint.tables import (

@@ -7,6 +7,7 @@ from shaftprint.store.database._damage import database_faults
 from shaftprint.store.database._database import Database, connect
 from shaftprint.store.database._hashes import Hashes
 from shaftprint.store.database._ledger import Ledger
+from shaftprint.store.database._lines_now import fingerprint_called, line_states, store_state
 from shaftprint.store.database._location import Location, location_of
 from shaftprint.store.database._reader import Reader, ShipRow
 from shaftprint.store.database._schema import MIGRATIONS, create, expect_current, upgrade
@@ -28,6 +29,9 @@ __all__ = [
     "create",
     "database_faults",
     "expect_current",
+    "fingerprint_called",
+    "line_states",
     "location_of",
+    "store_state",
     "upgrade",
 ]

@@ -1,13 +1,12 @@
 """The schema of a store: made, looked at, and brought up to that of this version of the program."""
 
 import contextlib
+import importlib
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Final
 
 import sqlalchemy as sa
-from alembic import command
-from alembic.config import Config
 
 from shaftprint.errors import StoreError
 from shaftprint.store.database._database import Database
@@ -92,11 +91,12 @@ def _references_unchecked(database: Database) -> Iterator[None]:
 
 
 def _migrate(connection: sa.Connection) -> None:
-    config = Config()
+    # only who makes or upgrades a store loads it
+    config = importlib.import_module("alembic.config").Config()
     # a percent sign begins a variable there
     config.set_main_option("script_location", str(MIGRATIONS).replace("%", "%%"))
     config.attributes |= {"connection": connection, "version_table": VERSION_TABLE}
-    command.upgrade(config, "head")
+    importlib.import_module("alembic.command").upgrade(config, "head")
 
 
 def _version(database: Database, connection: sa.Connection) -> str:

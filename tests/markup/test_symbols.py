@@ -1,4 +1,4 @@
-from shaftprint.report.notation import mathtext
+from shaftprint.markup import mathtext
 
 
 def test_names_become_symbols():

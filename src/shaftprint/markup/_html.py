@@ -5,8 +5,8 @@ import re
 from markupsafe import Markup, escape
 
 from shaftprint.digits import typographic
-from shaftprint.report.notation._symbols import is_symbol, name_parts
-from shaftprint.tables import Symbol, Table
+from shaftprint.markup._symbols import is_symbol, name_parts
+from shaftprint.plain_table import Symbol, Table
 
 _SYMBOL = re.compile(r"\b(?:(?:[A-Za-z]|tau|omega)_[A-Za-z0-9]+|zeta)\b")
 _LETTERS = {"tau": "τ", "omega": "ω", "zeta": "ζ", "delta": "δ", "eta": "η", "rho": "ρ"}

@@ -1,0 +1,124 @@
+"""``shaftprint serve``: pages of the store for browsers and programs."""
+
+import importlib
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any, Final
+
+import click
+
+from shaftprint.cli._store_options import store_option
+from shaftprint.cli._terminal import answer, echo, say
+from shaftprint.errors import ServerError
+
+_NEEDED: Final = ("starlette", "uvicorn", "argon2", "itsdangerous", "sqlalchemy")
+_STATE: Final = "shaftprint-server"
+_MEGABYTE: Final = 2**20
+
+
+@click.command("serve")
+@store_option
+@click.option("--listen", default="127.0.0.1:8080", show_default=True, metavar="HOST:PORT", help="Where to listen.")
+@click.option("--users", type=click.Path(path_type=Path), help="File of users; needed where other computers reach it.")
+@click.option("--add-user", metavar="NAME", help="Ask for a password, put a user into the file of --users, and end.")
+@click.option(
+    "--role", type=click.Choice(("reader", "tester", "owner")), default="reader", show_default=True,
+    help="Role of that user.",
+)  # fmt: skip
+@click.option(
+    "--ship", "ships", multiple=True, metavar="IMO",
+    help="A ship that this user sees, or all; one without IMO number by its name. May be repeated.",
+)  # fmt: skip
+@click.option(
+    "--state", type=click.Path(path_type=Path), default=Path(_STATE), show_default=True,
+    help="Folder for uploads, reports and what the server itself keeps.",
+)  # fmt: skip
+@click.option(
+    "--folder", "folders", multiple=True, type=click.Path(path_type=Path),
+    help="Folder whose recordings may be identified where they lie. May be repeated.",
+)  # fmt: skip
+@click.option(
+    "--host", "hosts", multiple=True, metavar="NAME", help="A name by which browsers reach it. May be repeated."
+)
+@click.option("--workers", type=click.IntRange(0, 64), default=1, show_default=True, help="Processes that identify.")
+@click.option("--certificate", type=click.Path(path_type=Path), help="Certificate for TLS.")
+@click.option("--key", type=click.Path(path_type=Path), help="Key of the certificate.")
+@click.option("--behind-tls", is_flag=True, help="A proxy on this computer speaks TLS in front of it.")
+@click.option(
+    "--overdue-days", type=click.IntRange(1, 3650), default=365, show_default=True,
+    help="After so many days a test is overdue.",
+)  # fmt: skip
+@click.option(
+    "--most-upload", type=click.IntRange(1, 100_000), default=2048, show_default=True, metavar="MB",
+    help="Largest recording that is taken.",
+)  # fmt: skip
+def command(
+    url: str,
+    *,
+    listen: str,
+    users: Path | None,
+    add_user: str | None,
+    role: str,
+    ships: tuple[str, ...],
+    state: Path,
+    folders: tuple[Path, ...],
+    hosts: tuple[str, ...],
+    workers: int,
+    certificate: Path | None,
+    key: Path | None,
+    behind_tls: bool,
+    overdue_days: int,
+    most_upload: int,
+) -> None:
+    """Serve pages of the store: how each ship stands, histories, comparisons, uploads and jobs.
+
+    Without other options for this computer alone. Every page has a twin for programs below /api/v1.
+    """
+    web = _web()
+    if add_user is not None:
+        _add(web, users, add_user, role, ships)
+        return
+    if (certificate is None) != (key is None):
+        raise click.UsageError("--certificate and --key belong together: state both, or neither.")
+    serving = web.Serving(
+        store=url,
+        state=state,
+        listen=web.listen_at(listen),
+        users=users,
+        folders=folders,
+        hosts=hosts,
+        certificate=None if certificate is None or key is None else (certificate, key),
+        behind_tls=behind_tls,
+        workers=workers,
+        overdue_days=overdue_days,
+        most_upload=most_upload * _MEGABYTE,
+    )
+    if not serving.listen.is_local and not serving.is_secure:
+        say("Passwords and pages go over the network as they are: state --certificate and --key, or --behind-tls.\n")
+    web.serve(serving, begun=_begun)
+
+
+def _begun(address: str) -> None:
+    answer(f"Open {address}")
+    echo("Ctrl-C ends it; jobs that are open go on when it is begun again.")
+
+
+def _web() -> Any:
+    """Return the room of pages, loaded here: no other command needs it."""
+    missing = [name for name in _NEEDED if find_spec(name) is None]
+    if missing:
+        raise ServerError(f'serve: expected the package {missing[0]}, found none; pip install "shaftprint[web]".')
+    return importlib.import_module("shaftprint.web")
+
+
+def _add(web: Any, users: Path | None, name: str, role: str, ships: tuple[str, ...]) -> None:
+    if users is None or not ships:
+        raise click.UsageError("--add-user needs --users FILE and --ship, which may be all.")
+    password = click.prompt("Password", hide_input=True, confirmation_prompt=True)
+    if not web.SHORTEST <= len(password) <= web.LONGEST:
+        raise click.UsageError(
+            f"expected a password of {web.SHORTEST} to {web.LONGEST} letters, found {len(password)}."
+        )
+    person = web.Person(name=name, role=web.ROLES[role], ships=ships, password=web.hashed(password))
+    web.with_user(users, person)
+    answer(f"{name} is in {users} as {role}, ships: {', '.join(ships)}.")

@@ -1,0 +1,128 @@
+"""What a page shows of a store: its lines as they stand, all that is kept of one line, and one fingerprint."""
+
+from dataclasses import dataclass
+from datetime import datetime
+
+from shaftprint.arguments import refusing_none
+from shaftprint.errors import StoreError
+from shaftprint.store._nouns import Event, HistoryEntry, Line, StoredFingerprint, StoredNumber
+from shaftprint.store._store import Store, part_with_database
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class LineNow:
+    """A line with its newest test, and a word that changes with every test and event of it."""
+
+    ship_id: int
+    """Number of the ship in this database."""
+    line: Line
+    """The line."""
+    tests: int
+    """How many tests of it are kept."""
+    tested_at: datetime | None
+    """When the newest was made; None where there is none."""
+    trustworthy: bool | None
+    """Whether its numbers may be used."""
+    number: StoredNumber | None
+    """The number that was asked for, at the newest test."""
+    state: str
+    """Another word after each fingerprint and event that is put in."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class LineRecords:
+    """All that a store keeps of a line."""
+
+    ship_id: int
+    """Number of the ship in this database."""
+    line: Line
+    """The line."""
+    entries: tuple[HistoryEntry, ...]
+    """Its tests, none of which was superseded, in the order of time."""
+    events: tuple[Event, ...]
+    """What was done to it."""
+    state: str
+    """Another word after each fingerprint and event that is put in."""
+
+
+@refusing_none(StoreError)
+def lines_now(store: Store, *, number: str | None = None) -> tuple[LineNow, ...]:
+    """Return every line of a store as it stands, by IMO number and name of the ship.
+
+    Parameters
+    ----------
+    store
+        The store.
+    number
+        Name of a number that is wanted of its newest test; None for none.
+    """
+    part = part_with_database()
+    with store.database.reading() as connection:
+        reader = store.database.reader(connection)
+        ships = reader.ships()
+        ship_of = {one.ship: one.id for one in ships}
+        states = part.line_states(connection)
+        keys = list(reader.lines(ships))
+        return tuple(
+            LineNow(
+                ship_id=ship_of[one.line.ship],
+                line=one.line,
+                tests=one.tests,
+                tested_at=one.tested_at,
+                trustworthy=one.trustworthy,
+                number=one.number,
+                state=states.get(key, ""),
+            )
+            for key, one in zip(keys, reader.summaries(number=number), strict=True)
+        )
+
+
+@refusing_none(StoreError)
+def store_state(store: Store) -> str:
+    """Return a word that changes with every fingerprint and event that is put into a store."""
+    part = part_with_database()
+    with store.database.reading() as connection:
+        return str(part.store_state(connection))
+
+
+@refusing_none(StoreError)
+def line_records(store: Store, *, position: str, imo_number: int | None = None, ship_id: int = 0) -> LineRecords | None:
+    """Return all that is kept of one line; None where there is no such line.
+
+    Parameters
+    ----------
+    store
+        The store.
+    position
+        Which line of the ship.
+    imo_number
+        IMO number of the ship; None for a ship without one.
+    ship_id
+        Number of that ship in this database.
+    """
+    part = part_with_database()
+    with store.database.reading() as connection:
+        reader = store.database.reader(connection)
+        ships = reader.ships(imo_number=imo_number)
+        ships = [one for one in ships if imo_number is not None or (one.id == ship_id and one.ship.imo_number is None)]
+        lines = {key: line for key, line in reader.lines(ships).items() if line.position == position} if ships else {}
+        if not lines:
+            return None
+        states = part.line_states(connection, list(lines))
+        (key,) = lines
+        return LineRecords(
+            ship_id=ships[0].id,
+            line=lines[key],
+            entries=tuple(reader.entries(lines)),
+            events=tuple(reader.events(lines)),
+            state=states.get(key, ""),
+        )
+
+
+@refusing_none(StoreError)
+def stored_fingerprint(store: Store, sha256: str) -> StoredFingerprint | None:
+    """Return what is kept of a fingerprint beside its document; None where there is none."""
+    part = part_with_database()
+    with store.database.reading() as connection:
+        found: StoredFingerprint | None = part.fingerprint_called(store.database.reader(connection), sha256)
+    return found

@@ -1,0 +1,40 @@
+"""Two tests beside each other: what ``shaftprint compare`` says."""
+
+import os
+from typing import Any
+
+from shaftprint.drift import LOAD_REPEATABILITY, differ, finding_sentences
+from shaftprint.fingerprint import parse_fingerprint
+from shaftprint.report import cause_table, difference_table, differences, vessel_file_sentences
+from shaftprint.store import document, open_store
+from shaftprint.web.calculator._tables import table_content, table_contents
+
+
+def compared(first: str, other: str, names: list[str]) -> dict[str, Any]:
+    """Return what differs between two fingerprints, for JSON.
+
+    Parameters
+    ----------
+    first, other
+        Their SHA-256, the earlier one first.
+    names
+        What they are called.
+    """
+    with open_store(os.environ["SHAFTPRINT_STORE"]) as store:
+        one, two = (
+            parse_fingerprint(document(store, sha256), named=name)
+            for sha256, name in zip((first, other), names, strict=True)
+        )
+    finding = differ(one, two, load_repeatability=LOAD_REPEATABILITY)
+    rows = differences(one, two, load_repeatability=LOAD_REPEATABILITY)
+    trusted = one.verdict.trustworthy and two.verdict.trustworthy
+    return {
+        "word": "changed" if finding.changes else "cannot be told" if finding.because or not trusted else "unchanged",
+        "sentences": list(finding_sentences(finding)),
+        "not_trustworthy": [
+            name for name, fingerprint in zip(names, (one, two), strict=True) if not fingerprint.verdict.trustworthy
+        ],
+        "causes": None if finding.because else table_content(cause_table(names[1], finding)),
+        "differences": table_contents([difference_table(names[0], names[1], rows)]),
+        "files": list(vessel_file_sentences(one, two)),
+    }

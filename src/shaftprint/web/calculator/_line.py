@@ -1,0 +1,87 @@
+"""Whether a line has changed over the years: what ``shaftprint drift`` says, with each cause test by test."""
+
+import os
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from shaftprint.distributions import NORMAL_95
+from shaftprint.drift import LOAD_REPEATABILITY, history_of, watch, watch_sentences
+from shaftprint.report import course_table, sizes_of_tests
+from shaftprint.store import line_history, open_store
+from shaftprint.web.calculator._tables import table_content
+
+if TYPE_CHECKING:
+    from shaftprint.drift import DatedCause, History, SizedCause, WatchFinding
+
+SEED: Final = 1
+MOST_TESTS: Final = 40
+"""Tests that are judged together; of a longer history the newest. Time grows with the cube of their number."""
+PERCENT, MILLISECONDS = 100.0, 1000.0
+
+
+def judged_line(ship: str, line: str) -> dict[str, Any]:
+    """Return what a history says, for JSON.
+
+    Parameters
+    ----------
+    ship
+        IMO number of the ship, or its name where it has none.
+    line
+        Which of its lines.
+    """
+    with open_store(os.environ["SHAFTPRINT_STORE"]) as store:
+        known = line_history(store, ship, line=line)
+    newest = dict(list(known.fingerprints.items())[-MOST_TESTS:])
+    history = history_of(newest, known.events)
+    finding = watch(history, rng=np.random.default_rng(SEED))
+    sizes = sizes_of_tests(history, load_repeatability=LOAD_REPEATABILITY)
+    return {
+        "word": "changed" if finding.drifts else "cannot be told" if finding.because else "unchanged",
+        "causes": [_cause(drift.best, history) for drift in finding.drifts],
+        "because": finding.because,
+        "since": f"{history.tests[0].at:%Y-%m-%d}" if history.tests else None,
+        "sentences": list(watch_sentences(finding, history)),
+        "left_out": history.left_out | finding.left_out,
+        "earlier": len(known.fingerprints) - len(newest),
+        "courses": _courses(finding, history),
+        "strips": [_strip(name, column, history) for name, column in sizes.items()],
+    }
+
+
+def _cause(course: "DatedCause", history: "History") -> dict[str, Any]:
+    days = [f"{test.at:%Y-%m-%d}" for test in history.tests]
+    factor = PERCENT if course.cause.is_share else MILLISECONDS
+    return {
+        "name": course.cause.name,
+        "words": course.words,
+        "shape": course.shape,
+        "since": days[course.since],
+        "size": factor * course.size,
+        "std": factor * course.std,
+        "unit": course.cause.unit,
+    }
+
+
+def _courses(finding: "WatchFinding", history: "History") -> dict[str, Any] | None:
+    return None if finding.because else table_content(course_table(finding, history))
+
+
+def _strip(name: str, column: "list[SizedCause | None]", history: "History") -> dict[str, Any]:
+    """Return a cause test by test against the first one, in per cent or milliseconds."""
+    there = [(test, one) for test, one in zip(history.tests, column, strict=True) if one is not None]
+    is_share = there[0][1].cause.is_share
+    factor = PERCENT if is_share else MILLISECONDS
+    return {
+        "name": name,
+        "unit": "%" if is_share else "ms",
+        "points": [
+            {
+                "at": test.at.isoformat(),
+                "value": factor * one.size,
+                "low": factor * (one.size - NORMAL_95 * one.std),
+                "high": factor * (one.size + NORMAL_95 * one.std),
+            }
+            for test, one in there
+        ],
+    }

@@ -1,0 +1,232 @@
+"""Recordings and settings files that come in, and the page of each: what is in it, and the form that identifies it."""
+
+from collections.abc import AsyncIterator
+from dataclasses import asdict
+from datetime import datetime
+from typing import Any, Final
+
+from starlette.exceptions import HTTPException
+from starlette.responses import Response
+
+from shaftprint.store import Line, Ship
+from shaftprint.web._asked import Asked, Moved, NotThere, Shown, ship_word
+from shaftprint.web._kept import Making, Upload
+from shaftprint.web._multipart import form_with_file
+from shaftprint.web._setting import answer_of
+from shaftprint.web._upload import SETTINGS, Taken, checked_name, expect_room, is_number, take
+from shaftprint.web.access import Role
+from shaftprint.web.pages._line import records_called
+
+# as their rooms have them, which would load far more; a test holds both together
+VESSELS: Final = ("stan-tug-1205", "stan-tug-1205-ecu")
+CAMPAIGNS: Final = ("12min", "5min", "short", "thesis", "transit", "two-speeds")
+STRUCTURES: Final = ("GAUGE-CLOSED", "GAUGE-CORE", "GAUGE-OPEN", "GAUGE-INFLOW", "GAUGE-ECU")
+_LONGEST_WORD: Final = 100
+_MOST_CHOICES: Final = 500
+
+
+async def upload_form(asked: Asked) -> Shown:
+    """Return the page on which a file is uploaded, with what was uploaded before."""
+    return await asked.read(_upload_form, asked)
+
+
+def _upload_form(asked: Asked) -> Shown:
+    uploads = [_content(one) for one in uploads_of(asked)]
+    choices = [
+        {"value": f"{ship_word(one.line.ship, one.ship_id)}/{one.line.position}", "words": _words(one.line)}
+        for one in asked.service.lines.now()
+        if asked.person.sees(one.line.ship)
+    ]
+    return Shown(
+        template="upload.html.j2",
+        title="Upload",
+        data={"uploads": uploads, "most_bytes": asked.service.serving.most_upload},
+        drawn={"lines": choices[:_MOST_CHOICES], "chosen": asked.query("line")},
+    )
+
+
+def uploads_of(asked: Asked) -> list[Upload]:
+    """Return the uploads of ships that somebody sees, the newest first."""
+    return [one for one in asked.service.kept.uploads() if asked.person.sees(_ship_of(one))]
+
+
+def _ship_of(one: Upload) -> Ship:
+    return Ship(name=one.ship, imo_number=one.imo)
+
+
+def _words(line: Line) -> str:
+    number = "" if line.ship.imo_number is None else f" (IMO {line.ship.imo_number})"
+    return f"{line.ship.name}{number}, {line.position}"
+
+
+def _content(one: Upload) -> dict[str, Any]:
+    return asdict(one) | {"address": f"/recordings/{one.id}", "settings": one.name.lower().endswith(SETTINGS)}
+
+
+async def upload(asked: Asked) -> Moved:
+    """Take a file from a form."""
+    form = form_with_file(asked.request.headers.get("content-type", ""), aiter(asked.request.stream()))
+    await form.read_fields()
+    asked.check_token(asked.request.headers.get("x-csrf-token") or form.fields.get("token", ""))
+    line = await asked.read(line_of, asked, form.fields)
+    return await _taken(asked, form.file(), form.file_name, line)
+
+
+async def put_recording(asked: Asked) -> Moved:
+    """Take a file that is the whole body of a request."""
+    asked.check_token(asked.request.headers.get("x-csrf-token", ""))
+    line = await asked.read(line_of, asked, dict(asked.request.query_params))
+    return await _taken(asked, aiter(asked.request.stream()), asked.named("name"), line)
+
+
+def line_of(asked: Asked, fields: dict[str, str]) -> Line:
+    """Return the line that a file is of: one that is there, or a new one of a ship that somebody sees.
+
+    Raises
+    ------
+    HTTPException
+        If it is not said which.
+    NotThere
+        If the ship was not given to him.
+    """
+    chosen = fields.get("line", "").strip()
+    if chosen and "/" in chosen:
+        word, _, position = chosen.partition("/")
+        found = records_called(asked, word, position)
+        if found is None:
+            raise NotThere
+        return found.line
+    name, number = fields.get("ship", "").strip(), fields.get("imo", "").strip().upper().removeprefix("IMO").strip()
+    if not name or not chosen or max(len(name), len(chosen)) > _LONGEST_WORD or not (name + chosen).isprintable():
+        raise HTTPException(400, "Expected a line from the list, or the name of a ship and of its shaft line.")
+    if number and not is_imo_number(number):
+        raise HTTPException(
+            400, f"Expected an IMO number, seven digits of which the last checks the others, found {number[:20]!r}."
+        )
+    ship = Ship(name=name, imo_number=int(number) if number else None)
+    if not asked.person.sees(ship):
+        raise NotThere
+    return Line(ship=ship, position=chosen)
+
+
+def is_imo_number(text: str) -> bool:
+    """Return whether a text can be the IMO number of a ship."""
+    # as vessel.is_imo_number, which would load far more (IMO resolution A.1117(30)); a test holds both together
+    digits = 7
+    if not (text.isascii() and text.isdecimal() and len(text) == digits) or text[0] == "0":
+        return False
+    return sum(factor * int(digit) for factor, digit in zip(range(7, 1, -1), text, strict=False)) % 10 == int(text[-1])
+
+
+async def _taken(asked: Asked, pieces: AsyncIterator[bytes], name: str, line: Line) -> Moved:
+    plain, most = checked_name(name), asked.service.serving.most_upload
+    announced = asked.request.headers.get("content-length", "")
+    length = int(announced) if announced.isascii() and announced.isdecimal() and len(announced) < 19 else None
+    expect_room(asked.service.recordings, most=most + 64 * 1024, length=length)
+    found: Taken = await take(pieces, asked.service.recordings, plain, most=most, length=None)
+    one = Upload(
+        id=found.id,
+        imo=line.ship.imo_number,
+        ship=line.ship.name,
+        line=line.position,
+        name=plain,
+        size=found.size,
+        sha256=found.sha256,
+        person=asked.person.name,
+        at=asked.service.now().isoformat(),
+    )
+    await asked.read(asked.service.kept.put_upload, one)
+    asked.note("uploaded", line, name=plain, sha256=found.sha256, size=found.size)
+    return Moved(to=f"/recordings/{one.id}", data=_content(one), status=201)
+
+
+def upload_called(asked: Asked, number: str) -> Upload:
+    """Return an upload, if somebody sees its ship.
+
+    Raises
+    ------
+    NotThere
+        If there is none, or it was not given to him.
+    """
+    found = asked.service.kept.upload(number) if is_number(number) else None
+    if found is None or not asked.person.sees(_ship_of(found)):
+        raise NotThere
+    return found
+
+
+async def recording(asked: Asked) -> Shown:
+    """Return the page of a file that was uploaded."""
+    return await asked.read(_recording, asked)
+
+
+def _recording(asked: Asked) -> Shown:
+    one = upload_called(asked, asked.named("id"))
+    making = asked.service.kept.making(f"inspect {one.id}")
+    inside: dict[str, Any] = (
+        {"state": "none"} if making is None else {"state": making.state, "sentence": making.sentence}
+    )
+    if making is not None and making.state == "done":
+        inside |= making.args["answer"]
+    same = [
+        other for other in uploads_of(asked) if (other.imo or other.ship, other.line) == (one.imo or one.ship, one.line)
+    ]
+    settings = [
+        {"value": other.id, "words": f"{other.name}, uploaded {other.at[:10]}"}
+        for other in same
+        if other.name.endswith(SETTINGS)
+    ]
+    return Shown(
+        template="recording.html.j2",
+        title=one.name,
+        data={"upload": _content(one), "inspection": inside},
+        drawn={
+            "choices": choices_of(settings),
+            "source": f"upload:{one.id}",
+            "back": f"/recordings/{one.id}",
+        },
+    )
+
+
+def choices_of(settings: list[dict[str, str]]) -> dict[str, Any]:
+    """Return what may be chosen in the form of a job."""
+    shipped = {"vessel": VESSELS, "campaign": CAMPAIGNS}
+    chosen = {
+        # files that are called so first
+        kind: [
+            *sorted(settings, key=lambda one: kind not in one["words"].lower()),
+            *({"value": one, "words": f"{one} (comes with shaftprint)"} for one in names),
+        ]
+        for kind, names in shipped.items()
+    }
+    return chosen | {"structures": STRUCTURES}
+
+
+async def look(asked: Asked) -> Moved | Response:
+    """Ask for a look into a recording."""
+    asked.expect(Role.TESTER)
+    one = await asked.read(upload_called, asked, asked.named("id"))
+    key = f"inspect {one.id}"
+    there = asked.service.kept.making(key)
+    if there is None or there.state == "refused":
+        path = str(asked.service.recordings / one.id / one.name)
+        asked.service.kept.put_making(
+            Making(key=key, kind="inspect", args={"path": path}, state="waiting", sentence="")
+        )
+        asked.service.making.wake()
+    return answer_of(asked, Moved(to=f"/recordings/{one.id}", data={"inspection": "waiting"}, status=202))
+
+
+def moment_of(text: str) -> str | None:
+    """Return a time of a form as a job takes it; None where none was typed.
+
+    Raises
+    ------
+    HTTPException
+        If it is none.
+    """
+    if not text.strip():
+        return None
+    try:
+        return datetime.fromisoformat(text.strip()).isoformat()
+    except ValueError:
+        raise HTTPException(400, f"Expected a time such as 2026-03-31T09:30+02:00, found {text[:40]!r}.") from None

@@ -1,0 +1,121 @@
+"""The first page: every line that somebody sees, with a word for each, those that need somebody first."""
+
+from dataclasses import dataclass
+from typing import Any, Final
+from urllib.parse import quote
+
+from shaftprint.store import LineNow
+from shaftprint.web._asked import Asked, Shown, line_address, line_key
+from shaftprint.web._standing import WORDS, Standing, standing_of
+
+MOST_ROWS: Final = 100
+"""Lines on one page."""
+
+
+async def ships(asked: Asked) -> Shown:
+    """Return the ships with a word for each."""
+    return await asked.read(_ships, asked)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class _Row:
+    line: LineNow
+    standing: Standing
+
+
+def _ships(asked: Asked) -> Shown:
+    rows = rows_of(asked)
+    counts = {word: sum(row.standing.kind == word for row in rows) for word in WORDS}
+    kind, sought = asked.query("kind"), asked.query("q").strip()
+    chosen = [row for row in rows if (not kind or row.standing.kind == kind) and _matches(row.line, sought)]
+    # those that need somebody first; among them the newest test
+    chosen.sort(
+        key=lambda row: (WORDS.index(row.standing.kind), -(row.line.tested_at or asked.service.now()).timestamp())
+    )
+    pages = max(1, -(-len(chosen) // MOST_ROWS))
+    page = min(max(1, int(text) if (text := asked.query("page", "1")).isdecimal() and len(text) < 7 else 1), pages)
+    shown = chosen[(page - 1) * MOST_ROWS : page * MOST_ROWS]
+    return Shown(
+        template="ships.html.j2",
+        title="Ships",
+        data={
+            "headline": _headline(counts, len(rows)),
+            "lines": [_content(row) for row in shown],
+            "counts": {word: count for word, count in counts.items() if count},
+            "found": len(chosen),
+            "page": page,
+            "pages": pages,
+        },
+        drawn={
+            "kind": kind,
+            "q": sought,
+            "all": len(rows),
+            "links": {
+                "previous": _link(kind, sought, page - 1) if page > 1 else "",
+                "next": _link(kind, sought, page + 1) if page < pages else "",
+            },
+        },
+    )
+
+
+def rows_of(asked: Asked) -> list[_Row]:
+    """Return the lines that somebody sees, each with how it stands."""
+    found, now = asked.service.kept.summaries(), asked.service.now()
+    overdue = asked.service.serving.overdue_days
+    return [
+        _Row(
+            line=one,
+            standing=standing_of(
+                one, found.get(line_key(one.line.ship, one.line.position)), now=now, overdue_days=overdue
+            ),
+        )
+        for one in asked.service.lines.now()
+        if asked.person.sees(one.line.ship)
+    ]
+
+
+def _headline(counts: dict[str, int], lines: int) -> str:
+    if not lines:
+        return "No ship is here yet"
+    said = {
+        "changed": "changed",
+        "not trustworthy": "without a trustworthy newest test",
+        "test overdue": "with a test overdue",
+    }
+    parts = [f"{counts[word]} {words}" for word, words in said.items() if counts[word]]
+    if not parts:
+        open_ones = lines - counts["unchanged"]
+        return f"{counts['unchanged']} of {_lines(lines)} unchanged" + (f", {open_ones} not known" if open_ones else "")
+    return f"{_lines(lines)}: " + ", ".join(parts)
+
+
+def _lines(count: int) -> str:
+    return f"{count} shaft line" + ("" if count == 1 else "s")
+
+
+def _matches(line: LineNow, sought: str) -> bool:
+    ship = line.line.ship
+    words = f"{ship.name} {ship.imo_number or ''} {ship.class_name or ''} {line.line.position}".lower()
+    return all(part in words for part in sought.lower().split())
+
+
+def _content(row: _Row) -> dict[str, Any]:
+    ship, line, standing = row.line.line.ship, row.line, row.standing
+    return {
+        "ship": ship.name,
+        "imo": ship.imo_number,
+        "class": ship.class_name,
+        "line": line.line.position,
+        "address": line_address(line.line, line.ship_id),
+        "kind": standing.kind,
+        "word": standing.word,
+        "look": standing.look,
+        "note": standing.note,
+        "overdue": standing.overdue,
+        "tests": line.tests,
+        "tested_at": None if line.tested_at is None else line.tested_at.isoformat(),
+    }
+
+
+def _link(kind: str, sought: str, page: int) -> str:
+    return f"/?kind={quote(kind)}&q={quote(sought)}&page={page}"
