@@ -18,7 +18,7 @@ import sys
 import tempfile
 import threading
 import time
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
@@ -29,14 +29,29 @@ ROOT = Path(__file__).resolve().parent.parent
 # Run as a file, the folder of the benchmarks is on the path, not the one above.
 sys.path.insert(0, str(ROOT))
 
-from benchmarks.fleet_peers import peers  # noqa: E402
+from benchmarks.fleet_peers import cpu_ticks, peers  # noqa: E402
 from benchmarks.monte_carlo_tables import write_between_marks  # noqa: E402
+from benchmarks.store_documents import document  # noqa: E402
 from benchmarks.timing import print_table  # noqa: E402
 from shaftprint.campaign import load_campaign  # noqa: E402
 from shaftprint.fingerprint import fingerprint_document  # noqa: E402
 from shaftprint.fleet import JobArguments, job_arguments, submit, work, work_on_dask  # noqa: E402
 from shaftprint.fleet.computing import survey_of_job  # noqa: E402
-from shaftprint.store import Job, create_store, document, job_counts, jobs, open_store, retry  # noqa: E402
+from shaftprint.store import (  # noqa: E402
+    Job,
+    JobRequest,
+    add_document,
+    claim,
+    create_store,
+    enqueue,
+    finish,
+    job_counts,
+    jobs,
+    open_store,
+    renew,
+    retry,
+)
+from shaftprint.store import document as kept_document  # noqa: E402
 from shaftprint.tug import sail  # noqa: E402
 from shaftprint.vessel import load_vessel  # noqa: E402
 
@@ -125,7 +140,7 @@ def differing(url: str, expected: dict[str, str]) -> tuple[int, int, int, int]:
     """Return how many jobs are done, how many documents differ, how many results there are, and lie twice."""
     with open_store(url) as store:
         done = jobs(store, states=("done",))
-        wrong = sum(comparable(document(store, str(one.result))) != expected[one.key] for one in done)
+        wrong = sum(comparable(kept_document(store, str(one.result))) != expected[one.key] for one in done)
         with store.database.reading() as connection:
             there = store.database.reader(connection).count()
     return len(done), wrong, there, there - len({one.result for one in done})
@@ -146,23 +161,50 @@ def started_by(process: int) -> list[int]:
     return [int(one) for text in texts for one in text.split()]
 
 
+class CpuClock:
+    """The CPU time of processes and of all that they started, whatever has become of them [s].
+
+    On a computer that others use too, ten seconds of a clock on the wall may be one of work: kills by that clock would
+    let no process come to an end. By this one a run is disturbed as on a computer of its own.
+    """
+
+    def __init__(self) -> None:
+        self._seen: dict[int, float] = {}
+
+    def read(self, processes: Iterable[int]) -> float:
+        """Return what has been used so far."""
+        waiting = list(processes)
+        while waiting:
+            process = waiting.pop()
+            self._seen[process] = max(self._seen.get(process, 0.0), cpu_ticks(process) / os.sysconf("SC_CLK_TCK"))
+            waiting += started_by(process)
+        return sum(self._seen.values())
+
+    def wait(self, processes: Callable[[], Iterable[int]], seconds: float, ended: Callable[[], bool]) -> None:
+        """Wait until so much more has been used, or all has ended."""
+        until = self.read(processes()) + seconds
+        while self.read(processes()) < until and not ended():
+            time.sleep(0.5)
+
+
 def disturbed(url: str, list_file: Path, rng: random.Random, *, every_s: float) -> Kills:
     """Let a run and a second worker do all jobs while processes are killed; what is killed is started again."""
     begin, counts, retried = time.monotonic(), {"computing": 0, "workers": 0, "parents": 0}, 0
     run = ("fleet", "run", str(list_file), "--store", url, "--processes", "1", "--no-progress")
     other = ("work", "--store", url, "--processes", "1", "--no-progress")
     words = {"parents": run, "workers": other}
-    running = {name: command(*some) for name, some in words.items()}
+    running, clock = {name: command(*some) for name, some in words.items()}, CpuClock()
     try:
         while True:
-            time.sleep(every_s)
+            clock.wait(lambda: [one.pid for one in running.values()], 2.0 * every_s, lambda: _is_over(url))
             with open_store(url) as store:
                 if job_counts(store).open == 0:
                     retried += (again := retry(store))
                     if not again:
                         break
-            kinds = ["computing", "workers"] + (["parents"] if not counts["parents"] else [])
-            kind = rng.choice(kinds)
+            # the run that asked for all of it is killed once, and early
+            is_early = sum(counts.values()) < 2
+            kind = rng.choice(["computing", "workers"]) if is_early or counts["parents"] else "parents"
             alive = {name: one for name, one in running.items() if one.poll() is None}
             if kind == "computing":
                 victims = [one for process in alive.values() for one in started_by(process.pid)]
@@ -182,6 +224,11 @@ def disturbed(url: str, list_file: Path, rng: random.Random, *, every_s: float) 
     return Kills(**counts, retried=retried, wall_s=time.monotonic() - begin)
 
 
+def _is_over(url: str) -> bool:
+    with open_store(url) as store:
+        return job_counts(store).open == 0
+
+
 def undisturbed(url: str, asked: Sequence[JobArguments], processes: int) -> tuple[float, float, float]:
     """Do jobs in a new store; return wall, CPU of the worker itself and CPU of the arithmetic of one job [s]."""
     with create_store(url) as store:
@@ -192,6 +239,28 @@ def undisturbed(url: str, asked: Sequence[JobArguments], processes: int) -> tupl
     if worked.done != len(asked):
         raise RuntimeError(f"expected {len(asked)} results, found {worked}")
     return wall_s, own_s / len(asked), (_children_cpu_s() - theirs) / len(asked)
+
+
+def ledger_ms(scratch: Path, count: int = 200) -> tuple[float, float]:
+    """Return the CPU of what the ledger adds to a job, and of keeping its fingerprint as ``store add`` does [ms].
+
+    A claim, a renewal, and the end of a job: the difference between a fingerprint that ends one and one that is added.
+    """
+    ship = {"name": "Tug", "line": "port"}
+    ledger_s = add_s = 0.0
+    with create_store(str(scratch / "ledger.db")) as store:
+        enqueue(store, [JobRequest(key=str(place), args={}, version="0") for place in range(count)])
+        for place in range(count):
+            ends, added = (document(recording=f"{kind}{place:063x}", ship=ship, filling=500) for kind in "ab")
+            begin = time.process_time()
+            job = claim(store, owner="benchmark", version="0")
+            if job is None or not renew(store, job, progress="Fitting"):
+                raise RuntimeError("expected a job that is kept")
+            finish(store, job, ends)
+            middle = time.process_time()
+            add_document(store, added, named="benchmark", now=datetime.now(UTC))
+            ledger_s, add_s = ledger_s + middle - begin, add_s + time.process_time() - middle
+    return 1e3 * (ledger_s - add_s) / count, 1e3 * add_s / count
 
 
 def _children_cpu_s() -> float:
@@ -213,11 +282,12 @@ def on_dask(url: str, rng: random.Random, *, every_s: float) -> tuple[int, float
     """Let a Dask cluster of two worker processes do the jobs while they are killed; return kills and wall [s]."""
     from distributed import LocalCluster
 
-    begin, kills, ended = time.monotonic(), 0, threading.Event()
+    begin, kills, ended, clock = time.monotonic(), 0, threading.Event(), CpuClock()
     with LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster:
         thread = threading.Thread(target=lambda: (work_on_dask(cluster.scheduler_address, url), ended.set()))
         thread.start()
-        while not ended.wait(every_s) and thread.is_alive():
+        while thread.is_alive() and not ended.is_set():
+            clock.wait(lambda: [one.pid for one in cluster.workers.values() if one.pid], 2.0 * every_s, ended.is_set)
             # one that is just being started has nothing to lose, and Dask gives its place up when it dies
             pids = [one.pid for one in cluster.workers.values() if one.status.name == "running" and one.pid is not None]
             if len(pids) == 2:
@@ -279,15 +349,23 @@ def _after(kills: Kills, url: str, expected: dict[str, str], asked: Sequence[Job
 def _beside(asked: Sequence[JobArguments], scratch: Path) -> list[Row]:
     # the first run loads kernels and files for both
     undisturbed(str(scratch / "warm.db"), asked[:2], 2)
+    alone_ms, add_ms = ledger_ms(scratch)
     one = undisturbed(str(scratch / "one.db"), asked, 1)
     two = undisturbed(str(scratch / "two.db"), asked, 2)
     load = os.getloadavg()[0]
     return [
         (f"{len(asked)} recordings, two processes over one, wall, load {load:.1f}", "1.8", f"{one[0] / two[0]:.2f}"),
         ("the same by CPU, as if the cores were free", "1.8", f"{2.0 * sum(one[1:]) / sum(two[1:]):.2f}"),
-        ("ledger, store, pipes: CPU of a recording, one and two processes", "5 ms", _both(one[1], two[1], 1e3, "ms")),
+        ("ledger: claim, renewal and end of a job, CPU", "5 ms", f"{alone_ms:.1f} ms"),
+        ("keeping its fingerprint, as store add does, CPU", "", f"{add_ms:.1f} ms"),
+        ("all of the worker: CPU of a recording, one and two processes", "", _both(one[1], two[1], 1e3, "ms")),
+        ("largest process of the arithmetic", "400 MB", f"{_largest_mb():.0f} MB"),
         ("arithmetic with its start: CPU of a recording, likewise", "", _both(one[2], two[2], 1.0, "s")),
     ]
+
+
+def _largest_mb() -> float:
+    return resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024.0
 
 
 def _both(one_s: float, two_s: float, factor: float, unit: str) -> str:
@@ -311,7 +389,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--recordings", type=int, default=40, help="recordings that are sailed")
     parser.add_argument("--jobs", type=int, default=1000, help="jobs that are made of them")
-    parser.add_argument("--kill-every", type=float, default=10.0, help="how often one is killed [s]; 0: leave out")
+    parser.add_argument("--kill-every", type=float, default=10.0, help="seconds of two cores between kills; 0: none")
     parser.add_argument("--pairs", type=int, default=40, help="jobs done by one process and by two; 0: leave out")
     parser.add_argument("--dask", type=int, default=40, help="jobs done on Dask; 0: leave out")
     parser.add_argument("--peers", type=int, default=8, help="recordings for the peers; 0: leave out")

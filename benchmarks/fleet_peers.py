@@ -69,7 +69,7 @@ def by_joblib(content: list[dict[str, object]]) -> int:
 
 def _kill_one(before: set[int]) -> None:
     """Kill the process that has computed most of those that were started since."""
-    new = {one: _cpu_ticks(one) for one in _descendants() - before}
+    new = {one: cpu_ticks(one) for one in _descendants() - before}
     if new:
         os.kill(max(new, key=lambda one: new[one]), signal.SIGKILL)
 
@@ -85,7 +85,8 @@ def _descendants() -> set[int]:
     return found
 
 
-def _cpu_ticks(process: int) -> int:
+def cpu_ticks(process: int) -> int:
+    """Return the CPU time of a process in the ticks of the system; 0 of one that has ended."""
     with contextlib.suppress(OSError, IndexError, ValueError):
         fields = Path(f"/proc/{process}/stat").read_text().rsplit(")", 1)[1].split()
         return int(fields[11]) + int(fields[12])

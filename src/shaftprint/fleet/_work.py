@@ -13,7 +13,8 @@ from shaftprint.errors import DatabaseError, ShaftprintError, StoreError
 from shaftprint.fleet._lane import Event, Lane
 from shaftprint.store import Store
 
-_BEAT_S: Final = 2.0
+# Each beat may write the step of every job that has gone on.
+_BEAT_S: Final = 5.0
 LIMIT_S: Final = 3600.0
 """How long one recording may take where nothing else is said [s]."""
 

@@ -16,6 +16,19 @@ DIED: Final = (
     "alone with shaftprint identify, then shaftprint fleet retry"
 )
 _AT_A_TIME: Final = 500
+_NOW: Final = sa.bindparam("now", type_=JOB.c.lease_until.type)
+# Made once: to make it for every job costs as much as to ask it.
+_FREE: Final = (
+    sa.select(JOB)
+    .where(
+        OPEN_JOB,
+        JOB.c.version == sa.bindparam("version_of_worker"),
+        sa.or_(JOB.c.state == "waiting", sa.and_(JOB.c.state == "running", JOB.c.lease_until < _NOW)),
+    )
+    .order_by(JOB.c.id)
+    .limit(1)
+    .with_for_update(skip_locked=True)
+)
 _T = TypeVar("_T")
 
 
@@ -75,15 +88,8 @@ class Ledger:
 
     def claim(self, *, owner: str, version: str, now: datetime, lease_s: float) -> Job | None:
         """Give a worker the first job that nobody has, or whose worker is not heard of; None where there is none."""
-        free = sa.or_(JOB.c.state == "waiting", sa.and_(JOB.c.state == "running", JOB.c.lease_until < now))
-        asked = (
-            sa.select(JOB)
-            .where(OPEN_JOB, JOB.c.version == version, free)
-            .order_by(JOB.c.id)
-            .limit(1)
-            .with_for_update(skip_locked=True)
-        )
-        while (row := self.connection.execute(asked).first()) is not None:
+        asked = {"version_of_worker": version, "now": now}
+        while (row := self.connection.execute(_FREE, asked).first()) is not None:
             if row.tries < MOST_TRIES:
                 values = {
                     "state": "running",
