@@ -2,7 +2,7 @@
 
 import asyncio
 import contextlib
-from collections.abc import AsyncIterator, Callable
+from collections.abc import AsyncIterator, Callable, Iterator
 from datetime import datetime
 from typing import Final
 
@@ -75,13 +75,26 @@ async def _serve(service: Service, begun: Callable[[str], None]) -> None:
         timeout_keep_alive=_IDLE_S,
         timeout_graceful_shutdown=3,
     )
-    server = uvicorn.Server(config)
+    server = _Server(config)
     async with _beside(service):
         telling = asyncio.create_task(_tell(server, serving, begun))
         try:
             await server.serve()
         finally:
             telling.cancel()
+
+
+class _Server(uvicorn.Server):
+    """A server that ends what is beside it when it is asked to end; uvicorn's own lets the signal end the process."""
+
+    @contextlib.contextmanager
+    def capture_signals(self) -> Iterator[None]:
+        """Note a request to end, and no more."""
+        with super().capture_signals():
+            try:
+                yield
+            finally:
+                self._captured_signals.clear()
 
 
 async def _tell(server: uvicorn.Server, serving: Serving, begun: Callable[[str], None]) -> None:
