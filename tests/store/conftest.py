@@ -70,6 +70,12 @@ class Server:
     def stop(self, mode="fast"):
         self.call("pg_ctl", "-D", self.folder / "data", "-w", "-m", mode, "stop")
 
+    def end(self):
+        """Stop the server and remove what it kept; one that somebody else has stopped meanwhile is only removed."""
+        if (self.folder / "data" / "postmaster.pid").exists():
+            self.stop("immediate")
+        shutil.rmtree(self.folder)
+
     def kill(self):
         """Kill every process of the server at once; what only its memory held is gone."""
         first = int((self.folder / "data" / "postmaster.pid").read_text().split()[0])
@@ -98,8 +104,7 @@ def server():
         pytest.skip("there is no user postgres as which the server could run; apt-get install postgresql")
     running = Server(programs)
     yield running
-    running.stop("immediate")
-    shutil.rmtree(running.folder)
+    running.end()
 
 
 @pytest.fixture(params=BOTH)
