@@ -90,3 +90,10 @@ def test_what_cannot_be_done_is_said_in_a_sentence(tmp_path, monkeypatch, run, w
     result = run(*words)
     assert result.exit_code in {1, 2}
     assert said in " ".join(result.output.split())
+
+
+def test_the_python_of_the_page_works_on_an_empty_store(capsys):
+    (text,) = re.findall(r"```python\n(.*?)```", PAGE, flags=re.DOTALL)
+    exec(compile(text, "fleet-runs.md", "exec"), {"__name__": "page"})  # noqa: S102
+    said = capsys.readouterr().out
+    assert "done=0" in said
