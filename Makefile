@@ -20,7 +20,7 @@ help: ## Say what can be made
 demo: $(VENV)/run ## Sail the simulated tug and identify it; results in demo/
 	$(BIN)/shaftprint demo -o demo
 
-demo-fleet: $(VENV)/store ## Eight sister ships over five years in a store; demo-fleet/
+demo-fleet: $(VENV)/web ## Eight sister ships over five years in a store; demo-fleet/
 	$(BIN)/shaftprint demo --fleet -o demo-fleet
 
 # each core has a worker of its own; only the tests of the calculating rooms are traced, which doubles their time
@@ -70,7 +70,7 @@ $(VENV)/bin/python:
 
 # One stamp a set of requirements; the project itself is installed so that changes to src/ take effect at once.
 # The lists are complete: pip resolves nothing, or a newer release of what a dependency asks for by an extra would stop it.
-$(VENV)/run $(VENV)/store $(VENV)/test $(VENV)/lint $(VENV)/docs $(VENV)/benchmark: $(VENV)/%: requirements/%.txt pyproject.toml | $(VENV)/bin/python
+$(VENV)/run $(VENV)/web $(VENV)/test $(VENV)/lint $(VENV)/docs $(VENV)/benchmark: $(VENV)/%: requirements/%.txt pyproject.toml | $(VENV)/bin/python
 	@echo "Installing requirements/$*.txt into $(VENV) (a minute or two) ..."
 	@$(PIP) install --quiet --no-deps --require-hashes --requirement requirements/$*.txt
 	@$(PIP) install --quiet --no-deps --no-build-isolation --editable .

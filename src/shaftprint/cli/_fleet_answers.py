@@ -45,3 +45,4 @@ def print_commands(file: Path) -> None:
         echo(f"shaftprint store {words}")
     echo(f"shaftprint drift {WORN} --store {file} -o drift")
     echo(f'shaftprint sisters "{CLASS}" --store {file} -o sisters')
+    echo(f"shaftprint serve --store {file}")
