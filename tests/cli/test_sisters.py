@@ -1,6 +1,9 @@
 """``shaftprint sisters`` on copies of the fingerprint of the short demo, as if they were of sister ships."""
 
 import json
+import os
+import subprocess
+import sys
 
 import pytest
 
@@ -54,6 +57,24 @@ def test_what_was_set_on_purpose_leaves_earlier_tests_out(run, yard):
     document = json.loads(run("sisters", "Stan Tug 1205", *yard, "--json").output)
     tests = {ship["name"]: ship["tests"] for ship in document["result"]["finding"]["ships"]}
     assert tests == dict.fromkeys(NAMES, 2) | {"Linge": 1}
+
+
+@pytest.mark.slow
+def test_the_page_of_the_server_says_the_same(run, yard):
+    question = {"kind": "class", "lines": [[name, "port"] for name in NAMES]}
+    asked = subprocess.Popen(
+        [sys.executable, "-m", "shaftprint.web.calculator", str(2**32)],
+        stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True,
+        env=os.environ | {"SHAFTPRINT_STORE": str(yard[1])},
+    )  # fmt: skip
+    # it ends with its input
+    with asked:
+        asked.stdin.write(json.dumps(question) + "\n")
+        asked.stdin.flush()
+        answer = json.loads(asked.stdout.readline())
+    printed = " ".join(run("sisters", "Stan Tug 1205", *yard).output.split())
+    assert answer["word"] == "changed"
+    assert " ".join(answer["sentences"]) in printed
 
 
 @pytest.mark.parametrize(

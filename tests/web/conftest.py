@@ -35,6 +35,8 @@ class Desk:
             "causes": None,
             "differences": [],
             "files": [],
+            "left_out": [],
+            "tables": [],
         }
 
     async def rest(self):

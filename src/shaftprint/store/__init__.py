@@ -55,6 +55,7 @@ from shaftprint.store._nouns import (
 )
 from shaftprint.store._overview import LineNow, LineRecords, line_records, lines_now, store_state, stored_fingerprint
 from shaftprint.store._record import Record, record_of
+from shaftprint.store._sisters import sisters_of
 from shaftprint.store._stated import Stated
 from shaftprint.store._store import Store, create_store, open_store, upgrade_store
 
@@ -118,6 +119,7 @@ __all__ = [
     "refuse",
     "renew",
     "retry",
+    "sisters_of",
     "store_state",
     "stored_fingerprint",
     "upgrade_store",

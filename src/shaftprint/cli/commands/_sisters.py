@@ -9,9 +9,9 @@ from shaftprint.cli._load_option import load_repeatability_option
 from shaftprint.cli._store_options import store_option
 from shaftprint.cli._terminal import answer, echo, say
 from shaftprint.cli.output import REPORT, force_option, give, output_folder, print_tables
-from shaftprint.drift import NEWEST_TESTS, Sister, history_of, judge_sisters, sister_of, sister_sentences
+from shaftprint.drift import NEWEST_TESTS, judge_sisters, sister_sentences
 from shaftprint.report import cause_spread_table, number_spread_table, render_class, sister_table
-from shaftprint.store import LineHistory, class_histories, open_store
+from shaftprint.store import class_histories, open_store, sisters_of
 
 PERCENT = 100.0
 
@@ -44,7 +44,9 @@ def command(
     """
     with open_store(url) as store:
         lines = class_histories(store, class_name, line=line)
-    ships = _sisters(lines, newest)
+    ships, left_out = sisters_of(lines, newest=newest)
+    for name in left_out:
+        say(f"Left out: {name}, none of its tests can be judged.")
     finding = judge_sisters(ships, load_repeatability=load_percent / PERCENT)
     if output is not None:
         with output_folder(output, of="sisters", force=force) as folder:
@@ -55,17 +57,3 @@ def command(
         print_tables([sister_table(finding), cause_spread_table(finding), number_spread_table(finding)])
     if output is not None:
         echo(f"Report: {output / REPORT}")
-
-
-def _sisters(lines: tuple[LineHistory, ...], newest: int) -> tuple[Sister, ...]:
-    """Return the lines that have a test that can be judged, and say which have none."""
-    several = len({one.line.position for one in lines}) > 1
-    ships = []
-    for one in lines:
-        name = f"{one.line.ship.name}, {one.line.position}" if several else one.line.ship.name
-        history = history_of(one.fingerprints, one.events)
-        if history.tests:
-            ships.append(sister_of(name, history, newest=newest))
-        else:
-            say(f"Left out: {name}, none of its tests can be judged.")
-    return tuple(ships)

@@ -10,6 +10,7 @@ from collections.abc import Callable, Mapping
 from typing import Any, Final
 
 from shaftprint.errors import ShaftprintError
+from shaftprint.web.calculator._class import judged_class
 from shaftprint.web.calculator._compared import compared
 from shaftprint.web.calculator._inspected import inspected
 from shaftprint.web.calculator._limits import limit_memory
@@ -19,6 +20,7 @@ from shaftprint.web.calculator._submitted import submitted
 
 KINDS: Final[Mapping[str, Callable[..., dict[str, Any]]]] = {
     "line": judged_line,
+    "class": judged_class,
     "compare": compared,
     "submit": submitted,
     "inspect": inspected,

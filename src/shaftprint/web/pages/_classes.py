@@ -1,19 +1,45 @@
-"""Sister ships: a number of the newest test of every line of a class."""
+"""Sister ships: which line of a class is not as the others are, and a number of the newest test of each."""
 
+from dataclasses import replace
 from typing import Any, Final
 
 from starlette.exceptions import HTTPException
 
 from shaftprint.digits import interval, unit_text, with_deviation
+from shaftprint.errors import ServerError
 from shaftprint.store import LineNow
 from shaftprint.web._asked import Asked, NotThere, Shown, line_address
 
 NUMBERS: Final = ("K_Q", "I_dn", "governor proportional action", "governor integral action")
 
 
+# Each line brings its documents, which are read for every page.
+MOST_LINES, LONGEST_S = 60, 60.0
+_HEADLINES = {
+    "changed": ("Not all ships are as their sisters are", "look"),
+    "unchanged": ("No ship is other than its sisters", "fine"),
+    "cannot be told": ("It cannot be told", "open"),
+}
+
+
 async def sister_class(asked: Asked) -> Shown:
-    """Return the lines of a class with a number of their newest test."""
-    return await asked.read(_class, asked)
+    """Return which lines of a class are not as the others are, with a number of their newest test."""
+    shown: Shown = await asked.read(_class, asked)
+    judged = await _judged(asked, shown.data["lines"])
+    headline, look = _HEADLINES[judged["word"]]
+    return replace(shown, data={**shown.data, **judged, "headline": headline, "look": look})
+
+
+async def _judged(asked: Asked, lines: list[dict[str, Any]]) -> dict[str, Any]:
+    """Return what the lines that this person sees say about each other."""
+    because = {"word": "cannot be told", "left_out": [], "tables": []}
+    if len(lines) > MOST_LINES:
+        return because | {"sentences": [f"This page judges up to {MOST_LINES} lines together; shaftprint sisters any."]}
+    question = {"kind": "class", "lines": [[str(one["imo"] or one["ship"]), one["line"]] for one in lines]}
+    try:
+        return await asked.service.desk.ask(question, longest_s=LONGEST_S)
+    except ServerError as refusal:
+        return because | {"sentences": [str(refusal)]}
 
 
 def _class(asked: Asked) -> Shown:

@@ -1,0 +1,35 @@
+"""Lines of a class as ``drift`` holds them against each other."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from shaftprint.store._late_rooms import drift_room
+from shaftprint.store._line_history import LineHistory
+
+if TYPE_CHECKING:
+    from shaftprint.drift import Sister
+
+
+def sisters_of(
+    lines: Sequence[LineHistory], *, newest: int | None = None
+) -> "tuple[tuple[Sister, ...], tuple[str, ...]]":
+    """Return the lines that have a test that can be judged as sisters, and the names of those that have none.
+
+    Parameters
+    ----------
+    lines
+        Lines of one class; they are called by their ship, and by their position too where there are several.
+    newest
+        Tests that stand for a ship, ``drift.NEWEST_TESTS`` by default.
+    """
+    drift = drift_room()
+    several = len({one.line.position for one in lines}) > 1
+    sisters, left_out = [], []
+    for one in lines:
+        name = f"{one.line.ship.name}, {one.line.position}" if several else one.line.ship.name
+        history = drift.history_of(one.fingerprints, one.events)
+        if history.tests:
+            sisters.append(drift.sister_of(name, history, newest=newest or drift.NEWEST_TESTS))
+        else:
+            left_out.append(name)
+    return tuple(sisters), tuple(left_out)

@@ -1,0 +1,29 @@
+"""Lines of a class against each other: what ``shaftprint sisters`` says."""
+
+import os
+from typing import Any
+
+from shaftprint.drift import judge_sisters, sister_sentences
+from shaftprint.report import cause_spread_table, sister_table
+from shaftprint.store import line_history, open_store, sisters_of
+from shaftprint.web.calculator._tables import table_contents
+
+
+def judged_class(lines: list[list[str]]) -> dict[str, Any]:
+    """Return which lines are not as the others are, for JSON.
+
+    Parameters
+    ----------
+    lines
+        Ship, by IMO number or name, and position of each line that may be seen.
+    """
+    with open_store(os.environ["SHAFTPRINT_STORE"]) as store:
+        known = tuple(line_history(store, ship, line=position) for ship, position in lines)
+    sisters, left_out = sisters_of(known)
+    finding = judge_sisters(sisters)
+    return {
+        "word": "changed" if finding.odd else "cannot be told" if finding.because else "unchanged",
+        "sentences": list(sister_sentences(finding)),
+        "left_out": list(left_out),
+        "tables": [] if finding.because else table_contents([sister_table(finding), cause_spread_table(finding)]),
+    }
