@@ -9,8 +9,8 @@ import pytest
 from shaftprint.campaign import Campaign
 from shaftprint.limits import limit_hints
 from shaftprint.limits._identify_limits import LEAST_OFFSET_STD, _offset_std
+from shaftprint.limits._level_profile import LevelInterval
 from shaftprint.limits._numbers import _doubt
-from shaftprint.limits._uncertainty import LevelInterval
 from shaftprint.limits.prediction import ORDER, innovations
 from shaftprint.spectra import Harmonics
 from shaftprint.time_domain import jumps_in, with_jumps

@@ -16,7 +16,15 @@ from shaftprint.campaign import Campaign
 from shaftprint.catalogue import GovernorSymbol
 from shaftprint.errors import IdentificationError
 from shaftprint.limits._candidates import IDLE, STRUCTURE_LIMITS, Kind, parameters_of
-from shaftprint.limits._governor_fit import GOVERNOR, Fitted, fitted, identified, schwarz, values_without_limits
+from shaftprint.limits._governor_fit import (
+    GOVERNOR,
+    NEGLIGIBLE_FALL,
+    Fitted,
+    fitted,
+    identified,
+    schwarz,
+    values_without_limits,
+)
 from shaftprint.limits._identify_limits import COARSE_HZ, FINE, set_point_priors, whole_governor
 from shaftprint.limits._numbers import Units
 from shaftprint.limits._search import LEAST_GAIN
@@ -29,6 +37,9 @@ OF_SET_POINT = (GovernorSymbol.SET_POINT_SCALE, GovernorSymbol.SET_POINT_OFFSET)
 """What follows the recording, and not the governor."""
 LEAST_SLOPE = 1e-12
 """A slope of zero is a small one: a round zero would be another simulation."""
+# A limit without which even a fit that ends at steps of the second is worse by so much more than chance explains is not
+# idle: such a fit is worse than a fine one by a few of these steps.
+FAR, FAR_FALL = 25.0, 1.0
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -95,8 +106,8 @@ def levels_beside(
     known = {**values_without_limits(whole), **{n: v for n, v in governor.items() if n in (*GOVERNOR, slope)}}
     known[slope] = known[slope] or LEAST_SLOPE
 
-    def best(values: Mapping[str, float], wanted: Sequence[Kind]) -> Fitted:
-        return fitted(whole, record, values, wanted, priors=priors, iterations=FINE, held=held)
+    def best(values: Mapping[str, float], wanted: Sequence[Kind], negligible: float = NEGLIGIBLE_FALL) -> Fitted:
+        return fitted(whole, record, values, wanted, priors=priors, iterations=FINE, held=held, negligible=negligible)
 
     wanted = tuple(kind for kind in kinds if parameters_of([kind]))
     if Kind.SMOKE in wanted and Kind.TORQUE not in wanted:
@@ -120,12 +131,15 @@ def levels_beside(
     )
 
 
-def _without_idle(here: Fitted, best: Callable[[Mapping[str, float], Sequence[Kind]], Fitted]) -> Fitted:
+def _without_idle(here: Fitted, best: Callable[..., Fitted]) -> Fitted:
     """Return a governor without the limits that chance explains as well."""
     for kind in here.kinds:
         others = tuple(other for other in here.kinds if other is not kind)
         gone = {name: IDLE[name] for name in set(parameters_of([kind])) - set(parameters_of(others))}
-        less = best({**here.values, **gone}, others)
+        less = best({**here.values, **gone}, others, FAR_FALL)
+        if schwarz(less) - schwarz(here) > LEAST_GAIN + FAR:
+            continue
+        less = best(less.values, others)
         if schwarz(less) - schwarz(here) < LEAST_GAIN:
             here = less
     return here

@@ -9,9 +9,10 @@ from shaftprint.catalogue import GovernorSymbol
 from shaftprint.distributions import NORMAL_95
 from shaftprint.limits._candidates import CANDIDATES, Kind, LimitCandidate
 from shaftprint.limits._governor_fit import Fitted
+from shaftprint.limits._level_profile import LevelInterval, profile_interval
 from shaftprint.limits._limit_fit import LimitEstimate
 from shaftprint.limits._set_point_quantum import Quantum
-from shaftprint.limits._uncertainty import LevelInterval, LevelScatter, profile_interval
+from shaftprint.limits._uncertainty import LevelScatter
 from shaftprint.limits.prediction import Messages
 from shaftprint.signals import Signals
 from shaftprint.units import rpm_from_rev_s

@@ -1,23 +1,21 @@
-"""How far the numbers of a limit can be trusted: scatter of the slopes, what was taken for granted, profile ends.
+"""How far the numbers of a limit can be trusted: scatter of the slopes, and what was taken for granted.
 
 The noise of the torque is not the same all the time, and a record that ends at 6 Hz lets a little of the future into
 what should be new at each sample. The variance of the slope of the likelihood is therefore that of its sums over
 blocks much longer than the memory of the loop (White, Maximum likelihood estimation of misspecified models, 1982):
 ``H^-1 (sum_b g_b g_b^T) H^-1``. What the fit takes for granted is moved by its standard deviation, one after the other,
-and the parameters follow to first order. The level of a limit has a profile besides: a limit that acts for seconds
-bends its likelihood.
+and the parameters follow to first order.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.catalogue import GovernorSymbol
-from shaftprint.distributions import NORMAL_95
 from shaftprint.errors import IdentificationError
-from shaftprint.limits._governor_fit import Fitted, fitted
+from shaftprint.limits._governor_fit import Fitted
 from shaftprint.limits.prediction import GovernorTest, PredictionError
 from shaftprint.signals import Signals
 from shaftprint.vessel import Vessel
@@ -26,9 +24,6 @@ from shaftprint.vessel import Vessel
 BLOCK_S = 10.0
 # Deviation of the slope of the engine's torque with speed that the fit takes to be zero.
 SLOPE_STD = 0.1
-# Steps towards the end of a profile, and how near the end they must come, as a share of the threshold.
-MOST_STEPS, NEAR = 4, 0.1
-PROFILE_ITERATIONS = 8
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -116,73 +111,3 @@ def _taken_for_granted(fit: Fitted, test: GovernorTest, signals: Signals, vessel
 
 def _with_record(term: PredictionError, test: GovernorTest, drive_hz: float) -> PredictionError:
     return replace(term, record=test.record(drive_hz=drive_hz))
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class LevelInterval:
-    """95 % interval of one number."""
-
-    lower: float
-    """Lower end."""
-    upper: float
-    """Upper end."""
-    lower_open: bool
-    """Whether the data set no lower end."""
-    upper_open: bool
-    """Whether the data set no upper end."""
-
-
-def profile_interval(fit: Fitted, spread: LevelScatter, name: str) -> LevelInterval:
-    """Return the profile-likelihood interval of one parameter, widened by scatter and by what was taken for granted."""
-    row = spread.names.index(name)
-    parameter = next(p for p in fit.term.structure.free if p.name == name)
-    # the likelihood is that of the noise model: its ends are further out by as much as the scatter is larger
-    reach = NORMAL_95 * float(spread.noise[row] / spread.model[row])
-    value = fit.values[name]
-    ends, is_open = [], []
-    for side, bound in ((-1.0, parameter.lower), (1.0, parameter.upper)):
-        end, free = _end(fit, name, value, side * spread.model[row], reach, bound)
-        noise = end - value
-        ends.append(value + side * float(np.hypot(noise, NORMAL_95 * spread.systematic[row])))
-        is_open.append(free)
-    return LevelInterval(lower=ends[0], upper=ends[1], lower_open=is_open[0], upper_open=is_open[1])
-
-
-def _end(fit: Fitted, name: str, value: float, std: float, reach: float, bound: float) -> tuple[float, bool]:
-    """Return where the root of twice the rise of the cost is ``reach``, and whether the bound comes first."""
-    distance: Callable[[float], float] = _distance(fit, name)
-    far = reach * std
-    for _ in range(MOST_STEPS):
-        at = value + far
-        beyond = (at - bound) * np.sign(std) >= 0.0
-        at = bound if beyond else at
-        far = at - value
-        there = distance(at)
-        if beyond and there < reach:
-            return bound, True
-        if abs(there - reach) <= NEAR * reach:
-            break
-        # the root of a parabola's rise is a straight line through the estimate
-        step = far * float(np.clip(reach / max(there, 1e-3), 0.3, 3.0))
-        far = step
-    return value + far, False
-
-
-def _distance(fit: Fitted, name: str) -> Callable[[float], float]:
-    base = fit.log_squares
-
-    def distance(at: float) -> float:
-        values: Mapping[str, float] = {**fit.values, name: at}
-        there = fitted(
-            fit.term.whole,
-            fit.term.record,
-            values,
-            fit.kinds,
-            priors=fit.priors,
-            iterations=PROFILE_ITERATIONS,
-            held=(name,),
-            messages=fit.messages,
-        )
-        return float(np.sqrt(max(there.log_squares - base, 0.0)))
-
-    return distance

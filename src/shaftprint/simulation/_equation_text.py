@@ -11,7 +11,7 @@ from shaftprint.models import Formula, postorder
 from shaftprint.simulation._loop_invariants import FormulaSlopes, Hoisted
 from shaftprint.simulation._text import statements
 
-LANES = 8
+LANES = 16
 
 HEADER = '''"""Compiled equations of a structure; written by shaftprint, and written anew when they are missing."""
 

@@ -1,7 +1,7 @@
 """The likelihood of a governor: one-step prediction errors of the engine's torque, white at their best colour."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -12,6 +12,7 @@ from shaftprint.identify import fit_percent
 from shaftprint.identify.likelihood import FittedTerm, LineTest, Repeats, TermCheck, TermTest, WhitenedTerm
 from shaftprint.limits._candidates import IDLE
 from shaftprint.limits.prediction._noise_colour import Innovations, innovations, without_gaps
+from shaftprint.limits.prediction._recent_simulations import RecentSimulations
 from shaftprint.limits.prediction._set_point import GovernorRecord
 from shaftprint.models import Structure
 from shaftprint.time_domain import ExactDelays, Record, qr_reduced, simulated_on
@@ -70,6 +71,8 @@ class PredictionError(WhitenedTerm):
     """The data."""
     scale: float = 1.0
     """Standard deviation of the innovations, by which they are divided."""
+    recent: RecentSimulations = field(default_factory=RecentSimulations, repr=False)
+    """What was simulated last; the same in other units and with other free parameters."""
 
     @classmethod
     def of(
@@ -203,6 +206,15 @@ class PredictionError(WhitenedTerm):
 
     def _simulated(self, values: FloatArray, wanted: Sequence[str]) -> FloatArray | None:
         """Return prediction and derivatives, shape (1 + wanted, samples); None where it runs away."""
+        again = self.recent.found(self.record, values, wanted)
+        if again is not None:
+            return again
+        simulated = self._simulated_anew(values, wanted)
+        if simulated is not None:
+            self.recent.keep(self.record, values, wanted, simulated)
+        return simulated
+
+    def _simulated_anew(self, values: FloatArray, wanted: Sequence[str]) -> FloatArray | None:
         inside = [name for name in wanted if name != RATE]
         simulated = simulated_on(EXACT, self.whole, values, self._record_at(values), inside)
         if simulated is None or len(inside) == len(wanted):
