@@ -156,7 +156,13 @@ def give_back(store: Store, job: Job, *, died: bool = False, now: datetime | Non
 def jobs(
     store: Store, *, states: Collection[str] = JOB_STATES, after: int = 0, most: int | None = None
 ) -> tuple[Job, ...]:
-    """Return jobs in some states in the order of their numbers, at most so many above a number."""
+    """Return jobs in some states in the order of their numbers, at most so many above a number.
+
+    Raises
+    ------
+    StoreError
+        If there is no such state.
+    """
     unknown = sorted(set(states) - set(JOB_STATES))
     if unknown:
         raise StoreError(f"states: expected some of {', '.join(JOB_STATES)}, found {unknown[0]!r}.")
