@@ -16,7 +16,7 @@ from shaftprint.store import Job, Store, jobs, open_store
 
 
 @click.command("run")
-@click.argument("recordings", metavar="FOLDER|LIST.csv", type=click.Path(path_type=Path, exists=True))
+@click.argument("recordings", metavar="FOLDER|LIST.csv", type=click.Path(path_type=Path))
 @click.option("--vessel", metavar="TEXT", help="Vessel file, or a shipped name such as stan-tug-1205.")
 @click.option("--campaign", metavar="TEXT", help="Campaign file, or a shipped name such as thesis.")
 @click.option("--structure", metavar="NAME", help="Model structure.  [default: GAUGE-CLOSED]")
