@@ -124,21 +124,25 @@ def _phase_fit(crossings_s: FloatArray, family: Family) -> tuple[tuple[float, fl
 def _best_growth(time_s: FloatArray, phase_rad: FloatArray, span_s: float) -> float:
     """Return the rate [1/s] of the logarithm of the frequency that leaves least, refined by halves."""
 
-    def left(rate: float) -> float:
-        columns = np.column_stack([np.ones(time_s.size), np.expm1(rate * time_s) / rate])
-        normal = columns.T @ columns
-        coefficients = np.linalg.lstsq(normal, columns.T @ phase_rad, rcond=None)[0]
-        return float(np.sum((phase_rad - columns @ coefficients) ** 2))
+    def left(rates: FloatArray) -> FloatArray:
+        # offset and frequency at their best for every rate at once: what is centred needs no offset
+        cycles = np.expm1(rates[:, None] * time_s) / rates[:, None]
+        cycles -= cycles.mean(axis=1, keepdims=True)
+        frequency = cycles @ about / np.sum(cycles**2, axis=1)
+        return np.asarray(np.sum((about - frequency[:, None] * cycles) ** 2, axis=1))
 
+    about = phase_rad - phase_rad.mean()
     rates = _GROWTHS / span_s
-    costs = [left(rate) for rate in rates.tolist()]
-    best, cost = float(rates[int(np.argmin(costs))]), min(costs)
+    costs = left(rates)
+    place = int(np.argmin(costs))
+    best, cost = float(rates[place]), float(costs[place])
     step = 0.2 / span_s
     while step > 1e-7 / span_s:
-        tried = [(left(rate), rate) for rate in (best - step, best + step) if abs(rate) > 1e-9 / span_s]
-        smallest = min(tried)
-        if smallest[0] < cost:
-            cost, best = smallest
+        beside = np.array([rate for rate in (best - step, best + step) if abs(rate) > 1e-9 / span_s])
+        tried = left(beside)
+        place = int(np.argmin(tried))
+        if tried[place] < cost:
+            best, cost = float(beside[place]), float(tried[place])
         else:
             step *= 0.5
     return best
