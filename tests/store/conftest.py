@@ -60,7 +60,7 @@ class Server:
     def start(self):
         options = f"-k {self.folder} -c listen_addresses="
         words = ("pg_ctl", "-D", self.folder / "data", "-w", "-l", self.folder / "log", "-o", options, "start")
-        for _ in range(20):
+        for _ in range(60):
             with suppress(AssertionError):
                 return self.call(*words)
             # what was killed a moment ago may still hold its memory
