@@ -12,6 +12,17 @@ from typing import Any
 import pytest
 from click.testing import CliRunner, Result
 
+from shaftprint.cli import shaftprint
+
+CHROMIUM = Path("/usr/bin/chromium")
+QUIET = (
+    "--no-sandbox",
+    "--disable-gpu",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+    "--no-first-run",
+)
 LONGEST_WAIT_S = 1200.0
 ONE_LINE = 10_000
 
@@ -32,6 +43,29 @@ def _sentences_on_one_line() -> Iterator[None]:
         patch.delenv("COLUMNS", raising=False)
         patch.setattr(CliRunner, "invoke", invoke)
         yield
+
+
+@pytest.fixture
+def run() -> Callable[..., Result]:
+    """Call the program with arguments; errors that are not foreseen come through."""
+
+    def call(*arguments: object, **options: Any) -> Result:
+        words = [str(argument) for argument in arguments]
+        return CliRunner().invoke(shaftprint, words, catch_exceptions=False, **options)
+
+    return call
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Any]:
+    """Debian's chromium, driven by Playwright, with no way out to a network."""
+    if not CHROMIUM.exists():
+        pytest.skip(f"{CHROMIUM} is the browser; apt-get install chromium")
+    driver = pytest.importorskip("playwright.sync_api", reason="playwright drives the browser")
+    with driver.sync_playwright() as running:
+        started = running.chromium.launch(executable_path=str(CHROMIUM), args=list(QUIET))
+        yield started
+        started.close()
 
 
 @pytest.fixture(scope="session")

@@ -26,16 +26,6 @@ stop_s = 25.0
 
 
 @pytest.fixture
-def run() -> Run:
-    """Call the program with arguments; errors that are not foreseen come through."""
-
-    def call(*arguments: object) -> Result:
-        return CliRunner().invoke(shaftprint, [str(argument) for argument in arguments], catch_exceptions=False)
-
-    return call
-
-
-@pytest.fixture
 def brief_campaign(tmp_path: Path) -> Path:
     """The file ``brief.toml`` of a campaign of one sine in half a minute."""
     path = tmp_path / "brief.toml"

@@ -1,9 +1,7 @@
 """A store and recordings for fleet runs."""
 
 import pytest
-from click.testing import CliRunner
 
-from shaftprint.cli import shaftprint
 from shaftprint.store import create_store
 
 pytest.importorskip("sqlalchemy", reason="the store is an extra: pip install shaftprint[store]")
@@ -21,14 +19,3 @@ def store(url):
     """An empty store in a file."""
     with create_store(url) as made:
         yield made
-
-
-@pytest.fixture
-def run():
-    """Call the program with arguments; errors that are not foreseen come through."""
-
-    def call(*arguments, **options):
-        words = [str(argument) for argument in arguments]
-        return CliRunner().invoke(shaftprint, words, catch_exceptions=False, **options)
-
-    return call

@@ -5,21 +5,9 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from click.testing import CliRunner, Result
-
-from shaftprint.cli import shaftprint
+from click.testing import Result
 
 Run = Callable[..., Result]
-
-
-@pytest.fixture
-def run() -> Run:
-    """Call the program with arguments; errors that are not foreseen come through."""
-
-    def call(*arguments: object) -> Result:
-        return CliRunner().invoke(shaftprint, [str(argument) for argument in arguments], catch_exceptions=False)
-
-    return call
 
 
 @pytest.fixture(scope="session")

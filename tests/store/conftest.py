@@ -13,9 +13,7 @@ from pathlib import Path
 
 import pytest
 from benchmarks.store_documents import IMO_NUMBER, document
-from click.testing import CliRunner
 
-from shaftprint.cli import shaftprint
 from shaftprint.store import add_document, create_store
 
 pwd = None
@@ -138,14 +136,3 @@ def put():
         return add_document(store, document(ship=ship, **content), named="one.json", now=now, zone=zone, **options)
 
     return put_in
-
-
-@pytest.fixture
-def run():
-    """Call the program with arguments; errors that are not foreseen come through."""
-
-    def call(*arguments, **options):
-        words = [str(argument) for argument in arguments]
-        return CliRunner().invoke(shaftprint, words, catch_exceptions=False, **options)
-
-    return call

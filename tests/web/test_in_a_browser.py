@@ -8,7 +8,6 @@ import subprocess
 import sys
 import time
 from datetime import UTC, datetime
-from pathlib import Path
 
 import pytest
 
@@ -31,14 +30,6 @@ from shaftprint.store import (
 )
 
 pytestmark = pytest.mark.slow
-CHROMIUM = Path("/usr/bin/chromium")
-QUIET = (
-    "--no-sandbox",
-    "--disable-gpu",
-    "--disable-background-networking",
-    "--disable-component-update",
-    "--no-first-run",
-)
 NOW = datetime(2026, 11, 24, 12, tzinfo=UTC)
 ADA = 9074729
 # Contrast of WCAG 2.2, 1.4.3, of every text that is seen, against the first background behind it that is not clear.
@@ -113,17 +104,6 @@ def server(store):
     running = Server(store)
     yield running
     running.kill()
-
-
-@pytest.fixture(scope="module")
-def browser():
-    if not CHROMIUM.exists():
-        pytest.skip(f"{CHROMIUM} is the browser; apt-get install chromium")
-    driver = pytest.importorskip("playwright.sync_api", reason="playwright drives the browser")
-    with driver.sync_playwright() as running:
-        started = running.chromium.launch(executable_path=str(CHROMIUM), args=list(QUIET))
-        yield started
-        started.close()
 
 
 def paths_of(page, server):

@@ -15,8 +15,6 @@ from shaftprint.identify.uncertainty import Interval
 from shaftprint.spectra import FrequencyResponse
 from shaftprint.tables import MEANING, Symbol, Table, interval, numbers, plain, texts, unit_text, with_deviation
 
-PERCENT, MILLISECONDS = 100.0, 1000.0
-
 
 def print_prediction(
     campaign: Campaign,
@@ -53,13 +51,7 @@ def print_prediction(
 
 
 def _visible_table(visible: Sequence[VisibleChange]) -> Table:
-    rows = tuple(
-        (
-            one.cause.name,
-            f"{plain(PERCENT * one.size, 1)} %" if one.cause.is_share else f"{plain(MILLISECONDS * one.size, 1)} ms",
-        )
-        for one in visible
-    )
+    rows = tuple((one.cause.name, f"{plain(one.cause.in_unit(one.size), 1)} {one.cause.unit}") for one in visible)
     return Table(
         title="What a second test like it would see of a change",
         columns=(*texts("what may change"), *numbers("seen in four of five pairs")),

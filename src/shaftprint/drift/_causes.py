@@ -45,6 +45,18 @@ class Cause:
         """Unit in which its size is stated."""
         return "%" if self.is_share else "ms"
 
+    def in_unit(self, size: float) -> float:
+        """Return a size, a share or a time [s], in the unit in which it is stated."""
+        return self._per_unit * size
+
+    def from_unit(self, number: float) -> float:
+        """Return the size, a share or a time [s], of a number in the unit in which it is stated."""
+        return number / self._per_unit
+
+    @property
+    def _per_unit(self) -> float:
+        return PERCENT if self.is_share else MILLISECONDS
+
     def stated(self, size: float, std: float) -> tuple[float, float]:
         """Return a size and its deviation as they are stated: shares of logarithms, times as they are."""
         if not self.is_share:

@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Sequence
 
 from shaftprint.digits import p_value_text, plain_letters, stated
-from shaftprint.drift._causes import MILLISECONDS, PERCENT, Cause
+from shaftprint.drift._causes import Cause
 from shaftprint.drift._finding import Finding, ShipChange, SizedCause
 from shaftprint.drift._history import History
 from shaftprint.drift._time_to_limit import time_to_limit
@@ -55,8 +55,7 @@ def open_sentences(causes: Sequence[Cause]) -> tuple[str, ...]:
 
 def size_text(one: SizedCause) -> str:
     """Return the size of a change with its standard deviation, without a sign, as sentences have it."""
-    factor = PERCENT if one.cause.is_share else MILLISECONDS
-    return stated(factor * abs(one.size), factor * one.std, one.cause.unit)
+    return stated(one.cause.in_unit(abs(one.size)), one.cause.in_unit(one.std), one.cause.unit)
 
 
 def _of_change(change: ShipChange) -> str:
@@ -117,8 +116,7 @@ def limit_sentence(finding: WatchFinding, cause: Cause, limit: float, history: H
     history
         The tests in which it was found.
     """
-    factor = PERCENT if cause.is_share else MILLISECONDS
-    asked = f"{cause.name}, {factor * limit:g} {cause.unit}"
+    asked = f"{cause.name}, {cause.in_unit(limit):g} {cause.unit}"
     ramps = (drift.best for drift in finding.drifts if drift.best.cause == cause and drift.best.shape == "ramp")
     course = next(ramps, None)
     if course is None:

@@ -2,20 +2,10 @@
 
 import contextlib
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import Any
 
 import pytest
 
-CHROMIUM = Path("/usr/bin/chromium")
-QUIET = (
-    "--no-sandbox",
-    "--disable-gpu",
-    "--disable-background-networking",
-    "--disable-component-update",
-    "--disable-sync",
-    "--no-first-run",
-)
 WAIT_MS = 60_000
 
 
@@ -49,17 +39,6 @@ class Visit:
     def axis(self, name, axis="xaxis"):
         """Return the ends of an axis as they are shown."""
         return self.page.evaluate(f"document.getElementById('plot-{name}')._fullLayout.{axis}.range.map(Number)")
-
-
-@pytest.fixture(scope="module")
-def browser():
-    if not CHROMIUM.exists():
-        pytest.skip(f"{CHROMIUM} is the browser; apt-get install chromium")
-    driver = pytest.importorskip("playwright.sync_api", reason="playwright drives the browser")
-    with driver.sync_playwright() as running:
-        started = running.chromium.launch(executable_path=str(CHROMIUM), args=list(QUIET))
-        yield started
-        started.close()
 
 
 @pytest.fixture(scope="module")

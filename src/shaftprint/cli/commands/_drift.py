@@ -27,7 +27,7 @@ from shaftprint.report import course_table, history_table, render_history, sizes
 from shaftprint.store import line_history, open_store
 
 FEWEST = 2
-PERCENT, MILLISECONDS = 100.0, 1000.0
+PERCENT = 100.0
 SEED = 1
 
 
@@ -60,7 +60,7 @@ class LimitOf(click.ParamType):  # type: ignore[type-arg]
         (cause,) = found
         number = size.strip().removesuffix(cause.unit)
         try:
-            return cause, float(number) / (PERCENT if cause.is_share else MILLISECONDS)
+            return cause, cause.from_unit(float(number))
         except ValueError:
             self.fail(f"expected a number of {cause.unit} after {word}=, found {size!r}.", param, ctx)
 

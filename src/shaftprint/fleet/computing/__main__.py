@@ -5,10 +5,7 @@ It knows no database. So what crashes it, or takes all of the memory, leaves the
 
 import json
 import os
-import queue
 import signal
-import sys
-import threading
 from contextlib import suppress
 from pathlib import Path
 from typing import Any, TextIO
@@ -16,6 +13,7 @@ from typing import Any, TextIO
 from shaftprint.errors import ShaftprintError
 from shaftprint.fingerprint import fingerprint_document
 from shaftprint.fleet._arguments import arguments_of
+from shaftprint.fleet.computing._asked_lines import asked_lines
 from shaftprint.fleet.computing._identify import survey_of_job
 
 # Linux ends this process rather than another one where memory runs out.
@@ -29,7 +27,7 @@ def main() -> None:
     with suppress(OSError):
         _OOM.write_text("500", encoding="ascii")
     answers = _answers()
-    for line in iter(_lines().get, None):
+    for line in asked_lines():
         _say(answers, _outcome(line, answers))
 
 
@@ -38,20 +36,6 @@ def _answers() -> TextIO:
     answers = os.fdopen(os.dup(1), "w", encoding="ascii", newline="\n")
     os.dup2(2, 1)
     return answers
-
-
-def _lines() -> "queue.Queue[str]":
-    """Return what is asked for, line by line; the process ends with the worker that asks."""
-    lines: queue.Queue[str] = queue.Queue()
-
-    def read() -> None:
-        for line in sys.stdin:
-            lines.put(line)
-        # the worker is gone: what is being computed here has no one to take it
-        os._exit(0)
-
-    threading.Thread(target=read, daemon=True).start()
-    return lines
 
 
 def _outcome(line: str, answers: TextIO) -> dict[str, Any]:

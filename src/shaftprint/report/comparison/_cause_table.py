@@ -8,7 +8,6 @@ from shaftprint.tables import Table, numbers, p_value_text, plain, texts
 if TYPE_CHECKING:
     from shaftprint.drift import Finding, ShipChange, SizedCause
 
-PERCENT, MILLISECONDS = 100.0, 1000.0
 MOST_ODDS = 1000.0
 
 
@@ -49,8 +48,8 @@ def odds_text(one: "SizedCause") -> str:
 
 def sized(one: "SizedCause") -> str:
     """Return size and deviation of a cause with its sign, as tables have them."""
-    factor = PERCENT if one.cause.is_share else MILLISECONDS
-    return f"{with_deviation(factor * one.size, factor * one.std)} {one.cause.unit}"
+    cause = one.cause
+    return f"{with_deviation(cause.in_unit(one.size), cause.in_unit(one.std))} {cause.unit}"
 
 
 def _note(finding: "Finding") -> str:

@@ -9,7 +9,6 @@ from shaftprint.tables import Table, numbers, p_value_text, plain, texts
 if TYPE_CHECKING:
     from shaftprint.drift import ClassFinding, NumberSpread
 
-PERCENT, MILLISECONDS = 100.0, 1000.0
 NOT_THERE = "–"
 
 
@@ -62,10 +61,9 @@ def cause_spread_table(finding: "ClassFinding") -> Table:
     """
     rows = []
     for spread in finding.causes:
-        factor = PERCENT if spread.cause.is_share else MILLISECONDS
-        unit = spread.cause.unit
-        std = f"{plain(factor * spread.std, 2)} {unit}" if spread.std else NOT_THERE
-        rows.append((spread.cause.name, std, f"± {plain(factor * spread.half_width, 2)} {unit}"))
+        cause = spread.cause
+        std = f"{plain(cause.in_unit(spread.std), 2)} {cause.unit}" if spread.std else NOT_THERE
+        rows.append((cause.name, std, f"± {plain(cause.in_unit(spread.half_width), 2)} {cause.unit}"))
     return Table(
         title="How much sisters differ along each cause",
         columns=(*texts("cause"), *numbers("deviation between ships", "95 % of new sisters, tested alike")),

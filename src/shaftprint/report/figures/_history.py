@@ -14,7 +14,6 @@ if TYPE_CHECKING:
 
     from shaftprint.drift import History, SizedCause
 
-PERCENT, MILLISECONDS = 100.0, 1000.0
 PANEL_PX = 150
 
 
@@ -45,16 +44,14 @@ def history_chart(history: "History", sizes: "Mapping[str, Sequence[SizedCause |
 
 def _panel(name: str, years: FloatArray, column: "Sequence[SizedCause | None]", events: Sequence[float]) -> Panel:
     there = [(year, one) for year, one in zip(years, column, strict=True) if one is not None]
-    share = there[0][1].cause.is_share
-    factor = PERCENT if share else MILLISECONDS
+    cause = there[0][1].cause
     x = np.array([year for year, _ in there])
-    y, std = (factor * np.array([getattr(one, field) for _, one in there]) for field in ("size", "std"))
+    y, std = (np.array([cause.in_unit(getattr(one, field)) for _, one in there]) for field in ("size", "std"))
     marks: list[Mark] = [Straight(at=0.0, axis="y", dash="solid")]
     marks += [Straight(at=at, axis="x", name="what was done to the ship") for at in events]
     half = NORMAL_95 * std
     marks.append(Points(x=x, y=y, bars=(half, half), name="test, with 95 % interval", shade="data"))
-    unit = "%" if share else "ms"
-    return Panel(marks=marks, title=name, x=Scale(title="year"), y=Scale(title=f"change [{unit}]"))
+    return Panel(marks=marks, title=name, x=Scale(title="year"), y=Scale(title=f"change [{cause.unit}]"))
 
 
 def _year(at: "datetime") -> float:

@@ -10,7 +10,6 @@ from shaftprint.report.charts import Band, Chart, Mark, Panel, Points, Scale, St
 if TYPE_CHECKING:
     from shaftprint.drift import CauseSpread, ClassFinding
 
-PERCENT, MILLISECONDS = 100.0, 1000.0
 SHIP_PX, PANEL_PX, COLUMNS = 22, 90, 2
 HALF = 0.5
 
@@ -36,14 +35,14 @@ def sister_chart(finding: "ClassFinding") -> Chart:
 
 
 def _panel(finding: "ClassFinding", spread: "CauseSpread") -> Panel:
-    factor = PERCENT if spread.cause.is_share else MILLISECONDS
+    cause = spread.cause
     order = sorted(range(len(finding.ships)), key=lambda at: spread.ships[at].size)
     size, std, drawn = (
-        factor * np.array([getattr(spread.ships[at], name) for at in order]) for name in ("size", "std", "shrunk")
+        np.array([cause.in_unit(getattr(spread.ships[at], name)) for at in order]) for name in ("size", "std", "shrunk")
     )
     places = np.arange(len(order), dtype=np.float64)
     is_odd = np.array([finding.ships[at].is_odd for at in order])
-    half = factor * spread.half_width
+    half = cause.in_unit(spread.half_width)
     edge = np.array([-half, half])
     marks: list[Mark] = [
         Band(
@@ -65,7 +64,7 @@ def _panel(finding: "ClassFinding", spread: "CauseSpread") -> Panel:
     names = tuple(finding.ships[at].name for at in order)
     return Panel(
         marks=marks,
-        title=spread.cause.name,
-        x=Scale(title=f"difference from the class [{spread.cause.unit}]"),
+        title=cause.name,
+        x=Scale(title=f"difference from the class [{cause.unit}]"),
         y=Scale(names=names, span=(-HALF, len(order) - HALF)),
     )

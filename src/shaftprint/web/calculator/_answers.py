@@ -2,14 +2,13 @@
 
 import json
 import os
-import queue
 import sys
-import threading
 import warnings
 from collections.abc import Callable, Mapping
 from typing import Any, Final
 
 from shaftprint.errors import ShaftprintError
+from shaftprint.fleet.computing import asked_lines
 from shaftprint.web.calculator._class import judged_class
 from shaftprint.web.calculator._compared import compared
 from shaftprint.web.calculator._inspected import inspected
@@ -38,26 +37,13 @@ def answer_all() -> None:
     warnings.simplefilter("ignore")
     # whatever is printed must not be taken for an answer
     answers, sys.stdout = sys.stdout, sys.stderr
-    for line in iter(_questions().get, None):
+    for line in asked_lines():
         try:
             answers.write(json.dumps(_answer(json.loads(line))) + "\n")
             answers.flush()
         except OSError:
             # who asked is gone
             os._exit(0)
-
-
-def _questions() -> "queue.Queue[str]":
-    """Return what is asked, line by line; the process ends with the server, in the middle of an answer too."""
-    lines: queue.Queue[str] = queue.Queue()
-
-    def read() -> None:
-        for line in sys.stdin:
-            lines.put(line)
-        os._exit(0)
-
-    threading.Thread(target=read, daemon=True).start()
-    return lines
 
 
 def _answer(question: dict[str, Any]) -> dict[str, Any]:

@@ -17,7 +17,6 @@ if TYPE_CHECKING:
 SEED: Final = 1
 MOST_TESTS: Final = 40
 """Tests that are judged together; of a longer history the newest. Time grows with the cube of their number."""
-PERCENT, MILLISECONDS = 100.0, 1000.0
 
 
 def judged_line(ship: str, line: str) -> dict[str, Any]:
@@ -51,14 +50,13 @@ def judged_line(ship: str, line: str) -> dict[str, Any]:
 
 def _cause(course: "DatedCause", history: "History") -> dict[str, Any]:
     days = [f"{test.at:%Y-%m-%d}" for test in history.tests]
-    factor = PERCENT if course.cause.is_share else MILLISECONDS
     return {
         "name": course.cause.name,
         "words": course.words,
         "shape": course.shape,
         "since": days[course.since],
-        "size": factor * course.size,
-        "std": factor * course.std,
+        "size": course.cause.in_unit(course.size),
+        "std": course.cause.in_unit(course.std),
         "unit": course.cause.unit,
     }
 
@@ -70,17 +68,16 @@ def _courses(finding: "WatchFinding", history: "History") -> dict[str, Any] | No
 def _strip(name: str, column: "list[SizedCause | None]", history: "History") -> dict[str, Any]:
     """Return a cause test by test against the first one, in per cent or milliseconds."""
     there = [(test, one) for test, one in zip(history.tests, column, strict=True) if one is not None]
-    is_share = there[0][1].cause.is_share
-    factor = PERCENT if is_share else MILLISECONDS
+    cause = there[0][1].cause
     return {
         "name": name,
-        "unit": "%" if is_share else "ms",
+        "unit": cause.unit,
         "points": [
             {
                 "at": test.at.isoformat(),
-                "value": factor * one.size,
-                "low": factor * (one.size - NORMAL_95 * one.std),
-                "high": factor * (one.size + NORMAL_95 * one.std),
+                "value": cause.in_unit(one.size),
+                "low": cause.in_unit(one.size - NORMAL_95 * one.std),
+                "high": cause.in_unit(one.size + NORMAL_95 * one.std),
             }
             for test, one in there
         ],
