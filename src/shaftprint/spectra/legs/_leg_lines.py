@@ -49,7 +49,7 @@ _TORQUE = "M_s"
 _NOISE_BINS = 36
 # A hump as that of the surge, 0.09 Hz and 0.03 Hz wide, is smeared by a wider mean: the noise under the line next to it
 # was stated four times too small in tests of five minutes. It needs the fewest bins whose covariance may be a weight.
-_REACH_LOG_RATIO, _FEWEST_NOISE_BINS, _WIDER = 0.15, 12.0, 1.1
+_REACH_LOG_RATIO, _FEWEST_NOISE_BINS, _WIDER = 0.1, 8.0, 1.1
 # As many bins beside a line as the thesis' local ratio takes on both sides together.
 _LOCAL_BINS = 40
 _NOT_FITTED = 2

@@ -18,6 +18,7 @@ from shaftprint.spectra.lines._noise import (
     local_slope,
     noise_from_neighbours,
     residual_spectrum,
+    slope_allowance,
 )
 from shaftprint.spectra.lines._set_point_check import (
     amplitude_remark,
@@ -64,6 +65,7 @@ __all__ = [
     "residual_spectrum",
     "shape_reasons",
     "signal_to_noise",
+    "slope_allowance",
     "strongest_frequency_hz",
     "times_of_course",
     "times_of_values",

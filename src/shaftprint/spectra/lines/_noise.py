@@ -208,7 +208,7 @@ def noise_from_neighbours(
         chosen = chosen.copy()
         chosen[relation.torque], mixing[relation.torque, relation.speed] = _own_torque(chosen, relation, neighbours)
     levelled = _levelled(chosen, neighbours)
-    weight = neighbours.weight / neighbours.weight.sum() / kept
+    weight = slope_allowance(neighbours) * neighbours.weight / neighbours.weight.sum() / kept
     covariance = mixing @ (levelled * weight) @ levelled.conj().T @ mixing.conj().T
     return LineNoise(covariance=covariance, complex_samples=samples)
 
@@ -308,6 +308,21 @@ def equivalent_samples(neighbours: Neighbours) -> float:
     information = weight @ deviation**2 + 1.0 / _slope_std(neighbours) ** 2
     slope_variance = (weight**2 @ deviation**2) / information**2
     return float(1.0 / ((weight @ weight) / total**2 + centre**2 * slope_variance))
+
+
+def slope_allowance(neighbours: Neighbours) -> float:
+    """Return by what factor the mean over the levelled bins is too small, because their slope was fitted to them.
+
+    The slope makes the mean as small as it can. To second order, with ``w`` the weights, ``x`` the centred logarithms of
+    frequency and ``t`` the prior's information, it takes ``sum(w^2 x^2) / H (1 - sum(w x^2) / 2 H) / sum(w)`` of it,
+    ``H = sum(w x^2) + t``.
+    """
+    weight = neighbours.weight
+    deviation = neighbours.log_ratio - (weight @ neighbours.log_ratio) / weight.sum()
+    of_bins = weight @ deviation**2
+    information = of_bins + 1.0 / _slope_std(neighbours) ** 2
+    taken = (weight**2 @ deviation**2) / information * (1.0 - 0.5 * of_bins / information)
+    return float(np.exp(taken / weight.sum()))
 
 
 def _slope_std(neighbours: Neighbours) -> float:
