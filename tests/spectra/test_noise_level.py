@@ -5,7 +5,7 @@ import pytest
 
 from shaftprint.spectra.lines import Neighbours, noise_from_neighbours
 
-REPEATS = 3000
+REPEATS = 1500
 
 
 @pytest.mark.parametrize(("count", "half_width"), [(8, 0.1), (12, 0.3), (36, 1.0)])
