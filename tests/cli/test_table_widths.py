@@ -1,55 +1,23 @@
-"""Every table of every command on terminals of 80, 100 and 200 letters: no cut word, no lost name."""
+"""Every table of every command on terminals of 80, 100 and 200 letters: no cut word, no lost name.
+
+Those of ``limits`` are read in ``test_limits_output``, which calls it anyway.
+"""
 
 import pytest
-
-from shaftprint.cli.output import table_lines
-from shaftprint.digits import plain_letters
-from shaftprint.tables import Symbol, Table
-
-WIDTHS = (80, 100, 200)
+from tests.cli.readable_tables import WIDTHS, expect_readable, printed_tables
 
 
 @pytest.fixture
-def tables_of(run, monkeypatch):
-    """Call a command and return the tables that it makes."""
+def tables_of(run):
+    """Call a command and return the tables that it prints."""
 
     def call(*arguments):
-        tables = []
-        check = Table.__post_init__
-
-        def remembered(table):
-            check(table)
-            tables.append(table)
-
-        with monkeypatch.context() as patch:
-            patch.setattr(Table, "__post_init__", remembered)
+        with printed_tables() as printed:
             result = run(*arguments)
         assert result.exit_code == 0, result.stderr
-        # a report makes tables too, which no command prints
-        return [table for table in tables if table.rows and _shown(table.title) in result.stdout]
+        return printed(result.stdout)
 
     return call
-
-
-def _shown(text):
-    return plain_letters(text).replace("\u00a0", " ")
-
-
-def _expect_readable(table, width):
-    lines = table_lines(table, width)
-    page = [line for line in lines if "─" not in line]
-    words = {word for line in page for word in line.split()}
-    cells = [cell for row in table.rows for cell in row] + [column.heading for column in table.columns]
-    lost = {word for cell in cells for word in _shown(cell).split()} - words
-    assert not lost, table.title
-    for row in table.rows:
-        for cell, column in zip(row, table.columns, strict=True):
-            if column.number or isinstance(cell, Symbol):
-                assert any(_shown(cell) in line for line in page), (table.title, cell)
-    too_long = [line for line in lines if len(line) > width]
-    longest_name = max(len(_shown(row[0])) for row in table.rows)
-    longest_cell = max(len(word) for cell in cells for word in [_shown(cell)])
-    assert not too_long or longest_name + longest_cell > width, (table.title, too_long)
 
 
 QUICK = {
@@ -69,7 +37,6 @@ SLOW = {
     "compare-structures": ("compare-structures", *TEST, "--structure", "CL3", "--structure", "CL4"),
     "validate": ("validate", *TEST, "--fingerprint", "{demo}", "--thesis-sets"),
     "explain": ("explain", *TEST),
-    "limits": ("limits", *TEST),
     "plan": (
         "plan", "--vessel", "stan-tug-1205", "--within", "3min", "--limit", "set-point=0.5V", "--rpm-per-volt", "-251",
         "--offset", "-5", "--wish", "tau_dn=10%", "-o", "{o}",
@@ -83,7 +50,7 @@ def _expect_all_readable(tables_of, words, folder, tmp_path):
     assert tables
     for table in tables:
         for width in WIDTHS:
-            _expect_readable(table, width)
+            expect_readable(table, width)
 
 
 @pytest.mark.parametrize("name", QUICK)

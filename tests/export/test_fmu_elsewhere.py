@@ -169,7 +169,7 @@ def largest_share(found, expected):
 @EVERY
 def test_binary_gives_the_same_numbers_elsewhere(reference, zig_fmu, run, model, version, system):
     runner(system)
-    words, tables = run(zig_fmu(*model, version=version, platforms=SYSTEMS), system)
+    words, tables = run(zig_fmu(*model, version=version, platforms=(system,)), system)
     _, expected = reference(model, version)
     assert words[0] == f"version {version}.0"
     assert words[-1] == "freed"
@@ -185,7 +185,7 @@ def test_binary_gives_the_same_numbers_elsewhere(reference, zig_fmu, run, model,
 @pytest.mark.parametrize("version", [2, 3])
 def test_wrong_token_is_refused_in_words(zig_fmu, run, version, system):
     runner(system)
-    words, _ = run(zig_fmu(*GAUGE, version=version, platforms=SYSTEMS), system)
+    words, _ = run(zig_fmu(*GAUGE, version=version, platforms=(system,)), system)
     (message,) = (line for line in words if line.startswith("message"))
     # environment, name of the instance, status 3, which is an error in both versions
     assert message.startswith("message bridge tug 3 logStatusError ")
