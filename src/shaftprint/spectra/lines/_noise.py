@@ -102,6 +102,19 @@ class Neighbours:
     """Logarithm of their frequency over that of the line, shape (bins,)."""
     weight: FloatArray
     """Their weights, 1 at the line, shape (bins,)."""
+    related: FloatArray | None = None
+    """Squared correlation of the noise in two of them, shape (bins, bins); unrelated where not given. Noise that swells
+    and fades in time relates bins."""
+
+    def square_sum(self, share: FloatArray) -> float:
+        """Return ``sum(share^2)`` of unrelated bins, ``share^T R share`` of related ones.
+
+        Parameters
+        ----------
+        share
+            How much the power in each bin counts, shape (bins,).
+        """
+        return float(share @ share if self.related is None else share @ self.related @ share)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -301,28 +314,29 @@ def local_slope(power: FloatArray, neighbours: Neighbours) -> FloatArray:
 
 def equivalent_samples(neighbours: Neighbours) -> float:
     """Return the equivalent number of bins: variance of the level, with the part that the unknown slope adds."""
-    weight, log_ratio = neighbours.weight, neighbours.log_ratio
-    total = weight.sum()
-    centre = (weight @ log_ratio) / total
-    deviation = log_ratio - centre
-    information = weight @ deviation**2 + 1.0 / _slope_std(neighbours) ** 2
-    slope_variance = (weight**2 @ deviation**2) / information**2
-    return float(1.0 / ((weight @ weight) / total**2 + centre**2 * slope_variance))
+    weight, (deviation, _, information) = neighbours.weight, _about_centre(neighbours)
+    centre = neighbours.log_ratio[0] - deviation[0]
+    return 1.0 / neighbours.square_sum(weight / weight.sum() - centre * weight * deviation / information)
 
 
 def slope_allowance(neighbours: Neighbours) -> float:
     """Return by what factor the mean over the levelled bins is too small, because their slope was fitted to them.
 
-    The slope makes the mean as small as it can. To second order, with ``w`` the weights, ``x`` the centred logarithms of
-    frequency and ``t`` the prior's information, it takes ``sum(w^2 x^2) / H (1 - sum(w x^2) / 2 H) / sum(w)`` of it,
-    ``H = sum(w x^2) + t``.
+    The slope makes the mean as small as it can. To second order, with ``w`` the weights, ``x`` the centred logarithms
+    of frequency and ``t`` the prior's information, it takes ``sum(w^2 x^2) / H (1 - sum(w x^2) / 2 H) / sum(w)`` of
+    it, ``H = sum(w x^2) + t``.
     """
+    weight, (deviation, of_bins, information) = neighbours.weight, _about_centre(neighbours)
+    taken = neighbours.square_sum(weight * deviation) / information * (1.0 - 0.5 * of_bins / information)
+    return float(np.exp(taken / weight.sum()))
+
+
+def _about_centre(neighbours: Neighbours) -> tuple[FloatArray, float, float]:
+    """Return the centred logarithms of frequency, and what is known of the slope from the bins and in all."""
     weight = neighbours.weight
     deviation = neighbours.log_ratio - (weight @ neighbours.log_ratio) / weight.sum()
-    of_bins = weight @ deviation**2
-    information = of_bins + 1.0 / _slope_std(neighbours) ** 2
-    taken = (weight**2 @ deviation**2) / information * (1.0 - 0.5 * of_bins / information)
-    return float(np.exp(taken / weight.sum()))
+    of_bins = float(weight @ deviation**2)
+    return deviation, of_bins, of_bins + 1.0 / _slope_std(neighbours) ** 2
 
 
 def _slope_std(neighbours: Neighbours) -> float:
