@@ -5,7 +5,7 @@ the steps of ``shaftprint identify`` without anything from the builder. The rows
 the load of 1 to 3 % with a correlation time of 10 to 100 s, all other noise halved to doubled, surge in half of the
 tests, the latency of the set point halved to 1.6 times, and scale, zero and latency of the gauge from what the vessel
 file states. Run ``python benchmarks/planned_tests.py --seeds 100 --write``, about an hour of one core; ``--case`` runs
-one case alone, and recordings that ``--outcomes FOLDER`` holds are not sailed again.
+one case alone; recordings that ``--outcomes FOLDER`` holds are not sailed again, and all of them are in the tables.
 """
 
 import argparse
@@ -164,12 +164,12 @@ def delayed(one: Outcome, delay_s: float) -> Outcome:
 
 
 def outcomes_of(case: Case, campaign: Campaign, seeds: range, *, kept: Path | None = None) -> Iterator[Outcome]:
-    """Give what each recording of a case gave, from the file where it stands there already."""
+    """Give what each recording of a case gave, and what the file holds beside: nothing that was sailed is left out."""
     lines = kept.read_text(encoding="utf-8").splitlines() if kept and kept.exists() else []
     earlier = {one.seed: one for one in (Outcome(**json.loads(line)) for line in lines)}
     trial = load_trial(VESSEL, campaign)
     with tempfile.TemporaryDirectory() as folder:
-        for seed in seeds:
+        for seed in sorted({*seeds, *earlier}):
             if seed in earlier:
                 yield earlier[seed]
                 continue
