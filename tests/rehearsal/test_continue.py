@@ -86,7 +86,8 @@ def test_the_next_leg_closes_the_gap(test, vessel, broken_off, voyage, tmp_path)
     assert len(further.sailed) == 2
     trial = Trial(vessel=vessel, campaign=campaign)
     final = standing_after(further, measure(voyage(campaign, 6), trial), trial)
-    assert final.ratios["tau_up"] <= 1.05
+    # the further recording has a noise of its own
+    assert final.ratios["tau_up"] <= 1.05 * np.sqrt(final.noise_ratio / standing.noise_ratio)
     found = {one.name: one for one in final.fit.parameters}
     for name, truth in (("tau_up", 0.93), ("K_p", 4.9), ("tau_dn", 0.36)):
         assert abs(found[name].value - truth) < 4.0 * found[name].std, name

@@ -291,13 +291,17 @@ def test_covariance_is_the_scatter_over_repeats(coloured, make_signals, make_cam
         stated.append(found.covariance[0] * (samples - 3.0) / samples)
         weighed.append(parts @ np.linalg.solve(found.covariance[0], parts))
     scatter, mean = np.cov(np.array(errors).T), np.mean(stated, axis=0)
-    # 400 repeats know a variance to 7 % and a correlation to 0.05
+    # 400 repeats know a variance to 7 % and a correlation to 0.05; what of steep noise leaks into the window is not
+    # alike in real and imaginary part
     assert np.diagonal(mean) == pytest.approx(np.diagonal(scatter), rel=0.25)
-    size = np.sqrt(np.outer(np.diagonal(scatter), np.diagonal(scatter)))
-    assert (mean / size) == pytest.approx(scatter / size, abs=0.2)
+    ratio = (np.diagonal(mean) / np.diagonal(scatter)).reshape(2, 3).mean(axis=0)
+    assert ratio == pytest.approx(np.ones(3), abs=0.15)
+    for found in (mean, scatter):
+        found /= np.sqrt(np.outer(np.diagonal(found), np.diagonal(found)))
+    assert mean == pytest.approx(scatter, abs=0.15)
     # torque and rack: 0.9 at an angle of 0.5 rad, which puts 0.79 into the real parts and 0.43 across
-    assert abs(scatter[1, 2] / size[1, 2]) > 0.7
-    assert abs(scatter[1, 5] / size[1, 5]) > 0.3
+    assert abs(scatter[1, 2]) > 0.7
+    assert abs(scatter[1, 5]) > 0.3
     assert np.mean(weighed) == pytest.approx(6.0, rel=0.15)
 
 
@@ -329,7 +333,9 @@ def test_steps_are_white_noise_where_noise_moves_the_rack(ship):
     # the covariance is right as a weight: up to a quarter larger than the errors
     assert ratio == pytest.approx(np.full(4, 0.85), abs=0.35)
     expected = (4.0 * step**2 + step**2 / 12.0) * 4.0 / (400.0 * RATE_HZ) / AMPLITUDE**2
-    assert np.mean(stated, axis=0)[0] == pytest.approx(expected, rel=0.35)
+    # three channels, whose covariance is enlarged as a weight
+    samples = 0.5 * found.degrees_of_freedom[0]
+    assert np.mean(stated, axis=0)[0] == pytest.approx(expected * samples / (samples - 3.0), rel=0.2)
 
 
 def test_line_too_fast_for_the_messages_keeps_speed_and_torque(ship):

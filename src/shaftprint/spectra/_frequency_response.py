@@ -69,6 +69,11 @@ class FrequencyResponse(Shown, Labelled):
     reasons: tuple[Reason, ...] = ()
     """What speaks against the response: what was found on the signals and lines that it was made of."""
 
+    @property
+    def weight_factors(self) -> FloatArray:
+        """By what each covariance is larger than that of the errors, as it is estimated, shape (lines,); 1 if known."""
+        return weight_change(self.degrees_of_freedom, 0, len(self.outputs))
+
     def summary(self) -> Summary:
         """Return what answers to what, at which lines."""
         hertz = self.frequency_hz

@@ -1,7 +1,7 @@
 """How many periods of which leg are still missing, by the information that a period of each gives."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,6 +12,7 @@ from shaftprint.identify.prediction import line_information, planned_lines
 if TYPE_CHECKING:
     from shaftprint.design.plan import Plan
     from shaftprint.identify import NoiseLevels
+    from shaftprint.spectra import FrequencyResponse
 
 MOST_PERIODS = 400
 """Periods after which nothing more is to be expected of the same lines: a day of them."""
@@ -46,6 +47,7 @@ def period_information(
     noise: "Sequence[NoiseLevels]",
     *,
     values: Mapping[str, float],
+    costs: Sequence[FloatArray],
 ) -> PeriodInformation:
     """Return what a period of each leg of a plan tells.
 
@@ -57,10 +59,15 @@ def period_information(
         Noise at each leg.
     values
         Values at which it is predicted, by name.
+    costs
+        By what factor the covariance of each line counts larger because it is estimated from few samples, of each leg.
     """
     lines = [
-        planned_lines(leg.frequency_hz, noise=level, amplitude=np.abs(leg.amplitudes), duration_s=leg.period_s)
-        for leg, level in zip(plan.legs, noise, strict=True)
+        _enlarged(
+            planned_lines(leg.frequency_hz, noise=level, amplitude=np.abs(leg.amplitudes), duration_s=leg.period_s),
+            cost,
+        )
+        for leg, level, cost in zip(plan.legs, noise, costs, strict=True)
     ]
     pairs = [*zip(plan.structures, lines, strict=True), *plan.earlier]
     information = line_information(pairs, values=values, priors=plan.priors)
@@ -102,6 +109,10 @@ def missing_periods(information: PeriodInformation, *, fewest: int) -> tuple[int
             trials.append((gain / (trial[place] - given), trial))
         more = max(trials, key=lambda trial: trial[0])[1]
     return None
+
+
+def _enlarged(response: "FrequencyResponse", cost: FloatArray) -> "FrequencyResponse":
+    return replace(response, covariance=response.covariance * cost[:, np.newaxis, np.newaxis])
 
 
 def _worst(information: PeriodInformation, counts: Sequence[int]) -> float:

@@ -4,6 +4,7 @@ Whether to stop is decided by predicted deviations, not by those that were estim
 as soon as its estimated deviations are small stops when they happen to be too small, and its intervals then hold the
 truth too seldom (Anscombe, Sequential estimation, J. R. Stat. Soc. B 15, 1953). What is predicted rests on the lines of
 the plan, the periods that were recorded, the fitted values, and the plan's noise, scaled by one number for all lines.
+That noise is estimated from few samples at slow lines, whose number is no matter of chance: what it costs is counted.
 """
 
 from collections.abc import Mapping, Sequence
@@ -13,7 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shaftprint.arrays import frozen_complex
+from shaftprint.arrays import FloatArray, frozen_complex
 from shaftprint.design.plan import Plan, predicted_accuracy
 from shaftprint.design.planned_test import PlannedTest, SailedLeg
 from shaftprint.design.standing._periods import PeriodInformation, missing_periods, period_information
@@ -147,9 +148,10 @@ def standing_of(
     ship = updated_ship(plan, fit)
     ratio = _noise_ratio(plan, names, sailed, recorded)
     noise = tuple(_scaled(level, ratio) for level in plan.noise)
-    so_far = _information(plan, plan.legs, noise, ship.by_name)
+    costs = [_cost(leg, name, sailed) for leg, name in zip(plan.legs, names, strict=True)]
+    so_far = period_information(plan, noise, values=ship.by_name, costs=costs)
     legs, peaks = legs_within(plan, ship, np.random.default_rng(seed))
-    further = _information(plan, legs, noise, ship.by_name)
+    further = period_information(replace(plan, legs=tuple(legs)), noise, values=ship.by_name, costs=costs)
     further = replace(further, before=so_far.after(counts))
     more = _more(plan, further, counts)
     by_name = None if more is None else dict(zip(names, more, strict=True))
@@ -167,15 +169,6 @@ def standing_of(
         more=by_name,
         remaining=remaining,
     )
-
-
-def _information(
-    plan: Plan,
-    legs: "Sequence[Leg]",
-    noise: "Sequence[NoiseLevels]",
-    values: Mapping[str, float],
-) -> PeriodInformation:
-    return period_information(replace(plan, legs=tuple(legs)), noise, values=values)
 
 
 def _more(plan: Plan, information: PeriodInformation, counts: tuple[int, ...]) -> tuple[int, ...] | None:
@@ -214,8 +207,19 @@ def _remaining(test: PlannedTest, sailed: Sequence[SailedLeg], more: Sequence[in
     return replace(test, plan=further, created=now, rehearsal=None, remedies=(), sailed=every)
 
 
+def _cost(leg: "Leg", name: str, sailed: Sequence[SailedLeg]) -> FloatArray:
+    """Return by what factor the covariance of each line counts larger, as it is estimated; 1 of what was not sailed."""
+    factors = {
+        line: factor
+        for one in sailed
+        if one.name == name
+        for line, factor in zip(one.response.lines, one.response.weight_factors.tolist(), strict=True)
+    }
+    return np.array([factors.get(f"{name}/{harmonic}", 1.0) for harmonic in leg.harmonics])
+
+
 def _noise_ratio(plan: Plan, names: Sequence[str], sailed: Sequence[SailedLeg], recorded: Mapping[str, int]) -> float:
-    """Return the median, over the used lines, of the measured covariance over that of the plan."""
+    """Return the median, over the used lines, of the measured covariance of the errors over that of the plan."""
     ratios: list[float] = []
     for one in sailed:
         place = names.index(one.name)
@@ -231,7 +235,8 @@ def _noise_ratio(plan: Plan, names: Sequence[str], sailed: Sequence[SailedLeg], 
         for line, name in enumerate(response.lines):
             if response.used[line] and name in rows:
                 whitened = np.linalg.solve(planned.covariance[rows[name]], response.covariance[line])
-                ratios.append(float(np.trace(whitened)) / len(whitened))
+                known = float(np.trace(whitened)) / len(whitened)
+                ratios.append(known / float(response.weight_factors[line]))
     return float(np.median(ratios)) if ratios else 1.0
 
 
