@@ -7,14 +7,14 @@ Run ``python -m benchmarks.hand_over --recording demo/recording.nc --write``, te
 """
 
 import argparse
-import ctypes
 import tempfile
 from pathlib import Path
 
 import numpy as np
 
+from benchmarks.co_simulation import Slave
 from benchmarks.monte_carlo_tables import table, write_between_marks
-from shaftprint.arrays import FloatArray
+from shaftprint.catalogue import ShipRole
 from shaftprint.export import ExportedModel, exported_model, host_platform, write_fmu
 from shaftprint.simulation import simulate_exactly
 from shaftprint.survey import judged, run, with_limits
@@ -23,42 +23,9 @@ from shaftprint.vessel import load_vessel
 
 DOCUMENT = Path(__file__).parents[1] / "docs" / "nonlinear.md"
 BEGIN, END = "<!-- hand over: begin -->\n", "<!-- hand over: end -->\n"
-OUTPUTS = {"engine_speed": "n", "shaft_torque": "M_s"}
+SYMBOLS = {"engine_speed": "n", "shaft_torque": "M_s"}
 LONGEST_STEP_S = 1e-3
 VESSEL, CAMPAIGN = "stan-tug-1205", "thesis"
-
-
-def driven(path: Path, time_s: FloatArray, set_point_rpm: FloatArray) -> dict[str, FloatArray]:
-    """Return what FMPy gets from an FMU for co-simulation, its set point straight between samples."""
-    from fmpy import extract, read_model_description
-    from fmpy.fmi2 import FMU2Slave
-
-    description = read_model_description(str(path))
-    fmu = FMU2Slave(
-        guid=description.guid,
-        unzipDirectory=extract(str(path), unzipdir=str(path.with_suffix(""))),
-        modelIdentifier=description.coSimulation.modelIdentifier,
-        instanceName="tug",
-    )
-    numbers = {one.name: one.valueReference for one in description.modelVariables}
-    asked, outputs = [numbers["engine_speed_set_point"]], [numbers[name] for name in OUTPUTS]
-    fmu.instantiate()
-    fmu.setupExperiment(startTime=0.0)
-    fmu.enterInitializationMode()
-    fmu.setReal(asked, [set_point_rpm[0]])
-    fmu.exitInitializationMode()
-    found = [fmu.getReal(outputs)]
-    steps = np.diff(time_s)
-    slopes = np.diff(set_point_rpm) / steps
-    for now_s, step_s, value, slope in zip(time_s, steps, set_point_rpm, slopes, strict=False):
-        fmu.setReal(asked, [value])
-        fmu.fmi2SetRealInputDerivatives(
-            fmu.component, (ctypes.c_uint * 1)(*asked), 1, (ctypes.c_int * 1)(1), (ctypes.c_double * 1)(slope)
-        )
-        fmu.doStep(currentCommunicationPoint=now_s, communicationStepSize=step_s)
-        found.append(fmu.getReal(outputs))
-    fmu.freeInstance()
-    return dict(zip(OUTPUTS, np.array(found).T, strict=True))
 
 
 def difference(model: ExportedModel, path: Path, one: ExcerptComparison) -> float:
@@ -69,13 +36,16 @@ def difference(model: ExportedModel, path: Path, one: ExcerptComparison) -> floa
     traces = one.traces
     time_s = traces.time_s - traces.time_s[0]
     sizes = {"engine_speed": model.engine_speed_rpm, "shaft_torque": model.shaft_torque_nm}
-    found = driven(path, time_s, sizes["engine_speed"] * (1.0 + traces.set_point))
+    set_point_rpm = model.engine_speed_rpm * (1.0 + traces.set_point)
+    with Slave(path) as fmu:
+        fmu.start(set_point_rpm[0])
+        found = fmu.run(time_s, set_point_rpm, straight=True)
     values = model.values.copy()
-    at = model.structure.names.index("t_gauge")
-    values[at] = max(values[at], 0.0)
+    latency = model.structure.names.index(model.structure.named_as(ShipRole.TORQUE_LATENCY))
+    values[latency] = max(values[latency], 0.0)
     own = simulate_exactly(model.structure, values, time_s, {"n_set": traces.set_point}, longest_step_s=LONGEST_STEP_S)
     shares = []
-    for name, output in OUTPUTS.items():
+    for name, output in SYMBOLS.items():
         expected = sizes[name] * (1.0 + own.outputs[output])
         shares.append(float(np.abs(found[name] - expected).max() / np.ptp(expected)))
     return max(shares)

@@ -4,7 +4,7 @@ Each case is planned for the tug as it is, sailed as raw 2000 Hz recordings with
 the steps of ``shaftprint identify`` without anything from the builder. The rows "all nuisances drawn" draw a wander of
 the load of 1 to 3 % with a correlation time of 10 to 100 s, all other noise halved to doubled, surge in half of the
 tests, the latency of the set point halved to 1.6 times, and scale, zero and latency of the gauge from what the vessel
-file states. Run ``python benchmarks/planned_tests.py --seeds 100 --write``, about an hour of one core; ``--case`` runs
+file states. Run ``python benchmarks/planned_tests.py --seeds 100 --write``, 40 minutes of one core; ``--case`` runs
 one case alone; recordings that ``--outcomes FOLDER`` holds are not sailed again, and all of them are in the tables.
 """
 

@@ -1,6 +1,6 @@
 """Whether the tables of a command can be read on terminals of different widths."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 
 import pytest
@@ -28,6 +28,14 @@ def printed_tables() -> Iterator[Callable[[str], list[Table]]]:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(Table, "__post_init__", remembered)
         yield lambda output: [table for table in tables if table.rows and _shown(table.title) in output]
+
+
+def expect_all_readable(tables: Sequence[Table]) -> None:
+    """Expect that there are tables, and that each can be read on terminals of all widths."""
+    assert tables
+    for table in tables:
+        for width in WIDTHS:
+            expect_readable(table, width)
 
 
 def expect_readable(table: Table, width: int) -> None:

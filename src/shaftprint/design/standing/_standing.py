@@ -232,11 +232,11 @@ def _noise_ratio(plan: Plan, names: Sequence[str], sailed: Sequence[SailedLeg], 
             lines=[f"{one.name}/{harmonic}" for harmonic in leg.harmonics],
         )
         rows = {name: row for row, name in enumerate(planned.lines)}
+        of_errors = response.covariance / response.weight_factors[:, np.newaxis, np.newaxis]
         for line, name in enumerate(response.lines):
             if response.used[line] and name in rows:
-                whitened = np.linalg.solve(planned.covariance[rows[name]], response.covariance[line])
-                known = float(np.trace(whitened)) / len(whitened)
-                ratios.append(known / float(response.weight_factors[line]))
+                whitened = np.linalg.solve(planned.covariance[rows[name]], of_errors[line])
+                ratios.append(float(np.trace(whitened)) / len(whitened))
     return float(np.median(ratios)) if ratios else 1.0
 
 

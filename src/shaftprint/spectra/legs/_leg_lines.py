@@ -15,7 +15,7 @@ large in 12 minutes, ``K_p`` and ``K_p / K_i`` as much too small.
 The noise is that of the bins between the lines, which differ from period to period (Pintelon and Schoukens, "System
 Identification: A Frequency Domain Approach", chapter on non-parametric noise models from periodic excitation). The 36
 nearest to a line are averaged as a matrix: the factor by which an estimated covariance is enlarged as a weight,
-``n / (n - 2)``, is 1.06 then, and 1.2 with 12.
+``n / (n - 2)``, is 1.06 then, and 1.3 with 8.
 
 What disturbs engine and propeller goes with the load, and that with the square of the speed, so that the noise of a leg
 swells and fades in its periods. Bins as far apart as harmonics are then related by the Fourier coefficients of its

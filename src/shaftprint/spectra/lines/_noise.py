@@ -220,9 +220,9 @@ def noise_from_neighbours(
     if relation is not None and neighbours.bins.size >= _FEWEST_TO_SEPARATE:
         chosen = chosen.copy()
         chosen[relation.torque], mixing[relation.torque, relation.speed] = _own_torque(chosen, relation, neighbours)
-    levelled = _levelled(chosen, neighbours)
-    weight = slope_allowance(neighbours) * neighbours.weight / neighbours.weight.sum() / kept
-    covariance = mixing @ (levelled * weight) @ levelled.conj().T @ mixing.conj().T
+    level = levelled(chosen, neighbours)
+    weight = neighbours.weight / neighbours.weight.sum() / kept
+    covariance = mixing @ (level * weight) @ level.conj().T @ mixing.conj().T
     return LineNoise(covariance=covariance, complex_samples=samples)
 
 
@@ -237,7 +237,7 @@ def _own_torque(values: ComplexArray, relation: ShaftRelation, neighbours: Neigh
     independent, share = torque, 0j
     # weights of the mean over the bins, first with the slope of the torque as it is, then of what it has of its own
     for _ in range(_ROUNDS):
-        slopes = local_slope(np.abs(np.stack([independent, speed])) ** 2, neighbours)
+        slopes = _local_slope(np.abs(np.stack([independent, speed])) ** 2, neighbours)
         weight = neighbours.weight * np.exp(0.5 * slopes.sum() * neighbours.log_ratio)
         power = float(weight @ np.abs(speed) ** 2) + _NOTHING
         bend = turning - complex(weight * speed.conj() @ turning) / power * speed
@@ -248,11 +248,22 @@ def _own_torque(values: ComplexArray, relation: ShaftRelation, neighbours: Neigh
     return independent, share
 
 
-def _levelled(values: ComplexArray, neighbours: Neighbours) -> ComplexArray:
-    """Return the amplitudes at the bins as large as they would be at the line, each channel by its own slope."""
-    slope = local_slope(np.abs(values) ** 2, neighbours)
-    levelled: ComplexArray = values * np.exp(0.5 * slope[:, np.newaxis] * neighbours.log_ratio)
-    return levelled
+def levelled(values: ComplexArray, neighbours: Neighbours) -> ComplexArray:
+    """Return the amplitudes at the bins as large as they would be at the line, each channel by its own slope.
+
+    Their mean power is that at the line: what the slope, which is fitted to them, takes of it is given back.
+
+    Parameters
+    ----------
+    values
+        Fourier amplitudes where there is noise alone, shape (channels, bins).
+    neighbours
+        Where they stand, with their weights.
+    """
+    slope = _local_slope(np.abs(values) ** 2, neighbours)
+    growth = np.exp(0.5 * slope[:, np.newaxis] * neighbours.log_ratio)
+    level: ComplexArray = np.sqrt(_slope_allowance(neighbours)) * growth * values
+    return level
 
 
 def _neighbours(bins: int, periods: int, order: int) -> Neighbours:
@@ -281,7 +292,7 @@ def _kept_by_drift(place: FloatArray) -> FloatArray:
     return kept
 
 
-def local_slope(power: FloatArray, neighbours: Neighbours) -> FloatArray:
+def _local_slope(power: FloatArray, neighbours: Neighbours) -> FloatArray:
     """Find the exponent ``a`` of ``S ~ f^-a`` of each channel: Newton steps on a convex profile likelihood.
 
     Parameters
@@ -319,7 +330,7 @@ def equivalent_samples(neighbours: Neighbours) -> float:
     return 1.0 / neighbours.square_sum(weight / weight.sum() - centre * weight * deviation / information)
 
 
-def slope_allowance(neighbours: Neighbours) -> float:
+def _slope_allowance(neighbours: Neighbours) -> float:
     """Return by what factor the mean over the levelled bins is too small, because their slope was fitted to them.
 
     The slope makes the mean as small as it can. To second order, with ``w`` the weights, ``x`` the centred logarithms

@@ -3,7 +3,7 @@
 import numpy as np
 
 from shaftprint.arrays import ComplexArray, FloatArray
-from shaftprint.spectra.lines import Neighbours, equivalent_samples, local_slope, slope_allowance
+from shaftprint.spectra.lines import Neighbours, equivalent_samples, levelled
 
 _FEWEST_SAMPLES = 12
 _SAMPLES_A_CHANNEL = 3
@@ -46,8 +46,7 @@ def pooled_noise(
         log_ratio = np.log(frequency / line_hz)
         if np.abs(log_ratio).max() > _FLAT:
             neighbours = Neighbours(bins=frequency, log_ratio=log_ratio, weight=np.ones(count))
-            slope = local_slope(np.abs(chosen) ** 2, neighbours)
-            chosen = chosen * np.exp(0.5 * slope[:, np.newaxis] * log_ratio) * np.sqrt(slope_allowance(neighbours))
+            chosen = levelled(chosen, neighbours)
             number[line] = equivalent_samples(neighbours)
         covariance[line] = chosen @ chosen.conj().T / count
     return covariance, number
