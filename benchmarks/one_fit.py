@@ -55,6 +55,8 @@ def outcome(seed: int) -> dict[str, object]:
     line = survey.fingerprint.with_limits
     if line is None:
         return {"seed": seed, "refused": "no limits"}
+    if line.found_by != "joint fit":
+        return {"seed": seed, "refused": survey.remarks[-1]}
     true = _true(truth, tug, share, survey.signals)
     found = {quantity.name: quantity for quantity in line.parameters}
     sines = {quantity.name: quantity.std for quantity in survey.fingerprint.parameters}

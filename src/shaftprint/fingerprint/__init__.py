@@ -34,7 +34,7 @@ from shaftprint.fingerprint._json_file import (
     write_fingerprint,
 )
 from shaftprint.fingerprint._leg_records import LegRecord, NoiseSpectrum, leg_record, noise_spectra
-from shaftprint.fingerprint._line_with_limits import LimitNumber, LineWithLimits
+from shaftprint.fingerprint._line_with_limits import FoundBy, LimitNumber, LineWithLimits
 from shaftprint.fingerprint._margin_numbers import margin_numbers
 from shaftprint.fingerprint._margins import margin_quantities
 from shaftprint.fingerprint._model import IdentifiedModel, identified_model, model_with_limits, named_structure
@@ -56,6 +56,7 @@ __all__ = [
     "DriveRecord",
     "FieldValue",
     "Fingerprint",
+    "FoundBy",
     "IdentifiedModel",
     "JointNumbers",
     "LegRecord",

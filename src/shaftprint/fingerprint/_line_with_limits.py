@@ -6,7 +6,7 @@ fit gives all of them other values.
 
 import math
 from itertools import pairwise
-from typing import Annotated, Final, Literal, Self
+from typing import Annotated, Final, Literal, Self, TypeAlias
 
 from pydantic import Field, FiniteFloat, model_validator
 
@@ -54,10 +54,14 @@ class LimitNumber(FrozenRecord):
         )
 
 
+FoundBy: TypeAlias = Literal["limits", "joint fit"]
+"""Which fit gave a line with its limits."""
+
+
 class LineWithLimits(FrozenRecord):
     """Governor, limits, engine, shaft and a propeller that takes the square of the speed, with their values."""
 
-    found_by: Literal["limits", "joint fit"]
+    found_by: FoundBy
     """``limits``: the linear fit to small signals, and limits found on the governor beside it; ``joint fit``: all in
     one likelihood."""
     limits: tuple[LimitName, ...]

@@ -2,7 +2,8 @@
 
 from dataclasses import replace
 
-from shaftprint.limits import identify_limits, levels_beside
+from shaftprint.fingerprint import Fingerprint, FoundBy
+from shaftprint.limits import LimitFit, identify_limits, levels_beside
 from shaftprint.survey._line_with_limits import expect_limitable, limit_number, line_with_limits
 from shaftprint.survey._progress import SILENT, Progress
 from shaftprint.survey._survey import Survey
@@ -21,22 +22,40 @@ def with_limits(survey: Survey, *, progress: Progress = SILENT) -> Survey:
         If the first structure is another than GAUGE-CLOSED.
     """
     expect_limitable(survey.fingerprint)
-    fit = identify_limits(survey.signals, survey.campaign, survey.vessel, progress=progress.tell)
+    limits = identify_limits(survey.signals, survey.campaign, survey.vessel, progress=progress.tell)
+    return with_levels_beside(survey, limits, survey.fingerprint, progress=progress)
+
+
+def with_levels_beside(
+    survey: Survey, limits: LimitFit, line_fit: Fingerprint, *, found_by: FoundBy = "limits", progress: Progress
+) -> Survey:
+    """Return a survey whose fingerprint has a line with the limits beside it.
+
+    Parameters
+    ----------
+    limits
+        Which limits act.
+    line_fit
+        The fingerprint whose governor and inertias the line has; the levels are fitted beside them.
+    found_by
+        Which fit that is.
+    """
     progress.tell("Putting the limits into the line", "")
     levels = levels_beside(
-        {quantity.name: quantity.value for quantity in survey.fingerprint.parameters} | survey.fingerprint.held,
+        {quantity.name: quantity.value for quantity in line_fit.parameters} | line_fit.held,
         survey.signals,
         survey.campaign,
         survey.vessel,
-        kinds=fit.kinds,
-        start=fit.start,
+        kinds=limits.kinds,
+        start=limits.start,
     )
     line = line_with_limits(
-        survey.fingerprint,
+        line_fit,
         levels,
         vessel=survey.vessel,
         working_point=survey.signals.working_point,
-        numbers=[limit_number(one) for one in fit.numbers],
-        not_seen=list(fit.not_seen.values()),
+        found_by=found_by,
+        numbers=[limit_number(one) for one in limits.numbers],
+        not_seen=list(limits.not_seen.values()),
     )
-    return replace(survey, limit_fit=fit, fingerprint=survey.fingerprint.model_copy(update={"with_limits": line}))
+    return replace(survey, limit_fit=limits, fingerprint=survey.fingerprint.model_copy(update={"with_limits": line}))

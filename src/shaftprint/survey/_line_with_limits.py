@@ -12,7 +12,7 @@ import numpy as np
 from shaftprint.arrays import FloatArray
 from shaftprint.catalogue import limited
 from shaftprint.errors import FingerprintError
-from shaftprint.fingerprint import Fingerprint, LimitNumber, LineWithLimits, Quantity
+from shaftprint.fingerprint import Fingerprint, FoundBy, LimitNumber, LineWithLimits, Quantity
 from shaftprint.limits import Levels, LimitEstimate
 from shaftprint.models import Structure
 from shaftprint.signals import WorkingPoint
@@ -26,6 +26,7 @@ def line_with_limits(
     *,
     vessel: Vessel,
     working_point: WorkingPoint,
+    found_by: FoundBy = "limits",
     numbers: Sequence[LimitNumber] = (),
     not_seen: Sequence[str] = (),
 ) -> LineWithLimits:
@@ -39,6 +40,8 @@ def line_with_limits(
         Limits of the same test, beside the governor of the fingerprint.
     vessel, working_point
         Full-load curve, and the speed about which it is taken.
+    found_by
+        Which fit the fingerprint's parameters are of.
     numbers, not_seen
         What ``limits`` states in the units of the ship.
 
@@ -57,7 +60,7 @@ def line_with_limits(
     joint = _joint(fingerprint, levels, names)
     std = np.sqrt(np.diag(joint)[len(fingerprint.parameters) :])
     return LineWithLimits(
-        found_by="limits",
+        found_by=found_by,
         limits=chosen,
         curve=curve,
         numbers=tuple(numbers),

@@ -14,13 +14,17 @@ from shaftprint.validation._prediction import OUTPUTS, Predict, add_quadratic_to
 from shaftprint.validation._settings import ValidationSettings
 from shaftprint.validation._validation_records import Excerpt
 from shaftprint.validation.measures import (
+    EVERYWHERE,
     LEAST_LOAD,
     Compared,
     QuietNoise,
+    Reach,
+    Swept,
     Unfiltered,
     low_pass,
     quiet_noise,
     reach_of_low_pass,
+    while_settling,
 )
 
 # Time behind a record that is predicted too: the low-pass and the search for a delay look beyond its end.
@@ -127,8 +131,11 @@ class Run:
         there = self.data.places(excerpt.start_s, excerpt.stop_s)
         return self.data.signals.start_s + np.arange(there.start, there.stop) / self.data.signals.rate_hz
 
-    def compared(self, excerpt: Excerpt) -> list[tuple[Unfiltered, Compared]]:
-        """Return data and model of speed and of torque in an excerpt, at all frequencies and through the low-pass."""
+    def compared(self, excerpt: Excerpt, *, settled_share: float) -> list[tuple[Unfiltered, Compared]]:
+        """Return data and model of speed and of torque in an excerpt, at all frequencies and through the low-pass.
+
+        ``settled_share`` is the share of a step's height within which it has settled.
+        """
         there = self.excerpt(excerpt)
         # the median: a step spends most of its excerpt at the level that it ends at
         load = max(1.0 + float(np.median(self.measured_smooth[1, there])), LEAST_LOAD)
@@ -146,10 +153,21 @@ class Run:
                     model=self.smooth[row, there],
                     slopes=self.slopes[:, row, there],
                     noise=noise,
+                    reach=self._reach(excerpt, row, settled_share=settled_share) if noise.as_long else EVERYWHERE,
                 ),
             )
             for row, output in enumerate(OUTPUTS)
         ]
+
+    def _reach(self, excerpt: Excerpt, row: int, *, settled_share: float) -> Reach:
+        """Return where in an excerpt the error of an output can lie."""
+        if excerpt.lowest_hz is not None:
+            return Swept(rate_hz=self.data.signals.rate_hz, lowest_hz=excerpt.lowest_hz)
+        if excerpt.step_s is None:
+            return EVERYWHERE
+        time_s = self.time_s(excerpt) - excerpt.step_s
+        model = self.smooth[row, self.excerpt(excerpt)]
+        return while_settling(model, time_s, settled_share=settled_share, highest_hz=self.data.highest_hz)
 
     def _noise_variance(self, samples: int, load: float) -> list[float]:
         """Return the variance of the noise of all frequencies in an excerpt, of speed and of torque."""

@@ -170,7 +170,7 @@ def _compared(
     excerpt: Excerpt, run: Run, model: Model, settings: ValidationSettings, rng: np.random.Generator
 ) -> ExcerptComparison:
     """Return model and data in one excerpt."""
-    pairs = run.compared(excerpt)
+    pairs = run.compared(excerpt, settled_share=settings.settled_share)
     return ExcerptComparison(
         excerpt=excerpt,
         misfits=tuple(

@@ -39,6 +39,8 @@ class Excerpt:
     """When the set point jumps [s]; None where nothing jumps, or more than once."""
     height_v: float | None = None
     """By how much the set point jumps there [V]; None where nothing jumps, or more than once."""
+    lowest_hz: float | None = None
+    """Slowest frequency that a chirp passes in it [Hz]; None for a staircase."""
     in_sample: bool = False
     """Whether the model was identified from it."""
 
@@ -151,7 +153,16 @@ def _chirp(chirp: Chirp, settings: ValidationSettings) -> list[Excerpt]:
         a, b = max(lower, slowest), min(upper, fastest)
         if a < b:
             start, stop = sorted(chirp.passes_s(omega / (2.0 * math.pi)) for omega in (a, b))
-            excerpts.append(Excerpt(record=chirp.name, kind="chirp band", title=title, start_s=start, stop_s=stop))
+            excerpts.append(
+                Excerpt(
+                    record=chirp.name,
+                    kind="chirp band",
+                    title=title,
+                    start_s=start,
+                    stop_s=stop,
+                    lowest_hz=a / (2.0 * math.pi),
+                )
+            )
     return excerpts
 
 

@@ -13,6 +13,7 @@ import numpy as np
 import scipy
 
 from shaftprint.arrays import FloatArray
+from shaftprint.validation.measures._noise_pieces import quadratic_form
 
 LONGEST_S = 1.0
 _STEPS = 30
@@ -95,7 +96,7 @@ def remaining_delay(
     return RemainingDelay(
         output=output,
         delay_s=delay,
-        noise_std_s=float(np.sqrt(max(_quadratic(row, autocovariance), 0.0))) / gain,
+        noise_std_s=float(np.sqrt(max(quadratic_form(row, autocovariance), 0.0))) / gain,
         model_std_s=float(np.sqrt(max(by_parameter @ covariance @ by_parameter, 0.0))),
     )
 
@@ -136,11 +137,3 @@ def _best_sample(measured: FloatArray, model: FloatArray, margin: int) -> int:
     variance = (squares[samples:] - squares[:-samples]) / samples - mean**2
     coefficient = products / np.sqrt(np.maximum(variance, np.finfo(np.float64).tiny))
     return margin - int(np.argmax(coefficient))
-
-
-def _quadratic(row: FloatArray, autocovariance: FloatArray) -> float:
-    """Return ``w^T R w`` for the covariance matrix that an autocovariance makes."""
-    size = scipy.fft.next_fast_len(2 * row.size, real=True)
-    products = np.fft.irfft(np.abs(np.fft.rfft(row, size)) ** 2, size)[: row.size]
-    lags = min(autocovariance.size, row.size)
-    return float(products[0] * autocovariance[0] + 2.0 * (products[1:lags] @ autocovariance[1:lags]))

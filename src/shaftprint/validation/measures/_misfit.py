@@ -1,8 +1,8 @@
 """How much of the motion a model misses beyond what noise and its own uncertainty explain.
 
 In an excerpt of ``N`` samples the residual ``r = y - f`` of the right model is noise ``v`` and what the covariance
-``C`` of the parameters lets the model be off, ``J^T d``. Means are taken off. With the mean square ``s`` of the noise
-and ``G = J J^T`` then::
+``C`` of the parameters lets the model be off, ``J^T d``. All of them are projected on where an error of the model can
+lie (``Reach``), which takes their means off. With the mean square ``s`` of the noise and ``G = J J^T`` then::
 
     E[r^T r / N] = s + tr(C G) / N        Var[r^T r / N] = Var[v^T v / N] + 2 tr((C G)^2) / N^2
 
@@ -19,7 +19,8 @@ import numpy as np
 from shaftprint.arrays import FloatArray
 from shaftprint.distributions import chi_square_tail, deviations
 from shaftprint.identify import fit_percent
-from shaftprint.validation.measures._noise_pieces import NoisePieces, autocorrelated
+from shaftprint.validation.measures._noise_pieces import NoisePieces, quadratic_form
+from shaftprint.validation.measures._reach import EVERYWHERE, Reach
 
 Outcome = Literal["passes", "fails", "undecided"]
 PERCENT = 100.0
@@ -65,6 +66,13 @@ class Compared:
     """Derivatives of the model to its free parameters, shape (free, samples)."""
     noise: NoisePieces
     """Noise like that in the excerpt."""
+    reach: Reach = EVERYWHERE
+    """Where in the excerpt an error of the model can lie; for noise in pieces as long as the excerpt."""
+
+    @property
+    def autocovariance(self) -> FloatArray:
+        """Autocovariance of the noise of the output from lag 0 on, shape (lags,)."""
+        return self.noise.autocovariances[self.place]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -111,20 +119,19 @@ def misfit_of(
     coverage
         Coverage of the interval of the error.
     """
-    residual = smooth.measured - smooth.model
-    residual = residual - residual.mean()
+    residual, slopes = smooth.reach.of(smooth.measured - smooth.model), smooth.reach.of(smooth.slopes)
     samples = residual.size
-    autocovariance = smooth.noise.autocovariances[smooth.place]
-    energy, energy_variance = _noise_energy(smooth, autocovariance)
-    mean_slopes = smooth.slopes.mean(axis=1)
-    spread = covariance @ (smooth.slopes @ smooth.slopes.T / samples - np.outer(mean_slopes, mean_slopes))
+    pieces, autocovariance = smooth.reach.of(smooth.noise.pieces[:, smooth.place]), smooth.autocovariance
+    trace_of_square = smooth.reach.trace_of_square(pieces, autocovariance, samples)
+    energy, energy_variance = _noise_energy(smooth, pieces, 2.0 * trace_of_square / samples**2)
+    spread = covariance @ (slopes @ slopes.T / samples)
     expected = energy + float(np.trace(spread))
     variance = energy_variance + 2.0 * float(np.trace(spread @ spread))
     mean_square = float(np.mean(residual**2))
     beyond = mean_square - expected
-    # the residual has no mean, so that those of the derivatives do not count
-    along = smooth.slopes @ residual / samples
-    mixed = 4.0 * (_noise_along(residual, autocovariance) + float(along @ covariance @ along))
+    along = slopes @ residual / samples
+    noise_along = max(quadratic_form(residual, autocovariance) - trace_of_square, 0.0) / samples**2
+    mixed = 4.0 * (noise_along + float(along @ covariance @ along))
     half = deviations(coverage) * np.sqrt(variance + (mixed if beyond > 0.0 else 0.0))
     motion = float(np.std(smooth.measured))
     # a residual that happens to be smaller than the noise does not make the error known better than noise allows
@@ -142,33 +149,19 @@ def misfit_of(
     )
 
 
-def _noise_energy(smooth: Compared, autocovariance: FloatArray) -> tuple[float, float]:
-    """Return the mean square of the noise in the excerpt, and the variance of what it and its estimate are off."""
-    pieces = smooth.noise.pieces[:, smooth.place]
+def _noise_energy(smooth: Compared, pieces: FloatArray, by_colour: float) -> tuple[float, float]:
+    """Return the mean square of the noise in the excerpt, and the variance of what it and its estimate are off.
+
+    ``by_colour`` is the variance of the former that its covariance lets expect.
+    """
     energies = np.mean(pieces**2, axis=1)
-    count, samples = energies.size, smooth.measured.size
-    by_colour = 2.0 * _trace_of_square(autocovariance, samples) / samples**2
+    count = energies.size
     scatter = float(np.var(energies, ddof=1)) if count > 1 else 0.0
     if count < _FEWEST_PIECES or not smooth.noise.as_long:
         scatter = max(scatter, by_colour)
     # as many independent pieces as excerpts would fit into all that was found
-    effective = count * pieces.shape[1] / samples
+    effective = count * pieces.shape[1] / smooth.measured.size
     return float(energies.mean()), scatter * (1.0 + 1.0 / effective)
-
-
-def _trace_of_square(autocovariance: FloatArray, samples: int) -> float:
-    """Return the trace of the square of the covariance matrix that an autocovariance makes."""
-    lags = np.arange(min(autocovariance.size, samples))
-    weights = (samples - lags) * np.where(lags > 0, 2.0, 1.0)
-    return float(np.sum(weights * autocovariance[: lags.size] ** 2))
-
-
-def _noise_along(residual: FloatArray, autocovariance: FloatArray) -> float:
-    """Return ``m^T R m / N^2`` for the model's error ``m``, from the residual, less what noise itself gives."""
-    products = autocorrelated(residual)
-    lags = min(autocovariance.size, products.size)
-    both = float(products[0] * autocovariance[0] + 2.0 * (products[1:lags] @ autocovariance[1:lags]))
-    return max(both - _trace_of_square(autocovariance, residual.size), 0.0) / residual.size**2
 
 
 def _tail(square: float, expected: float, variance: float) -> float:

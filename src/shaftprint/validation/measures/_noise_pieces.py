@@ -122,6 +122,13 @@ def autocorrelated(values: FloatArray) -> FloatArray:
     return np.asarray(np.fft.irfft(spectrum.conj() * spectrum, size)[..., :samples])
 
 
+def quadratic_form(values: FloatArray, autocovariance: FloatArray) -> float:
+    """Return ``w^T R w`` for the covariance matrix that an autocovariance makes, zero beyond its lags."""
+    products = autocorrelated(values)
+    lags = min(autocovariance.size, products.size)
+    return float(products[0] * autocovariance[0] + 2.0 * (products[1:lags] @ autocovariance[1:lags]))
+
+
 def quiet_noise(
     outputs: Callable[[slice], FloatArray], campaign: Campaign, signals: Signals, *, rest_s: float
 ) -> QuietNoise:
