@@ -13,10 +13,10 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.catalogue import limited
-from shaftprint.distributions import chi_square_tail
 from shaftprint.fingerprint import Fingerprint, Quantity
 from shaftprint.identify import Identification, Prior
 from shaftprint.limits import LimitFit, identify_limits
+from shaftprint.survey._contradiction import contradiction
 from shaftprint.survey._fits import priors_of
 from shaftprint.survey._limits import with_levels_beside
 from shaftprint.survey._line_with_limits import expect_limitable
@@ -32,9 +32,6 @@ from shaftprint.time_domain import (
 
 ONE_START = NonlinearSettings(starts=1, better=1, kept=1)
 """The line and its limits are known already: there is nothing to search for."""
-DISAGREE_BELOW = 0.01
-"""Below this p-value the records of a joint fit contradict its sines, as for a fit that is refused."""
-_NAMED = 3
 
 
 def with_everything(survey: Survey, *, rng: np.random.Generator, progress: Progress = SILENT) -> Survey:
@@ -79,37 +76,6 @@ def with_everything(survey: Survey, *, rng: np.random.Generator, progress: Progr
         )
     line_fit = of_joint_fit(survey.fingerprint, survey.identification, joint.identification)
     return with_levels_beside(survey, limits, line_fit, found_by="joint fit", progress=progress)
-
-
-def contradiction(sines: Identification, joint: Identification) -> str:
-    """Return in words how a joint fit contradicts the sines that are part of it; empty where it does not.
-
-    What the sines, and what was known before, lose at the parameters of the joint fit is at most chi-square distributed
-    with as many degrees of freedom as they have parameters, if all records are of one line: twice the difference of
-    their costs (S. S. Wilks, The large-sample distribution of the likelihood ratio for testing composite hypotheses,
-    Annals of Mathematical Statistics 9, 1938). The steps may move the sines along what these do not know, and nowhere
-    else.
-
-    Parameters
-    ----------
-    sines
-        Fit to the sines alone.
-    joint
-        Fit to sines and records together, of the same line with limits.
-    """
-    of_joint = {estimate.name: estimate.value for estimate in joint.parameters}
-    moved = np.array([of_joint.get(estimate.name, estimate.value) for estimate in sines.parameters])
-    residuals, _ = sines.objective.residuals(moved[None])
-    lost = max(float(np.sum(residuals**2)) - 2.0 * sines.cost, 0.0)
-    if chi_square_tail(lost, len(moved)) >= DISAGREE_BELOW:
-        return ""
-    far = sorted(sines.parameters, key=lambda one: -abs(of_joint.get(one.name, one.value) - one.value) / one.std)
-    named = ", ".join(f"{one.name} {one.value:.3g} and {of_joint[one.name]:.3g}" for one in far[:_NAMED])
-    return (
-        f"The fit of everything was not used: its steps and sweeps contradict the sines (p below {DISAGREE_BELOW:g}), "
-        f"which alone and with them give {named}. Line and levels are those of the sines with the limits beside them; "
-        "something acts in the large moves that no limit describes, or the line was another one during them."
-    )
 
 
 def of_joint_fit(fingerprint: Fingerprint, sines: Identification, joint: Identification) -> Fingerprint:

@@ -123,7 +123,8 @@ class Swept:
         count, length = pieces.shape
         power = np.mean(np.abs(np.fft.fft(pieces, axis=-1)) ** 2, axis=0) / length
         # the square of a mean of so many exponential variables is that much too large
-        return float(np.sum(power**2)) / (1.0 + 1.0 / count) * samples / length
+        square = float(np.sum(power**2)) / (1.0 + 1.0 / count)
+        return float(square * samples / length)
 
 
 def while_settling(model: FloatArray, time_s: FloatArray, *, settled_share: float, highest_hz: float) -> Reach:
