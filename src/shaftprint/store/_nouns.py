@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from datetime import datetime
-from typing import Final, Literal
+from typing import Final, Literal, NamedTuple
 
 KINDS: Final = (
     "docking",
@@ -80,9 +80,8 @@ class Trial:
     """SHA-256 of the recording; of several, that of their sorted SHA-256; None where the fingerprint names none."""
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class StoredNumber:
-    """A number of a fingerprint, as it is kept to be found quickly."""
+class StoredNumber(NamedTuple):
+    """A number of a fingerprint, as it is kept to be found quickly; a tuple, for a history has thousands."""
 
     kind: str
     """What it is: parameter, combination, physical value, margin or calibration."""

@@ -21,7 +21,8 @@ from shaftprint.store.database._tables import DOCUMENT, EVENT, FINGERPRINT, LINE
 _AT_A_TIME = 100
 _EARLIER = FINGERPRINT.alias("earlier")
 _LATER = FINGERPRINT.alias("later")
-_VALUE_COLUMNS = (VALUE.c.value, VALUE.c.std, VALUE.c.low, VALUE.c.high, VALUE.c.trusted)
+# a truth value as the driver gives it: thousands of rows a history would each be taken through a conversion
+_VALUE_COLUMNS = (VALUE.c.value, VALUE.c.std, VALUE.c.low, VALUE.c.high, sa.type_coerce(VALUE.c.trusted, sa.Integer))
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
