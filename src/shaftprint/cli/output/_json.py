@@ -49,6 +49,8 @@ def as_json(noun: object) -> object:
             return as_json(noun.item())
         case Mapping():
             return {str(as_json(name)): as_json(value) for name, value in noun.items()}
+        case tuple() if hasattr(noun, "_asdict"):
+            return as_json(noun._asdict())
         case Collection():
             return [as_json(value) for value in noun]
         case _ if dataclasses.is_dataclass(noun):
