@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from shaftprint.card._series import series_torque
+from shaftprint.card._series import open_water_curve, series_torque
 from shaftprint.units import rev_s_from_rpm
 from shaftprint.vessel import Vessel
 
@@ -44,9 +44,20 @@ def disagreements(vessel: Vessel) -> tuple[Disagreement, ...]:
 
     Held against each other are gear ratio, engine and propeller speed; working speed, idle and highest speed; working
     torque, full-load curve, rated power and full scale of the gauge; working torque, torque coefficient and propeller
-    series. A torque that is off by a factor of two contradicts the series, by a quarter it is strange.
+    series; underway the speed of the ship, at which thrust is to meet resistance. A torque that is off by a factor of
+    two contradicts the series, by a quarter it is strange.
     """
-    checks = (_ratio, _tip_speed, _working_speed, _full_load_curve, _engine_load, _series, _coefficient, _full_scale)
+    checks = (
+        _ratio,
+        _tip_speed,
+        _working_speed,
+        _full_load_curve,
+        _engine_load,
+        _series,
+        _coefficient,
+        _full_scale,
+        _thrust,
+    )
     found = [disagreement for check in checks for disagreement in check(vessel)]
     return tuple(sorted(found, key=lambda one: not one.is_contradiction))
 
@@ -155,7 +166,7 @@ def _series(vessel: Vessel) -> Iterator[Disagreement]:
         area_ratio=propeller.area_ratio,
         pitch_ratio=propeller.pitch_ratio,
     )
-    if series is None:
+    if series is None or vessel.is_underway:
         return
     expected_nm = _torque_nm(vessel, series.torque_coefficient)
     apart = _apart(point.shaft_torque_nm, expected_nm)
@@ -173,6 +184,8 @@ def _series(vessel: Vessel) -> Iterator[Disagreement]:
 
 def _coefficient(vessel: Vessel) -> Iterator[Disagreement]:
     coefficient, point = vessel.propeller.torque_coefficient, vessel.working_point
+    if vessel.is_underway:
+        return
     torque_nm = _torque_nm(vessel, coefficient)
     apart = _apart(point.shaft_torque_nm, torque_nm)
     if apart > _FINDING:
@@ -183,6 +196,40 @@ def _coefficient(vessel: Vessel) -> Iterator[Disagreement]:
             "engine give",
             found=f"{coefficient:g}",
             advice="correct it, M eta_R / (rho n^2 D^5) with n in rev/s of the propeller, or the working point",
+            is_contradiction=apart > _CONTRADICTION,
+        )
+
+
+def _thrust(vessel: Vessel) -> Iterator[Disagreement]:
+    """Hold the thrust of the propellers underway against the resistance of the ship at its speed."""
+    hull, speed_m_s = vessel.hull, vessel.working_point.ship_speed_m_s
+    curve = open_water_curve(vessel.propeller)
+    if hull is None or speed_m_s is None or curve is None:
+        return
+    propeller = vessel.propeller
+    shaft_rev_s = rev_s_from_rpm(vessel.working_point.engine_speed_rpm) / vessel.gearbox.ratio
+    advance = speed_m_s * (1.0 - (hull.wake_fraction or 0.0)) / (shaft_rev_s * propeller.diameter_m)
+    last = curve.zero_thrust_advance(propeller.pitch_ratio)
+    if advance >= last:
+        yield Disagreement(
+            field="working_point.ship_speed_m_s",
+            expected=f"a speed at which the propellers pull, below {speed_m_s * last / advance:.3g} m/s at "
+            f"{vessel.working_point.engine_speed_rpm:g} rpm of the engine",
+            found=f"{speed_m_s:g} m/s",
+            advice="correct it (m/s, not knots), the engine speed, gearbox.ratio, or diameter_m and pitch_ratio",
+            is_contradiction=True,
+        )
+        return
+    force_n = vessel.water_density_kg_m3 * shaft_rev_s * shaft_rev_s * propeller.diameter_m**4
+    thrust_n = hull.shafts * force_n * curve.at(advance, propeller.pitch_ratio).thrust
+    pull_n, resistance_n = thrust_n * (1.0 - (hull.thrust_deduction or 0.0)), hull.resistance_at_n(speed_m_s)
+    apart = _apart(pull_n, resistance_n)
+    if apart > _FINDING:
+        yield Disagreement(
+            field="working_point.ship_speed_m_s",
+            expected=f"a speed at which the propellers' pull, {pull_n:.4g} N here, is the resistance of [hull]",
+            found=f"{resistance_n:.4g} N at {speed_m_s:g} m/s, a factor of {apart:.3g}",
+            advice="correct the speed (m/s, not knots), resistance_n, shafts, wake_fraction or the propeller",
             is_contradiction=apart > _CONTRADICTION,
         )
 

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 from shaftprint.errors import PropellerError
 from shaftprint.propeller import OpenWaterCurve, ka4_70_in_19a, wageningen_b
+from shaftprint.vessel import Propeller
 
 OPEN_AREA_RATIO, NOZZLE_AREA_RATIO = 0.55, 0.70
 """Blade area ratios ``A_E/A_0`` that are usual for open propellers and for those in a nozzle."""
@@ -37,6 +38,21 @@ def series_torque(
         return SeriesTorque(name=curve.name, torque_coefficient=curve.at(0.0, pitch_ratio).torque)
     except PropellerError:
         return None
+
+
+def open_water_curve(propeller: Propeller) -> OpenWaterCurve | None:
+    """Return the open-water curve of the series of a propeller; None where it has none, or none was tested.
+
+    Unlike ``series_torque`` it does not take a series for one that is not named: slopes rest on it.
+    """
+    if propeller.series is None:
+        return None
+    try:
+        curve = _curve(propeller.series, propeller.blades, propeller.area_ratio)
+        curve.at(0.0, propeller.pitch_ratio)
+    except PropellerError:
+        return None
+    return curve
 
 
 def is_in_nozzle(series: str | None) -> bool:

@@ -79,6 +79,8 @@ class ShipRole:
     """Offset of the measured set point."""
     TORQUE_LATENCY: Final = _sensor("torque latency", "s", "latency")
     """Error of the known latency of the torque gauge."""
+    LOG_LATENCY: Final = _sensor("log latency", "s")
+    """Error of the known latency of the speed log."""
     RACK_LATENCY: Final = _sensor("rack latency", "s")
     """Error of the known latency of the rack channel."""
     PICK_UP_AVERAGE: Final = _sensor("pick-up average", "s", "speed")

@@ -27,6 +27,7 @@ from shaftprint.catalogue._gauge import (
     V_ONE,
     G,
 )
+from shaftprint.catalogue._roles import ShipRole
 from shaftprint.catalogue._sailing_blocks import PitchSpeed, SailingShaft, SailingSpeed, SailingTorque
 from shaftprint.models import (
     AveragingSensor,
@@ -53,7 +54,16 @@ SIGMA = Parameter("sigma", "-", 0.0, 1.0, 1.0, "share of the thrust whose shafts
 P = Parameter("p", "-", 0.0, 6.0, 2.4, "slope of the thrust coefficient with pitch, d ln K_T / d ln theta")
 Q = Parameter("q", "-", 0.0, 6.0, 2.7, "slope of the torque coefficient with pitch, d ln K_Q / d ln theta")
 TAU_TH = Parameter("tau_th", "s", 0.0, 10.0, 1.0, "lag of the pitch actuator")
-T_LOG = Parameter("t_log", "s", -2.0, 2.0, 0.0, "error of the known latency of the speed log", held=True)
+T_LOG = Parameter(
+    "t_log",
+    "s",
+    -2.0,
+    2.0,
+    0.0,
+    "error of the known latency of the speed log",
+    held=True,
+    role=ShipRole.LOG_LATENCY,
+)
 
 
 def free_core() -> Structure:

@@ -14,7 +14,8 @@ from shaftprint.identify import MaximumLikelihood, Prior, Settings, Unweighted
 from shaftprint.models import Structure
 from shaftprint.signals import Mode
 from shaftprint.spelling import meant
-from shaftprint.survey import Measurement, SettingsOf, Trial, pairs_of, priors_of
+from shaftprint.survey import Measurement, SettingsOf, Trial, of_vessel, pairs_of, priors_of
+from shaftprint.vessel import Vessel
 
 _OPTIONS = (
     prior_option,
@@ -67,15 +68,15 @@ def fit_options(command: Callable[..., Any]) -> Callable[..., Any]:
     return gathered_options(FitOptions, _OPTIONS)(command)
 
 
-def structures_of(names: Sequence[TypedName], options: FitOptions) -> tuple[Structure, ...]:
-    """Return the structures that the user names, with what is held in them.
+def structures_of(names: Sequence[TypedName], options: FitOptions, vessel: Vessel) -> tuple[Structure, ...]:
+    """Return the structures that the user names as they are fitted for a ship, with what is held in them.
 
     Raises
     ------
     StructureError
         If there is no such structure, or a parameter that is held or freed is in none of them.
     """
-    return held_structures(chosen_structures(names), options)
+    return held_structures([of_vessel(one, vessel) for one in chosen_structures(names)], options)
 
 
 def held_structures(chosen: Sequence[Structure], options: FitOptions) -> tuple[Structure, ...]:

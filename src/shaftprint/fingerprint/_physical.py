@@ -171,11 +171,12 @@ def _torque_coefficient(
             name="K_Q",
             unit="-",
             of=_product(shown) if slope is None else _product(shown / IDEAL_SLOPE, slope[0]),
-            meaning="torque coefficient of the propeller, mean of the test",
+            meaning=f"torque coefficient of the propeller, mean of the test{', underway' * vessel.is_underway}",
             role=ShipRole.TORQUE,
         ),
         direct={source: value * share for source, share in shares.items() if share},
-        expected=vessel.propeller.torque_coefficient,
+        # the vessel file states that of zero advance
+        expected=None if vessel.is_underway else vessel.propeller.torque_coefficient,
     )
 
 

@@ -62,6 +62,7 @@ def take_fingerprint(
     reasons: Sequence[Reason] = (),
     noise: Sequence[NoiseSpectrum] = (),
     torque_ripple: float | None = None,
+    ship: Sequence[Quantity] = (),
 ) -> Fingerprint:
     """Return the fingerprint of an identified line.
 
@@ -85,6 +86,8 @@ def take_fingerprint(
         What orders and noise put on top of the shaft torque over the load, where it was measured.
     reasons
         What else speaks against the fit, such as legs that do not belong to one model.
+    ship
+        What a test underway says of the ship, which is kept with the physical values.
 
     Raises
     ------
@@ -99,7 +102,7 @@ def take_fingerprint(
     rack_share = 0.0 if rack is None else rack.reference_std / rack.reference
     shifts = shifts_of_working_point(identification, signals.working_point, rack_share)
     stated = _budget(identification, signals.working_point, vessel, margins, shifts)
-    physical = physical_quantities(identification, signals.working_point, vessel, stated)
+    physical = (*physical_quantities(identification, signals.working_point, vessel, stated), *ship)
     left_out = _left_out(identification)
     profiled = profile(identification, margins) if identification.is_likelihood else None
     reported = _Reported(stated, {} if profiled is None else profiled.intervals, _meanings(identification))

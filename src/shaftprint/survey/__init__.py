@@ -14,6 +14,7 @@ from shaftprint.survey._limits import with_limits
 from shaftprint.survey._line_with_limits import expect_limitable, line_with_limits
 from shaftprint.survey._measurement import Measurement, measure, of_legs, pairs_of, response_of, responses_of
 from shaftprint.survey._noise import noise_at_speeds
+from shaftprint.survey._of_vessel import of_vessel
 from shaftprint.survey._progress import SILENT, Progress, Silent
 from shaftprint.survey._survey import SettingsOf, Survey, fingerprint_of, judged, run, settings_by_name, survey_of
 from shaftprint.survey._thesis_mode import SET_POINT_OFF, ThesisMode
@@ -57,6 +58,7 @@ __all__ = [
     "noise_at_speeds",
     "of_joint_fit",
     "of_legs",
+    "of_vessel",
     "pairs_of",
     "priors_of",
     "response_of",

@@ -14,11 +14,12 @@ import numpy as np
 from shaftprint.arguments import refusing_none
 from shaftprint.campaign import Campaign, TrialConditions
 from shaftprint.catalogue import shipped_structure
-from shaftprint.errors import IdentificationError, SettingsError
+from shaftprint.errors import IdentificationError, SettingsError, StructureError
 from shaftprint.fingerprint import (
     Fingerprint,
     LegRecord,
     NoiseSpectrum,
+    Quantity,
     SourceFile,
     leg_record,
     noise_spectra,
@@ -38,7 +39,9 @@ from shaftprint.survey._legs_apart import LegAlone, apart_reasons, legs_alone
 from shaftprint.survey._limit_hints import hints_of
 from shaftprint.survey._measurement import Measurement, measure, of_legs
 from shaftprint.survey._noise import noise_at_speeds
+from shaftprint.survey._of_vessel import of_vessel
 from shaftprint.survey._progress import SILENT, Progress
+from shaftprint.survey._ship_numbers import ship_numbers
 from shaftprint.survey._trial import Trial, load_trial
 from shaftprint.survey._validation_apart import with_validation
 from shaftprint.survey._validations import failed_steps, validations_of, validations_with_limits
@@ -146,7 +149,8 @@ def run(
     vessel, campaign
         What was tested and what was asked of it: paths, shipped names, or loaded.
     structures
-        Structures, or names of shipped ones; the fingerprint is of the first, others are fitted beside it.
+        Structures, or names of shipped ones, which are taken as ``of_vessel`` gives them; the fingerprint is of the
+        first, others are fitted beside it.
     settings
         Gives how a structure is fitted; with the priors of the vessel file where it is not given.
     mode
@@ -175,7 +179,9 @@ def run(
     rng = np.random.default_rng(1) if rng is None else rng
     trial = load_trial(vessel, campaign, conditions)
     trial = replace(trial, sources=(*trial.sources, *sources))
-    chosen = tuple(one if isinstance(one, Structure) else shipped_structure(one) for one in structures)
+    chosen = tuple(
+        one if isinstance(one, Structure) else of_vessel(shipped_structure(one), trial.vessel) for one in structures
+    )
     measurement = of_legs(measure(recording, trial, mode=mode, progress=progress), legs)
     measurement = replace(measurement, began=_began(tested_at, measurement.began, trial))
     by_name = settings_by_name(chosen, measurement, trial, settings or _with_priors)
@@ -228,7 +234,17 @@ def _fingerprint(
         reasons=reasons,
         noise=_measured_noise(measurement, trial),
         torque_ripple=measurement.torque_ripple,
+        ship=_ship(identification, measurement, trial),
     )
+
+
+def _ship(identification: Identification, measurement: Measurement, trial: Trial) -> tuple[Quantity, ...]:
+    """Return what the test says of a ship underway; nothing where its propellers do not pull at the measured speeds."""
+    try:
+        # a stream of its own: what a line is found to be does not depend on whether its ship is looked at
+        return ship_numbers(identification, measurement.signals, trial.vessel, rng=np.random.default_rng(1))
+    except (StructureError, IdentificationError):
+        return ()
 
 
 def _fitted_legs(measurement: Measurement, tests: Sequence[LegTest]) -> tuple[LegRecord, ...]:

@@ -1,26 +1,44 @@
 """The truth of the Stan Tug 1205 for another ship: its lever and its governor are set for that ship."""
 
+import math
 from dataclasses import replace
 
+from shaftprint.errors import SettingsError
+from shaftprint.tug._sailing import CURVES_PITCH_RATIO, CURVES_SERIES, Sailing
 from shaftprint.tug._truth import normalised_truth
 from shaftprint.tug._tug import Tug
 from shaftprint.vessel import Vessel
 
-# What the default line asks for at -5 V, the working point of the Stan Tug, and the inertia time of its line [s], less
+# At the quay the lever asks for the working speed at -5 V, as on the Stan Tug. Its line has this inertia time [s], less
 # half a per cent so that its governor is left as it is.
-_STAN_TUG_RPM = 1183.8
+_AT_THE_QUAY_V, _AT_THE_QUAY_RPM = -5.0, 1183.8
 _STAN_TUG_INERTIA_S = 1.33
 
 
-def like_stan_tug_1205(vessel: Vessel) -> Tug:
+def like_stan_tug_1205(vessel: Vessel, *, offset_v: float = _AT_THE_QUAY_V) -> Tug:
     """Return the truth of the Stan Tug 1205 as another ship would have it.
 
-    The lever asks for the ship's own speed where that of the tug asks for 1183.8 rpm; volts are those of the tug. A
-    line with less inertia over its torque has a governor with as much smaller gains, which crosses over where that of
-    the tug does and is as far from hunting.
+    The lever asks for the ship's working speed at -5 V where it is tested at the quay, and at the voltage of the
+    campaign underway; volts are those of the tug. A line with less inertia over its torque has a governor with as much
+    smaller gains, which crosses over where that of the tug does and is as far from hunting. A ship whose vessel file
+    states a speed of the ship sails free, with its wake fraction and thrust deduction.
+
+    Parameters
+    ----------
+    vessel
+        The ship.
+    offset_v
+        Voltage of the campaign between its tests [V].
+
+    Raises
+    ------
+    SettingsError
+        If it is to sail free with another propeller than the simulated ship has curves of.
     """
-    tug = Tug.stan_tug_1205()
-    speed = vessel.working_point.engine_speed_rpm / _STAN_TUG_RPM
+    tug = replace(Tug.stan_tug_1205(), sailing=_sailing(vessel))
+    further_v = offset_v - _AT_THE_QUAY_V if vessel.is_underway else 0.0
+    asked_rpm = _AT_THE_QUAY_RPM + tug.set_point_slope_rpm_per_v * further_v
+    speed = vessel.working_point.engine_speed_rpm / asked_rpm
     gain = min(1.0, normalised_truth(tug, vessel)["tau_t"] / _STAN_TUG_INERTIA_S)
     return replace(
         tug,
@@ -28,4 +46,23 @@ def like_stan_tug_1205(vessel: Vessel) -> Tug:
         set_point_intercept_rpm=speed * tug.set_point_intercept_rpm,
         proportional_gain=gain * tug.proportional_gain,
         integral_gain_per_s=gain * tug.integral_gain_per_s,
+    )
+
+
+def _sailing(vessel: Vessel) -> Sailing | None:
+    """Return what makes a ship sail free; None at the quay."""
+    if not vessel.is_underway or vessel.hull is None:
+        return None
+    propeller, hull = vessel.propeller, vessel.hull
+    if propeller.series != CURVES_SERIES or not math.isclose(propeller.pitch_ratio, CURVES_PITCH_RATIO):
+        raise SettingsError(
+            f"vessel {vessel.name}: expected a propeller {CURVES_SERIES} with a pitch ratio of "
+            f"{CURVES_PITCH_RATIO:g}, the one that the simulated ship has curves of, found "
+            f"{propeller.series or 'no series'} with {propeller.pitch_ratio:g}; leave out working_point.ship_speed_m_s "
+            "to sail at the quay."
+        )
+    usual = Sailing()
+    return Sailing(
+        wake_fraction=usual.wake_fraction if hull.wake_fraction is None else hull.wake_fraction,
+        thrust_deduction=usual.thrust_deduction if hull.thrust_deduction is None else hull.thrust_deduction,
     )

@@ -240,8 +240,11 @@ class _Crew:
         sensor = self._vessel.sensors.ship_speed
         if sensor is None:
             return None
-        noise = 0.0 if self._tug.sailing is None else self._tug.sailing.log_rms_m_s
-        return SpeedLog(sensor, noise_m_s=noise, first_speed_m_s=first_speed_m_s, rate_hz=self._rate_hz, rng=rng)
+        sailing = self._tug.sailing
+        noise, shown = (0.0, 1.0) if sailing is None else (sailing.log_rms_m_s, sailing.log_scale)
+        return SpeedLog(
+            sensor, noise_m_s=noise, shown=shown, first_speed_m_s=first_speed_m_s, rate_hz=self._rate_hz, rng=rng
+        )
 
     def record(self, writer: RecordingWriter, progress: Callable[[float], None]) -> None:
         """Sail and write; the sensors and the file work in a second thread while the ship sails on."""

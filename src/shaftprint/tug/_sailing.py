@@ -22,6 +22,7 @@ TORQUE_PITCH_POWERS = (
     (0.0613468, -0.0076738, 0.0247989, 0.0, 0.0),
 )
 CURVES_PITCH_RATIO = 1.11
+CURVES_SERIES = "Ka4-70 in nozzle 19A"
 
 _BISECTIONS = 200
 
@@ -57,6 +58,8 @@ class Sailing:
     """``e`` of ``R = c v^e``; ``None``: the vessel's."""
     log_rms_m_s: float = 0.02
     """Noise of a value of the log, where the vessel has one: rms [m/s]."""
+    log_scale: float = 1.0
+    """What the log shows over the speed through the water."""
 
 
 class Way(NamedTuple):

@@ -5,6 +5,9 @@ from typing import Annotated
 from pydantic import Field
 
 from shaftprint.settings import NotNegativeNumber, PositiveInteger, PositiveNumber, Settings
+from shaftprint.vessel._usual import MASS_STD
+
+WakeFraction = Annotated[float, Field(strict=True, gt=-0.2, lt=0.6)]
 
 
 class Hull(Settings):
@@ -13,7 +16,7 @@ class Hull(Settings):
     displacement_kg: PositiveNumber
     """Mass of the ship [kg]."""
     displacement_std_kg: NotNegativeNumber | None = None
-    """Standard deviation of the mass [kg]."""
+    """Standard deviation of the mass [kg]; 3 % of it where it is not stated."""
     added_mass_fraction: Annotated[float, Field(strict=True, ge=0.0, le=1.0)]
     """Water that surges with the ship, as a fraction of its mass."""
     shafts: PositiveInteger
@@ -26,11 +29,26 @@ class Hull(Settings):
     """Speed through the water at which it has that resistance [m/s]."""
     resistance_exponent: PositiveNumber
     """``e = d ln R / d ln v`` around that speed."""
+    wake_fraction: WakeFraction | None = None
+    """``w``: the propellers see ``v (1 - w)``; None where nobody states it."""
+    wake_fraction_std: NotNegativeNumber | None = None
+    """Standard deviation of the wake fraction."""
+    thrust_deduction: WakeFraction | None = None
+    """``t``: of the thrust ``T (1 - t)`` pulls the ship; None where nobody states it."""
+    thrust_deduction_std: NotNegativeNumber | None = None
+    """Standard deviation of the thrust deduction."""
 
     @property
     def surging_mass_kg(self) -> float:
         """Mass of the ship with the water that surges with it [kg]."""
         return self.displacement_kg * (1.0 + self.added_mass_fraction)
+
+    @property
+    def surging_mass_std_kg(self) -> float:
+        """Standard deviation of that mass [kg], as stated or as usual."""
+        stated = self.displacement_std_kg
+        share = MASS_STD if stated is None else stated / self.displacement_kg
+        return share * self.surging_mass_kg
 
     def resistance_at_n(self, speed_m_s: float) -> float:
         """Return the resistance [N] at a speed [m/s], ``R = R_0 (v / v_0)^e``."""

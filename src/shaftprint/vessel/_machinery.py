@@ -8,12 +8,14 @@ from pydantic import Field, model_validator
 
 from shaftprint.settings import (
     Name,
+    NotNegativeNumber,
     Number,
     PositiveInteger,
     PositiveNumber,
     Settings,
 )
 from shaftprint.units import rev_s_from_rpm
+from shaftprint.vessel._usual import PITCH_STD
 
 Fraction = Annotated[float, Field(strict=True, gt=0.0, le=1.0)]
 
@@ -117,6 +119,13 @@ class Propeller(Settings):
     """``eta_R``, open-water torque over torque behind the ship."""
     series: Name | None = None
     """Propeller series and nozzle to which it is compared."""
+    pitch_std_fraction: NotNegativeNumber | None = None
+    """Relative standard deviation of the pitch; see ``pitch_std`` where it is not stated."""
+
+    @property
+    def pitch_std(self) -> float:
+        """Relative standard deviation of the pitch, as stated or as usual."""
+        return PITCH_STD if self.pitch_std_fraction is None else self.pitch_std_fraction
 
 
 class WorkingPoint(Settings):
@@ -126,3 +135,5 @@ class WorkingPoint(Settings):
     """Engine speed ``n_0`` [rpm]."""
     shaft_torque_nm: PositiveNumber
     """Shaft torque ``M_s0`` [N m] at the gauge."""
+    ship_speed_m_s: PositiveNumber | None = None
+    """Speed of the ship through the water [m/s] where the test is made underway; None at the quay."""

@@ -22,6 +22,7 @@ from shaftprint.vessel._machinery import Engine
 from shaftprint.vessel._plain_unit import PLAIN_UNIT
 from shaftprint.vessel._set_point import SetPointSensor
 from shaftprint.vessel._shaft_torque import ShaftTorqueSensor
+from shaftprint.vessel._usual import LOG_LATENCY_SHARE, LOG_SCALE_STD
 from shaftprint.vessel._wheel import Wheel
 
 SpeedUnit: TypeAlias = Annotated[
@@ -300,7 +301,20 @@ class ShipSpeedSensor(Settings):
     latency_s: NotNegativeNumber
     """Time by which a value is late [s]."""
     latency_std_s: NotNegativeNumber | None = None
-    """Standard deviation of the latency [s]."""
+    """Standard deviation of the latency [s]; see ``latency_std`` where it is not stated."""
+    scale_std_fraction: NotNegativeNumber | None = None
+    """Relative standard deviation of the mean speed through the water, with that of a current where a satellite
+    receiver gives it; see ``scale_std`` where it is not stated."""
+
+    @property
+    def latency_std(self) -> float:
+        """Standard deviation of the latency [s], as stated or as usual."""
+        return LOG_LATENCY_SHARE * self.cycle_s if self.latency_std_s is None else self.latency_std_s
+
+    @property
+    def scale_std(self) -> float:
+        """Relative standard deviation of the mean speed, as stated or as usual."""
+        return LOG_SCALE_STD if self.scale_std_fraction is None else self.scale_std_fraction
 
     @property
     def m_s_per_unit(self) -> float:

@@ -8,3 +8,11 @@ LATENCY_STD_S = 0.002
 """Standard deviation of the latency of a torque telemetry [s]."""
 INERTIA_STD = 0.05
 """Relative standard deviation of one row of an inertia table."""
+LOG_SCALE_STD = 0.02
+"""Relative standard deviation of the mean speed through the water by a calibrated log."""
+LOG_LATENCY_SHARE = 0.5
+"""Standard deviation of the latency of a log over the time between two of its values."""
+PITCH_STD = 0.01
+"""Relative standard deviation of the pitch of a propeller as built."""
+MASS_STD = 0.03
+"""Relative standard deviation of the displacement of a ship."""

@@ -82,9 +82,16 @@ class Vessel(Shown, Settings):
             if value <= 0.0:
                 errors.append(f"expected some inertia {side} of the torque gauge, found none.")
         errors += wrong_links(self.links, self.inertia)
+        if self.working_point.ship_speed_m_s is not None and self.hull is None:
+            errors.append("expected [hull] beside ship_speed_m_s of the working point, a test underway, found none.")
         if errors:
             raise ValueError(" ".join(errors))
         return self
+
+    @property
+    def is_underway(self) -> bool:
+        """Whether it is tested underway, not at the quay."""
+        return self.working_point.ship_speed_m_s is not None
 
     @property
     def orders(self) -> tuple[Order, ...]:
@@ -125,6 +132,12 @@ class Vessel(Shown, Settings):
         silent = [row.name for row in self.inertia if row.std_kg_m2 is None]
         if silent:
             usual.append(f"std_kg_m2 of {', '.join(silent)} = {INERTIA_STD:g} of the inertia")
+        if self.is_underway and self.sensors.ship_speed is not None:
+            log = self.sensors.ship_speed
+            if log.scale_std_fraction is None:
+                usual.append(f"sensors.ship_speed.scale_std_fraction = {log.scale_std:g}")
+            if log.latency_std_s is None:
+                usual.append(f"sensors.ship_speed.latency_std_s = {log.latency_std:g}")
         return tuple(usual)
 
     def _inertia_kg_m2(self, gauge: Literal["upstream", "downstream"]) -> float:

@@ -69,9 +69,9 @@ def command(
     if left_out:
         raise click.UsageError("--without is for drives; hold a parameter of a ship with --hold.")
     recording = only_recording(recordings)
-    structures = structures_of(names, options)
-    expect_comparable(structures)
     trial = load_trial(vessel, campaign)
+    structures = structures_of(names, options, trial.vessel)
+    expect_comparable(structures)
     with progress(hidden=no_progress) as steps:
         measurement = measure(recording, trial, mode=options.mode, progress=steps)
         steps.begin("Comparing the structures")

@@ -94,9 +94,9 @@ def command(
         )
         return
     recording = only_recording(recordings)
-    structures = structures_of(names, options)
     # before the folder is made: a mistake in a settings file leaves none
     trial, rng = load_trial(vessel, campaign), np.random.default_rng(options.seed)
+    structures = structures_of(names, options, trial.vessel)
     with output_folder(output, of="identify", force=force) as folder:
         with progress(hidden=no_progress) as steps:
             survey = run(

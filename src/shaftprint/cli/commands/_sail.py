@@ -30,7 +30,8 @@ def command(vessel: str, campaign: str, output: Path, seed: int, force: bool, no
 
     VESSEL and CAMPAIGN are files, or names of shipped ones such as stan-tug-1205 and thesis. Governor, delays and noise
     are those of the Stan Tug 1205, the gains as much smaller as the line has less inertia; at -5 V the lever asks for
-    the working speed of the vessel file. What was put
+    the working speed of the vessel file. With a ship speed in its working point the ship sails free, and the lever asks
+    for the working speed at the voltage of the campaign. What was put
     into the recording goes to a file of its own beside it, which nothing that identifies will open.
     """
     if output.is_dir():
@@ -40,7 +41,7 @@ def command(vessel: str, campaign: str, output: Path, seed: int, force: bool, no
     print_disagreements(trial.vessel, vessel)
     with progress(hidden=no_progress) as steps:
         steps.begin("Sailing", total=1.0)
-        tug = like_stan_tug_1205(trial.vessel)
+        tug = like_stan_tug_1205(trial.vessel, offset_v=trial.campaign.offset_v)
         sail_as(trial.vessel, trial.campaign, output, tug=tug, seed=seed, overwrite=force, progress=steps.reach)
     answer(f"{output}: the raw recording of {trial.campaign.duration_s:g} s.")
     answer(f"{truth_path(output)}: what was put into it.")

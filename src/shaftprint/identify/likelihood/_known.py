@@ -138,6 +138,26 @@ class _Test:
             return None
         return self._latency("rack latency", rack.latency_s if self.is_late else 0.0, rack.latency_std_s)
 
+    def log_latency(self) -> Prior | None:
+        """Return what is known of the log's latency, over what was taken off already; None without a log."""
+        log = self.vessel.sensors.ship_speed
+        if log is None:
+            return None
+        return self._latency("log latency", log.latency_s if self.is_late else 0.0, log.latency_std)
+
+    def load_slope(self) -> Prior | None:
+        """Return what the zero of the torque gauge lets be known of the slope of the load; None at the quay.
+
+        There the test shows it. Underway the ship's speed changes the torque too, and nothing tells the two apart.
+        """
+        if not self.vessel.is_underway:
+            return None
+        mean, share = (
+            ShipRole.LOAD_SLOPE.law or 0.0,
+            self.vessel.sensors.shaft_torque.zero_std / self.point.shaft_torque_nm,
+        )
+        return Prior(mean=mean, std=mean * share, sources={"gauge zero": -mean * share}) if share else None
+
     def _latency(self, source: str, mean_s: float | None, std_s: float | None) -> Prior | None:
         return Prior(mean=mean_s, std=std_s, sources={source: std_s}) if mean_s is not None and std_s else None
 
@@ -149,5 +169,7 @@ PRIORS: Mapping[Role, Callable[[_Test], Prior | None]] = {
     ShipRole.TORQUE_LATENCY: _Test.torque_latency,
     ShipRole.SET_POINT_LATENCY: _Test.set_point_latency,
     ShipRole.RACK_LATENCY: _Test.rack_latency,
+    ShipRole.LOG_LATENCY: _Test.log_latency,
+    ShipRole.LOAD_SLOPE: _Test.load_slope,
 }
 """Priors of a vessel file, by role."""

@@ -20,6 +20,7 @@ class SpeedLog:
         sensor: ShipSpeedSensor,
         *,
         noise_m_s: float,
+        shown: float,
         first_speed_m_s: float,
         rate_hz: float,
         rng: np.random.Generator,
@@ -35,6 +36,7 @@ class SpeedLog:
         """Value of one count, in the unit of the channel."""
         self._m_s_per_count = sensor.m_s_per_unit * sensor.resolution
         self._noise_m_s = noise_m_s
+        self._shown = shown
         self._latency_s = sensor.latency_s
         self._rate_hz = rate_hz
         self._rng = rng
@@ -59,7 +61,7 @@ class SpeedLog:
         self._sent += position.size
         before = np.floor(position).astype(np.int64)
         part = position - before
-        shown = (1.0 - part) * speed[before - begin] + part * speed[before - begin + 1]
+        shown = self._shown * ((1.0 - part) * speed[before - begin] + part * speed[before - begin + 1])
         shown += self._noise_m_s * self._rng.standard_normal(shown.size)
         self._tail = speed[-self._kept() :]
         counts: FloatArray = np.rint(shown / self._m_s_per_count)
