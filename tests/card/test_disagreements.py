@@ -23,7 +23,7 @@ def changed(tmp_path):
     return make
 
 
-@pytest.mark.parametrize("name", ["stan-tug-1205", "stan-tug-1205-ecu"])
+@pytest.mark.parametrize("name", ["stan-tug-1205", "stan-tug-1205-ecu", "stan-tug-1205-underway"])
 def test_shipped_vessels_agree_with_themselves(name):
     assert disagreements(load_vessel(name)) == ()
 
@@ -153,3 +153,23 @@ def test_a_propeller_of_no_series_is_held_against_none(changed):
 )
 def test_numbers_beyond_all_ships_are_contradictions_too(changed, old, new):
     assert any(one.is_contradiction for one in disagreements(changed(old, new)))
+
+
+def underway(**values):
+    vessel = load_vessel("stan-tug-1205-underway")
+    return vessel.model_copy(update={"working_point": vessel.working_point.model_copy(update=values)})
+
+
+def test_speed_of_the_ship_in_knots():
+    """9.23 kn are 4.75 m/s; 9.23 m/s are an advance of 1.01, beyond the thrust of Ka4-70 at P/D 1.11."""
+    wrong = only(underway(ship_speed_m_s=9.23), "working_point.ship_speed_m_s")
+    assert wrong.is_contradiction
+    assert "a speed at which the propellers pull, below" in wrong.expected
+    assert "m/s, not knots" in wrong.advice
+
+
+def test_speed_at_which_pull_and_resistance_differ():
+    """At 3 m/s the resistance is (3 / 5.093)^4 of 43 kN, 5.2 kN, and both propellers pull some 43 kN."""
+    wrong = only(underway(ship_speed_m_s=3.0), "working_point.ship_speed_m_s")
+    assert wrong.is_contradiction
+    assert "5177 N at 3 m/s" in wrong.found

@@ -2,6 +2,7 @@
 
 import pytest
 
+from shaftprint.errors import SettingsError
 from shaftprint.tug import Tug, like_stan_tug_1205
 from shaftprint.vessel import load_vessel
 
@@ -38,3 +39,18 @@ def test_governor_of_a_heavy_line_is_left_alone():
     torque_nm = 0.5 * STAN_TUG.working_point.shaft_torque_nm
     tug = like_stan_tug_1205(changed("working_point", shaft_torque_nm=torque_nm))
     assert tug.proportional_gain == Tug.stan_tug_1205().proportional_gain
+
+
+def test_underway_the_lever_asks_for_the_working_speed_at_the_voltage_of_the_campaign():
+    vessel = load_vessel("stan-tug-1205-underway")
+    tug = like_stan_tug_1205(vessel, offset_v=-6.66)
+    voltage = -6.66 + tug.set_point_offset_v
+    assert tug.set_point_slope_rpm_per_v * voltage + tug.set_point_intercept_rpm == pytest.approx(1600.0, rel=1e-3)
+    assert (tug.sailing.wake_fraction, tug.sailing.thrust_deduction) == (0.20, 0.15)
+
+
+def test_underway_another_propeller_is_refused():
+    vessel = load_vessel("stan-tug-1205-underway")
+    propeller = vessel.propeller.model_copy(update={"series": "Wageningen B"})
+    with pytest.raises(SettingsError, match=r"expected a propeller Ka4-70 in nozzle 19A .* found Wageningen B"):
+        like_stan_tug_1205(vessel.model_copy(update={"propeller": propeller}), offset_v=-6.66)

@@ -7,7 +7,7 @@ from shaftprint.settings import write_template
 from shaftprint.vessel import load_vessel
 
 
-@pytest.mark.parametrize("name", ["stan-tug-1205", "stan-tug-1205-ecu"])
+@pytest.mark.parametrize("name", ["stan-tug-1205", "stan-tug-1205-ecu", "stan-tug-1205-underway"])
 def test_the_tug_has_the_mass_and_resistance_of_its_trial(name):
     """54 t and 6 % of water; two propellers of 25.3 kN, of which 15 % are lost, at 9.9 kn."""
     hull = load_vessel(name).hull
@@ -45,3 +45,19 @@ def test_what_cannot_be_is_refused(tmp_path, old, new, words):
     (tmp_path / "vessel.toml").write_text(text[:start] + table + text[stop:], encoding="utf-8")
     with pytest.raises(SettingsError, match=words):
         load_vessel(tmp_path / "vessel.toml")
+
+
+def test_a_speed_of_the_ship_needs_a_hull(tmp_path):
+    write_template("vessel", tmp_path / "vessel.toml")
+    text = (tmp_path / "vessel.toml").read_text(encoding="utf-8")
+    text = text.replace("[working_point]\n", "[working_point]\nship_speed_m_s = 4.75\n")
+    (tmp_path / "vessel.toml").write_text(text, encoding="utf-8")
+    with pytest.raises(SettingsError, match=r"expected \[hull\] beside ship_speed_m_s of the working point"):
+        load_vessel(tmp_path / "vessel.toml")
+
+
+def test_what_a_file_does_not_state_is_usual():
+    hull = load_vessel("stan-tug-1205").hull
+    assert hull.surging_mass_std_kg == pytest.approx(1600.0 * 1.06)
+    silent = hull.model_copy(update={"displacement_std_kg": None})
+    assert silent.surging_mass_std_kg == pytest.approx(0.03 * 57240.0)

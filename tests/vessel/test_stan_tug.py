@@ -138,6 +138,29 @@ def test_ship_with_percent_torque_is_the_same_ship(tug):
     assert 0.01 <= rack["cycle_s"] <= 0.1
 
 
+def test_ship_underway_is_the_same_ship(tug):
+    underway, at_the_quay = load_vessel("stan-tug-1205-underway"), tug.model_dump()
+    moving = underway.model_dump()
+    assert underway.is_underway
+    assert not tug.is_underway
+    log = moving["sensors"].pop("ship_speed")
+    assert at_the_quay["sensors"].pop("ship_speed") is None
+    assert (log["unit"], log["cycle_s"]) == ("m/s", 0.2)
+    assert moving.pop("working_point") == {
+        "engine_speed_rpm": 1600.0,
+        "shaft_torque_nm": 2570.0,
+        "ship_speed_m_s": 4.75,
+    }
+    at_the_quay.pop("working_point")
+    stated = {name: moving["hull"].pop(name) for name in ("wake_fraction", "thrust_deduction")}
+    assert stated == {"wake_fraction": 0.2, "thrust_deduction": 0.15}
+    for content in (moving, at_the_quay):
+        for name in ("wake_fraction", "wake_fraction_std", "thrust_deduction", "thrust_deduction_std"):
+            content["hull"].pop(name, None)
+    assert moving.pop("name") == at_the_quay.pop("name") + ", underway"
+    assert moving == at_the_quay
+
+
 def test_rack_of_the_template_can_be_switched_on(tmp_path):
     path = tmp_path / "ship.toml"
     write_template("vessel", path)
