@@ -17,6 +17,7 @@ def vessel(inertia_std=2.7, scale_std=0.02, latency_std=0.002):
         inertia_downstream_kg_m2=17.0,
         inertia_downstream_std_kg_m2=2.0 * inertia_std,
         gearbox=SimpleNamespace(ratio=3.82),
+        is_underway=False,
         sensors=SimpleNamespace(
             shaft_torque=SimpleNamespace(scale_std=scale_std, latency_s=0.005, latency_std=latency_std),
             set_point=SimpleNamespace(latency_s=None, latency_std_s=None),

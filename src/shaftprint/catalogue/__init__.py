@@ -5,7 +5,7 @@ The language in which they are written, blocks and structures, is ``models``; sy
 
 from shaftprint.catalogue._drives import DRIVES, SIGNAL_MEANINGS, SIGNAL_UNITS
 from shaftprint.catalogue._gauge import gauge_governor, gauge_line
-from shaftprint.catalogue._known_propeller import KnownPropeller, with_known_propeller
+from shaftprint.catalogue._known_propeller import KnownPropeller, sails_free, with_known_propeller
 from shaftprint.catalogue._limited import limited
 from shaftprint.catalogue._limited_governor import AHEAD_S, GovernorSymbol, limited_governor
 from shaftprint.catalogue._roles import ROLES, ShipRole
@@ -40,6 +40,7 @@ __all__ = [
     "limited_governor",
     "pitch_actuator",
     "sailing_at_large",
+    "sails_free",
     "shipped_structure",
     "structure",
     "thesis_families",

@@ -9,6 +9,7 @@ from shaftprint.errors import StructureError
 from shaftprint.models import Combination, Parameter, Structure
 from shaftprint.propeller import OpenWaterCurve
 
+_OF_THE_SHIP = ("a", "b", "e", "tau_u")
 HIGHEST_WAKE = 0.6
 """Upper bound of the wake fraction; full single-screw ships reach 0.45."""
 
@@ -81,6 +82,11 @@ class KnownPropeller:
         return max(lowest, -0.2)
 
 
+def sails_free(structure: Structure) -> bool:
+    """Return whether a structure has slopes of the propeller and times of the ship, which a known propeller gives."""
+    return set(_OF_THE_SHIP) <= set(structure.names)
+
+
 def with_known_propeller(
     structure: Structure, propeller: KnownPropeller, *, mass_kg: float, resistance_n: float | None = None
 ) -> Structure:
@@ -107,7 +113,7 @@ def with_known_propeller(
     PropellerError
         If the curves do not hold the pitch.
     """
-    missing = [name for name in ("a", "b", "e", "tau_u") if name not in structure.names]
+    missing = [name for name in _OF_THE_SHIP if name not in structure.names]
     if missing:
         raise StructureError(
             f"structure {structure.name}: expected a free-sailing structure, found no {', '.join(missing)}; use "

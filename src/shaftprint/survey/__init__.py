@@ -5,6 +5,7 @@ The single steps are verbs too: ``measure``, ``fit``, ``survey_of``. Numbers in 
 rooms that they come from.
 """
 
+from shaftprint.survey._contradiction import contradiction
 from shaftprint.survey._everything import of_joint_fit, with_everything
 from shaftprint.survey._fits import comparisons_of, fit, priors_of, stated_working_point
 from shaftprint.survey._legs import LegMeasurement, LegTest, leg_pairs, leg_tests, legs_of, structure_at
@@ -16,6 +17,7 @@ from shaftprint.survey._measurement import Measurement, measure, of_legs, pairs_
 from shaftprint.survey._noise import noise_at_speeds
 from shaftprint.survey._of_vessel import of_vessel
 from shaftprint.survey._progress import SILENT, Progress, Silent
+from shaftprint.survey._ship_numbers import ship_numbers
 from shaftprint.survey._survey import SettingsOf, Survey, fingerprint_of, judged, run, settings_by_name, survey_of
 from shaftprint.survey._thesis_mode import SET_POINT_OFF, ThesisMode
 from shaftprint.survey._thesis_way import GAUGE, line_selections, set_point_scaled, thesis_way, weighted_fits
@@ -39,6 +41,7 @@ __all__ = [
     "Trial",
     "apart_reasons",
     "comparisons_of",
+    "contradiction",
     "expect_limitable",
     "failed_steps",
     "fingerprint_of",
@@ -67,6 +70,7 @@ __all__ = [
     "set_point_scaled",
     "settings_by_name",
     "settings_text",
+    "ship_numbers",
     "stated_working_point",
     "structure_at",
     "survey_of",

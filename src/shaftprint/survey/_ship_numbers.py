@@ -21,7 +21,6 @@ from shaftprint.models import Structure
 from shaftprint.signals import Signals
 from shaftprint.vessel import Hull, Vessel
 
-_SAILING = frozenset(("a", "b", "e", "tau_u", "k_q", "t_log"))
 _STARTS = 8
 
 
@@ -53,7 +52,7 @@ def ship_numbers(
     """
     log, hull = signals.channels.get("v_s"), vessel.hull
     curve = open_water_curve(vessel.propeller)
-    if log is None or hull is None or curve is None or not set(fit.structure.names) >= _SAILING:
+    if log is None or hull is None or curve is None or not sails_free(fit.structure):
         return ()
     propeller = KnownPropeller(
         curve=curve,
