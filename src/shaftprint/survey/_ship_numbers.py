@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from shaftprint.card import open_water_curve
-from shaftprint.catalogue import KnownPropeller, with_known_propeller
+from shaftprint.catalogue import KnownPropeller, sails_free, with_known_propeller
 from shaftprint.fingerprint import Quantity
 from shaftprint.identify import Identification, Prior, Settings, identify
 from shaftprint.identify.search import GivenStarts
