@@ -185,3 +185,42 @@ def test_false_alarms_are_as_rare_as_stated(base):
         found = watch(history, rng=np.random.default_rng(ship), draws=300, load_repeatability=0.0, horizon=10)
         alarms += bool(found.drifts)
     assert alarms <= 5
+
+
+# ---- another version of the program ----
+
+
+def by(version, fingerprint):
+    return fingerprint.model_copy(update={"shaftprint_version": version})
+
+
+def test_another_version_of_the_program_is_no_change_of_the_ship(base):
+    """Gains a twentieth lower from the test on that another version identified: it may be the program."""
+    tests = [by("0.1.0", made(place, base)) for place in range(3)]
+    tests += [by("0.2.0", made(place, base, **{P_ACTION: 0.95})) for place in range(3, 6)]
+    history, finding = looked_at(tests)
+    (epoch,) = history.events
+    assert (epoch.kind, epoch.at, epoch.note) == (
+        "program-changed",
+        FIRST + 3 * QUARTER,
+        "shaftprint 0.1.0 before, 0.2.0 from then on",
+    )
+    assert finding.drifts == ()
+    # stated by hand, it is not repeated
+    stated = Event(kind="program-changed", at=FIRST + 2.5 * QUARTER)
+    assert looked_at(tests, [stated])[0].events == (stated,)
+
+
+@pytest.mark.parametrize(("moved", "sees"), [(0.1, True), (0.3, False)])
+def test_a_recording_that_both_versions_identified_shows_whether_they_find_the_same(base, moved, sees):
+    """Up to a fifth of a standard deviation both are one program, and the change is the ship's."""
+    gain = base.quantity(P_ACTION)
+    factor = 1.0 + moved * gain.std / gain.value
+    tests = [by("0.1.0", made(place, base)) for place in range(3)]
+    tests += [by("0.2.0", made(place, base, **{P_ACTION: 0.95})) for place in range(3, 6)]
+    again = by("0.2.0", made(1, base, **{P_ACTION: factor}))
+    history, finding = looked_at([*tests, again.model_copy(update={"created": base.created + timedelta(days=1)})])
+    assert len(history.tests) == 6
+    # one test in the middle is of the other version too: there and back again, where they differ
+    assert bool(finding.drifts) is sees
+    assert ([one.kind for one in history.events] == []) is sees

@@ -20,10 +20,11 @@ from shaftprint.drift._class_finding import (
     ShipStanding,
 )
 from shaftprint.drift._class_numbers import NEWEST_TESTS, Sister, sister_of
+from shaftprint.drift._dated import EVENTS, DatedTest, Event
 from shaftprint.drift._differ import LOAD_REPEATABILITY, differ
 from shaftprint.drift._discoveries import discoveries
 from shaftprint.drift._finding import Finding, ShipChange, SizedCause
-from shaftprint.drift._history import EVENTS, DatedTest, Event, History, history_of
+from shaftprint.drift._history import History, history_of
 from shaftprint.drift._pair import Pair, pair_of
 from shaftprint.drift._shared_errors import FieldChange, SharedErrors, shared_errors
 from shaftprint.drift._sister_words import sister_sentences

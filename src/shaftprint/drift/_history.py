@@ -2,77 +2,16 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from datetime import datetime
 from typing import TYPE_CHECKING, Final
 
-from shaftprint.catalogue import ShipRole
+from shaftprint.drift._dated import DatedTest, Event
+from shaftprint.drift._program_epochs import program_epochs
 from shaftprint.errors import FingerprintError
 
 if TYPE_CHECKING:
     from shaftprint.fingerprint import Fingerprint
-    from shaftprint.models import Role
 
 SECONDS_PER_YEAR: Final = 365.25 * 86400.0
-
-_GOVERNOR = (
-    ShipRole.PROPORTIONAL_GAIN, ShipRole.INTEGRAL_GAIN, ShipRole.LOOP_DELAY, ShipRole.SET_POINT_LATENCY,
-    ShipRole.ACTUATOR_FREQUENCY, ShipRole.ACTUATOR_DAMPING,
-)  # fmt: skip
-_TORQUES = (
-    ShipRole.TORQUE, ShipRole.INERTIA_DOWNSTREAM, ShipRole.INERTIA_UPSTREAM, ShipRole.INERTIA,
-    ShipRole.PROPORTIONAL_GAIN, ShipRole.INTEGRAL_GAIN,
-)  # fmt: skip
-EVENTS: dict[str, "tuple[Role, ...]"] = {
-    "docking": (ShipRole.TORQUE, ShipRole.INERTIA_DOWNSTREAM, ShipRole.INERTIA),
-    "propeller-polished": (ShipRole.TORQUE,),
-    "propeller-changed": (ShipRole.TORQUE, ShipRole.INERTIA_DOWNSTREAM, ShipRole.INERTIA),
-    "governor-changed": _GOVERNOR,
-    "injectors-changed": (ShipRole.PROPORTIONAL_GAIN, ShipRole.INTEGRAL_GAIN, ShipRole.LOOP_DELAY),
-    "gauge-calibrated": _TORQUES,
-    "program-changed": (*_GOVERNOR, *_TORQUES),
-    "other": (),
-}
-"""What may be done to a ship, and the numbers that may be others after it, by their roles; of ``other`` those that are
-named."""
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Event:
-    """Something that was done to the ship; numbers that it concerns are compared with later tests only."""
-
-    kind: str
-    """One of ``EVENTS``."""
-    at: datetime
-    """When, with time zone."""
-    numbers: tuple[str, ...] = ()
-    """Names of further numbers that may be others after it."""
-    note: str = ""
-    """What was done, in the words of who did it."""
-
-    def __post_init__(self) -> None:
-        """Check kind and time.
-
-        Raises
-        ------
-        FingerprintError
-            If the kind is not known, or the time has no zone.
-        """
-        if self.kind not in EVENTS:
-            raise FingerprintError(f"event: expected one of {', '.join(EVENTS)}, found {self.kind!r}.")
-        if self.at.tzinfo is None:
-            raise FingerprintError(f"event {self.kind}: expected a time with zone, found {self.at.isoformat()}.")
-
-
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class DatedTest:
-    """One test with its time."""
-
-    name: str
-    """What it is called."""
-    at: datetime
-    """When it was made, with time zone."""
-    fingerprint: "Fingerprint"
-    """What it gave."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -90,10 +29,13 @@ class History:
 def history_of(fingerprints: "dict[str, Fingerprint]", events: Sequence[Event] = ()) -> History:
     """Return the tests of one line in order of time.
 
+    Where another version of the program identified a test than the one before, that is one more event, unless a
+    recording that both identified shows that they find the same.
+
     Parameters
     ----------
     fingerprints
-        Fingerprints by name.
+        Fingerprints by name; of one recording there may be several.
     events
         What was done to the ship.
 
@@ -113,7 +55,7 @@ def history_of(fingerprints: "dict[str, Fingerprint]", events: Sequence[Event] =
                 f"{name}: expected when the test was made, with time zone, found "
                 f"{'nothing' if at is None else at.isoformat()}; identify it again with --tested-at."
             )
-        recording = next((one.sha256 for one in fingerprint.sources if one.role == "recording"), name)
+        recording = fingerprint.recording_sha256 or name
         if recording in recordings:
             left_out[name] = f"it is of the same recording as {recordings[recording]}"
         elif fingerprint.joint is None:
@@ -123,8 +65,10 @@ def history_of(fingerprints: "dict[str, Fingerprint]", events: Sequence[Event] =
         else:
             tests.append(DatedTest(name=name, at=at, fingerprint=fingerprint))
         recordings.setdefault(recording, name)
+    tests.sort(key=lambda test: test.at)
+    epochs = program_epochs(tests, fingerprints.values(), events)
     return History(
-        tests=tuple(sorted(tests, key=lambda test: test.at)),
-        events=tuple(sorted(events, key=lambda event: event.at)),
+        tests=tuple(tests),
+        events=tuple(sorted((*events, *epochs), key=lambda event: event.at)),
         left_out=left_out,
     )

@@ -9,7 +9,8 @@ import numpy as np
 from shaftprint.arrays import FloatArray
 from shaftprint.catalogue import ShipRole
 from shaftprint.drift._causes import GAUGE_SCALE, Cause
-from shaftprint.drift._history import EVENTS, SECONDS_PER_YEAR, History
+from shaftprint.drift._dated import EVENTS
+from shaftprint.drift._history import SECONDS_PER_YEAR, History
 from shaftprint.drift._pair import SingleTest, alike, directions_of, doubts_of, not_judged, single_test
 from shaftprint.drift._shared_errors import is_common
 

@@ -173,6 +173,11 @@ class Fingerprint(Shown, Labelled, FrozenRecord):
         facts = {"vessel": self.conditions.vessel, "campaign": self.conditions.campaign, "structure": self.structure}
         return labelled_numbers(self.numbers, np.array(self.covariance), facts | {"created": self.created.isoformat()})
 
+    @property
+    def recording_sha256(self) -> str | None:
+        """SHA-256 of the recording; None where the file does not say it."""
+        return next((one.sha256 for one in self.sources if one.role == "recording"), None)
+
     def quantity(self, name: str) -> Quantity:
         """Return a parameter, combination, physical value, margin or calibration by its name.
 

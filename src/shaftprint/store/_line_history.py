@@ -1,5 +1,6 @@
 """The tests of one line as ``drift`` takes them: fingerprints with their times, and what was done between them."""
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
@@ -7,7 +8,7 @@ from shaftprint.arguments import refusing_none
 from shaftprint.errors import StoreError
 from shaftprint.store._history import SHOWN_HASH, document, history
 from shaftprint.store._late_rooms import drift_room, fingerprint_room
-from shaftprint.store._nouns import Line
+from shaftprint.store._nouns import Line, StoredFingerprint
 from shaftprint.store._store import Store
 
 if TYPE_CHECKING:
@@ -22,7 +23,8 @@ class LineHistory:
     line: Line
     """The line."""
     fingerprints: "dict[str, Fingerprint]" = field(repr=False)
-    """Its fingerprints, none of which was superseded, by the time of their test."""
+    """Its fingerprints by the time of their test; of one recording also those of other versions of the program, which
+    show whether these find the same."""
     events: "tuple[Event, ...]"
     """What was done to it."""
 
@@ -45,7 +47,7 @@ def line_history(store: Store, ship: str, *, line: str | None = None) -> LineHis
     StoreError
         If there is no such ship or line, it has no test, or it is not said which of several lines.
     """
-    found = history(store, ship, lines=() if line is None else (line,))
+    found = history(store, ship, lines=() if line is None else (line,), superseded=True)
     lines = list(dict.fromkeys(entry.fingerprint.line.position for entry in found.entries))
     if len(lines) != 1:
         raise StoreError(
@@ -54,8 +56,7 @@ def line_history(store: Store, ship: str, *, line: str | None = None) -> LineHis
         )
     fingerprints: dict[str, Fingerprint] = {}
     parse, event_of = fingerprint_room().parse_fingerprint, drift_room().Event
-    for entry in found.entries:
-        kept = entry.fingerprint
+    for kept in _of_each_version([entry.fingerprint for entry in found.entries]):
         name = f"{kept.trial.tested_at:%Y-%m-%d %H:%M}"
         name = f"{name} {kept.sha256[:SHOWN_HASH]}" if name in fingerprints else name
         fingerprint = parse(document(store, kept.sha256), named=name)
@@ -67,3 +68,14 @@ def line_history(store: Store, ship: str, *, line: str | None = None) -> LineHis
         if event.line.position == lines[0]
     )
     return LineHistory(line=found.entries[0].fingerprint.line, fingerprints=fingerprints, events=events)
+
+
+def _of_each_version(kept: Sequence[StoredFingerprint]) -> Iterator[StoredFingerprint]:
+    """Yield the fingerprints that count, before each the last one that every other version made of its recording."""
+    by_recording: dict[str, dict[str, StoredFingerprint]] = {}
+    for one in kept:
+        of_test = by_recording.setdefault(one.trial.recording_sha256 or one.sha256, {})
+        of_test.pop(one.version, None)
+        of_test[one.version] = one
+    for of_test in by_recording.values():
+        yield from of_test.values()
