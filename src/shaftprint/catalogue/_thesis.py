@@ -13,6 +13,7 @@ from shaftprint.catalogue._gauge import (
     gauge_core,
     gauge_ecu,
     gauge_inflow,
+    gauge_motor,
     gauge_open,
     governor,
 )
@@ -205,6 +206,7 @@ STRUCTURES: Mapping[str, Callable[[], Structure]] = {
     "GAUGE-CLOSED": gauge_closed,
     "GAUGE-INFLOW": gauge_inflow,
     "GAUGE-ECU": gauge_ecu,
+    "GAUGE-MOTOR": gauge_motor,
     "GOVERNOR": governor,
     "ENGINE": engine,
     "FREE-CORE": free_core,
