@@ -1,8 +1,8 @@
-"""Electric lines through raw recordings: does the truth lie in its intervals, and which structure is rejected?
+"""Electric lines through raw recordings: whether the truth lies in its intervals, and which structure is rejected.
 
-Every ship is drawn: speed controller, dead time and torque lag of the converter, latency of the set point, inertias, and
-what the vessel file of the E-ferry Ellen states of its gauge with a standard deviation. Its recording of 14 minutes is
-identified as a user would, with the vessel file as it is.
+Every ship is drawn: speed controller, dead time and torque lag of the converter, latency of the set point, inertias,
+and what the vessel file of the E-ferry Ellen states of its gauge with a standard deviation. Its recording of 14
+minutes is identified as a user would, with the vessel file as it is.
 
 ``python -m benchmarks.electric --seeds 50 --outcomes build/electric --write`` sails what is not there yet, fits it, and
 writes the table of ``docs/electric.md``; an outcome is a small JSON file, so that a run goes on where it ended.

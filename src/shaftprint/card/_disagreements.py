@@ -62,7 +62,8 @@ def _ratio(vessel: Vessel) -> Iterator[Disagreement]:
     if off > _ROUNDED_RATIO:
         yield Disagreement(
             field="gearbox.ratio",
-            expected=f"{expected:.4g}, as the {machine.word}'s {rated_rpm:g} rpm turn the propeller at {stated_rpm:g} rpm",
+            expected=f"{expected:.4g}, as the {machine.word}'s {rated_rpm:g} rpm turn the propeller at "
+            f"{stated_rpm:g} rpm",
             found=f"{vessel.gearbox.ratio:g}",
             advice=f"correct the ratio, {machine.word}.rated_speed_rpm or gearbox.propeller_rated_rpm",
             is_contradiction=off > _WRONG_RATIO,
@@ -78,7 +79,8 @@ def _tip_speed(vessel: Vessel) -> Iterator[Disagreement]:
             field="gearbox.ratio",
             expected=f"propeller tips at {low:g} to {high:g} m/s at rated speed, 20 to 45 m/s as a rule",
             found=f"{tip_m_s:.3g} m/s with a ratio of {ratio:g} and a diameter of {diameter:g} m",
-            advice=f"correct the ratio, which is {vessel.machine.word} speed over propeller speed, or propeller.diameter_m",
+            advice=f"correct the ratio, which is {vessel.machine.word} speed over propeller speed, or "
+            "propeller.diameter_m",
             is_contradiction=True,
         )
 
@@ -119,13 +121,15 @@ def _full_load_curve(vessel: Vessel) -> Iterator[Disagreement]:
     at_rated_nm = float(np.interp(machine.rated_speed_rpm, speeds, torques))
     apart = _apart(at_rated_nm, machine.rated_torque_nm)
     # a motor may have torque in hand, which an engine's curve has not
-    if apart > _CURVE_TOLERANCE and not (vessel.motor is not None and at_rated_nm > machine.rated_torque_nm):
+    in_hand = vessel.motor is not None and at_rated_nm > machine.rated_torque_nm
+    if apart > _CURVE_TOLERANCE and not in_hand:
         yield Disagreement(
             field="engine.full_load_torque_nm" if vessel.motor is None else "motor.maximum_torque_nm",
             expected=f"{machine.rated_torque_nm:.4g} N m at {machine.rated_speed_rpm:g} rpm, as "
             f"{machine.rated_power_kw:g} kW give there",
             found=f"{at_rated_nm:.4g} N m",
-            advice=f"correct {'the curve' if vessel.motor is None else 'it'}, or rated_power_kw (kW, not hp) and rated_speed_rpm",
+            advice=f"correct {'the curve' if vessel.motor is None else 'it'}, or rated_power_kw (kW, not hp) and "
+            "rated_speed_rpm",
             is_contradiction=apart > _FINDING,
         )
 
@@ -144,13 +148,13 @@ def _engine_load(vessel: Vessel) -> Iterator[Disagreement]:
         found = f"{power_kw:.4g} kW at the {machine.word}"
     else:
         return
+    limit = "the full-load curve" if vessel.motor is None else "motor.maximum_torque_nm"
     yield Disagreement(
         field="working_point.shaft_torque_nm",
         expected=f"{expected} at {point.engine_speed_rpm:g} rpm",
         found=f"{found} with {point.shaft_torque_nm:g} N m at the shaft",
         advice="correct the torque (N m at the propeller shaft) or what it was worked out from (diameter_m and "
-        f"pitch_ratio of [propeller]), gearbox.ratio, {'the full-load curve' if vessel.motor is None else 'maximum_torque_nm'} or "
-        "rated_power_kw",
+        f"pitch_ratio of [propeller]), gearbox.ratio, {limit} or rated_power_kw",
         is_contradiction=load > _CURVE_TOLERANCE,
     )
 

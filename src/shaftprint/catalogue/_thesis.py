@@ -217,6 +217,10 @@ STRUCTURES: Mapping[str, Callable[[], Structure]] = {
 }
 
 
+CLOSED_LOOPS: Mapping[str, str] = {"engine": "GAUGE-CLOSED", "motor": "GAUGE-MOTOR"}
+"""Names of the closed loops of ships, by what drives the line."""
+
+
 def structure(name: str) -> Structure:
     """Return a shipped structure by its name, in capitals or not.
 

@@ -13,7 +13,7 @@ import numpy as np
 
 from shaftprint.arguments import refusing_none
 from shaftprint.campaign import Campaign, TrialConditions
-from shaftprint.catalogue import shipped_structure
+from shaftprint.catalogue import CLOSED_LOOPS, shipped_structure
 from shaftprint.errors import IdentificationError, SettingsError
 from shaftprint.fingerprint import (
     Fingerprint,
@@ -125,7 +125,7 @@ def run(
     vessel: str | Path | Vessel,
     campaign: str | Path | Campaign,
     *,
-    structures: Sequence[str | Structure] = ("GAUGE-CLOSED",),
+    structures: Sequence[str | Structure] = (),
     settings: SettingsOf | None = None,
     mode: Mode = "shaftprint",
     sources: Sequence[SourceFile] = (),
@@ -146,7 +146,8 @@ def run(
     vessel, campaign
         What was tested and what was asked of it: paths, shipped names, or loaded.
     structures
-        Structures, or names of shipped ones; the fingerprint is of the first, others are fitted beside it.
+        Structures, or names of shipped ones; the fingerprint is of the first, others are fitted beside it. Where there
+        are none, GAUGE-CLOSED, or GAUGE-MOTOR where a motor drives the line.
     settings
         Gives how a structure is fitted; with the priors of the vessel file where it is not given.
     mode
@@ -175,7 +176,10 @@ def run(
     rng = np.random.default_rng(1) if rng is None else rng
     trial = load_trial(vessel, campaign, conditions)
     trial = replace(trial, sources=(*trial.sources, *sources))
-    chosen = tuple(one if isinstance(one, Structure) else shipped_structure(one) for one in structures)
+    chosen = tuple(
+        one if isinstance(one, Structure) else shipped_structure(one)
+        for one in structures or (CLOSED_LOOPS[trial.vessel.machine.word],)
+    )
     measurement = of_legs(measure(recording, trial, mode=mode, progress=progress), legs)
     measurement = replace(measurement, began=_began(tested_at, measurement.began, trial))
     by_name = settings_by_name(chosen, measurement, trial, settings or _with_priors)

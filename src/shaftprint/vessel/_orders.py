@@ -44,6 +44,9 @@ def orders_of(machine: "Machine", gearbox: "Gearbox", propeller: "Propeller") ->
             Order(name=name, shaft="propeller", per_engine_turn=order / gearbox.ratio)
             for order, name in of_shaft.items()
         ),
-        *(Order(name=f"{machine.word} order {order}", shaft="engine", per_engine_turn=float(order)) for order in machine.torque_orders),
+        *(
+            Order(name=f"{machine.word} order {order}", shaft="engine", per_engine_turn=float(order))
+            for order in machine.torque_orders
+        ),
     ]
     return tuple(sorted(orders, key=lambda order: order.per_engine_turn))

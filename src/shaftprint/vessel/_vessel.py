@@ -84,8 +84,8 @@ class Vessel(Shown, Settings):
             raise ValueError(f"expected either a table [engine] or a table [motor], found {found}.")
         if self.motor is not None and self.limits.motoring_speed_rpm:
             raise ValueError(
-                "expected no limits.motoring_speed_rpm beside [motor], found some; that is the drag of an engine without "
-                "fuel, what a motor brakes with is motor.regenerating_torque_nm."
+                "expected no limits.motoring_speed_rpm beside [motor], found some; that is the drag of an engine "
+                "without fuel, what a motor brakes with is motor.regenerating_torque_nm."
             )
         if self.motor is not None and self.sensors.rack is not None:
             raise ValueError(
@@ -121,7 +121,7 @@ class Vessel(Shown, Settings):
 
     @property
     def motoring(self) -> Curve | None:
-        """Braking torque over speed as positive numbers: an engine's without fuel, a motor's highest; None: not known."""
+        """Braking torque over speed as positive numbers: an engine's without fuel, a motor's highest; None: unknown."""
         if self.motor is not None:
             return self.motor.regenerating
         limits = self.limits

@@ -9,7 +9,7 @@ from shaftprint.cli._drive_judge import validate_on_the_bench
 from shaftprint.cli._drive_options import drive_option, expect_not_given, only_recording
 from shaftprint.cli._fit_options import FitOptions, fit_options, held_structures, settings_of, structures_of
 from shaftprint.cli._options import campaign_option, vessel_option
-from shaftprint.cli._own_structure import OWN_FILE_HELP, TypedName, structure_to_use
+from shaftprint.cli._own_structure import CLOSED_LOOP_HELP, OWN_FILE_HELP, TypedName, closed_loop_of, structure_to_use
 from shaftprint.cli._terminal import echo
 from shaftprint.cli._validation import (
     Asked,
@@ -33,8 +33,6 @@ from shaftprint.survey import Measurement, Trial, fit, load_trial, measure, sett
 from shaftprint.tables import models_table
 from shaftprint.validation import Model, identified_model, thesis_models
 
-DEFAULT_STRUCTURE = TypedName("GAUGE-CLOSED")
-
 
 @click.command("validate")
 @click.argument("recordings", metavar="RECORDING...", nargs=-1, required=True, type=click.Path(path_type=Path))
@@ -49,7 +47,7 @@ DEFAULT_STRUCTURE = TypedName("GAUGE-CLOSED")
 @click.option(
     "--structure",
     metavar="NAME",
-    help=f"Model structure: {OWN_FILE_HELP}. The fingerprint's, or GAUGE-CLOSED, by default.",
+    help=f"Model structure: {OWN_FILE_HELP}. The fingerprint's, or {CLOSED_LOOP_HELP}, by default.",
 )
 @click.option(
     "--record",
@@ -109,7 +107,7 @@ def command(
     trial = load_trial(vessel, campaign)
     kept = None if fingerprint is None else fingerprint_at(fingerprint)
     if kept is None:
-        structures = structures_of([structure or DEFAULT_STRUCTURE], options)
+        structures = structures_of([structure or closed_loop_of(trial.vessel)], options)
     else:
         structures = held_structures([structure_to_use(structure, kept)], options)
     with progress(hidden=no_progress) as steps:

@@ -28,8 +28,8 @@ limited, a fast rise is. A limit of the rate of the rack holds for what the gove
 
 An electric motor takes the place of the engine where ``torque_per_s`` is not 0: ``X`` is the torque that the speed
 controller asks for, over rated torque, the delay is the dead time of the converter, and the torque follows in a lag of
-first order as the current loop closes, ``T dX/dt = X(t - t_d) - X``; the natural frequency is 0 then, so that nothing of
-second order moves, and no branch is taken that would cost time. It pulls and brakes with constant torque up to
+first order as the current loop closes, ``T dX/dt = X(t - t_d) - X``; the natural frequency is 0 then, so that nothing
+of second order moves, and no branch is taken that would cost time. It pulls and brakes with constant torque up to
 base speed and with constant power above, where the field is weakened: ``M_max n_base / n``.
 
 Gains and delay may go with a power of the engine speed, ``K (n_e / n_e0)^a`` and ``t_d (n_e / n_e0)^b``, at any time.

@@ -77,6 +77,7 @@ def _alt(vessel: "Vessel") -> str:
     where = [f"{_count(vessel, shaft)} on the {name} shaft" for shaft, name in shafts.items()]
     governor = "governor" if vessel.motor is None else "speed controller"
     return (
-        f"Sketch of the line from left to right: {governor}, {vessel.machine.word}, gearbox, torque gauge on the propeller shaft, "
+        f"Sketch of the line from left to right: {governor}, {vessel.machine.word}, gearbox, "
+        "torque gauge on the propeller shaft, "
         f"propeller. Speed pick-ups: {' and '.join(where)}."
     )
