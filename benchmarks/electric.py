@@ -62,7 +62,7 @@ def ship(seed: int) -> Ship:
     latency_s = max(0.0, rng.normal(gauge.latency_s, gauge.latency_std))
     true = gauge.model_copy(update={"scale_nm_per_unit": gauge.scale_nm_per_unit / scale, "latency_s": latency_s})
     sensors = VESSEL.sensors.model_copy(update={"shaft_torque": true})
-    proportional = rng.uniform(1.5, 3.5)
+    proportional = rng.uniform(1.2, 3.0)
     tug = replace(
         like_stan_tug_1205(VESSEL),
         proportional_gain=proportional,

@@ -1,6 +1,7 @@
 """How the torque follows what the governor asks for, at large: the fuel of an engine, the current of a motor."""
 
-from typing import Any, Final, Protocol
+from abc import ABC, abstractmethod
+from typing import Any, ClassVar, Final
 
 from shaftprint.catalogue._gauge import (
     GAUGE_K_I,
@@ -17,33 +18,33 @@ from shaftprint.catalogue._gauge import (
     gauge_combinations,
     motor_combinations,
 )
-from shaftprint.models import Combination, Flow, Formula, Parameter, first_order_lag, second_order_lag
+from shaftprint.models import Combination, Flow, Formula, Number, Parameter, first_order_lag, second_order_lag
 
 
-class Actuation(Protocol):
+class Actuation(ABC):
     """Governor and torque source of a limited line."""
 
-    parameters: tuple[Parameter, ...]
+    parameters: ClassVar[tuple[Parameter, ...]]
     """Those of the governor first, then those of the torque source ahead of the shaft."""
-    speed_slope: tuple[Parameter, ...]
+    speed_slope: ClassVar[tuple[Parameter, ...]]
     """The slope of the torque with speed, where there is one."""
-    combinations: tuple[Combination, ...]
+    combinations: ClassVar[tuple[Combination, ...]]
     """What a test of the closed loop finds better than the parameters."""
 
+    @abstractmethod
     def torque(self, flow: Flow, rack: Formula, speed: Formula, p: Any) -> Formula:
         """Return the torque that belongs to what was asked for a delay ago."""
-        ...
 
+    @abstractmethod
     def rack(self, torque: Formula, speed: Formula, p: Any) -> Formula:
         """Return what is asked for to have a torque in steady running."""
-        ...
 
-    def lowest(self, level: Formula, speed: Formula, shape: Formula | float) -> Formula:
+    @abstractmethod
+    def lowest(self, level: Formula, speed: Formula, shape: Number) -> Formula:
         """Return the lowest torque over the working point's, for a level there and the shape of the highest."""
-        ...
 
 
-class _Engine:
+class _Engine(Actuation):
     """Fuel by a second-order lag; torque that may change with the speed."""
 
     parameters = (GAUGE_K_P, GAUGE_K_I, V_ONE, T_D, GAUGE_OMEGA_N, GAUGE_ZETA)
@@ -57,12 +58,12 @@ class _Engine:
     def rack(self, torque: Formula, speed: Formula, p: Any) -> Formula:
         return (torque - p.g * speed) / p.v  # type: ignore[no-any-return]
 
-    def lowest(self, level: Formula, speed: Formula, shape: Formula | float) -> Formula:
+    def lowest(self, level: Formula, speed: Formula, shape: Number) -> Formula:
         # friction of a motored engine: half of it independent of speed, half proportional
         return level * (1.0 + 0.5 * speed)
 
 
-class _Motor:
+class _Motor(Actuation):
     """Torque by a converter: dead time and a first-order lag, whatever the speed."""
 
     parameters = (MOTOR_K_P, MOTOR_K_I, T_CONVERTER, T_M)
@@ -75,7 +76,7 @@ class _Motor:
     def rack(self, torque: Formula, speed: Formula, p: Any) -> Formula:
         return torque
 
-    def lowest(self, level: Formula, speed: Formula, shape: Formula | float) -> Formula:
+    def lowest(self, level: Formula, speed: Formula, shape: Number) -> Formula:
         # the current that brakes is limited as that which drives, and so is the power
         return level * shape
 

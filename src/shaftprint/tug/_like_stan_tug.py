@@ -13,7 +13,7 @@ _STAN_TUG_INERTIA_S = 1.33
 
 # Truth of an electric line: dead time of a converter and its bus, torque in the middle of what current loops give, a
 # slower speed controller that is as far from hunting.
-_ELECTRIC = {"governor_delay_s": 0.0203, "torque_time_s": 0.0617, "set_point_latency_s": 0.0718}
+_ELECTRIC = replace(Tug.stan_tug_1205(), governor_delay_s=0.0203, torque_time_s=0.0617, set_point_latency_s=0.0718)
 
 
 def like_stan_tug_1205(vessel: Vessel) -> Tug:
@@ -23,7 +23,7 @@ def like_stan_tug_1205(vessel: Vessel) -> Tug:
     line with less inertia over its torque has a governor with as much smaller gains, which crosses over where that of
     the tug does and is as far from hunting. A motor has the dead time and lag of a converter.
     """
-    tug = Tug.stan_tug_1205() if vessel.motor is None else replace(Tug.stan_tug_1205(), **_ELECTRIC)
+    tug = Tug.stan_tug_1205() if vessel.motor is None else _ELECTRIC
     speed = vessel.working_point.engine_speed_rpm / _STAN_TUG_RPM
     gain = min(1.0, normalised_truth(tug, vessel)["tau_t"] / _STAN_TUG_INERTIA_S)
     return replace(
