@@ -104,7 +104,7 @@ def take_fingerprint(
     profiled = profile(identification, margins) if identification.is_likelihood else None
     reported = _Reported(stated, {} if profiled is None else profiled.intervals, _meanings(identification))
     stated_conditions = conditions_stated(vessel, campaign, trial_conditions, tested_at)
-    conditions = _conditions(identification, signals, left_out, stated_conditions)
+    conditions = _conditions(identification, signals, vessel, left_out, stated_conditions)
     margin = margin_quantities(identification, profiled, stated)
     verdict = assess(
         identification,
@@ -184,6 +184,7 @@ def _left_out(identification: Identification) -> dict[str, str]:
 def _conditions(
     identification: Identification,
     signals: "Signals",
+    vessel: "Vessel",
     left_out: dict[str, str],
     stated: Mapping[str, object],
 ) -> Conditions:
