@@ -4,11 +4,14 @@ The tug is linearised numerically out of its nonlinear physics, in N m and rev/s
 functions of normalised parameters, worked out here from inertia, torque and speed.
 """
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from shaftprint.catalogue import structure
-from shaftprint.tug import Tug, linearised_response, normalised_truth
+from shaftprint.tug import Tug, like_stan_tug_1205, linearised_response, normalised_truth
+from shaftprint.vessel import load_vessel
 
 OMEGA_RAD_S = np.geomspace(0.1, 10.0, 200)
 GEAR_RATIO = 3.82
@@ -127,3 +130,36 @@ def test_tie_would_notice_a_structure_without_inflow(vessel):
     _, plain = composed("GAUGE-CLOSED", parameters_of(tug))
     simulated = linearised_response(tug, vessel, OMEGA_RAD_S / (2.0 * np.pi))[:, 0]
     assert np.abs(simulated / plain - 1.0).max() > 0.1
+
+
+@pytest.mark.parametrize(
+    "given",
+    [
+        {},
+        {"torque_time_s": 0.2, "governor_delay_s": 0.0073},
+        {"governor_delay_s": 0.0411, "entrained_water_kg_m2": 7.0},
+    ],
+)
+def test_linearised_electric_ship_is_the_composed_structure(given):
+    ferry = load_vessel("e-ferry-ellen")
+    tug = replace(like_stan_tug_1205(ferry), **given)
+    seconds_per_kg_m2 = 2.0 * np.pi * 350.0 / 60.0 / 7026.0
+    known = {
+        "tau_up": seconds_per_kg_m2 * 44.0,
+        "tau_dn": seconds_per_kg_m2 * (36.0 + tug.entrained_water_kg_m2),
+        "k_q": 2.0,
+        "c_set": 1.0,
+        "K_p": tug.proportional_gain,
+        "K_i": tug.integral_gain_per_s,
+        "t_d": tug.governor_delay_s,
+        "T_m": tug.torque_time_s,
+        "t_sp": tug.set_point_latency_s,
+    }
+    outputs, model = composed("GAUGE-MOTOR", known)
+    simulated = linearised_response(tug, ferry, OMEGA_RAD_S / (2.0 * np.pi), outputs=outputs)[:, 0]
+    ratio = simulated / model
+    assert np.abs(ratio) == pytest.approx(np.ones(ratio.shape), abs=1e-5)
+    assert np.degrees(np.angle(ratio)) == pytest.approx(np.zeros(ratio.shape), abs=1e-3)
+    # an engine at the same gains is another line
+    diesel = {name: value for name, value in known.items() if name != "T_m"}
+    assert np.abs(simulated / composed("GAUGE-CLOSED", diesel)[1] - 1.0).max() > 0.1

@@ -16,8 +16,10 @@ SPEED_RPM, TORQUE_NM = 1183.8, 1740.0
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("rows_a_second", [100, 1000])
-def test_a_held_step_moves_the_line_as_it_moves_the_fmu(fmu, tmp_path, rows_a_second):
+@pytest.mark.parametrize(
+    ("name_of_line", "rows_a_second"), [("GAUGE-CLOSED", 100), ("GAUGE-CLOSED", 1000), ("GAUGE-MOTOR", 100)]
+)
+def test_a_held_step_moves_the_line_as_it_moves_the_fmu(fmu, tmp_path, name_of_line, rows_a_second):
     """Rows of 10 ms were 0.3 rpm beside the FMU when values were held by steps of the solver."""
     fmpy = pytest.importorskip("fmpy")
     time = np.arange(0.0, LAST_S, 1.0 / rows_a_second)
@@ -25,14 +27,14 @@ def test_a_held_step_moves_the_line_as_it_moves_the_fmu(fmu, tmp_path, rows_a_se
     rows = "".join(f"{second:.4f},{value}\n" for second, value in zip(time, asked, strict=True))
     (tmp_path / "input.csv").write_text(f"time [s],n_set [-]\n{rows}", encoding="utf-8")
     files = ["--input", str(tmp_path / "input.csv"), "-o", str(tmp_path / "output.csv")]
-    done = CliRunner().invoke(shaftprint, ["simulate", "--structure", "GAUGE-CLOSED", "--hold", *files])
+    done = CliRunner().invoke(shaftprint, ["simulate", "--structure", name_of_line, "--hold", *files])
     assert done.exit_code == 0, done.stderr
     with (tmp_path / "output.csv").open(encoding="utf-8", newline="") as file:
         printed = list(csv.DictReader(file))
     name = "engine_speed_set_point"
     held = np.array(list(zip(time, SPEED_RPM * (1.0 + asked), strict=True)), dtype=[("time", float), (name, float)])
     moved = fmpy.simulate_fmu(
-        fmu(structure("GAUGE-CLOSED")),
+        fmu(structure(name_of_line)),
         stop_time=float(time[-1]),
         step_size=1.0 / rows_a_second,
         output_interval=1.0 / rows_a_second,

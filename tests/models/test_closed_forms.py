@@ -123,6 +123,18 @@ def gauge_ecu(s, p):
     return pick_up(s, p) * speed, torque, rack
 
 
+def gauge_motor(s, p):
+    """The same two free bodies; the torque follows the PI controller late and by a lag of first order.
+
+    ``M_b = (K_p + K_i / s) e^(-s t_d) e / (T_m s + 1)``, whatever the speed.
+    """
+    drive = (p["K_p"] + p["K_i"] / s) * mp.exp(-s * p["t_d"]) / (p["T_m"] * s + 1)
+    demand = p["c_set"] * mp.exp(-s * p["t_sp"])
+    matrix = mp.matrix([[1, -1, -p["tau_up"] * s], [0, 1, -p["k_q"] - p["tau_dn"] * s], [1, 0, drive]])
+    _, torque, speed = mp.lu_solve(matrix, mp.matrix([0, 0, drive * demand]))
+    return pick_up(s, p) * speed, torque * telemetry(s, p)
+
+
 def governor_alone(s, p):
     """The rack from the set point, which comes late, and from the speed, which does not; both seen ``t_rack`` late."""
     rack = (p["K_p"] + p["K_i"] / s) * mp.exp(-s * p["t_rack"])
@@ -195,6 +207,7 @@ FORMS = {
     "GAUGE-CLOSED": gauge_closed,
     "GAUGE-INFLOW": gauge_closed,
     "GAUGE-ECU": gauge_ecu,
+    "GAUGE-MOTOR": gauge_motor,
     "GOVERNOR": governor_alone,
     "ENGINE": engine,
     "FREE-CORE": sailing_core,

@@ -66,42 +66,50 @@ def _ratio(vessel: Vessel) -> Iterator[Disagreement]:
     stated_rpm = vessel.gearbox.propeller_rated_rpm
     if stated_rpm is None:
         return
-    rated_rpm = vessel.engine.rated_speed_rpm
+    machine = vessel.machine
+    rated_rpm = machine.rated_speed_rpm
     expected = rated_rpm / stated_rpm
     off = _apart(vessel.gearbox.ratio, expected) - 1.0
     if off > _ROUNDED_RATIO:
         yield Disagreement(
             field="gearbox.ratio",
-            expected=f"{expected:.4g}, as the engine's {rated_rpm:g} rpm turn the propeller at {stated_rpm:g} rpm",
+            expected=f"{expected:.4g}, as the {machine.word}'s {rated_rpm:g} rpm turn the propeller at "
+            f"{stated_rpm:g} rpm",
             found=f"{vessel.gearbox.ratio:g}",
-            advice="correct the ratio, engine.rated_speed_rpm or gearbox.propeller_rated_rpm",
+            advice=f"correct the ratio, {machine.word}.rated_speed_rpm or gearbox.propeller_rated_rpm",
             is_contradiction=off > _WRONG_RATIO,
         )
 
 
 def _tip_speed(vessel: Vessel) -> Iterator[Disagreement]:
     diameter, ratio = vessel.propeller.diameter_m, vessel.gearbox.ratio
-    tip_m_s = math.pi * diameter * rev_s_from_rpm(vessel.engine.rated_speed_rpm) / ratio
+    tip_m_s = math.pi * diameter * rev_s_from_rpm(vessel.machine.rated_speed_rpm) / ratio
     low, high = _TIP_SPEEDS
     if not low < tip_m_s < high:
         yield Disagreement(
             field="gearbox.ratio",
             expected=f"propeller tips at {low:g} to {high:g} m/s at rated speed, 20 to 45 m/s as a rule",
             found=f"{tip_m_s:.3g} m/s with a ratio of {ratio:g} and a diameter of {diameter:g} m",
-            advice="correct the ratio, which is engine speed over propeller speed, or propeller.diameter_m",
+            advice=f"correct the ratio, which is {vessel.machine.word} speed over propeller speed, or "
+            "propeller.diameter_m",
             is_contradiction=True,
         )
 
 
 def _working_speed(vessel: Vessel) -> Iterator[Disagreement]:
-    speed_rpm, engine, limits = vessel.working_point.engine_speed_rpm, vessel.engine, vessel.limits
+    speed_rpm, machine, limits = vessel.working_point.engine_speed_rpm, vessel.machine, vessel.limits
     bounds = (
-        ("engine.idle_speed_rpm", engine.idle_speed_rpm, speed_rpm > engine.idle_speed_rpm, "below"),
+        (
+            f"{machine.word}.{'idle' if vessel.motor is None else 'lowest'}_speed_rpm",
+            machine.lowest_governed_rpm,
+            speed_rpm > machine.lowest_governed_rpm,
+            "below",
+        ),
         ("limits.lowest_speed_rpm", limits.lowest_speed_rpm, speed_rpm > (limits.lowest_speed_rpm or 0.0), "below"),
         (
-            "limits.highest_speed_rpm" if limits.highest_speed_rpm else "engine.rated_speed_rpm",
-            limits.highest_speed_rpm or engine.rated_speed_rpm,
-            speed_rpm <= (limits.highest_speed_rpm or engine.rated_speed_rpm),
+            "limits.highest_speed_rpm" if limits.highest_speed_rpm else f"{machine.word}.rated_speed_rpm",
+            limits.highest_speed_rpm or machine.rated_speed_rpm,
+            speed_rpm <= (limits.highest_speed_rpm or machine.rated_speed_rpm),
             "not below",
         ),
     )
@@ -111,49 +119,53 @@ def _working_speed(vessel: Vessel) -> Iterator[Disagreement]:
                 field=field,
                 expected=f"a speed {where} that of the working point, {speed_rpm:g} rpm",
                 found=f"{bound_rpm:g} rpm",
-                advice="correct it, or working_point.engine_speed_rpm",
+                advice=f"correct it, or working_point.{machine.word}_speed_rpm",
                 is_contradiction=True,
             )
 
 
 def _full_load_curve(vessel: Vessel) -> Iterator[Disagreement]:
-    engine = vessel.engine
-    speeds = engine.full_load_speed_rpm
-    if not speeds[0] <= engine.rated_speed_rpm <= speeds[-1]:
+    machine = vessel.machine
+    speeds, torques = machine.full_load
+    if not speeds[0] <= machine.rated_speed_rpm <= speeds[-1]:
         return
-    at_rated_nm = float(np.interp(engine.rated_speed_rpm, speeds, engine.full_load_torque_nm))
-    apart = _apart(at_rated_nm, engine.rated_torque_nm)
-    if apart > _CURVE_TOLERANCE:
+    at_rated_nm = float(np.interp(machine.rated_speed_rpm, speeds, torques))
+    apart = _apart(at_rated_nm, machine.rated_torque_nm)
+    # a motor may have torque in hand, which an engine's curve has not
+    in_hand = vessel.motor is not None and at_rated_nm > machine.rated_torque_nm
+    if apart > _CURVE_TOLERANCE and not in_hand:
         yield Disagreement(
-            field="engine.full_load_torque_nm",
-            expected=f"{engine.rated_torque_nm:.4g} N m at {engine.rated_speed_rpm:g} rpm, as "
-            f"{engine.rated_power_kw:g} kW give there",
+            field="engine.full_load_torque_nm" if vessel.motor is None else "motor.maximum_torque_nm",
+            expected=f"{machine.rated_torque_nm:.4g} N m at {machine.rated_speed_rpm:g} rpm, as "
+            f"{machine.rated_power_kw:g} kW give there",
             found=f"{at_rated_nm:.4g} N m",
-            advice="correct the curve, or rated_power_kw (kW, not hp) and rated_speed_rpm",
+            advice=f"correct {'the curve' if vessel.motor is None else 'it'}, or rated_power_kw (kW, not hp) and "
+            "rated_speed_rpm",
             is_contradiction=apart > _FINDING,
         )
 
 
 def _engine_load(vessel: Vessel) -> Iterator[Disagreement]:
     """Hold the working torque against the full-load curve; where that has room, its power against the rated one."""
-    point, engine = vessel.working_point, vessel.engine
+    point, machine = vessel.working_point, vessel.machine
     brake_nm = point.shaft_torque_nm / (vessel.gearbox.ratio * vessel.gearbox.efficiency)
     power_kw = 2.0 * math.pi * rev_s_from_rpm(point.engine_speed_rpm) * brake_nm / 1000.0
-    highest_nm = float(np.interp(point.engine_speed_rpm, engine.full_load_speed_rpm, engine.full_load_torque_nm))
+    highest_nm = float(np.interp(point.engine_speed_rpm, *machine.full_load))
     if brake_nm > highest_nm:
-        load, expected = brake_nm / highest_nm, f"at most {highest_nm:.4g} N m at the engine, its full load"
+        load, expected = brake_nm / highest_nm, f"at most {highest_nm:.4g} N m at the {machine.word}, its full load"
         found = f"{brake_nm:.4g} N m there"
-    elif power_kw > engine.rated_power_kw:
-        load, expected = power_kw / engine.rated_power_kw, f"at most the rated power of {engine.rated_power_kw:g} kW"
-        found = f"{power_kw:.4g} kW at the engine"
+    elif power_kw > machine.rated_power_kw and vessel.motor is None:
+        load, expected = power_kw / machine.rated_power_kw, f"at most the rated power of {machine.rated_power_kw:g} kW"
+        found = f"{power_kw:.4g} kW at the {machine.word}"
     else:
         return
+    limit = "the full-load curve" if vessel.motor is None else "motor.maximum_torque_nm"
     yield Disagreement(
         field="working_point.shaft_torque_nm",
         expected=f"{expected} at {point.engine_speed_rpm:g} rpm",
         found=f"{found} with {point.shaft_torque_nm:g} N m at the shaft",
         advice="correct the torque (N m at the propeller shaft) or what it was worked out from (diameter_m and "
-        "pitch_ratio of [propeller]), gearbox.ratio, the full-load curve or rated_power_kw",
+        f"pitch_ratio of [propeller]), gearbox.ratio, {limit} or rated_power_kw",
         is_contradiction=load > _CURVE_TOLERANCE,
     )
 
@@ -193,7 +205,7 @@ def _coefficient(vessel: Vessel) -> Iterator[Disagreement]:
         yield Disagreement(
             field="propeller.torque_coefficient",
             expected=f"{expected:.4g}, as {point.shaft_torque_nm:g} N m at {point.engine_speed_rpm:g} rpm of the "
-            "engine give",
+            f"{vessel.machine.word} give",
             found=f"{coefficient:g}",
             advice="correct it, M eta_R / (rho n^2 D^5) with n in rev/s of the propeller, or the working point",
             is_contradiction=apart > _CONTRADICTION,

@@ -79,6 +79,18 @@ V = Parameter("v", "-", 0.0, 5.0, 1.0, "slope of the engine torque with fuel rac
 T_RACK = Parameter(
     "t_rack", "s", -0.1, 0.1, 0.0, "error of the known latency of the rack channel", role=ShipRole.RACK_LATENCY
 )
+MOTOR_K_P = Parameter(
+    "K_p", "-", 0.0, 20.0, 5.0, "proportional gain of the speed controller", role=ShipRole.PROPORTIONAL_GAIN
+)
+MOTOR_K_I = Parameter(
+    "K_i", "1/s", 0.0, 20.0, 4.0, "integral gain of the speed controller", role=ShipRole.INTEGRAL_GAIN
+)
+T_CONVERTER = Parameter(
+    "t_d", "s", 0.0, 0.5, 0.02, "dead time of controller and converter, inside the loop", role=ShipRole.LOOP_DELAY
+)
+T_M = Parameter(
+    "T_m", "s", 0.0, 0.5, 0.05, "time constant of the motor's torque, current loop closed", role=ShipRole.TORQUE_TIME
+)
 TAU_W = Parameter("tau_w", "s", 0.0, 1.0, 0.0, "inertia time of the entrained water, where tau_dn is dry", held=True)
 KAPPA = Parameter(
     "kappa",
@@ -108,7 +120,7 @@ def gauge_open() -> Structure:
     of the set point and the pick-up enter through ``e``, so the measured ratio is
     ``(M_s / n_set) / (1 - n / n_set)``.
     """
-    speed, torque, _ = _measured(_rigid_shaft(), _rigid_load(), V_ONE)
+    speed, torque, _ = _measured(_rigid_shaft(), _rigid_load(), _governor(), _engine(V_ONE))
     error = 1.0 - speed
     return Structure(
         name="GAUGE-OPEN",
@@ -125,7 +137,7 @@ def gauge_closed() -> Structure:
     ``n = c_set sensor exp(-s t_sp) L / (1 + L)`` with ``L = v C exp(-s t_d) F / ((tau_up + tau_dn) s + k_q - g)``, and
     ``M_s = (tau_dn s + k_q) exp(-s t_gauge) / (T_filter s + 1) n`` without the speed sensor.
     """
-    speed, torque, _ = _measured(_rigid_shaft(), _rigid_load(), V_ONE)
+    speed, torque, _ = _measured(_rigid_shaft(), _rigid_load(), _governor(), _engine(V_ONE))
     return Structure(
         name="GAUGE-CLOSED",
         title="gauge-aware closed loop",
@@ -143,7 +155,7 @@ def gauge_inflow() -> Structure:
     """
     load = _rigid_load() + EntrainedWater(TAU_W) + DynamicInflow(KAPPA, TAU_I)
     shaft = Inverse(load + Inertia(TAU_UP) - Gain(G))
-    speed, torque, _ = _measured(shaft, load, V_ONE)
+    speed, torque, _ = _measured(shaft, load, _governor(), _engine(V_ONE))
     return Structure(
         name="GAUGE-INFLOW",
         title="gauge-aware closed loop with dynamic inflow",
@@ -159,7 +171,7 @@ def gauge_ecu() -> Structure:
     ``X = C exp(-s t_rack) / (1 + L) c_set exp(-s t_sp)``: it shows the governor without the engine, so that ``v`` is
     found.
     """
-    speed, torque, rack = _measured(_rigid_shaft(), _rigid_load(), V)
+    speed, torque, rack = _measured(_rigid_shaft(), _rigid_load(), _governor(), _engine(V))
     return Structure(
         name="GAUGE-ECU",
         title="gauge-aware closed loop with the fuel rack logged",
@@ -183,7 +195,7 @@ def governor() -> Structure:
     ``X = C exp(-s t_rack) (c_set exp(-s t_sp) n_set - n)``: the set point reaches it late, the speed does not. Engine
     and line are not in it; a fit takes the speed that was measured.
     """
-    rack = PIGovernor(GAUGE_K_P, GAUGE_K_I) * Delay(T_RACK)
+    rack = _governor() * Delay(T_RACK)
     return Structure(
         name="GOVERNOR",
         title="governor alone, fuel rack logged",
@@ -197,7 +209,7 @@ def engine() -> Structure:
 
     ``n = v exp(-s (t_d - t_rack)) F / ((tau_up + tau_dn) s + k_q - g) X``: no feedback is in it, and no set point.
     """
-    drive = Gain(V) * Delay(T_D) * SecondOrderLag(GAUGE_OMEGA_N, GAUGE_ZETA) * Inverse(Delay(T_RACK))
+    drive = _engine(V) * Inverse(Delay(T_RACK))
     speed = drive * _rigid_shaft()
     return Structure(
         name="ENGINE",
@@ -207,13 +219,33 @@ def engine() -> Structure:
     )
 
 
+def gauge_motor() -> Structure:
+    """Return the gauge-aware closed loop of an electric motor, ``n`` and ``M_s`` from ``n_set``.
+
+    That of a diesel with ``L = C exp(-s t_d) / (T_m s + 1) / ((tau_up + tau_dn) s + k_q)``: the converter controls the
+    torque, which therefore neither falls nor rises with the speed, and follows in a lag of first order (A. K. Adnanes,
+    "Maritime electrical installations and diesel electric propulsion", ABB, 2003; A. J. Sorensen and O. N. Smogeli,
+    "Torque and power control of electrically driven marine propellers", Control Engineering Practice 17, 2009).
+    """
+    speed, torque, _ = _measured(
+        Shaft((TAU_DN, TAU_UP), K_Q), _rigid_load(), PIGovernor(MOTOR_K_P, MOTOR_K_I), _motor()
+    )
+    return Structure(
+        name="GAUGE-MOTOR",
+        title="gauge-aware closed loop of an electric motor",
+        input="n_set",
+        outputs={"n": speed, "M_s": torque},
+        combinations=motor_combinations(),
+    )
+
+
 def gauge_governor() -> Structure:
     """Return governor and engine of the gauge-aware closed loop, ``M_b / e = v C exp(-s t_d) F`` without inertia."""
     return Structure(
         name="GAUGE-GOVERNOR",
         title="governor and engine of the gauge-aware closed loop",
         input="e",
-        outputs={"M_b": _governor_and_engine(V_ONE)},
+        outputs={"M_b": _governor() * _engine(V_ONE)},
     )
 
 
@@ -230,10 +262,19 @@ def gauge_line() -> Structure:
     )
 
 
-def _governor_and_engine(v: Parameter) -> Expression:
-    """Return ``M_b / e`` without the slope of the engine torque with speed."""
-    rack = PIGovernor(GAUGE_K_P, GAUGE_K_I)
-    return rack * Gain(v) * Delay(T_D) * SecondOrderLag(GAUGE_OMEGA_N, GAUGE_ZETA)
+def _governor() -> Expression:
+    """Return ``X / e`` of a diesel's governor."""
+    return PIGovernor(GAUGE_K_P, GAUGE_K_I)
+
+
+def _engine(v: Parameter) -> Expression:
+    """Return ``M_b / X`` of a diesel, without the slope of its torque with speed."""
+    return Gain(v) * Delay(T_D) * SecondOrderLag(GAUGE_OMEGA_N, GAUGE_ZETA)
+
+
+def _motor() -> Expression:
+    """Return ``M_b / M_ref`` of a motor whose torque a converter controls."""
+    return Delay(T_CONVERTER) * FirstOrderLag(T_M)
 
 
 def _rigid_shaft() -> Expression:
@@ -254,15 +295,59 @@ def _torque_sensor() -> Expression:
     return Delay(T_GAUGE) * FirstOrderLag(T_FILTER)
 
 
-def _measured(shaft: Expression, load: Expression, v: Parameter) -> tuple[Expression, Expression, Expression]:
-    """Return ``n``, ``M_s`` and ``X`` from ``n_set`` as measured, for ``n / M_b`` and ``M_s / n`` of a line."""
-    rack = PIGovernor(GAUGE_K_P, GAUGE_K_I)
-    loop = rack * Gain(v) * Delay(T_D) * SecondOrderLag(GAUGE_OMEGA_N, GAUGE_ZETA) * shaft
+def _measured(
+    shaft: Expression, load: Expression, rack: Expression, drive: Expression
+) -> tuple[Expression, Expression, Expression]:
+    """Return ``n``, ``M_s`` and ``X`` from ``n_set`` as measured.
+
+    It is that of ``n / M_b`` and ``M_s / n`` of a line, ``X / e`` of its governor and ``M_b / X`` of what drives it.
+    """
+    loop = rack * drive * shaft
     left_of_error = Sensitivity(loop)
     set_point = Delay(T_SP) * Gain(C_SET)
     speed = loop * left_of_error * set_point
     torque = speed * load * _torque_sensor()
     return speed * _speed_sensor(), torque, rack * left_of_error * set_point * Delay(T_RACK)
+
+
+def motor_combinations() -> tuple[Combination, ...]:
+    """Return what a test of a motor's closed loop finds better than the parameters it is made of."""
+    return (
+        Combination(
+            name="t_d + T_m",
+            unit="s",
+            of=lambda p: p["t_d"] + p["T_m"],
+            meaning="lag of the torque behind the speed controller",
+        ),
+        Combination(
+            name="t_d + T_m + t_sp",
+            unit="s",
+            of=lambda p: p["t_d"] + p["T_m"] + p["t_sp"],
+            meaning="lag of the torque behind the set point",
+            role=ShipRole.TOTAL_DELAY,
+        ),
+        Combination(
+            name="K_p / K_i",
+            unit="s",
+            of=lambda p: p["K_p"] / p["K_i"],
+            meaning="reset time of the speed controller",
+            role=ShipRole.LOOP_GAIN,
+        ),
+        Combination(
+            name="K_i / k_q",
+            unit="1/s",
+            of=lambda p: p["K_i"] / p["k_q"],
+            meaning="integral gain over the slope of the load",
+            role=ShipRole.LOOP_GAIN,
+        ),
+        Combination(
+            name="K_p / (tau_up + tau_dn)",
+            unit="1/s",
+            of=lambda p: p["K_p"] / (p["tau_up"] + p["tau_dn"]),
+            meaning="loop gain at high frequency",
+            role=ShipRole.LOOP_GAIN,
+        ),
+    )
 
 
 def gauge_combinations() -> tuple[Combination, ...]:

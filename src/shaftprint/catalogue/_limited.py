@@ -17,15 +17,11 @@ simulated would change with ``t_sp`` in jumps of a step, its derivative zero.
 from collections.abc import Callable, Mapping
 from typing import Any, TypeAlias
 
+from shaftprint.catalogue._actuation import ENGINE, MOTOR, Actuation
 from shaftprint.catalogue._gauge import (
     C_SET,
-    GAUGE_K_I,
-    GAUGE_K_P,
-    GAUGE_OMEGA_N,
-    GAUGE_ZETA,
     K_Q,
     T_AVERAGE,
-    T_D,
     T_FILTER,
     T_GAUGE,
     T_HOLD,
@@ -33,9 +29,6 @@ from shaftprint.catalogue._gauge import (
     T_SP,
     TAU_DN,
     TAU_UP,
-    V_ONE,
-    G,
-    gauge_combinations,
 )
 from shaftprint.errors import StructureError
 from shaftprint.models import (
@@ -55,7 +48,6 @@ from shaftprint.models import (
     limited_pi,
     quadratic_propeller,
     rate_limited,
-    second_order_lag,
     table,
 )
 
@@ -85,6 +77,7 @@ def limited(
     period_s: float = 0.0,
     name: str = "",
     with_rack: bool = False,
+    by_motor: bool = False,
 ) -> Structure:
     """Return the gauge-aware closed loop with a quadratic propeller and some limits.
 
@@ -100,32 +93,35 @@ def limited(
         What to call it; from the limits if not given.
     with_rack
         Whether the rack that the governor gives, ``X``, is an output too.
+    by_motor
+        Whether an electric motor drives the line: for small signals it is ``GAUGE-MOTOR`` then.
 
     Raises
     ------
     StructureError
         If there is no limit of a name, or a smoke limit without a torque limit.
     """
-    extra = parameters_of(limits)
+    extra, actuation = parameters_of(limits), MOTOR if by_motor else ENGINE
     loop = Diagram(
         name="limited loop",
         input="demand",
         outputs=("n", "M_s", "X"),
-        equations=LimitedLoop(limits, curve, period_s, bollard_load),
-        of=(GAUGE_K_P, GAUGE_K_I, V_ONE, T_D, GAUGE_OMEGA_N, GAUGE_ZETA, TAU_DN, TAU_UP, K_Q, G, DROOP, *extra),
+        equations=LimitedLoop(limits, curve, period_s, bollard_load, actuation),
+        of=(*actuation.parameters, TAU_DN, TAU_UP, K_Q, *actuation.speed_slope, DROOP, *extra),
     )
     demand, ports = Gain(C_SET), loop.ports()
     rack = {"X": demand * ports["X"] * Delay(T_SP)} if with_rack else {}
     return Structure(
-        name=name or f"GAUGE-{'-'.join(limits).upper() or 'QUADRATIC'}",
-        title=f"gauge-aware closed loop, quadratic propeller{''.join(f', {limit}' for limit in limits)}",
+        name=name or f"GAUGE-{'MOTOR-' * by_motor}{'-'.join(limits).upper() or 'QUADRATIC'}",
+        title=f"gauge-aware closed loop{' of an electric motor' * by_motor}, "
+        + ", ".join(("quadratic propeller", *limits)),
         input="n_set",
         outputs={
             "n": demand * ports["n"] * Delay(T_SP) * AveragingSensor(T_AVERAGE, T_HOLD, T_PICKUP),
             "M_s": demand * ports["M_s"] * Delay(T_SP) * Delay(T_GAUGE) * FirstOrderLag(T_FILTER),
             **rack,
         },
-        combinations=gauge_combinations(),
+        combinations=actuation.combinations,
     )
 
 
@@ -169,8 +165,9 @@ def bollard_load(flow: Flow, speed: Formula, p: Any) -> tuple[Formula, Mapping[s
 class LimitedEngine:
     """Equations of a governor and its engine with some limits: from demand and speed to brake torque."""
 
-    def __init__(self, limits: tuple[str, ...], shape: Shape, period_s: float) -> None:
+    def __init__(self, limits: tuple[str, ...], shape: Shape, period_s: float, actuation: Actuation = ENGINE) -> None:
         self._limits = limits
+        self._actuation = actuation
         self._shape = shape
         self._period_s = period_s
 
@@ -193,8 +190,7 @@ class LimitedEngine:
         lowest, highest = self._torque_limits(flow, speed, burnt, p)
         drawn: Number = observer(burnt) if observer else 0.0
         rack = self._governor(flow, error, speed, lowest, highest, drawn, p)
-        late = second_order_lag(flow, flow.delayed(rack, p.t_d), p.omega_n, p.zeta)
-        demanded = p.v * late + p.g * speed
+        demanded = self._actuation.torque(flow, rack, speed, p)
         brake = flow.close(burnt, demanded if lowest is None else clip(demanded, lowest, highest), "engine torque")
         return brake, rack
 
@@ -202,11 +198,11 @@ class LimitedEngine:
         """Return the lowest and highest brake torque; no lowest where torque is not limited."""
         if "torque" not in self._limits:
             return None, burnt
-        highest = p.m_max * self._shape(flow, speed) - 1.0
+        shape = self._shape(flow, speed)
+        highest = p.m_max * shape - 1.0
         if "smoke" in self._limits:
             highest = boosted(flow, burnt, highest, at_rest=p.m_max, unboosted=p.a_0, lag_s=p.tau_tc)
-        # friction of a motored engine: half of it independent of speed, half proportional
-        return p.m_min * (1.0 + 0.5 * speed) - 1.0, highest
+        return self._actuation.lowest(p.m_min, speed, shape) - 1.0, highest
 
     def _governor(
         self,
@@ -230,8 +226,8 @@ class LimitedEngine:
                 error,
                 proportional=p.K_p,
                 integral=p.K_i,
-                lowest=(lowest - p.g * speed) / p.v,
-                highest=(highest - p.g * speed) / p.v,
+                lowest=self._actuation.rack(lowest, speed, p),
+                highest=self._actuation.rack(highest, speed, p),
                 anti_windup_s=p.T_aw,
                 droop=p.droop,
                 drawn=drawn,
@@ -243,9 +239,14 @@ class LimitedLoop:
     """Equations of governor, engine and line with some limits, around any load."""
 
     def __init__(
-        self, limits: tuple[str, ...], curve: tuple[tuple[float, float], ...], period_s: float, load: Load
+        self,
+        limits: tuple[str, ...],
+        curve: tuple[tuple[float, float], ...],
+        period_s: float,
+        load: Load,
+        actuation: Actuation = ENGINE,
     ) -> None:
-        self._engine = LimitedEngine(limits, shape_of(curve), period_s)
+        self._engine = LimitedEngine(limits, shape_of(curve), period_s, actuation)
         self._load = load
 
     def __call__(self, flow: Flow, demand: Formula, p: Any) -> Mapping[str, Formula]:

@@ -19,7 +19,7 @@ def _gain(term: str, unit: str, physical_unit: str, change: str) -> Role:
     form = PhysicalForm(
         name=f"governor {term} action",
         unit=physical_unit,
-        meaning=f"{change}, at the propeller shaft, for one rpm of engine-speed error",
+        meaning=f"{change}, at the propeller shaft, for one rpm of speed error ahead of the gearbox",
         scale=lambda point: point.torque_nm_per_rpm,
     )
     basis: frozenset[Basis] = frozenset(("governor",))
@@ -71,6 +71,8 @@ class ShipRole:
     """Natural frequency of the actuator's lag."""
     ACTUATOR_DAMPING: Final = _line("actuator damping", "-", "governor")
     """Damping ratio of the actuator's lag."""
+    TORQUE_TIME: Final = _line("torque time", "s", "governor")
+    """Time constant of a motor's torque."""
     LOOP_GAIN: Final = _line("loop gain", "", "governor")
     """Gains over each other or over the line, a combination in which the working point cancels; a margin."""
     SET_POINT_SCALE: Final = _sensor("set-point scale", "-", "set point")

@@ -13,6 +13,7 @@ from shaftprint.catalogue._gauge import (
     gauge_core,
     gauge_ecu,
     gauge_inflow,
+    gauge_motor,
     gauge_open,
     governor,
 )
@@ -205,6 +206,7 @@ STRUCTURES: Mapping[str, Callable[[], Structure]] = {
     "GAUGE-CLOSED": gauge_closed,
     "GAUGE-INFLOW": gauge_inflow,
     "GAUGE-ECU": gauge_ecu,
+    "GAUGE-MOTOR": gauge_motor,
     "GOVERNOR": governor,
     "ENGINE": engine,
     "FREE-CORE": free_core,
@@ -213,6 +215,10 @@ STRUCTURES: Mapping[str, Callable[[], Structure]] = {
     "FREE-LOG": free_log,
     "FREE-PITCH": free_pitch,
 }
+
+
+CLOSED_LOOPS: Mapping[str, str] = {"engine": "GAUGE-CLOSED", "motor": "GAUGE-MOTOR"}
+"""Names of the closed loops of ships, by what drives the line."""
 
 
 def structure(name: str) -> Structure:

@@ -7,7 +7,7 @@ from pathlib import Path
 import click
 
 from shaftprint.cli._known_ship_options import KnownShipOptions
-from shaftprint.cli._own_structure import TypedName, chosen_structures, structure_to_use
+from shaftprint.cli._own_structure import TypedName, chosen_structures, closed_loop_of, structure_to_use
 from shaftprint.cli._plan_options import limits_with, set_point_rpm_of
 from shaftprint.cli.output import Steps, fingerprint_at
 from shaftprint.design import (
@@ -36,8 +36,6 @@ from shaftprint.survey import load_trial, measure, noise_at_speeds, stated_worki
 from shaftprint.units import rpm_from_rev_s
 from shaftprint.vessel import Vessel, load_vessel
 
-CLOSED_LOOP = "GAUGE-CLOSED"
-
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Stated:
@@ -63,7 +61,7 @@ def stated_ship(vessel_name: str, structure_name: TypedName | None, options: Kno
     vessel_name
         Path or name of the vessel file.
     structure_name
-        The structure; that of the first test, or else ``CLOSED_LOOP``, where it is None.
+        The structure; that of the first test, or else the closed loop of what drives the line, where it is None.
     options
         What is stated beside these.
 
@@ -75,7 +73,7 @@ def stated_ship(vessel_name: str, structure_name: TypedName | None, options: Kno
     vessel = load_vessel(vessel_name)
     first_test = None if options.after is None else fingerprint_at(options.after)
     if first_test is None:
-        (structure,) = chosen_structures([structure_name or TypedName(CLOSED_LOOP)])
+        (structure,) = chosen_structures([structure_name or closed_loop_of(vessel)])
     else:
         structure = structure_to_use(structure_name, first_test)
     return Stated(

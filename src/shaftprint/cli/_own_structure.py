@@ -11,16 +11,25 @@ from pathlib import Path
 from types import CodeType, ModuleType
 from typing import NewType
 
-from shaftprint.catalogue import DRIVES, STRUCTURES, shipped_structure
+from shaftprint.catalogue import CLOSED_LOOPS, DRIVES, STRUCTURES, shipped_structure
 from shaftprint.errors import ShaftprintError, StructureError
 from shaftprint.fingerprint import Fingerprint, named_structure
 from shaftprint.models import Structure, check_structure
+from shaftprint.vessel import Vessel
 
 SUFFIX = ".py"
 OWN_FILE_HELP = "a shipped one, or my_ship.py:my_loop for one of your own file, which is Python and is run"
 
 TypedName = NewType("TypedName", str)
 """The name of a structure as the user typed it, which may be that of a file to run; a text out of a file is no such."""
+
+CLOSED_LOOP_HELP = f"{CLOSED_LOOPS['engine']}, or {CLOSED_LOOPS['motor']} where a motor drives the line"
+DEFAULT_HELP = f"{CLOSED_LOOP_HELP}, or FREE-LOG underway"
+
+
+def closed_loop_of(vessel: Vessel | None) -> TypedName:
+    """Return the closed loop of what drives a line; that of an engine where no vessel file is given."""
+    return TypedName(CLOSED_LOOPS["engine" if vessel is None else vessel.machine.word])
 
 
 def structure_to_use(name: TypedName | None, fingerprint: Fingerprint) -> Structure:

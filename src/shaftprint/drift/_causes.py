@@ -7,9 +7,9 @@ fingerprint: which numbers its scale moves depends on what was known beforehand 
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from typing import Final
+from typing import Final, Literal
 
 from shaftprint.catalogue import ShipRole
 from shaftprint.models import Role
@@ -37,6 +37,8 @@ class Cause:
     different structures, such as the inertias, stands together."""
     is_share: bool = True
     """Whether its size is a share of the numbers; else it is a time [s]."""
+    machine: Literal["engine", "motor"] | None = None
+    """What drives the lines in which it may happen; None: either."""
     tolerance: float = 0.0
     """Standard deviation between sister ships as they are built, in the unit of the size; see docs/watching.md."""
 
@@ -72,6 +74,7 @@ CAUSES: tuple[Cause, ...] = (
         less="less torque for the same rack: injection or turbocharger",
         more="more torque for the same rack: injection or turbocharger",
         told_by="log the fuel rack in the next test",
+        machine="engine",
         roles=((ShipRole.PROPORTIONAL_GAIN,), (ShipRole.INTEGRAL_GAIN,)),
         tolerance=0.01,
     ),
@@ -80,6 +83,7 @@ CAUSES: tuple[Cause, ...] = (
         less="a lower proportional gain of the governor",
         more="a higher proportional gain of the governor",
         told_by="read the gains in the control unit",
+        machine="engine",
         roles=((ShipRole.PROPORTIONAL_GAIN,),),
         tolerance=0.005,
     ),
@@ -88,6 +92,7 @@ CAUSES: tuple[Cause, ...] = (
         less="a lower integral gain of the governor",
         more="a higher integral gain of the governor",
         told_by="read the gains in the control unit",
+        machine="engine",
         roles=((ShipRole.INTEGRAL_GAIN,),),
         tolerance=0.005,
     ),
@@ -96,6 +101,7 @@ CAUSES: tuple[Cause, ...] = (
         less="a shorter delay of governor and fuel",
         more="a longer delay of governor and fuel",
         told_by="test at two speeds, which tell the delay from the latency of the set point",
+        machine="engine",
         roles=((ShipRole.LOOP_DELAY,),),
         is_share=False,
         tolerance=1e-3,
@@ -114,8 +120,56 @@ CAUSES: tuple[Cause, ...] = (
         less="a slower fuel actuator",
         more="a faster fuel actuator",
         told_by="log the fuel rack in the next test",
+        machine="engine",
         roles=((ShipRole.ACTUATOR_FREQUENCY,),),
         tolerance=0.01,
+    ),
+    Cause(
+        name="converter or magnets",
+        less="less torque for the same demand: converter or magnets",
+        more="more torque for the same demand: converter or magnets",
+        told_by="log the torque that the converter states",
+        machine="motor",
+        roles=((ShipRole.PROPORTIONAL_GAIN,), (ShipRole.INTEGRAL_GAIN,)),
+        tolerance=0.01,
+    ),
+    Cause(
+        name="proportional gain of the speed controller",
+        less="a lower proportional gain of the speed controller",
+        more="a higher proportional gain of the speed controller",
+        told_by="read the gains in the converter",
+        machine="motor",
+        roles=((ShipRole.PROPORTIONAL_GAIN,),),
+        tolerance=0.005,
+    ),
+    Cause(
+        name="integral gain of the speed controller",
+        less="a lower integral gain of the speed controller",
+        more="a higher integral gain of the speed controller",
+        told_by="read the gains in the converter",
+        machine="motor",
+        roles=((ShipRole.INTEGRAL_GAIN,),),
+        tolerance=0.005,
+    ),
+    Cause(
+        name="dead time of the converter",
+        less="a shorter dead time of controller and converter",
+        more="a longer dead time of controller and converter",
+        told_by="test at two speeds, or log the torque that the converter states",
+        machine="motor",
+        roles=((ShipRole.LOOP_DELAY,),),
+        is_share=False,
+        tolerance=1e-3,
+    ),
+    Cause(
+        name="torque of the motor",
+        less="a torque that follows sooner",
+        more="a torque that follows later",
+        told_by="log the torque that the converter states",
+        machine="motor",
+        roles=((ShipRole.TORQUE_TIME,),),
+        is_share=False,
+        tolerance=1e-3,
     ),
     Cause(
         name="propeller",
@@ -159,5 +213,12 @@ def by_role(cause: Cause, roles: Mapping[str, Role | None]) -> tuple[str, ...]:
     roles
         Role of each number.
     """
+    if not may_happen(cause, roles.values()):
+        return ()
     moved = [tuple(name for name, role in roles.items() if role in alike) for alike in cause.roles]
     return tuple(name for names in moved for name in names) if all(moved) else ()
+
+
+def may_happen(cause: Cause, roles: Iterable[Role | None]) -> bool:
+    """Return whether a cause may happen in a line whose numbers have these roles: a motor's has a torque time."""
+    return cause.machine in (None, "motor" if ShipRole.TORQUE_TIME in roles else "engine")

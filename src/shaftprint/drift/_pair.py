@@ -13,7 +13,7 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.catalogue import ShipRole
-from shaftprint.drift._causes import CAUSES, GAUGE, GAUGE_SCALE, Cause, by_role
+from shaftprint.drift._causes import CAUSES, GAUGE, GAUGE_SCALE, Cause, by_role, may_happen
 from shaftprint.drift._shared_errors import shared_errors
 from shaftprint.errors import FingerprintError
 from shaftprint.identify.fit import Estimate
@@ -108,17 +108,17 @@ def not_judged(
     fingerprints
         Fingerprints that have these numbers.
     """
-    roles = {
-        one.quantity(name).role
-        for one in fingerprints
-        if one.joint is not None
-        for name in one.joint.names
-        if doubts[name]
+    of_all = {
+        name: one.quantity(name).role for one in fingerprints if one.joint is not None for name in one.joint.names
     }
+    every = set(of_all.values())
+    roles = {role for name, role in of_all.items() if doubts[name]}
     return tuple(
         cause
         for cause in CAUSES
-        if cause not in causes and any(role in alike for alike in cause.roles for role in roles)
+        if cause not in causes
+        and may_happen(cause, every)
+        and any(role in alike for alike in cause.roles for role in roles)
     )
 
 

@@ -31,8 +31,12 @@ def _assumptions(identification: "Identification", vessel: "Vessel") -> Iterator
     if by_role.get(ShipRole.INERTIA_UPSTREAM) in identification.settings.priors:
         yield (
             "Gains, margins and the parts of the delay rest on the inertia upstream of the gauge, "
-            f"{stated(vessel.inertia_upstream_kg_m2, vessel.inertia_upstream_std_kg_m2, 'kg m2')}, and on an engine "
-            "torque that hardly changes with speed (g)."
+            f"{stated(vessel.inertia_upstream_kg_m2, vessel.inertia_upstream_std_kg_m2, 'kg m2')}, and on "
+            + (
+                "an engine torque that hardly changes with speed (g)."
+                if vessel.motor is None
+                else "a motor torque that does not change with speed."
+            )
         )
     scale = sensors.shaft_torque.scale_std
     yield (

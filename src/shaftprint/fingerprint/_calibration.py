@@ -13,8 +13,16 @@ if TYPE_CHECKING:
 DEGREES_PER_REVOLUTION = 360.0
 
 
-def calibration_quantities(signals: "Signals") -> tuple[Quantity, ...]:
-    """Return the set-point line, its scale at low frequency and the angles of the strips, with standard deviations."""
+def calibration_quantities(signals: "Signals", *, machine: str) -> tuple[Quantity, ...]:
+    """Return the set-point line, its scale at low frequency and the angles of the strips, with standard deviations.
+
+    Parameters
+    ----------
+    signals
+        What was measured.
+    machine
+        What drives the line, in words: engine or motor.
+    """
     scale = Quantity(
         name="set-point scale",
         unit="-",
@@ -23,10 +31,10 @@ def calibration_quantities(signals: "Signals") -> tuple[Quantity, ...]:
         meaning="factor on the set point that lets the speed follow it exactly at low frequency",
     )
     strips = (quantity for angles in signals.strips for quantity in _strip_quantities(angles))
-    return (*_line_quantities(signals.calibration), scale, *strips)
+    return (*_line_quantities(signals.calibration, machine), scale, *strips)
 
 
-def _line_quantities(line: "SetPointCalibration") -> tuple[Quantity, Quantity]:
+def _line_quantities(line: "SetPointCalibration", machine: str) -> tuple[Quantity, Quantity]:
     slope_std, intercept_std = np.sqrt(np.diag(line.covariance)).tolist()
     return (
         Quantity(
@@ -34,14 +42,14 @@ def _line_quantities(line: "SetPointCalibration") -> tuple[Quantity, Quantity]:
             unit="rpm/V",
             value=rpm_from_rev_s(line.slope_rev_s_per_v),
             std=rpm_from_rev_s(slope_std),
-            meaning="engine speed for one volt of set point, from the steady levels",
+            meaning=f"{machine} speed for one volt of set point, from the steady levels",
         ),
         Quantity(
             name="set-point intercept",
             unit="rpm",
             value=rpm_from_rev_s(line.intercept_rev_s),
             std=rpm_from_rev_s(intercept_std),
-            meaning="engine speed of that line at no voltage",
+            meaning=f"{machine} speed of that line at no voltage",
         ),
     )
 

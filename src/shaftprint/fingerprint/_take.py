@@ -107,7 +107,7 @@ def take_fingerprint(
     profiled = profile(identification, margins) if identification.is_likelihood else None
     reported = _Reported(stated, {} if profiled is None else profiled.intervals, _meanings(identification))
     stated_conditions = conditions_stated(vessel, campaign, trial_conditions, tested_at)
-    conditions = _conditions(identification, signals, left_out, stated_conditions)
+    conditions = _conditions(identification, signals, vessel, left_out, stated_conditions)
     margin = margin_quantities(identification, profiled, stated)
     verdict = assess(
         identification,
@@ -139,7 +139,7 @@ def take_fingerprint(
         joint=joint_numbers(identification, signals.working_point, vessel, shifts),
         budget=Budget(sources=stated.sources, rows=tuple(row for row in stated.rows if row.variances)),
         vessel_fields=vessel_fields(vessel),
-        calibration=calibration_quantities(signals),
+        calibration=calibration_quantities(signals, machine=vessel.machine.word),
         quality=_quality(identification, signals, signal_to_noise),
         verdict=verdict,
         findings=findings_of(identification, physical, stated, left_out, profiled),
@@ -187,10 +187,11 @@ def _left_out(identification: Identification) -> dict[str, str]:
 def _conditions(
     identification: Identification,
     signals: "Signals",
+    vessel: "Vessel",
     left_out: dict[str, str],
     stated: Mapping[str, object],
 ) -> Conditions:
-    speed, torque = _working_point(signals.working_point)
+    speed, torque = _working_point(signals.working_point, vessel.machine.word)
     return Conditions(
         **stated,
         engine_speed=speed,
@@ -203,14 +204,14 @@ def _conditions(
     )
 
 
-def _working_point(point: "WorkingPoint") -> tuple[Quantity, Quantity]:
+def _working_point(point: "WorkingPoint", machine: str) -> tuple[Quantity, Quantity]:
     return (
         Quantity(
             name="n_0",
             unit="rpm",
             value=point.engine_speed_rev_s * SECONDS_PER_MINUTE,
             std=point.engine_speed_std_rev_s * SECONDS_PER_MINUTE,
-            meaning="engine speed of the working point",
+            meaning=f"{machine} speed of the working point",
             role=ShipRole.SPEED,
         ),
         Quantity(

@@ -8,6 +8,7 @@ import numpy as np
 
 from shaftprint.campaign import Campaign
 from shaftprint.catalogue import GovernorSymbol, limited_governor
+from shaftprint.errors import SettingsError
 from shaftprint.identify import Prior
 from shaftprint.limits._candidates import CANDIDATES, Kind
 from shaftprint.limits._governor_fit import GOVERNOR, Fitted, fitted, identified, schwarz
@@ -39,6 +40,21 @@ FINE = 15
 LIMITS = ("torque", "rate", "deadband", "ramp", "smoke")
 
 
+def expect_engine(vessel: Vessel) -> None:
+    """Refuse a line that a motor drives: what a converter limits is set in it, and no governor's limits are looked for.
+
+    Raises
+    ------
+    SettingsError
+        If a motor drives the line.
+    """
+    if vessel.motor is not None:
+        raise SettingsError(
+            f"vessel {vessel.name}: expected [engine], whose limits can be found, found [motor]; its limits are set in "
+            "the converter, read them there, and identify the line without limits."
+        )
+
+
 def identify_limits(
     signals: Signals,
     campaign: Campaign,
@@ -65,7 +81,10 @@ def identify_limits(
         If the recording does not hold the tests of the campaign.
     IdentificationError
         If no governor can be simulated on the measured speed.
+    SettingsError
+        If a motor drives the line.
     """
+    expect_engine(vessel)
     say = progress or _silent
     test = governor_test(signals, campaign, vessel)
     units = Units.of(signals, vessel)

@@ -63,7 +63,7 @@ class Units:
         point = signals.working_point
         brake = point.shaft_torque_nm / (vessel.gearbox.ratio * vessel.gearbox.efficiency)
         speed = rpm_from_rev_s(point.engine_speed_rev_s)
-        curve = np.array(vessel.engine.full_load_speed_rpm), np.array(vessel.engine.full_load_torque_nm)
+        curve = vessel.machine.full_load
         return cls(
             brake_nm=brake,
             full=float(np.interp(speed, *curve)) / brake,

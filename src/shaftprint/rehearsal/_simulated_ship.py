@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from shaftprint.catalogue import ShipRole
+from shaftprint.catalogue import CLOSED_LOOPS, ShipRole
 from shaftprint.design import stated_limits
 from shaftprint.errors import DesignError
 from shaftprint.tug import Tug
@@ -23,18 +23,20 @@ _NEEDED = {
     "proportional_gain": ShipRole.PROPORTIONAL_GAIN,
     "integral_gain_per_s": ShipRole.INTEGRAL_GAIN,
     "governor_delay_s": ShipRole.LOOP_DELAY,
+    "inertia_upstream_kg_m2": ShipRole.INERTIA_UPSTREAM,
+    "inertia_downstream_kg_m2": ShipRole.INERTIA_DOWNSTREAM,
+}
+_OF_ENGINE = {
     "natural_frequency_rad_s": ShipRole.ACTUATOR_FREQUENCY,
     "damping_ratio": ShipRole.ACTUATOR_DAMPING,
 }
+_OF_MOTOR = {"torque_time_s": ShipRole.TORQUE_TIME}
 _OPTIONAL = {
     "g": ShipRole.ENGINE_SPEED_SLOPE,
     "v": ShipRole.ENGINE_RACK_SLOPE,
     "set_point_latency_s": ShipRole.SET_POINT_LATENCY,
 }
-_INERTIAS = {
-    "inertia_upstream_kg_m2": ShipRole.INERTIA_UPSTREAM,
-    "inertia_downstream_kg_m2": ShipRole.INERTIA_DOWNSTREAM,
-}
+_INERTIAS = ("inertia_upstream_kg_m2", "inertia_downstream_kg_m2")
 _IDEAL = {
     ShipRole.SET_POINT_SCALE: 1.0,
     ShipRole.TORQUE_LATENCY: 0.0,
@@ -58,12 +60,14 @@ def tug_of_plan(test: "PlannedTest", vessel: "Vessel") -> Tug:
         If the structure of the plan lacks a number that the simulated ship needs.
     """
     plan, limits = test.plan, test.plan.limits
-    values = {name: _value(plan, role) for name, role in (_NEEDED | _INERTIAS).items()}
-    missing = [(_NEEDED | _INERTIAS)[name].name for name, value in values.items() if value is None]
+    needed = _NEEDED | (_OF_ENGINE if vessel.motor is None else _OF_MOTOR)
+    values = {name: _value(plan, role) for name, role in needed.items()}
+    missing = [needed[name].name for name, value in values.items() if value is None]
     if missing:
         raise DesignError(
-            f"rehearsal of {plan.ship.structure.name}: expected a closed loop such as GAUGE-CLOSED, which is what can "
-            f"be simulated, found one without {', '.join(missing)}; plan it without --rehearse."
+            f"rehearsal of {plan.ship.structure.name}: expected a closed loop such as "
+            f"{CLOSED_LOOPS[vessel.machine.word]}, which is what can be simulated, found one without "
+            f"{', '.join(missing)}; plan it without --rehearse."
         )
     speed_rev_s = rev_s_from_rpm(limits.engine_speed_rpm)
     torque_nm = limits.brake_torque_nm * vessel.gearbox.ratio * vessel.gearbox.efficiency

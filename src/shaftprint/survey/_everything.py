@@ -15,7 +15,7 @@ from shaftprint.arrays import FloatArray
 from shaftprint.catalogue import limited
 from shaftprint.fingerprint import Fingerprint, Quantity
 from shaftprint.identify import Identification, Prior
-from shaftprint.limits import LimitFit, identify_limits
+from shaftprint.limits import LimitFit, expect_engine, identify_limits
 from shaftprint.survey._contradiction import contradiction
 from shaftprint.survey._fits import priors_of
 from shaftprint.survey._limits import with_levels_beside
@@ -53,7 +53,10 @@ def with_everything(survey: Survey, *, rng: np.random.Generator, progress: Progr
         If the campaign has neither staircase nor chirp, or no start reached a stable model.
     FingerprintError
         If the first structure is another than GAUGE-CLOSED.
+    SettingsError
+        If a motor drives the line.
     """
+    expect_engine(survey.vessel)
     expect_limitable(survey.fingerprint)
     signals, campaign, vessel = survey.signals, survey.campaign, survey.vessel
     limits = identify_limits(signals, campaign, vessel, progress=progress.tell)

@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 from shaftprint.fingerprint import Fingerprint, FoundBy
-from shaftprint.limits import LimitFit, identify_limits, levels_beside
+from shaftprint.limits import LimitFit, expect_engine, identify_limits, levels_beside
 from shaftprint.survey._line_with_limits import expect_limitable, limit_number, line_with_limits
 from shaftprint.survey._progress import SILENT, Progress
 from shaftprint.survey._survey import Survey
@@ -20,7 +20,10 @@ def with_limits(survey: Survey, *, progress: Progress = SILENT) -> Survey:
         If no governor can be simulated on the measured speed.
     FingerprintError
         If the first structure is another than GAUGE-CLOSED.
+    SettingsError
+        If a motor drives the line.
     """
+    expect_engine(survey.vessel)
     expect_limitable(survey.fingerprint)
     limits = identify_limits(survey.signals, survey.campaign, survey.vessel, progress=progress.tell)
     return with_levels_beside(survey, limits, survey.fingerprint, progress=progress)

@@ -39,7 +39,7 @@ from shaftprint.survey._legs_apart import LegAlone, apart_reasons, legs_alone
 from shaftprint.survey._limit_hints import hints_of
 from shaftprint.survey._measurement import Measurement, measure, of_legs
 from shaftprint.survey._noise import noise_at_speeds
-from shaftprint.survey._of_vessel import of_vessel
+from shaftprint.survey._of_vessel import default_structure, of_vessel
 from shaftprint.survey._progress import SILENT, Progress
 from shaftprint.survey._ship_numbers import ship_numbers
 from shaftprint.survey._trial import Trial, load_trial
@@ -128,7 +128,7 @@ def run(
     vessel: str | Path | Vessel,
     campaign: str | Path | Campaign,
     *,
-    structures: Sequence[str | Structure] = ("GAUGE-CLOSED",),
+    structures: Sequence[str | Structure] = (),
     settings: SettingsOf | None = None,
     mode: Mode = "shaftprint",
     sources: Sequence[SourceFile] = (),
@@ -150,7 +150,7 @@ def run(
         What was tested and what was asked of it: paths, shipped names, or loaded.
     structures
         Structures, or names of shipped ones, which are taken as ``of_vessel`` gives them; the fingerprint is of the
-        first, others are fitted beside it.
+        first, others are fitted beside it. Where there are none, that of ``default_structure``.
     settings
         Gives how a structure is fitted; with the priors of the vessel file where it is not given.
     mode
@@ -180,7 +180,8 @@ def run(
     trial = load_trial(vessel, campaign, conditions)
     trial = replace(trial, sources=(*trial.sources, *sources))
     chosen = tuple(
-        one if isinstance(one, Structure) else of_vessel(shipped_structure(one), trial.vessel) for one in structures
+        one if isinstance(one, Structure) else of_vessel(shipped_structure(one), trial.vessel)
+        for one in structures or (default_structure(trial.vessel),)
     )
     measurement = of_legs(measure(recording, trial, mode=mode, progress=progress), legs)
     measurement = replace(measurement, began=_began(tested_at, measurement.began, trial))

@@ -14,14 +14,19 @@ from shaftprint.vessel import Vessel
 _AT_THE_QUAY_V, _AT_THE_QUAY_RPM = -5.0, 1183.8
 _STAN_TUG_INERTIA_S = 1.33
 
+# Truth of an electric line: dead time of a converter and its bus, torque in the middle of what current loops give, a
+# slower speed controller that is as far from hunting.
+_ELECTRIC = replace(Tug.stan_tug_1205(), governor_delay_s=0.0203, torque_time_s=0.0617, set_point_latency_s=0.0718)
+
 
 def like_stan_tug_1205(vessel: Vessel, *, offset_v: float = _AT_THE_QUAY_V) -> Tug:
     """Return the truth of the Stan Tug 1205 as another ship would have it.
 
     The lever asks for the ship's working speed at -5 V where it is tested at the quay, and at the voltage of the
     campaign underway; volts are those of the tug. A line with less inertia over its torque has a governor with as much
-    smaller gains, which crosses over where that of the tug does and is as far from hunting. A ship whose vessel file
-    states a speed of the ship sails free, with its wake fraction and thrust deduction.
+    smaller gains, which crosses over where that of the tug does and is as far from hunting. A motor has the dead time
+    and lag of a converter. A ship whose vessel file states a speed of the ship sails free, with its wake fraction and
+    thrust deduction.
 
     Parameters
     ----------
@@ -35,7 +40,7 @@ def like_stan_tug_1205(vessel: Vessel, *, offset_v: float = _AT_THE_QUAY_V) -> T
     SettingsError
         If it is to sail free with another propeller than the simulated ship has curves of.
     """
-    tug = replace(Tug.stan_tug_1205(), sailing=_sailing(vessel))
+    tug = replace(Tug.stan_tug_1205() if vessel.motor is None else _ELECTRIC, sailing=_sailing(vessel))
     further_v = offset_v - _AT_THE_QUAY_V if vessel.is_underway else 0.0
     asked_rpm = _AT_THE_QUAY_RPM + tug.set_point_slope_rpm_per_v * further_v
     speed = vessel.working_point.engine_speed_rpm / asked_rpm

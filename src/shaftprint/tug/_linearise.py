@@ -72,7 +72,8 @@ def linearised_response(
     slope = _slopes(plant, speed)
     rack = working_point_rack(tug, vessel)
     s = 2j * np.pi * np.asarray(frequency_hz, dtype=np.float64)
-    states = [SPEED, INTEGRAL, RACK, RACK_RATE]
+    # the torque of a motor follows in a lag of first order
+    states = [SPEED, INTEGRAL, RACK] + [RACK_RATE] * (plant.torque_per_s == 0.0)
     # a slipstream that follows at once is no state, nor is the speed of a ship that stands still
     states += [SLIPSTREAM] * bool(plant.inflow_gain) + [WAY] * plant.sails
     way = equilibrium(plant, speed)[WAY]

@@ -180,7 +180,7 @@ class _Crew:
 
     def _expect_fast_logger(self) -> None:
         vessel = self._vessel
-        highest_rpm = vessel.limits.highest_speed_rpm or vessel.engine.rated_speed_rpm
+        highest_rpm = vessel.limits.highest_speed_rpm or vessel.machine.rated_speed_rpm
         for sensor in vessel.sensors.speed:
             if not sensor.gives_pulses:
                 continue

@@ -50,7 +50,8 @@ class Truth(Shown):
     normalised: Mapping[str, float]
     """Parameters normalised at the working point: ``tau_up``, ``tau_dn``, ``tau_t`` [s]; ``tau_w`` [s], the part of
     ``tau_dn`` that is water beyond the vessel's; ``k_q``; ``kappa``, ``tau_i`` [s] of the dynamic inflow; ``g``, ``v``,
-    ``X_0``; ``K_p``, ``K_i`` [1/s], ``t_d`` [s], ``omega_n`` [rad/s], ``zeta``, ``t_sp`` [s]; and where percent torque
+    ``X_0``; ``K_p``, ``K_i`` [1/s], ``t_d`` [s], ``omega_n`` [rad/s], ``zeta``,
+    of a motor ``T_m`` [s] in their place, ``t_sp`` [s]; and where percent torque
     was logged ``t_rack`` [s], its latency beyond the vessel's. Underway, in place of ``k_q``: ``w``, ``t``, ``J``,
     ``a``, ``b``, ``e``, ``tau_u`` [s], the speed of the ship ``v_0`` [m/s] and its resistance ``R`` [N]."""
     physical: Mapping[str, float]
@@ -97,10 +98,16 @@ def normalised_truth(tug: Tug, vessel: Vessel) -> dict[str, float]:
         "K_p": tug.proportional_gain,
         "K_i": tug.integral_gain_per_s,
         "t_d": tug.governor_delay_s,
-        "omega_n": tug.natural_frequency_rad_s,
-        "zeta": tug.damping_ratio,
+        **_actuation_truth(tug, vessel),
         "t_sp": tug.set_point_latency_s,
     } | late
+
+
+def _actuation_truth(tug: Tug, vessel: Vessel) -> dict[str, float]:
+    """Return how the torque follows what is asked for: the fuel of an engine, the current of a motor."""
+    if vessel.motor is None:
+        return {"omega_n": tug.natural_frequency_rad_s, "zeta": tug.damping_ratio}
+    return {"T_m": tug.torque_time_s}
 
 
 def _load_truth(tug: Tug, vessel: Vessel) -> dict[str, float]:

@@ -73,6 +73,10 @@ class Tug:
     """Natural frequency ``omega_n`` of the fuel actuation [rad/s]."""
     damping_ratio: float = 0.47
     """Damping ratio ``zeta`` of the fuel actuation."""
+    torque_time_s: float = 0.05
+    """Time constant in which the torque of an electric motor follows what its speed controller asks for [s], in place
+    of the fuel actuation; 0.02 to 0.2 s with the current loop closed. It acts where the vessel file has a motor, whose
+    converter then has the dead time ``governor_delay_s``."""
     set_point_latency_s: float = 0.0518
     """Time ``t_sp`` from the set-point voltage to the demand in the ECU, outside the loop [s]."""
     set_point_slope_rpm_per_v: float = -250.97

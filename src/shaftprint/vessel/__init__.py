@@ -29,7 +29,7 @@ from shaftprint.vessel._hull import Hull
 from shaftprint.vessel._inertia import InertiaRow
 from shaftprint.vessel._limits import OperatingLimits
 from shaftprint.vessel._links import ShaftLink
-from shaftprint.vessel._machinery import Engine, Gearbox, Propeller, RackMap, WorkingPoint
+from shaftprint.vessel._machinery import Engine, Gearbox, Machine, Motor, Propeller, RackMap, WorkingPoint
 from shaftprint.vessel._orders import Order
 from shaftprint.vessel._sensors import (
     DemandSensor,
@@ -58,6 +58,8 @@ __all__ = [
     "ImoNumber",
     "InertiaRow",
     "Logger",
+    "Machine",
+    "Motor",
     "OperatingLimits",
     "Order",
     "PitchSetPointSensor",

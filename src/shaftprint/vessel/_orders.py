@@ -8,11 +8,10 @@ engines).
 """
 
 from dataclasses import dataclass
-from fractions import Fraction
 from typing import TYPE_CHECKING, Literal
 
 if TYPE_CHECKING:
-    from shaftprint.vessel._machinery import Engine, Gearbox, Propeller
+    from shaftprint.vessel._machinery import Gearbox, Machine, Propeller
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -27,26 +26,27 @@ class Order:
     """Periods in one turn of the engine, also for orders of the propeller shaft."""
 
 
-def orders_of(engine: "Engine", gearbox: "Gearbox", propeller: "Propeller") -> tuple[Order, ...]:
+def orders_of(machine: "Machine", gearbox: "Gearbox", propeller: "Propeller") -> tuple[Order, ...]:
     """Return the orders of a shaft line in the torque of its propeller shaft, lowest first.
 
     Parameters
     ----------
-    engine
-        Says cylinders and strokes.
+    machine
+        Says what its own torque repeats, such as the firing of cylinders.
     gearbox
         Says by how much the propeller shaft is slower.
     propeller
         Says the number of blades.
     """
     of_shaft = {1: "shaft order 1", propeller.blades: "blade rate", 2 * propeller.blades: "twice the blade rate"}
-    cycle = Fraction(2, engine.strokes_per_cycle)
-    of_engine = [cycle * multiple for multiple in range(1, engine.cylinders + 1)]
     orders = [
         *(
             Order(name=name, shaft="propeller", per_engine_turn=order / gearbox.ratio)
             for order, name in of_shaft.items()
         ),
-        *(Order(name=f"engine order {order}", shaft="engine", per_engine_turn=float(order)) for order in of_engine),
+        *(
+            Order(name=f"{machine.word} order {order}", shaft="engine", per_engine_turn=float(order))
+            for order in machine.torque_orders
+        ),
     ]
     return tuple(sorted(orders, key=lambda order: order.per_engine_turn))

@@ -18,7 +18,7 @@ from shaftprint.settings import (
     Settings,
 )
 from shaftprint.units import ANGLES_REV, M_S_PER_KNOT, REV_S_PER_UNIT
-from shaftprint.vessel._machinery import Engine
+from shaftprint.vessel._machinery import Machine
 from shaftprint.vessel._plain_unit import PLAIN_UNIT
 from shaftprint.vessel._set_point import SetPointSensor
 from shaftprint.vessel._shaft_torque import ShaftTorqueSensor
@@ -246,7 +246,7 @@ class RackSensor(Settings):
         """Whether the rack hangs on the speed of the engine beside the value."""
         return self.unit == "L/h" or self.shows == "load"
 
-    def share(self, speed_rpm: FloatArray, engine: Engine) -> FloatArray:
+    def share(self, speed_rpm: FloatArray, engine: Machine) -> FloatArray:
         """Return the rack for one value at speeds of the engine over that at rated speed and torque.
 
         Of a load it goes with the full-load curve; of a fuel rate, ``X n``, with one over the speed.
@@ -262,8 +262,7 @@ class RackSensor(Settings):
             return engine.rated_speed_rpm / speed_rpm
         if self.shows == "torque":
             return np.ones_like(speed_rpm)
-        curve = (engine.full_load_speed_rpm, engine.full_load_torque_nm)
-        return np.asarray(np.interp(speed_rpm, *curve) / engine.rated_torque_nm)
+        return np.asarray(np.interp(speed_rpm, *engine.full_load) / engine.rated_torque_nm)
 
 
 class DemandSensor(Settings):

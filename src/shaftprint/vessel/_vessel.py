@@ -3,7 +3,7 @@
 import math
 from importlib.resources import files
 from pathlib import Path
-from typing import Literal, Self
+from typing import Any, Literal, Self
 
 from pydantic import Field, model_validator
 
@@ -15,7 +15,8 @@ from shaftprint.vessel._hull import Hull
 from shaftprint.vessel._inertia import InertiaRow
 from shaftprint.vessel._limits import OperatingLimits
 from shaftprint.vessel._links import ShaftLink, wrong_links
-from shaftprint.vessel._machinery import Engine, Gearbox, Propeller, WorkingPoint
+from shaftprint.vessel._machinery import Curve, Engine, Gearbox, Motor, Propeller, WorkingPoint
+from shaftprint.vessel._motor_words import in_file_words
 from shaftprint.vessel._orders import Order, orders_of
 from shaftprint.vessel._sensors import Logger, Sensors
 from shaftprint.vessel._ship import Ship
@@ -29,8 +30,10 @@ class Vessel(Shown, Settings):
     """Name of the ship and the shaft line."""
     water_density_kg_m3: PositiveNumber
     """Density of the water [kg/m3]."""
-    engine: Engine
-    """The engine."""
+    engine: Engine | None = None
+    """The engine, where one drives the line."""
+    motor: Motor | None = None
+    """The electric motor, where one drives the line."""
     gearbox: Gearbox
     """The reduction gear."""
     propeller: Propeller
@@ -54,11 +57,12 @@ class Vessel(Shown, Settings):
 
     def summary(self) -> Summary:
         """Return engine, gearbox, propeller, working point, inertias and sensors."""
-        engine, gearbox, propeller, point = self.engine, self.gearbox, self.propeller, self.working_point
+        machine, gearbox, propeller, point = self.machine, self.gearbox, self.propeller, self.working_point
         channels = [speed.channel for speed in self.sensors.speed]
         channels += [self.sensors.shaft_torque.channel, self.sensors.set_point.channel]
         facts = {
-            "engine": f"{engine.rated_power_kw:g} kW at {engine.rated_speed_rpm:g} rpm, {engine.cylinders} cylinders",
+            machine.word: f"{machine.rated_power_kw:g} kW at {machine.rated_speed_rpm:g} rpm"
+            + (f", {machine.cylinders} cylinders" if isinstance(machine, Engine) else ""),
             "gearbox": f"ratio {gearbox.ratio:g}, efficiency {gearbox.efficiency:g}",
             "propeller": f"{propeller.blades} blades, {propeller.diameter_m:g} m, P/D {propeller.pitch_ratio:g}",
             "working point": f"{point.engine_speed_rpm:g} rpm, {point.shaft_torque_nm:g} N m",
@@ -67,6 +71,27 @@ class Vessel(Shown, Settings):
             "channels": shortened(channels),
         }
         return Summary(title=f"Vessel {self.name}", facts=facts)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _shafts_by_one_name(cls, content: Any) -> Any:
+        return in_file_words(content)
+
+    @model_validator(mode="after")
+    def _one_machine_drives(self) -> Self:
+        if (self.engine is None) == (self.motor is None):
+            found = "neither" if self.engine is None else "both"
+            raise ValueError(f"expected either a table [engine] or a table [motor], found {found}.")
+        if self.motor is not None and self.limits.motoring_speed_rpm:
+            raise ValueError(
+                "expected no limits.motoring_speed_rpm beside [motor], found some; that is the drag of an engine "
+                "without fuel, what a motor brakes with is motor.regenerating_torque_nm."
+            )
+        if self.motor is not None and self.sensors.rack is not None:
+            raise ValueError(
+                "expected no sensors.rack beside [motor], found one; it is the fuel of an engine, leave it out."
+            )
+        return self
 
     @model_validator(mode="after")
     def _masses_make_a_line(self) -> Self:
@@ -94,9 +119,25 @@ class Vessel(Shown, Settings):
         return self.working_point.ship_speed_m_s is not None
 
     @property
+    def machine(self) -> Engine | Motor:
+        """What drives the line, engine or motor."""
+        if self.motor is not None:
+            return self.motor
+        assert self.engine is not None  # noqa: S101  (the file is refused without either)
+        return self.engine
+
+    @property
+    def motoring(self) -> Curve | None:
+        """Braking torque over speed as positive numbers: an engine's without fuel, a motor's highest; None: unknown."""
+        if self.motor is not None:
+            return self.motor.regenerating
+        limits = self.limits
+        return (limits.motoring_speed_rpm, limits.motoring_torque_nm) if limits.motoring_speed_rpm else None
+
+    @property
     def orders(self) -> tuple[Order, ...]:
         """Orders of engine, shaft and propeller in the shaft torque, lowest first."""
-        return orders_of(self.engine, self.gearbox, self.propeller)
+        return orders_of(self.machine, self.gearbox, self.propeller)
 
     @property
     def inertia_upstream_kg_m2(self) -> float:

@@ -11,7 +11,7 @@ from shaftprint.cli._fingerprint_tables import print_fingerprint
 from shaftprint.cli._fit_options import FitOptions, fit_options, settings_of, structures_of
 from shaftprint.cli._limit_tables import print_limits, print_line
 from shaftprint.cli._options import campaign_option, structure_sources, vessel_option
-from shaftprint.cli._own_structure import OWN_FILE_HELP, TypedName
+from shaftprint.cli._own_structure import DEFAULT_HELP, OWN_FILE_HELP, TypedName
 from shaftprint.cli._report_options import ReportOptions, report_options
 from shaftprint.cli._results import print_comparison, print_paths, write_results
 from shaftprint.cli._terminal import print_findings, say
@@ -25,7 +25,7 @@ from shaftprint.cli.output import (
     progress,
 )
 from shaftprint.fingerprint import write_fingerprint
-from shaftprint.survey import Survey, judged, load_trial, run, with_everything, with_limits
+from shaftprint.survey import Survey, default_structure, judged, load_trial, run, with_everything, with_limits
 from shaftprint.tables import fits_table, leg_test_table
 
 
@@ -38,10 +38,9 @@ from shaftprint.tables import fits_table, leg_test_table
     "--structure",
     "names",
     multiple=True,
-    default=("GAUGE-CLOSED",),
-    show_default=True,
     metavar="NAME",
-    help=f"Model structure: {OWN_FILE_HELP}. The fingerprint is of the first, others are fitted beside it.",
+    help=f"Model structure: {OWN_FILE_HELP}; {DEFAULT_HELP} by default. The fingerprint is of the first, "
+    "others are fitted beside it.",
 )
 @click.option("--figures", is_flag=True, help="Write every chart as SVG, PDF and PNG, too: half a minute more.")
 @click.option("--leg", "legs", multiple=True, metavar="NAME", help="Leg of the campaign to use; all when not given.")
@@ -96,7 +95,7 @@ def command(
     recording = only_recording(recordings)
     # before the folder is made: a mistake in a settings file leaves none
     trial, rng = load_trial(vessel, campaign), np.random.default_rng(options.seed)
-    structures = structures_of(names, options, trial.vessel)
+    structures = structures_of(names or (TypedName(default_structure(trial.vessel)),), options, trial.vessel)
     with output_folder(output, of="identify", force=force) as folder:
         with progress(hidden=no_progress) as steps:
             survey = run(

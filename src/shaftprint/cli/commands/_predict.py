@@ -10,11 +10,11 @@ import numpy as np
 from shaftprint.campaign import Campaign, load_campaign
 from shaftprint.catalogue import structure
 from shaftprint.cli._drive_judge import predict_on_the_bench
-from shaftprint.cli._drive_options import drive_option, expect_not_given, is_given
+from shaftprint.cli._drive_options import drive_option, expect_not_given
 from shaftprint.cli._known_values import hold_option, named_value, prior_option, rpm_per_volt_option
 from shaftprint.cli._limit_uses import print_limit_uses
 from shaftprint.cli._options import NAMES, campaign_option
-from shaftprint.cli._own_structure import OWN_FILE_HELP, TypedName, chosen_structures
+from shaftprint.cli._own_structure import CLOSED_LOOP_HELP, OWN_FILE_HELP, TypedName, chosen_structures, closed_loop_of
 from shaftprint.cli._prediction_tables import print_prediction
 from shaftprint.cli._vessel_file import print_disagreements
 from shaftprint.cli.output import no_progress_option, progress
@@ -40,7 +40,6 @@ from shaftprint.survey import load_trial, measure, noise_at_speeds, priors_of, s
 from shaftprint.units import rpm_from_rev_s
 from shaftprint.vessel import Vessel, load_vessel
 
-CLOSED_LOOP = "GAUGE-CLOSED"
 # Where the sensitivity of a structure is taken; what can be found does not depend on it.
 SEED = 1
 
@@ -81,9 +80,7 @@ class _Ship:
     help="With --drive: a result of identify, for values and noise.",
 )
 @campaign_option
-@click.option(
-    "--structure", "name", default=CLOSED_LOOP, show_default=True, metavar="NAME", help=f"Structure: {OWN_FILE_HELP}."
-)
+@click.option("--structure", "name", metavar="NAME", help=f"Structure: {OWN_FILE_HELP}; {CLOSED_LOOP_HELP} by default.")
 @click.option("--vessel", help=f"Vessel file, for what it knows of parameters: {NAMES} stan-tug-1205.")
 @click.option(
     "--from",
@@ -113,7 +110,7 @@ def command(
     noise: tuple[tuple[str, float], ...],
     fingerprint: Path | None,
     campaign: str,
-    name: TypedName,
+    name: TypedName | None,
     vessel: str | None,
     recording: Path | None,
     recorded: str | None,
@@ -133,19 +130,19 @@ def command(
     """
     if drive_file is not None:
         expect_not_given("campaign", "vessel", "recording", "recorded", "rpm_per_volt", "freed")
-        chosen_names = (name,) if is_given("name") else ()
+        chosen_names = () if name is None else (name,)
         predict_on_the_bench(
             drive_file, inputs, chosen_names, dict(noise), fingerprint, dict(values), dict(priors), dict(held)
         )
         return
     if inputs or noise or fingerprint is not None:
         raise click.UsageError("--input, --noise and --fingerprint need --drive.")
-    (chosen,) = chosen_structures([name])
-    chosen = chosen.held_at(**dict(held))
     known = None
     if vessel is not None:
         known = load_vessel(vessel)
         print_disagreements(known, vessel)
+    (chosen,) = chosen_structures([name or closed_loop_of(known)])
+    chosen = chosen.held_at(**dict(held))
     planned = load_campaign(campaign)
     _expect_free(freed, chosen)
     if recording is not None:
@@ -179,7 +176,7 @@ def _print_limits(
 
     Whatever structure the test is for, it moves the whole closed loop.
     """
-    loop = structure(CLOSED_LOOP)
+    loop = structure(closed_loop_of(vessel))
     assumed = _values_of(loop, vessel, priors, (), values)
     operation = expected_operation(planned, vessel, assumed, slope_rpm_per_v=ship.slope_rpm_per_v)
     print_limit_uses(limit_uses(operation, stated_limits(vessel)), is_expected=True)
@@ -281,7 +278,7 @@ def _planned(chosen: Structure, campaign: Campaign, ship: _Ship) -> list[tuple[S
     StructureError
         If the lines of a campaign do not give these.
     """
-    loop = structure(CLOSED_LOOP)
+    loop = structure(closed_loop_of(ship.vessel))
     tests = [(chosen, loop, planned_response(campaign, ship.noise))] if campaign.sines or not campaign.legs else []
     tests += [
         (leg.structure(chosen), leg.structure(loop), leg.response)

@@ -9,7 +9,7 @@ from shaftprint.cli._drive_judge import validate_on_the_bench
 from shaftprint.cli._drive_options import drive_option, expect_not_given, only_recording
 from shaftprint.cli._fit_options import FitOptions, fit_options, held_structures, settings_of, structures_of
 from shaftprint.cli._options import campaign_option, vessel_option
-from shaftprint.cli._own_structure import OWN_FILE_HELP, TypedName, structure_to_use
+from shaftprint.cli._own_structure import DEFAULT_HELP, OWN_FILE_HELP, TypedName, structure_to_use
 from shaftprint.cli._terminal import echo
 from shaftprint.cli._validation import (
     Asked,
@@ -29,11 +29,9 @@ from shaftprint.cli.output import (
 )
 from shaftprint.fingerprint import Fingerprint
 from shaftprint.models import Structure
-from shaftprint.survey import Measurement, Trial, fit, load_trial, measure, settings_by_name
+from shaftprint.survey import Measurement, Trial, default_structure, fit, load_trial, measure, settings_by_name
 from shaftprint.tables import models_table
 from shaftprint.validation import Model, identified_model, thesis_models
-
-DEFAULT_STRUCTURE = TypedName("GAUGE-CLOSED")
 
 
 @click.command("validate")
@@ -49,7 +47,7 @@ DEFAULT_STRUCTURE = TypedName("GAUGE-CLOSED")
 @click.option(
     "--structure",
     metavar="NAME",
-    help=f"Model structure: {OWN_FILE_HELP}. The fingerprint's, or GAUGE-CLOSED, by default.",
+    help=f"Model structure: {OWN_FILE_HELP}. The fingerprint's, or {DEFAULT_HELP}, by default.",
 )
 @click.option(
     "--record",
@@ -109,7 +107,7 @@ def command(
     trial = load_trial(vessel, campaign)
     kept = None if fingerprint is None else fingerprint_at(fingerprint)
     if kept is None:
-        structures = structures_of([structure or DEFAULT_STRUCTURE], options, trial.vessel)
+        structures = structures_of([structure or TypedName(default_structure(trial.vessel))], options, trial.vessel)
     else:
         structures = held_structures([structure_to_use(structure, kept)], options)
     with progress(hidden=no_progress) as steps:

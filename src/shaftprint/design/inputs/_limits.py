@@ -133,16 +133,16 @@ def limits_from_vessel(vessel: "Vessel", *, set_point_rpm: float) -> Limits:
     set_point_rpm
         Largest deviation of the set point from the level of its leg [rpm].
     """
-    point, engine, limits = vessel.working_point, vessel.engine, vessel.limits
+    point, machine, limits = vessel.working_point, vessel.machine, vessel.limits
     low, high = limits.lowest_speed_rpm, limits.highest_speed_rpm
     return Limits(
         engine_speed_rpm=point.engine_speed_rpm,
         brake_torque_nm=point.shaft_torque_nm / (vessel.gearbox.ratio * vessel.gearbox.efficiency),
         set_point_rpm=set_point_rpm,
-        lowest_speed_rpm=engine.idle_speed_rpm if low is None else low,
-        highest_speed_rpm=engine.rated_speed_rpm if high is None else high,
-        full_load=_curve(engine.full_load_speed_rpm, engine.full_load_torque_nm),
-        motoring=_curve(limits.motoring_speed_rpm, limits.motoring_torque_nm) or NO_MOTORING,
+        lowest_speed_rpm=machine.lowest_governed_rpm if low is None else low,
+        highest_speed_rpm=machine.rated_speed_rpm if high is None else high,
+        full_load=_curve(*machine.full_load),
+        motoring=NO_MOTORING if vessel.motoring is None else _curve(*vessel.motoring),
         demand_rate_limit_rpm_per_s=limits.demand_rate_limit_rpm_per_s,
         demand_resolution_rpm=limits.demand_resolution_rpm,
         demand_cycle_s=limits.demand_cycle_s,

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 _RATE_HZ = 200.0
 # A line whose speed goes further than so many times that of the working point from it does not run any more.
 _FARTHEST = 1.0
-_ROLES = (ShipRole.INERTIA_UPSTREAM, ShipRole.ENGINE_RACK_SLOPE, ShipRole.ENGINE_SPEED_SLOPE)
+_ROLES = {ShipRole.INERTIA_UPSTREAM: 0.0, ShipRole.ENGINE_RACK_SLOPE: 1.0, ShipRole.ENGINE_SPEED_SLOPE: 0.0}
 
 
 def expected_operation(
@@ -48,7 +48,7 @@ def expected_operation(
     DesignError
         If the line stops or runs away with these values: its loop is unstable, or it is asked for too much.
     """
-    line = limited(with_rack=True)
+    line = limited(with_rack=True, by_motor=vessel.motor is not None)
     vector = line.vector({name: value for name, value in values.items() if name in line.names})
     point = vessel.working_point
     time_s = np.arange(round(campaign.duration_s * _RATE_HZ) + 1) / _RATE_HZ
@@ -81,7 +81,10 @@ def _torques(
 ) -> tuple[FloatArray, FloatArray]:
     """Return brake torque and that which the governor asks for, ``v X + g n``, over the working point's."""
     named = dict(zip(line.names, values.tolist(), strict=True))
-    inertia_s, with_rack, with_speed = (named[name] for role in _ROLES if (name := line.named_as(role)) is not None)
+    # a motor gives what is asked for, whatever the speed
+    inertia_s, with_rack, with_speed = (
+        otherwise if (name := line.named_as(role)) is None else named[name] for role, otherwise in _ROLES.items()
+    )
     speed = outputs["n"]
     brake = outputs["M_s"] + inertia_s * np.gradient(speed, time_s)
     return brake, with_rack * outputs["X"] + with_speed * speed

@@ -5,13 +5,14 @@ from datetime import datetime
 
 import numpy as np
 
-from shaftprint.catalogue import shipped_structure
-from shaftprint.errors import RecordingError
+from shaftprint.catalogue import CLOSED_LOOPS, shipped_structure
+from shaftprint.errors import RecordingError, StructureError
 from shaftprint.fingerprint import Fingerprint
 from shaftprint.fleet._arguments import JobArguments
 from shaftprint.identify import Settings
 from shaftprint.models import Structure
 from shaftprint.survey import Measurement, Survey, Trial, priors_of, run
+from shaftprint.vessel import load_vessel
 
 
 class Told:
@@ -60,6 +61,7 @@ def survey_of_job(
         If a file cannot be used, the recording does not give what the structure describes, or a file is not the one
         that was asked for.
     """
+    _expect_structure_of(arguments)
     survey = run(
         arguments.recording,
         arguments.vessel,
@@ -93,3 +95,19 @@ def _expect_same_files(fingerprint: Fingerprint, arguments: JobArguments) -> Non
                 f"{getattr(arguments, source.role)}: expected the {source.role} file as it was when the job was asked "
                 "for, found it changed; ask for it once more with shaftprint fleet run."
             )
+
+
+def _expect_structure_of(arguments: JobArguments) -> None:
+    """Refuse the closed loop of a diesel, which a job has where none was named, for a line that a motor drives.
+
+    Raises
+    ------
+    StructureError
+        If it is that.
+    """
+    of_engine, of_motor = CLOSED_LOOPS["engine"], CLOSED_LOOPS["motor"]
+    if arguments.structure.upper() == of_engine and load_vessel(arguments.vessel).motor is not None:
+        raise StructureError(
+            f"{arguments.recording}: expected the structure of a line that a motor drives, as {arguments.vessel} says, "
+            f"found {of_engine}; ask for --structure {of_motor}."
+        )

@@ -134,7 +134,7 @@ def judge_encoder(source: Source[SpeedSensor], reading: Reading) -> tuple[str, .
     """
     sensor, vessel = source.sensor, source.vessel
     found_rpm, expected_rpm = rpm_from_rev_s(float(np.median(reading.values))), vessel.working_point.engine_speed_rpm
-    idle_rpm, rated_rpm = vessel.engine.idle_speed_rpm, vessel.engine.rated_speed_rpm
+    idle_rpm, rated_rpm = vessel.machine.lowest_governed_rpm, vessel.machine.rated_speed_rpm
     counts = "unit"
     would_do = ""
     if sensor.unit == "counts":

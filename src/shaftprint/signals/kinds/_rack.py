@@ -56,7 +56,7 @@ class Rack(ChannelKind[RackSensor]):
             clock = steady.clock
             grid_s = clock.start_s + np.arange(clock.count) / clock.rate_hz
             speed_rpm = rpm_from_rev_s(np.interp(time_s, grid_s, steady.speed_rev_s))
-            return source.sensor.share(speed_rpm, source.vessel.engine)
+            return source.sensor.share(speed_rpm, source.vessel.machine)
 
         return rack_signal(
             reading.values,

@@ -54,7 +54,7 @@ def _numbers(estimate: Estimate, point: WorkingPoint, vessel: Vessel) -> Iterato
     gauge = vessel.sensors.shaft_torque.scale_std
     brake_nm = point.shaft_torque_nm / (vessel.gearbox.ratio * vessel.gearbox.efficiency)
     speed = point.engine_speed_rev_s
-    curve = np.array(vessel.engine.full_load_speed_rpm), np.array(vessel.engine.full_load_torque_nm)
+    curve = vessel.machine.full_load
     full_nm = float(np.interp(rpm_from_rev_s(speed), *curve))
 
     def number(

@@ -24,7 +24,7 @@ STRETCH_S = 200.0
 
 def without_orders(signals: Signals, vessel: Vessel) -> Signals:
     """Return signals whose shaft torque is without its lowest orders; what is not measured stays as it is."""
-    orders = (1.0, 2.0 / vessel.engine.strokes_per_cycle, 1.0 / vessel.gearbox.ratio)
+    orders = (1.0, *(float(order) for order in vessel.machine.torque_orders[:1]), 1.0 / vessel.gearbox.ratio)
     torque = np.array(signals.shaft_torque_nm)
     speed = np.array(signals.engine_speed.speed_rev_s)
     count = max(round(signals.samples / (STRETCH_S * signals.rate_hz)), 1)

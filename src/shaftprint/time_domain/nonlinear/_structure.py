@@ -75,7 +75,8 @@ def structure_for(
 
 def full_load_shape(vessel: Vessel, working_point: WorkingPoint) -> tuple[tuple[float, float], ...]:
     """Return the full-load curve as speed deviations and torque over that at the working-point speed."""
-    speed = rev_s_from_rpm(np.array(vessel.engine.full_load_speed_rpm)) / working_point.engine_speed_rev_s - 1.0
-    torque = np.array(vessel.engine.full_load_torque_nm)
+    speed_rpm, torque_nm = vessel.machine.full_load
+    speed = rev_s_from_rpm(np.array(speed_rpm)) / working_point.engine_speed_rev_s - 1.0
+    torque = np.array(torque_nm)
     share = torque / np.interp(0.0, speed, torque)
     return tuple((float(a), float(b)) for a, b in zip(speed, share, strict=True))

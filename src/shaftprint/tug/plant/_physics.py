@@ -1,6 +1,7 @@
 """From the normalised truth of a tug to the physical constants of its propulsion line."""
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -14,6 +15,8 @@ from shaftprint.vessel import Vessel
 
 # Speed over that of the working point up to which friction grows in proportion; no engine gets there.
 _FASTEST_SHARE = 10.0
+# Speed over base speed up to which the field of a motor is weakened, and the points at which its torque is stated.
+_FASTEST_MOTOR_SHARE, _POWER_CHORDS = 2.0, 80
 
 
 def build_plant(tug: Tug, vessel: Vessel) -> Plant:
@@ -40,15 +43,17 @@ def build_plant(tug: Tug, vessel: Vessel) -> Plant:
         If the truth is not physical.
     """
     _check(tug)
+    if vessel.motor is not None:
+        _check_motor(tug)
     speed, torque = working_point(tug, vessel)
     ratio, efficiency = vessel.gearbox.ratio, vessel.gearbox.efficiency
     brake = torque / (ratio * efficiency)
     speed_slope = tug.g * brake / speed
     offset = (1.0 - tug.g - tug.v) * brake
-    rated = rev_s_from_rpm(vessel.engine.rated_speed_rpm)
-    rack_slope = vessel.engine.rated_torque_nm - speed_slope * rated - offset
+    rated = rev_s_from_rpm(vessel.machine.rated_speed_rpm)
+    rack_slope = vessel.machine.rated_torque_nm - speed_slope * rated - offset
     rack = tug.v * brake / rack_slope
-    motoring_speed_rev_s, motoring_torque_nm = _motoring(tug, vessel, speed)
+    limits = _torque_limits(tug, vessel, speed)
     upstream, downstream = tug.inertia_upstream_kg_m2, tug.inertia_downstream_kg_m2
     downstream = vessel.inertia_downstream_kg_m2 if downstream is None else downstream
     return Plant(
@@ -66,15 +71,16 @@ def build_plant(tug: Tug, vessel: Vessel) -> Plant:
         integral=tug.integral_gain_per_s * rack / speed,
         anti_windup_s=tug.anti_windup_s,
         delay_s=tug.governor_delay_s,
-        natural_frequency_rad_s=tug.natural_frequency_rad_s,
+        natural_frequency_rad_s=tug.natural_frequency_rad_s if vessel.motor is None else 0.0,
         damping_ratio=tug.damping_ratio,
         point_speed_rev_s=speed,
         gain_exponent=tug.governor_gain_exponent,
         delay_exponent=tug.governor_delay_exponent,
-        limit_speed_rev_s=rev_s_from_rpm(np.array(vessel.engine.full_load_speed_rpm)),
-        limit_torque_nm=np.array(vessel.engine.full_load_torque_nm),
-        motoring_speed_rev_s=motoring_speed_rev_s,
-        motoring_torque_nm=motoring_torque_nm,
+        limit_speed_rev_s=limits.highest[0],
+        limit_torque_nm=limits.highest[1],
+        motoring_speed_rev_s=limits.lowest[0],
+        motoring_torque_nm=limits.lowest[1],
+        torque_per_s=0.0 if vessel.motor is None else 1.0 / tug.torque_time_s,
         deadband_rev_s=rev_s_from_rpm(tug.governor_deadband_rpm),
         rack_rate_limit_per_s=np.inf if tug.rack_rate_limit_per_s is None else tug.rack_rate_limit_per_s,
         air_share=tug.unboosted_torque_share,
@@ -82,6 +88,27 @@ def build_plant(tug: Tug, vessel: Vessel) -> Plant:
         sails=tug.sailing is not None,
         way=AT_THE_QUAY if tug.sailing is None else way_of(tug.sailing, vessel),
     )
+
+
+class _TorqueLimits(NamedTuple):
+    """Highest and lowest torque over speed, the lowest as positive numbers [rev/s, N m]."""
+
+    highest: tuple[FloatArray, FloatArray]
+    lowest: tuple[FloatArray, FloatArray]
+
+
+def _torque_limits(tug: Tug, vessel: Vessel, speed_rev_s: float) -> _TorqueLimits:
+    """Return what engine or motor can give and take."""
+    motor = vessel.motor
+    if motor is None:
+        speeds_rpm, torques_nm = vessel.machine.full_load
+        highest = rev_s_from_rpm(np.array(speeds_rpm)), np.array(torques_nm)
+        return _TorqueLimits(highest, _motoring(tug, vessel, speed_rev_s))
+    base = rev_s_from_rpm(motor.base_rpm)
+    braking = motor.regenerating_torque_nm if tug.motoring_torque_nm is None else tug.motoring_torque_nm
+    # constant power above base speed, by chords that are at most a hundred-thousandth off
+    share = np.geomspace(1.0, _FASTEST_MOTOR_SHARE, _POWER_CHORDS)
+    return _TorqueLimits((base * share, motor.highest_torque_nm / share), (base * share, braking / share))
 
 
 def _motoring(tug: Tug, vessel: Vessel, speed_rev_s: float) -> tuple[FloatArray, FloatArray]:
@@ -152,6 +179,23 @@ def shaft_time_constant_s(inertia_kg_m2: float, tug: Tug, vessel: Vessel) -> flo
     return 2.0 * math.pi * inertia_kg_m2 * speed / (vessel.gearbox.ratio * torque)
 
 
+def _check_motor(tug: Tug) -> None:
+    """Refuse what an engine has and a motor whose torque is controlled has not.
+
+    Raises
+    ------
+    SettingsError
+        If the truth has it.
+    """
+    without = {"g": 0.0, "v": 1.0, "unboosted_torque_share": 1.0, "rack_rate_limit_per_s": None}
+    for name, value in without.items():
+        if getattr(tug, name) != value:
+            raise SettingsError(
+                f"tug: expected no {name} where a motor drives the line, whose torque is controlled, found "
+                f"{getattr(tug, name):g}; leave it out."
+            )
+
+
 def _check(tug: Tug) -> None:
     positive = (
         "engine_speed_rpm",
@@ -168,6 +212,7 @@ def _check(tug: Tug) -> None:
         "demand_resolution_rpm",
         "demand_cycle_s",
         "demand_rate_limit_rpm_per_s",
+        "torque_time_s",
         "inflow_time_s",
         "rack_rate_limit_per_s",
         "unboosted_torque_share",

@@ -26,6 +26,12 @@ A smoke limiter lets the engine burn no more than the boost gives air for: ``M_b
 boost ``b`` of a turbocharger that follows the torque late, ``tau_tc db/dt = M_b / M_full - b``: steady running is never
 limited, a fast rise is. A limit of the rate of the rack holds for what the governor gives, before delay and actuation.
 
+An electric motor takes the place of the engine where ``torque_per_s`` is not 0: ``X`` is the torque that the speed
+controller asks for, over rated torque, the delay is the dead time of the converter, and the torque follows in a lag of
+first order as the current loop closes, ``T dX/dt = X(t - t_d) - X``; the natural frequency is 0 then, so that nothing
+of second order moves, and no branch is taken that would cost time. It pulls and brakes with constant torque up to
+base speed and with constant power above, where the field is weakened: ``M_max n_base / n``.
+
 Gains and delay may go with a power of the engine speed, ``K (n_e / n_e0)^a`` and ``t_d (n_e / n_e0)^b``, at any time.
 """
 
@@ -95,6 +101,8 @@ class Plant(NamedTuple):
     """Full-load torque without boost, as a fraction of that with full boost; 1 without a smoke limiter."""
     turbocharger_lag_s: float = 1.0
     """Time in which the boost follows the torque [s]."""
+    torque_per_s: float = 0.0
+    """One over the time constant of the torque of a motor [1/s]; 0 for an engine."""
     sails: bool = False
     """Whether the ship has way on; if not, ``way`` plays no part."""
     way: Way = AT_THE_QUAY
@@ -221,6 +229,7 @@ def derivatives(  # type: ignore[no-untyped-def]
     integral_rate = gain * plant.integral * _felt(demand - speed, plant) + (rack_given - wanted) / plant.anti_windup_s
     omega = plant.natural_frequency_rad_s
     rack_acceleration = omega * (omega * (rack_delayed - rack) - 2.0 * plant.damping_ratio * rack_rate)
+    rack_rate += plant.torque_per_s * (rack_delayed - rack)
     limited = rack_given != wanted or brake != unlimited
     return (
         acceleration,

@@ -198,12 +198,11 @@ def shaft_orders(noise: Noise, vessel: Vessel) -> dict[float, float]:
     sees and once-a-revolution speeds do not (half an engine order would alias, but is below 0.1 % of the speed).
     """
     ratio = vessel.gearbox.ratio
-    firings_per_turn = vessel.engine.cylinders * 2.0 / vessel.engine.strokes_per_cycle
     blades = float(vessel.propeller.blades)
-    return {
-        1.0: noise.shaft_order,
-        blades: noise.blade_order,
-        2.0 * blades: noise.twice_blade_order,
-        ratio * 2.0 / vessel.engine.strokes_per_cycle: noise.half_order,
-        ratio * firings_per_turn: noise.firing_order,
-    }
+    orders = {1.0: noise.shaft_order, blades: noise.blade_order, 2.0 * blades: noise.twice_blade_order}
+    engine = vessel.engine
+    if engine is None:
+        return orders
+    firings_per_turn = engine.cylinders * 2.0 / engine.strokes_per_cycle
+    cycle = {ratio * 2.0 / engine.strokes_per_cycle: noise.half_order}
+    return orders | cycle | {ratio * firings_per_turn: noise.firing_order}

@@ -218,5 +218,5 @@ def _pulse_width(sensor: SpeedSensor) -> float:
 
 def _most_pulses(sensor: SpeedSensor, vessel: Vessel, duration_s: float) -> int:
     """Return more pulses than can pass: the engine does not run 30 % above its rated speed."""
-    turns = 1.3 * vessel.engine.rated_speed_rpm / 60.0 * duration_s / vessel.gearbox.engine_over(sensor.shaft)
+    turns = 1.3 * vessel.machine.rated_speed_rpm / 60.0 * duration_s / vessel.gearbox.engine_over(sensor.shaft)
     return int(turns * (sensor.pulses_per_revolution + sensor.toothed.extra)) + 16

@@ -28,7 +28,7 @@ class SpeedMeter:
     ) -> None:
         self.channel = sensor.channel
         self._turns = vessel.gearbox.over_propeller(sensor.shaft)
-        highest_rev_s = 1.3 * vessel.engine.rated_speed_rpm / 60.0 * self._turns / vessel.gearbox.ratio
+        highest_rev_s = 1.3 * vessel.machine.rated_speed_rpm / 60.0 * self._turns / vessel.gearbox.ratio
         self._per_rev_s, self._at_rest = _line(sensor)
         self.offset = self._at_rest
         """Value of no count, in the unit of the channel."""

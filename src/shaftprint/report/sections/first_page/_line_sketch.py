@@ -16,7 +16,7 @@ BLADE = ((588.0, SHAFT), (574.0, SHAFT - 46.0), (596.0, SHAFT - 50.0), (600.0, S
 
 def line_sketch(vessel: "Vessel") -> Sketch:
     """Return the sketch of a propulsion line."""
-    engine = vessel.engine
+    machine = vessel.machine
     return Sketch(
         width=640.0,
         height=204.0,
@@ -35,10 +35,10 @@ def line_sketch(vessel: "Vessel") -> Sketch:
             *_pick_ups(vessel, "propeller", PROPELLER_SHAFT),
         ),
         labels=(
-            Label(x=60.0, y=99.0, text="Governor"),
-            Label(x=203.0, y=99.0, text="Engine"),
-            Label(x=203.0, y=DETAIL, text=f"{plain(engine.rated_power_kw, 0)} kW"),
-            Label(x=360.0, y=99.0, text="Gearbox"),
+            Label(x=60.0, y=99.0, text="Governor" if vessel.motor is None else "Controller"),
+            Label(x=203.0, y=99.0, text=machine.word.capitalize()),
+            Label(x=203.0, y=DETAIL, text=f"{plain(machine.rated_power_kw, 0)} kW"),
+            Label(x=360.0, y=99.0, text="Gearbox" if vessel.gearbox.ratio != 1.0 else "No gearbox"),
             Label(x=360.0, y=DETAIL, text=f"{rounded(vessel.gearbox.ratio, 3)} : 1"),
             Label(x=459.0, y=34.0, text="Torque gauge"),
             Label(x=592.0, y=24.0, text="Propeller"),
@@ -73,8 +73,11 @@ def _pick_up_labels(vessel: "Vessel") -> list[Label]:
 
 
 def _alt(vessel: "Vessel") -> str:
-    where = [f"{_count(vessel, shaft)} on the {shaft} shaft" for shaft in ("engine", "propeller")]
+    shafts = {"engine": vessel.machine.word, "propeller": "propeller"}
+    where = [f"{_count(vessel, shaft)} on the {name} shaft" for shaft, name in shafts.items()]
+    governor = "governor" if vessel.motor is None else "speed controller"
     return (
-        "Sketch of the line from left to right: governor, engine, gearbox, torque gauge on the propeller shaft, "
+        f"Sketch of the line from left to right: {governor}, {vessel.machine.word}, gearbox, "
+        "torque gauge on the propeller shaft, "
         f"propeller. Speed pick-ups: {' and '.join(where)}."
     )
