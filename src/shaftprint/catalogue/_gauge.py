@@ -223,9 +223,9 @@ def gauge_motor() -> Structure:
     """Return the gauge-aware closed loop of an electric motor, ``n`` and ``M_s`` from ``n_set``.
 
     That of a diesel with ``L = C exp(-s t_d) / (T_m s + 1) / ((tau_up + tau_dn) s + k_q)``: the converter controls the
-    torque, which therefore neither falls nor rises with the speed, and follows in a lag of first order (A. K. Adnanes,
-    "Maritime electrical installations and diesel electric propulsion", ABB, 2003; A. J. Sorensen and O. N. Smogeli,
-    "Torque and power control of electrically driven marine propellers", Control Engineering Practice 17, 2009).
+    torque, which therefore neither falls nor rises with the speed, and follows in a lag of first order (A. J. Sorensen
+    and O. N. Smogeli, "Torque and power control of electrically driven marine propellers", Control Engineering Practice
+    17, 2009).
     """
     speed, torque, _ = _measured(
         Shaft((TAU_DN, TAU_UP), K_Q), _rigid_load(), PIGovernor(MOTOR_K_P, MOTOR_K_I), _motor()
