@@ -10,7 +10,7 @@ quantity         unit   meaning
 """
 
 from shaftprint.drift._along import Whitened, p_value_of_largest, whitened
-from shaftprint.drift._causes import ALL_CAUSES, CAUSES, Cause
+from shaftprint.drift._causes import ALL_CAUSES, CAUSES, Cause, may_happen
 from shaftprint.drift._class_finding import (
     CauseSpread,
     ClassFinding,
@@ -70,6 +70,7 @@ __all__ = [
     "history_of",
     "judge_sisters",
     "limit_sentence",
+    "may_happen",
     "p_value_of_largest",
     "pair_of",
     "shared_errors",

@@ -19,6 +19,7 @@ from shaftprint.drift import (
     History,
     history_of,
     limit_sentence,
+    may_happen,
     watch,
     watch_sentences,
 )
@@ -46,21 +47,24 @@ class EventAt(click.ParamType):  # type: ignore[type-arg]
 
 
 class LimitOf(click.ParamType):  # type: ignore[type-arg]
-    """A cause and the size that it must not pass, such as ``propeller=10%``."""
+    """A cause and the size that it must not pass, such as ``propeller=10%``; of an engine, a motor or both."""
 
     name = "limit"
 
-    def convert(self, value: object, param: click.Parameter | None, ctx: click.Context | None) -> tuple[Cause, float]:
-        """Return the cause and the size, a share or a time [s]."""
+    def convert(
+        self, value: object, param: click.Parameter | None, ctx: click.Context | None
+    ) -> tuple[tuple[Cause, ...], float]:
+        """Return the cause, one for each machine that has it by another name, and the size, a share or a time [s]."""
         word, _, size = str(value).partition("=")
-        found = [cause for cause in ALL_CAUSES if word and cause.name.startswith(word.strip())]
-        if len(found) != 1:
+        found = tuple(cause for cause in ALL_CAUSES if word and cause.name.startswith(word.strip()))
+        machines = [cause.machine for cause in found]
+        if not found or (len(found) > 1 and (None in machines or len(set(machines)) < len(found))):
             names = ", ".join(cause.name for cause in ALL_CAUSES)
             self.fail(f"expected the beginning of one of {names}, found {word!r}.", param, ctx)
-        (cause,) = found
+        cause = found[0]
         number = size.strip().removesuffix(cause.unit)
         try:
-            return cause, cause.from_unit(float(number))
+            return found, cause.from_unit(float(number))
         except ValueError:
             self.fail(f"expected a number of {cause.unit} after {word}=, found {size!r}.", param, ctx)
 
@@ -95,7 +99,7 @@ def command(
     *,
     line: str | None,
     events: tuple[tuple[str, datetime], ...],
-    limits: tuple[tuple[Cause, float], ...],
+    limits: tuple[tuple[tuple[Cause, ...], float], ...],
     zone: tzinfo | None,
     load_percent: float,
     output: Path | None,
@@ -115,13 +119,19 @@ def command(
         with output_folder(output, of="drift", force=force) as folder:
             render_history(folder, title, history, finding, now=datetime.now(UTC), load_repeatability=load)
     answer(f"Has the ship changed? {' '.join(watch_sentences(finding, history))}")
-    for cause, size in limits:
-        answer(limit_sentence(finding, cause, size, history))
+    for causes, size in limits:
+        answer(limit_sentence(finding, _of_the_line(causes, history), size, history))
     give("finding", finding)
     _print_history(history, load)
     print_tables([] if finding.because else [course_table(finding, history)])
     if output is not None:
         echo(f"Report: {output / REPORT}")
+
+
+def _of_the_line(causes: tuple[Cause, ...], history: History) -> Cause:
+    """Return the cause that may happen in what drives the line; the first where its tests do not say."""
+    roles = [one.role for test in history.tests[:1] for one in test.fingerprint.parameters]
+    return next((cause for cause in causes if may_happen(cause, roles)), causes[0])
 
 
 def _print_history(history: History, load: float) -> None:

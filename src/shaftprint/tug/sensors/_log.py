@@ -20,7 +20,7 @@ class SpeedLog:
         sensor: ShipSpeedSensor,
         *,
         noise_m_s: float,
-        shown: float,
+        shown: float = 1.0,
         first_speed_m_s: float,
         rate_hz: float,
         rng: np.random.Generator,
