@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from shaftprint.catalogue import ShipRole
 from shaftprint.distributions import NORMAL_95
 from shaftprint.fingerprint import GAUGE_ZERO
 from shaftprint.report.sections._cover import Card, State
@@ -55,7 +56,9 @@ def usable(fingerprint: "Fingerprint") -> Card:
 def gauge(fingerprint: "Fingerprint") -> list[Card]:
     """Return whether the zero of the torque gauge is in order; nothing where the test cannot tell."""
     zeros = [q for q in fingerprint.physical if q.name == GAUGE_ZERO]
-    if not zeros:
+    slopes = [q.name for q in fingerprint.parameters if q.role == ShipRole.LOAD_SLOPE]
+    # underway the speed of the ship moves the torque too: what is said of the zero is what the vessel file says
+    if not zeros or any(name in fingerprint.priors for name in slopes):
         return []
     (zero,) = zeros
     question = "Is the torque gauge in order?"
@@ -84,8 +87,9 @@ def predicts(validations: "Sequence[Validation]") -> Card:
         return Card(
             question=question,
             state="open",
-            sentence="The test holds no speed steps or sweeps to hold the model against.",
-            action="Add a staircase of speed steps to the next test.",
+            sentence="It was not held against speed steps or sweeps: the test holds none, or they cannot be predicted "
+            "with this structure.",
+            action="Add a staircase of speed steps to the next test where it has none.",
         )
     validation = validations[0]
     moves = [c for c in validation.comparisons if not c.excerpt.in_sample]
