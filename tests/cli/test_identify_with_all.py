@@ -21,8 +21,8 @@ def test_one_fit_of_everything(invoke, recording, tmp_path):
     for name, value in TRUTH.items():
         assert abs(found[name].value - value) < 3.0 * found[name].std, name
     for name in ("K_p", "t_d", "t_sp", "zeta"):
-        # the sines alone know them half as well at best
-        assert found[name].std < 0.5 * fingerprint.quantity(name).std
+        # three times as well as the sines alone by the noise model, of which 1.8 are taken off again
+        assert found[name].std < 0.6 * fingerprint.quantity(name).std
     assert found["K_p"].std < 0.05 * TRUTH["K_p"]
     assert fingerprint.validation.model == "GAUGE-TORQUE"
 
