@@ -45,6 +45,27 @@ def test_an_unchanged_line_has_not_changed(before):
     assert finding_sentences(finding) == ("No: 9 numbers of the ship, judged together, agree within chance.",)
 
 
+ELASTIC = TRUTH | {"k_c": 700.0, "d_c": 2.0}
+
+
+def elastic_fingerprint(**changes):
+    values = ELASTIC | {name: factor * ELASTIC[name] for name, factor in changes.items()}
+    return taken(fitted("GAUGE-ELASTIC", values, share=0.002, settings=Settings(starts=20, priors=PRIORS)))
+
+
+@pytest.mark.parametrize(
+    ("changes", "cause", "size"),
+    [
+        ({"k_c": 0.8}, "stiffness of the coupling", -0.2),
+        ({"tau_dn": 1.02}, "inertia behind the gauge", 0.02),
+    ],
+)
+def test_a_coupling_that_ages_is_named_and_nothing_else_is_taken_for_it(changes, cause, size):
+    (change,) = differ(elastic_fingerprint(), elastic_fingerprint(**changes)).changes
+    assert change.best.cause.name == cause
+    assert change.best.size == pytest.approx(size, abs=0.1 * abs(size))
+
+
 @pytest.mark.parametrize(
     ("changes", "cause", "size"),
     [

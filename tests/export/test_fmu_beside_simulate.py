@@ -17,7 +17,8 @@ SPEED_RPM, TORQUE_NM = 1183.8, 1740.0
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("name_of_line", "rows_a_second"), [("GAUGE-CLOSED", 100), ("GAUGE-CLOSED", 1000), ("GAUGE-MOTOR", 100)]
+    ("name_of_line", "rows_a_second"),
+    [("GAUGE-CLOSED", 100), ("GAUGE-CLOSED", 1000), ("GAUGE-MOTOR", 100), ("GAUGE-ELASTIC", 1000)],
 )
 def test_a_held_step_moves_the_line_as_it_moves_the_fmu(fmu, tmp_path, name_of_line, rows_a_second):
     """Rows of 10 ms were 0.3 rpm beside the FMU when values were held by steps of the solver."""

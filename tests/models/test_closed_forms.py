@@ -123,6 +123,29 @@ def gauge_ecu(s, p):
     return pick_up(s, p) * speed, torque, rack
 
 
+def gauge_elastic(s, p):
+    """Three bodies, ``n`` at the shaft and ``M_s`` at the gauge; the governor feels the engine's ``n_1``.
+
+    ``M_b - T = (tau_up - tau_m) s n_1``, ``T - M_s = tau_m s n``, ``M_s - k_q n = tau_dn s n``,
+    ``s T = (k_c + d_c s) (n_1 - n)`` and ``M_b = g n_1 + v C e^(-s t_d) F (c_set e^(-s t_sp) n_set - n_1)``, solved as
+    a linear system in ``M_b``, ``T``, ``M_s``, ``n_1`` and ``n``.
+    """
+    engine = governor(s, p)
+    demand = p["c_set"] * mp.exp(-s * p["t_sp"])
+    spring = p["k_c"] + p["d_c"] * s
+    matrix = mp.matrix(
+        [
+            [1, -1, 0, -(p["tau_up"] - p["tau_m"]) * s, 0],
+            [0, 1, -1, 0, -p["tau_m"] * s],
+            [0, 0, 1, 0, -p["k_q"] - p["tau_dn"] * s],
+            [0, s, 0, -spring, spring],
+            [1, 0, 0, engine - p["g"], 0],
+        ]
+    )
+    _, _, torque, _, speed = mp.lu_solve(matrix, mp.matrix([0, 0, 0, 0, engine * demand]))
+    return pick_up(s, p) * speed, torque * telemetry(s, p)
+
+
 def gauge_motor(s, p):
     """The same two free bodies; the torque follows the PI controller late and by a lag of first order.
 
@@ -206,6 +229,7 @@ FORMS = {
     "GAUGE-OPEN": gauge_open,
     "GAUGE-CLOSED": gauge_closed,
     "GAUGE-INFLOW": gauge_closed,
+    "GAUGE-ELASTIC": gauge_elastic,
     "GAUGE-ECU": gauge_ecu,
     "GAUGE-MOTOR": gauge_motor,
     "GOVERNOR": governor_alone,
@@ -263,8 +287,18 @@ def test_responses_equal_the_printed_equations(name):
             np.testing.assert_allclose(shipped.response(values, 1j * OMEGA), expected, rtol=1e-12, atol=0.0)
 
 
+def test_a_coupling_without_end_of_stiffness_is_a_rigid_line():
+    elastic, rigid = structure("GAUGE-ELASTIC"), structure("GAUGE-CLOSED")
+    for seed in (1, 2, 3):
+        values = dict(zip(elastic.names, random_values(elastic, seed), strict=True)) | {"k_c": 1e13, "tau_m": 0.1}
+        plain = rigid.vector({name: values[name] for name in rigid.names})
+        np.testing.assert_allclose(
+            elastic.response(elastic.vector(values), 1j * OMEGA), rigid.response(plain, 1j * OMEGA), rtol=1e-7
+        )
+
+
 # of many parameters, each with derivatives of 50 digits
-LONG = ("FREE-PITCH", "FREE-LOG", "FREE-CLOSED", "GAUGE-ECU", "GAUGE-INFLOW")
+LONG = ("FREE-PITCH", "FREE-LOG", "FREE-CLOSED", "GAUGE-ECU", "GAUGE-ELASTIC", "GAUGE-INFLOW")
 
 
 @pytest.mark.parametrize(

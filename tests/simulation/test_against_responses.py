@@ -71,7 +71,17 @@ OWN = {
         outputs={"x": {"a": LAG * Delay(D_1), "b": Gain(K_1) * FAST}, "y": {"b": BALANCE * LAG, "a": FAST}},
     ),
 }
-SHIPPED = ("OL-PID", "CL4-PADE5", "INITIAL", "GAUGE-CORE", "GAUGE-OPEN", "GAUGE-INFLOW", "GAUGE-ECU", "ENGINE")
+SHIPPED = (
+    "OL-PID",
+    "CL4-PADE5",
+    "INITIAL",
+    "GAUGE-CORE",
+    "GAUGE-OPEN",
+    "GAUGE-ELASTIC",
+    "GAUGE-INFLOW",
+    "GAUGE-ECU",
+    "ENGINE",
+)
 ALL = OWN | {name: structure(name) for name in (*SHIPPED, "FREE-PITCH")}
 
 

@@ -15,9 +15,8 @@ from shaftprint.catalogue._gauge import (
     T_M,
     V_ONE,
     G,
-    gauge_combinations,
-    motor_combinations,
 )
+from shaftprint.catalogue._gauge_combinations import gauge_combinations, motor_combinations
 from shaftprint.models import Combination, Flow, Formula, Number, Parameter, first_order_lag, second_order_lag
 
 

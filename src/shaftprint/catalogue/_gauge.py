@@ -5,9 +5,17 @@ Two free bodies cut at the gauge::
     upstream    M_b - M_s = tau_up s n        M_b = g n + v exp(-s t_d) F X,   X = C (c_set exp(-s t_sp) n_set - n)
     downstream  M_s - M_p = tau_dn s n        M_p = k_q n
 
+Where a coupling ahead of the gauge twists, there are three; ``n_1`` is the speed of the engine, which the governor
+feels::
+
+    engine      M_b - T = (tau_up - tau_m) s n_1        T = (k_c / s + d_c) (n_1 - n)
+    between     T - M_s = tau_m s n
+
 With ``tau_up = 0`` and no latencies they are those of the thesis.
 """
 
+from shaftprint.catalogue._elastic import coupling_mode, engine_end, shaft_end
+from shaftprint.catalogue._gauge_combinations import gauge_combinations, motor_combinations
 from shaftprint.catalogue._roles import ShipRole
 from shaftprint.models import (
     AveragingSensor,
@@ -22,6 +30,7 @@ from shaftprint.models import (
     Inverse,
     Parameter,
     PIGovernor,
+    RationalBlock,
     SecondOrderLag,
     Sensitivity,
     Shaft,
@@ -90,6 +99,26 @@ T_CONVERTER = Parameter(
 )
 T_M = Parameter(
     "T_m", "s", 0.0, 0.5, 0.05, "time constant of the motor's torque, current loop closed", role=ShipRole.TORQUE_TIME
+)
+K_C = Parameter(
+    "k_c",
+    "1/s",
+    20.0,
+    20000.0,
+    1000.0,
+    "stiffness of the coupling over the torque of the working point",
+    role=ShipRole.COUPLING_STIFFNESS,
+)
+D_C = Parameter("d_c", "-", 0.0, 50.0, 2.0, "damping of the coupling", role=ShipRole.COUPLING_DAMPING)
+TAU_M = Parameter(
+    "tau_m",
+    "s",
+    0.0,
+    5.0,
+    0.0,
+    "inertia time between coupling and torque gauge, a part of tau_up",
+    held=True,
+    role=ShipRole.INERTIA_DRIVEN,
 )
 TAU_W = Parameter("tau_w", "s", 0.0, 1.0, 0.0, "inertia time of the entrained water, where tau_dn is dry", held=True)
 KAPPA = Parameter(
@@ -239,6 +268,26 @@ def gauge_motor() -> Structure:
     )
 
 
+def gauge_elastic() -> Structure:
+    """Return the gauge-aware closed loop with an elastic coupling ahead of the gauge, ``n`` and ``M_s`` from ``n_set``.
+
+    ``n_1 / M_b = 1 / ((tau_up - tau_m) s - g + Z n / n_1)`` and ``n / n_1 = 1 / (1 + Z s / (d_c s + k_c))`` with
+    ``Z = (tau_m + tau_dn) s + k_q``. The governor feels the speed of the engine, ``L = v C exp(-s t_d) F n_1 / M_b``,
+    the pick-up that of the shaft, ``n = c_set sensor exp(-s t_sp) L / (1 + L) n / n_1``. Where ``k_c`` has no end it is
+    GAUGE-CLOSED; ``tau_m`` is held at 0, where the gauge shows what the coupling carries.
+    """
+    engine = RationalBlock(engine_end, (TAU_UP, TAU_M, TAU_DN, K_Q, G, K_C, D_C))
+    follows = RationalBlock(shaft_end, (TAU_M, TAU_DN, K_Q, K_C, D_C))
+    speed, torque, _ = _measured(engine, _rigid_load(), _governor(), _engine(V_ONE), follows)
+    return Structure(
+        name="GAUGE-ELASTIC",
+        title="gauge-aware closed loop with an elastic coupling",
+        input="n_set",
+        outputs={"n": speed, "M_s": torque},
+        combinations=(*gauge_combinations(), coupling_mode()),
+    )
+
+
 def gauge_governor() -> Structure:
     """Return governor and engine of the gauge-aware closed loop, ``M_b / e = v C exp(-s t_d) F`` without inertia."""
     return Structure(
@@ -296,89 +345,18 @@ def _torque_sensor() -> Expression:
 
 
 def _measured(
-    shaft: Expression, load: Expression, rack: Expression, drive: Expression
+    shaft: Expression, load: Expression, rack: Expression, drive: Expression, follows: Expression | None = None
 ) -> tuple[Expression, Expression, Expression]:
     """Return ``n``, ``M_s`` and ``X`` from ``n_set`` as measured.
 
-    It is that of ``n / M_b`` and ``M_s / n`` of a line, ``X / e`` of its governor and ``M_b / X`` of what drives it.
+    It is that of ``n / M_b`` and ``M_s / n`` of a line, ``X / e`` of its governor and ``M_b / X`` of what drives it;
+    of an elastic line ``follows`` is the speed of the shaft over that of the engine, which ``n / M_b`` is of then.
     """
     loop = rack * drive * shaft
     left_of_error = Sensitivity(loop)
     set_point = Delay(T_SP) * Gain(C_SET)
     speed = loop * left_of_error * set_point
+    if follows is not None:
+        speed *= follows
     torque = speed * load * _torque_sensor()
     return speed * _speed_sensor(), torque, rack * left_of_error * set_point * Delay(T_RACK)
-
-
-def motor_combinations() -> tuple[Combination, ...]:
-    """Return what a test of a motor's closed loop finds better than the parameters it is made of."""
-    return (
-        Combination(
-            name="t_d + T_m",
-            unit="s",
-            of=lambda p: p["t_d"] + p["T_m"],
-            meaning="lag of the torque behind the speed controller",
-        ),
-        Combination(
-            name="t_d + T_m + t_sp",
-            unit="s",
-            of=lambda p: p["t_d"] + p["T_m"] + p["t_sp"],
-            meaning="lag of the torque behind the set point",
-            role=ShipRole.TOTAL_DELAY,
-        ),
-        Combination(
-            name="K_p / K_i",
-            unit="s",
-            of=lambda p: p["K_p"] / p["K_i"],
-            meaning="reset time of the speed controller",
-            role=ShipRole.LOOP_GAIN,
-        ),
-        Combination(
-            name="K_i / k_q",
-            unit="1/s",
-            of=lambda p: p["K_i"] / p["k_q"],
-            meaning="integral gain over the slope of the load",
-            role=ShipRole.LOOP_GAIN,
-        ),
-        Combination(
-            name="K_p / (tau_up + tau_dn)",
-            unit="1/s",
-            of=lambda p: p["K_p"] / (p["tau_up"] + p["tau_dn"]),
-            meaning="loop gain at high frequency",
-            role=ShipRole.LOOP_GAIN,
-        ),
-    )
-
-
-def gauge_combinations() -> tuple[Combination, ...]:
-    """Return what a test of the closed loop finds better than the parameters it is made of."""
-    return (
-        Combination(
-            name="t_d + t_sp",
-            unit="s",
-            of=lambda p: p["t_d"] + p["t_sp"],
-            meaning="total delay",
-            role=ShipRole.TOTAL_DELAY,
-        ),
-        Combination(
-            name="K_p / K_i",
-            unit="s",
-            of=lambda p: p["K_p"] / p["K_i"],
-            meaning="reset time of the governor",
-            role=ShipRole.LOOP_GAIN,
-        ),
-        Combination(
-            name="v K_i / (k_q - g)",
-            unit="1/s",
-            of=lambda p: p["v"] * p["K_i"] / (p["k_q"] - p["g"]),
-            meaning="integral gain over the slope of load and engine",
-            role=ShipRole.LOOP_GAIN,
-        ),
-        Combination(
-            name="v K_p / (tau_up + tau_dn)",
-            unit="1/s",
-            of=lambda p: p["v"] * p["K_p"] / (p["tau_up"] + p["tau_dn"]),
-            meaning="loop gain at high frequency",
-            role=ShipRole.LOOP_GAIN,
-        ),
-    )

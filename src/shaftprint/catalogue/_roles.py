@@ -26,6 +26,18 @@ def _gain(term: str, unit: str, physical_unit: str, change: str) -> Role:
     return Role(name=f"{term} gain", unit=unit, basis=basis, over_torque=True, rack_power=-1, physical=form)
 
 
+def _coupling(name: str, unit: str, symbol: str, physical_unit: str) -> Role:
+    """Return the role of what a coupling answers a twist with, normalised as an inertia is: torque over speed."""
+    form = PhysicalForm(
+        name=symbol,
+        unit=physical_unit,
+        meaning=f"{name} of the coupling, at the propeller shaft",
+        scale=lambda point: point.inertia_kg_m2,
+    )
+    basis: frozenset[Basis] = frozenset(("inertia",))
+    return Role(name=f"coupling {name}", unit=unit, basis=basis, over_torque=True, physical=form)
+
+
 def _line(name: str, unit: str, *basis: Basis) -> Role:
     return Role(name=name, unit=unit, basis=frozenset(basis))
 
@@ -43,6 +55,12 @@ class ShipRole:
     """Inertia time downstream of the torque gauge."""
     INERTIA_UPSTREAM: Final = _inertia("inertia upstream", "I_up", "inertia upstream of the torque gauge", "torque")
     """Inertia time upstream of the torque gauge; the vessel file gives its prior."""
+    INERTIA_DRIVEN: Final = Role(name="inertia driven", unit="s", basis=frozenset(("inertia",)), over_torque=True)
+    """Part of the inertia time upstream of the gauge that lies behind an elastic coupling."""
+    COUPLING_STIFFNESS: Final = _coupling("stiffness", "1/s", "k", "N m/rad")
+    """Stiffness of an elastic coupling, ``2 pi k n_s0 / M_s0``."""
+    COUPLING_DAMPING: Final = _coupling("damping", "-", "d", "N m s/rad")
+    """Damping of an elastic coupling, ``2 pi d n_s0 / M_s0``."""
     INERTIA: Final = _inertia("inertia", "I", "inertia that the thesis' shaft loop implies", "inertia")
     """Inertia time of the thesis' one shaft."""
     PROPORTIONAL_GAIN: Final = _gain("proportional", "-", "N m/rpm", "change of torque")

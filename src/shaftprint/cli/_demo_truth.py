@@ -31,6 +31,9 @@ def fingerprint_truth(truth: Truth, structure: Structure, signals: Signals) -> d
         "I_dn": truth.physical["inertia_downstream_kg_m2"],
         "I_up": truth.physical["inertia_upstream_kg_m2"],
     }
+    if "coupling_stiffness_nm_rad" in truth.physical:
+        physical["k"] = truth.physical["coupling_stiffness_nm_rad"]
+        physical["d"] = truth.physical["coupling_damping_nm_s_rad"]
     linear = margins(structure, values)
     return {
         **named,

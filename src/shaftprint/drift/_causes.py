@@ -187,6 +187,14 @@ CAUSES: tuple[Cause, ...] = (
         roles=((ShipRole.INERTIA_DOWNSTREAM, ShipRole.INERTIA),),
         tolerance=0.005,
     ),
+    Cause(
+        name="stiffness of the coupling",
+        less="a softer coupling: aged or torn rubber",
+        more="a stiffer coupling: hardened rubber, or another element",
+        told_by="look at the elements of the coupling",
+        roles=((ShipRole.COUPLING_STIFFNESS,),),
+        tolerance=0.02,
+    ),
 )
 """What moves numbers by their roles."""
 

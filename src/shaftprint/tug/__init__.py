@@ -7,6 +7,7 @@ quantity                     unit       meaning and sign
 ============================ ========== ==========================================================================
 ``n_s``, ``n_e``             rev/s      speed of propeller shaft and engine, positive ahead, ``n_e = i n_s``
 ``M_s``                      N m        torque at the gauge, positive when the engine drives the propeller
+``T``                        N m        torque of an elastic coupling, positive as ``M_s``
 ``M_b``                      N m        brake torque at the engine flange, negative when the engine is motored
 ``X``                        1          fuel rack above zero-torque running; 1 gives rated torque at rated speed
 ``U``                        V          set-point voltage; more negative asks for more speed
@@ -27,6 +28,7 @@ from shaftprint.tug._changes import (
     with_injection,
     with_load,
 )
+from shaftprint.tug._coupling import Coupling
 from shaftprint.tug._ideal import IdealSignals, simulate_signals
 from shaftprint.tug._like_stan_tug import like_stan_tug_1205
 from shaftprint.tug._linearise import linearised_response
@@ -49,6 +51,7 @@ from shaftprint.tug._tug import Tug
 from shaftprint.tug.sensors import Fault
 
 __all__ = [
+    "Coupling",
     "Fault",
     "IdealSignals",
     "Noise",

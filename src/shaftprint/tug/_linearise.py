@@ -10,11 +10,13 @@ from shaftprint.errors import SettingsError
 from shaftprint.tug._tug import Tug
 from shaftprint.tug.plant import (
     ANGLE,
+    ENGINE,
     INTEGRAL,
     RACK,
     RACK_RATE,
     SLIPSTREAM,
     SPEED,
+    TWIST,
     WAY,
     Plant,
     build_plant,
@@ -25,10 +27,10 @@ from shaftprint.tug.plant import (
 )
 from shaftprint.vessel import Vessel
 
-# Places in the vector that is perturbed: seven states, the demand in the ECU, the rack given a delay ago, the pitch.
-_DEMAND, _RACK_DELAYED, _PITCH, _SIZE = 7, 8, 9, 10
+# Places in the vector that is perturbed: nine states, the demand in the ECU, the rack given a delay ago, the pitch.
+_DEMAND, _RACK_DELAYED, _PITCH, _SIZE = 9, 10, 11, 12
 # Places in what comes out: the rates of the states, then the rack given and the torque at the gauge.
-_GIVEN, _GAUGE, _RATES = 7, 8, 9
+_GIVEN, _GAUGE, _RATES = 9, 10, 11
 
 
 def linearised_response(
@@ -74,8 +76,9 @@ def linearised_response(
     s = 2j * np.pi * np.asarray(frequency_hz, dtype=np.float64)
     # the torque of a motor follows in a lag of first order
     states = [SPEED, INTEGRAL, RACK] + [RACK_RATE] * (plant.torque_per_s == 0.0)
-    # a slipstream that follows at once is no state, nor is the speed of a ship that stands still
-    states += [SLIPSTREAM] * bool(plant.inflow_gain) + [WAY] * plant.sails
+    # a slipstream that follows at once is no state, nor the twist of a rigid line, nor the speed of a ship that stands
+    states += [SLIPSTREAM] * bool(plant.inflow_gain) + [ENGINE, TWIST] * bool(plant.coupling_nm_rev)
+    states += [WAY] * plant.sails
     way = equilibrium(plant, speed)[WAY]
     response = np.empty((len(outputs), 1, s.size), dtype=np.complex128)
     for line, value in enumerate(s):
@@ -108,13 +111,14 @@ def _excitation(tug: Tug, name: str, s: complex, speed: float) -> tuple[int, flo
 
 
 def _slopes(plant: Plant, engine_speed_rev_s: float) -> FloatArray:
-    """Return the slopes of the rates, the rack given and the gauge torque, shape (9, 10)."""
+    """Return the slopes of the rates, the rack given and the gauge torque, shape (11, 12)."""
     state = equilibrium(plant, engine_speed_rev_s)
     centre = np.array([*state, engine_speed_rev_s, state[RACK], 0.0])
     # at the quay the rates are at most quadratic: the central difference has no truncation error; underway it is 1e-8
     size = 1e-4 * centre
     size[RACK_RATE] = size[RACK]
     size[ANGLE] = 1.0
+    size[TWIST] = size[TWIST] or 1.0
     size[WAY] = max(size[WAY], 1e-4)
     size[_PITCH] = 1e-4
     slope = np.empty((_RATES, _SIZE))
@@ -130,4 +134,4 @@ def _rates(plant: Plant, vector: FloatArray) -> FloatArray:
     rates: Any = derivatives
     values = rates.py_func(vector[:_DEMAND], *vector[_DEMAND:_PITCH], 0.0, 0.0, plant, 1.0, vector[_PITCH])
     # the angle's rate, which is the speed, plays no part
-    return np.array([*values[:5], 0.0, values[9], values[5], values[6]])
+    return np.array([*values[:5], 0.0, *values[9:12], values[5], values[6]])

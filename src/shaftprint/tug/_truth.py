@@ -49,7 +49,8 @@ class Truth(Shown):
     """Sample rate of every channel [Hz]."""
     normalised: Mapping[str, float]
     """Parameters normalised at the working point: ``tau_up``, ``tau_dn``, ``tau_t`` [s]; ``tau_w`` [s], the part of
-    ``tau_dn`` that is water beyond the vessel's; ``k_q``; ``kappa``, ``tau_i`` [s] of the dynamic inflow; ``g``, ``v``,
+    ``tau_dn`` that is water beyond the vessel's; with an elastic coupling ``k_c`` [1/s], ``d_c`` and ``tau_m`` [s];
+    ``k_q``; ``kappa``, ``tau_i`` [s] of the dynamic inflow; ``g``, ``v``,
     ``X_0``; ``K_p``, ``K_i`` [1/s], ``t_d`` [s], ``omega_n`` [rad/s], ``zeta``,
     of a motor ``T_m`` [s] in their place, ``t_sp`` [s]; and where percent torque
     was logged ``t_rack`` [s], its latency beyond the vessel's. Underway, in place of ``k_q``: ``w``, ``t``, ``J``,
@@ -89,6 +90,7 @@ def normalised_truth(tug: Tug, vessel: Vessel) -> dict[str, float]:
         "tau_dn": downstream,
         "tau_t": upstream + downstream,
         "tau_w": shaft_time_constant_s(tug.entrained_water_kg_m2, tug, vessel),
+        **_coupling_truth(tug, vessel),
         **_load_truth(tug, vessel),
         "kappa": tug.inflow_gain,
         "tau_i": tug.inflow_time_s,
@@ -101,6 +103,19 @@ def normalised_truth(tug: Tug, vessel: Vessel) -> dict[str, float]:
         **_actuation_truth(tug, vessel),
         "t_sp": tug.set_point_latency_s,
     } | late
+
+
+def _coupling_truth(tug: Tug, vessel: Vessel) -> dict[str, float]:
+    """Return stiffness and damping of an elastic coupling over the torque, and the inertia time behind it."""
+    if tug.coupling is None:
+        return {}
+    # stiffness and damping are normalised as an inertia is: the torque of the working point over its speed
+    scale = shaft_time_constant_s(1.0, tug, vessel)
+    return {
+        "k_c": scale * tug.coupling.stiffness_nm_rad,
+        "d_c": scale * tug.coupling.damping_nm_s_rad,
+        "tau_m": scale * tug.coupling.driven_kg_m2,
+    }
 
 
 def _actuation_truth(tug: Tug, vessel: Vessel) -> dict[str, float]:
@@ -129,6 +144,7 @@ def physical_truth(tug: Tug, vessel: Vessel) -> dict[str, float]:
     speed, _ = working_point(tug, vessel)
     rate = tug.rack_rate_limit_per_s
     limited = {} if rate is None else {"rack_rate_limit_per_s": rate}
+    coupling = {} if tug.coupling is None else {f"coupling_{name}": x for name, x in asdict(tug.coupling).items()}
     return {
         "inertia_upstream_kg_m2": plant.inertia_upstream_kg_m2,
         "inertia_downstream_kg_m2": plant.inertia_downstream_kg_m2,
@@ -148,6 +164,7 @@ def physical_truth(tug: Tug, vessel: Vessel) -> dict[str, float]:
         "transmission_efficiency": plant.efficiency,
         "torque_zero_offset_nm": tug.torque_zero_offset_nm,
         **limited,
+        **coupling,
         **_of_speed_and_generator(tug),
         **demand_limits(tug, vessel).stated,
     }

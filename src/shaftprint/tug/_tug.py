@@ -3,6 +3,7 @@
 from dataclasses import dataclass, field
 from typing import Self
 
+from shaftprint.tug._coupling import Coupling
 from shaftprint.tug._noise import Noise
 from shaftprint.tug._sailing import Sailing
 
@@ -36,6 +37,8 @@ class Tug:
     """Inertia upstream of the torque gauge, referred to the propeller shaft [kg m2]; ``None``: the vessel's."""
     inertia_downstream_kg_m2: float | None = None
     """Inertia downstream of the torque gauge, with entrained water [kg m2]; ``None``: the vessel's."""
+    coupling: Coupling | None = None
+    """An elastic coupling between engine and torque gauge; ``None``: a rigid line."""
     entrained_water_kg_m2: float = 0.0
     """Entrained water beyond what the inertia downstream already contains [kg m2]; it moves with the propeller."""
     inflow_gain: float = 0.0

@@ -3,6 +3,7 @@
 ``shaftprint.tug.sensors`` measures it. Quantities and signs are those of ``shaftprint.tug``.
 """
 
+from shaftprint.tug.plant._constants import Plant
 from shaftprint.tug.plant._demand import Demand, DemandLimits, demand_limits, demanded_speed, helm_voltage
 from shaftprint.tug.plant._disturbance import Disturbance
 from shaftprint.tug.plant._physics import (
@@ -15,13 +16,14 @@ from shaftprint.tug.plant._physics import (
 )
 from shaftprint.tug.plant._plant import (
     ANGLE,
+    ENGINE,
     INTEGRAL,
     RACK,
     RACK_RATE,
     SLIPSTREAM,
     SPEED,
+    TWIST,
     WAY,
-    Plant,
     derivatives,
     governor_rack,
     interpolation_weights,
@@ -31,11 +33,13 @@ from shaftprint.tug.plant._voyage import Stretch, voyage
 
 __all__ = [
     "ANGLE",
+    "ENGINE",
     "INTEGRAL",
     "RACK",
     "RACK_RATE",
     "SLIPSTREAM",
     "SPEED",
+    "TWIST",
     "WAY",
     "Demand",
     "DemandLimits",

@@ -7,9 +7,11 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import SettingsError
+from shaftprint.tug._coupling import Coupling
 from shaftprint.tug._sailing import AT_THE_QUAY, steady_ship_speed_m_s, steady_torque_nm, way_of
 from shaftprint.tug._tug import USUAL_MOTORING_NM, Tug
-from shaftprint.tug.plant._plant import INTEGRAL, RACK, SLIPSTREAM, SPEED, STATES, WAY, Plant
+from shaftprint.tug.plant._constants import Plant
+from shaftprint.tug.plant._plant import ENGINE, INTEGRAL, RACK, SLIPSTREAM, SPEED, STATES, TWIST, WAY
 from shaftprint.units import rev_s_from_rpm
 from shaftprint.vessel import Vessel
 
@@ -54,10 +56,14 @@ def build_plant(tug: Tug, vessel: Vessel) -> Plant:
     rack_slope = vessel.machine.rated_torque_nm - speed_slope * rated - offset
     rack = tug.v * brake / rack_slope
     limits = _torque_limits(tug, vessel, speed)
+    coupling = tug.coupling
     upstream, downstream = tug.inertia_upstream_kg_m2, tug.inertia_downstream_kg_m2
+    upstream = vessel.inertia_upstream_kg_m2 if upstream is None else upstream
+    if coupling is not None:
+        _check_coupling(coupling, upstream)
     downstream = vessel.inertia_downstream_kg_m2 if downstream is None else downstream
     return Plant(
-        inertia_upstream_kg_m2=vessel.inertia_upstream_kg_m2 if upstream is None else upstream,
+        inertia_upstream_kg_m2=upstream,
         inertia_downstream_kg_m2=downstream + tug.entrained_water_kg_m2,
         gear_ratio=ratio,
         efficiency=efficiency,
@@ -85,6 +91,9 @@ def build_plant(tug: Tug, vessel: Vessel) -> Plant:
         rack_rate_limit_per_s=np.inf if tug.rack_rate_limit_per_s is None else tug.rack_rate_limit_per_s,
         air_share=tug.unboosted_torque_share,
         turbocharger_lag_s=tug.turbocharger_lag_s,
+        coupling_nm_rev=0.0 if coupling is None else 2.0 * math.pi * coupling.stiffness_nm_rad,
+        coupling_nm_s_rev=0.0 if coupling is None else 2.0 * math.pi * coupling.damping_nm_s_rad,
+        inertia_driven_kg_m2=0.0 if coupling is None else coupling.driven_kg_m2,
         sails=tug.sailing is not None,
         way=AT_THE_QUAY if tug.sailing is None else way_of(tug.sailing, vessel),
     )
@@ -156,6 +165,8 @@ def equilibrium(plant: Plant, engine_speed_rev_s: float) -> FloatArray:
     state = np.zeros(STATES)
     state[SPEED], state[INTEGRAL], state[RACK], state[SLIPSTREAM] = speed_s, rack, rack, speed_s
     state[WAY] = steady_ship_speed_m_s(plant.way, speed_s) if plant.sails else 0.0
+    state[ENGINE] = speed_s
+    state[TWIST] = load / plant.coupling_nm_rev if plant.coupling_nm_rev else 0.0
     return state
 
 
@@ -177,6 +188,30 @@ def shaft_time_constant_s(inertia_kg_m2: float, tug: Tug, vessel: Vessel) -> flo
     """Return ``tau = 2 pi I n_s0 / M_s0`` [s] of an inertia referred to the propeller shaft."""
     speed, torque = working_point(tug, vessel)
     return 2.0 * math.pi * inertia_kg_m2 * speed / (vessel.gearbox.ratio * torque)
+
+
+def _check_coupling(coupling: Coupling, upstream_kg_m2: float) -> None:
+    """Refuse a coupling that holds nothing, gives energy, or drives more than there is ahead of the gauge.
+
+    Raises
+    ------
+    SettingsError
+        If it is such a one.
+    """
+    if not coupling.stiffness_nm_rad > 0.0:
+        raise SettingsError(
+            f"tug: expected a coupling with stiffness_nm_rad above 0, found {coupling.stiffness_nm_rad:g}; "
+            "give none for a rigid line."
+        )
+    if not coupling.damping_nm_s_rad >= 0.0:
+        raise SettingsError(
+            f"tug: expected a coupling with damping_nm_s_rad of at least 0, found {coupling.damping_nm_s_rad:g}."
+        )
+    if not 0.0 <= coupling.driven_kg_m2 < upstream_kg_m2:
+        raise SettingsError(
+            f"tug: expected a coupling with driven_kg_m2 from 0 to below the {upstream_kg_m2:g} kg m2 upstream of the "
+            f"gauge, of which it is a part, found {coupling.driven_kg_m2:g}."
+        )
 
 
 def _check_motor(tug: Tug) -> None:

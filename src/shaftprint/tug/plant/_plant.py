@@ -32,81 +32,29 @@ first order as the current loop closes, ``T dX/dt = X(t - t_d) - X``; the natura
 of second order moves, and no branch is taken that would cost time. It pulls and brakes with constant torque up to
 base speed and with constant power above, where the field is weakened: ``M_max n_base / n``.
 
+Where a coupling twists, engine and shaft are two bodies with a spring of stiffness ``k`` and a damping ``c`` between
+them, and the governor feels the speed of the engine, ``i n_1``; ``I_m`` is what of ``I_up`` the coupling drives, such
+as a gearbox, and ``phi`` the twist in revolutions::
+
+    2 pi (I_up - I_m) dn_1/dt = i eta M_b - T        T = 2 pi (k phi + c (n_1 - n_s))        dphi/dt = n_1 - n_s
+    2 pi (I_m + I_dn) dn_s/dt = T - M_p              M_s = M_p + 2 pi I_dn dn_s/dt
+
 Gains and delay may go with a power of the engine speed, ``K (n_e / n_e0)^a`` and ``t_d (n_e / n_e0)^b``, at any time.
 """
-
-from typing import NamedTuple
 
 import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.kernels import compiled
-from shaftprint.tug._sailing import AT_THE_QUAY, Way
 
-SPEED, INTEGRAL, RACK, RACK_RATE, SLIPSTREAM, ANGLE, WAY = range(7)
+SPEED, INTEGRAL, RACK, RACK_RATE, SLIPSTREAM, ANGLE, WAY, ENGINE, TWIST = range(9)
 """Places in the state vector: shaft speed [rev/s], integrator [rack], rack, rack rate [1/s], slipstream velocity as a
-shaft speed [rev/s], shaft angle [rev], speed of the ship [m/s]."""
-STATES = 7
+shaft speed [rev/s], shaft angle [rev], speed of the ship [m/s]; speed of the engine at the propeller shaft [rev/s] and
+twist of the coupling [rev], which play a part only where the coupling is elastic."""
+STATES = 9
 FARTHEST_SHARE = 4.0
 """Gains and delay that go with the speed stay as they are beyond this share of the working point's, and below one over
 it."""
-
-
-class Plant(NamedTuple):
-    """Physical constants of the line; a named tuple because compiled code takes it as it is."""
-
-    inertia_upstream_kg_m2: float
-    inertia_downstream_kg_m2: float
-    gear_ratio: float
-    efficiency: float
-    propeller_nm_s2: float
-    """``K`` of the propeller law ``M_p = K n_s |n_s|`` [N m s2]."""
-    inflow_gain: float
-    """``kappa`` of the dynamic inflow; 0 where the slipstream follows at once."""
-    inflow_per_rev: float
-    """``1 / (2 n_s0 tau_i)`` of the dynamic inflow [1/rev]."""
-    speed_slope_nm_s: float
-    """``A_1`` [N m per rev/s]."""
-    rack_slope_nm: float
-    """``A_2`` [N m]: torque of the full rack."""
-    rack_offset_nm: float
-    """``A_3`` [N m]."""
-    proportional_s: float
-    """``K_p`` [rack per rev/s]."""
-    integral: float
-    """``K_i`` [rack per rev]."""
-    anti_windup_s: float
-    delay_s: float
-    natural_frequency_rad_s: float
-    damping_ratio: float
-    point_speed_rev_s: float
-    """Engine speed of the working point [rev/s], at which gains and delay are as stated."""
-    gain_exponent: float
-    """Power of the engine speed with which both gains go."""
-    delay_exponent: float
-    """Power of the engine speed with which the delay goes."""
-    limit_speed_rev_s: FloatArray
-    """Engine speeds of the full-load curve [rev/s], ascending."""
-    limit_torque_nm: FloatArray
-    """Full-load brake torque [N m]."""
-    motoring_speed_rev_s: FloatArray
-    """Engine speeds of the motoring curve [rev/s], ascending."""
-    motoring_torque_nm: FloatArray
-    """Brake torque without fuel at them, as positive numbers [N m]."""
-    deadband_rev_s: float = 0.0
-    """Speed error within which the governor does nothing [rev/s], half of the whole band."""
-    rack_rate_limit_per_s: float = np.inf
-    """Fastest change of the rack that the governor gives [1/s]."""
-    air_share: float = 1.0
-    """Full-load torque without boost, as a fraction of that with full boost; 1 without a smoke limiter."""
-    turbocharger_lag_s: float = 1.0
-    """Time in which the boost follows the torque [s]."""
-    torque_per_s: float = 0.0
-    """One over the time constant of the torque of a motor [1/s]; 0 for an engine."""
-    sails: bool = False
-    """Whether the ship has way on; if not, ``way`` plays no part."""
-    way: Way = AT_THE_QUAY
-    """The ship and what its propellers do underway."""
 
 
 @compiled(inline="always")
@@ -181,6 +129,14 @@ def _scheduled(speed, exponent, plant):  # type: ignore[no-untyped-def]
 
 
 @compiled(inline="always")
+def _engine_end(state, plant):  # type: ignore[no-untyped-def]
+    """Return the speed of the engine at the propeller shaft [rev/s]: the shaft's own where the line is rigid."""
+    if plant.coupling_nm_rev == 0.0:
+        return state[0]
+    return state[7]
+
+
+@compiled(inline="always")
 def governor_rack(speed_s, integral, demand, plant, air=1.0):  # type: ignore[no-untyped-def]
     """Return the rack that the governor asks for, before and after the limiter of the ECU.
 
@@ -202,10 +158,11 @@ def governor_rack(speed_s, integral, demand, plant, air=1.0):  # type: ignore[no
 def derivatives(  # type: ignore[no-untyped-def]
     state, demand, rack_delayed, propeller_noise, engine_noise, plant, air=1.0, pitch=0.0
 ):
-    """Return rates of the first five states, rack given, ``M_s``, ``M_b``, whether it is limited, rate of the ship."""
+    """Return rates of five states, rack given, ``M_s``, ``M_b``, whether it is limited, rates of the last three."""
     speed_s, integral, rack, rack_rate, slipstream = state[0], state[1], state[2], state[3], state[4]
-    speed = plant.gear_ratio * speed_s
-    wanted, rack_given = governor_rack(speed_s, integral, demand, plant, air)
+    engine_s = _engine_end(state, plant)
+    speed = plant.gear_ratio * engine_s
+    wanted, rack_given = governor_rack(engine_s, integral, demand, plant, air)
     if plant.delay_s == 0.0:
         rack_delayed = rack_given
     unlimited = plant.speed_slope_nm_s * speed + plant.rack_slope_nm * rack + plant.rack_offset_nm
@@ -223,7 +180,17 @@ def derivatives(  # type: ignore[no-untyped-def]
         slipstream_rate = plant.inflow_per_rev * (speed_s * abs(speed_s) - slipstream * abs(slipstream))
     propeller = hydrodynamic * (1.0 + propeller_noise)
     drive = plant.gear_ratio * plant.efficiency * brake + load * engine_noise
-    acceleration = (drive - propeller) / (2.0 * np.pi * (plant.inertia_upstream_kg_m2 + plant.inertia_downstream_kg_m2))
+    if plant.coupling_nm_rev == 0.0:
+        inertia = plant.inertia_upstream_kg_m2 + plant.inertia_downstream_kg_m2
+        acceleration = (drive - propeller) / (2.0 * np.pi * inertia)
+        engine_acceleration, twist_rate = 0.0, 0.0
+    else:
+        twist_rate = engine_s - speed_s
+        spring = plant.coupling_nm_rev * state[8] + plant.coupling_nm_s_rev * twist_rate
+        ahead = plant.inertia_upstream_kg_m2 - plant.inertia_driven_kg_m2
+        behind = plant.inertia_driven_kg_m2 + plant.inertia_downstream_kg_m2
+        engine_acceleration = (drive - spring) / (2.0 * np.pi * ahead)
+        acceleration = (spring - propeller) / (2.0 * np.pi * behind)
     gauge = propeller + 2.0 * np.pi * plant.inertia_downstream_kg_m2 * acceleration
     gain = _scheduled(speed, plant.gain_exponent, plant)
     integral_rate = gain * plant.integral * _felt(demand - speed, plant) + (rack_given - wanted) / plant.anti_windup_s
@@ -242,6 +209,8 @@ def derivatives(  # type: ignore[no-untyped-def]
         brake,
         limited,
         way_rate,
+        engine_acceleration,
+        twist_rate,
     )
 
 
@@ -296,6 +265,8 @@ def _moved(x, h, rates):  # type: ignore[no-untyped-def]
         x[4] + h * rates[4],
         x[5],
         x[6] + h * rates[9],
+        x[7] + h * rates[10],
+        x[8] + h * rates[11],
     )
 
 
@@ -321,6 +292,8 @@ def _runge_kutta(h, x, k1, demand, past, propeller, engine, plant, air, pitch): 
         x[4] + part * (k1[4] + 2.0 * k2[4] + 2.0 * k3[4] + k4[4]),
         x[5] + part * (x[0] + 2.0 * x2[0] + 2.0 * x3[0] + x4[0]),
         x[6] + part * (k1[9] + 2.0 * k2[9] + 2.0 * k3[9] + k4[9]),
+        x[7] + part * (k1[10] + 2.0 * k2[10] + 2.0 * k3[10] + k4[10]),
+        x[8] + part * (k1[11] + 2.0 * k2[11] + 2.0 * k3[11] + k4[11]),
     )
 
 
@@ -334,7 +307,7 @@ def advance(  # type: ignore[no-untyped-def]
     and one more. All that goes on is carried, so that the result does not depend on how the time is cut into calls.
     """
     state, history = carried.state, carried.history
-    x = (state[0], state[1], state[2], state[3], state[4], state[5], state[6])
+    x = (state[0], state[1], state[2], state[3], state[4], state[5], state[6], state[7], state[8])
     k = carried.counter[0]
     mask = history.size - 1
     largest_change = plant.rack_rate_limit_per_s * step_s
@@ -351,7 +324,7 @@ def advance(  # type: ignore[no-untyped-def]
             )
         else:
             # a step is so short that the speed is that of its start
-            steps = delay.steps * _scheduled(plant.gear_ratio * x[0], plant.delay_exponent, plant)
+            steps = delay.steps * _scheduled(plant.gear_ratio * _engine_end(x, plant), plant.delay_exponent, plant)
             past = (
                 _past_at(history, mask, k, -steps),
                 _past_at(history, mask, k, 0.5 - steps),
@@ -371,9 +344,9 @@ def advance(  # type: ignore[no-untyped-def]
         traces.limited[j] = rates[8] or rack_given != rates[5]
         traces.ship_speed_m_s[j] = x[6]
         if plant.air_share < 1.0:
-            _, full_load = torque_limits(plant.gear_ratio * x[0], plant)
+            _, full_load = torque_limits(plant.gear_ratio * _engine_end(x, plant), plant)
             carried.boost[0] += step_s / plant.turbocharger_lag_s * (rates[7] / full_load - carried.boost[0])
         x = _runge_kutta(step_s, x, rates, demands, past, propeller, engine, plant, air, blades)
         k += 1
-    state[0], state[1], state[2], state[3], state[4], state[5], state[6] = x
+    state[0], state[1], state[2], state[3], state[4], state[5], state[6], state[7], state[8] = x
     carried.counter[0] = k

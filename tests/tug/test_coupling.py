@@ -1,0 +1,101 @@
+"""An elastic coupling in the simulated ship: its mode by hand, its rigid limit, its steps and its linear response."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from shaftprint.errors import SettingsError
+from shaftprint.tug import Coupling, Tug, linearised_response, normalised_truth, simulate_signals
+from shaftprint.tug.plant import ENGINE, SPEED, TWIST, build_plant, derivatives, equilibrium
+from shaftprint.vessel import Vessel
+
+Make = Callable[..., Any]
+UPSTREAM, DOWNSTREAM = 54.006, 17.0
+SPEED_S = 1183.8 / 60.0 / 3.82
+SOFT = Coupling(stiffness_nm_rad=40e3, damping_nm_s_rad=60.0, driven_kg_m2=12.0)
+
+
+def elastic(coupling: Coupling = SOFT, **given: Any) -> Tug:
+    return Tug(coupling=coupling, **given)
+
+
+def test_free_line_swings_at_the_frequency_of_two_masses_and_a_spring(vessel: Vessel) -> None:
+    """``f = sqrt(k (1 / J_1 + 1 / J_2)) / (2 pi)``, J_1 ahead of the coupling and J_2 all behind it, undamped."""
+    plant = build_plant(elastic(replace(SOFT, damping_nm_s_rad=0.0)), vessel)
+    state = equilibrium(plant, SPEED_S * 3.82)
+    slope = np.empty((3, 3))
+    places, rates = [SPEED, ENGINE, TWIST], [0, 10, 11]
+    for column, place in enumerate(places):
+        shift = np.zeros(state.size)
+        shift[place] = 1e-5
+        # the rack stands still: it is not the governor that swings the line
+        up, down = (
+            derivatives.py_func(state + sign * shift, SPEED_S * 3.82, 0.0, 0.0, 0.0, plant) for sign in (1.0, -1.0)
+        )
+        slope[:, column] = [(up[rate] - down[rate]) / 2e-5 for rate in rates]
+    swings = np.linalg.eigvals(slope)
+    found_hz = np.abs(swings.imag).max() / (2.0 * np.pi)
+    by_hand_hz = np.sqrt(40e3 * (1.0 / (UPSTREAM - 12.0) + 1.0 / (DOWNSTREAM + 12.0))) / (2.0 * np.pi)
+    # the slope of the propeller torque, 2 M_s0 / n_s0, damps the mode and takes 1e-3 of its frequency at most
+    assert found_hz == pytest.approx(by_hand_hz, rel=1e-3)
+
+
+def test_stiff_coupling_is_a_rigid_line(vessel: Vessel) -> None:
+    frequency = np.geomspace(0.02, 2.0, 9)
+    stiff = linearised_response(
+        elastic(replace(SOFT, stiffness_nm_rad=1e12)), vessel, frequency, outputs=("n", "M_s", "X")
+    )
+    assert stiff == pytest.approx(linearised_response(Tug(), vessel, frequency, outputs=("n", "M_s", "X")), rel=1e-6)
+
+
+def test_line_starts_twisted_by_the_torque_it_carries(vessel: Vessel) -> None:
+    """All that the propeller takes goes through the coupling: ``phi = M_s0 / k`` in rad."""
+    state = equilibrium(build_plant(elastic(), vessel), SPEED_S * 3.82)
+    assert 2.0 * np.pi * state[TWIST] == pytest.approx(1725.0 / 40e3, rel=1e-9)
+    assert state[ENGINE] == state[SPEED]
+
+
+@pytest.mark.parametrize("frequency_hz", [1.0, 5.5])
+def test_stepped_line_follows_a_small_sine_as_linearised(
+    vessel: Vessel, ask: Make, sine: Make, frequency_hz: float
+) -> None:
+    """Below the mode and near it: the kernel's steps against the response."""
+    tug = elastic()
+    campaign = ask(36.0, sines=[sine(frequency_hz, 0.01) | {"settled_s": 24.0, "stop_s": 34.01}])
+    signals = simulate_signals(vessel, campaign, tug=tug, rate_hz=400.0)
+    late = (signals.time_s >= 24.0) & (signals.time_s < 34.0)
+    phase = 2.0 * np.pi * frequency_hz * signals.time_s[late]
+    columns = np.stack([np.cos(phase), np.sin(phase), np.ones_like(phase)], axis=1)
+
+    def part(values: np.ndarray) -> complex:
+        cosine, sine_part, mean = np.linalg.lstsq(columns, values[late], rcond=None)[0]
+        return complex(cosine, -sine_part) / mean
+
+    set_point = part(signals.set_point_rev_s)
+    found = np.array([part(signals.engine_speed_rev_s), part(signals.shaft_torque_nm)]) / set_point
+    expected = linearised_response(tug, vessel, [frequency_hz])[:, 0, 0]
+    assert found == pytest.approx(expected, rel=2e-3)
+
+
+def test_truth_is_told_normalised_and_in_si(vessel: Vessel) -> None:
+    told = normalised_truth(elastic(), vessel)
+    assert told["k_c"] == pytest.approx(2.0 * np.pi * SPEED_S * 40e3 / 1725.0, rel=1e-9)
+    assert told["d_c"] == pytest.approx(2.0 * np.pi * SPEED_S * 60.0 / 1725.0, rel=1e-9)
+    assert told["tau_m"] == pytest.approx(2.0 * np.pi * SPEED_S * 12.0 / 1725.0, rel=1e-9)
+    assert "k_c" not in normalised_truth(Tug(), vessel)
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ({"stiffness_nm_rad": 0.0}, "stiffness_nm_rad above 0"),
+        ({"damping_nm_s_rad": -1.0}, "damping_nm_s_rad of at least 0"),
+        ({"driven_kg_m2": 60.0}, "driven_kg_m2 from 0 to below"),
+    ],
+)
+def test_impossible_coupling_is_refused(vessel: Vessel, change: dict[str, float], said: str) -> None:
+    with pytest.raises(SettingsError, match=said):
+        build_plant(elastic(replace(SOFT, **change)), vessel)
