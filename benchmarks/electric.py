@@ -13,13 +13,17 @@ import json
 import tempfile
 import time
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 
+from benchmarks.kept_outcomes import kept
 from benchmarks.limits import VESSEL as TUG
 from benchmarks.limits import line_of
+from benchmarks.monte_carlo_recordings import Ship, drawn_gauge
+from benchmarks.monte_carlo_tables import write_between_marks
 from shaftprint.campaign import load_campaign
 from shaftprint.catalogue import structure
 from shaftprint.cli._demo_truth import fingerprint_truth
@@ -28,8 +32,8 @@ from shaftprint.errors import ShaftprintError
 from shaftprint.fingerprint import Quantity
 from shaftprint.signals import Signals
 from shaftprint.survey import run
-from shaftprint.tug import Truth, Tug, like_stan_tug_1205, sail
-from shaftprint.vessel import Vessel, load_vessel
+from shaftprint.tug import Truth, like_stan_tug_1205, sail
+from shaftprint.vessel import load_vessel
 
 VESSEL, CAMPAIGN = load_vessel("e-ferry-ellen"), load_campaign("short")
 MOTOR, DIESEL = "GAUGE-MOTOR", "GAUGE-CLOSED"
@@ -40,28 +44,10 @@ PAGE = Path(__file__).parents[1] / "docs" / "electric.md"
 BEGIN, END = "<!-- electric: begin -->\n", "<!-- electric: end -->\n"
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Ship:
-    """A ship that agrees with the vessel file to what that states."""
-
-    tug: Tug
-    vessel: Vessel
-    scale: float
-    """Torque that the gauge shows over the true one."""
-    zero_nm: float
-    """What the gauge feels without torque [N m]."""
-    late_s: float
-    """Latency of the telemetry beyond that in the vessel file [s]."""
-
-
 def ship(seed: int) -> Ship:
     """Return the ship of a seed."""
     rng = np.random.default_rng([SEED, seed])
-    gauge = VESSEL.sensors.shaft_torque
-    scale, zero_nm = 1.0 + rng.normal(0.0, gauge.scale_std), rng.normal(0.0, gauge.zero_std)
-    latency_s = max(0.0, rng.normal(gauge.latency_s, gauge.latency_std))
-    true = gauge.model_copy(update={"scale_nm_per_unit": gauge.scale_nm_per_unit / scale, "latency_s": latency_s})
-    sensors = VESSEL.sensors.model_copy(update={"shaft_torque": true})
+    gauge = drawn_gauge(VESSEL, rng)
     proportional = rng.uniform(1.2, 3.0)
     tug = replace(
         like_stan_tug_1205(VESSEL),
@@ -73,15 +59,9 @@ def ship(seed: int) -> Ship:
         anti_windup_s=rng.uniform(0.3, 1.0),
         inertia_upstream_kg_m2=rng.normal(VESSEL.inertia_upstream_kg_m2, VESSEL.inertia_upstream_std_kg_m2),
         inertia_downstream_kg_m2=rng.normal(VESSEL.inertia_downstream_kg_m2, VESSEL.inertia_downstream_std_kg_m2),
-        torque_zero_offset_nm=zero_nm,
+        torque_zero_offset_nm=gauge.zero_nm,
     )
-    return Ship(
-        tug=tug,
-        vessel=VESSEL.model_copy(update={"sensors": sensors}),
-        scale=scale,
-        zero_nm=zero_nm,
-        late_s=latency_s - gauge.latency_s,
-    )
+    return replace(gauge, tug=tug)
 
 
 def true_values(truth: Truth, signals: Signals, of: Ship) -> dict[str, float]:
@@ -193,17 +173,12 @@ def main() -> None:
     options.outcomes.mkdir(parents=True, exist_ok=True)
     found = []
     for seed in range(options.first, options.first + options.seeds):
-        path = options.outcomes / f"{seed:03d}.json"
-        if not path.exists():
-            path.write_text(json.dumps(outcome(seed)), encoding="utf-8")
-        found.append(json.loads(path.read_text(encoding="utf-8")))
+        found.append(kept(options.outcomes / f"{seed:03d}.json", partial(outcome, seed)))
         print(json.dumps(found[-1]), flush=True)
     text = table(found)
     print(text)
     if options.write:
-        page = PAGE.read_text(encoding="utf-8")
-        before, _, rest = page.partition(BEGIN)
-        PAGE.write_text(f"{before}{BEGIN}{text}\n{END}{rest.partition(END)[2]}", encoding="utf-8")
+        write_between_marks(PAGE, text, BEGIN, END)
 
 
 if __name__ == "__main__":

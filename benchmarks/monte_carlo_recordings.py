@@ -5,7 +5,7 @@ and the ``g`` of the engine. The recording is then identified with the vessel fi
 """
 
 import tempfile
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -44,26 +44,30 @@ class Ship:
     """Latency of the telemetry beyond that in the vessel file [s]."""
 
 
+def drawn_gauge(vessel: Vessel, rng: np.random.Generator) -> Ship:
+    """Return the usual line whose torque gauge is as far off its vessel file as that states: scale, zero, latency."""
+    gauge = vessel.sensors.shaft_torque
+    scale = 1.0 + float(rng.normal(0.0, gauge.scale_std))
+    zero_nm = float(rng.normal(0.0, gauge.zero_std))
+    latency_s = max(0.0, float(rng.normal(gauge.latency_s, gauge.latency_std)))
+    true = gauge.model_copy(update={"scale_nm_per_unit": gauge.scale_nm_per_unit / scale, "latency_s": latency_s})
+    sensors = vessel.sensors.model_copy(update={"shaft_torque": true})
+    return Ship(
+        tug=Tug(torque_zero_offset_nm=zero_nm),
+        vessel=vessel.model_copy(update={"sensors": sensors}),
+        scale=scale,
+        zero_nm=zero_nm,
+        late_s=latency_s - gauge.latency_s,
+    )
+
+
 def drawn_ship(seed: int) -> Ship:
     """Return the ship of a seed."""
     rng = np.random.default_rng([SEED, seed])
-    gauge = VESSEL.sensors.shaft_torque
-    scale = 1.0 + rng.normal(0.0, gauge.scale_std_fraction or 0.0)
-    zero_nm = rng.normal(0.0, gauge.zero_std_nm or 0.0)
-    latency_s = max(0.0, rng.normal(gauge.latency_s, gauge.latency_std_s or 0.0))
-    inertia = rng.normal(VESSEL.inertia_upstream_kg_m2, VESSEL.inertia_upstream_std_kg_m2)
-    g = rng.normal(PRIOR_OF_G.mean, PRIOR_OF_G.std)
-    true = gauge.model_copy(
-        update={"scale_nm_per_unit": gauge.scale_nm_per_unit / scale, "latency_s": float(latency_s)}
-    )
-    sensors = VESSEL.sensors.model_copy(update={"shaft_torque": true})
-    return Ship(
-        tug=Tug(g=float(g), inertia_upstream_kg_m2=float(inertia), torque_zero_offset_nm=float(zero_nm)),
-        vessel=VESSEL.model_copy(update={"sensors": sensors}),
-        scale=float(scale),
-        zero_nm=float(zero_nm),
-        late_s=float(latency_s) - gauge.latency_s,
-    )
+    gauge = drawn_gauge(VESSEL, rng)
+    inertia = float(rng.normal(VESSEL.inertia_upstream_kg_m2, VESSEL.inertia_upstream_std_kg_m2))
+    g = float(rng.normal(PRIOR_OF_G.mean, PRIOR_OF_G.std))
+    return replace(gauge, tug=replace(gauge.tug, g=g, inertia_upstream_kg_m2=inertia))
 
 
 def true_values(truth: Truth, signals: Signals, ship: Ship) -> dict[str, float]:

@@ -10,11 +10,14 @@ import tempfile
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 
+from benchmarks.kept_outcomes import kept
 from benchmarks.limits import VESSEL, line_of
+from benchmarks.monte_carlo_tables import write_between_marks
 from shaftprint.campaign import load_campaign
 from shaftprint.catalogue import structure
 from shaftprint.cli._demo_truth import fingerprint_truth
@@ -122,17 +125,12 @@ def main() -> None:
     options.outcomes.mkdir(parents=True, exist_ok=True)
     found = []
     for seed in range(options.first, options.first + options.seeds):
-        path = options.outcomes / f"{seed:03d}.json"
-        if not path.exists():
-            path.write_text(json.dumps(outcome(seed)), encoding="utf-8")
-        found.append(json.loads(path.read_text(encoding="utf-8")))
+        found.append(kept(options.outcomes / f"{seed:03d}.json", partial(outcome, seed)))
         print(json.dumps(found[-1]), flush=True)
     text = table(found)
     print(text)
     if options.write:
-        page = PAGE.read_text(encoding="utf-8")
-        before, _, rest = page.partition(BEGIN)
-        PAGE.write_text(f"{before}{BEGIN}{text}\n{END}{rest.partition(END)[2]}", encoding="utf-8")
+        write_between_marks(PAGE, text, BEGIN, END)
 
 
 if __name__ == "__main__":

@@ -9,15 +9,16 @@ sailed again.
 """
 
 import argparse
-import json
 import tempfile
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from benchmarks.kept_outcomes import kept
 from benchmarks.monte_carlo_short import drawn_noise
 from benchmarks.monte_carlo_tables import write_between_marks
 from shaftprint.campaign import load_campaign
@@ -156,17 +157,17 @@ def _true(truth: Truth, ship: Ship, shaft_torque_nm: float) -> Mapping[str, floa
     }
 
 
+def _outcome_or_refusal(sea: Sea, seed: int) -> dict[str, Any]:
+    try:
+        return outcome(sea, seed)
+    except ShaftprintError as error:
+        return {"seed": seed, "refused": str(error)}
+
+
 def outcomes_of(sea: Sea, seeds: range, folder: Path) -> Iterator[dict[str, Any]]:
     """Give what each test gave, from the file where it stands there already."""
     for seed in seeds:
-        path = folder / f"{sea.name.replace(' ', '_')}_{seed:03d}.json"
-        if not path.exists():
-            try:
-                one = outcome(sea, seed)
-            except ShaftprintError as error:
-                one = {"seed": seed, "refused": str(error)}
-            path.write_text(json.dumps(one), encoding="utf-8")
-        yield json.loads(path.read_text(encoding="utf-8"))
+        yield kept(folder / f"{sea.name.replace(' ', '_')}_{seed:03d}.json", partial(_outcome_or_refusal, sea, seed))
 
 
 def table(sea: Sea, outcomes: Sequence[Mapping[str, Any]]) -> str:

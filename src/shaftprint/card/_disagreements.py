@@ -47,17 +47,8 @@ def disagreements(vessel: Vessel) -> tuple[Disagreement, ...]:
     series; underway the speed of the ship, at which thrust is to meet resistance. A torque that is off by a factor of
     two contradicts the series, by a quarter it is strange.
     """
-    checks = (
-        _ratio,
-        _tip_speed,
-        _working_speed,
-        _full_load_curve,
-        _engine_load,
-        _series,
-        _coefficient,
-        _full_scale,
-        _thrust,
-    )
+    of_propeller = (_thrust,) if vessel.is_underway else (_series, _coefficient)
+    checks = (_ratio, _tip_speed, _working_speed, _full_load_curve, _engine_load, *of_propeller, _full_scale)
     found = [disagreement for check in checks for disagreement in check(vessel)]
     return tuple(sorted(found, key=lambda one: not one.is_contradiction))
 
@@ -178,7 +169,7 @@ def _series(vessel: Vessel) -> Iterator[Disagreement]:
         area_ratio=propeller.area_ratio,
         pitch_ratio=propeller.pitch_ratio,
     )
-    if series is None or vessel.is_underway:
+    if series is None:
         return
     expected_nm = _torque_nm(vessel, series.torque_coefficient)
     apart = _apart(point.shaft_torque_nm, expected_nm)
@@ -196,8 +187,6 @@ def _series(vessel: Vessel) -> Iterator[Disagreement]:
 
 def _coefficient(vessel: Vessel) -> Iterator[Disagreement]:
     coefficient, point = vessel.propeller.torque_coefficient, vessel.working_point
-    if vessel.is_underway:
-        return
     torque_nm = _torque_nm(vessel, coefficient)
     apart = _apart(point.shaft_torque_nm, torque_nm)
     if apart > _FINDING:

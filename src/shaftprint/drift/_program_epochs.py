@@ -5,7 +5,7 @@ the governor, unless a recording that both versions identified shows that they f
 """
 
 from collections.abc import Iterable, Sequence
-from itertools import pairwise
+from itertools import combinations, pairwise
 from typing import TYPE_CHECKING, Final
 
 from shaftprint.drift._dated import DatedTest, Event
@@ -51,10 +51,9 @@ def _shown_alike(fingerprints: "Iterable[Fingerprint]") -> frozenset[frozenset[s
             of_recording.setdefault(recording, []).append(one)
     alike: dict[frozenset[str], bool] = {}
     for same in of_recording.values():
-        for place, one in enumerate(same):
-            for other in same[place + 1 :]:
-                pair = frozenset((one.shaftprint_version, other.shaftprint_version))
-                alike[pair] = alike.get(pair, True) and _largest_shift(one, other) <= SAME_WITHIN
+        for one, other in combinations(same, 2):
+            pair = frozenset((one.shaftprint_version, other.shaftprint_version))
+            alike[pair] = alike.get(pair, True) and _largest_shift(one, other) <= SAME_WITHIN
     return frozenset(pair for pair, found in alike.items() if found)
 
 

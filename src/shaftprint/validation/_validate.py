@@ -200,7 +200,7 @@ def _delay(excerpt: Excerpt, run: Run, model: Model, smooth: Compared) -> Remain
         run.smooth[smooth.place, wide],
         run.slopes[:, smooth.place, wide],
         model.covariance,
-        smooth.noise.autocovariances[smooth.place],
+        smooth.autocovariance,
         rate_hz=run.data.signals.rate_hz,
         margin=margin,
     )
