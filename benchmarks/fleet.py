@@ -1,7 +1,7 @@
 """Fleet runs against what is asked of them: workers that are killed, two beside each other, the cost of the ledger.
 
-Real recordings of simulated tugs, campaign ``short``, a quarter of an hour each; seeds of the search make as many jobs
-of them as are asked for. Every document is held against that of a serial run, made in one process one after the other:
+Real recordings of simulated tugs, by default of the campaign ``short``, a quarter of an hour each; seeds of the search
+make as many jobs of them as are asked for. Every document is held against that of a serial run, made in one process one after the other:
 all of it must be equal byte by byte but for ``created``, the time at which it was made. ``--folder`` keeps recordings
 and serial run for the next time; ``--write`` puts the table into docs/fleet-runs.md.
 """
@@ -57,7 +57,7 @@ from shaftprint.vessel import load_vessel  # noqa: E402
 
 DOCUMENT = ROOT / "docs" / "fleet-runs.md"
 BEGIN, END = ("<!-- table of benchmarks/fleet.py: begin -->", "<!-- table of benchmarks/fleet.py: end -->")
-VESSEL, CAMPAIGN, FIRST_SEED = "stan-tug-1205", "short", 1000
+VESSEL, FIRST_SEED = "stan-tug-1205", 1000
 CREATED = re.compile(rb'"created": "[^"]*"')
 Row = tuple[str, str, str]
 
@@ -89,10 +89,10 @@ class Rows(list[Row]):
         return self
 
 
-def recordings(folder: Path, count: int) -> list[Path]:
-    """Return raw recordings, sailed where they are not there yet."""
+def recordings(folder: Path, campaign_name: str, count: int) -> list[Path]:
+    """Return raw recordings of a campaign, sailed where they are not there yet."""
     folder.mkdir(parents=True, exist_ok=True)
-    vessel, campaign = load_vessel(VESSEL), load_campaign(CAMPAIGN)
+    vessel, campaign = load_vessel(VESSEL), load_campaign(campaign_name)
     paths = [folder / f"{place:03}.nc" for place in range(count)]
     for place, path in enumerate(paths):
         if not path.exists():
@@ -100,13 +100,13 @@ def recordings(folder: Path, count: int) -> list[Path]:
     return paths
 
 
-def all_arguments(paths: Sequence[Path], count: int) -> list[JobArguments]:
+def all_arguments(paths: Sequence[Path], campaign: str, count: int) -> list[JobArguments]:
     """Return what is to be identified: every recording with one seed of the search, then with the next."""
     return [
         job_arguments(
             paths[place % len(paths)],
             VESSEL,
-            CAMPAIGN,
+            campaign,
             named="benchmark",
             seed=1 + place // len(paths),
             ship=f"Tug {place % len(paths):03}",
@@ -298,9 +298,9 @@ def on_dask(url: str, rng: random.Random, *, every_s: float) -> tuple[int, float
     return kills, time.monotonic() - begin
 
 
-def write_list(path: Path, asked: Sequence[JobArguments]) -> None:
+def write_list(path: Path, campaign: str, asked: Sequence[JobArguments]) -> None:
     """Write the list of a fleet run."""
-    rows = [f"{one.recording},{VESSEL},{CAMPAIGN},{one.seed},{one.ship},port,2026-03-31T09:30+02:00" for one in asked]
+    rows = [f"{one.recording},{VESSEL},{campaign},{one.seed},{one.ship},port,2026-03-31T09:30+02:00" for one in asked]
     path.write_text("\n".join(["recording,vessel,campaign,seed,ship,line,tested-at", *rows]) + "\n")
 
 
@@ -313,7 +313,8 @@ def words_of(kills: Kills) -> str:
 def measured(options: argparse.Namespace, folder: Path, scratch: Path) -> list[Row]:
     """Return what is asked and what was got."""
     rng = random.Random(options.seed)  # noqa: S311
-    asked = all_arguments(recordings(folder / "recordings", options.recordings), options.jobs)
+    sailed = recordings(folder / f"recordings-{options.campaign}", options.campaign, options.recordings)
+    asked = all_arguments(sailed, options.campaign, options.jobs)
     rows = Rows()
     url = options.store or str(scratch / "killed.db")
     with create_store(url) as store:
@@ -322,7 +323,7 @@ def measured(options: argparse.Namespace, folder: Path, scratch: Path) -> list[R
     if serial_s:
         rows += [("serial run, CPU of a recording", "", f"{serial_s:.2f} s")]
     if options.kill_every:
-        write_list(scratch / "list.csv", asked)
+        write_list(scratch / "list.csv", options.campaign, asked)
         rows += _after(disturbed(url, scratch / "list.csv", rng, every_s=options.kill_every), url, expected, asked)
     if options.pairs:
         rows += _beside(asked[: options.pairs], scratch)
@@ -387,6 +388,7 @@ def _on_dask(
 def main() -> None:
     """Measure and print."""
     parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--campaign", metavar="NAME", default="short", help="shipped campaign that is sailed")
     parser.add_argument("--recordings", type=int, default=40, help="recordings that are sailed")
     parser.add_argument("--jobs", type=int, default=1000, help="jobs that are made of them")
     parser.add_argument("--kill-every", type=float, default=10.0, help="seconds of two cores between kills; 0: none")
@@ -401,7 +403,7 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as scratch:
         folder = options.folder or Path(scratch)
         rows = measured(options, folder, Path(scratch))
-    title = f"{options.jobs} jobs of {options.recordings} recordings"
+    title = f"{options.jobs} jobs of {options.recordings} recordings, campaign {options.campaign}"
     print_table(title, ("what", "asked", "got"), rows)
     if options.write:
         lines = ["| what | asked | got |", "|---|---|---|", *(f"| {' | '.join(row)} |" for row in rows)]
