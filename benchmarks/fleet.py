@@ -1,9 +1,9 @@
 """Fleet runs against what is asked of them: workers that are killed, two beside each other, the cost of the ledger.
 
 Real recordings of simulated tugs, by default of the campaign ``short``, a quarter of an hour each; seeds of the search
-make as many jobs of them as are asked for. Every document is held against that of a serial run, made in one process one after the other:
-all of it must be equal byte by byte but for ``created``, the time at which it was made. ``--folder`` keeps recordings
-and serial run for the next time; ``--write`` puts the table into docs/fleet-runs.md.
+make as many jobs of them as are asked for. Every document is held against that of a serial run, made in one process one
+after the other: all of it must be equal byte by byte but for ``created``, the time at which it was made. ``--folder``
+keeps recordings and serial run for the next time; ``--write`` puts the table into docs/fleet-runs.md.
 """
 
 import argparse
@@ -59,6 +59,7 @@ DOCUMENT = ROOT / "docs" / "fleet-runs.md"
 BEGIN, END = ("<!-- table of benchmarks/fleet.py: begin -->", "<!-- table of benchmarks/fleet.py: end -->")
 VESSEL, FIRST_SEED = "stan-tug-1205", 1000
 CREATED = re.compile(rb'"created": "[^"]*"')
+KEPT_AT_A_TIME = 100
 Row = tuple[str, str, str]
 
 
@@ -123,17 +124,22 @@ def comparable(content: bytes) -> str:
 
 
 def serial(asked: Sequence[Job], kept: Path) -> tuple[dict[str, str], float]:
-    """Return the documents of jobs by their keys, made one after the other here, and the CPU of one [s]."""
+    """Return the documents of jobs by their keys, made one after the other here, and the CPU of one [s].
+
+    They are kept as they come: a benchmark that was ended goes on where it was.
+    """
     found: dict[str, str] = json.loads(kept.read_text()) if kept.exists() else {}
-    missing = [one for one in asked if one.key not in found]
-    begin = time.process_time()
-    for one in missing:
+    missing, used_s = [one for one in asked if one.key not in found], 0.0
+    for place, one in enumerate(missing, start=1):
+        begin = time.process_time()
         survey = survey_of_job(JobArguments.model_validate(one.args), tell=lambda step: None)
         found[one.key] = comparable(fingerprint_document(survey.fingerprint))
-    per_job_s = (time.process_time() - begin) / len(missing) if missing else 0.0
-    if missing:
-        kept.write_text(json.dumps(found))
-    return found, per_job_s
+        used_s += time.process_time() - begin
+        if place % KEPT_AT_A_TIME == 0 or place == len(missing):
+            part = kept.with_suffix(".part")
+            part.write_text(json.dumps(found))
+            part.replace(kept)
+    return found, used_s / len(missing) if missing else 0.0
 
 
 def differing(url: str, expected: dict[str, str]) -> tuple[int, int, int, int]:
