@@ -3,13 +3,15 @@
 from shaftprint.arguments import refusing_none
 from shaftprint.errors import StoreError
 from shaftprint.spelling import meant
-from shaftprint.store._history import newest
+from shaftprint.store._history import newest as newest_of_lines
 from shaftprint.store._line_history import LineHistory, line_history
 from shaftprint.store._store import Store
 
 
 @refusing_none(StoreError)
-def class_histories(store: Store, class_name: str, *, line: str | None = None) -> tuple[LineHistory, ...]:
+def class_histories(
+    store: Store, class_name: str, *, line: str | None = None, newest: int | None = None
+) -> tuple[LineHistory, ...]:
     """Return every line of the ships of a class that has a test, by name of the ship and line.
 
     Parameters
@@ -20,13 +22,15 @@ def class_histories(store: Store, class_name: str, *, line: str | None = None) -
         What the ships have in common, as their fingerprints state it.
     line
         Which of their lines; all when not given.
+    newest
+        As for ``line_history``.
 
     Raises
     ------
     StoreError
         If there is no such class, or none of its ships has such a line.
     """
-    tested = [summary.line for summary in newest(store) if summary.tests]
+    tested = [summary.line for summary in newest_of_lines(store) if summary.tests]
     known = sorted({one.ship.class_name for one in tested if one.ship.class_name is not None})
     of_class = [one for one in tested if one.ship.class_name == class_name]
     if not of_class:
@@ -37,4 +41,7 @@ def class_histories(store: Store, class_name: str, *, line: str | None = None) -
         positions = ", ".join(sorted({one.position for one in of_class}))
         raise StoreError(f"{class_name}: expected one of its lines, {positions}, found {line!r}.")
     wanted.sort(key=lambda one: (one.ship.name, one.position))
-    return tuple(line_history(store, str(one.ship.imo_number or one.ship.name), line=one.position) for one in wanted)
+    return tuple(
+        line_history(store, str(one.ship.imo_number or one.ship.name), line=one.position, newest=newest)
+        for one in wanted
+    )

@@ -1,13 +1,16 @@
 """The tests of one line as ``drift`` takes them: fingerprints with their times, and what was done between them."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from datetime import datetime
 from typing import TYPE_CHECKING
 
 from shaftprint.arguments import refusing_none
 from shaftprint.errors import StoreError
-from shaftprint.store._history import SHOWN_HASH, document, history
+from shaftprint.store._find import lines_called, ship_called
+from shaftprint.store._history import SHOWN_HASH, document
 from shaftprint.store._late_rooms import drift_room, fingerprint_room
+from shaftprint.store._nouns import Event as StoredEvent
 from shaftprint.store._nouns import Line, StoredFingerprint
 from shaftprint.store._store import Store
 
@@ -30,7 +33,7 @@ class LineHistory:
 
 
 @refusing_none(StoreError)
-def line_history(store: Store, ship: str, *, line: str | None = None) -> LineHistory:
+def line_history(store: Store, ship: str, *, line: str | None = None, newest: int | None = None) -> LineHistory:
     """Return the fingerprints of one line in the order of time, with the times that the store knows of them.
 
     Parameters
@@ -41,41 +44,94 @@ def line_history(store: Store, ship: str, *, line: str | None = None) -> LineHis
         Name or IMO number of the ship.
     line
         Which of its lines; a ship with one line needs none.
+    newest
+        How many tests that can be judged are wanted, the newest ones, with all that tells what was done before them:
+        other documents are not read. All when not given.
 
     Raises
     ------
     StoreError
         If there is no such ship or line, it has no test, or it is not said which of several lines.
     """
-    found = history(store, ship, lines=() if line is None else (line,), superseded=True)
-    lines = list(dict.fromkeys(entry.fingerprint.line.position for entry in found.entries))
+    tested, kept, stated = _records(store, ship, line)
+    event_of = drift_room().Event
+    events = tuple(
+        event_of(kind=event.kind, at=event.at, numbers=event.numbers, note=event.note)
+        for event in stated
+        if event.line.position == tested.position
+    )
+    names, recordings = _names(kept), list(_of_each_version(kept).values())
+    read: dict[str, Fingerprint] = {}
+    count = len(recordings) if newest is None else newest
+    while True:
+        begin = _tested_at(recordings[-min(count, len(recordings))])
+        for one in _wanted(recordings, begin):
+            if one.sha256 not in read:
+                read[one.sha256] = _read(store, one, names[one.sha256])
+        # in the order of time, whatever was read first
+        in_order = (one.sha256 for of_test in recordings for one in of_test.values())
+        fingerprints = {names[one]: read[one] for one in in_order if one in read}
+        if newest is None or count >= len(recordings) or _judged(fingerprints, events, begin) >= newest:
+            return LineHistory(line=tested, fingerprints=fingerprints, events=events)
+        count *= 2
+
+
+def _records(store: Store, ship: str, line: str | None) -> "tuple[Line, list[StoredFingerprint], list[StoredEvent]]":
+    """Return a line, what is kept of its fingerprints in the order of time, and what was done to its ship."""
+    with store.database.reading() as connection:
+        reader = store.database.reader(connection)
+        wanted = lines_called(reader, ship_called(reader, ship), () if line is None else (line,))
+        kept = list(reader.fingerprints(wanted, superseded=True).values())
+        events = reader.events(wanted)
+    lines = list(dict.fromkeys(one.line.position for one in kept))
     if len(lines) != 1:
         raise StoreError(
             f"{ship}: expected one shaft line, found {', '.join(lines) if lines else 'no test'}; "
             f"{'name it with --line' if lines else 'add its fingerprints with shaftprint store add'}."
         )
-    fingerprints: dict[str, Fingerprint] = {}
-    parse, event_of = fingerprint_room().parse_fingerprint, drift_room().Event
-    for kept in _of_each_version([entry.fingerprint for entry in found.entries]):
-        name = f"{kept.trial.tested_at:%Y-%m-%d %H:%M}"
-        name = f"{name} {kept.sha256[:SHOWN_HASH]}" if name in fingerprints else name
-        fingerprint = parse(document(store, kept.sha256), named=name)
-        conditions = fingerprint.conditions.model_copy(update={"tested_at": kept.trial.tested_at})
-        fingerprints[name] = fingerprint.model_copy(update={"conditions": conditions})
-    events = tuple(
-        event_of(kind=event.kind, at=event.at, numbers=event.numbers, note=event.note)
-        for event in found.events
-        if event.line.position == lines[0]
-    )
-    return LineHistory(line=found.entries[0].fingerprint.line, fingerprints=fingerprints, events=events)
+    return kept[0].line, kept, events
 
 
-def _of_each_version(kept: Sequence[StoredFingerprint]) -> Iterator[StoredFingerprint]:
-    """Yield the fingerprints that count, before each the last one that every other version made of its recording."""
+def _names(kept: Sequence[StoredFingerprint]) -> dict[str, str]:
+    """Return what each fingerprint is called, by its SHA-256, the time of its test, and more where two have it."""
+    names: dict[str, str] = {}
+    taken: set[str] = set()
+    for of_test in _of_each_version(kept).values():
+        for one in of_test.values():
+            name = f"{one.trial.tested_at:%Y-%m-%d %H:%M}"
+            names[one.sha256] = f"{name} {one.sha256[:SHOWN_HASH]}" if name in taken else name
+            taken.add(names[one.sha256])
+    return names
+
+
+def _of_each_version(kept: Sequence[StoredFingerprint]) -> dict[str, dict[str, StoredFingerprint]]:
+    """Return of each recording the last fingerprint of every version of the program, that which counts last."""
     by_recording: dict[str, dict[str, StoredFingerprint]] = {}
     for one in kept:
         of_test = by_recording.setdefault(one.trial.recording_sha256 or one.sha256, {})
         of_test.pop(one.version, None)
         of_test[one.version] = one
-    for of_test in by_recording.values():
-        yield from of_test.values()
+    return by_recording
+
+
+def _wanted(recordings: Sequence[Mapping[str, StoredFingerprint]], begin: datetime) -> Iterator[StoredFingerprint]:
+    """Yield the fingerprints of the recordings since a time, and of those that show whether their versions agree."""
+    versions = {version for one in recordings if _tested_at(one) >= begin for version in one}
+    for one in recordings:
+        if _tested_at(one) >= begin or len(versions & set(one)) > 1:
+            yield from one.values()
+
+
+def _tested_at(of_test: Mapping[str, StoredFingerprint]) -> datetime:
+    return next(iter(of_test.values())).trial.tested_at
+
+
+def _read(store: Store, kept: StoredFingerprint, name: str) -> "Fingerprint":
+    fingerprint: Fingerprint = fingerprint_room().parse_fingerprint(document(store, kept.sha256), named=name)
+    conditions = fingerprint.conditions.model_copy(update={"tested_at": kept.trial.tested_at})
+    return fingerprint.model_copy(update={"conditions": conditions})
+
+
+def _judged(fingerprints: "dict[str, Fingerprint]", events: "tuple[Event, ...]", begin: datetime) -> int:
+    """Return how many tests since a time can be judged."""
+    return sum(test.at >= begin for test in drift_room().history_of(fingerprints, events).tests)

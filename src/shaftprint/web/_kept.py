@@ -15,8 +15,11 @@ from typing import Any, Final, Literal, Self, TypeAlias
 from shaftprint.errors import ServerError
 
 MakingState: TypeAlias = Literal["waiting", "done", "refused"]
+MOST_CLASSES: Final = 500
+"""Classes of which the answer is kept: the same one as people see it who see other ships of it counts anew."""
 _TABLES: Final = """
 create table if not exists finding(line text primary key, state text not null, summary text not null, content text not null);
+create table if not exists class_finding(lines text primary key, state text not null, content text not null);
 create table if not exists upload(id text primary key, imo integer, ship text not null, line text not null,
   name text not null, size integer not null, sha256 text not null, person text not null, at text not null);
 create table if not exists making(key text primary key, kind text not null, args text not null, state text not null,
@@ -143,6 +146,17 @@ class Kept:
         """Keep what was found of a line."""
         row = (line, state, json.dumps(summary), json.dumps(content))
         self._write("insert or replace into finding values(?, ?, ?, ?)", *row)
+
+    def class_finding(self, lines: str, state: str) -> dict[str, Any] | None:
+        """Return what some lines said about each other in the state in which they are; None where that is not kept."""
+        with self._rows("select content from class_finding where lines = ? and state = ?", lines, state) as rows:
+            return json.loads(rows[0][0]) if rows else None
+
+    def put_class_finding(self, lines: str, state: str, content: dict[str, Any]) -> None:
+        """Keep what some lines said about each other; what was found before of as many others is forgotten."""
+        self._write("insert or replace into class_finding values(?, ?, ?)", lines, state, json.dumps(content))
+        last = "select rowid from class_finding order by rowid desc limit ?"
+        self._write(f"delete from class_finding where rowid not in ({last})", MOST_CLASSES)  # noqa: S608
 
     def uploads(self) -> tuple[Upload, ...]:
         """Return all uploads, the newest first."""

@@ -43,7 +43,7 @@ def command(
     causes of drift, with how much sisters differ as they are built.
     """
     with open_store(url) as store:
-        lines = class_histories(store, class_name, line=line)
+        lines = class_histories(store, class_name, line=line, newest=newest)
     ships, left_out = sisters_of(lines, newest=newest)
     for name in left_out:
         say(f"Left out: {name}, none of its tests can be judged.")

@@ -3,7 +3,7 @@
 import os
 from typing import Any
 
-from shaftprint.drift import judge_sisters, sister_sentences
+from shaftprint.drift import NEWEST_TESTS, judge_sisters, sister_sentences
 from shaftprint.report import cause_spread_table, sister_table
 from shaftprint.store import line_history, open_store, sisters_of
 from shaftprint.web.calculator._tables import table_contents
@@ -18,7 +18,7 @@ def judged_class(lines: list[list[str]]) -> dict[str, Any]:
         Ship, by IMO number or name, and position of each line that may be seen.
     """
     with open_store(os.environ["SHAFTPRINT_STORE"]) as store:
-        known = tuple(line_history(store, ship, line=position) for ship, position in lines)
+        known = tuple(line_history(store, ship, line=position, newest=NEWEST_TESTS) for ship, position in lines)
     sisters, left_out = sisters_of(known)
     finding = judge_sisters(sisters)
     return {

@@ -13,6 +13,7 @@ from shaftprint.web.calculator._tables import table_content
 
 if TYPE_CHECKING:
     from shaftprint.drift import DatedCause, History, SizedCause, WatchFinding
+    from shaftprint.fingerprint import Fingerprint
 
 SEED: Final = 1
 MOST_TESTS: Final = 40
@@ -31,7 +32,7 @@ def judged_line(ship: str, line: str) -> dict[str, Any]:
     """
     with open_store(os.environ["SHAFTPRINT_STORE"]) as store:
         known = line_history(store, ship, line=line)
-    newest = dict(list(known.fingerprints.items())[-MOST_TESTS:])
+    newest, earlier = _newest(known.fingerprints)
     history = history_of(newest, known.events)
     finding = watch(history, rng=np.random.default_rng(SEED))
     sizes = sizes_of_tests(history, load_repeatability=LOAD_REPEATABILITY)
@@ -42,10 +43,22 @@ def judged_line(ship: str, line: str) -> dict[str, Any]:
         "since": f"{history.tests[0].at:%Y-%m-%d}" if history.tests else None,
         "sentences": list(watch_sentences(finding, history)),
         "left_out": history.left_out | finding.left_out,
-        "earlier": len(known.fingerprints) - len(newest),
+        "earlier": earlier,
         "courses": _courses(finding, history),
         "strips": [_strip(name, column, history) for name, column in sizes.items()],
     }
+
+
+def _newest(fingerprints: "dict[str, Fingerprint]") -> "tuple[dict[str, Fingerprint], int]":
+    """Return the fingerprints of the newest recordings, and how many earlier recordings there are.
+
+    Of one recording several versions of the program may have made some, of which one counts as a test.
+    """
+    of_recording: dict[str, dict[str, Fingerprint]] = {}
+    for name, one in fingerprints.items():
+        of_recording.setdefault(one.recording_sha256 or name, {})[name] = one
+    newest = list(of_recording.values())[-MOST_TESTS:]
+    return {name: one for of_test in newest for name, one in of_test.items()}, len(of_recording) - len(newest)
 
 
 def _cause(course: "DatedCause", history: "History") -> dict[str, Any]:

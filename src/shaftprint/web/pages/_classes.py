@@ -1,10 +1,13 @@
 """Sister ships: which line of a class is not as the others are, and a number of the newest test of each."""
 
+import json
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any, Final
 
 from starlette.exceptions import HTTPException
 
+from shaftprint import __version__
 from shaftprint.digits import interval, unit_text, with_deviation
 from shaftprint.errors import ServerError
 from shaftprint.store import LineNow
@@ -13,7 +16,7 @@ from shaftprint.web._asked import Asked, NotThere, Shown, line_address
 NUMBERS: Final = ("K_Q", "I_dn", "governor proportional action", "governor integral action")
 
 
-# Each line brings its documents, which are read for every page.
+# Each line brings the documents of its newest tests, which are read whenever one of the lines has something new.
 MOST_LINES, LONGEST_S = 60, 60.0
 _HEADLINES = {
     "changed": ("Not all ships are as their sisters are", "look"),
@@ -24,35 +27,57 @@ _HEADLINES = {
 
 async def sister_class(asked: Asked) -> Shown:
     """Return which lines of a class are not as the others are, with a number of their newest test."""
-    shown: Shown = await asked.read(_class, asked)
-    judged = await _judged(asked, shown.data["lines"])
+    lines = await asked.read(_lines_of, asked)
+    shown, judged = _shown(asked, lines), await _judged(asked, lines)
     headline, look = _HEADLINES[judged["word"]]
     return replace(shown, data={**shown.data, **judged, "headline": headline, "look": look})
 
 
-async def _judged(asked: Asked, lines: list[dict[str, Any]]) -> dict[str, Any]:
-    """Return what the lines that this person sees say about each other."""
+async def _judged(asked: Asked, lines: Sequence[LineNow]) -> dict[str, Any]:
+    """Return what the lines that this person sees say about each other, calculated where one of them has changed."""
     because = {"word": "cannot be told", "left_out": [], "tables": []}
     if len(lines) > MOST_LINES:
         return because | {"sentences": [f"This page judges up to {MOST_LINES} lines together; shaftprint sisters any."]}
-    question = {"kind": "class", "lines": [[str(one["imo"] or one["ship"]), one["line"]] for one in lines]}
-    try:
-        return await asked.service.desk.ask(question, longest_s=LONGEST_S)
-    except ServerError as refusal:
-        return because | {"sentences": [str(refusal)]}
+    ships = [one.line.ship for one in lines]
+    called = [[str(ship.imo_number or ship.name), one.line.position] for ship, one in zip(ships, lines, strict=True)]
+    # another version of the program may find another answer
+    key, state = json.dumps(called), json.dumps([__version__, *(one.state for one in lines)])
+    kept = asked.service.kept
+    found = await asked.read(kept.class_finding, key, state)
+    if found is None:
+        try:
+            found = await asked.service.desk.ask({"kind": "class", "lines": called}, longest_s=LONGEST_S)
+        except ServerError as refusal:
+            return because | {"sentences": [str(refusal)]}
+        await asked.read(kept.put_class_finding, key, state, found)
+    return found
 
 
-def _class(asked: Asked) -> Shown:
+def _lines_of(asked: Asked) -> tuple[LineNow, ...]:
+    """Return the lines of a class that this person sees, each with a number of its newest test.
+
+    Raises
+    ------
+    HTTPException
+        If it is another number.
+    NotThere
+        If there are none.
+    """
     name, number = asked.named("name"), asked.query("number", NUMBERS[0])
     if number not in NUMBERS:
         raise HTTPException(400, f"Expected one of {', '.join(NUMBERS)}, found another number.")
-    lines = [
+    lines = tuple(
         one
         for one in asked.service.lines.now(number)
         if one.line.ship.class_name == name and asked.person.sees(one.line.ship)
-    ]
+    )
     if not lines:
         raise NotThere
+    return lines
+
+
+def _shown(asked: Asked, lines: Sequence[LineNow]) -> Shown:
+    name, number = asked.named("name"), asked.query("number", NUMBERS[0])
     rows = [_content(one) for one in lines]
     known = [one["value"] for one in rows if one["value"] is not None and one["trusted"]]
     return Shown(
