@@ -104,51 +104,56 @@ def spread_of(numbers: ClassNumbers, ships: tuple[int, ...]) -> Spread:
         inverse = np.linalg.inv(forms.sensitivity + np.diag(drawn))
         scales = np.maximum(inverse @ (forms.surplus + drawn * common), 0.0)
     by_common = inverse @ drawn
-    rows = _rows(ships, size)
-    weights = np.zeros((size, numbers.covariance.shape[0]))
-    _within, weights[:, rows] = _projection(numbers, ships, scales)
+    _within, mean = _projection(numbers, ships, scales)
+    weights = np.zeros((size, *numbers.values.shape))
+    weights[:, list(ships)] = mean.reshape(size, len(ships), size)
     return Spread(
         ships=ships,
         scales=scales,
         scale_covariance=2.0 * inverse + 2.0 / forms.sensitivity.sum() * np.outer(by_common, by_common),
-        mean=weights[:, rows] @ numbers.values[list(ships)].reshape(-1),
-        weights=weights,
+        mean=mean @ numbers.values[list(ships)].reshape(-1),
+        weights=weights.reshape(size, -1),
     )
 
 
 def _forms(numbers: ClassNumbers, ships: tuple[int, ...], scales: FloatArray) -> _Forms:
     """Return the quadratic forms of some ships at one choice of the scales."""
-    count = numbers.building.shape[1]
-    rows = _rows(ships, numbers.building.shape[0])
+    (size, count), places = numbers.building.shape, list(ships)
     within, _mean = _projection(numbers, ships, scales)
-    built = np.kron(np.eye(len(ships)), numbers.building)
-    seen = built.T @ within
-    values = (seen @ numbers.values[list(ships)].reshape(-1)).reshape(len(ships), count)
-    tests = np.diag(seen @ numbers.covariance[np.ix_(rows, rows)] @ seen.T).reshape(len(ships), count)
-    between = (seen @ built).reshape(len(ships), count, len(ships), count)
+    # a tolerance is one of its ship: what it does is zero in all others
+    seen = numbers.building.T @ within.reshape(len(ships), size, -1)
+    values = seen @ numbers.values[places].reshape(-1)
+    by_ship = seen.reshape(-1, len(ships), size).transpose(1, 0, 2)
+    tests = (by_ship @ numbers.own[places] * by_ship).sum(axis=(0, 2)).reshape(len(ships), count)
+    tests += ((seen @ numbers.common[places].reshape(len(ships) * size, -1)) ** 2).sum(axis=2)
+    between = (by_ship @ numbers.building).reshape(len(ships), len(ships), count, count)
     form = (values**2).sum(axis=0)
-    expected = np.diag(seen @ built).reshape(len(ships), count).sum(axis=0)
+    expected = np.einsum("sstt->t", between)
     return _Forms(
         surplus=form - tests.sum(axis=0),
-        sensitivity=(between**2).sum(axis=(0, 2)),
+        sensitivity=(between**2).sum(axis=(0, 1)),
         ratios=form / np.where(expected > 0.0, expected, 1.0),
     )
 
 
-def _rows(ships: tuple[int, ...], size: int) -> "np.ndarray[tuple[int], np.dtype[np.intp]]":
-    return np.concatenate([np.arange(at * size, (at + 1) * size) for at in ships])
-
-
 def _projection(numbers: ClassNumbers, ships: tuple[int, ...], scales: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return what weighs differences from the mean, and what makes the mean."""
-    size = numbers.building.shape[0]
-    rows = _rows(ships, size)
+    """Return what weighs differences from the mean, and what makes the mean.
+
+    The covariance ``D + L L'`` is one block ``D`` a ship and few errors ``L`` that ships share, so that its inverse is
+    ``D^-1 - D^-1 L (1 + L' D^-1 L)^-1 L' D^-1`` (Woodbury).
+    """
+    size, count = numbers.building.shape[0], len(ships)
     one = (numbers.building * np.maximum(scales, _LEAST_SCALE)) @ numbers.building.T
-    covariance = numbers.covariance[np.ix_(rows, rows)] + np.kron(np.eye(len(ships)), one)
-    level = np.tile(np.eye(size, dtype=np.float64), (len(ships), 1))
-    inverse = np.asarray(np.linalg.inv(covariance), dtype=np.float64)
-    mean = np.asarray(np.linalg.solve(level.T @ inverse @ level, level.T @ inverse), dtype=np.float64)
-    return inverse - inverse @ level @ mean, mean
+    blocks = np.linalg.inv(numbers.own[list(ships)] + one)
+    common = numbers.common[list(ships)]
+    left = (blocks @ common).reshape(count * size, -1)
+    inner = np.linalg.solve(np.eye(left.shape[1]) + common.reshape(count * size, -1).T @ left, left.T)
+    inverse = -left @ inner
+    at = np.arange(count)
+    inverse.reshape(count, size, count, size)[at, :, at] += blocks
+    level = inverse.reshape(count * size, count, size).sum(axis=1)
+    mean = np.asarray(np.linalg.solve(level.reshape(count, size, size).sum(axis=0), level.T), dtype=np.float64)
+    return inverse - level @ mean, mean
 
 
 def departure_of(numbers: ClassNumbers, ship: int, spread: Spread) -> Departure:
@@ -171,8 +176,8 @@ def departure_of(numbers: ClassNumbers, ship: int, spread: Spread) -> Departure:
     size, count = numbers.values.shape[1], len(numbers.values)
     against = -spread.weights
     against[:, ship * size : (ship + 1) * size] += np.eye(size)
-    measured = against @ numbers.covariance @ against.T
-    built = (against @ np.kron(np.eye(count), numbers.building)).reshape(size, count, -1)
+    measured = numbers.covariance_of(against)
+    built = against.reshape(size, count, size) @ numbers.building
     covariance = measured + np.einsum("pst,t,qst->pq", built, spread.scales, built)
     difference = numbers.values[ship] - spread.mean
     along = np.linalg.solve(covariance, numbers.directions)
@@ -216,8 +221,8 @@ def prediction(numbers: ClassNumbers, spread: Spread) -> tuple[FloatArray, Float
         What its ships tell.
     """
     count, size = numbers.values.shape
-    mean = np.diag(spread.weights @ numbers.covariance @ spread.weights.T)
-    built = (spread.weights @ np.kron(np.eye(count), numbers.building)).reshape(size, count, -1)
+    mean = np.diag(numbers.covariance_of(spread.weights))
+    built = spread.weights.reshape(size, count, size) @ numbers.building
     added = numbers.building**2 + (built**2).sum(axis=1)
     variance = mean + added @ spread.scales
     return variance, _freedom(variance, added, spread)

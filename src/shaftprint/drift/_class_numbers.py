@@ -69,8 +69,10 @@ class ClassNumbers:
     """Why others are not, by name."""
     values: FloatArray
     """Mean of the tests of each ship: logarithms, and times [s]; shape (ships, numbers)."""
-    covariance: FloatArray
-    """What the tests leave open of them, those of one ship together, shape (ships * numbers,) squared."""
+    own: FloatArray
+    """Covariance that the tests of each ship leave open by themselves; shape (ships, numbers, numbers)."""
+    common: FloatArray
+    """What one deviation of each error that several ships share does to them; shape (ships, numbers, errors)."""
     building: FloatArray
     """What one standard deviation of each tolerance of building does to the numbers, those of the causes first; shape
     (numbers, tolerances)."""
@@ -80,6 +82,20 @@ class ClassNumbers:
     """What a change of each cause by 1, or by a second, does to the numbers; shape (numbers, causes)."""
     not_judged: tuple[Cause, ...]
     """What may have moved numbers that were left out: it is not excluded."""
+
+    def covariance_of(self, sums: FloatArray) -> FloatArray:
+        """Return the covariance of weighted sums of the numbers that tests leave open.
+
+        Parameters
+        ----------
+        sums
+            Weights of the numbers of all ships, those of one ship together; shape (sums, ships * numbers).
+        """
+        count, size = self.values.shape
+        of_ship = sums.reshape(-1, count, size).transpose(1, 0, 2)
+        along = sums @ self.common.reshape(count * size, -1)
+        covariance: FloatArray = (of_ship @ self.own @ of_ship.transpose(0, 2, 1)).sum(axis=0) + along @ along.T
+        return covariance
 
 
 def class_numbers(ships: Sequence[Sister], *, load_repeatability: float) -> ClassNumbers:
@@ -100,14 +116,14 @@ def class_numbers(ships: Sequence[Sister], *, load_repeatability: float) -> Clas
     load = np.diag([(load_repeatability * (role == ShipRole.TORQUE)) ** 2 for role in roles.values()])
     own = list(own_covariances(tests, singles, len(tests)))
     weights = _weights(ships, own)
-    mean = np.kron(weights, np.eye(len(names)))
-    covariance = _covariance(ships, singles, [one + load for one in own])
+    alone, common = _left_open(ships, singles, weights, [one + load for one in own])
     causes, directions = directions_of(roles, singles[0].loadings.get(GAUGE_SCALE))
     return ClassNumbers(
         names=names,
         left_out={name: doubt for name, doubt in doubts.items() if doubt},
         values=weights @ np.array([one.values for one in singles]),
-        covariance=mean @ covariance @ mean.T,
+        own=alone,
+        common=common,
         building=_building(roles, causes, directions),
         causes=causes,
         directions=directions,
@@ -124,27 +140,30 @@ def _weights(ships: Sequence[Sister], own: Sequence[FloatArray]) -> FloatArray:
     return normalised
 
 
-def _covariance(ships: Sequence[Sister], singles: Sequence[SingleTest], own: Sequence[FloatArray]) -> FloatArray:
-    """Return the covariance of all tests: what each left open, and what was stated of several in common.
+def _left_open(
+    ships: Sequence[Sister], singles: Sequence[SingleTest], weights: FloatArray, own: Sequence[FloatArray]
+) -> tuple[FloatArray, FloatArray]:
+    """Return what tests leave open of the mean of each ship alone, and what errors do that several ships share.
 
     A drawing or an engine type is the same in all ships, a sensor is one of its ship.
     """
     tests = [test.fingerprint for ship in ships for test in ship.tests]
     of_ship = [place for place, ship in enumerate(ships) for _ in ship.tests]
-    count, size = len(tests), len(own[0])
-    covariance = np.zeros((count * size, count * size))
-    for at, one in enumerate(own):
-        place = slice(at * size, (at + 1) * size)
-        covariance[place, place] = one
+    alone = np.einsum("st,tpq->spq", weights**2, np.array(own))
+    common = []
 
     def shared(source: str, one: int, other: int) -> bool:
         same = source not in BEHIND or of_ship[one] == of_ship[other]
         return same and is_common(source, tests[one], tests[other])
 
     for moved in stated_errors(tests, singles, shared):
-        along = moved.reshape(-1)
-        covariance += np.outer(along, along)
-    return covariance
+        of_ships = weights @ moved
+        concerned = np.flatnonzero(of_ships.any(axis=1))
+        if concerned.size > 1:
+            common.append(of_ships)
+        else:
+            alone[concerned] += of_ships[concerned, :, None] * of_ships[concerned, None, :]
+    return alone, np.array(common).reshape(-1, *alone.shape[:2]).transpose(1, 2, 0)
 
 
 def _building(roles: "dict[str, Role | None]", causes: Sequence[Cause], directions: FloatArray) -> FloatArray:
