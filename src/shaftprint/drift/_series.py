@@ -11,8 +11,18 @@ from shaftprint.catalogue import ShipRole
 from shaftprint.drift._causes import GAUGE_SCALE, Cause
 from shaftprint.drift._dated import EVENTS
 from shaftprint.drift._history import SECONDS_PER_YEAR, History
-from shaftprint.drift._pair import SingleTest, alike, directions_of, doubts_of, not_judged, single_test
+from shaftprint.drift._pair import (
+    alike,
+    at_bound,
+    directions_of,
+    doubts_of,
+    judged_together,
+    left_out_of,
+    not_judged,
+)
 from shaftprint.drift._shared_errors import is_common
+from shaftprint.drift._single_test import SingleTest, single_test
+from shaftprint.drift._straight import straightened
 
 if TYPE_CHECKING:
     from shaftprint.fingerprint import Fingerprint
@@ -57,16 +67,19 @@ def series_of(history: History, *, made: int, load_repeatability: float) -> Seri
     """
     fingerprints = [test.fingerprint for test in history.tests]
     doubts = doubts_of(*fingerprints)
-    names = tuple(name for name, doubt in doubts.items() if not doubt)
+    names = judged_together(doubts)
     roles = {name: fingerprints[0].quantity(name).role for name in names}
-    singles = [single_test(one, names) for one in fingerprints]
+    made_tests = fingerprints[:made]
+    singles = list(straightened(made_tests, [single_test(one, names) for one in made_tests], names))
+    # tests that are still to come are like the last one
+    singles += singles[-1:] * (len(fingerprints) - made)
     start = history.tests[0].at
     time_a = np.array([(test.at - start).total_seconds() / SECONDS_PER_YEAR for test in history.tests])
     load = np.diag([(load_repeatability * (role == ShipRole.TORQUE)) ** 2 for role in roles.values()])
-    causes, directions = directions_of(roles, singles[0].loadings.get(GAUGE_SCALE))
+    causes, directions = directions_of(roles, singles[0].loadings.get(GAUGE_SCALE), at_bound(doubts))
     return Series(
         names=names,
-        left_out={name: doubt for name, doubt in doubts.items() if doubt},
+        left_out=left_out_of(doubts),
         time_a=time_a,
         values=np.array([one.values for one in singles]),
         covariance=_covariance(history, singles, load, made),
