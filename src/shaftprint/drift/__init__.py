@@ -23,6 +23,7 @@ from shaftprint.drift._class_numbers import NEWEST_TESTS, Sister, sister_of
 from shaftprint.drift._dated import EVENTS, DatedTest, Event
 from shaftprint.drift._differ import LOAD_REPEATABILITY, differ
 from shaftprint.drift._discoveries import discoveries
+from shaftprint.drift._drift_finding import DatedCause, Drift, WatchFinding
 from shaftprint.drift._finding import Finding, ShipChange, SizedCause
 from shaftprint.drift._history import History, history_of
 from shaftprint.drift._pair import Pair, pair_of
@@ -31,7 +32,7 @@ from shaftprint.drift._sister_words import sister_sentences
 from shaftprint.drift._sisters import FEWEST_SISTERS, judge_sisters
 from shaftprint.drift._time_to_limit import TimeToLimit, time_to_limit
 from shaftprint.drift._visible import VisibleChange, visible_changes
-from shaftprint.drift._watch import DatedCause, Drift, WatchFinding, watch
+from shaftprint.drift._watch import watch
 from shaftprint.drift._words import finding_sentences, limit_sentence, watch_sentences
 
 __all__ = [

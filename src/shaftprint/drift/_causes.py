@@ -39,6 +39,8 @@ class Cause:
     """Whether its size is a share of the numbers; else it is a time [s]."""
     machine: Literal["engine", "motor"] | None = None
     """What drives the lines in which it may happen; None: either."""
+    wears: Literal[-1, 0, 1] = 0
+    """Which way it goes by itself over the years: less, neither, more."""
     tolerance: float = 0.0
     """Standard deviation between sister ships as they are built, in the unit of the size; see docs/watching.md."""
 
@@ -76,6 +78,7 @@ CAUSES: tuple[Cause, ...] = (
         told_by="log the fuel rack in the next test",
         machine="engine",
         roles=((ShipRole.PROPORTIONAL_GAIN,), (ShipRole.INTEGRAL_GAIN,)),
+        wears=-1,
         tolerance=0.01,
     ),
     Cause(
@@ -104,6 +107,7 @@ CAUSES: tuple[Cause, ...] = (
         machine="engine",
         roles=((ShipRole.LOOP_DELAY,),),
         is_share=False,
+        wears=1,
         tolerance=1e-3,
     ),
     Cause(
@@ -131,6 +135,7 @@ CAUSES: tuple[Cause, ...] = (
         told_by="log the torque that the converter states",
         machine="motor",
         roles=((ShipRole.PROPORTIONAL_GAIN,), (ShipRole.INTEGRAL_GAIN,)),
+        wears=-1,
         tolerance=0.01,
     ),
     Cause(
@@ -177,6 +182,7 @@ CAUSES: tuple[Cause, ...] = (
         more="more propeller torque at the same speed: fouled, damaged, or more draught",
         told_by="look at the propeller, and note draught and water of each test",
         roles=((ShipRole.TORQUE,),),
+        wears=1,
         tolerance=0.025,
     ),
     Cause(

@@ -11,9 +11,11 @@ from shaftprint.catalogue import ShipRole
 from shaftprint.drift._causes import GAUGE_SCALE, Cause
 from shaftprint.drift._dated import DatedTest
 from shaftprint.drift._history import History
-from shaftprint.drift._pair import SingleTest, directions_of, doubts_of, not_judged, single_test
+from shaftprint.drift._pair import at_bound, directions_of, doubts_of, judged_together, left_out_of, not_judged
 from shaftprint.drift._series import own_covariances, stated_errors
 from shaftprint.drift._shared_errors import is_common
+from shaftprint.drift._single_test import SingleTest, single_test
+from shaftprint.drift._straight import straightened
 from shaftprint.fingerprint import BEHIND
 
 if TYPE_CHECKING:
@@ -110,17 +112,17 @@ def class_numbers(ships: Sequence[Sister], *, load_repeatability: float) -> Clas
     """
     tests = [test.fingerprint for ship in ships for test in ship.tests]
     doubts = doubts_of(*tests)
-    names = tuple(name for name, doubt in doubts.items() if not doubt)
+    names = judged_together(doubts)
     roles = {name: tests[0].quantity(name).role for name in names}
-    singles = [single_test(one, names) for one in tests]
+    singles = straightened(tests, [single_test(one, names) for one in tests], names)
     load = np.diag([(load_repeatability * (role == ShipRole.TORQUE)) ** 2 for role in roles.values()])
     own = list(own_covariances(tests, singles, len(tests)))
     weights = _weights(ships, own)
     alone, common = _left_open(ships, singles, weights, [one + load for one in own])
-    causes, directions = directions_of(roles, singles[0].loadings.get(GAUGE_SCALE))
+    causes, directions = directions_of(roles, singles[0].loadings.get(GAUGE_SCALE), at_bound(doubts))
     return ClassNumbers(
         names=names,
-        left_out={name: doubt for name, doubt in doubts.items() if doubt},
+        left_out=left_out_of(doubts),
         values=weights @ np.array([one.values for one in singles]),
         own=alone,
         common=common,

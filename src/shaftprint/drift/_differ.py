@@ -4,10 +4,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from shaftprint.arrays import FloatArray
 from shaftprint.drift._along import Whitened, p_value_of_largest, whitened
 from shaftprint.drift._causes import Cause
 from shaftprint.drift._finding import Finding, ShipChange, SizedCause, odds_against
-from shaftprint.drift._pair import pair_of
+from shaftprint.drift._pair import Pair, pair_of
 
 if TYPE_CHECKING:
     from shaftprint.fingerprint import Fingerprint
@@ -18,6 +19,8 @@ LOAD_REPEATABILITY = 0.005
 """Standard deviation of the torque that one propeller takes at one speed from day to day, as a share, beside what the
 windows of a test show of it. No test of one day tells it; see docs/watching.md."""
 MOST_CHANGES = 3
+ROUNDS = 2
+"""How often a change that was found is taken off before the valley is made straight: see ``_straight``."""
 
 OF_EARLIER_VERSION = "a fingerprint of an earlier version has no joint covariance; identify its recording again"
 NOT_TOLD = "no number of both fingerprints can be judged"
@@ -45,9 +48,29 @@ def differ(first: "Fingerprint", other: "Fingerprint", *, load_repeatability: fl
     if not pair.causes:
         return _nothing(NOT_TOLD, pair.left_out)
     try:
-        white = whitened(pair.difference, pair.covariance, pair.directions)
+        finding = _judged(pair)
+        for _ in range(ROUNDS if finding.changes else 0):
+            moved = _effect(pair, finding.changes[0].best.cause)
+            pair = pair_of(first, other, load_repeatability=load_repeatability, moved=moved) or pair
+            finding = _judged(pair)
+            if not finding.changes:
+                break
     except np.linalg.LinAlgError:
         return _nothing(NOT_DETERMINED, pair.left_out)
+    return finding
+
+
+def _effect(pair: Pair, cause: Cause) -> FloatArray:
+    """Return what a cause has done to the numbers, if it was this one alone; shape (numbers,)."""
+    white = whitened(pair.difference, pair.covariance, pair.directions)
+    at = pair.causes.index(cause)
+    effect: FloatArray = pair.directions[:, at] * white.sizes((at,))[0]
+    return effect
+
+
+def _judged(pair: Pair) -> Finding:
+    """Return what a pair says: the clearest change, and what is seen beside it."""
+    white = whitened(pair.difference, pair.covariance, pair.directions)
     chosen: list[int] = []
     changes: list[ShipChange] = []
     nearest = _largest(white, pair.causes, chosen)

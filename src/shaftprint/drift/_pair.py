@@ -15,7 +15,8 @@ from shaftprint.arrays import FloatArray
 from shaftprint.catalogue import ShipRole
 from shaftprint.drift._causes import CAUSES, GAUGE, GAUGE_SCALE, Cause, by_role, may_happen
 from shaftprint.drift._shared_errors import shared_errors
-from shaftprint.errors import FingerprintError
+from shaftprint.drift._single_test import SingleTest, is_share, single_test
+from shaftprint.drift._straight import straightened
 from shaftprint.identify.fit import Estimate
 from shaftprint.identify.judgement import AFFECTED, depends_on
 
@@ -23,8 +24,6 @@ if TYPE_CHECKING:
     from shaftprint.fingerprint import Fingerprint, Quantity
     from shaftprint.models import Role
 
-SHARES = (ShipRole.TORQUE, ShipRole.ACTUATOR_FREQUENCY, ShipRole.ACTUATOR_DAMPING)
-"""Roles of numbers that are larger than zero, beside those of physical values."""
 NOT_POSITIVE = "it is not larger than zero"
 AT_BOUND = "the search stopped at its bound"
 HELD = "it was held"
@@ -51,19 +50,9 @@ class Pair:
     """What a change of each cause by 1, or by a second, does to the numbers; shape (numbers, causes)."""
 
 
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class SingleTest:
-    """One test, with the numbers that are judged in the coordinates in which tests are compared."""
-
-    values: FloatArray
-    """Logarithms, and times [s]; shape (numbers,)."""
-    own: FloatArray
-    """Covariance that the test left open, shape (numbers, numbers)."""
-    loadings: dict[str, FloatArray]
-    """Change of the numbers for one standard deviation of each source that was stated, shape (numbers,) each."""
-
-
-def pair_of(first: "Fingerprint", other: "Fingerprint", *, load_repeatability: float) -> Pair | None:
+def pair_of(
+    first: "Fingerprint", other: "Fingerprint", *, load_repeatability: float, moved: FloatArray | None = None
+) -> Pair | None:
     """Return the difference of two fingerprints; None where one of them does not hold its numbers together.
 
     Parameters
@@ -72,19 +61,23 @@ def pair_of(first: "Fingerprint", other: "Fingerprint", *, load_repeatability: f
         Two fingerprints of one ship, the earlier one first.
     load_repeatability
         Standard deviation of the torque that a propeller takes at one speed from day to day, as a share.
+    moved
+        What a change of the ship has done to the numbers, shape (numbers,); nothing when not given.
     """
     if first.joint is None or other.joint is None:
         return None
     doubts = doubts_of(first, other)
-    names = tuple(name for name, doubt in doubts.items() if not doubt)
+    names = judged_together(doubts)
     roles = {name: first.quantity(name).role for name in names}
-    before, after = (single_test(one, names) for one in (first, other))
+    singles = [single_test(one, names) for one in (first, other)]
+    by = None if moved is None else np.array([np.zeros(len(names)), moved])
+    before, after = straightened((first, other), singles, names, by)
     # the propeller takes another torque on another day
     load = np.array([load_repeatability * (role == ShipRole.TORQUE) for role in roles.values()])
-    causes, directions = directions_of(roles, before.loadings.get(GAUGE_SCALE))
+    causes, directions = directions_of(roles, before.loadings.get(GAUGE_SCALE), at_bound(doubts))
     return Pair(
         names=names,
-        left_out={name: doubt for name, doubt in doubts.items() if doubt},
+        left_out=left_out_of(doubts),
         difference=after.values - before.values,
         covariance=_covariance(before, after, shared_errors(first, other).common, unmoved=alike(first, other))
         + 2.0 * np.diag(load**2),
@@ -122,9 +115,24 @@ def not_judged(
     )
 
 
-def is_share(role: "Role | None") -> bool:
-    """Return whether a change of a number is a share of it; times and slopes may be zero."""
-    return role is not None and (role.physical is not None or role in SHARES)
+def judged_together(doubts: Mapping[str, str]) -> tuple[str, ...]:
+    """Return the numbers that are judged together: those without a doubt, and those that stopped at a bound.
+
+    What is at a bound was pushed there along its own column of the covariance, which changes no score of what moves
+    other numbers. Without it they would lose what is known of them against each other.
+    """
+    return tuple(name for name, doubt in doubts.items() if doubt in ("", AT_BOUND))
+
+
+def left_out_of(doubts: Mapping[str, str]) -> dict[str, str]:
+    """Return why the other numbers are not judged, by name."""
+    together = judged_together(doubts)
+    return {name: doubt for name, doubt in doubts.items() if name not in together}
+
+
+def at_bound(doubts: Mapping[str, str]) -> tuple[str, ...]:
+    """Return the numbers that stopped at a bound in one of the tests: what moves them is not asked for."""
+    return tuple(name for name, doubt in doubts.items() if doubt == AT_BOUND)
 
 
 def doubts_of(*fingerprints: "Fingerprint") -> dict[str, str]:
@@ -153,36 +161,6 @@ def _estimate(number: "Quantity") -> Estimate:
     return Estimate(name=number.name, unit=number.unit, value=number.value, std=number.std, role=number.role)
 
 
-def single_test(fingerprint: "Fingerprint", names: tuple[str, ...]) -> SingleTest:
-    """Return a test with some of its numbers, in the coordinates in which tests are compared.
-
-    Raises
-    ------
-    FingerprintError
-        If the fingerprint does not hold its numbers together.
-    """
-    joint = fingerprint.joint
-    if joint is None:
-        raise FingerprintError(f"{fingerprint.conditions.campaign}: expected a joint covariance, found none.")
-    numbers = [fingerprint.quantity(name) for name in names]
-    values = np.array([number.value for number in numbers])
-    shares = np.array([is_share(number.role) for number in numbers], dtype=bool)
-    size = np.where(shares, values, 1.0)
-    return SingleTest(
-        values=np.where(shares, np.log(size), values),
-        own=_misfit(fingerprint) * joint.covariance_of(names) / np.outer(size, size),
-        loadings={source: change / size for source, change in joint.loadings_of(names).items()},
-    )
-
-
-def _misfit(fingerprint: "Fingerprint") -> float:
-    """Return by how much the residuals of a fit are larger than its noise, as a variance; 1 at least."""
-    quality = fingerprint.quality
-    if quality.chi_square is None or quality.degrees_of_freedom <= 0:
-        return 1.0
-    return max(quality.chi_square / quality.degrees_of_freedom, 1.0)
-
-
 def alike(first: "Fingerprint", other: "Fingerprint") -> bool:
     """Return whether two tests weigh what was stated against their data alike: the same lines, the same structure."""
     campaigns = [{one.sha256 for one in test.sources if one.role == "campaign"} for test in (first, other)]
@@ -204,7 +182,9 @@ def _covariance(before: SingleTest, after: SingleTest, common: tuple[str, ...], 
     return covariance
 
 
-def directions_of(roles: "dict[str, Role | None]", scale: FloatArray | None) -> tuple[tuple[Cause, ...], FloatArray]:
+def directions_of(
+    roles: "dict[str, Role | None]", scale: FloatArray | None, unasked: tuple[str, ...] = ()
+) -> tuple[tuple[Cause, ...], FloatArray]:
     """Return what may have moved the numbers, and how.
 
     Parameters
@@ -213,10 +193,16 @@ def directions_of(roles: "dict[str, Role | None]", scale: FloatArray | None) -> 
         Role of each number.
     scale
         What one standard deviation of the scale of the gauge does to them; None where it is known exactly.
+    unasked
+        Numbers of which it is not asked what has moved them.
     """
     names = list(roles)
     moved = {cause: by_role(cause, roles) for cause in CAUSES}
-    columns = {cause: np.isin(names, there).astype(np.float64) for cause, there in moved.items() if there}
+    columns = {
+        cause: np.isin(names, there).astype(np.float64)
+        for cause, there in moved.items()
+        if there and not set(there) & set(unasked)
+    }
     torque = list(roles.values()).index(ShipRole.TORQUE) if ShipRole.TORQUE in roles.values() else None
     if scale is not None and torque is not None and scale[torque]:
         # the torque coefficient goes with the scale itself

@@ -11,8 +11,18 @@ from shaftprint.catalogue import ShipRole
 from shaftprint.drift._causes import GAUGE_SCALE, Cause
 from shaftprint.drift._dated import EVENTS
 from shaftprint.drift._history import SECONDS_PER_YEAR, History
-from shaftprint.drift._pair import SingleTest, alike, directions_of, doubts_of, not_judged, single_test
+from shaftprint.drift._pair import (
+    alike,
+    at_bound,
+    directions_of,
+    doubts_of,
+    judged_together,
+    left_out_of,
+    not_judged,
+)
 from shaftprint.drift._shared_errors import is_common
+from shaftprint.drift._single_test import SingleTest, single_test
+from shaftprint.drift._straight import straightened
 
 if TYPE_CHECKING:
     from shaftprint.fingerprint import Fingerprint
@@ -43,7 +53,7 @@ class Series:
     """What may have moved numbers that were left out: it is not excluded."""
 
 
-def series_of(history: History, *, made: int, load_repeatability: float) -> Series:
+def series_of(history: History, *, made: int, load_repeatability: float, moved: FloatArray | None = None) -> Series:
     """Return the numbers that all tests of a history have, with their covariance.
 
     Parameters
@@ -54,27 +64,45 @@ def series_of(history: History, *, made: int, load_repeatability: float) -> Seri
         Number of tests that were made.
     load_repeatability
         Standard deviation of the torque that a propeller takes at one speed from day to day, as a share.
+    moved
+        What a change of the ship has done to the numbers of the tests that were made, shape (made, numbers); nothing
+        when not given. What events have done is seen here.
     """
     fingerprints = [test.fingerprint for test in history.tests]
     doubts = doubts_of(*fingerprints)
-    names = tuple(name for name, doubt in doubts.items() if not doubt)
+    names = judged_together(doubts)
     roles = {name: fingerprints[0].quantity(name).role for name in names}
-    singles = [single_test(one, names) for one in fingerprints]
+    made_tests = fingerprints[:made]
+    raw = [single_test(one, names) for one in made_tests]
+    baseline = _baseline(history, roles)
+    moved = _moved(np.array([one.values for one in raw]), baseline[: made * len(names)], moved)
+    singles = list(straightened(made_tests, raw, names, moved))
+    # tests that are still to come are like the last one
+    singles += singles[-1:] * (len(fingerprints) - made)
     start = history.tests[0].at
     time_a = np.array([(test.at - start).total_seconds() / SECONDS_PER_YEAR for test in history.tests])
     load = np.diag([(load_repeatability * (role == ShipRole.TORQUE)) ** 2 for role in roles.values()])
-    causes, directions = directions_of(roles, singles[0].loadings.get(GAUGE_SCALE))
+    causes, directions = directions_of(roles, singles[0].loadings.get(GAUGE_SCALE), at_bound(doubts))
     return Series(
         names=names,
-        left_out={name: doubt for name, doubt in doubts.items() if doubt},
+        left_out=left_out_of(doubts),
         time_a=time_a,
         values=np.array([one.values for one in singles]),
         covariance=_covariance(history, singles, load, made),
-        baseline=_baseline(history, roles),
+        baseline=baseline,
         causes=causes,
         directions=directions,
         not_judged=not_judged(causes, doubts, fingerprints),
     )
+
+
+def _moved(values: FloatArray, baseline: FloatArray, moved: FloatArray | None) -> FloatArray:
+    """Return what a change and what events have done to the numbers of tests, shape (tests, numbers)."""
+    course = np.zeros(values.shape) if moved is None else moved
+    rest = (values - course).reshape(-1)
+    levels = (baseline @ np.linalg.lstsq(baseline, rest)[0]).reshape(values.shape)
+    by_all: FloatArray = course + levels - levels.mean(axis=0)
+    return by_all
 
 
 def _covariance(history: History, singles: list[SingleTest], load: FloatArray, made: int) -> FloatArray:

@@ -29,7 +29,7 @@ from shaftprint.drift._class_numbers import ClassNumbers, Sister, class_numbers
 from shaftprint.drift._differ import LOAD_REPEATABILITY, NOT_DETERMINED, NOT_TOLD, UNLIKELY
 from shaftprint.drift._discoveries import discoveries
 from shaftprint.drift._finding import ShipChange, SizedCause, odds_against
-from shaftprint.drift._pair import is_share
+from shaftprint.drift._single_test import is_share
 
 FEWEST_SISTERS = 4
 """Ships that a class has at least: three others tell how much ships differ."""

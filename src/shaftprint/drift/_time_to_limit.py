@@ -6,8 +6,8 @@ from datetime import datetime, timedelta
 
 from shaftprint.arguments import refusing_none
 from shaftprint.distributions import NORMAL_95
+from shaftprint.drift._drift_finding import DatedCause
 from shaftprint.drift._history import SECONDS_PER_YEAR, History
-from shaftprint.drift._watch import DatedCause
 from shaftprint.errors import FingerprintError
 
 # Later than that nobody plans.

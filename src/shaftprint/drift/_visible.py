@@ -10,7 +10,8 @@ from shaftprint.distributions import NORMAL_95
 from shaftprint.drift._along import Whitened, p_value_of_largest
 from shaftprint.drift._causes import Cause
 from shaftprint.drift._differ import UNLIKELY
-from shaftprint.drift._pair import directions_of, is_share
+from shaftprint.drift._pair import directions_of
+from shaftprint.drift._single_test import is_share
 
 if TYPE_CHECKING:
     from shaftprint.identify.prediction import Accuracy

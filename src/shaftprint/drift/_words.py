@@ -4,10 +4,10 @@ from collections.abc import Iterable, Sequence
 
 from shaftprint.digits import p_value_text, plain_letters, stated
 from shaftprint.drift._causes import Cause
+from shaftprint.drift._drift_finding import DatedCause, Drift, WatchFinding
 from shaftprint.drift._finding import Finding, ShipChange, SizedCause
 from shaftprint.drift._history import History
 from shaftprint.drift._time_to_limit import time_to_limit
-from shaftprint.drift._watch import DatedCause, Drift, WatchFinding
 
 # Causes whose likelihoods differ by less than this factor are named together.
 ALIKE = 3.0

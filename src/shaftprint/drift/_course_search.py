@@ -1,0 +1,182 @@
+"""The courses that a history is searched for, their likelihood, and how often an unchanged ship shows as much.
+
+Courses are not alike beforehand. Injection wears, propellers foul, and both go one way from the first test on; that one
+of nine causes steps at one of twenty tests up or down is one of hundreds of ways. So the *evidence* of a course is
+``z^2``, twice what the logarithm of the likelihood gains by it, and twice the logarithm of ``WEAR_ODDS`` more for wear:
+a generalised likelihood ratio with weights, whose false alarms are drawn as they are (C. R. Genovese, K. Roeder,
+L. Wasserman, "False discovery control with p-value weighting", Biometrika 93, 2006, on why weights cost little where
+they are wrong and gain much where they are right).
+"""
+
+import math
+from dataclasses import dataclass, replace
+from typing import Final
+
+import numpy as np
+
+from shaftprint.arrays import FloatArray
+from shaftprint.distributions import normal_cdf
+from shaftprint.drift._along import whitened
+from shaftprint.drift._drift_finding import DatedCause, Drift, Shape
+from shaftprint.drift._finding import odds_against
+from shaftprint.drift._series import Series
+
+FEWEST_TESTS = 2
+WEAR_ODDS: Final = 50.0
+"""How much more likely beforehand wear since the first test is than any one other course."""
+_BONUS = 2.0 * math.log(WEAR_ODDS)
+# What is left of a column that lies in others is rounding.
+_ROUNDING = 1e-6
+# Evidence that differs by less is the same.
+_DIGITS = 9
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class CourseSearch:
+    """All courses that are looked for, in coordinates in which the noise is white."""
+
+    series: Series
+    """The numbers of all tests."""
+    tests: int
+    """Number of tests that were made; those behind are to come."""
+    values: FloatArray
+    """Shape (rows,): numbers of all tests."""
+    free: FloatArray
+    """Columns that are free, shape (rows, columns)."""
+    columns: FloatArray
+    """A course of size 1 each, shape (rows, courses)."""
+    courses: tuple[tuple[int, Shape, int], ...]
+    """Cause, shape and test of each course."""
+    wear: FloatArray
+    """Sign of a course that is wear, 0 of others; shape (courses,)."""
+
+    @classmethod
+    def of(cls, series: Series, tests: int) -> "CourseSearch":
+        """Return the search in a series of which a number of tests was made.
+
+        Raises
+        ------
+        numpy.linalg.LinAlgError
+            If the covariance is not positive definite.
+        """
+        courses: list[tuple[int, Shape, int]] = []
+        columns: list[FloatArray] = []
+        steps = [(np.arange(series.time_a.size) >= at).astype(np.float64) for at in range(series.time_a.size)]
+        ramps = [np.maximum(series.time_a - begun, 0.0) for begun in series.time_a]
+        # steps first: between two tests a ramp is none other
+        shapes: tuple[tuple[Shape, list[FloatArray]], ...] = (("step", steps), ("ramp", ramps))
+        for shape, growths in shapes:
+            for cause, direction in enumerate(series.directions.T):
+                courses += [(cause, shape, at) for at in range(len(growths))]
+                columns += [np.kron(growth, direction) for growth in growths]
+        stacked = np.column_stack([series.baseline, np.array(columns).T])
+        white = whitened(series.values.reshape(-1), series.covariance, stacked)
+        free = series.baseline.shape[1]
+        wear = [series.causes[cause].wears * (shape == "ramp" and at == 0) for cause, shape, at in courses]
+        return cls(
+            series=series,
+            tests=tests,
+            values=white.difference,
+            free=white.directions[:, :free],
+            columns=white.directions[:, free:],
+            courses=tuple(courses),
+            wear=np.array(wear, dtype=np.float64),
+        )
+
+    def beside(self, course: DatedCause) -> "CourseSearch":
+        """Return the search for a further change beside one that was found."""
+        found = self.columns[:, self._place(course)]
+        return replace(self, free=np.column_stack([self.free, found]))
+
+    def effect(self, course: DatedCause) -> FloatArray:
+        """Return what a course has done to the numbers of each test, shape (tests, numbers)."""
+        at = self._place(course)
+        directions, length = self._directions(self.tests)
+        size = float(directions[:, at] @ self.values[: len(directions)]) / length[at]
+        cause, shape, since = self.courses[at]
+        time_a = self.series.time_a[: self.tests]
+        growth = np.arange(self.tests) >= since if shape == "step" else np.maximum(time_a - time_a[since], 0.0)
+        moved: FloatArray = size * np.outer(growth, self.series.directions[:, cause])
+        return moved
+
+    def _place(self, course: DatedCause) -> int:
+        return self.courses.index((self.series.causes.index(course.cause), course.shape, course.since))
+
+    def likeliest(self) -> tuple[DatedCause, ...]:
+        """Return the best course of each cause, the most likely cause first; none where no course can be told.
+
+        What counts beforehand counts between causes. Of one cause the course that explains the tests best stands for
+        it: whether it is wear or a step is seen in them.
+        """
+        directions, length = self._directions(self.tests)
+        scores = directions.T @ self.values[: len(directions)]
+        evidence = np.round(np.where(length > 0.0, _evidence(scores, self.wear), 0.0), _DIGITS)
+        of_cause = np.array([cause for cause, _shape, _at in self.courses])
+        found = []
+        for cause in range(len(self.series.causes)):
+            places = np.flatnonzero((of_cause == cause) & (length > 0.0))
+            if places.size:
+                best = places[np.argmax(np.round(np.abs(scores[places]), _DIGITS))]
+                found.append((float(evidence[places].max()), int(best)))
+        found.sort(key=lambda one: -one[0])
+        top = math.sqrt(found[0][0]) if found else 0.0
+        return tuple(
+            self._course(at, float(scores[at]), float(length[at]), odds_against(math.sqrt(one), top))
+            for one, at in found
+        )
+
+    def _course(self, at: int, score: float, length: float, odds: float) -> DatedCause:
+        number, shape, since = self.courses[at]
+        cause = self.series.causes[number]
+        # a course whose length is short is known badly
+        size, std = cause.stated(score / length, 1.0 / length)
+        return DatedCause(cause=cause, shape=shape, since=since, size=size, std=std, score=score, odds=odds)
+
+    def nearest(self, noise: FloatArray) -> Drift | None:
+        """Return the clearest further change with its probability; None where no course can be told."""
+        courses = self.likeliest()
+        return Drift(courses=courses, p_value=self._p_value(noise)) if courses else None
+
+    def _directions(self, tests: int) -> tuple[FloatArray, FloatArray]:
+        """Return the unit vector of each course in the first tests beside what is free, and its length before that."""
+        rows = tests * len(self.series.names)
+        basis = _basis(self.free[:rows])
+        columns = self.columns[:rows]
+        left = columns - basis @ (basis.T @ columns)
+        length = np.linalg.norm(left, axis=0)
+        length = np.where(length > _ROUNDING * np.linalg.norm(columns, axis=0), length, 0.0)
+        return np.where(length > 0.0, left / np.where(length > 0.0, length, 1.0), 0.0), length
+
+    def _p_value(self, noise: FloatArray) -> float:
+        """Return the probability that an unchanged ship shows as much evidence in any test up to the horizon."""
+        directions, length = self._directions(self.tests)
+        top = float(_evidence(directions.T @ self.values[: len(directions)], self.wear)[length > 0.0].max())
+        beyond = float(normal_cdf(-math.sqrt(top)))
+        beyond_as_wear = float(normal_cdf(-math.sqrt(max(top - _BONUS, 0.0))))
+        largest = np.zeros(noise.shape[1])
+        bound = 0.0
+        for tests in range(FEWEST_TESTS, self.series.time_a.size + 1):
+            directions, length = self._directions(tests)
+            told = length > 0.0
+            scores = directions[:, told].T @ noise[: len(directions)]
+            wear = self.wear[told]
+            largest = np.maximum(largest, np.abs(scores).max(axis=0, initial=0.0) ** 2)
+            largest = np.maximum(largest, _evidence(scores[wear != 0.0], wear[wear != 0.0]).max(axis=0, initial=0.0))
+            bound += 2.0 * wear.size * beyond + np.count_nonzero(wear) * (beyond_as_wear - beyond)
+        drawn = (1.0 + np.count_nonzero(largest >= top)) / (1.0 + largest.size)
+        # what is too rare to be drawn is bounded by the sum over all looks
+        return min(drawn, bound)
+
+
+def _evidence(scores: FloatArray, wear: FloatArray) -> FloatArray:
+    """Return the evidence of courses from their scores, shape (courses, ...), and which way each wears."""
+    which_way = wear.reshape(-1, *[1] * (scores.ndim - 1))
+    evidence: FloatArray = scores**2 + _BONUS * (scores * which_way > 0.0)
+    return evidence
+
+
+def _basis(columns: FloatArray) -> FloatArray:
+    """Return an orthonormal basis of columns, some of which may lie in the others; shape (rows, rank)."""
+    left, size, _ = np.linalg.svd(columns / np.maximum(np.linalg.norm(columns, axis=0), 1e-300), full_matrices=False)
+    basis: FloatArray = left[:, size > _ROUNDING]
+    return basis

@@ -1,0 +1,134 @@
+"""Coordinates in which the valley of delay, gains and actuator is straight, so that tests share one covariance.
+
+What a test knows least is a valley: numbers that change together and leave the responses nearly as they are. It is
+curved. Estimates of an unchanged ship lie along it, a tenth of a gain apart, and each states its covariance with the
+directions of its own place. A mean of these covariances is as wide as the valley is bent, and the difference of two
+estimates leaves the floor where their tangents part: both hide what lies across.
+
+The responses of the model are nearly linear where the numbers are not. With ``x`` the numbers of a test, ``r`` the mean
+of all, ``h`` the logarithms of the responses at the lines and ``A`` the derivatives of ``h`` at ``r``
+
+    x' = r + A^+ (h(x) - h(r))
+
+is where the model, linearised at ``r`` alone, has the responses of the test: ``x`` itself to first order, with the
+covariance ``T C T'``, ``T = A^+ A(x)`` (one Gauss-Newton step; D. M. Bates, D. G. Watts, "Relative curvature measures
+of nonlinearity", Journal of the Royal Statistical Society B 42, 1980, on the parameter-effects curvature that this
+takes away). It holds as far as tests scatter: what a change of the ship has done is taken off first, and put back.
+Numbers that were told beforehand stay as they are: the responses do not tell them.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from shaftprint.arrays import FloatArray
+from shaftprint.catalogue import shipped_structure
+from shaftprint.drift._single_test import SingleTest, is_share
+from shaftprint.errors import StructureError
+
+if TYPE_CHECKING:
+    from shaftprint.fingerprint import Fingerprint
+    from shaftprint.models import Structure
+
+
+def straightened(
+    tests: "Sequence[Fingerprint]",
+    singles: Sequence[SingleTest],
+    names: tuple[str, ...],
+    moved: FloatArray | None = None,
+) -> tuple[SingleTest, ...]:
+    """Return tests in coordinates in which the responses of their model are linear; as they are where that is not told.
+
+    Told it is where all tests are of one structure, a shipped one, with the frequencies of their lines, and at one
+    speed: the parameters of a structure under legs at several speeds are others at each.
+
+    Parameters
+    ----------
+    tests
+        Fingerprints.
+    singles
+        Their numbers, see ``single_test``.
+    names
+        Names of these numbers.
+    moved
+        What changes of the ship have done to the numbers of each test, so that it is no way along the valley; shape
+        (tests, numbers), nothing when not given.
+    """
+    model = _model_of(tests)
+    if model is None:
+        return tuple(singles)
+    structure, frequency_hz = model
+    roles = [tests[0].quantity(name).role for name in names]
+    stands_for = [structure.named_as(role) if role is not None else None for role in roles]
+    of_model = [at for at, parameter in enumerate(stands_for) if parameter is not None]
+    told = {*tests[0].priors, *(name for test in tests for name in test.held)}
+    free = [place for place, at in enumerate(of_model) if stands_for[at] not in told]
+    parameters = [str(stands_for[at]) for at in of_model]
+    if not free:
+        return tuple(singles)
+    unmoved = np.array([one.values for one in singles]) - (0.0 if moved is None else moved)
+    apart = (unmoved - unmoved.mean(axis=0))[:, of_model]
+    shares = np.array([is_share(roles[at]) for at in of_model], dtype=bool)
+    responses, slopes = _responses(structure, _reference(structure, tests), parameters, apart, shares, frequency_hz)
+    if not (np.all(np.isfinite(responses)) and np.all(np.isfinite(slopes))):
+        return tuple(singles)
+    straight = np.linalg.pinv(slopes[-1][:, free])
+    places = np.array(of_model)[free]
+    found = []
+    for single, response, slope, distance in zip(singles, responses, slopes, apart, strict=False):
+        values, turn = single.values.copy(), np.eye(len(names))
+        values[places] += straight @ (response - slopes[-1] @ distance)
+        turn[np.ix_(places, of_model)] += straight @ (slope - slopes[-1])
+        loadings = {source: turn @ change for source, change in single.loadings.items()}
+        found.append(replace(single, values=values, own=turn @ single.own @ turn.T, loadings=loadings))
+    return tuple(found)
+
+
+def _model_of(tests: "Sequence[Fingerprint]") -> "tuple[Structure, FloatArray] | None":
+    """Return the structure of all tests and the frequencies of their lines [Hz]; None where it is not one, or none."""
+    alike = {(test.structure, tuple(sorted(test.held)), tuple(sorted(test.priors))) for test in tests}
+    if len(alike) > 1 or any(len(test.noise) != 1 for test in tests):
+        return None
+    try:
+        structure = shipped_structure(tests[0].structure)
+    except StructureError:
+        return None
+    known = {one.name for one in tests[0].parameters} | set(tests[0].held)
+    if known != set(structure.names):
+        return None
+    return structure, np.unique(np.concatenate([test.noise[0].frequency_hz for test in tests]))
+
+
+def _reference(structure: "Structure", tests: "Sequence[Fingerprint]") -> FloatArray:
+    """Return the mean parameters of all tests, shape (parameters,)."""
+    values = [{one.name: one.value for one in test.parameters} | test.held for test in tests]
+    mean: FloatArray = np.mean([[one[name] for name in structure.names] for one in values], axis=0)
+    return mean
+
+
+def _responses(
+    structure: "Structure",
+    reference: FloatArray,
+    parameters: Sequence[str],
+    apart: FloatArray,
+    shares: "np.ndarray[tuple[int], np.dtype[np.bool_]]",
+    frequency_hz: FloatArray,
+) -> tuple[FloatArray, FloatArray]:
+    """Return the logarithms of the responses over those of the reference, and their derivatives to the numbers.
+
+    The last row is the reference itself. Shapes (tests + 1, rows) and (tests + 1, rows, numbers).
+    """
+    places = [structure.names.index(name) for name in parameters]
+    apart = np.vstack([apart, np.zeros(len(places))])
+    table = np.tile(reference, (len(apart), 1))
+    table[:, places] = np.where(shares, table[:, places] * np.exp(apart), table[:, places] + apart)
+    with np.errstate(all="ignore"):
+        response, gradient = structure.gradient(table, 2j * np.pi * frequency_hz, parameters)
+        logarithm = np.log(response / response[-1])
+        # what is a share is judged by its logarithm
+        slope = gradient / response[:, None] * np.where(shares, table[:, places], 1.0)[:, :, None, None]
+    rows = np.concatenate([logarithm.real, logarithm.imag], axis=-1).reshape(len(apart), -1)
+    columns = np.concatenate([slope.real, slope.imag], axis=-1).reshape(len(apart), len(places), -1)
+    return rows, np.swapaxes(columns, 1, 2)
