@@ -50,7 +50,12 @@ def shift_reasons(response: "FrequencyResponse") -> tuple[Reason, ...]:
     known = share < _LARGEST_VARIANCE
     if np.count_nonzero(known) < _FEWEST_LINES:
         return ()
-    ratio, share, omega, load = ratio[known], share[known], response.omega_rad_s[used][known], response.load[used][known]
+    ratio, share, omega, load = (
+        ratio[known],
+        share[known],
+        response.omega_rad_s[used][known],
+        response.load[used][known],
+    )
     fall = _chi_squares(omega, ratio, np.abs(ratio) * np.sqrt(share / 2.0), load)
     best = int(np.argmin(fall))
     delay_s = float(_DELAYS_S[best])

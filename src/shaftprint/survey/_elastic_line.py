@@ -1,7 +1,8 @@
 """Whether a coupling that twists explains what a rigid line does not: the elastic line, offered beside it."""
 
 import copy
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -14,6 +15,8 @@ from shaftprint.identify.judgement import explained
 from shaftprint.models import Structure
 from shaftprint.normalisation import Normalisation
 from shaftprint.reasons import Reason
+from shaftprint.spectra import FrequencyResponse
+from shaftprint.survey._elastic_starts import highest_hz, with_elastic_starts
 from shaftprint.survey._measurement import Measurement, pairs_of
 from shaftprint.survey._of_vessel import of_vessel
 from shaftprint.survey._trial import Trial
@@ -57,7 +60,7 @@ def may_twist(rigid: Identification, vessel: Vessel) -> bool:
     if not explained(rigid):
         return True
     coupling = line_coupling(vessel)
-    return coupling is not None and _highest_hz(rigid) > _SHOWS * coupling.frequency_hz
+    return coupling is not None and highest_hz(rigid) > _SHOWS * coupling.frequency_hz
 
 
 def elastic_offer(
@@ -85,18 +88,15 @@ def elastic_offer(
         For the starts; its state stays as it is.
     """
     pairs, starts = pairs_of(elastic, measurement), copy.deepcopy(rng)
+    how = with_elastic_starts(settings, elastic, rigid)
     try:
-        fit = (
-            identify(*pairs[0], rng=starts, settings=settings)
-            if len(pairs) == 1
-            else identify_jointly(pairs, rng=starts, settings=settings)
-        )
+        fit = _fit(pairs, how, starts)
     except IdentificationError:
         # no stable line with a coupling: there is none to offer
         return None
     gap = criteria_of(rigid).bic - criteria_of(fit).bic
     frequency_hz, damping_ratio = _mode(fit)
-    near = frequency_hz < _NEAR * _highest_hz(rigid) and damping_ratio < _SWINGS
+    near = frequency_hz < _NEAR * highest_hz(rigid) and damping_ratio < _SWINGS
     if gap < _CLEARLY or not near or not explained(fit):
         return None
     beyond = rigid.chi_square - rigid.degrees_of_freedom
@@ -105,6 +105,33 @@ def elastic_offer(
         share=(rigid.chi_square - fit.chi_square) / beyond if beyond > 0.0 else 1.0,
         reason=Reason(kind="elastic coupling", sentence=plain_letters(_sentence(fit, gap, measurement, trial.vessel))),
     )
+
+
+def begun_at_rigid(elastic: Structure, measurement: Measurement, settings: Settings) -> Settings:
+    """Return settings whose starts are those of the rigid line of the same data; as they are for other structures.
+
+    Where there is no stable rigid line, they are as they are, too.
+    """
+    if elastic.name != ELASTIC:
+        return settings
+    rigid = shipped_structure(RIGID)
+    held = {p.name: p.value for p in elastic.parameters if p.held and p.name in {one.name for one in rigid.free}}
+    rigid = rigid.held_at(**held)
+    known = {name: prior for name, prior in settings.priors.items() if name in {p.name for p in rigid.free}}
+    try:
+        # a stream of its own: no result depends on whether another structure is fitted beside it
+        fit = _fit(pairs_of(rigid, measurement), replace(settings, priors=known), np.random.default_rng(1))
+    except IdentificationError:
+        return settings
+    return with_elastic_starts(settings, elastic, fit)
+
+
+def _fit(
+    pairs: Sequence[tuple[Structure, FrequencyResponse]], settings: Settings, rng: np.random.Generator
+) -> Identification:
+    if len(pairs) == 1:
+        return identify(*pairs[0], rng=rng, settings=settings)
+    return identify_jointly(pairs, rng=rng, settings=settings)
 
 
 def _sentence(fit: Identification, gap: float, measurement: Measurement, vessel: Vessel) -> str:
@@ -118,11 +145,12 @@ def _sentence(fit: Identification, gap: float, measurement: Measurement, vessel:
     stiffness = found[fit.structure.named_as(ShipRole.COUPLING_STIFFNESS)]
     kilo = normalisation.inertia_kg_m2 / 1000.0
     mode = found["f_1"]
+    twist = with_deviation(kilo * stiffness.value, kilo * stiffness.std)
+    swings = with_deviation(mode.value, mode.std)
     return (
-        f"The line twists: {ELASTIC}, with an elastic coupling of {with_deviation(kilo * stiffness.value, kilo * stiffness.std)} kN m/rad at "
-        f"the propeller shaft and a mode at {with_deviation(mode.value, mode.std)} Hz, explains the data (p = "
-        f"{p_value_text(fit.p_value)}) and has a BIC that is {plain(gap, 0)} below that of {RIGID}; identify with "
-        f"--structure {ELASTIC}."
+        f"The line twists: {ELASTIC}, with an elastic coupling of {twist} kN m/rad at the propeller shaft and a mode "
+        f"at {swings} Hz, explains the data (p = {p_value_text(fit.p_value)}) and has a BIC that is {plain(gap, 0)} "
+        f"below that of {RIGID}; identify with --structure {ELASTIC}."
     )
 
 
@@ -135,8 +163,3 @@ def _mode(fit: Identification) -> tuple[float, float]:
     omega = 2.0 * np.pi * found["f_1"]
     # omega^2 = k (1 / J_1 + 1 / J_2) and 2 zeta omega = d (1 / J_1 + 1 / J_2)
     return found["f_1"], float(0.5 * omega * damping / stiffness)
-
-
-def _highest_hz(fit: Identification) -> float:
-    """Return the highest frequency of the lines that were fitted [Hz]."""
-    return max(float(np.max(one.s.imag)) for one in fit.objective.experiments) / (2.0 * np.pi)

@@ -33,7 +33,7 @@ from shaftprint.notebook import Shown, Summary, shortened
 from shaftprint.reasons import Reason
 from shaftprint.signals import Mode, Signals
 from shaftprint.spectra import Spectra
-from shaftprint.survey._elastic_line import ElasticOffer, elastic_offer, elastic_structure, may_twist
+from shaftprint.survey._elastic_line import ElasticOffer, begun_at_rigid, elastic_offer, elastic_structure, may_twist
 from shaftprint.survey._fits import comparisons_of, fit, priors_of
 from shaftprint.survey._legs import LegTest, leg_tests
 from shaftprint.survey._legs_apart import LegAlone, apart_reasons, legs_alone
@@ -372,7 +372,7 @@ def settings_by_name(
     structures: Sequence[Structure], measurement: Measurement, trial: Trial, settings: SettingsOf
 ) -> dict[str, Settings]:
     """Return how each structure is fitted, by its name."""
-    return {structure.name: settings(structure, measurement, trial) for structure in structures}
+    return {one.name: begun_at_rigid(one, measurement, settings(one, measurement, trial)) for one in structures}
 
 
 def _with_priors(structure: Structure, measurement: Measurement, trial: Trial) -> Settings:

@@ -56,9 +56,7 @@ def line_coupling(vessel: "Vessel") -> LineCoupling | None:
     by_name = {row.name: row for row in vessel.inertia}
     if all(by_name[name].gauge == "downstream" for name in between):
         return None
-    driven = [
-        row for row in vessel.inertia if row.gauge == "upstream" and behind[line.body_of[row.name]] == 1.0
-    ]
+    driven = [row for row in vessel.inertia if row.gauge == "upstream" and behind[line.body_of[row.name]] == 1.0]
     pair = 1.0 / float(ahead @ line.inertia_kg_m2) + 1.0 / float(behind @ line.inertia_kg_m2)
     omega = 2.0 * math.pi * float(mode.frequency_hz[0])
     return _coupling(between, elastic, share, omega=omega, pair=pair, driven=driven, ratio=vessel.gearbox.ratio)

@@ -180,9 +180,7 @@ PRIORS: Mapping[Role, Callable[[_Test], Prior | None]] = {
     ShipRole.ENGINE_SPEED_SLOPE: lambda _: PRIOR_OF_G,
     ShipRole.INERTIA_UPSTREAM: lambda test: test.inertia_time(ShipRole.INERTIA_UPSTREAM),
     ShipRole.INERTIA_DOWNSTREAM: lambda test: test.inertia_time(ShipRole.INERTIA_DOWNSTREAM),
-    ShipRole.INERTIA_DRIVEN: lambda test: test.of_coupling(
-        lambda one: ("TVC", one.driven_kg_m2, one.driven_std_kg_m2)
-    ),
+    ShipRole.INERTIA_DRIVEN: lambda test: test.of_coupling(lambda one: ("TVC", one.driven_kg_m2, one.driven_std_kg_m2)),
     ShipRole.COUPLING_STIFFNESS: lambda test: test.of_coupling(
         lambda one: ("coupling", one.stiffness_nm_rad, one.stiffness_std_nm_rad)
     ),
