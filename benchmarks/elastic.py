@@ -220,14 +220,23 @@ def _elastic(survey: Survey, truth: Truth, of: Ship) -> dict[str, Any]:
     }
 
 
-def outcome(seed: int) -> dict[str, Any]:
-    """Return what the tests of the ships of a seed gave."""
-    return {
-        "seed": seed,
-        "up to the mode": tested("up to the mode", seed, elastic=True),
-        "short": tested("short", seed, elastic=True),
-        "rigid": tested("up to the mode", seed, elastic=False),
-    }
+PARTS: Mapping[str, tuple[str, bool]] = {
+    "up to the mode": ("up to the mode", True),
+    "rigid": ("up to the mode", False),
+    "short": ("short", True),
+}
+"""What is sailed of every seed: which test, and whether the ship has a coupling."""
+
+
+def outcomes_of(part: str, seeds: Sequence[int], folder: Path) -> list[dict[str, Any]]:
+    """Return what one part gave, of each seed; sailed and fitted where it is not there yet."""
+    test, elastic = PARTS[part]
+    found = []
+    for seed in seeds:
+        path = folder / f"{part.replace(' ', '-')}-{seed:03d}.json"
+        found.append(kept(path, partial(tested, test, seed, elastic=elastic)))
+        print(json.dumps({"part": part, "seed": seed} | found[-1]), flush=True)
+    return found
 
 
 def rows_of(found: Sequence[Mapping[str, Any]]) -> tuple[list[str], list[bool]]:
@@ -269,17 +278,15 @@ def plain_words(found: Sequence[Mapping[str, Any]], *, at: str) -> str:
     )
 
 
-def table(outcomes: Sequence[Mapping[str, Any]]) -> str:
+def table(outcomes: Mapping[str, Sequence[Mapping[str, Any]]]) -> str:
     """Return how often the coupling was offered, and a row for each number of the elastic line, in Markdown."""
-    of = {
-        key: [one[key] for one in outcomes if "refused" not in one[key]] for key in ("up to the mode", "short", "rigid")
-    }
+    of = {part: [one for one in found if "refused" not in one] for part, found in outcomes.items()}
     offered = [one["elastic"] for one in of["up to the mode"] if "elastic" in one]
     rows, inside = rows_of(offered)
     rigid = of["rigid"]
     return "\n".join(
         [
-            f"{len(outcomes)} ships with a mode between {MODES_HZ[0]:g} and {MODES_HZ[1]:g} Hz, "
+            f"{len(of['up to the mode'])} ships with a mode between {MODES_HZ[0]:g} and {MODES_HZ[1]:g} Hz, "
             f"{np.median([one['cpu_s'] for one in of['up to the mode']]):.1f} CPU s a test.",
             "",
             plain_words(of["up to the mode"], at="With a toothed wheel and lines up to 25 Hz"),
@@ -310,11 +317,8 @@ def main() -> None:
     parser.add_argument("--write", action="store_true", help="put the table into its page")
     options = parser.parse_args()
     options.outcomes.mkdir(parents=True, exist_ok=True)
-    found = []
-    for seed in range(options.first, options.first + options.seeds):
-        found.append(kept(options.outcomes / f"{seed:03d}.json", partial(outcome, seed)))
-        print(json.dumps(found[-1]), flush=True)
-    text = table(found)
+    seeds = range(options.first, options.first + options.seeds)
+    text = table({part: outcomes_of(part, seeds, options.outcomes) for part in PARTS})
     print(text)
     if options.write:
         write_between_marks(PAGE, text, BEGIN, END)

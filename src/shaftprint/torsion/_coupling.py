@@ -33,7 +33,7 @@ class LineCoupling:
     driven_std_kg_m2: float
     """Its standard deviation [kg m2]."""
     frequency_hz: float
-    """Natural frequency of the first mode [Hz]."""
+    """Natural frequency of the first mode without damping [Hz]."""
 
 
 def line_coupling(vessel: "Vessel") -> LineCoupling | None:
@@ -47,7 +47,8 @@ def line_coupling(vessel: "Vessel") -> LineCoupling | None:
     if not vessel.links:
         return None
     line = torsional_line(vessel)
-    mode = modes(line)
+    # without damping: what the load takes from the speed of the mode is no softness of the coupling
+    mode = modes(line.without_damping)
     share = mode.elastic_share[0]
     link = int(np.argmax(share))
     ahead, behind = _sides(line, link)

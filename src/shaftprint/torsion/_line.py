@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -121,6 +121,12 @@ class TorsionalLine(Shown):
         if mass not in self.body_of:
             raise StructureError(f"torsional line: there is no mass {mass!r}; it has {', '.join(self.body_of)}.")
         return self.body_of[mass]
+
+    @property
+    def without_damping(self) -> "TorsionalLine":
+        """Return the same masses and springs without any damping, of links or load."""
+        links = tuple(replace(link, relative_damping=0.0, damping_nm_s_rad=0.0) for link in self.links)
+        return replace(self, links=links, load_nm_s_rad=np.zeros(len(self.bodies)))
 
     @property
     def gauge_link(self) -> int:
