@@ -51,17 +51,28 @@ SHORT = load_campaign("short")
 HIGH_HZ = (4.4, 6.1, 7.3, 8.6, 11.2, 12.7, 14.2, 17.1, 18.6, 21.3, 23.4, 25.4)
 """Lines up to the highest mode, between the orders of engine (half and first: 9.9 and 19.7 Hz), shaft (5.2 Hz) and
 blades (15.5 Hz)."""
+SLOWEST_HZ = 0.05
+"""Slower sines of the short check, four minutes of it, are left out."""
+SETTLED_S, WINDOW_S, BETWEEN_S = 4.0, 16.0, 1.0
+RATE_HZ = 1000.0
+"""Of the logger: six samples for each tooth."""
 PAGE = Path(__file__).parents[1] / "docs" / "elastic.md"
 BEGIN, END = "<!-- elastic: begin -->\n", "<!-- elastic: end -->\n"
 NUMBERS = ("tau_up", "tau_m", "tau_dn", "k_c", "d_c", "f_1", "I_up", "I_dn", "k", "d")
 
 
 def up_to_the_mode() -> Campaign:
-    """Return the short check with lines of 20 s up to 25 Hz after it."""
-    begin_s, sines = SHORT.duration_s, []
+    """Return the short check from 0.06 Hz on, with lines of 16 s up to 25 Hz after it."""
+    slow = [sine for sine in SHORT.sines if sine.frequency_hz < SLOWEST_HZ]
+    kept_sines = [sine for sine in SHORT.sines if sine not in slow]
+    earlier_s = kept_sines[0].start_s - slow[0].start_s
+    sines = [
+        sine.model_copy(update={name: getattr(sine, name) - earlier_s for name in ("start_s", "settled_s", "stop_s")})
+        for sine in kept_sines
+    ]
     for number, frequency_hz in enumerate(HIGH_HZ, start=1):
-        settled_s = begin_s + 6.0
-        stop_s = settled_s + round(20.0 * frequency_hz) / frequency_hz + 0.05
+        begin_s = sines[-1].stop_s + BETWEEN_S
+        settled_s = begin_s + SETTLED_S
         sines.append(
             Sine(
                 name=f"H{number}",
@@ -69,27 +80,27 @@ def up_to_the_mode() -> Campaign:
                 amplitude_v=0.6,
                 start_s=begin_s,
                 settled_s=settled_s,
-                stop_s=stop_s,
+                stop_s=settled_s + round(WINDOW_S * frequency_hz) / frequency_hz + 0.05,
             )
         )
-        begin_s += 28.0
-    return SHORT.model_copy(
-        update={"name": "Up to the mode", "duration_s": begin_s + 2.0, "sines": (*SHORT.sines, *sines)}
-    )
+    words = {"name": "Up to the mode", "duration_s": sines[-1].stop_s + BETWEEN_S, "sample_rate_hz": RATE_HZ}
+    return SHORT.model_copy(update=words | {"sines": tuple(sines)})
 
 
 def with_wheel(vessel: Vessel) -> Vessel:
-    """Return a vessel with a wheel of 60 teeth on the propeller shaft in place of its strips."""
+    """Return a vessel with a wheel of 30 teeth on the propeller shaft in place of its strips, and a slower logger."""
     wheel = SpeedSensor(
         name="n_s",
-        channel="PTM_60",
+        channel="PTM_30",
         shaft="propeller",
-        wheel="60",
+        wheel="30",
         unit="V",
-        pulse_width_deg=3.0,
+        pulse_width_deg=6.0,
         jitter_us=50.0,
     )
-    return vessel.model_copy(update={"sensors": vessel.sensors.model_copy(update={"speed": (wheel,)})})
+    logger = vessel.logger.model_copy(update={"sample_rate_hz": RATE_HZ})  # type: ignore[union-attr]
+    sensors = vessel.sensors.model_copy(update={"speed": (wheel,)})
+    return vessel.model_copy(update={"sensors": sensors, "logger": logger})
 
 
 TUG = load_vessel("stan-tug-1205")
