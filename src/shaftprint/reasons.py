@@ -9,6 +9,7 @@ ReasonKind: TypeAlias = Literal[
     "clipping",
     "gauge steadiness",
     "legs apart",
+    "elastic coupling",
     "gauge scale",
     "set-point shape",
     "set-point scale",

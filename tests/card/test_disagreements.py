@@ -1,5 +1,7 @@
 """A vessel file that contradicts itself, one field wrong at a time; the numbers are worked out by hand."""
 
+import math
+
 import pytest
 
 from shaftprint.card import disagreements
@@ -23,7 +25,7 @@ def changed(tmp_path):
     return make
 
 
-@pytest.mark.parametrize("name", ["stan-tug-1205", "stan-tug-1205-ecu", "stan-tug-1205-underway"])
+@pytest.mark.parametrize("name", ["stan-tug-1205", "stan-tug-1205-ecu", "stan-tug-1205-underway", "pt-may"])
 def test_shipped_vessels_agree_with_themselves(name):
     assert disagreements(load_vessel(name)) == ()
 
@@ -173,3 +175,34 @@ def test_speed_at_which_pull_and_resistance_differ():
     wrong = only(underway(ship_speed_m_s=3.0), "working_point.ship_speed_m_s")
     assert wrong.is_contradiction
     assert "5177 N at 3 m/s" in wrong.found
+
+
+def test_a_coupling_so_soft_that_no_governor_could_hold_the_speed(changed):
+    """The template's shaft of 172 kN m/rad, written in kN m/rad: its mode falls by a factor of sqrt(1000)."""
+    with_links = """[[links]]
+between = ["Engine, flywheel and coupling", "Output gear and flanges"]
+source = "assumed"
+
+[[links]]
+between = ["Output gear and flanges", "Propeller, dry"]
+stiffness_nm_rad = {stiffness}
+source = "assumed"
+
+[[links]]
+between = ["Propeller, dry", "Entrained water"]
+source = "assumed"
+
+"""
+    mark = "# Speed pick-ups: one block each; the first is the one that is identified."
+    right = changed(mark, with_links.format(stiffness=172000.0) + mark)
+    assert disagreements(right) == ()
+    up, down = right.inertia_upstream_kg_m2, right.inertia_downstream_kg_m2
+    found = only(changed(mark, with_links.format(stiffness=172.0) + mark), "links[2].stiffness_nm_rad")
+    by_hand_hz = math.sqrt(172.0 * (1.0 / up + 1.0 / down)) / (2.0 * math.pi)
+    assert by_hand_hz < 1.0
+    assert found.is_contradiction
+    assert found.sentence("ship.toml").startswith(
+        "ship.toml, links[2].stiffness_nm_rad: expected a stiffness with which the line swings at 1 Hz or above, as a "
+        "rule 3 to 30 Hz, found 172 N m/rad between Output gear and flanges and Propeller, dry, with which its first "
+    )
+    assert f"mode is at {by_hand_hz:.2g} Hz" in found.found

@@ -1,5 +1,6 @@
 """What is known before a test: inertia from the vessel file, engine slope, latency of the telemetry."""
 
+import math
 from types import SimpleNamespace
 
 import pytest
@@ -7,6 +8,7 @@ import pytest
 from shaftprint.catalogue import structure
 from shaftprint.identify import Prior, expected_from_vessel, priors_from_vessel
 from shaftprint.identify.likelihood import PRIOR_OF_G
+from shaftprint.torsion import line_coupling
 from shaftprint.vessel import load_vessel
 
 
@@ -24,6 +26,11 @@ def vessel(inertia_std=2.7, scale_std=0.02, latency_std=0.002):
             rack=None,
         ),
     )
+
+
+@pytest.fixture
+def tug():
+    return load_vessel("stan-tug-1205")
 
 
 WORKING_POINT = SimpleNamespace(engine_speed_rev_s=19.73, shaft_torque_nm=1725.0, shaft_torque_std_nm=17.25)
@@ -109,3 +116,23 @@ def test_inertia_downstream_is_known_beforehand_where_no_torque_shows_it():
     factor = ship.inertia_downstream_kg_m2 / ship.inertia_upstream_kg_m2
     assert known.mean == pytest.approx(factor * priors_from_vessel(both, ship, WORKING_POINT)["tau_up"].mean)
     assert set(known.sources) == {"TVC", "gauge scale"}
+
+
+def test_links_give_stiffness_damping_and_what_the_coupling_drives(tug):
+    """2 pi n_s0 / M_s0 is 0.018813 s for 1 kg m2; the scale of the gauge, 2 %, counts in all of them."""
+    elastic = structure("GAUGE-ELASTIC").free_between(tau_m=(0.0, 1.0))
+    known, coupling = priors_from_vessel(elastic, tug, WORKING_POINT), line_coupling(tug)
+    for name, value, std in (
+        ("k_c", coupling.stiffness_nm_rad, coupling.stiffness_std_nm_rad),
+        ("d_c", coupling.damping_nm_s_rad, coupling.damping_std_nm_s_rad),
+        ("tau_m", coupling.driven_kg_m2, coupling.driven_std_kg_m2),
+    ):
+        assert known[name].mean == pytest.approx(0.018813 * value, rel=1e-4)
+        assert known[name].std / known[name].mean == pytest.approx(math.hypot(std / value, 0.02), rel=1e-4)
+    assert known["k_c"].sources.keys() == {"coupling", "gauge scale"}
+
+
+def test_a_vessel_file_without_links_knows_no_coupling(tug):
+    rigid = tug.model_copy(update={"links": ()})
+    known = priors_from_vessel(structure("GAUGE-ELASTIC"), rigid, WORKING_POINT)
+    assert known.keys().isdisjoint({"k_c", "d_c", "tau_m"})

@@ -8,9 +8,16 @@ import numpy as np
 import pytest
 
 from shaftprint.errors import SettingsError
-from shaftprint.tug import Coupling, Tug, linearised_response, normalised_truth, simulate_signals
+from shaftprint.tug import (
+    Coupling,
+    Tug,
+    like_stan_tug_1205,
+    linearised_response,
+    normalised_truth,
+    simulate_signals,
+)
 from shaftprint.tug.plant import ENGINE, SPEED, TWIST, build_plant, derivatives, equilibrium
-from shaftprint.vessel import Vessel
+from shaftprint.vessel import Vessel, load_vessel
 
 Make = Callable[..., Any]
 UPSTREAM, DOWNSTREAM = 54.006, 17.0
@@ -99,3 +106,18 @@ def test_truth_is_told_normalised_and_in_si(vessel: Vessel) -> None:
 def test_impossible_coupling_is_refused(vessel: Vessel, change: dict[str, float], said: str) -> None:
     with pytest.raises(SettingsError, match=said):
         build_plant(elastic(replace(SOFT, **change)), vessel)
+
+
+def test_ship_of_a_vessel_file_with_one_spring_has_its_coupling() -> None:
+    """15 kN m/rad behind 7.8 kg m2 at 1800 rpm are 569 kN m/rad at a shaft that turns 6.16 times slower."""
+    coupling = like_stan_tug_1205(load_vessel("pt-may")).coupling
+    assert coupling is not None
+    square = 6.16**2
+    assert coupling.stiffness_nm_rad == pytest.approx(15e3 * square)
+    assert coupling.driven_kg_m2 == pytest.approx(0.65 * square + 6.0)
+    omega = np.sqrt(15e3 * square * (1.0 / (7.8 * square) + 1.0 / (0.65 * square + 6.0 + 70.9)))
+    assert coupling.damping_nm_s_rad == pytest.approx(15e3 * square * 0.9 / (2.0 * np.pi * omega))
+
+
+def test_ship_of_many_springs_is_sailed_rigid(vessel: Vessel) -> None:
+    assert like_stan_tug_1205(vessel).coupling is None

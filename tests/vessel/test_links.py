@@ -62,7 +62,23 @@ def test_links_of_the_template_can_be_switched_on(tmp_path):
         ),
         (
             (MESH, link(GEAR, PROPELLER), BLADES),
-            "one elastic link from upstream to downstream of the torque gauge, found Output gear and flanges",
+            "expected stiffness_nm_rad in one of the links at least, found none",
+        ),
+        (
+            (MESH, link(GEAR, PROPELLER, "damping_nm_s_rad = 3.0"), BLADES),
+            "one link from upstream to downstream of the torque gauge, elastic or rigid, found Output gear",
+        ),
+        (
+            (MESH, SHAFT, link(GEAR, WATER)),
+            "elastic or rigid, found Output gear and flanges - Propeller, dry, Output gear and flanges - Entrained",
+        ),
+        (
+            (MESH, link(GEAR, PROPELLER, "stiffness_nm_rad = 1e5", "relative_damping_std = 0.1"), BLADES),
+            "relative_damping beside relative_damping_std",
+        ),
+        (
+            (MESH, link(GEAR, PROPELLER, "stiffness_nm_rad = 1e5", "damping_std_nm_s_rad = 0.1"), BLADES),
+            "damping_nm_s_rad beside damping_std_nm_s_rad",
         ),
         ((MESH, link(GEAR, PROPELLER, "relative_damping = 1.0"), BLADES), "stiffness_nm_rad beside relative_damping"),
         (
@@ -75,6 +91,12 @@ def test_links_of_the_template_can_be_switched_on(tmp_path):
 def test_what_makes_no_line_is_refused(ship, links, message):
     with pytest.raises(SettingsError, match=message):
         load_vessel(ship(*links))
+
+
+def test_a_spring_anywhere_makes_a_line(ship):
+    """Propeller and water on a spring, and the shaft across the gauge rigid."""
+    links = load_vessel(ship(MESH, link(GEAR, PROPELLER), link(PROPELLER, WATER, "stiffness_nm_rad = 1e6"))).links
+    assert [item.is_rigid for item in links] == [True, True, False]
 
 
 def test_shipped_line_is_whole():

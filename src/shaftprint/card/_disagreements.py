@@ -2,10 +2,11 @@
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 import numpy as np
 
+from shaftprint.card._disagreement import Disagreement
+from shaftprint.card._first_mode import first_mode
 from shaftprint.card._series import open_water_curve, series_torque
 from shaftprint.units import rev_s_from_rpm
 from shaftprint.vessel import Vessel
@@ -19,36 +20,26 @@ _CURVE_TOLERANCE = 1.1
 _FINDING, _CONTRADICTION = 1.25, 2.0
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Disagreement:
-    """A field of a vessel file that others of the same file do not agree with."""
-
-    field: str
-    """Dotted name of the field, such as ``working_point.shaft_torque_nm``."""
-    expected: str
-    """What the other fields make of it, in words."""
-    found: str
-    """What stands there, in words."""
-    advice: str
-    """What to do."""
-    is_contradiction: bool
-    """Whether both cannot be true; otherwise it is strange only."""
-
-    def sentence(self, file: str) -> str:
-        """Return it as one sentence about a file."""
-        return f"{file}, {self.field}: expected {self.expected}, found {self.found}; {self.advice}."
-
-
 def disagreements(vessel: Vessel) -> tuple[Disagreement, ...]:
     """Return what in a vessel file contradicts the rest of it or is strange beside it, contradictions first.
 
     Held against each other are gear ratio, engine and propeller speed; working speed, idle and highest speed; working
     torque, full-load curve, rated power and full scale of the gauge; working torque, torque coefficient and propeller
-    series; underway the speed of the ship, at which thrust is to meet resistance. A torque that is off by a factor of
+    series; underway the speed of the ship, at which thrust is to meet resistance; inertias and stiffnesses of the
+    links. A torque that is off by a factor of
     two contradicts the series, by a quarter it is strange.
     """
     of_propeller = (_thrust,) if vessel.is_underway else (_series, _coefficient)
-    checks = (_ratio, _tip_speed, _working_speed, _full_load_curve, _engine_load, *of_propeller, _full_scale)
+    checks = (
+        _ratio,
+        _tip_speed,
+        _working_speed,
+        _full_load_curve,
+        _engine_load,
+        *of_propeller,
+        _full_scale,
+        first_mode,
+    )
     found = [disagreement for check in checks for disagreement in check(vessel)]
     return tuple(sorted(found, key=lambda one: not one.is_contradiction))
 

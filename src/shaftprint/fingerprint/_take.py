@@ -63,6 +63,7 @@ def take_fingerprint(
     noise: Sequence[NoiseSpectrum] = (),
     torque_ripple: float | None = None,
     ship: Sequence[Quantity] = (),
+    explained_share: float = 0.0,
 ) -> Fingerprint:
     """Return the fingerprint of an identified line.
 
@@ -88,6 +89,8 @@ def take_fingerprint(
         What else speaks against the fit, such as legs that do not belong to one model.
     ship
         What a test underway says of the ship, which is kept with the physical values.
+    explained_share
+        Share of the misfit that another structure takes away, which one of the reasons names.
 
     Raises
     ------
@@ -116,6 +119,7 @@ def take_fingerprint(
         reasons=(*contradictions(physical, signals.working_point, vessel), *reasons),
         further=[_estimate(q) for q in (*physical, *margin, conditions.engine_speed, conditions.shaft_torque)],
         assumptions=assumptions_of(identification, vessel),
+        explained_share=explained_share,
     )
     return Fingerprint(
         shaftprint_version=shaftprint.__version__,

@@ -23,6 +23,8 @@ _LEAST_S, _LEAST_FALL = 0.025, 25.0
 # Loads and inertia times that are possible at all.
 _LOADS, _LONGEST_S = (0.5, 4.0), 3.0
 _FEWEST_LINES = 4
+# Of a ratio of two numbers that are hardly more than their noise neither size nor phase is known, nor how well.
+_LARGEST_VARIANCE = 0.1
 
 
 def shift_reasons(response: "FrequencyResponse") -> tuple[Reason, ...]:
@@ -45,7 +47,16 @@ def shift_reasons(response: "FrequencyResponse") -> tuple[Reason, ...]:
         for row, value in zip(places, (speed, torque), strict=True)
     )
     ratio = torque / speed
-    fall = _chi_squares(response.omega_rad_s[used], ratio, np.abs(ratio) * np.sqrt(share / 2.0), response.load[used])
+    known = share < _LARGEST_VARIANCE
+    if np.count_nonzero(known) < _FEWEST_LINES:
+        return ()
+    ratio, share, omega, load = (
+        ratio[known],
+        share[known],
+        response.omega_rad_s[used][known],
+        response.load[used][known],
+    )
+    fall = _chi_squares(omega, ratio, np.abs(ratio) * np.sqrt(share / 2.0), load)
     best = int(np.argmin(fall))
     delay_s = float(_DELAYS_S[best])
     if abs(delay_s) < _LEAST_S or not fall[_DELAYS_S.size // 2] - fall[best] > _LEAST_FALL:

@@ -2,11 +2,16 @@
 
 from shaftprint.catalogue import CLOSED_LOOPS, ShipRole
 from shaftprint.models import Structure
+from shaftprint.normalisation import inertia_time_s
+from shaftprint.torsion import line_coupling
+from shaftprint.units import rev_s_from_rpm
 from shaftprint.vessel import Vessel
 
 _OF_SENSORS = {ShipRole.LOAD_SLOPE: (1.0, 3.0), ShipRole.LOG_LATENCY: (-2.0, 2.0)}
 # A ship with way on answers its shafts; only engines drive the free-sailing structures.
 _UNDERWAY, _UNDERWAY_WITH_LOG = "FREE-CLOSED", "FREE-LOG"
+# What is known to some per cent is free up to this multiple.
+_WIDE = 2.0
 
 
 def default_structure(vessel: Vessel) -> str:
@@ -21,15 +26,34 @@ def default_structure(vessel: Vessel) -> str:
 
 
 def of_vessel(structure: Structure, vessel: Vessel) -> Structure:
-    """Return a structure with zero of the torque gauge and latency of the log free, where the ship is underway.
+    """Return a structure with free what sensors and coupling of the vessel file leave open.
 
-    A free-sailing structure holds both, for they go with slopes of the propeller and times of the ship. The vessel file
-    knows them with a standard deviation, which belongs into those of what is found.
+    Underway it is the zero of the torque gauge and the latency of the log. A free-sailing structure holds both, for
+    they go with slopes of the propeller and times of the ship. The vessel file knows them with a standard deviation,
+    which belongs into those of what is found. So does the inertia between an elastic coupling and the gauge, where the
+    links of the vessel file state a coupling ahead of the gauge.
     """
-    if not vessel.is_underway:
-        return structure
-    roles = structure.roles
-    opened = {
-        p.name: _OF_SENSORS[roles[p.name]] for p in structure.parameters if p.held and roles.get(p.name) in _OF_SENSORS
-    }
-    return structure.free_between(**opened)
+    opened = dict(_driven(structure, vessel))
+    if vessel.is_underway:
+        roles = structure.roles
+        opened |= {
+            p.name: _OF_SENSORS[roles[p.name]]
+            for p in structure.parameters
+            if p.held and roles.get(p.name) in _OF_SENSORS
+        }
+    return structure.free_between(**opened) if opened else structure
+
+
+def _driven(structure: Structure, vessel: Vessel) -> dict[str, tuple[float, float]]:
+    """Return bounds of the inertia time between coupling and gauge, wide about that of the vessel file."""
+    names = [p.name for p in structure.parameters if p.held and p.role == ShipRole.INERTIA_DRIVEN]
+    coupling = line_coupling(vessel) if names else None
+    if coupling is None or coupling.driven_kg_m2 == 0.0:
+        return {}
+    point = vessel.working_point
+    tau = inertia_time_s(
+        min(_WIDE * coupling.driven_kg_m2, vessel.inertia_upstream_kg_m2),
+        shaft_speed_rev_s=rev_s_from_rpm(point.engine_speed_rpm) / vessel.gearbox.ratio,
+        shaft_torque_nm=point.shaft_torque_nm,
+    )
+    return dict.fromkeys(names, (0.0, tau))

@@ -33,6 +33,7 @@ from shaftprint.notebook import Shown, Summary, shortened
 from shaftprint.reasons import Reason
 from shaftprint.signals import Mode, Signals
 from shaftprint.spectra import Spectra
+from shaftprint.survey._elastic_line import ElasticOffer, begun_at_rigid, elastic_offer, elastic_structure, may_twist
 from shaftprint.survey._fits import comparisons_of, fit, priors_of
 from shaftprint.survey._legs import LegTest, leg_tests
 from shaftprint.survey._legs_apart import LegAlone, apart_reasons, legs_alone
@@ -61,7 +62,7 @@ class Survey(Shown):
     measurement: Measurement
     """Signals, spectra and responses."""
     fits: tuple[Identification, ...]
-    """The structures that were fitted; the fingerprint is of the first."""
+    """The structures that were fitted, and the elastic line where it is offered; the fingerprint is of the first."""
     fingerprint: Fingerprint
     """What is kept."""
     comparisons: tuple[StructureComparison, ...] = ()
@@ -188,8 +189,29 @@ def run(
     by_name = settings_by_name(chosen, measurement, trial, settings or _with_priors)
     fits = fit(chosen, measurement, settings=by_name, rng=rng, progress=progress)
     alone = legs_alone(fits[0], measurement, settings=by_name, rng=rng)
-    survey = _of_fits(fits, measurement, trial, now=now, progress=progress, alone=alone)
+    offer = _offer(fits, measurement, trial, settings or _with_priors, rng=rng, progress=progress)
+    survey = _of_fits(fits, measurement, trial, now=now, progress=progress, alone=alone, offer=offer)
     return judged(survey, rng=rng, progress=progress) if judge else survey
+
+
+def _offer(
+    fits: Sequence[Identification],
+    measurement: Measurement,
+    trial: Trial,
+    settings: SettingsOf,
+    *,
+    rng: np.random.Generator,
+    progress: Progress,
+) -> ElasticOffer | None:
+    """Return the elastic line where the first structure is a rigid one that it beats; None where it was asked for."""
+    elastic = elastic_structure(fits[0].structure, trial.vessel)
+    if elastic is None or any(one.structure.name == elastic.name for one in fits):
+        return None
+    if not may_twist(fits[0], trial.vessel):
+        return None
+    progress.begin("Asking whether the line twists")
+    how = settings(elastic, measurement, trial)
+    return elastic_offer(fits[0], elastic, measurement, trial, settings=how, rng=rng)
 
 
 def _began(stated: datetime | None, by_the_recording: datetime | None, trial: Trial) -> datetime | None:
@@ -220,6 +242,7 @@ def _fingerprint(
     *,
     now: datetime | None,
     reasons: Sequence[Reason] = (),
+    explained_share: float = 0.0,
 ) -> Fingerprint:
     return take_fingerprint(
         identification,
@@ -236,6 +259,7 @@ def _fingerprint(
         noise=_measured_noise(measurement, trial),
         torque_ripple=measurement.torque_ripple,
         ship=_ship(identification, measurement, trial),
+        explained_share=explained_share,
     )
 
 
@@ -288,14 +312,23 @@ def _of_fits(
     now: datetime | None,
     progress: Progress,
     alone: Sequence[LegAlone] = (),
+    offer: ElasticOffer | None = None,
 ) -> Survey:
     progress.begin("Finding the intervals")
     tests = leg_tests(fits[0], measurement.working_points)
-    fingerprint = _fingerprint(fits[0], measurement, trial, tests, now=now, reasons=apart_reasons(fits[0], alone))
+    fingerprint = _fingerprint(
+        fits[0],
+        measurement,
+        trial,
+        tests,
+        now=now,
+        reasons=(*apart_reasons(fits[0], alone), *([] if offer is None else [offer.reason])),
+        explained_share=0.0 if offer is None else offer.share,
+    )
     return Survey(
         trial=trial,
         measurement=measurement,
-        fits=tuple(fits),
+        fits=(*fits, *([] if offer is None else [offer.fit])),
         fingerprint=fingerprint,
         leg_tests=tests,
         legs_alone=tuple(alone),
@@ -339,7 +372,7 @@ def settings_by_name(
     structures: Sequence[Structure], measurement: Measurement, trial: Trial, settings: SettingsOf
 ) -> dict[str, Settings]:
     """Return how each structure is fitted, by its name."""
-    return {structure.name: settings(structure, measurement, trial) for structure in structures}
+    return {one.name: begun_at_rigid(one, measurement, settings(one, measurement, trial)) for one in structures}
 
 
 def _with_priors(structure: Structure, measurement: Measurement, trial: Trial) -> Settings:

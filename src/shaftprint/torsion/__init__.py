@@ -18,6 +18,7 @@ torque of a link      N m          at the propeller shaft; positive when its eng
 A gear mesh joins two masses into one body, as does every rigid link. A *body* has the name of its largest mass.
 """
 
+from shaftprint.torsion._coupling import LineCoupling, line_coupling
 from shaftprint.torsion._entrained_water import (
     Blades,
     WaterEstimate,
@@ -45,6 +46,7 @@ __all__ = [
     "ExpectedInertia",
     "ExpectedValue",
     "InertiaComparison",
+    "LineCoupling",
     "LineLink",
     "LineResponse",
     "LineTrace",
@@ -57,6 +59,7 @@ __all__ = [
     "compare_inertia",
     "expected_inertia",
     "forced_response",
+    "line_coupling",
     "modes",
     "schwanecke_kg_m2",
     "simulate_line",

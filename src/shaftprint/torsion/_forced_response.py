@@ -27,7 +27,7 @@ class LineResponse:
     @property
     def gauge_torque_nm(self) -> ComplexArray:
         """Torque at the gauge [N m], shape (frequencies,)."""
-        return frozen_complex(self.link_torque_nm[self.line.gauge])
+        return frozen_complex(self.link_torque_nm[self.line.gauge_link])
 
     def speed_of(self, mass: str) -> ComplexArray:
         """Return the speed of a mass [rad/s], shape (frequencies,).

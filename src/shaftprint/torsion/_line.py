@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -52,8 +52,8 @@ class TorsionalLine(Shown):
     """Inertia of each body [kg m2], shape (bodies,)."""
     links: tuple[LineLink, ...]
     """The links."""
-    gauge: int
-    """Place of the link whose torque the gauge shows."""
+    gauge: int | None
+    """Place of the link whose torque the gauge shows; None where it sits on a body that turns as one."""
     load_nm_s_rad: FloatArray
     """Viscous damping against the surroundings [N m s/rad], shape (bodies,): the slope of the propeller torque."""
     inertia_std_kg_m2: FloatArray
@@ -82,7 +82,8 @@ class TorsionalLine(Shown):
             raise StructureError(
                 f"torsional line: expected every body to have inertia, found none in {at}; join it rigidly to another."
             )
-        if len(self.links) != count - 1 or not 0 <= self.gauge < len(self.links):
+        on_a_link = self.gauge is None or 0 <= self.gauge < len(self.links)
+        if len(self.links) != count - 1 or not on_a_link:
             raise StructureError(
                 f"torsional line: expected {count - 1} links for {count} bodies and the gauge on one of them, found "
                 f"{len(self.links)} links and the gauge on link {self.gauge}."
@@ -122,15 +123,48 @@ class TorsionalLine(Shown):
         return self.body_of[mass]
 
     @property
+    def without_damping(self) -> "TorsionalLine":
+        """Return the same masses and springs without any damping, of links or load."""
+        links = tuple(replace(link, relative_damping=0.0, damping_nm_s_rad=0.0) for link in self.links)
+        return replace(self, links=links, load_nm_s_rad=np.zeros(len(self.bodies)))
+
+    @property
+    def gauge_link(self) -> int:
+        """Return the place of the link whose torque the gauge shows.
+
+        Raises
+        ------
+        StructureError
+            If the gauge sits on a body that turns as one: then no link has its torque.
+        """
+        if self.gauge is None:
+            raise StructureError(
+                "torsional line: expected a stiffness of the link across the torque gauge, found a rigid one; state "
+                "that of the shaft in the vessel file."
+            )
+        return self.gauge
+
+    @property
     def is_downstream(self) -> FloatArray:
-        """1 for bodies on the propeller's side of the gauge, 0 for others; shape (bodies,)."""
-        behind = self.links[self.gauge].between[1]
-        others = [link.between for index, link in enumerate(self.links) if index != self.gauge]
-        reached = {behind}
+        """1 for bodies on the propeller's side of the gauge, 0 for others; shape (bodies,).
+
+        Raises
+        ------
+        StructureError
+            If the gauge sits on a body, which then lies on both sides.
+        """
+        _, behind = self.sides_of(self.gauge_link)
+        return behind
+
+    def sides_of(self, link: int) -> tuple[FloatArray, FloatArray]:
+        """Return 1 for bodies ahead of a link and 0 for those behind it, and the other way round; shape (bodies,)."""
+        others = [one.between for index, one in enumerate(self.links) if index != link]
+        reached = {self.links[link].between[1]}
         while True:
             more = {body for pair in others if reached & set(pair) for body in pair} - reached
             if not more:
-                return np.array([float(body in reached) for body in range(len(self.bodies))])
+                behind = np.array([float(body in reached) for body in range(len(self.bodies))])
+                return 1.0 - behind, behind
             reached |= more
 
 
@@ -161,8 +195,10 @@ def torsional_line(vessel: "Vessel", *, load_slope: float = QUADRATIC_LAW) -> To
     inertia = np.array([math.fsum(row.referred_kg_m2(ratio) for row in rows) for rows in groups])
     names = tuple(max(rows, key=lambda row: row.referred_kg_m2(ratio)).name for rows in groups)
     links = _links(vessel, body_of)
-    behind = np.array([rows[0].gauge == "downstream" for rows in groups])
-    propeller = int(np.argmax(np.where(behind, inertia, 0.0)))
+    behind = np.array(
+        [math.fsum(row.referred_kg_m2(ratio) for row in rows if row.gauge == "downstream") for rows in groups]
+    )
+    propeller = int(np.argmax(behind))
     point = vessel.working_point
     shaft_rad_s = 2.0 * math.pi * rev_s_from_rpm(point.engine_speed_rpm) / ratio
     load = np.zeros(len(groups))
@@ -171,11 +207,19 @@ def torsional_line(vessel: "Vessel", *, load_slope: float = QUADRATIC_LAW) -> To
         bodies=names,
         inertia_kg_m2=inertia,
         links=links,
-        gauge=next(i for i, link in enumerate(links) if behind[link.between[0]] != behind[link.between[1]]),
+        gauge=_gauge_of(groups, links),
         load_nm_s_rad=load,
         inertia_std_kg_m2=np.array([math.hypot(*(row.referred_std_kg_m2(ratio) for row in rows)) for rows in groups]),
         body_of=body_of,
     )
+
+
+def _gauge_of(groups: "list[list[InertiaRow]]", links: tuple[LineLink, ...]) -> int | None:
+    """Return the link across the gauge; None where that is rigid, so that one body has masses on both of its sides."""
+    sides = [{row.gauge for row in rows} for rows in groups]
+    if any(len(side) > 1 for side in sides):
+        return None
+    return next(i for i, link in enumerate(links) if sides[link.between[0]] != sides[link.between[1]])
 
 
 def _bodies(vessel: "Vessel") -> "list[list[InertiaRow]]":

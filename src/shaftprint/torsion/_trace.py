@@ -33,7 +33,7 @@ class LineTrace:
     @property
     def gauge_torque_nm(self) -> FloatArray:
         """Torque at the gauge [N m], shape (samples,)."""
-        return frozen_float(self.link_torque_nm[self.line.gauge])
+        return frozen_float(self.link_torque_nm[self.line.gauge_link])
 
     def speed_of(self, mass: str) -> FloatArray:
         """Return the speed of a mass [rad/s], shape (samples,).

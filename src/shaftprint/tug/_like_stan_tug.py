@@ -4,6 +4,7 @@ import math
 from dataclasses import replace
 
 from shaftprint.errors import SettingsError
+from shaftprint.tug._coupling import stated_coupling
 from shaftprint.tug._sailing import CURVES_PITCH_RATIO, CURVES_SERIES, Sailing
 from shaftprint.tug._truth import normalised_truth
 from shaftprint.tug._tug import Tug
@@ -26,7 +27,7 @@ def like_stan_tug_1205(vessel: Vessel, *, offset_v: float = _AT_THE_QUAY_V) -> T
     campaign underway; volts are those of the tug. A line with less inertia over its torque has a governor with as much
     smaller gains, which crosses over where that of the tug does and is as far from hunting. A motor has the dead time
     and lag of a converter. A ship whose vessel file states a speed of the ship sails free, with its wake fraction and
-    thrust deduction.
+    thrust deduction. Where the links of its vessel file have one spring, that is its coupling.
 
     Parameters
     ----------
@@ -41,6 +42,7 @@ def like_stan_tug_1205(vessel: Vessel, *, offset_v: float = _AT_THE_QUAY_V) -> T
         If it is to sail free with another propeller than the simulated ship has curves of.
     """
     tug = replace(Tug.stan_tug_1205() if vessel.motor is None else _ELECTRIC, sailing=_sailing(vessel))
+    tug = replace(tug, coupling=stated_coupling(vessel))
     further_v = offset_v - _AT_THE_QUAY_V if vessel.is_underway else 0.0
     asked_rpm = _AT_THE_QUAY_RPM + tug.set_point_slope_rpm_per_v * further_v
     speed = vessel.working_point.engine_speed_rpm / asked_rpm

@@ -16,3 +16,9 @@ PITCH_STD = 0.01
 """Relative standard deviation of the pitch of a propeller as built."""
 MASS_STD = 0.03
 """Relative standard deviation of the displacement of a ship."""
+COUPLING_STIFFNESS_STD = 0.1
+"""Relative standard deviation of the stiffness of a link: makers of rubber couplings state 10 to 15 %, and it falls
+with the temperature of the rubber."""
+COUPLING_DAMPING_STD = 0.3
+"""Relative standard deviation of the damping of a link: 0.8 to 1.2 of a rubber coupling's ``psi`` are usual, and it
+changes with amplitude and temperature."""

@@ -117,5 +117,8 @@ def _print(
         return
     print_table(mode_table(vibrations))
     line = vibrations.line
+    if line.gauge is None:
+        say("No two masses: the link across the torque gauge is rigid, state the stiffness of the shaft there.")
+        return
     driven = line.bodies[int((line.inertia_kg_m2 * (1.0 - line.is_downstream)).argmax())]
     say(f"{plain_letters(two_mass_sentence(two_masses(line, driven=[driven])))}\n")

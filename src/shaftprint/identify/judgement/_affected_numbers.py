@@ -26,6 +26,7 @@ AFFECTED: Mapping[ReasonKind, tuple[frozenset[Basis], str]] = {
         "it depends on a torque gauge and a load that stay the same during the test",
     ),
     "legs apart": (ALL, WHOLE),
+    "elastic coupling": (ALL - {"speed"}, "it depends on a line that does not twist"),
     "gauge scale": (frozenset(("torque", "governor")), "it depends on the scale of the torque gauge"),
     "set-point shape": (ALL - {"speed"}, "it depends on a set point that was not recorded as it was"),
     "set-point scale": (ALL - {"speed"}, "it depends on the scale of the set point"),

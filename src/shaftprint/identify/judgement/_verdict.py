@@ -106,6 +106,7 @@ def assess(
     reasons: Sequence[Reason] = (),
     further: Sequence[Estimate] = (),
     assumptions: Sequence[str] = (),
+    explained_share: float = 0.0,
 ) -> Verdict:
     """Return which numbers of a fit may be used, and why the others may not.
 
@@ -126,6 +127,9 @@ def assess(
         Numbers that were made of the parameters, such as physical values, to be judged with them.
     assumptions
         What the numbers rest on and no recording can show.
+    explained_share
+        Share of the misfit beyond the noise that another structure, which a reason names, takes away; of what may be
+        missing only what would take away more is named then.
     """
     evidence = Evidence.of(identification, profile, signal_to_noise, requirements or Requirements())
     of_fit = _of_fit(evidence)
@@ -133,6 +137,7 @@ def assess(
         evidence = replace(evidence, profile=find_profile(identification))
     rejected = any(reason.kind == "misfit" for reason in of_fit)
     suspects = suspects_of(identification, rejected=evidence.requirements.lowest_p_value) if rejected else ()
+    suspects = tuple(suspect for suspect in suspects if suspect.share > explained_share)
     hints = tuple(Reason(kind="suspect", sentence=suspect.sentence) for suspect in suspects)
     of_data = (reason for part in identification.experiments for reason in part.response.reasons)
     every = by_weight((*of_data, *reasons, *contradicted_priors(identification), *of_fit, *hints))

@@ -16,6 +16,7 @@ from shaftprint.catalogue import ShipRole, expect_roles
 from shaftprint.identify.likelihood._prior import Prior
 from shaftprint.models import Role, Structure
 from shaftprint.normalisation import Normalisation
+from shaftprint.torsion import LineCoupling, line_coupling
 
 if TYPE_CHECKING:
     from shaftprint.signals import Mode, WorkingPoint
@@ -32,8 +33,9 @@ def priors_from_vessel(
 ) -> dict[str, Prior]:
     """Return what a fit may know beforehand of a structure's free parameters, by their roles.
 
-    It is the inertia upstream of the gauge and with it the slope of the engine torque; the latencies of gauge, set
-    point and rack; and the inertia downstream where the structure has no shaft torque to show it. Where it shows, the
+    It is the inertia upstream of the gauge and with it the slope of the engine torque; stiffness and damping of the
+    coupling that the links state, and what it drives ahead of the gauge; the latencies of gauge, set point and rack;
+    and the inertia downstream where the structure has no shaft torque to show it. Where it shows, the
     test is to check the vessel file's inertia, so that the fit does not know it.
 
     Parameters
@@ -110,16 +112,28 @@ class _Test:
         stated = inertia_from_vessel(role, self.vessel)
         if stated is None or not stated[1] > 0.0:
             return None
-        inertia, std = stated
+        return self._over_torque("TVC", *stated)
+
+    def of_coupling(self, part: Callable[[LineCoupling], tuple[str, float, float]]) -> Prior | None:
+        """Return what the vessel file's links say of their coupling; None where they have none, or nothing of it.
+
+        Stiffness and damping are normalised as an inertia is.
+        """
+        coupling = line_coupling(self.vessel)
+        source, value, std = ("", 0.0, 0.0) if coupling is None else part(coupling)
+        return self._over_torque(source, value, std) if value > 0.0 and std > 0.0 else None
+
+    def _over_torque(self, source: str, value: float, std: float) -> Prior:
+        """Return a number in SI that is normalised as an inertia, with the scale of the gauge in its deviation."""
         normalisation = Normalisation(
             engine_speed_rev_s=self.point.engine_speed_rev_s,
             gear_ratio=self.vessel.gearbox.ratio,
             shaft_torque_nm=self.point.shaft_torque_nm,
         )
-        tau = normalisation.inertia_time_s(inertia)
-        parts = {"TVC": tau * std / inertia, "gauge scale": -tau * self.vessel.sensors.shaft_torque.scale_std}
+        mean = normalisation.inertia_time_s(value)
+        parts = {source: mean * std / value, "gauge scale": -mean * self.vessel.sensors.shaft_torque.scale_std}
         sources = {name: float(part) for name, part in parts.items() if part}
-        return Prior(mean=float(tau), std=float(np.linalg.norm(list(sources.values()))), sources=sources)
+        return Prior(mean=float(mean), std=float(np.linalg.norm(list(sources.values()))), sources=sources)
 
     def torque_latency(self) -> Prior | None:
         """Return what is known of the torque gauge's latency, over what was taken off already."""
@@ -166,6 +180,13 @@ PRIORS: Mapping[Role, Callable[[_Test], Prior | None]] = {
     ShipRole.ENGINE_SPEED_SLOPE: lambda _: PRIOR_OF_G,
     ShipRole.INERTIA_UPSTREAM: lambda test: test.inertia_time(ShipRole.INERTIA_UPSTREAM),
     ShipRole.INERTIA_DOWNSTREAM: lambda test: test.inertia_time(ShipRole.INERTIA_DOWNSTREAM),
+    ShipRole.INERTIA_DRIVEN: lambda test: test.of_coupling(lambda one: ("TVC", one.driven_kg_m2, one.driven_std_kg_m2)),
+    ShipRole.COUPLING_STIFFNESS: lambda test: test.of_coupling(
+        lambda one: ("coupling", one.stiffness_nm_rad, one.stiffness_std_nm_rad)
+    ),
+    ShipRole.COUPLING_DAMPING: lambda test: test.of_coupling(
+        lambda one: ("coupling damping", one.damping_nm_s_rad, one.damping_std_nm_s_rad)
+    ),
     ShipRole.TORQUE_LATENCY: _Test.torque_latency,
     ShipRole.SET_POINT_LATENCY: _Test.set_point_latency,
     ShipRole.RACK_LATENCY: _Test.rack_latency,

@@ -54,10 +54,9 @@ def _shape(
     modes: "Modes", mode: int, chain: list[int], branches: list[tuple[int, int]], across: "FloatArray"
 ) -> list[Mark]:
     line, shape = modes.line, modes.shape[mode].real
-    gauge = float(np.mean(across[list(line.links[line.gauge].between)]))
     marks: list[Mark] = [
         Straight(at=0.0, axis="y", dash="solid"),
-        Straight(at=gauge, axis="x", name="torque gauge"),
+        *_gauge(line, across),
         Line(x=across[chain], y=shape[chain], name="line", marker="circle"),
     ]
     for shade, (body, carrier) in enumerate(branches, start=1):
@@ -67,9 +66,17 @@ def _shape(
     return marks
 
 
+def _gauge(line: "TorsionalLine", across: "FloatArray") -> list[Mark]:
+    """Return where the torque gauge sits; nothing where it is on a body, of which no picture shows which part."""
+    if line.gauge is None:
+        return []
+    at = float(np.mean(across[list(line.links[line.gauge].between)]))
+    return [Straight(at=at, axis="x", name="torque gauge")]
+
+
 def _layout(line: "TorsionalLine") -> tuple[list[int], list[tuple[int, int]]]:
     """Return the bodies from the engine's free end to the propeller, and the other bodies with what carries each."""
-    propeller = int(np.argmax(line.inertia_kg_m2 * line.is_downstream))
+    propeller = int(np.argmax(line.load_nm_s_rad if line.gauge is None else line.inertia_kg_m2 * line.is_downstream))
     came_from, compliance = _ways(line, propeller)
     springs = [body for body, soft in compliance.items() if np.isfinite(soft)]
     steps = {body: len(_way(body, came_from)) for body in springs}

@@ -54,6 +54,10 @@ _WORDS: "Mapping[ReasonKind, tuple[str, str]]" = {
         "The two speed pick-ups do not agree with the gear ratio.",
         "Check gear ratio and pulses per revolution in the vessel file, then identify once more.",
     ),
+    "elastic coupling": (
+        "The shaft line twists in a coupling, which the model does not know.",
+        "Identify once more with the model of an elastic line, GAUGE-ELASTIC.",
+    ),
     "misfit": (
         "The model does not explain the measurements.",
         "Have an engineer compare other model structures, and look for what was changed during the test.",

@@ -1,0 +1,165 @@
+"""Whether a coupling that twists explains what a rigid line does not: the elastic line, offered beside it."""
+
+import copy
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from shaftprint.catalogue import CLOSED_LOOPS, ShipRole, shipped_structure
+from shaftprint.digits import p_value_text, plain, plain_letters, with_deviation
+from shaftprint.errors import IdentificationError
+from shaftprint.identify import Identification, Settings, identify, identify_jointly
+from shaftprint.identify.comparison import criteria_of
+from shaftprint.identify.judgement import explained
+from shaftprint.models import Structure
+from shaftprint.normalisation import Normalisation
+from shaftprint.reasons import Reason
+from shaftprint.spectra import FrequencyResponse
+from shaftprint.survey._elastic_starts import highest_hz, with_elastic_starts
+from shaftprint.survey._measurement import Measurement, pairs_of
+from shaftprint.survey._of_vessel import of_vessel
+from shaftprint.survey._trial import Trial
+from shaftprint.torsion import line_coupling
+from shaftprint.vessel import Vessel
+
+RIGID, ELASTIC = CLOSED_LOOPS["engine"], "GAUGE-ELASTIC"
+# A rigid line is beaten clearly by a BIC that is so much lower (Kass and Raftery, Bayes factors, 1995, section 3.2).
+_CLEARLY = 10.0
+# Far below its mode a line is rigid: at a third of it speed and torque differ by a tenth.
+_SHOWS = 1.0 / 3.0
+# A mode is one where it swings, and where lines are near it, not somewhere beyond.
+_SWINGS, _NEAR = 0.5, 1.5
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class ElasticOffer:
+    """A line with an elastic coupling that explains the data where the rigid one does not, or much better."""
+
+    fit: Identification
+    """The fit of GAUGE-ELASTIC to the same responses."""
+    share: float
+    """Share of the misfit of the rigid line beyond the noise that it takes away."""
+    reason: Reason
+    """What speaks against the numbers of the rigid line, and what to do."""
+
+
+def elastic_structure(rigid: Structure, vessel: Vessel) -> Structure | None:
+    """Return the elastic line that stands beside a rigid one, with what is held there; None for another structure."""
+    if rigid.name != RIGID:
+        return None
+    elastic = of_vessel(shipped_structure(ELASTIC), vessel)
+    free = {parameter.name for parameter in elastic.free}
+    return elastic.held_at(**{p.name: p.value for p in rigid.parameters if p.held and p.name in free})
+
+
+def may_twist(rigid: Identification, vessel: Vessel) -> bool:
+    """Return whether it is worth asking: the rigid line is rejected, or lines come near a mode of the vessel file."""
+    if not rigid.is_likelihood or rigid.objective.others:
+        return False
+    if not explained(rigid):
+        return True
+    coupling = line_coupling(vessel)
+    return coupling is not None and highest_hz(rigid) > _SHOWS * coupling.frequency_hz
+
+
+def elastic_offer(
+    rigid: Identification,
+    elastic: Structure,
+    measurement: Measurement,
+    trial: Trial,
+    *,
+    settings: Settings,
+    rng: np.random.Generator,
+) -> ElasticOffer | None:
+    """Return the elastic line where it explains the data, swings near the lines, and beats the rigid one clearly.
+
+    Parameters
+    ----------
+    rigid
+        The fit of the rigid line.
+    elastic
+        From ``elastic_structure``.
+    measurement, trial
+        What was measured and tested.
+    settings
+        How the elastic line is fitted.
+    rng
+        For the starts; its state stays as it is.
+    """
+    pairs, starts = pairs_of(elastic, measurement), copy.deepcopy(rng)
+    how = with_elastic_starts(settings, elastic, rigid)
+    try:
+        fit = _fit(pairs, how, starts)
+    except IdentificationError:
+        # no stable line with a coupling: there is none to offer
+        return None
+    gap = criteria_of(rigid).bic - criteria_of(fit).bic
+    frequency_hz, damping_ratio = _mode(fit)
+    near = frequency_hz < _NEAR * highest_hz(rigid) and damping_ratio < _SWINGS
+    if gap < _CLEARLY or not near or not explained(fit):
+        return None
+    beyond = rigid.chi_square - rigid.degrees_of_freedom
+    return ElasticOffer(
+        fit=fit,
+        share=(rigid.chi_square - fit.chi_square) / beyond if beyond > 0.0 else 1.0,
+        reason=Reason(kind="elastic coupling", sentence=plain_letters(_sentence(fit, gap, measurement, trial.vessel))),
+    )
+
+
+def begun_at_rigid(elastic: Structure, measurement: Measurement, settings: Settings) -> Settings:
+    """Return settings whose starts are those of the rigid line of the same data; as they are for other structures.
+
+    Where there is no stable rigid line, they are as they are, too.
+    """
+    if elastic.name != ELASTIC:
+        return settings
+    rigid = shipped_structure(RIGID)
+    held = {p.name: p.value for p in elastic.parameters if p.held and p.name in {one.name for one in rigid.free}}
+    rigid = rigid.held_at(**held)
+    known = {name: prior for name, prior in settings.priors.items() if name in {p.name for p in rigid.free}}
+    try:
+        # a stream of its own: no result depends on whether another structure is fitted beside it
+        fit = _fit(pairs_of(rigid, measurement), replace(settings, priors=known), np.random.default_rng(1))
+    except IdentificationError:
+        return settings
+    return with_elastic_starts(settings, elastic, fit)
+
+
+def _fit(
+    pairs: Sequence[tuple[Structure, FrequencyResponse]], settings: Settings, rng: np.random.Generator
+) -> Identification:
+    if len(pairs) == 1:
+        return identify(*pairs[0], rng=rng, settings=settings)
+    return identify_jointly(pairs, rng=rng, settings=settings)
+
+
+def _sentence(fit: Identification, gap: float, measurement: Measurement, vessel: Vessel) -> str:
+    point = measurement.signals.working_point
+    normalisation = Normalisation(
+        engine_speed_rev_s=point.engine_speed_rev_s,
+        gear_ratio=vessel.gearbox.ratio,
+        shaft_torque_nm=point.shaft_torque_nm,
+    )
+    found = {one.name: one for one in (*fit.parameters, *fit.combinations)}
+    stiffness = found[fit.structure.named_as(ShipRole.COUPLING_STIFFNESS)]
+    kilo = normalisation.inertia_kg_m2 / 1000.0
+    mode = found["f_1"]
+    twist = with_deviation(kilo * stiffness.value, kilo * stiffness.std)
+    swings = with_deviation(mode.value, mode.std)
+    return (
+        f"The line twists: {ELASTIC}, with an elastic coupling of {twist} kN m/rad at the propeller shaft and a mode "
+        f"at {swings} Hz, explains the data (p = {p_value_text(fit.p_value)}) and has a BIC that is {plain(gap, 0)} "
+        f"below that of {RIGID}; identify with --structure {ELASTIC}."
+    )
+
+
+def _mode(fit: Identification) -> tuple[float, float]:
+    """Return frequency [Hz] and damping ratio of the two bodies on their coupling."""
+    found = {one.name: one.value for one in (*fit.parameters, *fit.combinations)}
+    stiffness, damping = (
+        found[fit.structure.named_as(role)] for role in (ShipRole.COUPLING_STIFFNESS, ShipRole.COUPLING_DAMPING)
+    )
+    omega = 2.0 * np.pi * found["f_1"]
+    # omega^2 = k (1 / J_1 + 1 / J_2) and 2 zeta omega = d (1 / J_1 + 1 / J_2)
+    return found["f_1"], float(0.5 * omega * damping / stiffness)

@@ -1,0 +1,65 @@
+"""Where the search for an elastic line begins: at the rigid line that was found, with modes all over the lines.
+
+A mode is a narrow valley in the cost: a start whose mode lies between other lines does not see it, and starts that are
+drawn between the bounds hardly ever have governor and mode right at once.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+
+from shaftprint.arrays import FloatArray
+from shaftprint.catalogue import ShipRole
+from shaftprint.identify import Identification, Settings
+from shaftprint.identify.search import GivenStarts
+from shaftprint.models import Structure
+
+_MODES, _LOWEST_HZ, _BEYOND = 16, 1.0, 1.5
+# Of rubber couplings.
+_DAMPING_RATIO = 0.07
+# Optima of the rigid line that are taken along.
+_OPTIMA = 3
+
+
+def highest_hz(fit: Identification) -> float:
+    """Return the highest frequency of the lines that were fitted [Hz]."""
+    return max(float(np.max(one.s.imag)) for one in fit.objective.experiments) / (2.0 * np.pi)
+
+
+def with_elastic_starts(settings: Settings, elastic: Structure, rigid: Identification) -> Settings:
+    """Return settings with starts at the optima of the rigid line for modes up to beyond the lines, and those before.
+
+    Parameters
+    ----------
+    settings
+        How the elastic line is fitted; its priors give the start of what the rigid line does not have.
+    elastic
+        The elastic line.
+    rigid
+        The fit of the rigid one.
+    """
+    modes_hz = np.geomspace(_LOWEST_HZ, _BEYOND * highest_hz(rigid), _MODES)
+    optima = [dict(zip(rigid.objective.names, one.values.tolist(), strict=True)) for one in rigid.clusters[:_OPTIMA]]
+    starts = [_start(elastic, settings, optimum, float(mode_hz)) for optimum in optima for mode_hz in modes_hz]
+    draw = GivenStarts(np.array(starts), settings.draw)
+    return replace(settings, starts=settings.starts + len(starts), draw=draw)
+
+
+def _start(elastic: Structure, settings: Settings, optimum: dict[str, float], mode_hz: float) -> FloatArray:
+    """Return the free parameters of the elastic line, as far as they are those of the rigid one, with a mode."""
+    stated = {name: prior.mean for name, prior in settings.priors.items()}
+    values = {p.name: optimum.get(p.name, stated.get(p.name, p.value)) for p in elastic.parameters}
+    upstream, driven, downstream, stiffness, damping = (
+        str(elastic.named_as(role))
+        for role in (
+            ShipRole.INERTIA_UPSTREAM,
+            ShipRole.INERTIA_DRIVEN,
+            ShipRole.INERTIA_DOWNSTREAM,
+            ShipRole.COUPLING_STIFFNESS,
+            ShipRole.COUPLING_DAMPING,
+        )
+    )
+    pair = 1.0 / (values[upstream] - values[driven]) + 1.0 / (values[driven] + values[downstream])
+    omega = 2.0 * np.pi * mode_hz
+    values |= {stiffness: omega**2 / pair, damping: 2.0 * _DAMPING_RATIO * omega / pair}
+    return np.array([values[p.name] for p in elastic.free])
