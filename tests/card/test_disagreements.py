@@ -23,7 +23,9 @@ def changed(tmp_path):
     return make
 
 
-@pytest.mark.parametrize("name", ["stan-tug-1205", "stan-tug-1205-ecu", "stan-tug-1205-underway"])
+@pytest.mark.parametrize(
+    "name", ["stan-tug-1205", "stan-tug-1205-astern", "stan-tug-1205-ecu", "stan-tug-1205-underway"]
+)
 def test_shipped_vessels_agree_with_themselves(name):
     assert disagreements(load_vessel(name)) == ()
 
