@@ -101,7 +101,9 @@ def _of_torque(reports: Sequence[ChannelReport], vessel: "Vessel") -> tuple[str,
         return ()
     sentence = f"expected a torque around {expected:.4g} N m, found a mean of {mean_torque_nm:.4g} N m"
     swapped = mean_nm(set_point)
-    if set_point.unit == torque.unit and _AROUND[0] < swapped / expected < _AROUND[1]:
+    # astern torque and set point have one sign, so that the sign tells of no swap
+    may_be_swapped = set_point.unit == torque.unit and not vessel.working_point.is_astern
+    if may_be_swapped and _AROUND[0] < swapped / expected < _AROUND[1]:
         return (
             f"channels {torque.channel} and {set_point.channel} seem to be swapped: {sentence} in {torque.channel}, "
             f"and {swapped:.4g} N m in {set_point.channel}. Correct the channels in the vessel file or the columns of "
