@@ -25,7 +25,9 @@ def changed(tmp_path):
     return make
 
 
-@pytest.mark.parametrize("name", ["stan-tug-1205", "stan-tug-1205-ecu", "stan-tug-1205-underway", "pt-may"])
+@pytest.mark.parametrize(
+    "name", ["stan-tug-1205", "stan-tug-1205-astern", "stan-tug-1205-ecu", "stan-tug-1205-underway", "pt-may"]
+)
 def test_shipped_vessels_agree_with_themselves(name):
     assert disagreements(load_vessel(name)) == ()
 
@@ -206,3 +208,30 @@ source = "assumed"
         "rule 3 to 30 Hz, found 172 N m/rad between Output gear and flanges and Propeller, dry, with which its first "
     )
     assert f"mode is at {by_hand_hz:.2g} Hz" in found.found
+
+
+def astern(**values):
+    """An open propeller of four blades with P/D 1.0 that turns astern at 1183.8 rpm of the engine."""
+    vessel = load_vessel("stan-tug-1205-astern")
+    changes = {"blades": 4, "series": "Wageningen B4-70", "pitch_ratio": 1.0} | values
+    return vessel.model_copy(update={"propeller": vessel.propeller.model_copy(update=changes)})
+
+
+def test_torque_astern_is_held_against_the_series_astern():
+    """0.0628 of 1025 * 5.16492^2 * 1.05^5 = 34898 N m are 2192 N m, 1.27 times the 1725 N m of the file."""
+    wrong = only(astern(), "working_point.shaft_torque_nm")
+    assert not wrong.is_contradiction
+    assert wrong.expected.startswith("about -219")
+    assert "as Wageningen B4-70 astern takes at zero advance" in wrong.expected
+    assert wrong.found == "-1725 N m, a factor of 1.27"
+
+
+@pytest.mark.parametrize("changes", [{"blades": 3}, {"area_ratio": 0.55}, {"series": "Ka4-70 in nozzle 19A"}])
+def test_no_series_astern_is_taken_for_another_propeller(changes):
+    assert disagreements(astern(**changes)) == ()
+
+
+def test_torque_coefficient_astern_that_disagrees():
+    wrong = only(astern(blades=3, astern_torque_coefficient=0.4943), "propeller.astern_torque_coefficient")
+    assert wrong.is_contradiction
+    assert wrong.expected.startswith("0.04943, as -1725 N m at 1183.8 rpm")

@@ -188,3 +188,14 @@ def test_numbers_of_which_one_follows_from_another_are_not_judged_together(befor
     assert (
         differ(twin, twin, load_repeatability=0.0).because == "the covariance of the numbers is not positive definite"
     )
+
+
+def test_a_test_astern_is_not_held_against_the_propeller_ahead(before):
+    """Ahead and astern a propeller takes another torque and more or less water: that is no change of the ship."""
+    fit = fitted("GAUGE-CLOSED", TRUTH, share=0.002, settings=Settings(starts=20, priors=PRIORS))
+    astern = taken(fit, vessel=load_vessel("stan-tug-1205-astern"))
+    pair = pair_of(before, astern, load_repeatability=0.005)
+    why = "the shaft did not turn the same way, and the propeller takes another torque astern"
+    assert pair.left_out["K_Q"] == pair.left_out["I_dn"] == why
+    assert "governor proportional action" in pair.names
+    assert pair_of(astern, astern, load_repeatability=0.005).left_out.get("K_Q", "") == ""

@@ -96,6 +96,17 @@ def test_linearised_tug_is_the_composed_structure(vessel, name, given):
     assert np.degrees(np.angle(ratio)) == pytest.approx(np.zeros(ratio.shape), abs=1e-3)
 
 
+@pytest.mark.parametrize("name", ["GAUGE-CLOSED", "GAUGE-ECU", "GAUGE-INFLOW"])
+def test_line_astern_is_the_composed_structure(name):
+    """Numbers have the meaning that they have ahead, while the torque of the simulated gauge is below 0."""
+    tug = Tug(**INFLOW["inflow and water"] if name == "GAUGE-INFLOW" else {"g": -0.3, "v": 1.2})
+    outputs, model = composed(name, parameters_of(tug))
+    astern = load_vessel("stan-tug-1205-astern")
+    ratio = linearised_response(tug, astern, OMEGA_RAD_S / (2.0 * np.pi), outputs=outputs)[:, 0] / model
+    assert np.abs(ratio) == pytest.approx(np.ones(ratio.shape), abs=1e-5)
+    assert np.degrees(np.angle(ratio)) == pytest.approx(np.zeros(ratio.shape), abs=1e-3)
+
+
 @pytest.mark.parametrize("given", [*PLAIN.values(), *INFLOW.values()], ids=[*PLAIN, *INFLOW])
 def test_truth_beside_a_recording_is_the_same(vessel, given):
     tug = Tug(**given)

@@ -6,10 +6,12 @@ from re import match, search
 import numpy as np
 import pytest
 
+from shaftprint.catalogue import ShipRole
 from shaftprint.fingerprint import Quantity, physical_quantities
 from shaftprint.fingerprint._findings import findings_of
 from shaftprint.identify import Prior, Settings, Unweighted
 from shaftprint.identify.uncertainty import Budget, BudgetRow, budget
+from shaftprint.vessel import load_vessel
 
 NO_BUDGET = Budget(sources=(), rows=())
 
@@ -231,3 +233,30 @@ def test_lines_left_out_are_named_with_their_reason(sharp, fit, take, fingerprin
     part = take(fit("OL1", {"tau_n": 0.39}, used=used, remarks={"S14": "above 2.6 Hz: aliased"}))
     assert part.findings[-1] == "Line S14 is left out: above 2.6 Hz: aliased."
     assert none(fingerprint.findings, "left out")
+
+
+@pytest.mark.parametrize(
+    ("ship", "found_value", "way", "other"),
+    [("stan-tug-1205", 0.0440, "astern", 0.0440), ("stan-tug-1205-astern", 0.0561, "ahead", 0.05606)],
+)
+def test_torque_coefficient_of_the_other_direction(gauge_fit, ship, found_value, way, other):
+    vessel = load_vessel(ship)
+    if way == "astern":
+        stated = vessel.propeller.model_copy(update={"astern_torque_coefficient": other})
+        vessel = vessel.model_copy(update={"propeller": stated})
+    number = Quantity(
+        name="K_Q",
+        unit="-",
+        value=found_value,
+        std=0.001,
+        expected=vessel.torque_coefficient,
+        meaning="torque coefficient",
+        role=ShipRole.TORQUE,
+    )
+    finding = one(findings_of(gauge_fit, (number,), NO_BUDGET, {}, vessel=vessel), "K_Q = ")
+    assert finding.endswith(f"Of a shaft that turns {way} it states {other:.4g}: check direction of its working point.")
+    # without the other coefficient the propeller may have changed
+    bare = vessel.propeller.model_copy(update={"astern_torque_coefficient": None, "torque_coefficient": 0.07})
+    bare_vessel = vessel.model_copy(update={"propeller": bare})
+    finding = one(findings_of(gauge_fit, (number,), NO_BUDGET, {}, vessel=bare_vessel), "K_Q = ")
+    assert finding.endswith("The propeller, its inflow or the torque gauge has changed.")

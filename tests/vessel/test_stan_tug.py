@@ -150,6 +150,7 @@ def test_ship_underway_is_the_same_ship(tug):
         "engine_speed_rpm": 1600.0,
         "shaft_torque_nm": 2570.0,
         "ship_speed_m_s": 4.75,
+        "direction": None,
     }
     at_the_quay.pop("working_point")
     stated = {name: moving["hull"].pop(name) for name in ("wake_fraction", "thrust_deduction")}

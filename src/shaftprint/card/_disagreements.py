@@ -130,7 +130,7 @@ def _full_load_curve(vessel: Vessel) -> Iterator[Disagreement]:
 def _engine_load(vessel: Vessel) -> Iterator[Disagreement]:
     """Hold the working torque against the full-load curve; where that has room, its power against the rated one."""
     point, machine = vessel.working_point, vessel.machine
-    brake_nm = point.shaft_torque_nm / (vessel.gearbox.ratio * vessel.gearbox.efficiency)
+    brake_nm = point.driving_torque_nm / (vessel.gearbox.ratio * vessel.gearbox.efficiency)
     power_kw = 2.0 * math.pi * rev_s_from_rpm(point.engine_speed_rpm) * brake_nm / 1000.0
     highest_nm = float(np.interp(point.engine_speed_rpm, *machine.full_load))
     if brake_nm > highest_nm:
@@ -159,15 +159,16 @@ def _series(vessel: Vessel) -> Iterator[Disagreement]:
         blades=propeller.blades,
         area_ratio=propeller.area_ratio,
         pitch_ratio=propeller.pitch_ratio,
+        astern=point.is_astern,
     )
     if series is None:
         return
     expected_nm = _torque_nm(vessel, series.torque_coefficient)
-    apart = _apart(point.shaft_torque_nm, expected_nm)
+    apart = _apart(point.driving_torque_nm, expected_nm)
     if apart > _FINDING:
         yield Disagreement(
             field="working_point.shaft_torque_nm",
-            expected=f"about {expected_nm:.4g} N m, as {series.name} takes at zero advance and "
+            expected=f"about {point.turning * expected_nm:.4g} N m, as {series.name} takes at zero advance and "
             f"{point.engine_speed_rpm / vessel.gearbox.ratio:.4g} rpm",
             found=f"{point.shaft_torque_nm:g} N m, a factor of {apart:.3g}",
             advice="correct the torque (N m at the propeller shaft), gearbox.ratio, or diameter_m and pitch_ratio of "
@@ -177,13 +178,13 @@ def _series(vessel: Vessel) -> Iterator[Disagreement]:
 
 
 def _coefficient(vessel: Vessel) -> Iterator[Disagreement]:
-    coefficient, point = vessel.propeller.torque_coefficient, vessel.working_point
+    coefficient, point = vessel.torque_coefficient, vessel.working_point
     torque_nm = _torque_nm(vessel, coefficient)
-    apart = _apart(point.shaft_torque_nm, torque_nm)
+    apart = _apart(point.driving_torque_nm, torque_nm)
     if apart > _FINDING:
-        expected = coefficient * point.shaft_torque_nm / torque_nm if torque_nm > 0.0 else math.inf
+        expected = coefficient * point.driving_torque_nm / torque_nm if torque_nm > 0.0 else math.inf
         yield Disagreement(
-            field="propeller.torque_coefficient",
+            field=f"propeller.{'astern_' * point.is_astern}torque_coefficient",
             expected=f"{expected:.4g}, as {point.shaft_torque_nm:g} N m at {point.engine_speed_rpm:g} rpm of the "
             f"{vessel.machine.word} give",
             found=f"{coefficient:g}",
@@ -227,7 +228,7 @@ def _thrust(vessel: Vessel) -> Iterator[Disagreement]:
 
 
 def _full_scale(vessel: Vessel) -> Iterator[Disagreement]:
-    full_scale_nm, torque_nm = vessel.sensors.shaft_torque.full_scale_nm, vessel.working_point.shaft_torque_nm
+    full_scale_nm, torque_nm = vessel.sensors.shaft_torque.full_scale_nm, vessel.working_point.driving_torque_nm
     if full_scale_nm <= torque_nm:
         yield Disagreement(
             field="sensors.shaft_torque.full_scale_nm",

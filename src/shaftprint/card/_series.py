@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from shaftprint.errors import PropellerError
-from shaftprint.propeller import OpenWaterCurve, ka4_70_in_19a, wageningen_b
+from shaftprint.propeller import OpenWaterCurve, four_quadrants, ka4_70_in_19a, wageningen_b
 from shaftprint.vessel import Propeller
 
 OPEN_AREA_RATIO, NOZZLE_AREA_RATIO = 0.55, 0.70
@@ -22,7 +22,7 @@ class SeriesTorque:
 
 
 def series_torque(
-    *, series: str | None, blades: int, area_ratio: float | None, pitch_ratio: float
+    *, series: str | None, blades: int, area_ratio: float | None, pitch_ratio: float, astern: bool = False
 ) -> SeriesTorque | None:
     """Return ``K_Q`` at zero advance by the series that is nearest to a propeller; None where none was tested.
 
@@ -32,12 +32,23 @@ def series_torque(
         Name of the series; with a nozzle in it Ka4-70 in nozzle 19A, whatever the blades, else Wageningen B.
     blades, area_ratio, pitch_ratio
         The propeller; an area ratio that is not known is that of usual open propellers.
+    astern
+        Whether the shaft turns astern; open propellers alone have a series for that, and one of them.
     """
     try:
+        if astern:
+            return _astern(series, blades, area_ratio, pitch_ratio)
         curve = _curve(series, blades, area_ratio)
         return SeriesTorque(name=curve.name, torque_coefficient=curve.at(0.0, pitch_ratio).torque)
     except PropellerError:
         return None
+
+
+def _astern(series: str | None, blades: int, area_ratio: float | None, pitch_ratio: float) -> SeriesTorque | None:
+    if area_ratio is None or is_in_nozzle(series):
+        return None
+    curve = four_quadrants(blades=blades, area_ratio=area_ratio)
+    return SeriesTorque(name=f"{curve.name} astern", torque_coefficient=curve.bollard(pitch_ratio, astern=True).torque)
 
 
 def open_water_curve(propeller: Propeller) -> OpenWaterCurve | None:

@@ -126,7 +126,7 @@ def place_of(fingerprint: Fingerprint | None, vessel: str | None, rpm_per_volt: 
     point = load_vessel(vessel).working_point
     return Place(
         engine_speed_rpm=point.engine_speed_rpm,
-        shaft_torque_nm=point.shaft_torque_nm,
+        shaft_torque_nm=point.driving_torque_nm,
         slope_rpm_per_v=rpm_per_volt,
         intercept_rpm=None,
     )

@@ -28,6 +28,10 @@ NOT_POSITIVE = "it is not larger than zero"
 AT_BOUND = "the search stopped at its bound"
 HELD = "it was held"
 NOT_IN_ALL = "it is not in all fingerprints"
+OTHER_DIRECTION = "the shaft did not turn the same way, and the propeller takes another torque astern"
+OF_DIRECTION = (ShipRole.TORQUE, ShipRole.INERTIA_DOWNSTREAM)
+"""Roles of what propeller and water make, which are others astern."""
+DIRECTION = "working_point.direction"
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -139,7 +143,11 @@ def doubts_of(*fingerprints: "Fingerprint") -> dict[str, str]:
     """Return why each number of several fingerprints is not judged; empty for those that are."""
     joints = [fingerprint.joint for fingerprint in fingerprints if fingerprint.joint is not None]
     every = dict.fromkeys(name for joint in joints for name in joint.names)
-    return {name: next(filter(None, (_doubt(name, one) for one in fingerprints)), "") for name in every}
+    doubts = {name: next(filter(None, (_doubt(name, one) for one in fingerprints)), "") for name in every}
+    if len({one.vessel_fields.get(DIRECTION, "ahead") for one in fingerprints}) > 1:
+        role_of = {number.name: number.role for one in fingerprints for number in (*one.parameters, *one.physical)}
+        doubts |= {name: OTHER_DIRECTION for name in every if role_of.get(name) in OF_DIRECTION}
+    return doubts
 
 
 def _doubt(name: str, fingerprint: "Fingerprint") -> str:

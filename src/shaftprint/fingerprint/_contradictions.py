@@ -52,7 +52,7 @@ def contradictions(
     nearer_to_it = apart < abs(inertia.log) and apart < ALIKE * math.hypot(inertia.std, coefficient.std)
     if not nearer_to_it:
         return ()
-    torque = working_point.shaft_torque_nm / vessel.working_point.shaft_torque_nm
+    torque = working_point.shaft_torque_nm / vessel.working_point.driving_torque_nm
     return (
         Reason(
             kind="gauge scale",

@@ -1,7 +1,10 @@
 """What a reader of a fingerprint must know, in words."""
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
+from shaftprint.catalogue import ShipRole
 from shaftprint.digits import p_value_text, plain_letters, stated, stated_interval
 from shaftprint.distributions import NORMAL_95
 from shaftprint.fingerprint._physical import GAUGE_ZERO
@@ -11,6 +14,9 @@ from shaftprint.identify import Identification
 from shaftprint.identify.fit import Estimate
 from shaftprint.identify.judgement import doubts_of
 from shaftprint.identify.uncertainty import Budget, Profile
+
+if TYPE_CHECKING:
+    from shaftprint.vessel import Vessel
 
 # A combination is named when it is determined this much better, relative to its size, than a parameter in it.
 BETTER_KNOWN = 0.4
@@ -43,10 +49,13 @@ def findings_of(
     uncertainty: Budget,
     left_out: dict[str, str],
     profile: Profile | None = None,
+    *,
+    vessel: "Vessel | None" = None,
 ) -> tuple[str, ...]:
     """Return the findings of one identification, most important first.
 
-    What is poorly determined is decided by the rule of the verdict, with the same profile likelihood.
+    What is poorly determined is decided by the rule of the verdict, with the same profile likelihood. With a vessel
+    whose file states the torque coefficient of both directions, one that is that of the other is said to be.
     """
     return (
         *_stability(identification),
@@ -56,7 +65,7 @@ def findings_of(
         *_poorly_determined(identification, profile),
         *_resting_on_priors(identification, uncertainty),
         *_gauge_zero(physical),
-        *_against_expected(physical),
+        *_against_expected(physical, vessel),
         *(f"Line {name} is left out: {reason}." for name, reason in left_out.items()),
     )
 
@@ -178,7 +187,7 @@ def _gauge_zero(physical: tuple[Quantity, ...]) -> list[str]:
     ]
 
 
-def _against_expected(physical: tuple[Quantity, ...]) -> list[str]:
+def _against_expected(physical: tuple[Quantity, ...], vessel: "Vessel | None") -> list[str]:
     findings = []
     for quantity in physical:
         # the zero of the gauge, expected at zero, has its own sentence
@@ -190,9 +199,22 @@ def _against_expected(physical: tuple[Quantity, ...]) -> list[str]:
             unit = _unit(quantity)
             findings.append(
                 f"{quantity.name} = {quantity.value:.4g}{unit} against {quantity.expected:.4g}{unit} of the vessel "
-                f"file: a factor {factor:.2f}.{WHY.get(quantity.name, '')}"
+                f"file: a factor {factor:.2f}.{_other_direction(quantity, vessel) or WHY.get(quantity.name, '')}"
             )
     return findings
+
+
+def _other_direction(quantity: Quantity, vessel: "Vessel | None") -> str:
+    """Return that the torque coefficient is the one of the other direction, where it is; empty where not."""
+    if vessel is None or quantity.role != ShipRole.TORQUE:
+        return ""
+    propeller, found_astern = vessel.propeller, not vessel.working_point.is_astern
+    other = propeller.astern_torque_coefficient if found_astern else propeller.torque_coefficient
+    other_std = propeller.astern_torque_coefficient_std if found_astern else None
+    if other is None or abs(quantity.value - other) > SURPRISING * float(np.hypot(quantity.std, other_std or 0.0)):
+        return ""
+    way = "astern" if found_astern else "ahead"
+    return f" Of a shaft that turns {way} it states {other:.4g}: check direction of its working point."
 
 
 def _written(estimate: Estimate, profile: Profile | None) -> str:

@@ -171,12 +171,14 @@ def _torque_coefficient(
             name="K_Q",
             unit="-",
             of=_product(shown) if slope is None else _product(shown / IDEAL_SLOPE, slope[0]),
-            meaning=f"torque coefficient of the propeller, mean of the test{', underway' * vessel.is_underway}",
+            meaning=f"torque coefficient of the propeller, mean of the test{', underway' * vessel.is_underway}"
+            f"{', astern' * vessel.working_point.is_astern}",
             role=ShipRole.TORQUE,
         ),
         direct={source: value * share for source, share in shares.items() if share},
         # the vessel file states that of zero advance
-        expected=None if vessel.is_underway else vessel.propeller.torque_coefficient,
+        expected=None if vessel.is_underway else vessel.torque_coefficient,
+        expected_std=vessel.propeller.astern_torque_coefficient_std if vessel.working_point.is_astern else None,
     )
 
 

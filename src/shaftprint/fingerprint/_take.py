@@ -146,7 +146,7 @@ def take_fingerprint(
         calibration=calibration_quantities(signals, machine=vessel.machine.word),
         quality=_quality(identification, signals, signal_to_noise),
         verdict=verdict,
-        findings=findings_of(identification, physical, stated, left_out, profiled),
+        findings=findings_of(identification, physical, stated, left_out, profiled, vessel=vessel),
     )
 
 
@@ -195,7 +195,7 @@ def _conditions(
     left_out: dict[str, str],
     stated: Mapping[str, object],
 ) -> Conditions:
-    speed, torque = _working_point(signals.working_point, vessel.machine.word)
+    speed, torque = _working_point(signals.working_point, vessel)
     return Conditions(
         **stated,
         engine_speed=speed,
@@ -208,14 +208,14 @@ def _conditions(
     )
 
 
-def _working_point(point: "WorkingPoint", machine: str) -> tuple[Quantity, Quantity]:
+def _working_point(point: "WorkingPoint", vessel: "Vessel") -> tuple[Quantity, Quantity]:
     return (
         Quantity(
             name="n_0",
             unit="rpm",
             value=point.engine_speed_rev_s * SECONDS_PER_MINUTE,
             std=point.engine_speed_std_rev_s * SECONDS_PER_MINUTE,
-            meaning=f"{machine} speed of the working point",
+            meaning=f"{vessel.machine.word} speed of the working point",
             role=ShipRole.SPEED,
         ),
         Quantity(
@@ -223,7 +223,7 @@ def _working_point(point: "WorkingPoint", machine: str) -> tuple[Quantity, Quant
             unit="N m",
             value=point.shaft_torque_nm,
             std=point.shaft_torque_std_nm,
-            meaning="shaft torque of the working point",
+            meaning=f"shaft torque of the working point{', which drives astern' * vessel.working_point.is_astern}",
             role=ShipRole.TORQUE,
         ),
     )

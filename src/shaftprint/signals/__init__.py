@@ -7,7 +7,8 @@ time                  s        of the recording; sample ``k`` of a signal is at
                                ``start_s + k / rate_hz``
 speed ``n``           rev/s    of the engine; shaft speeds are multiplied by the gear ratio
 set point ``n_set``   rev/s    engine speed that is asked for
-shaft torque ``M_s``  N m      at the gauge, positive when the engine drives the propeller
+shaft torque ``M_s``  N m      at the gauge, positive when the engine drives the propeller, ahead
+                               or astern
 strip angle           rev      from one reflection strip to the next, of the shaft that carries them
 fuel rack ``X``       1        what the governor gives; 1 for rated torque at rated speed, positive
                                for driving torque; on its own clock

@@ -8,6 +8,7 @@ import numpy as np
 
 from shaftprint.signals._inspect import ChannelReport, PulseReport
 from shaftprint.signals.kinds import LARGEST_DIFFERENCE
+from shaftprint.signals.levels import direction_words
 
 if TYPE_CHECKING:
     from shaftprint.vessel import SpeedSensor, Vessel
@@ -23,8 +24,8 @@ _AROUND = (0.3, 3.0)
 def contradictions(reports: Sequence[ChannelReport], vessel: "Vessel") -> tuple[str, ...]:
     """Return a sentence for each contradiction between channels and vessel file, with the swap that would end it.
 
-    No campaign is needed: on a rigid line all pick-ups give one engine speed, and the torque of a ship that moves ahead
-    is positive.
+    No campaign is needed: on a rigid line all pick-ups give one engine speed, and a shaft that turns ahead has a
+    positive torque, one that turns astern a negative one.
 
     Parameters
     ----------
@@ -96,15 +97,19 @@ def _of_torque(reports: Sequence[ChannelReport], vessel: "Vessel") -> tuple[str,
         return float(sensor.torque_nm(report.mean))
 
     mean_torque_nm = mean_nm(torque)
-    if not np.isfinite(mean_torque_nm) or mean_torque_nm >= _CLEARLY_NEGATIVE * expected:
+    if not np.isfinite(mean_torque_nm) or mean_torque_nm / expected >= _CLEARLY_NEGATIVE:
         return ()
     sentence = f"expected a torque around {expected:.4g} N m, found a mean of {mean_torque_nm:.4g} N m"
     swapped = mean_nm(set_point)
-    if set_point.unit == torque.unit and _AROUND[0] * expected < swapped < _AROUND[1] * expected:
+    # astern torque and set point have one sign, so that the sign tells of no swap
+    may_be_swapped = set_point.unit == torque.unit and not vessel.working_point.is_astern
+    if may_be_swapped and _AROUND[0] < swapped / expected < _AROUND[1]:
         return (
             f"channels {torque.channel} and {set_point.channel} seem to be swapped: {sentence} in {torque.channel}, "
             f"and {swapped:.4g} N m in {set_point.channel}. Correct the channels in the vessel file or the columns of "
             "the recording.",
         )
     sign = "the sign of sensors.shaft_torque.scale_nm_per_unit" if sensor.shaft is None else "reversed of its shaft"
-    return (f"channel {torque.channel}: {sentence}; check that it is the torque, and {sign}.",)
+    return (
+        f"channel {torque.channel}: {sentence}; check that it is the torque, and {sign}; {direction_words(vessel)}.",
+    )

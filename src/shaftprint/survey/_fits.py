@@ -40,7 +40,7 @@ def stated_working_point(vessel: Vessel) -> WorkingPoint:
     """Return the working point of a vessel file, for what is known before any recording."""
     return WorkingPoint(
         engine_speed_rev_s=rev_s_from_rpm(vessel.working_point.engine_speed_rpm),
-        shaft_torque_nm=vessel.working_point.shaft_torque_nm,
+        shaft_torque_nm=vessel.working_point.driving_torque_nm,
         engine_speed_std_rev_s=0.0,
         shaft_torque_std_nm=0.0,
         set_point_v=0.0,

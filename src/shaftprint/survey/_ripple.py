@@ -56,7 +56,7 @@ def _over_load(channel: "Channel", signals: "Signals", trial: "Trial", start_s: 
     whole = count >= _LEAST_MEAN and first >= 0 and last <= channel.count and last - first > 2 * count
     if not whole or signals.coverage.missing(start_s, stop_s):
         return np.empty(0)
-    torque_nm = trial.vessel.sensors.shaft_torque.torque_nm(channel.values(first, last))
+    torque_nm = trial.vessel.driving_torque_nm(channel.values(first, last))
     weights = np.hanning(count + 2)[1:-1]
     weights /= weights.sum()
     beside = torque_nm[count // 2 : -(count // 2)] - np.convolve(torque_nm, weights, mode="valid")

@@ -113,7 +113,7 @@ def expected_inertia(
     """
     point = vessel.working_point
     speed = rev_s_from_rpm(point.engine_speed_rpm) if engine_speed_rev_s is None else engine_speed_rev_s
-    torque = point.shaft_torque_nm if shaft_torque_nm is None else shaft_torque_nm
+    torque = point.driving_torque_nm if shaft_torque_nm is None else shaft_torque_nm
     factor = inertia_time_s(1.0, shaft_speed_rev_s=speed / vessel.gearbox.ratio, shaft_torque_nm=torque)
     scale = vessel.sensors.shaft_torque.scale_std
     sides = {side: [row for row in vessel.inertia if row.gauge == side] for side, _ in SIDES}

@@ -202,7 +202,7 @@ def torsional_line(vessel: "Vessel", *, load_slope: float = QUADRATIC_LAW) -> To
     point = vessel.working_point
     shaft_rad_s = 2.0 * math.pi * rev_s_from_rpm(point.engine_speed_rpm) / ratio
     load = np.zeros(len(groups))
-    load[propeller] = load_slope * point.shaft_torque_nm / shaft_rad_s
+    load[propeller] = load_slope * point.driving_torque_nm / shaft_rad_s
     return TorsionalLine(
         bodies=names,
         inertia_kg_m2=inertia,

@@ -89,7 +89,7 @@ def simulate_signals(
         disturbance=disturbance,
     )
     speed, torque, brake, rack, way, limited = _sampled(stretches, every)
-    speed *= vessel.gearbox.ratio
+    speed *= vessel.working_point.turning * vessel.gearbox.ratio
     time = start_s + np.arange(samples) / rate_hz
     return IdealSignals(
         time_s=frozen_float(time),

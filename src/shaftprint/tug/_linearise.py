@@ -70,7 +70,8 @@ def linearised_response(
         words = f"{', '.join(names[:-1])} and {names[-1]}"
         raise SettingsError(f"outputs: expected names out of {words}, found {', '.join(unknown)}.")
     plant = build_plant(tug, vessel)
-    speed, torque = working_point(tug, vessel)
+    speed, driving_nm = working_point(tug, vessel)
+    torque = vessel.working_point.turning * driving_nm
     slope = _slopes(plant, speed)
     rack = working_point_rack(tug, vessel)
     s = 2j * np.pi * np.asarray(frequency_hz, dtype=np.float64)

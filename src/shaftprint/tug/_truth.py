@@ -61,7 +61,7 @@ class Truth(Shown):
     engine_speed_rpm: float
     """Engine speed of the working point [rpm]."""
     shaft_torque_nm: float
-    """Shaft torque of the working point [N m]."""
+    """Driving shaft torque of the working point [N m], above 0 astern too."""
     set_point_slope_rpm_per_v: float
     """Slope of the true set-point line [rpm/V]."""
     set_point_intercept_rpm: float

@@ -31,8 +31,8 @@ class Tug:
     engine_speed_rpm: float | None = None
     """Engine speed of the working point ``n_0`` [rpm]; ``None``: the vessel's."""
     shaft_torque_nm: float | None = None
-    """Shaft torque of the working point ``M_s0`` [N m], a point of the propeller law; ``None``: the vessel's, and
-    underway what the propeller takes there."""
+    """Driving shaft torque of the working point ``M_s0`` [N m], above 0 astern too, a point of the propeller law;
+    ``None``: the vessel's, and underway what the propeller takes there."""
     inertia_upstream_kg_m2: float | None = None
     """Inertia upstream of the torque gauge, referred to the propeller shaft [kg m2]; ``None``: the vessel's."""
     inertia_downstream_kg_m2: float | None = None
@@ -117,7 +117,8 @@ class Tug:
     turbocharger_lag_s: float = 1.0
     """Time in which the boost follows the torque [s]; 0.5 to 2 s at this size. It acts with a smoke limiter alone."""
     torque_zero_offset_nm: float = 0.0
-    """What the torque gauge shows beyond the zero that the vessel file knows of [N m]."""
+    """What the torque gauge shows beyond the zero that the vessel file knows of [N m], counted as it counts: positive
+    ahead."""
     rack_latency_s: float | None = None
     """Time by which the percent torque on the CAN bus is late [s]; ``None``: the vessel's."""
     speed_cycle_s: float | None = None

@@ -51,7 +51,7 @@ class GaugedShaft(Settings):
     bridge_factor: Annotated[float, Field(strict=True, gt=0.0, le=4.0)] = 4.0
     """Active arms of the bridge: 4 for a full bridge, 2 for a half."""
     reversed: bool = False
-    """Whether the bridge shows a torque that drives the propeller as negative."""
+    """Whether the bridge shows a torque that drives the propeller ahead as negative."""
 
     @model_validator(mode="after")
     def _bore_fits(self) -> Self:
@@ -74,7 +74,8 @@ class GaugedShaft(Settings):
 class ShaftTorqueSensor(Settings):
     """Strain gauges with telemetry on the propeller shaft.
 
-    ``M_s = scale_nm_per_unit * (reading - reading_at_zero) - zero_nm``.
+    ``M_s = scale_nm_per_unit * (reading - reading_at_zero) - zero_nm``, positive where the propeller is driven ahead:
+    of a shaft that turns astern the gauge shows it negative.
     """
 
     channel: Name
@@ -178,9 +179,9 @@ class ShaftTorqueSensor(Settings):
         Parameters
         ----------
         torque_nm
-            The torque that was found [N m].
+            The torque that was found [N m], as the gauge counts it.
         expected_nm
-            The one that was expected [N m].
+            The one that was expected [N m], below 0 of a shaft that turns astern.
         """
         reading = (torque_nm + self.zero_nm) / self.scale_nm_per_unit + self.live_zero
         full_nm = self.full_scale_nm
@@ -196,7 +197,7 @@ class ShaftTorqueSensor(Settings):
             shown_nm = scale * (reading - zero)
             if unit == self.unit or not lowest <= reading <= highest:
                 continue
-            if not expected_nm / _NEAR < shown_nm < expected_nm * _NEAR:
+            if not 1.0 / _NEAR < shown_nm / expected_nm < _NEAR:
                 continue
             if unit in NM_PER_UNIT:
                 return f'unit = "{unit}" with scale_nm_per_unit = {scale:g}'

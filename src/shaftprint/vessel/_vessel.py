@@ -5,9 +5,11 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any, Literal, Self
 
+from numpy.typing import ArrayLike
 from pydantic import Field, model_validator
 
 from shaftprint.arguments import refusing_none
+from shaftprint.arrays import FloatArray
 from shaftprint.errors import SettingsError
 from shaftprint.notebook import Shown, Summary, shortened
 from shaftprint.settings import Name, PositiveNumber, Settings, load_settings
@@ -65,7 +67,8 @@ class Vessel(Shown, Settings):
             + (f", {machine.cylinders} cylinders" if isinstance(machine, Engine) else ""),
             "gearbox": f"ratio {gearbox.ratio:g}, efficiency {gearbox.efficiency:g}",
             "propeller": f"{propeller.blades} blades, {propeller.diameter_m:g} m, P/D {propeller.pitch_ratio:g}",
-            "working point": f"{point.engine_speed_rpm:g} rpm, {point.shaft_torque_nm:g} N m",
+            "working point": f"{point.engine_speed_rpm:g} rpm, {point.shaft_torque_nm:g} N m"
+            f"{', astern' * point.is_astern}",
             "inertia": f"{self.inertia_upstream_kg_m2:.3g} kg m2 before, {self.inertia_downstream_kg_m2:.3g} kg m2 "
             "behind the torque gauge, at the propeller shaft",
             "channels": shortened(channels),
@@ -107,11 +110,44 @@ class Vessel(Shown, Settings):
             if value <= 0.0:
                 errors.append(f"expected some inertia {side} of the torque gauge, found none.")
         errors += wrong_links(self.links, self.inertia)
+        if self.working_point.is_astern:
+            errors += self._wrong_astern()
         if self.working_point.ship_speed_m_s is not None and self.hull is None:
             errors.append("expected [hull] beside ship_speed_m_s of the working point, a test underway, found none.")
         if errors:
             raise ValueError(" ".join(errors))
         return self
+
+    def _wrong_astern(self) -> list[str]:
+        errors = []
+        if self.propeller.astern_torque_coefficient is None:
+            errors.append(
+                'expected propeller.astern_torque_coefficient beside direction = "astern" of the working point, found '
+                "none; astern a propeller takes another torque than ahead."
+            )
+        if self.is_underway:
+            errors.append(
+                'expected a test at the quay beside direction = "astern" of the working point, found a ship_speed_m_s; '
+                "the ship's own motion is described ahead only."
+            )
+        return errors
+
+    @property
+    def torque_coefficient(self) -> float:
+        """Effective ``K_Q`` at zero advance in the direction of the test."""
+        astern = self.propeller.astern_torque_coefficient
+        return astern if self.working_point.is_astern and astern is not None else self.propeller.torque_coefficient
+
+    def driving_torque_nm(self, reading: ArrayLike) -> FloatArray:
+        """Return the shaft torque [N m] of readings of the gauge, positive as it drives the propeller the way it turns.
+
+        Parameters
+        ----------
+        reading
+            Readings in the unit of the channel, of any shape.
+        """
+        torque_nm = self.sensors.shaft_torque.torque_nm(reading)
+        return -torque_nm if self.working_point.is_astern else torque_nm
 
     @property
     def is_underway(self) -> bool:

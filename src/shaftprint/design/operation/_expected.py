@@ -64,7 +64,7 @@ def expected_operation(
             "other values, or another campaign."
         )
     brake, demand = _torques(line, vector, outputs, time_s)
-    brake_nm = point.shaft_torque_nm / (vessel.gearbox.ratio * vessel.gearbox.efficiency)
+    brake_nm = point.driving_torque_nm / (vessel.gearbox.ratio * vessel.gearbox.efficiency)
     return Operation(
         campaign=campaign,
         time_s=time_s,
@@ -72,7 +72,7 @@ def expected_operation(
         speed_rpm=point.engine_speed_rpm * (1.0 + outputs["n"]),
         brake_torque_nm=brake_nm * (1.0 + brake),
         torque_demand_nm=brake_nm * (1.0 + demand),
-        shaft_torque_nm=point.shaft_torque_nm * (1.0 + outputs["M_s"]),
+        shaft_torque_nm=point.driving_torque_nm * (1.0 + outputs["M_s"]),
     )
 
 

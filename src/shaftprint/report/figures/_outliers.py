@@ -40,7 +40,7 @@ def outlier_chart(recording: "Recording", signals: "Signals", vessel: "Vessel") 
     torque_s, reading = channel_envelope(torque)
     rates = (f"raw, {set_point.rate_hz:g} Hz", f"prepared, {signals.rate_hz:g} Hz")
     demanded = SECONDS_PER_MINUTE * _demanded(signals, volts)
-    torque_nm = sensors.shaft_torque.torque_nm(reading)
+    torque_nm = vessel.driving_torque_nm(reading)
     return Chart(
         panels=(
             Panel(

@@ -71,14 +71,19 @@ def read_encoder(source: Source[SpeedSensor], clock: "Clock") -> SpeedReading:
     stops = _stops(speed, usual, clock, channel.name)
     bridge(speed, stops, start_s=clock.start_s, rate_hz=clock.rate_hz)
     gaps = [gap.earlier(latency_s) for gap in reading.gaps]
-    backwards = f"channel {channel.name} counts down while the ship moves ahead: its sign was turned"
+    astern = source.vessel.working_point.is_astern and sensor.shaft == "propeller"
+    backwards = (
+        f"channel {channel.name} counts up while the shaft turns astern: its sign was turned"
+        if astern
+        else f"channel {channel.name} counts down while the ship moves ahead: its sign was turned"
+    )
     return SpeedReading(
         name=sensor.name,
         channel=channel.name,
         values=ratio * speed,
         repairs=reading.repairs,
         gaps=tuple(sorted([*gaps, *stops], key=lambda gap: gap.start_s)),
-        findings=(*reading.findings, backwards) if ahead < 0.0 else reading.findings,
+        findings=(*reading.findings, backwards) if (ahead < 0.0) != astern else reading.findings,
         pulse_rate_hz=values_hz,
     )
 

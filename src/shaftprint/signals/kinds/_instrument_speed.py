@@ -30,7 +30,7 @@ _AT_ZERO = 0.02
 
 
 def read_instrument(
-    channel: "Channel", sensor: SpeedSensor, clock: "Clock", *, engine_over_shaft: float
+    channel: "Channel", sensor: SpeedSensor, clock: "Clock", *, engine_over_shaft: float, astern: bool = False
 ) -> SpeedReading:
     """Return the engine-side speed of an instrument on the grid.
 
@@ -42,6 +42,8 @@ def read_instrument(
         The grid.
     engine_over_shaft
         Speed of the engine over that of the sensor's shaft.
+    astern
+        Whether the shaft turns astern: instruments show that as a speed below zero, or do not tell.
 
     Raises
     ------
@@ -61,10 +63,13 @@ def read_instrument(
     else:
         reading = _splined(channel, sensor, clock, latency_s)
     speed = engine_over_shaft * sensor.speed_rev_s(reading.values)
+    if astern and speed.mean() < 0.0:
+        speed = -speed
     if not speed.mean() > 0.0:
         raise SignalError(
             f"channel {channel.name}: expected a speed ahead, found a mean of {60.0 * speed.mean():.4g} rpm at the "
-            "engine; correct unit, rpm_per_unit and rpm_at_zero in the vessel file, or the sign of the channel."
+            "engine; correct unit, rpm_per_unit and rpm_at_zero in the vessel file, or the sign of the channel, or "
+            'state direction = "astern" of its working point where the shaft turned so.'
         )
     gaps = (gap.earlier(latency_s) for gap in reading.gaps)
     return SpeedReading(

@@ -47,9 +47,9 @@ class ShaftTorque(ChannelKind[ShaftTorqueSensor]):
 
     def read(self, source: Source[ShaftTorqueSensor], clock: "Clock") -> Reading:
         """Return the torque on the grid."""
-        channel, sensor = source.channel, source.sensor
+        channel = source.channel
         expect_unit(channel, source.vessel)
-        latency_s = clock.latency_s(sensor.latency_s)
+        latency_s = clock.latency_s(source.sensor.latency_s)
         reading = conditioned(
             channel,
             self.limits(source),
@@ -59,7 +59,7 @@ class ShaftTorque(ChannelKind[ShaftTorqueSensor]):
             advance=clock.advance,
         )
         gaps = tuple(gap.earlier(latency_s) for gap in reading.gaps)
-        return replace(reading, values=sensor.torque_nm(reading.values), gaps=gaps)
+        return replace(reading, values=source.vessel.driving_torque_nm(reading.values), gaps=gaps)
 
     def judge(self, source: Source[ShaftTorqueSensor], reading: Reading) -> tuple[str, ...]:
         """Return a finding where crests are cut off; too many are refused."""
@@ -102,7 +102,7 @@ def expect_unit(channel: "Channel", vessel: "Vessel") -> None:
     sensor, expected = vessel.sensors.shaft_torque, vessel.working_point.shaft_torque_nm
     torque = float(sensor.torque_nm(middle_of(channel)))
     unit = sensor.unit_that_fits(torque, expected)
-    if unit is not None and not _SMALL_PART * expected < torque < _MULTIPLE * expected:
+    if unit is not None and not _SMALL_PART < torque / expected < _MULTIPLE:
         raise SignalError(
             f"channel {channel.name}: expected a torque around {expected:.4g} N m, found {torque:.4g} N m; {unit} in "
             "sensors.shaft_torque would fit."

@@ -18,6 +18,7 @@ from shaftprint.signals.levels._steady import SteadyStretch, steady_stretches
 from shaftprint.signals.levels._wander import fit_through_wander
 from shaftprint.signals.levels._working_point import (
     deviation,
+    direction_words,
     expect_asked_speed,
     expect_plausible,
     find_working_point,
@@ -38,6 +39,7 @@ __all__ = [
     "calibration_of_legs",
     "dc_scale",
     "deviation",
+    "direction_words",
     "expect_asked_speed",
     "expect_plausible",
     "expect_steady_gauge",

@@ -149,14 +149,15 @@ def expect_plausible(point: WorkingPoint, vessel: "Vessel") -> tuple[str, ...]:
     Raises
     ------
     SignalError
-        If the torque is not positive: nothing can be taken relative to it.
+        If the torque does not drive the propeller the way it is said to turn: nothing can be taken relative to it.
     """
     sensor, expected = vessel.sensors.shaft_torque, vessel.working_point.shaft_torque_nm
-    torque = point.shaft_torque_nm
-    if not torque > 0.0:
+    torque = vessel.working_point.turning * point.shaft_torque_nm
+    if not point.shaft_torque_nm > 0.0:
         raise SignalError(
-            f"channel {sensor.channel}: expected a positive mean torque at the working point, found {torque:.4g} N m; "
-            f"{sensor.sign_words} in the vessel file, or correct zero_nm there{_unit_words(sensor, torque, expected)}."
+            f"channel {sensor.channel}: expected a {_sign_words(vessel)} mean torque at the working point, found "
+            f"{torque:.4g} N m; {direction_words(vessel)}, {sensor.sign_words} in the vessel file, or correct zero_nm "
+            f"there{_unit_words(sensor, torque, expected)}."
         )
     if max(torque / expected, expected / torque) < _FAR:
         return ()
@@ -178,6 +179,17 @@ def expect_asked_speed(point: WorkingPoint, vessel: "Vessel") -> tuple[str, ...]
         f"The set point in {sensor.channel} asks for {asked_rpm:.4g} rpm at the working point, where the engine "
         f"runs at {speed_rpm:.4g} rpm. Check {field} of sensors.set_point in the vessel file.",
     )
+
+
+def _sign_words(vessel: "Vessel") -> str:
+    return "negative" if vessel.working_point.is_astern else "positive"
+
+
+def direction_words(vessel: "Vessel") -> str:
+    """Return what to state where the shaft turned the other way than the vessel file says, in words."""
+    if vessel.working_point.is_astern:
+        return "leave out direction of its working point where the shaft turned ahead"
+    return 'state direction = "astern" of its working point where the shaft turned so'
 
 
 def _unit_words(sensor: "ShaftTorqueSensor", torque_nm: float, expected_nm: float) -> str:

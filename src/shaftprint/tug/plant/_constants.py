@@ -14,6 +14,7 @@ class Plant(NamedTuple):
     inertia_upstream_kg_m2: float
     inertia_downstream_kg_m2: float
     gear_ratio: float
+    """Engine speed over shaft speed; negative where the gearbox reverses."""
     efficiency: float
     propeller_nm_s2: float
     """``K`` of the propeller law ``M_p = K n_s |n_s|`` [N m s2]."""

@@ -50,6 +50,8 @@ def build_plant(tug: Tug, vessel: Vessel) -> Plant:
     speed, torque = working_point(tug, vessel)
     ratio, efficiency = vessel.gearbox.ratio, vessel.gearbox.efficiency
     brake = torque / (ratio * efficiency)
+    # a gearbox that reverses: the engine turns as ever
+    turning = vessel.working_point.turning
     speed_slope = tug.g * brake / speed
     offset = (1.0 - tug.g - tug.v) * brake
     rated = rev_s_from_rpm(vessel.machine.rated_speed_rpm)
@@ -65,7 +67,7 @@ def build_plant(tug: Tug, vessel: Vessel) -> Plant:
     return Plant(
         inertia_upstream_kg_m2=upstream,
         inertia_downstream_kg_m2=downstream + tug.entrained_water_kg_m2,
-        gear_ratio=ratio,
+        gear_ratio=turning * ratio,
         efficiency=efficiency,
         propeller_nm_s2=torque / (speed / ratio) ** 2,
         inflow_gain=tug.inflow_gain,
@@ -135,10 +137,18 @@ def _motoring(tug: Tug, vessel: Vessel, speed_rev_s: float) -> tuple[FloatArray,
 
 
 def working_point(tug: Tug, vessel: Vessel) -> tuple[float, float]:
-    """Return the engine speed [rev/s] and shaft torque [N m] at which the truth is normalised."""
+    """Return the engine speed [rev/s] and the driving shaft torque [N m] at which the truth is normalised.
+
+    Both are above 0 astern too.
+    """
     point = vessel.working_point
     speed_rpm = point.engine_speed_rpm if tug.engine_speed_rpm is None else tug.engine_speed_rpm
     if tug.sailing is not None:
+        if point.is_astern:
+            raise SettingsError(
+                f"tug: expected a tug that stands still where vessel {vessel.name} says astern, found one that sails "
+                "free; leave out sailing, or direction of its working point."
+            )
         if tug.shaft_torque_nm is not None:
             raise SettingsError(
                 f"tug: expected no shaft_torque_nm for a tug that sails free, found {tug.shaft_torque_nm:g}; its "
@@ -146,7 +156,7 @@ def working_point(tug: Tug, vessel: Vessel) -> tuple[float, float]:
             )
         speed_s = rev_s_from_rpm(speed_rpm) / vessel.gearbox.ratio
         return rev_s_from_rpm(speed_rpm), steady_torque_nm(way_of(tug.sailing, vessel), speed_s)
-    torque_nm = point.shaft_torque_nm if tug.shaft_torque_nm is None else tug.shaft_torque_nm
+    torque_nm = point.driving_torque_nm if tug.shaft_torque_nm is None else tug.shaft_torque_nm
     return rev_s_from_rpm(speed_rpm), torque_nm
 
 

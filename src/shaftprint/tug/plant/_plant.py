@@ -10,6 +10,7 @@ propeller has dynamic inflow, the slipstream follows it late and the blades meet
 
     M_p = K (n_s |n_s| + kappa |n_s| (n_s - u))         du/dt = (n_s |n_s| - u |u|) / (2 n_s0 tau_i)
 
+A gearbox that reverses has a negative ratio ``i``: the engine turns as ever, speed and torque of the shaft are below 0.
 ``u`` is the slipstream velocity as the shaft speed to which it belongs in steady running. The form is that of Blanke,
 Lindegaard and Fossen, "Dynamic model for thrust generation of marine propellers" (2000): torque ``Q_nn n |n| - Q_nu
 |n| u``, momentum of the water accelerated by the thrust and lost by ``u |u|``. Linear at the working point it is

@@ -9,6 +9,7 @@ from shaftprint.tug._tug import Tug
 from shaftprint.tug.plant import Stretch
 from shaftprint.tug.sensors._faults import Fault
 from shaftprint.tug.sensors._late import Late
+from shaftprint.tug.sensors._turns import turns_of
 from shaftprint.vessel import SpeedSensor, Vessel
 
 # Values of a channel of 16 bits; the lowest stands for an angle of 0.
@@ -33,7 +34,7 @@ class Encoder:
                 f"vessel {vessel.name}: expected rolls_over_at of at most {_VALUES} counts for channel "
                 f"{sensor.channel}, which is simulated in 16 bits, found {whole:g}."
             )
-        self._turns = vessel.gearbox.over_propeller(sensor.shaft)
+        self._turns = turns_of(sensor, vessel)
         self._counts_per_rev, self._counts = turn / self.scale, whole / self.scale
         self._phase_rev = float(rng.uniform())
         self._error_rev = tug.encoder_error_deg / 360.0

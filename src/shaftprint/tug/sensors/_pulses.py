@@ -10,6 +10,7 @@ from shaftprint.kernels import compiled
 from shaftprint.tug._tug import Tug
 from shaftprint.tug.plant import Stretch
 from shaftprint.tug.sensors._faults import Fault, draw_times
+from shaftprint.tug.sensors._turns import turns_of
 from shaftprint.vessel import SpeedSensor, Vessel
 
 VOLT_PER_COUNT = 10.24 / 32768.0
@@ -137,14 +138,18 @@ class PickUp:
         self.channel = sensor.channel
         marked_edge = _teeth_of(sensor, tug, rng) if sensor.wheel else _strips_of(sensor, tug)
         counted = marked_edge if not sensor.toothed.extra else marked_edge[: -sensor.toothed.extra]
+        turns = turns_of(sensor, vessel)
+        # pulses do not show which way a shaft turns, but strips and teeth pass in their other order
+        forward = vessel.working_point.turning if sensor.shaft == "propeller" else 1.0
+        if forward < 0.0:
+            marked_edge, counted = _other_order(marked_edge), _other_order(counted)
         self.angle_rev = np.diff(np.append(counted, 1.0 + counted[0]))
         """Angle from each strip or tooth that is counted to the next [rev], shape (strips,)."""
-        turns = vessel.gearbox.over_propeller(sensor.shaft)
         width = _pulse_width(sensor)
         middle = np.sort(marked_edge) + (0.5 * width if sensor.edge == "rising" else -0.5 * width)
         # at the start every strip is ahead: the first that passes is strip 1, 2, ... at random
         self._strips = _Strips(
-            turns=turns,
+            turns=forward * turns,
             phase_rev=float(rng.uniform(0.0, 1.0)),
             middle_rev=middle,
             width_rev=width,
@@ -179,6 +184,11 @@ class PickUp:
             for kind, times, index in kinds
             for time in times[: self._view.place[index]]
         ]
+
+
+def _other_order(marked_edge: FloatArray) -> FloatArray:
+    """Return where strips or teeth begin [rev] of a shaft that turns the other way, ascending from the first."""
+    return np.asarray(marked_edge[0] + np.sort((marked_edge[0] - marked_edge) % 1.0))
 
 
 def _strips_of(sensor: SpeedSensor, tug: Tug) -> FloatArray:

@@ -11,6 +11,7 @@ from shaftprint.tug.plant import Stretch
 from shaftprint.tug.sensors._bus import Bus, MessageStream, MessageTimes
 from shaftprint.tug.sensors._faults import Fault
 from shaftprint.tug.sensors._late import Late
+from shaftprint.tug.sensors._turns import turns_of
 from shaftprint.vessel import SpeedSensor, Vessel
 
 # Counts at 30 % above rated speed, which no engine reaches.
@@ -27,8 +28,8 @@ class SpeedMeter:
         self, sensor: SpeedSensor, tug: Tug, vessel: Vessel, *, rate_hz: float, rng: np.random.Generator
     ) -> None:
         self.channel = sensor.channel
-        self._turns = vessel.gearbox.over_propeller(sensor.shaft)
-        highest_rev_s = 1.3 * vessel.machine.rated_speed_rpm / 60.0 * self._turns / vessel.gearbox.ratio
+        self._turns = turns_of(sensor, vessel)
+        highest_rev_s = 1.3 * vessel.machine.rated_speed_rpm / 60.0 * abs(self._turns) / vessel.gearbox.ratio
         self._per_rev_s, self._at_rest = _line(sensor)
         self.offset = self._at_rest
         """Value of no count, in the unit of the channel."""
@@ -64,7 +65,7 @@ class SpeedMessages:
         """Value of one count [rpm]."""
         self.times = MessageTimes(bus, cycle_s=cycle_s, rng=rng)
         """When its messages come."""
-        self._turns = vessel.gearbox.over_propeller(sensor.shaft)
+        self._turns = turns_of(sensor, vessel)
         self._stream = MessageStream(self.times, latency_s=sensor.latency_s, rate_hz=rate_hz)
         self._first: float | None = None
 

@@ -18,7 +18,14 @@ from shaftprint.web.access import Role
 from shaftprint.web.pages._line import records_called
 
 # as their rooms have them, which would load far more; a test holds both together
-VESSELS: Final = ("e-ferry-ellen", "pt-may", "stan-tug-1205", "stan-tug-1205-ecu", "stan-tug-1205-underway")
+VESSELS: Final = (
+    "e-ferry-ellen",
+    "pt-may",
+    "stan-tug-1205",
+    "stan-tug-1205-astern",
+    "stan-tug-1205-ecu",
+    "stan-tug-1205-underway",
+)
 CAMPAIGNS: Final = ("12min", "5min", "dither", "short", "thesis", "transit", "two-speeds")
 STRUCTURES: Final = (
     "GAUGE-CLOSED",

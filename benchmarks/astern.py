@@ -1,0 +1,194 @@
+"""Tests astern through raw recordings: whether the truth lies in its intervals, and whether "ahead" is contradicted.
+
+Every ship is drawn: governor, actuation, slope of the engine torque, inertias, the torque coefficient astern, and what
+the vessel file of the Stan Tug 1205 astern states of its gauge with a standard deviation. Its recording of 14 minutes
+is identified as a user would, with the vessel file as it is; then with one that says ahead, as it stands and with the
+sign of the gauge turned, which is what somebody does who believes it.
+
+``python -m benchmarks.astern --seeds 50 --outcomes build/astern --write`` sails what is not there yet, fits it, and
+writes the table of ``docs/astern.md``; an outcome is a small JSON file, so that a run goes on where it ended.
+"""
+
+import argparse
+import json
+import tempfile
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+
+from benchmarks.electric import interval_of
+from benchmarks.kept_outcomes import kept
+from benchmarks.limits import line_of
+from benchmarks.monte_carlo_recordings import PRIOR_OF_G, Ship, drawn_gauge
+from benchmarks.monte_carlo_tables import write_between_marks
+from shaftprint.campaign import load_campaign
+from shaftprint.catalogue import structure
+from shaftprint.cli._demo_truth import fingerprint_truth
+from shaftprint.errors import ShaftprintError
+from shaftprint.signals import Signals
+from shaftprint.survey import run
+from shaftprint.tug import Truth, sail
+from shaftprint.vessel import Vessel, load_vessel
+
+VESSEL, CAMPAIGN = load_vessel("stan-tug-1205-astern"), load_campaign("short")
+STRUCTURE = "GAUGE-CLOSED"
+SEED = 84
+PAGE = Path(__file__).parents[1] / "docs" / "astern.md"
+BEGIN, END = "<!-- astern: begin -->\n", "<!-- astern: end -->\n"
+AHEAD_NM = 1956.0
+"""What the propeller would take ahead at the speed of the working point, by its series [N m]."""
+ASTERN_WORDS = "Of a shaft that turns astern"
+
+
+def ship(seed: int) -> Ship:
+    """Return the ship of a seed."""
+    rng = np.random.default_rng([SEED, seed])
+    gauge = drawn_gauge(VESSEL, rng)
+    stated, point = VESSEL.propeller, VESSEL.working_point
+    coefficient = float(rng.normal(stated.astern_torque_coefficient, stated.astern_torque_coefficient_std))
+    tug = replace(
+        line_of(rng),
+        g=float(rng.normal(PRIOR_OF_G.mean, PRIOR_OF_G.std)),
+        inertia_downstream_kg_m2=float(
+            rng.normal(VESSEL.inertia_downstream_kg_m2, VESSEL.inertia_downstream_std_kg_m2)
+        ),
+        shaft_torque_nm=coefficient / VESSEL.torque_coefficient * point.driving_torque_nm,
+        torque_zero_offset_nm=gauge.zero_nm,
+    )
+    return replace(gauge, tug=tug)
+
+
+def true_values(truth: Truth, signals: Signals, of: Ship) -> dict[str, float]:
+    """Return the truth as the measured working point normalises it.
+
+    Deviations of the torque are shown ``scale`` times as large and divided by the shown mean, in which the zero is; the
+    zero counts ahead, the mean the way the shaft turns.
+    """
+    model, shown_nm = structure(STRUCTURE), signals.working_point.shaft_torque_nm
+    named = fingerprint_truth(truth, model, signals)
+    seen = {p.name: named[p.name] for p in model.parameters}
+    for parameter in model.parameters:
+        if parameter.role is not None and parameter.role.over_torque:
+            seen[parameter.name] *= of.scale
+    seen["k_q"] *= 1.0 + of.scale * of.zero_nm / shown_nm
+    seen["t_gauge"] = of.late_s
+    seen |= {one.name: float(one.of(seen)) for one in model.combinations}  # type: ignore[arg-type]
+    turning_s = truth.engine_speed_rpm / 60.0 / VESSEL.gearbox.ratio
+    force_m = VESSEL.water_density_kg_m3 * turning_s**2 * VESSEL.propeller.diameter_m**5
+    further = {"K_Q": truth.shaft_torque_nm / force_m, "gauge zero share": -100.0 * of.zero_nm / truth.shaft_torque_nm}
+    return seen | {"I_dn": named["I_dn"], "I_up": named["I_up"]} | further
+
+
+def said_to_be_ahead(*, gauge_turned: bool) -> Vessel:
+    """Return the vessel file of somebody who believes that the shaft turned ahead."""
+    point = VESSEL.working_point.model_copy(update={"direction": None, "shaft_torque_nm": AHEAD_NM})
+    gauge = VESSEL.sensors.shaft_torque
+    if gauge_turned:
+        gauge = gauge.model_copy(update={"scale_nm_per_unit": -gauge.scale_nm_per_unit})
+    sensors = VESSEL.sensors.model_copy(update={"shaft_torque": gauge})
+    return VESSEL.model_copy(update={"working_point": point, "sensors": sensors})
+
+
+def outcome(seed: int) -> dict[str, object]:
+    """Sail and fit the ship of a seed."""
+    drawn = ship(seed)
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "test.nc"
+        truth = sail(drawn.vessel, CAMPAIGN, path, tug=drawn.tug, seed=seed)
+        begin = time.process_time()
+        try:
+            survey = run(path, VESSEL, CAMPAIGN, structures=(STRUCTURE,), judge=False, rng=np.random.default_rng(1))
+        except ShaftprintError as error:
+            return {"seed": seed, "refused": str(error)}
+        cpu_s = time.process_time() - begin
+        ahead = {
+            "as it stands": _contradicted(path, said_to_be_ahead(gauge_turned=False)),
+            "gauge turned": _contradicted(path, said_to_be_ahead(gauge_turned=True)),
+        }
+    true, fingerprint = true_values(truth, survey.signals, drawn), survey.fingerprint
+    numbers = [*fingerprint.parameters, *fingerprint.combinations, *fingerprint.physical]
+    return {
+        "seed": seed,
+        "cpu_s": cpu_s,
+        "trustworthy": fingerprint.verdict.trustworthy,
+        "p": survey.identification.p_value,
+        "numbers": {
+            one.name: {"true": true[one.name], "value": one.value, "std": one.std, "interval": interval_of(one)}
+            for one in numbers
+            if one.name in true
+        },
+        "called ahead wrongly": ASTERN_WORDS in " ".join(fingerprint.findings),
+        "ahead": ahead,
+    }
+
+
+def _contradicted(path: Path, vessel: Vessel) -> bool:
+    """Return whether a recording is refused with a vessel file, or its numbers are said to be those of astern."""
+    try:
+        survey = run(path, vessel, CAMPAIGN, structures=(STRUCTURE,), judge=False, rng=np.random.default_rng(1))
+    except ShaftprintError as error:
+        return 'direction = "astern"' in str(error)
+    return ASTERN_WORDS in " ".join(survey.fingerprint.findings)
+
+
+def table(outcomes: Sequence[Mapping[str, object]]) -> str:
+    """Return a row for each number, and how often "ahead" was contradicted, in Markdown."""
+    fitted = [one for one in outcomes if "refused" not in one]
+    names = list(dict.fromkeys(name for one in fitted for name in one["numbers"]))  # type: ignore[attr-defined]
+    rows, inside = [], []
+    for name in names:
+        numbers = [one["numbers"][name] for one in fitted if name in one["numbers"]]  # type: ignore[index,operator]
+        covered = [one["interval"][0] <= one["true"] <= one["interval"][1] for one in numbers]
+        inside += covered
+        off = np.array([one["value"] - one["true"] for one in numbers])
+        scale = np.abs([one["value"] for one in numbers])
+        stated = np.array([one["std"] for one in numbers], dtype=float)
+        per_cent = f"{100.0 * np.median(stated / scale):.2g} %" if np.median(scale) > np.median(stated) else ""
+        rows.append(
+            f"| `{name}` | {len(numbers)} | {np.nanmedian(stated):.2g} | {per_cent} | {np.median(off / stated):+.2f} | "
+            f"{100.0 * np.mean(covered):.0f} % |"
+        )
+    ahead = {way: sum(one["ahead"][way] for one in fitted) for way in ("as it stands", "gauge turned")}  # type: ignore[index]
+    wrongly = sum(bool(one["called ahead wrongly"]) for one in fitted)
+    trusted = sum(bool(one["trustworthy"]) for one in fitted)
+    rejected = sum(one["p"] < 0.05 for one in fitted)  # type: ignore[operator]
+    return "\n".join(
+        [
+            f"{len(fitted)} recordings of 14 minutes, {len(outcomes) - len(fitted)} refused, {trusted} trustworthy, p "
+            f"below 0.05 in {rejected}; {np.median([one['cpu_s'] for one in fitted]):.1f} CPU s each. A vessel file "
+            f"that says ahead was contradicted in {ahead['as it stands']}, and in {ahead['gauge turned']} where the "
+            f"sign of its gauge was turned; the right file in {wrongly}.",
+            "",
+            "| number | recordings | stated deviation | over the value | median error, deviations | covered |",
+            "|---|---|---|---|---|---|",
+            *rows,
+            f"| all | | | | | {100.0 * np.mean(inside):.1f} % |",
+        ]
+    )
+
+
+def main() -> None:
+    """Sail and fit what is not there, and print the table of what is."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--seeds", type=int, default=50, help="number of recordings")
+    parser.add_argument("--first", type=int, default=0, help="number of the first")
+    parser.add_argument("--outcomes", type=Path, default=Path("build/astern"), help="folder of the outcomes")
+    parser.add_argument("--write", action="store_true", help="put the table into its page")
+    options = parser.parse_args()
+    options.outcomes.mkdir(parents=True, exist_ok=True)
+    found = []
+    for seed in range(options.first, options.first + options.seeds):
+        found.append(kept(options.outcomes / f"{seed:03d}.json", partial(outcome, seed)))
+        print(json.dumps(found[-1]), flush=True)
+    text = table(found)
+    print(text)
+    if options.write:
+        write_between_marks(PAGE, text, BEGIN, END)
+
+
+if __name__ == "__main__":
+    main()
