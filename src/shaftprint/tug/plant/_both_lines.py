@@ -154,7 +154,7 @@ def _step(
     """Step one line through a block of a chunk, as long as its load."""
     block = load.size - 1
     demand, pitch = (values[2 * first : 2 * (first + block) + 1] for values in act[:2])
-    part = Traces(*(values[first : first + block] for values in trace))
+    part = Traces._make(values[first : first + block] for values in trace)
     engine = act[3][first : first + block + 1]
     advance(step_s, demand, pitch, load, engine, line.plant, line.delay, line.carried, part)
 
