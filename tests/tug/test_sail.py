@@ -53,7 +53,7 @@ def test_result_does_not_depend_on_chunks(
 ) -> None:
     truths = []
     for chunk in (262_144, 1777):
-        monkeypatch.setattr("shaftprint.tug._sail._CHUNK", chunk)
+        monkeypatch.setattr("shaftprint.tug._sail.CHUNK", chunk)
         truths.append(sail(vessel_with_bus, campaign, tmp_path / f"{chunk}.nc", tug=busy, seed=7))
     assert truths[0] == truths[1]
     with read_recording(tmp_path / "262144.nc") as whole, read_recording(tmp_path / "1777.nc") as cut:

@@ -18,6 +18,7 @@ Every excitation holds in the half-open interval from its start to its stop.
 """
 
 from shaftprint.campaign._binary_sequence import BinarySequence
+from shaftprint.campaign._both_shafts import SIDES, CampaignOfBoth, load_campaign_of_both
 from shaftprint.campaign._campaign import Campaign, load_campaign
 from shaftprint.campaign._excitation import Excitation
 from shaftprint.campaign._excitations import Chirp, Sine, Staircase
@@ -28,8 +29,10 @@ from shaftprint.campaign._setpoint import setpoint
 from shaftprint.campaign._trial_conditions import TrialConditions, load_trial_conditions
 
 __all__ = [
+    "SIDES",
     "BinarySequence",
     "Campaign",
+    "CampaignOfBoth",
     "Chirp",
     "Excitation",
     "Leg",
@@ -39,6 +42,7 @@ __all__ = [
     "TrialConditions",
     "campaign_text",
     "load_campaign",
+    "load_campaign_of_both",
     "load_trial_conditions",
     "setpoint",
     "tests_text",

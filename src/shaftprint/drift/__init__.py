@@ -27,7 +27,7 @@ from shaftprint.drift._drift_finding import DatedCause, Drift, WatchFinding
 from shaftprint.drift._finding import Finding, ShipChange, SizedCause
 from shaftprint.drift._history import History, history_of
 from shaftprint.drift._pair import Pair, pair_of
-from shaftprint.drift._shared_errors import FieldChange, SharedErrors, shared_errors
+from shaftprint.drift._shared_errors import FieldChange, SharedErrors, are_two_lines, shared_errors
 from shaftprint.drift._sister_words import sister_sentences
 from shaftprint.drift._sisters import FEWEST_SISTERS, judge_sisters
 from shaftprint.drift._time_to_limit import TimeToLimit, time_to_limit
@@ -65,6 +65,7 @@ __all__ = [
     "VisibleChange",
     "WatchFinding",
     "Whitened",
+    "are_two_lines",
     "differ",
     "discoveries",
     "finding_sentences",

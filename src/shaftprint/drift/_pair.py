@@ -14,7 +14,7 @@ import numpy as np
 from shaftprint.arrays import FloatArray
 from shaftprint.catalogue import ShipRole
 from shaftprint.drift._causes import CAUSES, GAUGE, GAUGE_SCALE, Cause, by_role, may_happen
-from shaftprint.drift._shared_errors import shared_errors
+from shaftprint.drift._shared_errors import SharedErrors, shared_errors
 from shaftprint.drift._single_test import SingleTest, is_share, single_test
 from shaftprint.drift._straight import straightened
 from shaftprint.identify.fit import Estimate
@@ -77,13 +77,15 @@ def pair_of(
     by = None if moved is None else np.array([np.zeros(len(names)), moved])
     before, after = straightened((first, other), singles, names, by)
     # the propeller takes another torque on another day
-    load = np.array([load_repeatability * (role == ShipRole.TORQUE) for role in roles.values()])
+    shared = shared_errors(first, other)
+    day = 0.0 if shared.is_one_day else load_repeatability
+    load = np.array([day * (role == ShipRole.TORQUE) for role in roles.values()])
     causes, directions = directions_of(roles, before.loadings.get(GAUGE_SCALE), at_bound(doubts))
     return Pair(
         names=names,
         left_out=left_out_of(doubts),
         difference=after.values - before.values,
-        covariance=_covariance(before, after, shared_errors(first, other).common, unmoved=alike(first, other))
+        covariance=_covariance(before, after, shared, unmoved=alike(first, other) and not shared.of_each_piece)
         + 2.0 * np.diag(load**2),
         causes=causes,
         not_judged=not_judged(causes, doubts, (first, other)),
@@ -175,17 +177,25 @@ def alike(first: "Fingerprint", other: "Fingerprint") -> bool:
     return campaigns[0] == campaigns[1] and first.structure == other.structure
 
 
-def _covariance(before: SingleTest, after: SingleTest, common: tuple[str, ...], *, unmoved: bool) -> FloatArray:
+def _covariance(before: SingleTest, after: SingleTest, shared: SharedErrors, *, unmoved: bool) -> FloatArray:
     """Return the covariance of the difference where nothing changed.
 
     What was stated in common cancels where it moves both alike. Of tests with the same lines and structure it does: by
     how much its effects differ is noise of the estimates at which they were worked out, which is in their covariance.
+    Of two lines a share of it is of each piece alone.
     """
+    own = shared.of_each_piece
     covariance = before.own + after.own
     nothing = np.zeros(len(covariance))
     for source in dict.fromkeys((*before.loadings, *after.loadings)):
         one, two = (test.loadings.get(source, nothing) for test in (before, after))
-        for part in (() if unmoved else (two - one,)) if source in common else (one, two):
+        if source not in shared.common:
+            parts: tuple[FloatArray, ...] = (one, two)
+        elif unmoved:
+            parts = ()
+        else:
+            parts = (np.sqrt(1.0 - own) * (two - one), np.sqrt(own) * one, np.sqrt(own) * two)
+        for part in parts:
             covariance = covariance + np.outer(part, part)
     return covariance
 

@@ -1,4 +1,8 @@
-"""Which errors two tests have in common, because both vessel files state the same, and where the files differ."""
+"""Which errors two tests have in common, because both vessel files state the same, and where the files differ.
+
+Two lines of one ship have drawings and engine type in common, and no sensor: each gauge has a scale error of its own
+even where both files state the same scale.
+"""
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -9,6 +13,10 @@ if TYPE_CHECKING:
     from shaftprint.fingerprint import Fingerprint
 
 PRIOR = "prior of "
+OF_EACH_PIECE = 1.0 / 16.0
+"""Share of the variance of a drawing's or an assumption's error that is another in each of two lines: parts are made to
+a quarter of what their calculation leaves open."""
+GAUGE_CHANNEL, LINE_OF_SHIP = "sensors.shaft_torque.channel", "ship.line"
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -34,6 +42,25 @@ class SharedErrors:
     changes: tuple[FieldChange, ...] | None
     """Fields in which the vessel files differ; None where a fingerprint does not have them, being of an earlier
     version: then the hash of the file decides."""
+    of_each_piece: float = 0.0
+    """Share of the variance of a common error that is of each test alone, as two lines of one drawing are two pieces."""
+    is_one_day: bool = False
+    """Whether both are of one recording, so that water and load of the day are the same."""
+
+
+def are_two_lines(first: "Fingerprint", other: "Fingerprint") -> bool:
+    """Return whether two fingerprints are of two lines of one ship: of one recording by two gauges, or said to be."""
+    fields = first.vessel_fields, other.vessel_fields
+    lines = [one.get(LINE_OF_SHIP) for one in fields]
+    gauges = [one.get(GAUGE_CHANNEL) for one in fields]
+    if None not in lines and lines[0] != lines[1]:
+        return True
+    return None not in gauges and gauges[0] != gauges[1] and _of_one_recording(first, other)
+
+
+def _of_one_recording(first: "Fingerprint", other: "Fingerprint") -> bool:
+    recordings = [{one.sha256 for one in test.sources if one.role == "recording"} for test in (first, other)]
+    return bool(recordings[0] & recordings[1])
 
 
 def shared_errors(first: "Fingerprint", other: "Fingerprint") -> SharedErrors:
@@ -49,9 +76,16 @@ def shared_errors(first: "Fingerprint", other: "Fingerprint") -> SharedErrors:
         Two fingerprints.
     """
     sources = [source for source in first.budget.sources if source in other.budget.sources and _is_stated(source)]
-    common = tuple(source for source in sources if is_common(source, first, other))
+    two_lines = are_two_lines(first, other)
+    common = tuple(
+        source for source in sources if is_common(source, first, other) and not (two_lines and source in BEHIND)
+    )
     return SharedErrors(
-        common=common, apart=tuple(source for source in sources if source not in common), changes=_changes(first, other)
+        common=common,
+        apart=tuple(source for source in sources if source not in common),
+        changes=_changes(first, other),
+        of_each_piece=OF_EACH_PIECE if two_lines else 0.0,
+        is_one_day=two_lines and _of_one_recording(first, other),
     )
 
 

@@ -32,10 +32,13 @@ from shaftprint.tug._coupling import Coupling
 from shaftprint.tug._ideal import IdealSignals, simulate_signals
 from shaftprint.tug._like_stan_tug import like_stan_tug_1205
 from shaftprint.tug._linearise import linearised_response
+from shaftprint.tug._linearise_both import linearised_both
 from shaftprint.tug._noise import Noise
 from shaftprint.tug._sail import sail
 from shaftprint.tug._sail_as import sail_as
+from shaftprint.tug._sail_both import TruthOfBoth, sail_both
 from shaftprint.tug._sailing import Sailing
+from shaftprint.tug._shared_water import SharedWater
 from shaftprint.tug._simulated_fleet import (
     SailedTest,
     SimulatedFleet,
@@ -57,23 +60,27 @@ __all__ = [
     "Noise",
     "SailedTest",
     "Sailing",
+    "SharedWater",
     "ShipWork",
     "SimulatedFleet",
     "SimulatedShip",
     "StripTruth",
     "Tolerances",
     "Truth",
+    "TruthOfBoth",
     "Tug",
     "Wear",
     "as_built",
     "in_water",
     "like_stan_tug_1205",
+    "linearised_both",
     "linearised_response",
     "normalised_truth",
     "on_another_day",
     "read_truth",
     "sail",
     "sail_as",
+    "sail_both",
     "sail_test",
     "sea_water_kg_m3",
     "ship_at",

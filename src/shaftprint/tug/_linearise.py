@@ -27,8 +27,9 @@ from shaftprint.tug.plant import (
 )
 from shaftprint.vessel import Vessel
 
-# Places in the vector that is perturbed: nine states, the demand in the ECU, the rack given a delay ago, the pitch.
-_DEMAND, _RACK_DELAYED, _PITCH, _SIZE = 9, 10, 11, 12
+# Places in the vector that is perturbed: nine states, the demand in the ECU, the rack given a delay ago, the pitch, the
+# disturbance of the propeller's torque.
+_DEMAND, _RACK_DELAYED, _PITCH, _LOAD, _SIZE = 9, 10, 11, 12, 13
 # Places in what comes out: the rates of the states, then the rack given and the torque at the gauge.
 _GIVEN, _GAUGE, _RATES = 9, 10, 11
 
@@ -51,7 +52,8 @@ def linearised_response(
         Which responses: ``n``, ``M_s``, ``X``, the fuel rack that the governor gives before the delay, and of a tug
         that sails ``v_s``, the speed of the ship.
     input
-        ``n_set``, or of a tug that sails ``theta_set``, the set point of the pitch.
+        ``n_set``; ``load``, a share by which the propeller takes more torque; or of a tug that sails ``theta_set``, the
+        set point of the pitch.
 
     Returns
     -------
@@ -106,22 +108,24 @@ def _excitation(tug: Tug, name: str, s: complex, speed: float) -> tuple[int, flo
     """Return place of what is moved, its working point, and what comes between its set point and the line."""
     if name == "n_set":
         return _DEMAND, speed, complex(np.exp(-s * tug.set_point_latency_s))
+    if name == "load":
+        return _LOAD, 1.0, 1.0 + 0.0j
     if name != "theta_set" or tug.sailing is None:
-        raise SettingsError(f"input: expected n_set, or theta_set of a tug that sails, found {name}.")
+        raise SettingsError(f"input: expected n_set or load, or theta_set of a tug that sails, found {name}.")
     return _PITCH, tug.sailing.pitch_ratio, 1.0 / (tug.sailing.pitch_lag_s * s + 1.0)
 
 
 def _slopes(plant: Plant, engine_speed_rev_s: float) -> FloatArray:
-    """Return the slopes of the rates, the rack given and the gauge torque, shape (11, 12)."""
+    """Return the slopes of the rates, the rack given and the gauge torque, shape (11, 13)."""
     state = equilibrium(plant, engine_speed_rev_s)
-    centre = np.array([*state, engine_speed_rev_s, state[RACK], 0.0])
+    centre = np.array([*state, engine_speed_rev_s, state[RACK], 0.0, 0.0])
     # at the quay the rates are at most quadratic: the central difference has no truncation error; underway it is 1e-8
     size = 1e-4 * centre
     size[RACK_RATE] = size[RACK]
     size[ANGLE] = 1.0
     size[TWIST] = size[TWIST] or 1.0
     size[WAY] = max(size[WAY], 1e-4)
-    size[_PITCH] = 1e-4
+    size[_PITCH] = size[_LOAD] = 1e-4
     slope = np.empty((_RATES, _SIZE))
     for index in range(_SIZE):
         shift = np.zeros(_SIZE)
@@ -133,6 +137,6 @@ def _slopes(plant: Plant, engine_speed_rev_s: float) -> FloatArray:
 
 def _rates(plant: Plant, vector: FloatArray) -> FloatArray:
     rates: Any = derivatives
-    values = rates.py_func(vector[:_DEMAND], *vector[_DEMAND:_PITCH], 0.0, 0.0, plant, 1.0, vector[_PITCH])
+    values = rates.py_func(vector[:_DEMAND], *vector[_DEMAND:_PITCH], vector[_LOAD], 0.0, plant, 1.0, vector[_PITCH])
     # the angle's rate, which is the speed, plays no part
     return np.array([*values[:5], 0.0, *values[9:12], values[5], values[6]])

@@ -9,7 +9,8 @@ A. Donner, "Construction of confidence limits about effect measures: a general a
 What both fits were told alike errs in both alike. Where both vessel files state the same, the error of the inertias, of
 the gauge's scale or of a latency counts in the difference only as far as it moves the two numbers unequally:
 ``(s_a - s_b)^2`` in place of ``s_a^2 + s_b^2`` for each such source (``_shared_errors``). The scale of a gauge that was
-calibrated anew is another one, and counts in full.
+calibrated anew is another one, and counts in full. Two lines of one ship have drawings in common and no sensor, and of
+one recording the load of the day.
 
 The zero of the gauge is none of these: it drifts, and each test finds its own. It has changed only where it moved
 further than two zeros, each as uncertain as the vessel file says. The load of the propeller is none either: on another
@@ -86,7 +87,9 @@ def differences(
         Standard deviation of the torque that a propeller takes at one speed from day to day, as a share: of a ship that
         was tested three times or more the scatter of its ``K_Q``.
     """
-    pair = _Pair(first=first, other=other, common=shared_errors(first, other).common, load=load_repeatability)
+    shared = shared_errors(first, other)
+    load = 0.0 if shared.is_one_day else load_repeatability
+    pair = _Pair(first=first, other=other, common=shared.common, load=load, of_each_piece=shared.of_each_piece)
     kept = _shared(pair, ("physical", "margins"))
     model_numbers = _shared(pair, ("combinations", "parameters"))
     kept += [difference for difference in model_numbers if _is_of_line(difference.first)]
@@ -124,6 +127,8 @@ class _Pair:
     """Sources of error that are the same in both."""
     load: float
     """Standard deviation of the propeller's torque from day to day, as a share."""
+    of_each_piece: float
+    """Share of the variance of a common error that is of each alone."""
 
 
 def _shared(pair: _Pair, groups: Sequence[str]) -> list[Difference]:
@@ -149,7 +154,7 @@ def _difference(a: "Quantity", b: "Quantity", pair: _Pair) -> Difference:
             first=a, other=b, interval_95=None, p_value=None, outcome="cannot be compared", because=because
         )
     told_a, told_b = (_told(f, a.name, pair.common) for f in (pair.first, pair.other))
-    unequal = sum((told_a.get(k, 0.0) - told_b.get(k, 0.0)) ** 2 for k in {*told_a, *told_b})
+    unequal = sum(_unequal(told_a.get(k, 0.0), told_b.get(k, 0.0), pair.of_each_piece) for k in {*told_a, *told_b})
     more = NORMAL_95**2 * (unequal + _between_tests(a, pair.load) + _between_tests(b, pair.load))
     own_a, own_b = _own_share(pair.first, a.name, told_a), _own_share(pair.other, b.name, told_b)
     below = math.sqrt(own_b * (b.value - low_b) ** 2 + own_a * (high_a - a.value) ** 2 + more)
@@ -159,6 +164,11 @@ def _difference(a: "Quantity", b: "Quantity", pair: _Pair) -> Difference:
     return Difference(
         first=a, other=b, interval_95=(apart - below, apart + above), p_value=p_value, outcome="no difference seen"
     )
+
+
+def _unequal(a: float, b: float, own: float) -> float:
+    """Return the variance that an error with the deviations ``a`` and ``b`` leaves in a difference; ``own`` is apart."""
+    return (1.0 - own) * (a - b) ** 2 + own * (a**2 + b**2)
 
 
 def _between_tests(quantity: "Quantity", load: float) -> float:

@@ -3,6 +3,7 @@
 ``shaftprint.tug.sensors`` measures it. Quantities and signs are those of ``shaftprint.tug``.
 """
 
+from shaftprint.tug.plant._both_lines import sea_and_own, voyage_of_both
 from shaftprint.tug.plant._constants import Plant
 from shaftprint.tug.plant._demand import Demand, DemandLimits, demand_limits, demanded_speed, helm_voltage
 from shaftprint.tug.plant._disturbance import Disturbance
@@ -54,10 +55,12 @@ __all__ = [
     "governor_rack",
     "helm_voltage",
     "interpolation_weights",
+    "sea_and_own",
     "shaft_time_constant_s",
     "steady_load_nm",
     "torque_limits",
     "voyage",
+    "voyage_of_both",
     "working_point",
     "working_point_rack",
 ]

@@ -14,7 +14,7 @@ _ROUNDING = 1e-9
 
 
 @compiled(nogil=True)
-def _lag(asked: FloatArray, last_asked, pitch, kept, ramp) -> None:  # type: ignore[no-untyped-def]
+def lag(asked: FloatArray, last_asked, pitch, kept, ramp) -> None:  # type: ignore[no-untyped-def]
     """Write what a first-order lag makes of values that are joined by straight lines, in place."""
     for j in range(asked.size):
         now = asked[j]
@@ -64,7 +64,7 @@ class PitchActuator:
         half_steps = np.arange(self._count + 1, self._count + 2 * steps + 1, dtype=np.float64)
         pitch = self._deviation(self._start_s + self._half_step_s * half_steps)
         last = float(pitch[-1])
-        _lag(pitch, self._asked, self._pitch, self._kept, self._ramp)
+        lag(pitch, self._asked, self._pitch, self._kept, self._ramp)
         values[1:] = pitch
         self._count += 2 * steps
         self._pitch, self._asked = float(pitch[-1]), last

@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -10,6 +11,7 @@ from shaftprint.arrays import BoolArray, FloatArray
 from shaftprint.campaign import Campaign
 from shaftprint.errors import SettingsError
 from shaftprint.tug._tug import Tug
+from shaftprint.tug.plant._constants import Plant
 from shaftprint.tug.plant._demand import Demand
 from shaftprint.tug.plant._disturbance import Disturbance
 from shaftprint.tug.plant._physics import build_plant, equilibrium, steady_boost
@@ -81,6 +83,31 @@ def voyage(
     SettingsError
         If the truth is not physical, or the delay in the loop is shorter than three steps and not zero.
     """
+    line = ready_line(tug, vessel, campaign, step_s=step_s, start_s=start_s)
+    for done, (asked, angle_asked, propeller, engine) in forced(disturbance, line, steps=steps, chunk=chunk):
+        traces = empty_traces(min(chunk, steps - done))
+        advance(step_s, asked, angle_asked, propeller, engine, line.plant, line.delay, line.carried, traces)
+        yield stretch_of(traces, asked, first=done, start_s=start_s, step_s=step_s)
+
+
+class ReadyLine(NamedTuple):
+    """A line that runs steadily, ready to be stepped."""
+
+    plant: Plant
+    demand: Demand
+    pitch: PitchActuator
+    delay: DelayTaps
+    carried: Carried
+
+
+def ready_line(tug: Tug, vessel: Vessel, campaign: Campaign, *, step_s: float, start_s: float) -> ReadyLine:
+    """Return a line in the equilibrium of its set point at a time [s].
+
+    Raises
+    ------
+    SettingsError
+        If the truth is not physical, or the delay in the loop is shorter than three steps and not zero.
+    """
     plant = build_plant(tug, vessel)
     demand = Demand(tug, vessel, campaign, start_s=start_s, step_s=step_s)
     pitch = PitchActuator(tug, vessel, campaign, start_s=start_s, step_s=step_s)
@@ -97,27 +124,33 @@ def voyage(
     ring = np.full(1 << int(np.ceil(np.log2(farthest * delay_steps + 8.0))), state[RACK])
     boost = np.array([steady_boost(plant, demand.first)])
     carried = Carried(state=state, history=ring, counter=np.zeros(1, dtype=np.int64), boost=boost)
-    for done, (asked, angle_asked, propeller, engine) in _forced(disturbance, demand, pitch, steps=steps, chunk=chunk):
-        count = min(chunk, steps - done)
-        speed, angle, torque, brake, rack, way = np.empty((6, count))
-        limited = np.empty(count, dtype=np.bool_)
-        traces = Traces(speed, angle, torque, brake, rack, limited, way)
-        advance(step_s, asked, angle_asked, propeller, engine, plant, delay, carried, traces)
-        yield Stretch(
-            time_s=start_s + step_s * np.arange(done, done + count, dtype=np.float64),
-            shaft_speed_rev_s=speed,
-            shaft_angle_rev=angle,
-            shaft_torque_nm=torque,
-            brake_torque_nm=brake,
-            rack_given=rack,
-            limited=limited,
-            ship_speed_m_s=way,
-            demand_rev_s=asked[: 2 * count : 2],
-        )
+    return ReadyLine(plant, demand, pitch, delay, carried)
 
 
-def _forced(
-    disturbance: Disturbance, demand: Demand, pitch: PitchActuator, *, steps: int, chunk: int
+def empty_traces(count: int) -> Traces:
+    """Return traces for a number of steps, to be filled."""
+    speed, angle, torque, brake, rack, way = np.empty((6, count))
+    return Traces(speed, angle, torque, brake, rack, np.empty(count, dtype=np.bool_), way)
+
+
+def stretch_of(traces: Traces, asked: FloatArray, *, first: int, start_s: float, step_s: float) -> Stretch:
+    """Return filled traces as what really happens from a step on, with the demand at half steps from the same step."""
+    count = traces.limited.size
+    return Stretch(
+        time_s=start_s + step_s * np.arange(first, first + count, dtype=np.float64),
+        shaft_speed_rev_s=traces.shaft_speed_rev_s,
+        shaft_angle_rev=traces.shaft_angle_rev,
+        shaft_torque_nm=traces.shaft_torque_nm,
+        brake_torque_nm=traces.brake_torque_nm,
+        rack_given=traces.rack_given,
+        limited=traces.limited,
+        ship_speed_m_s=traces.ship_speed_m_s,
+        demand_rev_s=asked[: 2 * count : 2],
+    )
+
+
+def forced(
+    disturbance: Disturbance, line: ReadyLine, *, steps: int, chunk: int
 ) -> Iterator[tuple[int, tuple[FloatArray, ...]]]:
     """Yield the first step of each chunk and what acts in it; the next is made while the line is stepped through one.
 
@@ -126,7 +159,7 @@ def _forced(
 
     def acting(count: int) -> tuple[FloatArray, ...]:
         propeller, engine, wander = disturbance.next(count)
-        return demand.next(count, wander), pitch.next(count), propeller, engine
+        return line.demand.next(count, wander), line.pitch.next(count), propeller, engine
 
     with ThreadPoolExecutor(max_workers=1) as ahead:
         waiting = ahead.submit(acting, min(chunk, steps))
