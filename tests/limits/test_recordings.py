@@ -92,7 +92,7 @@ def test_a_set_point_that_goes_on_in_steps(limits_of):
 
 
 def test_two_limits_that_hold_each_other_in_place_of_the_true_ones(both_torque_limits_of):
-    """Seed 103: a slow set point joins first, then messages; neither could go alone, 2 log L 680 worse than the truth."""
+    """Seed 103: a slow set point joins first, then messages; neither goes alone, 2 log L 680 worse than the truth."""
     share, lowest_nm, found = both_torque_limits_of(103)
     assert set(found.kinds) == {Kind.TORQUE, Kind.MOTORING}
     assert number(found, "share").lower <= share <= number(found, "share").upper
