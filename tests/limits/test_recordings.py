@@ -4,6 +4,8 @@ from dataclasses import replace
 
 import pytest
 from benchmarks.limits import CAMPAIGN, VESSEL, drawn
+from benchmarks.one_fit import CAMPAIGN as SHORT
+from benchmarks.one_fit import ship
 
 from shaftprint.limits import Kind, identify_limits
 from shaftprint.recording import read_recording
@@ -25,6 +27,23 @@ def limits_of(tmp_path_factory):
         with read_recording(path) as recording:
             signals = prepare_signals(recording, VESSEL, CAMPAIGN)
         return one, identify_limits(signals, CAMPAIGN, VESSEL)
+
+    return look
+
+
+@pytest.fixture(scope="module")
+def both_torque_limits_of(tmp_path_factory):
+    """Highest and lowest torque over the full-load torque, and what the program finds, of a ship of ``one_fit``."""
+
+    def look(seed):
+        tug, share = ship(seed)
+        torques = tuple(share * torque for torque in VESSEL.engine.full_load_torque_nm)
+        sailed = VESSEL.model_copy(update={"engine": VESSEL.engine.model_copy(update={"full_load_torque_nm": torques})})
+        path = tmp_path_factory.mktemp("torque") / f"{seed}.nc"
+        sail(sailed, SHORT, path, tug=tug, seed=seed)
+        with read_recording(path) as recording:
+            signals = prepare_signals(recording, VESSEL, SHORT)
+        return share, -tug.motoring_torque_nm, identify_limits(signals, SHORT, VESSEL)
 
     return look
 
@@ -70,3 +89,19 @@ def test_a_set_point_that_goes_on_in_steps(limits_of):
     assert step.trusted
     assert step.lower <= 16.0 <= step.upper
     assert step.upper - step.lower < 2.0
+
+
+def test_two_limits_that_hold_each_other_in_place_of_the_true_ones(both_torque_limits_of):
+    """Seed 103: a slow set point joins first, then messages; neither goes alone, 2 log L 680 worse than the truth."""
+    share, lowest_nm, found = both_torque_limits_of(103)
+    assert set(found.kinds) == {Kind.TORQUE, Kind.MOTORING}
+    assert number(found, "share").lower <= share <= number(found, "share").upper
+    assert number(found, "M_min").lower <= lowest_nm <= number(found, "M_min").upper
+
+
+def test_a_motoring_limit_that_only_falls_to_half_speed_show(both_torque_limits_of):
+    """Seed 100: the line falls to 50 % of its speed for half a second; the limit acts in those two steps alone."""
+    share, lowest_nm, found = both_torque_limits_of(100)
+    assert set(found.kinds) == {Kind.TORQUE, Kind.MOTORING}
+    assert number(found, "share").lower <= share <= number(found, "share").upper
+    assert number(found, "M_min").lower <= lowest_nm <= number(found, "M_min").upper

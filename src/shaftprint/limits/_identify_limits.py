@@ -149,7 +149,7 @@ def _gains(search: Search, here: Fitted) -> Mapping[Kind, float]:
     """Return what each limit brings to the others; a single one needs no further fit."""
     if len(here.kinds) == 1:
         return {here.kinds[0]: schwarz(search.linear()) - schwarz(here)}
-    gains = {kind: schwarz(search.without(here, kind)) - schwarz(here) for kind in here.kinds}
+    gains = {kind: schwarz(search.without(here, [kind])) - schwarz(here) for kind in here.kinds}
     return dict(sorted(gains.items(), key=lambda pair: -pair[1]))
 
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import chain, combinations
 
 import numpy as np
 
@@ -24,6 +25,8 @@ FAST = (
     GovernorSymbol.SET_POINT_LATENCY,
 )
 """What slow sines tell too little of."""
+ENGINE_LIMITS = (Kind.TORQUE, Kind.MOTORING)
+"""What every engine has: a highest torque, and one below which it cannot brake."""
 MOST_LIMITS = 4
 # Candidates of a round that are fitted.
 POLISHED, POLISHED_CALM = 2, 4
@@ -144,15 +147,18 @@ class Search:
         -------
         The governor with its limits, and the levels of those that did not join, tried at the end.
         """
-        here = self.linear()
+        here = linear = self.linear()
+        engine_alone = False
         while True:
             scans = self.scanned(here)
             tries = [self._joined(here, scans), self.held(here)] if len(here.kinds) < MOST_LIMITS else []
             better = min((one for one in tries if one is not None), key=schwarz, default=here)
             if schwarz(here) - schwarz(better) > LEAST_GAIN:
-                here = self._without_idle(better)
+                here = self._without_idle(better, better.kinds[:-1])
                 continue
             other = self._pushed(here, self._rest_moves(here))
+            if other is here and not engine_alone:
+                engine_alone, other = True, self._engine_limits_or(here, linear)
             if other is here:
                 return self.fit(here.values, here.kinds, here.messages, negligible=NEGLIGIBLE_FALL), scans
             here = other
@@ -228,19 +234,36 @@ class Search:
         """Return what the jumps tell of messages, to first order; None where they are too few."""
         return here.messages or messages_of(here.term, here.own, self.test, here.known)
 
-    def without(self, here: Fitted, kind: Kind) -> Fitted:
-        """Return the best governor with one limit less."""
-        kinds = tuple(other for other in here.kinds if other is not kind)
-        gone = {name: IDLE[name] for name in set(parameters_of([kind])) - set(parameters_of(kinds))}
-        return self.fit({**here.values, **gone}, kinds, here.messages if Kind.HELD in kinds else None)
+    def without(self, here: Fitted, gone: Sequence[Kind]) -> Fitted:
+        """Return the best governor without some of its limits."""
+        kinds = tuple(kind for kind in here.kinds if kind not in gone)
+        idle = {name: IDLE[name] for name in set(parameters_of(gone)) - set(parameters_of(kinds))}
+        return self.fit({**here.values, **idle}, kinds, here.messages if Kind.HELD in kinds else None)
 
-    def _without_idle(self, here: Fitted) -> Fitted:
-        """Return the governor without limits that later ones have made idle."""
-        for kind in here.kinds[:-1]:
-            without = self.without(here, kind)
+    def _without_idle(self, here: Fitted, kinds: Sequence[Kind]) -> Fitted:
+        """Return the governor without those of some limits that the others have made idle, alone or together."""
+        for gone in chain.from_iterable(combinations(kinds, count + 1) for count in range(len(kinds))):
+            without = self.without(here, gone)
             if schwarz(without) - schwarz(here) < LEAST_GAIN:
-                here = without
+                return self._without_idle(without, [kind for kind in kinds if kind not in gone])
         return here
+
+    def _engine_limits_or(self, here: Fitted, linear: Fitted) -> Fitted:
+        """Return the governor with the torque limits that every engine has and no others, where it explains more.
+
+        Limits that join one after the other may hold each other: a slow set point and late messages were named beside
+        a torque limit, none of them could go alone, and the two limits of the engine explained the test far better.
+        """
+        if set(here.kinds) <= set(ENGINE_LIMITS):
+            return here
+        scans = self._scan_from(linear, {**linear.values, **self.calm})
+        starts = {one.candidate.kind: one.start for one in sorted(scans, key=lambda one: one.gain)}
+        kinds = [kind for kind in ENGINE_LIMITS if kind in starts]
+        levels = {name: starts[kind][name] for kind in kinds for name in parameters_of([kind])}
+        engine = self._tried({**linear.values, **self.calm, **levels}, kinds, None)
+        if engine is None or schwarz(engine) > schwarz(here):
+            return here
+        return self._without_idle(engine, kinds)
 
     def _pushed(self, here: Fitted, moves: Sequence[Mapping[str, float]]) -> Fitted:
         """Return the best of a governor and of fits that begin where moves put some of its parameters."""
