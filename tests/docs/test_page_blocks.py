@@ -18,8 +18,8 @@ from shaftprint.campaign import Campaign
 from shaftprint.drive import Drive
 from shaftprint.export import exported_model, write_matlab
 from shaftprint.fingerprint import read_fingerprint
-from shaftprint.recording import read_recording
 from shaftprint.propeller import four_quadrants
+from shaftprint.recording import read_recording
 from shaftprint.recording.readers import _outside
 from shaftprint.vessel import load_vessel
 
