@@ -2,8 +2,9 @@
 
 Every ship is drawn: governor, actuation, slope of the engine torque, inertias, the torque coefficient astern, and what
 the vessel file of the Stan Tug 1205 astern states of its gauge with a standard deviation. Its recording of 14 minutes
-is identified as a user would, with the vessel file as it is; then with one that says ahead, as it stands and with the
-sign of the gauge turned, which is what somebody does who believes it.
+is identified as a user would, with the vessel file as it is; then with one that says ahead, as it stands, and with the
+sign of its gauge turned, which is what somebody does who believes it: signals and fit are then those of the right file,
+so that they are not made again, and what is said of them is.
 
 ``python -m benchmarks.astern --seeds 50 --outcomes build/astern --write`` sails what is not there yet, fits it, and
 writes the table of ``docs/astern.md``; an outcome is a small JSON file, so that a run goes on where it ended.
@@ -29,8 +30,11 @@ from shaftprint.campaign import load_campaign
 from shaftprint.catalogue import structure
 from shaftprint.cli._demo_truth import fingerprint_truth
 from shaftprint.errors import ShaftprintError
+from shaftprint.fingerprint import physical_quantities
+from shaftprint.fingerprint._findings import findings_of
+from shaftprint.identify.uncertainty import Budget
 from shaftprint.signals import Signals
-from shaftprint.survey import run
+from shaftprint.survey import Survey, run
 from shaftprint.tug import Truth, sail
 from shaftprint.vessel import Vessel, load_vessel
 
@@ -106,8 +110,8 @@ def outcome(seed: int) -> dict[str, object]:
             return {"seed": seed, "refused": str(error)}
         cpu_s = time.process_time() - begin
         ahead = {
-            "as it stands": _contradicted(path, said_to_be_ahead(gauge_turned=False)),
-            "gauge turned": _contradicted(path, said_to_be_ahead(gauge_turned=True)),
+            "as it stands": _refused(path, said_to_be_ahead(gauge_turned=False)),
+            "gauge turned": _contradicted(survey, said_to_be_ahead(gauge_turned=True)),
         }
     true, fingerprint = true_values(truth, survey.signals, drawn), survey.fingerprint
     numbers = [*fingerprint.parameters, *fingerprint.combinations, *fingerprint.physical]
@@ -126,13 +130,20 @@ def outcome(seed: int) -> dict[str, object]:
     }
 
 
-def _contradicted(path: Path, vessel: Vessel) -> bool:
-    """Return whether a recording is refused with a vessel file, or its numbers are said to be those of astern."""
+def _refused(path: Path, vessel: Vessel) -> bool:
+    """Return whether a recording is refused with a vessel file, with words that name the direction."""
     try:
-        survey = run(path, vessel, CAMPAIGN, structures=(STRUCTURE,), judge=False, rng=np.random.default_rng(1))
+        run(path, vessel, CAMPAIGN, structures=(STRUCTURE,), judge=False, rng=np.random.default_rng(1))
     except ShaftprintError as error:
         return 'direction = "astern"' in str(error)
-    return ASTERN_WORDS in " ".join(survey.fingerprint.findings)
+    return False
+
+
+def _contradicted(survey: Survey, vessel: Vessel) -> bool:
+    """Return whether the numbers of a fit are said to be those of astern beside a vessel file."""
+    fit = survey.identification
+    physical = physical_quantities(fit, survey.signals.working_point, vessel)
+    return ASTERN_WORDS in " ".join(findings_of(fit, physical, Budget(sources=(), rows=()), {}, vessel=vessel))
 
 
 def table(outcomes: Sequence[Mapping[str, object]]) -> str:

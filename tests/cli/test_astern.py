@@ -6,6 +6,8 @@ import json
 import numpy as np
 import pytest
 
+from shaftprint.export import host_platform
+
 pytestmark = pytest.mark.slow
 
 FILES = ("--vessel", "stan-tug-1205-astern", "--campaign", "short")
@@ -59,7 +61,7 @@ def test_model_of_the_line_astern_moves_as_it_is_simulated(sailed, invoke, tmp_p
     """The FMU counts speed and torque as they drive, like all numbers of the test."""
     fmpy = pytest.importorskip("fmpy")
     result = sailed[0] / "result" / "fingerprint.json"
-    done = invoke("export", "fmu", result, "-o", tmp_path / "line.fmu")
+    done = invoke("export", "fmu", result, "--platform", host_platform(), "-o", tmp_path / "line.fmu")
     assert done.exit_code == 0, done.stderr
     time = np.arange(0.0, 6.0, 0.01)
     asked = np.where(time >= 1.0 - 1e-9, 0.04, 0.0)

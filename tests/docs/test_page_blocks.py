@@ -18,8 +18,10 @@ from shaftprint.campaign import Campaign
 from shaftprint.drive import Drive
 from shaftprint.export import exported_model, write_matlab
 from shaftprint.fingerprint import read_fingerprint
+from shaftprint.propeller import four_quadrants
 from shaftprint.recording import read_recording
 from shaftprint.recording.readers import _outside
+from shaftprint.vessel import load_vessel
 
 OCTAVE = shutil.which("octave-cli") or shutil.which("octave")
 needs_octave = pytest.mark.skipif(OCTAVE is None, reason="Octave runs MATLAB's lines; apt-get install octave")
@@ -83,7 +85,7 @@ def test_a_reader_that_a_package_names_so_is_used(acme):
 
 
 def test_toml_is_of_a_page_with_a_check_of_its_own():
-    known = {"docs/drives.md", "docs/formats.md", "docs/legs.md", "docs/serve.md"}
+    known = {"docs/astern.md", "docs/drives.md", "docs/formats.md", "docs/legs.md", "docs/serve.md"}
     assert {page.values[0] for page in of("toml")} == known
 
 
@@ -93,6 +95,27 @@ def test_the_campaign_of_the_page_on_legs_is_one():
     # as its comments say
     multisine, binary = campaign.legs
     assert (multisine.periods, binary.length_of_period_s) == (4, 126 * 0.25)
+
+
+def test_the_vessel_file_of_the_page_on_tests_astern_is_the_shipped_one():
+    ((_, text),) = (block for block in blocks("docs/astern.md") if block[0] == "toml")
+    shipped = load_vessel("stan-tug-1205-astern").model_dump(exclude_none=True)
+    for table, fields in tomllib.loads(text).items():
+        assert fields.items() <= shipped[table].items()
+
+
+def test_the_table_of_the_page_on_tests_astern_is_that_of_the_series():
+    page = (ROOT / "docs/astern.md").read_text(encoding="utf-8")
+    rows = re.findall(r"^\| (\d\.\d) \| (.*) \|$", page, flags=re.MULTILINE)
+    curve = four_quadrants(blades=4, area_ratio=0.7)
+    assert len(rows) == 5
+    for pitch, numbers in rows:
+        ahead, astern = (curve.bollard(float(pitch), astern=way) for way in (False, True))
+        expected = [ahead.thrust, astern.thrust, astern.thrust / ahead.thrust]
+        expected += [ahead.torque, astern.torque, astern.torque / ahead.torque]
+        found = [float(number) for number in numbers.split(" | ")]
+        assert found == pytest.approx(expected, abs=0.0051)
+        assert found[3:5] == pytest.approx(expected[3:5], abs=6e-5)
 
 
 def test_the_users_of_the_page_on_the_server_can_be_read(tmp_path):

@@ -156,8 +156,8 @@ def expect_plausible(point: WorkingPoint, vessel: "Vessel") -> tuple[str, ...]:
     if not point.shaft_torque_nm > 0.0:
         raise SignalError(
             f"channel {sensor.channel}: expected a {_sign_words(vessel)} mean torque at the working point, found "
-            f"{torque:.4g} N m; {direction_words(vessel)}, {sensor.sign_words} in the vessel file, or correct zero_nm "
-            f"there{_unit_words(sensor, torque, expected)}."
+            f"{torque:.4g} N m; {sensor.sign_words} in the vessel file, or correct zero_nm there, or "
+            f"{direction_words(vessel)}{_unit_words(sensor, torque, expected)}."
         )
     if max(torque / expected, expected / torque) < _FAR:
         return ()
