@@ -32,6 +32,7 @@ IDENTIFY = "identify log.csv --vessel mine.toml --campaign test.toml -o result"
 SAILED = (
     "sail e-ferry-ellen short -o ferry.nc --seed 3",
     "sail stan-tug-1205-astern short -o astern.nc --seed 3",
+    "sail pt-may short -o towboat.nc --seed 3",
     "sail stan-tug-1205-underway dither -o underway.nc",
 )
 MY_SHIP = """

@@ -25,7 +25,7 @@ from shaftprint.catalogue import ROLES, ShipRole
 from shaftprint.fingerprint._quantity import Quantity
 from shaftprint.fingerprint._working_point_share import LOAD_WANDER, shares_over_torque, shifts_of_working_point
 from shaftprint.identify import Identification
-from shaftprint.identify.likelihood import inertia_from_vessel
+from shaftprint.identify.likelihood import stated_by_vessel
 from shaftprint.identify.uncertainty import Budget, budget
 from shaftprint.models import Combination, Structure
 from shaftprint.normalisation import Normalisation
@@ -127,7 +127,7 @@ def _physical_forms(
             role=role,
         )
         value = float(number.of(named))
-        expected, expected_std = inertia_from_vessel(role, vessel) or (None, None)
+        expected, expected_std = stated_by_vessel(role, vessel) or (None, None)
         yield PhysicalNumber(
             number=number,
             direct=({"gauge scale": value * scale} if scale else {})

@@ -142,7 +142,7 @@ def _sentence(fit: Identification, gap: float, measurement: Measurement, vessel:
         shaft_torque_nm=point.shaft_torque_nm,
     )
     found = {one.name: one for one in (*fit.parameters, *fit.combinations)}
-    stiffness = found[fit.structure.named_as(ShipRole.COUPLING_STIFFNESS)]
+    stiffness = found[str(fit.structure.named_as(ShipRole.COUPLING_STIFFNESS))]
     kilo = normalisation.inertia_kg_m2 / 1000.0
     mode = found["f_1"]
     twist = with_deviation(kilo * stiffness.value, kilo * stiffness.std)
@@ -158,7 +158,7 @@ def _mode(fit: Identification) -> tuple[float, float]:
     """Return frequency [Hz] and damping ratio of the two bodies on their coupling."""
     found = {one.name: one.value for one in (*fit.parameters, *fit.combinations)}
     stiffness, damping = (
-        found[fit.structure.named_as(role)] for role in (ShipRole.COUPLING_STIFFNESS, ShipRole.COUPLING_DAMPING)
+        found[str(fit.structure.named_as(role))] for role in (ShipRole.COUPLING_STIFFNESS, ShipRole.COUPLING_DAMPING)
     )
     omega = 2.0 * np.pi * found["f_1"]
     # omega^2 = k (1 / J_1 + 1 / J_2) and 2 zeta omega = d (1 / J_1 + 1 / J_2)

@@ -7,8 +7,8 @@ from shaftprint.identify.likelihood._fitted_response import FittedResponse, chan
 from shaftprint.identify.likelihood._known import (
     PRIOR_OF_G,
     expected_from_vessel,
-    inertia_from_vessel,
     priors_from_vessel,
+    stated_by_vessel,
 )
 from shaftprint.identify.likelihood._line_test import LineTest
 from shaftprint.identify.likelihood._load_factors import load_factors, with_load
@@ -50,9 +50,9 @@ __all__ = [
     "expected_from_vessel",
     "fit_ceiling",
     "fit_percent",
-    "inertia_from_vessel",
     "load_factors",
     "priors_from_vessel",
+    "stated_by_vessel",
     "student_tails",
     "with_load",
 ]

@@ -81,16 +81,28 @@ def _free_names(structure: Structure) -> dict[Role, str]:
     return {structure.roles[p.name]: p.name for p in structure.free if p.name in structure.roles}
 
 
-def inertia_from_vessel(role: Role | None, vessel: "Vessel") -> tuple[float, float] | None:
-    """Return the inertia on one side of the gauge and its standard deviation [kg m2]; None for another role.
+def stated_by_vessel(role: Role | None, vessel: "Vessel") -> tuple[float, float] | None:
+    """Return the physical value of a role and its standard deviation by the vessel file; None where it states none.
 
-    The thesis compares the inertia of its shaft loop with that upstream.
+    It is an inertia [kg m2] on one side of the gauge, or what the links say of the coupling [N m/rad, N m s/rad], all
+    at the propeller shaft. The thesis compares the inertia of its shaft loop with that upstream.
     """
     if role in (ShipRole.INERTIA, ShipRole.INERTIA_UPSTREAM):
         return vessel.inertia_upstream_kg_m2, vessel.inertia_upstream_std_kg_m2
     if role == ShipRole.INERTIA_DOWNSTREAM:
         return vessel.inertia_downstream_kg_m2, vessel.inertia_downstream_std_kg_m2
-    return None
+    coupling = line_coupling(vessel) if role in _OF_COUPLING else None
+    if role is None or coupling is None:
+        return None
+    value, std = _OF_COUPLING[role](coupling)
+    return (value, std) if value > 0.0 else None
+
+
+_OF_COUPLING: Mapping[Role, Callable[[LineCoupling], tuple[float, float]]] = {
+    ShipRole.INERTIA_DRIVEN: lambda one: (one.driven_kg_m2, one.driven_std_kg_m2),
+    ShipRole.COUPLING_STIFFNESS: lambda one: (one.stiffness_nm_rad, one.stiffness_std_nm_rad),
+    ShipRole.COUPLING_DAMPING: lambda one: (one.damping_nm_s_rad, one.damping_std_nm_s_rad),
+}
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -102,29 +114,18 @@ class _Test:
     is_late: bool
     """Whether the latencies of torque and rack are still in the signals."""
 
-    def inertia_time(self, role: Role) -> Prior | None:
+    def over_torque(self, role: Role, source: str) -> Prior | None:
         """Return what the vessel file knows of an inertia time, ``2 pi I n_s0 / M_s0``; None where it knows nothing.
 
-        Its standard deviation holds that of the TVC and of the gauge's scale: a gauge that shows too much makes it too
-        small. The error of the working point is not in it, because ``M_s0`` is the number by which the responses are
-        divided, whatever the load was; it comes to all that is found over that number alike, after the fit.
+        Stiffness and damping of a coupling are normalised alike. The standard deviation holds that of the vessel file
+        and of the gauge's scale: a gauge that shows too much makes the number too small. The error of the working point
+        is not in it, because ``M_s0`` is the number by which the responses are divided, whatever the load was; it comes
+        to all that is found over that number alike, after the fit.
         """
-        stated = inertia_from_vessel(role, self.vessel)
+        stated = stated_by_vessel(role, self.vessel)
         if stated is None or not stated[1] > 0.0:
             return None
-        return self._over_torque("TVC", *stated)
-
-    def of_coupling(self, part: Callable[[LineCoupling], tuple[str, float, float]]) -> Prior | None:
-        """Return what the vessel file's links say of their coupling; None where they have none, or nothing of it.
-
-        Stiffness and damping are normalised as an inertia is.
-        """
-        coupling = line_coupling(self.vessel)
-        source, value, std = ("", 0.0, 0.0) if coupling is None else part(coupling)
-        return self._over_torque(source, value, std) if value > 0.0 and std > 0.0 else None
-
-    def _over_torque(self, source: str, value: float, std: float) -> Prior:
-        """Return a number in SI that is normalised as an inertia, with the scale of the gauge in its deviation."""
+        value, std = stated
         normalisation = Normalisation(
             engine_speed_rev_s=self.point.engine_speed_rev_s,
             gear_ratio=self.vessel.gearbox.ratio,
@@ -178,15 +179,11 @@ class _Test:
 
 PRIORS: Mapping[Role, Callable[[_Test], Prior | None]] = {
     ShipRole.ENGINE_SPEED_SLOPE: lambda _: PRIOR_OF_G,
-    ShipRole.INERTIA_UPSTREAM: lambda test: test.inertia_time(ShipRole.INERTIA_UPSTREAM),
-    ShipRole.INERTIA_DOWNSTREAM: lambda test: test.inertia_time(ShipRole.INERTIA_DOWNSTREAM),
-    ShipRole.INERTIA_DRIVEN: lambda test: test.of_coupling(lambda one: ("TVC", one.driven_kg_m2, one.driven_std_kg_m2)),
-    ShipRole.COUPLING_STIFFNESS: lambda test: test.of_coupling(
-        lambda one: ("coupling", one.stiffness_nm_rad, one.stiffness_std_nm_rad)
-    ),
-    ShipRole.COUPLING_DAMPING: lambda test: test.of_coupling(
-        lambda one: ("coupling damping", one.damping_nm_s_rad, one.damping_std_nm_s_rad)
-    ),
+    ShipRole.INERTIA_UPSTREAM: lambda test: test.over_torque(ShipRole.INERTIA_UPSTREAM, "TVC"),
+    ShipRole.INERTIA_DOWNSTREAM: lambda test: test.over_torque(ShipRole.INERTIA_DOWNSTREAM, "TVC"),
+    ShipRole.INERTIA_DRIVEN: lambda test: test.over_torque(ShipRole.INERTIA_DRIVEN, "TVC"),
+    ShipRole.COUPLING_STIFFNESS: lambda test: test.over_torque(ShipRole.COUPLING_STIFFNESS, "coupling"),
+    ShipRole.COUPLING_DAMPING: lambda test: test.over_torque(ShipRole.COUPLING_DAMPING, "coupling damping"),
     ShipRole.TORQUE_LATENCY: _Test.torque_latency,
     ShipRole.SET_POINT_LATENCY: _Test.set_point_latency,
     ShipRole.RACK_LATENCY: _Test.rack_latency,
