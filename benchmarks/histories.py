@@ -10,7 +10,7 @@ docs/watching.md.
 import argparse
 import sys
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
@@ -30,7 +30,7 @@ SEED = 17
 TESTS, QUARTER = 20, timedelta(days=91.3125)
 FIRST = datetime(2021, 1, 1, tzinfo=UTC)
 P_ACTION, I_ACTION = "governor proportional action", "governor integral action"
-DOCKED = 10
+DOCKED, SOUND = 10, 3
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -49,11 +49,15 @@ class Life:
     """What is done to it."""
 
 
-def _grows(names: Sequence[str], per_year: float, *, back_at: int = TESTS) -> Callable[[int, str], float]:
-    """Return numbers that grow from the first test on, and once begin anew."""
+def _grows(
+    names: Sequence[str], per_year: float, *, begins: int = 0, back_at: int = TESTS
+) -> Callable[[int, str], float]:
+    """Return numbers that grow from a test on, at once from the first one, and once begin anew."""
 
     def factor(test: int, name: str) -> float:
-        years = (test if test < back_at else test - back_at) / 4.0
+        # sound tests show nothing, the first one behind them the growth of a quarter
+        grown = max(test - max(begins - 1, 0), 0)
+        years = (grown if test < back_at else test - back_at) / 4.0
         return float(np.exp(per_year * years)) if name in names else 1.0
 
     return factor
@@ -71,7 +75,17 @@ LIVES = (
         cause="propeller", events=(DOCKING,),
     ),
     Life(
+        name="the same, after three tests of the sound ship",
+        factor=_grows(("K_Q",), 0.03, begins=SOUND, back_at=DOCKED + SOUND), begins=SOUND,
+        cause="propeller", events=(replace(DOCKING, at=DOCKING.at + SOUND * QUARTER),),
+    ),
+    Life(
         name="injection wears 1 % a year", factor=_grows((P_ACTION, I_ACTION), -0.01),
+        cause="injection or turbocharger",
+    ),
+    Life(
+        name="the same, after three tests of the sound ship",
+        factor=_grows((P_ACTION, I_ACTION), -0.01, begins=SOUND), begins=SOUND,
         cause="injection or turbocharger",
     ),
     Life(
