@@ -155,7 +155,8 @@ def main() -> None:
     """Draw the histories and print the table."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("folder", type=Path, help="fingerprints that benchmarks/watching.py has kept")
-    parser.add_argument("--ships", type=int, default=100, help="ships of each kind")
+    parser.add_argument("--ships", type=int, default=100, help="ships of each kind to which something happens")
+    parser.add_argument("--unchanged", type=int, default=100, help="ships to which nothing happens")
     parser.add_argument("--write", action="store_true", help=f"put the table into {DOCUMENT.relative_to(ROOT)}")
     options = parser.parse_args()
     paths = sorted(options.folder.glob("short-*.json"), key=lambda path: int(path.stem.rpartition("-")[2]))
@@ -164,9 +165,14 @@ def main() -> None:
     header = ("in five years", "found", "at which test, median", "nine of ten", "before it began", "right cause first")
     lines = ["| " + " | ".join(header) + " |", "|" + "---|" * len(header)]
     for life in LIVES:
-        lines.append("| " + " | ".join(row(kept, life, options.ships)) + " |")
+        ships = options.ships if life.cause else options.unchanged
+        lines.append("| " + " | ".join(row(kept, life, ships)) + " |")
         print(lines[-1], file=sys.stderr, flush=True)
-    text = "\n".join([f"{options.ships} ships of each kind, drawn from {len(kept)} tests.\n", *lines]) + "\n"
+    drawn = (
+        f"{options.unchanged} ships to which nothing happens and {options.ships} of each other kind, drawn from "
+        f"{len(kept)} tests.\n"
+    )
+    text = "\n".join([drawn, *lines]) + "\n"
     print(text)
     if options.write:
         write_between_marks(DOCUMENT, text, BEGIN, END)

@@ -91,7 +91,8 @@ def test_wear_is_seen_before_anything_else_as_slow(base):
     clear = course(worn(-0.01)[1])
     slow = 0.01 * 3.5 / abs(clear.score)
     history, finding = worn(-slow)
-    assert course(finding).score == pytest.approx(-3.5, rel=0.01)
+    # beside a score of 4, which anything else asks for
+    assert course(finding).score == pytest.approx(-3.5, abs=0.2)
     assert (course(finding).cause.name, course(finding).shape) == ("injection or turbocharger", "ramp")
     assert watch_sentences(finding, history)[0].startswith("Yes: less torque for the same rack")
     assert worn(slow)[1].drifts == ()
