@@ -10,7 +10,7 @@ docs/watching.md.
 import argparse
 import sys
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
@@ -30,7 +30,7 @@ SEED = 17
 TESTS, QUARTER = 20, timedelta(days=91.3125)
 FIRST = datetime(2021, 1, 1, tzinfo=UTC)
 P_ACTION, I_ACTION = "governor proportional action", "governor integral action"
-DOCKED = 10
+DOCKED, SOUND = 10, 3
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -49,11 +49,15 @@ class Life:
     """What is done to it."""
 
 
-def _grows(names: Sequence[str], per_year: float, *, back_at: int = TESTS) -> Callable[[int, str], float]:
-    """Return numbers that grow from the first test on, and once begin anew."""
+def _grows(
+    names: Sequence[str], per_year: float, *, begins: int = 0, back_at: int = TESTS
+) -> Callable[[int, str], float]:
+    """Return numbers that grow from a test on, at once from the first one, and once begin anew."""
 
     def factor(test: int, name: str) -> float:
-        years = (test if test < back_at else test - back_at) / 4.0
+        # sound tests show nothing, the first one behind them the growth of a quarter
+        grown = max(test - max(begins - 1, 0), 0)
+        years = (grown if test < back_at else test - back_at) / 4.0
         return float(np.exp(per_year * years)) if name in names else 1.0
 
     return factor
@@ -71,7 +75,17 @@ LIVES = (
         cause="propeller", events=(DOCKING,),
     ),
     Life(
+        name="the same, after three tests of the sound ship",
+        factor=_grows(("K_Q",), 0.03, begins=SOUND, back_at=DOCKED + SOUND), begins=SOUND,
+        cause="propeller", events=(replace(DOCKING, at=DOCKING.at + SOUND * QUARTER),),
+    ),
+    Life(
         name="injection wears 1 % a year", factor=_grows((P_ACTION, I_ACTION), -0.01),
+        cause="injection or turbocharger",
+    ),
+    Life(
+        name="the same, after three tests of the sound ship",
+        factor=_grows((P_ACTION, I_ACTION), -0.01, begins=SOUND), begins=SOUND,
         cause="injection or turbocharger",
     ),
     Life(
@@ -141,7 +155,8 @@ def main() -> None:
     """Draw the histories and print the table."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("folder", type=Path, help="fingerprints that benchmarks/watching.py has kept")
-    parser.add_argument("--ships", type=int, default=100, help="ships of each kind")
+    parser.add_argument("--ships", type=int, default=100, help="ships of each kind to which something happens")
+    parser.add_argument("--unchanged", type=int, default=100, help="ships to which nothing happens")
     parser.add_argument("--write", action="store_true", help=f"put the table into {DOCUMENT.relative_to(ROOT)}")
     options = parser.parse_args()
     paths = sorted(options.folder.glob("short-*.json"), key=lambda path: int(path.stem.rpartition("-")[2]))
@@ -150,9 +165,14 @@ def main() -> None:
     header = ("in five years", "found", "at which test, median", "nine of ten", "before it began", "right cause first")
     lines = ["| " + " | ".join(header) + " |", "|" + "---|" * len(header)]
     for life in LIVES:
-        lines.append("| " + " | ".join(row(kept, life, options.ships)) + " |")
+        ships = options.ships if life.cause else options.unchanged
+        lines.append("| " + " | ".join(row(kept, life, ships)) + " |")
         print(lines[-1], file=sys.stderr, flush=True)
-    text = "\n".join([f"{options.ships} ships of each kind, drawn from {len(kept)} tests.\n", *lines]) + "\n"
+    drawn = (
+        f"{options.unchanged} ships to which nothing happens and {options.ships} of each other kind, drawn from "
+        f"{len(kept)} tests.\n"
+    )
+    text = "\n".join([drawn, *lines]) + "\n"
     print(text)
     if options.write:
         write_between_marks(DOCUMENT, text, BEGIN, END)

@@ -151,5 +151,16 @@ def test_tests_from_before_the_last_work_do_not_stand_for_a_ship(base):
     assert [test.name for test in sister_of("A", late).tests] == ["t5"]
 
 
+def test_tolerances_that_the_builder_knows_are_not_told_from_the_ships(base):
+    """Ships that are alike have no spread; with 2 % known it is 2 %. Those 3 % apart are odd where 1 % is known."""
+    injection = next(cause for cause in CAUSES if cause.name == INJECTION)
+    alike = [ship(base, f"ship {number}", number) for number in range(5)]
+    assert spread(judge_sisters(alike, tolerances={injection: 0.02}), INJECTION).std == pytest.approx(0.02)
+    # the others are known as they usually are
+    assert spread(judge_sisters(alike, tolerances={injection: 0.02}), GOVERNOR).std == pytest.approx(0.005)
+    assert judge_sisters(injected(base, 3.0 * BUILT), tolerances={injection: 0.03}).odd == ()
+    assert judge_sisters(injected(base, 3.0 * BUILT), tolerances={injection: 0.01}).odd
+
+
 def test_tolerances_are_stated_of_every_cause():
     assert all(0.0 < cause.tolerance < 0.05 for cause in CAUSES)

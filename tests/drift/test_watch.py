@@ -75,6 +75,29 @@ def test_a_ramp_is_found_with_its_slope_and_beginning(base):
     assert "a year since 2024-07-01" in watch_sentences(finding, history)[0]
 
 
+def test_wear_is_seen_before_anything_else_as_slow(base):
+    """What injection loses in a year is seen where a gain of as much is within chance: no engine wears upwards."""
+
+    def worn(per_year):
+        shares = [float(np.exp(per_year * place / 4.0)) for place in range(8)]
+        return looked_at(
+            [made(place, base, **{P_ACTION: share, I_ACTION: share}) for place, share in enumerate(shares)]
+        )
+
+    def course(finding):
+        drift = finding.drifts[0] if finding.drifts else finding.nearest
+        return drift.best
+
+    clear = course(worn(-0.01)[1])
+    slow = 0.01 * 3.5 / abs(clear.score)
+    history, finding = worn(-slow)
+    # beside a score of 4, which anything else asks for
+    assert course(finding).score == pytest.approx(-3.5, abs=0.2)
+    assert (course(finding).cause.name, course(finding).shape) == ("injection or turbocharger", "ramp")
+    assert watch_sentences(finding, history)[0].startswith("Yes: less torque for the same rack")
+    assert worn(slow)[1].drifts == ()
+
+
 def test_the_time_to_a_limit_carries_the_slope_on(base):
     """Three per cent a year in logarithms since 2024-07-01 are six per cent after ln 1.06 / 0.03 = 1.942 years."""
     tests = [made(place, base, I_dn=float(np.exp(0.03 * max(place - 2, 0) / 4.0))) for place in range(12)]

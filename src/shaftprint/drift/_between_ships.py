@@ -10,7 +10,8 @@ Multivariate Analysis 1, 1971). Twice the inverse of their matrix is the covaria
 
 Eight ships cannot tell a spread of each cause: one is told by seven differences, and a limit of Student's t with six
 degrees of freedom is twice that of the normal distribution. So each ``k_d`` is drawn to the one ``k`` of all causes as
-far as they look alike (``_moderation``): with ships that differ as the tolerances say, they are told together.
+far as they look alike (``_moderation``): with ships that differ as the tolerances say, they are told together. Who
+knows the tolerances states them, and nothing is told from the ships: then the scores are normal.
 """
 
 from dataclasses import dataclass
@@ -87,8 +88,10 @@ def spread_of(numbers: ClassNumbers, ships: tuple[int, ...]) -> Spread:
     ships
         Places of those that tell it, two at least.
     """
-    size, count = numbers.building.shape
+    count = numbers.building.shape[1]
     common = np.ones(count)
+    if numbers.is_known:
+        return _spread(numbers, ships, common, np.zeros((count, count)))
     for _ in range(_ROUNDS):
         forms = _forms(numbers, ships, common)
         common = np.full(count, max(forms.surplus.sum() / forms.sensitivity.sum(), 0.0))
@@ -104,13 +107,20 @@ def spread_of(numbers: ClassNumbers, ships: tuple[int, ...]) -> Spread:
         inverse = np.linalg.inv(forms.sensitivity + np.diag(drawn))
         scales = np.maximum(inverse @ (forms.surplus + drawn * common), 0.0)
     by_common = inverse @ drawn
+    known_to = 2.0 * inverse + 2.0 / forms.sensitivity.sum() * np.outer(by_common, by_common)
+    return _spread(numbers, ships, scales, known_to)
+
+
+def _spread(numbers: ClassNumbers, ships: tuple[int, ...], scales: FloatArray, known_to: FloatArray) -> Spread:
+    """Return the spread of some ships with their mean, from its scales and the covariance of these."""
+    size = numbers.building.shape[0]
     _within, mean = _projection(numbers, ships, scales)
     weights = np.zeros((size, *numbers.values.shape))
     weights[:, list(ships)] = mean.reshape(size, len(ships), size)
     return Spread(
         ships=ships,
         scales=scales,
-        scale_covariance=2.0 * inverse + 2.0 / forms.sensitivity.sum() * np.outer(by_common, by_common),
+        scale_covariance=known_to,
         mean=mean @ numbers.values[list(ships)].reshape(-1),
         weights=weights.reshape(size, -1),
     )

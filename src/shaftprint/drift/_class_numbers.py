@@ -1,6 +1,6 @@
 """The newest tests of sister ships as one vector of numbers with its covariance, and how ships may differ as built."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
@@ -78,6 +78,10 @@ class ClassNumbers:
     building: FloatArray
     """What one standard deviation of each tolerance of building does to the numbers, those of the causes first; shape
     (numbers, tolerances)."""
+    tolerances: FloatArray
+    """That standard deviation for each cause: a share, or a time [s]; shape (causes,)."""
+    is_known: bool
+    """Whether the tolerances are known; else the ships tell how much of them there is."""
     causes: tuple[Cause, ...]
     """What may have moved the numbers."""
     directions: FloatArray
@@ -100,7 +104,9 @@ class ClassNumbers:
         return covariance
 
 
-def class_numbers(ships: Sequence[Sister], *, load_repeatability: float) -> ClassNumbers:
+def class_numbers(
+    ships: Sequence[Sister], *, load_repeatability: float, tolerances: Mapping[Cause, float] | None = None
+) -> ClassNumbers:
     """Return the numbers that all tests of all ships have, a mean of each ship.
 
     Parameters
@@ -109,6 +115,9 @@ def class_numbers(ships: Sequence[Sister], *, load_repeatability: float) -> Clas
         Ships of one class, each with one test at least.
     load_repeatability
         Standard deviation of the torque that a propeller takes at one speed from day to day, as a share.
+    tolerances
+        Standard deviations between sisters as they are built, by cause: shares, or times [s]. Where they are given
+        they are known, and so are the usual ones of other causes.
     """
     tests = [test.fingerprint for ship in ships for test in ship.tests]
     doubts = doubts_of(*tests)
@@ -120,13 +129,16 @@ def class_numbers(ships: Sequence[Sister], *, load_repeatability: float) -> Clas
     weights = _weights(ships, own)
     alone, common = _left_open(ships, singles, weights, [one + load for one in own])
     causes, directions = directions_of(roles, singles[0].loadings.get(GAUGE_SCALE), at_bound(doubts))
+    stated = np.array([(tolerances or {}).get(cause, cause.tolerance) for cause in causes])
     return ClassNumbers(
         names=names,
         left_out=left_out_of(doubts),
         values=weights @ np.array([one.values for one in singles]),
         own=alone,
         common=common,
-        building=_building(roles, causes, directions),
+        building=_building(roles, causes, directions * stated),
+        tolerances=stated,
+        is_known=tolerances is not None,
         causes=causes,
         directions=directions,
         not_judged=not_judged(causes, doubts, tests),
@@ -168,14 +180,13 @@ def _left_open(
     return alone, np.array(common).reshape(-1, *alone.shape[:2]).transpose(1, 2, 0)
 
 
-def _building(roles: "dict[str, Role | None]", causes: Sequence[Cause], directions: FloatArray) -> FloatArray:
+def _building(roles: "dict[str, Role | None]", causes: Sequence[Cause], of_causes: FloatArray) -> FloatArray:
     """Return what tolerances of building do to the numbers: those of the causes, and of numbers that no cause moves."""
     alone = [any(len(one.roles) == 1 and role in one.roles[0] for one in causes) for role in roles.values()]
     others = [
         0.0 if moved or role is None else OTHER_TOLERANCES.get(role, _USUAL_TOLERANCE)
         for moved, role in zip(alone, roles.values(), strict=True)
     ]
-    of_causes = directions * np.array([cause.tolerance for cause in causes])
     of_numbers = np.diag(others)[:, np.array(others) > 0.0]
     building: FloatArray = np.column_stack([of_causes, of_numbers])
     return building

@@ -7,7 +7,7 @@ the others, and all are judged once more.
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -39,7 +39,12 @@ _FARTHEST, _BISECTIONS = 38.0, 60
 _NORMAL = 1000.0
 
 
-def judge_sisters(ships: Sequence[Sister], *, load_repeatability: float = LOAD_REPEATABILITY) -> ClassFinding:
+def judge_sisters(
+    ships: Sequence[Sister],
+    *,
+    load_repeatability: float = LOAD_REPEATABILITY,
+    tolerances: Mapping[Cause, float] | None = None,
+) -> ClassFinding:
     """Return which ships of a class are not as their sisters are, what may be other in them, and how sisters differ.
 
     Of the ships that are named, one in twenty at most is a sound one in the mean.
@@ -50,10 +55,14 @@ def judge_sisters(ships: Sequence[Sister], *, load_repeatability: float = LOAD_R
         Ships of one class, each with one test at least.
     load_repeatability
         Standard deviation of the torque that a propeller takes at one speed from day to day, as a share.
+    tolerances
+        Standard deviations between sisters as they are built that the builder states, by cause: shares, or times [s].
+        Where they are given they are known, and so are the usual ones of other causes; else the ships tell how much of
+        the usual ones there is.
     """
     if len(ships) < FEWEST_SISTERS:
         return _nothing(f"expected {FEWEST_SISTERS} ships with tests that can be judged or more, found {len(ships)}")
-    numbers = class_numbers(ships, load_repeatability=load_repeatability)
+    numbers = class_numbers(ships, load_repeatability=load_repeatability, tolerances=tolerances)
     if not numbers.causes:
         return _nothing(NOT_TOLD, numbers.left_out)
     try:
@@ -132,8 +141,9 @@ def _cause_spreads(numbers: ClassNumbers, spread: Spread) -> tuple[CauseSpread, 
     effects = shrunk(numbers, spread)
     spreads = []
     for at, (cause, direction) in enumerate(zip(numbers.causes, numbers.directions.T, strict=True)):
-        variance = float(spread.scales[at]) * cause.tolerance**2
-        own = (cause.tolerance * effects[:, at]).tolist()
+        tolerance = float(numbers.tolerances[at])
+        variance = float(spread.scales[at]) * tolerance**2
+        own = (tolerance * effects[:, at]).tolist()
         sizes = [_size(*one, direction=direction, cause=cause) for one in zip(departures, own, strict=True)]
         half = [
             deviations(_COVERAGE, float(one.freedom[at])) * float(one.white.sizes((at,))[1][0]) for one in departures

@@ -6,13 +6,13 @@ from pathlib import Path
 import click
 import numpy as np
 
+from shaftprint.cli._cause_size import CauseSize
 from shaftprint.cli._dates import DATE_FORMATS, zone_option
 from shaftprint.cli._load_option import load_repeatability_option
 from shaftprint.cli._store_options import instant, store_option
 from shaftprint.cli._terminal import answer, echo, say
 from shaftprint.cli.output import REPORT, fingerprint_at, force_option, give, output_folder, print_tables
 from shaftprint.drift import (
-    ALL_CAUSES,
     EVENTS,
     Cause,
     Event,
@@ -46,29 +46,6 @@ class EventAt(click.ParamType):  # type: ignore[type-arg]
         return kind, at
 
 
-class LimitOf(click.ParamType):  # type: ignore[type-arg]
-    """A cause and the size that it must not pass, such as ``propeller=10%``; of an engine, a motor or both."""
-
-    name = "limit"
-
-    def convert(
-        self, value: object, param: click.Parameter | None, ctx: click.Context | None
-    ) -> tuple[tuple[Cause, ...], float]:
-        """Return the cause, one for each machine that has it by another name, and the size, a share or a time [s]."""
-        word, _, size = str(value).partition("=")
-        found = tuple(cause for cause in ALL_CAUSES if word and cause.name.startswith(word.strip()))
-        machines = [cause.machine for cause in found]
-        if not found or (len(found) > 1 and (None in machines or len(set(machines)) < len(found))):
-            names = ", ".join(cause.name for cause in ALL_CAUSES)
-            self.fail(f"expected the beginning of one of {names}, found {word!r}.", param, ctx)
-        cause = found[0]
-        number = size.strip().removesuffix(cause.unit)
-        try:
-            return found, cause.from_unit(float(number))
-        except ValueError:
-            self.fail(f"expected a number of {cause.unit} after {word}=, found {size!r}.", param, ctx)
-
-
 @click.command("drift")
 @click.argument("tests", metavar="SHIP|FINGERPRINT...", nargs=-1, required=True)
 @store_option
@@ -85,7 +62,7 @@ class LimitOf(click.ParamType):  # type: ignore[type-arg]
     "--limit",
     "limits",
     multiple=True,
-    type=LimitOf(),
+    type=CauseSize(),
     metavar="CAUSE=SIZE",
     help="When a slow change reaches a size, such as propeller=10% or delay=20ms; the first words of a cause will do.",
 )

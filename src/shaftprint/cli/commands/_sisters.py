@@ -5,11 +5,12 @@ from pathlib import Path
 
 import click
 
+from shaftprint.cli._cause_size import CauseSize
 from shaftprint.cli._load_option import load_repeatability_option
 from shaftprint.cli._store_options import store_option
 from shaftprint.cli._terminal import answer, echo, say
 from shaftprint.cli.output import REPORT, force_option, give, output_folder, print_tables
-from shaftprint.drift import NEWEST_TESTS, judge_sisters, sister_sentences
+from shaftprint.drift import NEWEST_TESTS, Cause, judge_sisters, sister_sentences
 from shaftprint.report import cause_spread_table, number_spread_table, render_class, sister_table
 from shaftprint.store import class_histories, open_store, sisters_of
 
@@ -24,6 +25,15 @@ PERCENT = 100.0
     "--newest", type=click.IntRange(min=1), default=NEWEST_TESTS, show_default=True, metavar="COUNT",
     help="Tests that stand for a ship, the newest ones since the last thing that was done to it.",
 )  # fmt: skip
+@click.option(
+    "--tolerance",
+    "tolerances",
+    multiple=True,
+    type=CauseSize(),
+    metavar="CAUSE=SIZE",
+    help="Standard deviation between sisters as built that the yard knows, such as injection=1% or delay=1ms. With one "
+    "or more the usual ones of other causes are taken as known too, not told from the ships.",
+)
 @load_repeatability_option
 @click.option("-o", "--output", type=click.Path(path_type=Path), help="Folder for a page with a chart of the ships.")
 @force_option
@@ -33,6 +43,7 @@ def command(
     *,
     line: str | None,
     newest: int,
+    tolerances: tuple[tuple[tuple[Cause, ...], float], ...],
     load_percent: float,
     output: Path | None,
     force: bool,
@@ -47,7 +58,8 @@ def command(
     ships, left_out = sisters_of(lines, newest=newest)
     for name in left_out:
         say(f"Left out: {name}, none of its tests can be judged.")
-    finding = judge_sisters(ships, load_repeatability=load_percent / PERCENT)
+    known = {cause: size for causes, size in tolerances for cause in causes}
+    finding = judge_sisters(ships, load_repeatability=load_percent / PERCENT, tolerances=known or None)
     if output is not None:
         with output_folder(output, of="sisters", force=force) as folder:
             render_class(folder, class_name, ships, finding, now=datetime.now(UTC))

@@ -1,0 +1,28 @@
+"""A cause of drift with a size, as options take them."""
+
+import click
+
+from shaftprint.drift import ALL_CAUSES, Cause
+
+
+class CauseSize(click.ParamType):  # type: ignore[type-arg]
+    """A cause and a size of it, such as ``propeller=10%``; of an engine, a motor or both."""
+
+    name = "size"
+
+    def convert(
+        self, value: object, param: click.Parameter | None, ctx: click.Context | None
+    ) -> tuple[tuple[Cause, ...], float]:
+        """Return the cause, one for each machine that has it by another name, and the size, a share or a time [s]."""
+        word, _, size = str(value).partition("=")
+        found = tuple(cause for cause in ALL_CAUSES if word and cause.name.startswith(word.strip()))
+        machines = [cause.machine for cause in found]
+        if not found or (len(found) > 1 and (None in machines or len(set(machines)) < len(found))):
+            names = ", ".join(cause.name for cause in ALL_CAUSES)
+            self.fail(f"expected the beginning of one of {names}, found {word!r}.", param, ctx)
+        cause = found[0]
+        number = size.strip().removesuffix(cause.unit)
+        try:
+            return found, cause.from_unit(float(number))
+        except ValueError:
+            self.fail(f"expected a number of {cause.unit} after {word}=, found {size!r}.", param, ctx)

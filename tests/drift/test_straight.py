@@ -1,0 +1,111 @@
+"""The valley of delay, gains and actuator made straight: estimates by SciPy, which share no code with it."""
+
+import numpy as np
+import pytest
+from scipy.optimize import least_squares
+from tests.drift.test_differ import PRIORS
+from tests.drift.test_watch import I_ACTION, P_ACTION, looked_at, made
+from tests.known_fits import TRUTH, fitted, taken
+
+from shaftprint.catalogue import structure
+from shaftprint.fingerprint import JointNumbers, NoiseSpectrum
+from shaftprint.identify import Settings
+
+MODEL = structure("GAUGE-CLOSED")
+FREQUENCY_HZ = (0.02, 0.035, 0.06, 0.15, 0.3, 0.5, 0.8, 1.25, 2.0, 3.3)
+NUMBERS = ("K_p", "K_i", "t_d", "omega_n", "zeta", "tau_dn", "t_sp")
+TIMES = ("t_d", "t_sp")
+NAMES = (P_ACTION, I_ACTION, "t_d", "omega_n", "zeta", "I_dn", "t_sp")
+SHARE, TESTS, STEP_AT, WEAKER = 0.012, 12, 6, 0.02
+"""Relative noise of each response; tests, the first one with a weaker injection, and by how much it is weaker."""
+
+
+def logarithms(values):
+    """Return the logarithms of both responses at the lines as real numbers."""
+    response = np.log(MODEL.response(MODEL.vector(values), 2j * np.pi * np.array(FREQUENCY_HZ)))
+    return np.concatenate([response.real.ravel(), response.imag.ravel()])
+
+
+def moved(values, apart):
+    """Return parameters after changes: of logarithms, and of times."""
+    step = dict(zip(NUMBERS, apart, strict=True))
+    return values | {
+        name: values[name] + change if name in TIMES else values[name] * np.exp(change) for name, change in step.items()
+    }
+
+
+def slopes(values):
+    """Return the derivatives of the logarithms, by central differences."""
+    steps = 1e-6 * np.eye(len(NUMBERS))
+    return np.array([(logarithms(moved(values, h)) - logarithms(moved(values, -h))) / 2e-6 for h in steps]).T
+
+
+def estimate(true, noise):
+    """Return the estimate of a line from noisy responses, as changes from the reference, and its covariance."""
+    data = logarithms(true) + noise
+    found = least_squares(lambda x: (logarithms(moved(TRUTH, x)) - data) / SHARE, np.zeros(len(NUMBERS)), x_scale="jac")
+    at = slopes(moved(TRUTH, found.x)) / SHARE
+    return found.x, np.linalg.inv(at.T @ at)
+
+
+def fingerprint(base, place, apart, covariance):
+    """Return the fingerprint of an estimate, which states its own covariance."""
+    shift = dict(zip(NAMES, apart, strict=True))
+    factors = {name: np.exp(change) for name, change in shift.items() if name not in TIMES}
+    one = made(place, base, **factors)
+    parameters = tuple(
+        number.model_copy(update={"value": TRUTH[number.name] + shift[number.name]}) if number.name in TIMES else number
+        for number in one.parameters
+    )
+    names = ("I_up", *NAMES)
+    size = np.array([1.0 if name in TIMES else one.quantity(name).value for name in names])
+    own = np.zeros((len(names), len(names)))
+    own[0, 0] = 1e-6
+    own[1:, 1:] = covariance
+    own *= np.outer(size, size)
+    noise = NoiseSpectrum(
+        engine_speed_rpm=1183.8,
+        set_point_per_v=0.21,
+        outputs=("n", "M_s"),
+        frequency_hz=FREQUENCY_HZ,
+        density_real=((((1e-6, 0.0), (0.0, 1e-6))),) * len(FREQUENCY_HZ),
+        density_imaginary=((((0.0, 0.0), (0.0, 0.0))),) * len(FREQUENCY_HZ),
+    )
+    joint = JointNumbers(names=names, own_covariance=tuple(map(tuple, own.tolist())), loadings={})
+    return one.model_copy(update={"parameters": parameters, "joint": joint, "noise": (noise,)})
+
+
+@pytest.fixture(scope="module")
+def histories():
+    """Tests with the frequencies of their lines, and the same without: there the valley stays as it is."""
+    base = taken(fitted("GAUGE-CLOSED", TRUTH, share=0.002, settings=Settings(starts=10, priors=PRIORS)))
+    rng = np.random.default_rng(5)
+    tests = []
+    for place in range(TESTS):
+        weaker = 1.0 - WEAKER * (place >= STEP_AT)
+        true = TRUTH | {name: weaker * TRUTH[name] for name in ("K_p", "K_i")}
+        noise = SHARE * rng.standard_normal(4 * len(FREQUENCY_HZ))
+        tests.append(fingerprint(base, place, *estimate(true, noise)))
+    return tests, [one.model_copy(update={"noise": ()}) for one in tests]
+
+
+def of_injection(tests):
+    """Return the clearest change by injection, whether it is seen or within chance."""
+    finding = looked_at(tests)[1]
+    drift = finding.drifts[0] if finding.drifts else finding.nearest
+    return next(one for one in drift.courses if one.cause.name == "injection or turbocharger")
+
+
+@pytest.mark.slow
+def test_a_step_is_known_as_well_as_the_responses_tell_it(histories):
+    """Cramer and Rao's bound of one test, the root of two of it for the difference of two, over the root of six."""
+    straight, as_it_is = (of_injection(tests) for tests in histories)
+    at = slopes(TRUTH) / SHARE
+    information = at.T @ at
+    along = np.isin(NUMBERS, ("K_p", "K_i")).astype(float)
+    bound = np.sqrt(2.0 / (along @ information @ along) / STEP_AT)
+    assert (straight.shape, straight.since) == ("step", STEP_AT)
+    assert straight.std == pytest.approx(bound, rel=0.1)
+    assert straight.size == pytest.approx(-WEAKER, abs=3.0 * bound)
+    # a mean of covariances that turn is wider
+    assert as_it_is.std > 1.15 * straight.std
