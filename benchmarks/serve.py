@@ -22,18 +22,21 @@ import time
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from datetime import UTC, datetime, timedelta
 from pathlib import Path
-from urllib.parse import urlencode
+from urllib.parse import quote, urlencode
 
 ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT))
 
 from benchmarks.monte_carlo_tables import write_between_marks  # noqa: E402
 from benchmarks.mutations import mutated  # noqa: E402
+from benchmarks.served_fleet import Life, documents  # noqa: E402
 from benchmarks.store import fill, ships  # noqa: E402
 from benchmarks.timing import print_table  # noqa: E402
+from shaftprint.drift import NEWEST_TESTS  # noqa: E402
 from shaftprint.errors import ServerError  # noqa: E402
-from shaftprint.store import create_store, document, history, open_store  # noqa: E402
+from shaftprint.store import add_document, create_store, document, history, open_store  # noqa: E402
 from shaftprint.web.calculator import Calculator  # noqa: E402
 
 DOCUMENT = ROOT / "docs" / "serve.md"
@@ -44,6 +47,8 @@ PORT_LINE = "Open http://127.0.0.1:"
 UPLOAD_MB = 135
 AT_A_TIME = 250
 PATIENCE_S = 0.1
+# The store is full until May 2027; what makes a class of some ships is newer.
+CLASS, SISTERS, NOW = "Sixty sisters", 60, datetime(2030, 1, 1, tzinfo=UTC)
 JOB = {"vessel": "stan-tug-1205", "campaign": "short", "tested_at": "2026-11-01T10:00+01:00"}
 
 
@@ -190,7 +195,46 @@ def _parts(head: bytes, file: object, tail: bytes) -> Iterator[bytes]:
     yield tail
 
 
-def pages(store: Path, folder: Path, *, times: int = 8) -> list[tuple[str, str, str]]:
+def put_class(store: Path, base: bytes) -> None:
+    """Let sixty ships of a full store be a class: the newest tests of each are drawn from a real fingerprint."""
+    content, after = json.loads(base), timedelta(days=-1000)
+    with open_store(str(store)) as opened:
+        for place, ship in enumerate(ships(2 * SISTERS)[SISTERS:]):
+            life = Life(ship=str(ship["name"]), imo_number=int(str(ship["imo_number"])), tests=NEWEST_TESTS,
+                        class_name=CLASS, age=after)  # fmt: skip
+            for one in documents(content, life, place):
+                add_document(opened, one, named=life.ship, now=NOW)
+
+
+def class_page(server: Running, *, times: int) -> list[tuple[str, str, str]]:
+    """Measure the page of a class of sixty lines with a hundred tests each, the first time and then."""
+    path, begin, wall = f"/classes/{quote(CLASS)}", server.cpu_s() + _cpu_s(_youngest(server)), time.monotonic()
+    status, content = server.ask("GET", path)
+    first = server.cpu_s() + _cpu_s(_youngest(server)) - begin
+    wall = time.monotonic() - wall
+    judged = b"It cannot be told" not in content
+    load = os.getloadavg()[0]
+    shown = (
+        f"{first:.1f} s CPU, {wall:.0f} s at load {load:.0f}" if status == 200 and judged else f"{status}, not judged"
+    )
+    name = f"class of {SISTERS} lines with 100 tests each"
+    return [(f"page: {name}, the first time", "", shown), page(server, name, path, times=times)]
+
+
+def page(server: Running, name: str, path: str, *, times: int) -> tuple[str, str, str]:
+    """Measure the CPU of a page, and its length."""
+    for _ in range(2):
+        status, content = server.ask("GET", path)
+    desk = _youngest(server)
+    begin = server.cpu_s() + _cpu_s(desk)
+    for _ in range(times):
+        server.ask("GET", path)
+    used = 1e3 * (server.cpu_s() + _cpu_s(desk) - begin) / times
+    shown = f"{used:.0f} ms, {len(content) / 1e3:.0f} kB" if status == 200 else str(status)
+    return (f"page: {name}", "200 ms CPU", shown)
+
+
+def pages(store: Path, folder: Path, *, has_class: bool, times: int = 8) -> list[tuple[str, str, str]]:
     """Measure the CPU of every page with a full store, and its length."""
     imo = ships(1)[0]["imo_number"]
     with open_store(str(store)) as opened:
@@ -213,17 +257,9 @@ def pages(store: Path, folder: Path, *, times: int = 8) -> list[tuple[str, str, 
     server.greet()
     # what judges the lines beside the pages is not what a page costs
     server.ask("GET", paths["comparison"])
-    rows = []
-    for name, path in paths.items():
-        for _ in range(2):
-            status, content = server.ask("GET", path)
-        desk = _youngest(server)
-        begin = server.cpu_s() + _cpu_s(desk)
-        for _ in range(times):
-            server.ask("GET", path)
-        used = 1e3 * (server.cpu_s() + _cpu_s(desk) - begin) / times
-        shown = f"{used:.0f} ms, {len(content) / 1e3:.0f} kB" if status == 200 else str(status)
-        rows.append((f"page: {name}", "200 ms CPU", shown))
+    rows = [page(server, name, path, times=times) for name, path in paths.items()]
+    if has_class:
+        rows += class_page(server, times=times)
     rows.append(("memory of the server after them", "", f"{server.memory_mb():.0f} MB"))
     server.end()
     return rows
@@ -432,6 +468,15 @@ def _ends(server: Running, jobs: Sequence[int]) -> dict[int, str]:
     return states
 
 
+def with_pages(text: str, lines: list[str]) -> list[str]:
+    """Return the lines of the table of a document, those of pages replaced by others."""
+    old = text.partition(BEGIN)[2].partition(END)[0].strip().splitlines()
+    of_pages = [
+        place for place, line in enumerate(old) if line.startswith(("| page: ", "| memory of the server after"))
+    ]
+    return [*old[: of_pages[0]], *lines, *old[of_pages[-1] + 1 :]]
+
+
 def main() -> None:
     """Measure and print."""
     parser = argparse.ArgumentParser(description=__doc__)
@@ -439,6 +484,8 @@ def main() -> None:
     parser.add_argument("--store", type=Path, help="a store that was filled by benchmarks/store.py before")
     parser.add_argument("--requests", type=int, default=10_000, help="mutated requests and uploads")
     parser.add_argument("--recording", type=Path, help="recording of the campaign short, for the kills")
+    parser.add_argument("--fingerprint", type=Path, help="file of one, of which the tests of a class are drawn")
+    parser.add_argument("--only-pages", action="store_true", help="measure the pages of a full store, nothing else")
     parser.add_argument("--looks", type=int, default=50, help="mutated recordings of each of two formats")
     parser.add_argument("--kills", type=int, default=20, help="how often server or workers are killed")
     parser.add_argument("--seed", type=int, default=1, help="of mutations and kills")
@@ -450,16 +497,20 @@ def main() -> None:
         small = folder / "small.db"
         with create_store(str(small)) as opened:
             fill(opened, 1000)
-        rows += start(small, folder)
-        rows += uploads(small, folder)
+        if not options.only_pages:
+            rows += start(small, folder)
+            rows += uploads(small, folder)
         full = options.store
         if full is None:
             full = folder / "full.db"
             with create_store(str(full)) as opened:
                 fill(opened, options.count)
-        rows += pages(full, folder / "pages")
-        rows += fuzz(small, folder, options.requests, options.seed)
-        if options.recording is not None:
+        if options.fingerprint is not None:
+            put_class(full, options.fingerprint.read_bytes())
+        rows += pages(full, folder / "pages", has_class=options.fingerprint is not None)
+        if not options.only_pages:
+            rows += fuzz(small, folder, options.requests, options.seed)
+        if options.recording is not None and not options.only_pages:
             rows += looks(folder, options.recording, options.looks, options.seed)
             rows += kills(folder, options.recording, count=options.kills, seed=options.seed)
     finally:
@@ -468,6 +519,8 @@ def main() -> None:
     print_table(f"shaftprint serve, pages with {options.count} fingerprints", header, rows)
     if options.write:
         lines = ["| what | asked | got |", "|---|---|---|", *(f"| {' | '.join(row)} |" for row in rows)]
+        if options.only_pages:
+            lines = with_pages(DOCUMENT.read_text(encoding="utf-8"), lines[2:])
         write_between_marks(DOCUMENT, "\n".join(lines), BEGIN, END)
 
 

@@ -20,6 +20,7 @@ from shaftprint.drift import (
     sister_of,
     sister_sentences,
 )
+from shaftprint.fingerprint import BEHIND
 from shaftprint.identify import Settings
 
 INJECTION = "injection or turbocharger"
@@ -133,6 +134,21 @@ def test_more_tests_of_a_ship_know_it_better(base):
     before, after = (spread(finding, GOVERNOR).ships[0].std for finding in (one, four))
     # the scale of its gauge is the same in all tests, and moves this direction little
     assert after / before == pytest.approx(0.5, abs=0.02)
+
+
+def test_an_error_that_all_ships_share_moves_none_against_the_others(base):
+    """The drawing of a class may be as wrong as it likes: all of its ships are off by the same."""
+    drawn = [name for name in base.joint.loadings if name not in BEHIND]
+    assert drawn
+
+    def stated(share):
+        loadings = {name: [share * one for one in base.joint.loadings[name]] for name in drawn}
+        joint = base.joint.model_copy(update={"loadings": base.joint.loadings | loadings})
+        finding = judge_sisters(injected(base.model_copy(update={"joint": joint}), BUILT))
+        return [(one.cause.name, each.size, each.std) for one in finding.causes for each in one.ships]
+
+    for (name, *sizes), (_, *expected) in zip(stated(1e3), stated(1.0), strict=True):
+        assert sizes == pytest.approx(expected, rel=1e-5, abs=1e-12), name
 
 
 def test_three_ships_are_no_class(base):

@@ -124,7 +124,7 @@ def test_an_export_that_was_cut_off_or_changed_puts_nothing_in(fleet, tmp_path):
         ("ship", {"imo_number": 9074728}, "line 2: .*expected an IMO number, found '9074728'"),
         ("ship", {"name": "a\0b"}, "expected a name of a ship of letters"),
         ("ship", {"name": 7}, "a field that is missing or of another kind"),
-        ("ship", {"kind": "sub" * 100}, "expected a ship, line, event or fingerprint, found 'subsub"),
+        ("ship", {"kind": "sub" * 100}, "expected a ship, line, event, fingerprint or job, found 'subsub"),
         ("event", {"what": "\x1b[2J"}, "expected what was done"),
         ("event", {"at": "yesterday"}, "a field that is missing or of another kind"),
         ("event", {"at": "2026-01-01T00:00:00"}, "a field that is missing or of another kind"),

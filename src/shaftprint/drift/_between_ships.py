@@ -22,9 +22,10 @@ from shaftprint.arrays import FloatArray
 from shaftprint.drift._along import Whitened, whitened
 from shaftprint.drift._class_numbers import ClassNumbers
 from shaftprint.drift._moderation import worth_of_common
+from shaftprint.drift._quadratic_forms import quadratic_forms, weights_of_mean
 
-# The weights are worked out with the scales of the time before, and not quite without a spread.
-_ROUNDS, _LEAST_SCALE = 2, 0.05
+# The weights are worked out with the scales of the time before.
+_ROUNDS = 2
 _MOST_FREEDOM = 1e6
 
 
@@ -66,18 +67,6 @@ def between_ships(numbers: ClassNumbers, spread: Spread) -> FloatArray:
     return covariance
 
 
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class _Forms:
-    """The quadratic forms of some ships, one for each tolerance, worked out at one choice of the scales."""
-
-    surplus: FloatArray
-    """What they are beyond what the tests leave open, shape (tolerances,)."""
-    sensitivity: FloatArray
-    """What the scales do to them, shape (tolerances, tolerances)."""
-    ratios: FloatArray
-    """What they are over what they are expected to be with these scales, shape (tolerances,)."""
-
-
 def spread_of(numbers: ClassNumbers, ships: tuple[int, ...]) -> Spread:
     """Return how much some ships of a class differ, and their mean.
 
@@ -93,15 +82,15 @@ def spread_of(numbers: ClassNumbers, ships: tuple[int, ...]) -> Spread:
     if numbers.is_known:
         return _spread(numbers, ships, common, np.zeros((count, count)))
     for _ in range(_ROUNDS):
-        forms = _forms(numbers, ships, common)
+        forms = quadratic_forms(numbers, ships, common)
         common = np.full(count, max(forms.surplus.sum() / forms.sensitivity.sum(), 0.0))
-    forms = _forms(numbers, ships, common)
+    forms = quadratic_forms(numbers, ships, common)
     stated = np.diag(forms.sensitivity) > 0.0
     freedom = len(ships) - 1.0
     worth = worth_of_common(forms.ratios[stated], freedom)
     scales = common
     for _ in range(_ROUNDS):
-        forms = _forms(numbers, ships, scales)
+        forms = quadratic_forms(numbers, ships, scales)
         # a cause without a tolerance keeps the common scale
         drawn = np.where(stated, np.diag(forms.sensitivity), 1.0) * worth / freedom
         inverse = np.linalg.inv(forms.sensitivity + np.diag(drawn))
@@ -114,7 +103,7 @@ def spread_of(numbers: ClassNumbers, ships: tuple[int, ...]) -> Spread:
 def _spread(numbers: ClassNumbers, ships: tuple[int, ...], scales: FloatArray, known_to: FloatArray) -> Spread:
     """Return the spread of some ships with their mean, from its scales and the covariance of these."""
     size = numbers.building.shape[0]
-    _within, mean = _projection(numbers, ships, scales)
+    mean = weights_of_mean(numbers, ships, scales)
     weights = np.zeros((size, *numbers.values.shape))
     weights[:, list(ships)] = mean.reshape(size, len(ships), size)
     return Spread(
@@ -124,46 +113,6 @@ def _spread(numbers: ClassNumbers, ships: tuple[int, ...], scales: FloatArray, k
         mean=mean @ numbers.values[list(ships)].reshape(-1),
         weights=weights.reshape(size, -1),
     )
-
-
-def _forms(numbers: ClassNumbers, ships: tuple[int, ...], scales: FloatArray) -> _Forms:
-    """Return the quadratic forms of some ships at one choice of the scales."""
-    (size, count), places = numbers.building.shape, list(ships)
-    within, _mean = _projection(numbers, ships, scales)
-    # a tolerance is one of its ship: what it does is zero in all others
-    seen = numbers.building.T @ within.reshape(len(ships), size, -1)
-    values = seen @ numbers.values[places].reshape(-1)
-    by_ship = seen.reshape(-1, len(ships), size).transpose(1, 0, 2)
-    tests = (by_ship @ numbers.own[places] * by_ship).sum(axis=(0, 2)).reshape(len(ships), count)
-    tests += ((seen @ numbers.common[places].reshape(len(ships) * size, -1)) ** 2).sum(axis=2)
-    between = (by_ship @ numbers.building).reshape(len(ships), len(ships), count, count)
-    form = (values**2).sum(axis=0)
-    expected = np.einsum("sstt->t", between)
-    return _Forms(
-        surplus=form - tests.sum(axis=0),
-        sensitivity=(between**2).sum(axis=(0, 1)),
-        ratios=form / np.where(expected > 0.0, expected, 1.0),
-    )
-
-
-def _projection(numbers: ClassNumbers, ships: tuple[int, ...], scales: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return what weighs differences from the mean, and what makes the mean.
-
-    The covariance ``D + L L'`` is one block ``D`` a ship and few errors ``L`` that ships share, so that its inverse is
-    ``D^-1 - D^-1 L (1 + L' D^-1 L)^-1 L' D^-1`` (Woodbury).
-    """
-    size, count = numbers.building.shape[0], len(ships)
-    one = (numbers.building * np.maximum(scales, _LEAST_SCALE)) @ numbers.building.T
-    blocks = np.linalg.inv(numbers.own[list(ships)] + one)
-    common = numbers.common[list(ships)]
-    left = (blocks @ common).reshape(count * size, -1)
-    inner = np.linalg.solve(np.eye(left.shape[1]) + common.reshape(count * size, -1).T @ left, left.T)
-    inverse = -left @ inner
-    at = np.arange(count)
-    inverse.reshape(count, size, count, size)[at, :, at] += blocks
-    level = inverse.reshape(count * size, count, size).sum(axis=1)
-    mean = np.asarray(np.linalg.solve(level.reshape(count, size, size).sum(axis=0), level.T), dtype=np.float64)
-    return inverse - level @ mean, mean
 
 
 def departure_of(numbers: ClassNumbers, ship: int, spread: Spread) -> Departure:

@@ -11,13 +11,17 @@ from shaftprint.errors import StoreError
 from shaftprint.files import reason, written_whole
 from shaftprint.store._document import document_sha256, inflated
 from shaftprint.store._history import SHOWN_HASH
+from shaftprint.store._job import JOB_STATES, Job
+from shaftprint.store._job_lines import job_content
 from shaftprint.store._lines import HEADER, event_content, line_of, ship_content
 from shaftprint.store._nouns import Line
 from shaftprint.store._stated import utc_iso
 from shaftprint.store._store import Store
 
 if TYPE_CHECKING:
-    from shaftprint.store.database import Reader
+    from shaftprint.store.database import Ledger, Reader
+
+_AT_A_TIME = 500
 
 
 @refusing_none(StoreError)
@@ -72,6 +76,16 @@ def _lines(store: Store) -> Iterator[bytes]:
             yield from (line_of(event_content(event)) for event in events)
         for key, line in lines.items():
             yield from _fingerprints(reader, {key: line})
+        # after what they have given
+        yield from (line_of(job_content(job)) for job in _jobs(store.database.ledger(connection)))
+
+
+def _jobs(ledger: "Ledger") -> Iterator[Job]:
+    """Give all jobs in the order of their numbers, not all at once."""
+    last = 0
+    while some := ledger.all(JOB_STATES, after=last, most=_AT_A_TIME):
+        yield from some
+        last = some[-1].id
 
 
 def _fingerprints(reader: "Reader", line: Mapping[int, Line]) -> Iterator[bytes]:

@@ -3,23 +3,26 @@
 import hashlib
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from datetime import UTC, datetime
+from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from shaftprint.arguments import refusing_none
 from shaftprint.errors import FingerprintError, StoreError
 from shaftprint.files import reason
+from shaftprint.store._fields import moment_of, short_text
+from shaftprint.store._job import Job
+from shaftprint.store._job_lines import job_of_content
 from shaftprint.store._late_rooms import vessel_room
 from shaftprint.store._lines import HEADER, LONGEST_LINE, record_of_line
 from shaftprint.store._nouns import KINDS, Event, Line, Ship
 from shaftprint.store._record import Record, record_of
 from shaftprint.store._stated import Stated
-from shaftprint.store._store import Store
-from shaftprint.store._text import LONGEST_TEXT, expect_short
+from shaftprint.store._store import Store, part_with_database
+from shaftprint.store._text import LONGEST_TEXT
 
 if TYPE_CHECKING:
-    from shaftprint.store.database import Writer
+    from shaftprint.store.database import Ledger, Writer
 
 _AT_A_TIME = 200
 
@@ -34,6 +37,8 @@ class Imported:
     """Fingerprints that were there already."""
     events: int
     """Events that were not there."""
+    jobs: int
+    """Jobs that were not there."""
 
 
 @refusing_none(StoreError)
@@ -55,19 +60,24 @@ def import_store(store: Store, path: str | Path) -> Imported:
     file = Path(path)
     try:
         with store.database.writing() as connection:
-            return _put(store.database.writer(connection), file)
+            return _put(store.database.writer(connection), store.database.ledger(connection), file)
     except OSError as refusal:
         raise StoreError(f"{file}: expected an export of a store, but it cannot be read: {reason(refusal)}.") from None
 
 
-def _put(writer: "Writer", file: Path) -> Imported:
+def _put(writer: "Writer", ledger: "Ledger", file: Path) -> Imported:
+    put_jobs = part_with_database().put_jobs
     waiting: list[tuple[Record, Ship, datetime]] = []
-    counts = {"added": 0, "known": 0, "events": 0}
+    asked: list[Job] = []
+    counts = {"added": 0, "known": 0, "events": 0, "jobs": 0}
 
     def settle() -> None:
         for one in writer.put(waiting, newest_names=False):
             counts["known" if one.outcome == "known" else "added"] += 1
+        # after them: which jobs are done the fingerprints say that are there by now
+        counts["jobs"] += put_jobs(ledger, asked)
         waiting.clear()
+        asked.clear()
 
     for named, record in _records(file):
         try:
@@ -76,19 +86,21 @@ def _put(writer: "Writer", file: Path) -> Imported:
                     writer.fleet.ship_id(_ship(record, record.get("class_name")), named=named)
                 case "line":
                     ship_id = writer.fleet.ship_id(_ship(record["ship"]), named=named)
-                    writer.fleet.line_id(ship_id, _short(record["position"], "shaft line"))
+                    writer.fleet.line_id(ship_id, short_text(record["position"], "shaft line"))
                 case "event":
                     counts["events"] += _put_event(writer, record, named)
                 case "fingerprint":
                     waiting.append(_fingerprint(record, named))
-                    if len(waiting) == _AT_A_TIME:
-                        settle()
+                case "job":
+                    asked.append(job_of_content(record))
                 case kind:
-                    raise StoreError(f"expected a ship, line, event or fingerprint, found {kind[:40]!r}")
+                    raise StoreError(f"expected a ship, line, event, fingerprint or job, found {kind[:40]!r}")
+            if len(waiting) + len(asked) == _AT_A_TIME:
+                settle()
         except (KeyError, TypeError, ValueError, AttributeError, StoreError, FingerprintError) as fault:
             raise StoreError(_sentence(named, fault)) from None
     settle()
-    return Imported(fingerprints=counts["added"], known=counts["known"], events=counts["events"])
+    return Imported(fingerprints=counts["added"], known=counts["known"], events=counts["events"], jobs=counts["jobs"])
 
 
 def _sentence(named: str, fault: Exception) -> str:
@@ -125,40 +137,21 @@ def _ship(content: Mapping[str, Any], class_name: object = None) -> Ship:
     number = content["imo_number"]
     if number is not None and (type(number) is not int or not vessel_room().is_imo_number(number)):
         raise StoreError(f"expected an IMO number, found {str(number)[:40]!r}")
-    of_class = None if class_name is None else _short(class_name, "class of ships")
-    return Ship(name=_short(content["name"], "name of a ship"), imo_number=number, class_name=of_class)
-
-
-def _short(text: object, what: str, *, longest: int | None = None) -> str:
-    if not isinstance(text, str):
-        raise TypeError(what)
-    if longest is None:
-        expect_short(text, what, named="record")
-    else:
-        expect_short(text or None, what, named="record", longest=longest)
-    return text
-
-
-def _moment(text: object) -> datetime:
-    if not isinstance(text, str):
-        raise TypeError("time")
-    moment = datetime.fromisoformat(text)
-    if moment.tzinfo is None:
-        raise ValueError("time")
-    return moment.astimezone(UTC)
+    of_class = None if class_name is None else short_text(class_name, "class of ships")
+    return Ship(name=short_text(content["name"], "name of a ship"), imo_number=number, class_name=of_class)
 
 
 def _put_event(writer: "Writer", record: Mapping[str, Any], named: str) -> bool:
     ship = _ship(record["ship"])
-    line_id = writer.fleet.line_id(writer.fleet.ship_id(ship, named=named), _short(record["line"], "shaft line"))
+    line_id = writer.fleet.line_id(writer.fleet.ship_id(ship, named=named), short_text(record["line"], "shaft line"))
     if record["what"] not in KINDS:
         raise StoreError(f"expected what was done, one of {', '.join(KINDS)}, found {str(record['what'])[:40]!r}")
     event = Event(
         line=Line(ship=ship, position=record["line"]),
-        at=_moment(record["at"]),
+        at=moment_of(record["at"]),
         kind=record["what"],
-        numbers=tuple(_short(name, "name of a number") for name in record["numbers"]),
-        note=_short(record["note"], "note", longest=LONGEST_TEXT),
+        numbers=tuple(short_text(name, "name of a number") for name in record["numbers"]),
+        note=short_text(record["note"], "note", longest=LONGEST_TEXT),
     )
     return writer.event(event, line_id)
 
@@ -166,11 +159,11 @@ def _put_event(writer: "Writer", record: Mapping[str, Any], named: str) -> bool:
 def _fingerprint(content: Mapping[str, Any], named: str) -> tuple[Record, Ship, datetime]:
     said = dict(content["stated"])
     if "tested_at" in said:
-        said["tested_at"] = _moment(said["tested_at"])
+        said["tested_at"] = moment_of(said["tested_at"])
     record = record_of(content["document"].encode(), Stated(**said), named=named)
     if record.sha256 != content["sha256"]:
         raise StoreError(f"{named}: its document is not as it was written; export it once more.")
     ship = _ship(content["ship"])
     if record.ship.line != content["line"] or record.ship.imo_number not in (None, ship.imo_number):
         raise StoreError(f"{named}: its document is of another ship or line than the record; export it once more.")
-    return record, ship, _moment(content["added_at"])
+    return record, ship, moment_of(content["added_at"])

@@ -9,6 +9,7 @@ from shaftprint.store.database._hashes import Hashes
 from shaftprint.store.database._ledger import Ledger
 from shaftprint.store.database._lines_now import fingerprint_called, line_states, store_state
 from shaftprint.store.database._location import Location, location_of
+from shaftprint.store.database._moved_jobs import put_jobs
 from shaftprint.store.database._reader import Reader, ShipRow
 from shaftprint.store.database._schema import MIGRATIONS, create, expect_current, upgrade
 from shaftprint.store.database._tables import HEAD, METADATA
@@ -32,6 +33,7 @@ __all__ = [
     "fingerprint_called",
     "line_states",
     "location_of",
+    "put_jobs",
     "store_state",
     "upgrade",
 ]

@@ -59,7 +59,7 @@ class Ledger:
 
     def by_key(self, keys: Sequence[str]) -> Iterator[Job]:
         """Give the jobs of some keys, in no order."""
-        for some in _parts(keys):
+        for some in parts(keys):
             yield from map(_job, self.connection.execute(sa.select(JOB).where(JOB.c.key.in_(some))))
 
     def by_id(self, job_id: int) -> Job | None:
@@ -153,8 +153,8 @@ class Ledger:
         asked = JOB.update().where(JOB.c.state == "refused")
         if ids is None:
             return self.connection.execute(asked.values(values)).rowcount
-        parts = (self.connection.execute(asked.where(JOB.c.id.in_(some)).values(values)) for some in _parts(ids))
-        return sum(part.rowcount for part in parts)
+        changed = (self.connection.execute(asked.where(JOB.c.id.in_(some)).values(values)) for some in parts(ids))
+        return sum(one.rowcount for one in changed)
 
     def _change(self, job_id: int, values: Mapping[str, Any], *, owner: str | None = None) -> bool:
         asked = JOB.update().where(JOB.c.id == job_id)
@@ -163,7 +163,7 @@ class Ledger:
         return self.connection.execute(asked.values(**values)).rowcount == 1
 
 
-def _parts(values: Sequence[_T]) -> Iterator[Sequence[_T]]:
+def parts(values: Sequence[_T]) -> Iterator[Sequence[_T]]:
     """Give values in parts that a query takes."""
     return (values[start : start + _AT_A_TIME] for start in range(0, len(values), _AT_A_TIME))
 

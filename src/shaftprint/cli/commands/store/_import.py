@@ -21,7 +21,7 @@ def command(file: Path, url: str) -> None:
     with open_store(url) as store:
         imported = import_store(store, file)
         answer(
-            f"{store.name}. New fingerprints: {imported.fingerprints}; new events: {imported.events}; fingerprints "
-            f"that were there: {imported.known}."
+            f"{store.name}. New fingerprints: {imported.fingerprints}; new events: {imported.events}; new jobs: "
+            f"{imported.jobs}; fingerprints that were there: {imported.known}."
         )
     give("imported", imported)

@@ -1,0 +1,40 @@
+"""Fields of the records of an export, each read as what it must be."""
+
+from datetime import UTC, datetime
+
+from shaftprint.store._text import expect_short
+
+
+def short_text(text: object, what: str, *, longest: int | None = None) -> str:
+    """Return a text that every database keeps; one with a length of its own may be empty.
+
+    Raises
+    ------
+    TypeError
+        If it is none.
+    StoreError
+        If it cannot be kept.
+    """
+    if not isinstance(text, str):
+        raise TypeError(what)
+    if longest is None:
+        expect_short(text, what, named="record")
+    else:
+        expect_short(text or None, what, named="record", longest=longest)
+    return text
+
+
+def moment_of(text: object) -> datetime:
+    """Return an instant in UTC.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If it is none.
+    """
+    if not isinstance(text, str):
+        raise TypeError("time")
+    moment = datetime.fromisoformat(text)
+    if moment.tzinfo is None:
+        raise ValueError("time")
+    return moment.astimezone(UTC)
