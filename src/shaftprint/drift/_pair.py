@@ -81,8 +81,7 @@ def pair_of(first: "Fingerprint", other: "Fingerprint", *, load_repeatability: f
     before, after = (single_test(one, names) for one in (first, other))
     # the propeller takes another torque on another day
     shared = shared_errors(first, other)
-    day = 0.0 if shared.is_one_day else load_repeatability
-    load = np.array([day * (role == ShipRole.TORQUE) for role in roles.values()])
+    load = np.array([load_repeatability * (role == ShipRole.TORQUE) for role in roles.values()])
     causes, directions = directions_of(roles, before.loadings.get(GAUGE_SCALE))
     return Pair(
         names=names,
