@@ -21,7 +21,9 @@ from shaftprint.tables import (
 )
 
 
-def print_fingerprint(fingerprint: Fingerprint, *, truth: Mapping[str, float] = NO_TRUTH) -> None:
+def print_fingerprint(
+    fingerprint: Fingerprint, *, truth: Mapping[str, float] = NO_TRUTH, line: str | None = None
+) -> None:
     """Print verdict, conditions, parameters, physical values, margins, budget, quality and findings.
 
     Parameters
@@ -30,12 +32,13 @@ def print_fingerprint(fingerprint: Fingerprint, *, truth: Mapping[str, float] = 
         What to print.
     truth
         True values by the names of parameters, combinations and physical values, where they are known.
+    line
+        Which line of a ship it is of, where there are several.
     """
     verdict = fingerprint.verdict
-    print_findings(
-        f"Verdict: {'trustworthy' if verdict.trustworthy else 'not trustworthy'}", verdict.sentences, is_answer=True
-    )
-    give("fingerprint", fingerprint)
+    title = f"Verdict: {'trustworthy' if verdict.trustworthy else 'not trustworthy'}"
+    print_findings(title if line is None else f"{line}. {title}", verdict.sentences, is_answer=True)
+    give("fingerprint" if line is None else f"fingerprint of {line}", fingerprint)
     _print_conditions(fingerprint)
     print_tables(
         [

@@ -78,8 +78,7 @@ def pair_of(
     before, after = straightened((first, other), singles, names, by)
     # the propeller takes another torque on another day
     shared = shared_errors(first, other)
-    day = 0.0 if shared.is_one_day else load_repeatability
-    load = np.array([day * (role == ShipRole.TORQUE) for role in roles.values()])
+    load = np.array([load_repeatability * (role == ShipRole.TORQUE) for role in roles.values()])
     causes, directions = directions_of(roles, before.loadings.get(GAUGE_SCALE), at_bound(doubts))
     return Pair(
         names=names,

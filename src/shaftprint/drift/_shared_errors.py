@@ -1,7 +1,8 @@
 """Which errors two tests have in common, because both vessel files state the same, and where the files differ.
 
 Two lines of one ship have drawings and engine type in common, and no sensor: each gauge has a scale error of its own
-even where both files state the same scale.
+even where both files state the same scale. The load of the day is of each propeller too: most of its wander is slower
+than a test, and the water at one side is not that at the other.
 """
 
 from dataclasses import dataclass
@@ -43,9 +44,7 @@ class SharedErrors:
     """Fields in which the vessel files differ; None where a fingerprint does not have them, being of an earlier
     version: then the hash of the file decides."""
     of_each_piece: float = 0.0
-    """Share of the variance of a common error that is of each test alone, as two lines of one drawing are two pieces."""
-    is_one_day: bool = False
-    """Whether both are of one recording, so that water and load of the day are the same."""
+    """Share of the variance of a common error that is of each test alone: two lines of one drawing are two pieces."""
 
 
 def are_two_lines(first: "Fingerprint", other: "Fingerprint") -> bool:
@@ -85,7 +84,6 @@ def shared_errors(first: "Fingerprint", other: "Fingerprint") -> SharedErrors:
         apart=tuple(source for source in sources if source not in common),
         changes=_changes(first, other),
         of_each_piece=OF_EACH_PIECE if two_lines else 0.0,
-        is_one_day=two_lines and _of_one_recording(first, other),
     )
 
 

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from shaftprint.catalogue import STRUCTURES, structure
-from shaftprint.drift import LOAD_REPEATABILITY, Finding, differ
+from shaftprint.drift import LOAD_REPEATABILITY, Finding, are_two_lines, differ
 from shaftprint.errors import ReportError
 from shaftprint.report._curve import fingerprint_curve
 from shaftprint.report._page import Page, write_page
@@ -40,6 +40,7 @@ def render_comparison(
     *,
     structures: "Mapping[str, Structure] | None" = None,
     load_repeatability: float = LOAD_REPEATABILITY,
+    remarks: Sequence[str] = (),
     pictures: bool = False,
     overwrite: bool = False,
 ) -> Path:
@@ -55,6 +56,8 @@ def render_comparison(
         Structures of one's own by name; those that are shipped are known.
     load_repeatability
         As in ``differences``.
+    remarks
+        What else the tests say of the lines beside each other, in sentences.
     pictures
         Whether every chart is written as SVG, PDF and PNG too, into the folder ``figures``.
     overwrite
@@ -81,6 +84,7 @@ def render_comparison(
         version=first.shaftprint_version,
         cover=comparison_cover(fingerprints, comparisons, findings),
         sections=[
+            *([Section(key="beside", title="Beside each other", paragraphs=tuple(remarks))] if remarks else []),
             *_cause_sections(findings),
             *_sections(fingerprints, comparisons, structures or {}, load_repeatability),
         ],
@@ -128,7 +132,8 @@ def _sections(
             "of the comparison considered; perhaps, where that holds for the number alone, which among so many numbers "
             "is common. An error that both tests share, since both vessel files state the same, counts only as far as "
             "it moves the two unequally. From day to day the torque of the propeller varies by "
-            f"{PERCENT * load_repeatability:g} %, one standard deviation, beside what a test itself shows.",
+            f"{PERCENT * load_repeatability:g} %, one standard deviation, beside what a test itself shows."
+            f"{_of_two_lines(fingerprints)}",
             *_vessel_files(fingerprints),
         ),
         tables=_difference_tables(first, comparisons, normalised=False),
@@ -157,6 +162,17 @@ def _sections(
         tables=(condition_table(fingerprints), *((files,) if files.rows else ())),
     )
     return [changed, *_responses(fingerprints, structures), moving, side_by_side, conditions]
+
+
+def _of_two_lines(fingerprints: "Mapping[str, Fingerprint]") -> str:
+    """Return what else holds where lines of one ship are compared; nothing where one line is."""
+    (_, first), *others = fingerprints.items()
+    if not any(are_two_lines(first, other) for _, other in others):
+        return ""
+    return (
+        " Two lines of one ship have drawings and engine type in common, but for a quarter of their error, which is of "
+        "each piece, and no sensor."
+    )
 
 
 def _difference_tables(first: str, comparisons: Mapping[str, Sequence[Difference]], *, normalised: bool) -> list[Table]:

@@ -5,6 +5,7 @@ The single steps are verbs too: ``measure``, ``fit``, ``survey_of``. Numbers in 
 rooms that they come from.
 """
 
+from shaftprint.survey._both_shafts import SurveyOfBoth, load_trials_of_both, run_both
 from shaftprint.survey._contradiction import contradiction
 from shaftprint.survey._everything import of_joint_fit, with_everything
 from shaftprint.survey._fits import comparisons_of, fit, priors_of, stated_working_point
@@ -24,6 +25,7 @@ from shaftprint.survey._thesis_way import GAUGE, line_selections, set_point_scal
 from shaftprint.survey._trial import Trial, load_trial, settings_text
 from shaftprint.survey._validation_apart import limited_model, limits_of, validated_apart, with_validation
 from shaftprint.survey._validations import failed_steps, validations_of, validations_with_limits
+from shaftprint.survey._wash import Wash, wash_on, wash_sentences
 
 __all__ = [
     "GAUGE",
@@ -37,8 +39,10 @@ __all__ = [
     "SettingsOf",
     "Silent",
     "Survey",
+    "SurveyOfBoth",
     "ThesisMode",
     "Trial",
+    "Wash",
     "apart_reasons",
     "comparisons_of",
     "contradiction",
@@ -58,6 +62,7 @@ __all__ = [
     "line_selections",
     "line_with_limits",
     "load_trial",
+    "load_trials_of_both",
     "measure",
     "noise_at_speeds",
     "of_joint_fit",
@@ -68,6 +73,7 @@ __all__ = [
     "response_of",
     "responses_of",
     "run",
+    "run_both",
     "set_point_scaled",
     "settings_by_name",
     "settings_text",
@@ -79,6 +85,8 @@ __all__ = [
     "validated_apart",
     "validations_of",
     "validations_with_limits",
+    "wash_on",
+    "wash_sentences",
     "weighted_fits",
     "with_everything",
     "with_limits",

@@ -5,7 +5,7 @@ from typing import Annotated
 from pydantic import Field
 
 from shaftprint.settings import NotNegativeNumber, PositiveInteger, PositiveNumber, Settings
-from shaftprint.vessel._usual import MASS_STD
+from shaftprint.vessel._usual import MASS_STD, WASH_SHARE_STD
 
 WakeFraction = Annotated[float, Field(strict=True, gt=-0.2, lt=0.6)]
 
@@ -37,6 +37,10 @@ class Hull(Settings):
     """``t``: of the thrust ``T (1 - t)`` pulls the ship; None where nobody states it."""
     thrust_deduction_std: NotNegativeNumber | None = None
     """Standard deviation of the thrust deduction."""
+    wash_share: Annotated[float, Field(strict=True, ge=-0.5, le=0.5)] = 0.0
+    """Share of its torque that this propeller loses at the quay where the wash of the other one is twice as fast."""
+    wash_share_std: PositiveNumber | None = None
+    """Standard deviation of that share; 0.02 where it is not stated."""
 
     @property
     def surging_mass_kg(self) -> float:
@@ -49,6 +53,11 @@ class Hull(Settings):
         stated = self.displacement_std_kg
         share = MASS_STD if stated is None else stated / self.displacement_kg
         return share * self.surging_mass_kg
+
+    @property
+    def wash_std(self) -> float:
+        """Standard deviation of the share of the wash, as stated or as usual."""
+        return WASH_SHARE_STD if self.wash_share_std is None else self.wash_share_std
 
     def resistance_at_n(self, speed_m_s: float) -> float:
         """Return the resistance [N] at a speed [m/s], ``R = R_0 (v / v_0)^e``."""

@@ -14,6 +14,9 @@ LOG_LATENCY_SHARE = 0.5
 """Standard deviation of the latency of a log over the time between two of its values."""
 PITCH_STD = 0.01
 """Relative standard deviation of the pitch of a propeller as built."""
+WASH_SHARE_STD = 0.02
+"""Standard deviation, about none, of the share of its torque that a propeller loses in a twice as fast wash of the
+other one."""
 MASS_STD = 0.03
 """Relative standard deviation of the displacement of a ship."""
 COUPLING_STIFFNESS_STD = 0.1

@@ -22,7 +22,7 @@ from shaftprint.vessel._motor_words import in_file_words
 from shaftprint.vessel._orders import Order, orders_of
 from shaftprint.vessel._sensors import Logger, Sensors
 from shaftprint.vessel._ship import Ship
-from shaftprint.vessel._usual import INERTIA_STD
+from shaftprint.vessel._usual import INERTIA_STD, WASH_SHARE_STD
 
 
 class Vessel(Shown, Settings):
@@ -153,6 +153,11 @@ class Vessel(Shown, Settings):
     def is_underway(self) -> bool:
         """Whether it is tested underway, not at the quay."""
         return self.working_point.ship_speed_m_s is not None
+
+    @property
+    def wash(self) -> tuple[float, float]:
+        """Share of its torque that the propeller loses in a twice as fast wash of the other, and its deviation."""
+        return (0.0, WASH_SHARE_STD) if self.hull is None else (self.hull.wash_share, self.hull.wash_std)
 
     @property
     def machine(self) -> Engine | Motor:

@@ -10,7 +10,7 @@ from shaftprint.cli._load_option import load_repeatability_option
 from shaftprint.cli._own_structure import OWN_FILE_HELP, TypedName, chosen_structures
 from shaftprint.cli._terminal import answer, echo, say
 from shaftprint.cli.output import FINGERPRINT, REPORT, fingerprint_at, force_option, give, output_folder, print_tables
-from shaftprint.drift import Finding, differ, finding_sentences
+from shaftprint.drift import Finding, are_two_lines, differ, finding_sentences
 from shaftprint.fingerprint import Fingerprint
 from shaftprint.report import (
     Difference,
@@ -82,7 +82,8 @@ def command(
         words = _judged(apart[name], along.get(name))
         if doubtful:
             words = f"It cannot be told: not trustworthy: {', '.join(doubtful)}."
-        answer(f"Has the ship changed{f', {name}' if len(others) > 1 else ''}? {words}")
+        asked = f"Is {name} other than {first_name}" if are_two_lines(first, other) else "Has the ship changed"
+        answer(f"{asked}{f', {name}' if len(others) > 1 else ''}? {words}")
     give("differences", apart)
     give("causes", along)
     give("conditions", {name: fingerprint.conditions for name, fingerprint in named.items()})

@@ -5,10 +5,12 @@ from pathlib import Path
 import click
 import numpy as np
 
+from shaftprint.cli._both_shafts import starboard_option
 from shaftprint.cli._drive_identify import identify_on_the_bench
 from shaftprint.cli._drive_options import drive_option, only_recording
 from shaftprint.cli._fingerprint_tables import print_fingerprint
 from shaftprint.cli._fit_options import FitOptions, fit_options, settings_of, structures_of
+from shaftprint.cli._identify_both import identify_both_lines
 from shaftprint.cli._limit_tables import print_limits, print_line
 from shaftprint.cli._options import campaign_option, structure_sources, vessel_option
 from shaftprint.cli._own_structure import DEFAULT_HELP, OWN_FILE_HELP, TypedName
@@ -34,6 +36,7 @@ from shaftprint.tables import fits_table, leg_test_table
 @drive_option
 @vessel_option
 @campaign_option
+@starboard_option
 @click.option(
     "--structure",
     "names",
@@ -66,6 +69,7 @@ def command(
     drive_file: Path | None,
     vessel: str,
     campaign: str,
+    starboard: str | None,
     names: tuple[TypedName, ...],
     figures: bool,
     legs: tuple[str, ...],
@@ -81,10 +85,13 @@ def command(
 
     Writes the fingerprint as JSON, the figures and a report into a folder, and prints the tables.
     --structure, --leg, --prior, --free and --hold may be repeated. With --drive, several recordings of
-    one drive are fitted together.
+    one drive are fitted together. With --starboard both lines of a ship are identified from one
+    recording and compared, each with results in a folder of its own.
     """
     if more is not None and (drive_file is not None or options.mode != "shaftprint"):
         raise click.UsageError(f"--with {more} is for ships, and for signals of --mode shaftprint: leave it out.")
+    if starboard is not None and drive_file is not None:
+        raise click.UsageError("--starboard is for ships: leave out --drive.")
     if no_report and (drive_file is not None or figures or about.pdf):
         raise click.UsageError("--no-report is for ships, and goes with neither --figures nor --pdf.")
     if drive_file is not None:
@@ -93,6 +100,23 @@ def command(
         )
         return
     recording = only_recording(recordings)
+    if starboard is not None:
+        if more is not None or legs or options.mode != "shaftprint":
+            raise click.UsageError("--starboard goes with neither --with nor --leg, and with signals of shaftprint.")
+        identify_both_lines(
+            recording,
+            (vessel, starboard),
+            campaign,
+            names,
+            options,
+            output,
+            about=about,
+            pictures=figures,
+            no_report=no_report,
+            force=force,
+            no_progress=no_progress,
+        )
+        return
     # before the folder is made: a mistake in a settings file leaves none
     trial, rng = load_trial(vessel, campaign), np.random.default_rng(options.seed)
     structures = structures_of(names or (TypedName(default_structure(trial.vessel)),), options, trial.vessel)

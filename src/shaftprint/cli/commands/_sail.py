@@ -4,6 +4,7 @@ from pathlib import Path
 
 import click
 
+from shaftprint.cli._both_shafts import sail_both_lines, starboard_option
 from shaftprint.cli._terminal import answer
 from shaftprint.cli._vessel_file import print_disagreements
 from shaftprint.cli.output import no_progress_option, progress
@@ -22,21 +23,28 @@ from shaftprint.tug import like_stan_tug_1205, sail_as, truth_path
     type=click.Path(path_type=Path),
     help="Recording to write: .nc, .h5, .csv, .mat, .mf4 or .tdms.",
 )
+@starboard_option
 @click.option("--seed", type=click.IntRange(min=0), default=1, show_default=True, help="Seed of all randomness.")
 @click.option("--force", is_flag=True, help="Replace an existing recording.")
 @no_progress_option
-def command(vessel: str, campaign: str, output: Path, seed: int, force: bool, no_progress: bool) -> None:
+def command(
+    vessel: str, campaign: str, output: Path, starboard: str | None, seed: int, force: bool, no_progress: bool
+) -> None:
     """Simulate a tug in a campaign and write its raw recording.
 
     VESSEL and CAMPAIGN are files, or names of shipped ones such as stan-tug-1205 and thesis. Governor, delays and noise
     are those of the Stan Tug 1205, the gains as much smaller as the line has less inertia; at -5 V the lever asks for
     the working speed of the vessel file. With a ship speed in its working point the ship sails free, and the lever asks
     for the working speed at the voltage of the campaign. What was put
-    into the recording goes to a file of its own beside it, which nothing that identifies will open.
+    into the recording goes to a file of its own beside it, which nothing that identifies will open. With --starboard
+    both lines of a ship are sailed in one recording; each propeller feels the wash of the other, and both the same sea.
     """
     if output.is_dir():
         raise click.ClickException(f"{output}: expected a file for the recording, found a folder; add a file name.")
     expect_known_ending(output)
+    if starboard is not None:
+        sail_both_lines(vessel, starboard, campaign, output, seed=seed, force=force, no_progress=no_progress)
+        return
     trial = load_trial(vessel, campaign)
     print_disagreements(trial.vessel, vessel)
     with progress(hidden=no_progress) as steps:

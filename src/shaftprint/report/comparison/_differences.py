@@ -9,8 +9,7 @@ A. Donner, "Construction of confidence limits about effect measures: a general a
 What both fits were told alike errs in both alike. Where both vessel files state the same, the error of the inertias, of
 the gauge's scale or of a latency counts in the difference only as far as it moves the two numbers unequally:
 ``(s_a - s_b)^2`` in place of ``s_a^2 + s_b^2`` for each such source (``_shared_errors``). The scale of a gauge that was
-calibrated anew is another one, and counts in full. Two lines of one ship have drawings in common and no sensor, and of
-one recording the load of the day.
+calibrated anew is another one, and counts in full. Two lines of one ship have drawings in common, and no sensor.
 
 The zero of the gauge is none of these: it drifts, and each test finds its own. It has changed only where it moved
 further than two zeros, each as uncertain as the vessel file says. The load of the propeller is none either: on another
@@ -88,8 +87,13 @@ def differences(
         was tested three times or more the scatter of its ``K_Q``.
     """
     shared = shared_errors(first, other)
-    load = 0.0 if shared.is_one_day else load_repeatability
-    pair = _Pair(first=first, other=other, common=shared.common, load=load, of_each_piece=shared.of_each_piece)
+    pair = _Pair(
+        first=first,
+        other=other,
+        common=shared.common,
+        load=load_repeatability,
+        of_each_piece=shared.of_each_piece,
+    )
     kept = _shared(pair, ("physical", "margins"))
     model_numbers = _shared(pair, ("combinations", "parameters"))
     kept += [difference for difference in model_numbers if _is_of_line(difference.first)]
@@ -167,7 +171,7 @@ def _difference(a: "Quantity", b: "Quantity", pair: _Pair) -> Difference:
 
 
 def _unequal(a: float, b: float, own: float) -> float:
-    """Return the variance that an error with the deviations ``a`` and ``b`` leaves in a difference; ``own`` is apart."""
+    """Return the variance that an error of deviations ``a`` and ``b`` leaves in a difference; ``own`` is apart."""
     return (1.0 - own) * (a - b) ** 2 + own * (a**2 + b**2)
 
 

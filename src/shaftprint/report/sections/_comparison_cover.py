@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from shaftprint.drift import Finding, finding_sentences
+from shaftprint.drift import Finding, are_two_lines, finding_sentences
 from shaftprint.report.figures import in_percent
 from shaftprint.report.sections._cover import Card, Cover, State
 from shaftprint.tables import plain, unit_text
@@ -38,21 +38,22 @@ def comparison_cover(
     cards = [_usable(fingerprints), _alike(first, dict(others))]
     cards += [_changed(name, rows, findings[name]) for name, rows in found.items()]
     usable = all(fingerprint.verdict.trustworthy for fingerprint in fingerprints.values())
-    state, headline = _headline(cards[2:], usable=usable)
+    lines = all(are_two_lines(first, other) for _, other in others)
+    state, headline = _headline(cards[2:], usable=usable, lines=lines)
     names = list(fingerprints)
     opening = f"{', '.join(names[1:])} {'is' if len(names) == 2 else 'are'} compared with {names[0]}."
     return Cover(headline=headline, state=state, opening=opening, cards=cards)
 
 
-def _headline(changes: Sequence[Card], *, usable: bool) -> tuple[State, str]:
+def _headline(changes: Sequence[Card], *, usable: bool, lines: bool) -> tuple[State, str]:
     if not usable:
         return "bad", "These tests cannot be compared: not all of them are trustworthy"
     states = {card.state for card in changes}
     if "look" in states:
-        return "look", "Something has changed by more than chance"
+        return "look", f"{'The lines differ' if lines else 'Something has changed'} by more than chance"
     if "open" in states:
         return "open", "Not all of these tests share a number that can be compared"
-    return "fine", "No change is seen"
+    return "fine", f"No {'difference of the lines' if lines else 'change'} is seen"
 
 
 def _usable(fingerprints: "Mapping[str, Fingerprint]") -> Card:

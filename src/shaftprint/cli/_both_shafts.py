@@ -1,0 +1,53 @@
+"""Both shafts of a ship on the command line: the option that names the other line, and sailing both."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import click
+
+from shaftprint.campaign import load_campaign_of_both
+from shaftprint.cli._terminal import answer
+from shaftprint.cli._vessel_file import print_disagreements
+from shaftprint.cli.output import progress
+from shaftprint.recording import NATIVE_ENDINGS
+from shaftprint.survey import load_trials_of_both
+from shaftprint.tug import like_stan_tug_1205, sail_both, truth_path
+
+
+def starboard_option(command: Callable[..., Any]) -> Callable[..., Any]:
+    """Add the option ``--starboard``."""
+    return click.option(
+        "--starboard",
+        metavar="VESSEL",
+        help="Vessel file of the starboard line in the same recording; the other vessel is the line to port then, and "
+        "the campaign is one of both shafts, such as at-once or in-turn.",
+    )(command)
+
+
+def sail_both_lines(
+    port: str, starboard: str, campaign: str, output: Path, *, seed: int, force: bool, no_progress: bool
+) -> None:
+    """Simulate both lines of a ship in a campaign and write one raw recording.
+
+    Raises
+    ------
+    click.ClickException
+        If the recording is to be of another format than the native container.
+    """
+    if output.suffix.lower() not in NATIVE_ENDINGS:
+        raise click.ClickException(
+            f"{output}: expected a recording of both lines that ends in {', '.join(NATIVE_ENDINGS)}; "
+            "`shaftprint convert` writes the other formats from it."
+        )
+    asked = load_campaign_of_both(campaign)
+    trials = load_trials_of_both(port, starboard, asked)
+    for trial, name in zip(trials, (port, starboard), strict=True):
+        print_disagreements(trial.vessel, name)
+    vessels = trials[0].vessel, trials[1].vessel
+    tugs = tuple(like_stan_tug_1205(trial.vessel, offset_v=trial.campaign.offset_v) for trial in trials)
+    with progress(hidden=no_progress) as steps:
+        steps.begin("Sailing", total=1.0)
+        sail_both(vessels, asked, output, tugs=(tugs[0], tugs[1]), seed=seed, overwrite=force, progress=steps.reach)
+    answer(f"{output}: the raw recording of both lines, {asked.duration_s:g} s.")
+    answer(f"{truth_path(output)}: what was put into it.")

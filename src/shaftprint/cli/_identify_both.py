@@ -1,0 +1,123 @@
+"""``shaftprint identify --starboard``: both lines of a ship from one recording, and how they differ."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from shaftprint.cli._fingerprint_tables import print_fingerprint
+from shaftprint.cli._fit_options import FitOptions, settings_of, structures_of
+from shaftprint.cli._options import structure_sources
+from shaftprint.cli._own_structure import TypedName
+from shaftprint.cli._report_options import ReportOptions
+from shaftprint.cli._results import write_results
+from shaftprint.cli._terminal import answer, echo, say
+from shaftprint.cli.output import FINGERPRINT, REPORT, give, output_folder, print_tables, progress
+from shaftprint.drift import differ, finding_sentences
+from shaftprint.fingerprint import write_fingerprint
+from shaftprint.report import (
+    Difference,
+    cause_table,
+    change_in_words,
+    difference_table,
+    differences,
+    render_comparison,
+    vessel_file_sentences,
+)
+from shaftprint.survey import (
+    SurveyOfBoth,
+    default_structure,
+    judged,
+    load_trials_of_both,
+    run_both,
+    wash_sentences,
+)
+
+COMPARISON = "comparison"
+
+
+def identify_both_lines(
+    recording: Path,
+    vessels: tuple[str, str],
+    campaign: str,
+    names: Sequence[TypedName],
+    options: FitOptions,
+    output: Path,
+    *,
+    about: ReportOptions,
+    pictures: bool,
+    no_report: bool,
+    force: bool,
+    no_progress: bool,
+) -> None:
+    """Identify both lines, print and write the results of each side and the comparison of both."""
+    trials = load_trials_of_both(*vessels, campaign, about.conditions)
+    chosen = names or (TypedName(default_structure(trials[0].vessel)),)
+    structures = structures_of(chosen, options, trials[0].vessel)
+    of_user = structure_sources(names)
+    port, starboard = (replace(trial, sources=(*trial.sources, *of_user)) for trial in trials)
+    with output_folder(output, of="identify", force=force) as folder:
+        with progress(hidden=no_progress) as steps:
+            both = run_both(
+                recording,
+                (port, starboard),
+                structures=structures,
+                settings=settings_of(structures, options),
+                seed=options.seed,
+                tested_at=about.tested_at,
+                judge=False,
+                progress=steps,
+            )
+        _print(both)
+        for side, survey in both.sides.items():
+            (folder / side).mkdir()
+            if no_report:
+                write_fingerprint(survey.fingerprint, folder / side / FINGERPRINT)
+                continue
+            with progress(hidden=no_progress) as steps:
+                survey = judged(survey, rng=np.random.default_rng(options.seed), progress=steps)
+                write_results(
+                    folder / side,
+                    recording,
+                    survey,
+                    steps=steps,
+                    pictures=pictures,
+                    previous=about.previous,
+                    pdf=about.pdf,
+                )
+        if not no_report:
+            known = {structure.name: structure for structure in structures}
+            fingerprints = {side: one.fingerprint for side, one in both.sides.items()}
+            render_comparison(folder / COMPARISON, fingerprints, structures=known, remarks=wash_sentences(both.washes))
+    for side in both.sides:
+        echo(f"Fingerprint of {side}: {output / side / FINGERPRINT}")
+    if not no_report:
+        echo(f"Comparison: {output / COMPARISON / REPORT}")
+
+
+def _print(both: SurveyOfBoth) -> None:
+    """Print the fingerprint of each side, then how they differ, and what the wash of each does to the other."""
+    first, other = both.port.fingerprint, both.starboard.fingerprint
+    finding, found = differ(first, other), differences(first, other)
+    for side, survey in both.sides.items():
+        print_fingerprint(survey.fingerprint, line=side)
+    doubtful = [side for side, survey in both.sides.items() if not survey.fingerprint.verdict.trustworthy]
+    words = change_in_words(found) if finding.because else " ".join(finding_sentences(finding))
+    if doubtful:
+        words = f"It cannot be told: not trustworthy: {', '.join(doubtful)}."
+    answer(f"Is starboard other than port? {words}")
+    give("differences", found)
+    give("causes", finding)
+    give("wash", both.washes)
+    if not finding.because:
+        print_tables([cause_table("starboard", finding)])
+    _print_differences(found)
+    for sentence in (*vessel_file_sentences(first, other)[1:], *wash_sentences(both.washes)):
+        say(sentence)
+
+
+def _print_differences(found: tuple[Difference, ...]) -> None:
+    physical = [one for one in found if not one.normalised]
+    normalised = [one for one in found if one.normalised]
+    print_tables([difference_table("port", "starboard", physical), difference_table("port", "starboard", normalised)])
