@@ -33,6 +33,8 @@ from shaftprint.tug._ideal import IdealSignals, simulate_signals
 from shaftprint.tug._like_stan_tug import like_stan_tug_1205
 from shaftprint.tug._linearise import linearised_response
 from shaftprint.tug._noise import Noise
+from shaftprint.tug._pitch_actuation import PitchActuation
+from shaftprint.tug._pitch_series import steepened, torque_over_pitch
 from shaftprint.tug._sail import sail
 from shaftprint.tug._sail_as import sail_as
 from shaftprint.tug._sailing import Sailing
@@ -55,6 +57,7 @@ __all__ = [
     "Fault",
     "IdealSignals",
     "Noise",
+    "PitchActuation",
     "SailedTest",
     "Sailing",
     "ShipWork",
@@ -79,6 +82,8 @@ __all__ = [
     "ship_at",
     "simulate_signals",
     "simulated_fleet",
+    "steepened",
+    "torque_over_pitch",
     "truth_path",
     "vessel_at",
     "with_delay",

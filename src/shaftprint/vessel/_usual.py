@@ -16,3 +16,7 @@ PITCH_STD = 0.01
 """Relative standard deviation of the pitch of a propeller as built."""
 MASS_STD = 0.03
 """Relative standard deviation of the displacement of a ship."""
+PITCH_SENSOR_STD = 0.02
+"""Relative standard deviation of a change of pitch that the feedback of a controllable pitch shows."""
+PITCH_SLOPE_STD = 0.10
+"""Relative standard deviation of the slope of torque over pitch that a propeller series gives a controllable pitch."""

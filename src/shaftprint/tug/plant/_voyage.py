@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -13,7 +14,7 @@ from shaftprint.tug._tug import Tug
 from shaftprint.tug.plant._demand import Demand
 from shaftprint.tug.plant._disturbance import Disturbance
 from shaftprint.tug.plant._physics import build_plant, equilibrium, steady_boost
-from shaftprint.tug.plant._pitch import PitchActuator
+from shaftprint.tug.plant._pitch import PitchActuator, PitchMotion
 from shaftprint.tug.plant._plant import FARTHEST_SHARE, RACK, advance, interpolation_weights
 from shaftprint.tug.plant._traces import Carried, DelayTaps, Traces
 from shaftprint.vessel import Vessel
@@ -37,6 +38,9 @@ class Stretch:
     """Fuel rack that the governor gives, after its limiter and before the delay [fraction], shape (steps,)."""
     limited: BoolArray
     """Whether a limit of torque or rack acts, shape (steps,)."""
+    pitch_change: FloatArray
+    """What the actuator of a controllable pitch has reached, as the deviation of ``P/D`` from that of the working
+    point, shape (steps,)."""
     ship_speed_m_s: FloatArray
     """Speed of the ship through the water [m/s], 0 at the quay, shape (steps,)."""
     demand_rev_s: FloatArray
@@ -97,12 +101,13 @@ def voyage(
     ring = np.full(1 << int(np.ceil(np.log2(farthest * delay_steps + 8.0))), state[RACK])
     boost = np.array([steady_boost(plant, demand.first)])
     carried = Carried(state=state, history=ring, counter=np.zeros(1, dtype=np.int64), boost=boost)
-    for done, (asked, angle_asked, propeller, engine) in _forced(disturbance, demand, pitch, steps=steps, chunk=chunk):
+    for done, forces in _forced(disturbance, demand, pitch, steps=steps, chunk=chunk):
+        asked, motion = forces.asked, forces.pitch
         count = min(chunk, steps - done)
         speed, angle, torque, brake, rack, way = np.empty((6, count))
         limited = np.empty(count, dtype=np.bool_)
         traces = Traces(speed, angle, torque, brake, rack, limited, way)
-        advance(step_s, asked, angle_asked, propeller, engine, plant, delay, carried, traces)
+        advance(step_s, asked, motion.blades, forces.propeller, forces.engine, plant, delay, carried, traces)
         yield Stretch(
             time_s=start_s + step_s * np.arange(done, done + count, dtype=np.float64),
             shaft_speed_rev_s=speed,
@@ -111,22 +116,39 @@ def voyage(
             brake_torque_nm=brake,
             rack_given=rack,
             limited=limited,
+            pitch_change=motion.piston[: 2 * count : 2],
             ship_speed_m_s=way,
             demand_rev_s=asked[: 2 * count : 2],
         )
 
 
+class _Forces(NamedTuple):
+    """What acts on the line in a chunk."""
+
+    asked: FloatArray
+    """Speed that is asked for [rev/s], at nodes and middles."""
+    pitch: PitchMotion
+    """What the pitch does."""
+    propeller: FloatArray
+    """Deviation of the propeller's torque that is no matter of its speed, at nodes."""
+    engine: FloatArray
+    """Disturbance of the engine, at nodes."""
+
+
 def _forced(
     disturbance: Disturbance, demand: Demand, pitch: PitchActuator, *, steps: int, chunk: int
-) -> Iterator[tuple[int, tuple[FloatArray, ...]]]:
-    """Yield the first step of each chunk and what acts in it; the next is made while the line is stepped through one.
+) -> Iterator[tuple[int, _Forces]]:
+    """Yield the first step of each chunk and what acts in it; the next is made while the line is stepped on."""
 
-    It is demand, pitch, and disturbances of propeller and engine.
-    """
-
-    def acting(count: int) -> tuple[FloatArray, ...]:
+    def acting(count: int) -> _Forces:
         propeller, engine, wander = disturbance.next(count)
-        return demand.next(count, wander), pitch.next(count), propeller, engine
+        motion = pitch.next(count)
+        return _Forces(
+            asked=demand.next(count, wander),
+            pitch=motion,
+            propeller=pitch.torque_share(motion.blades, propeller),
+            engine=engine,
+        )
 
     with ThreadPoolExecutor(max_workers=1) as ahead:
         waiting = ahead.submit(acting, min(chunk, steps))
