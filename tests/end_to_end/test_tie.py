@@ -140,7 +140,7 @@ def test_linearised_ship_with_a_controllable_pitch_is_the_composed_structure(giv
     research = load_vessel("nifs-research-vessel")
     tug = like_stan_tug_1205(research)
     tug = replace(tug, g=-0.2, pitch=replace(tug.pitch, **given))
-    seconds_per_kg_m2 = 2.0 * np.pi * 630.0 / 60.0 / 3.91 / 36370.0
+    seconds_per_kg_m2 = 2.0 * np.pi * 600.0 / 60.0 / 3.91 / 32990.0
     known = parameters_of(tug) | {
         "tau_up": seconds_per_kg_m2 * (130.0 * 3.91**2 + 75.0),
         "tau_dn": seconds_per_kg_m2 * 1077.0,

@@ -32,6 +32,10 @@ class PitchActuation:
     """Change of pitch that the feedback shows over that which there is, over the pitch of the working point."""
     sensor_rms: float = 0.0005
     """Noise of a sample of the feedback, as ``P/D``."""
+    sensor_wander_rms: float = 0.0005
+    """Slow noise of the feedback, of a wiper, a rod and its joints, as ``P/D``."""
+    sensor_wander_s: float = 1.0
+    """Time in which the slow noise forgets what it was [s]."""
     torque_powers: tuple[float, ...] | None = None
     """``K_Q`` at zero advance: coefficients of ``(P/D)^0, (P/D)^1, ...``, of which only the shape matters; ``None``:
     those of the vessel's series."""
@@ -73,11 +77,11 @@ def pitch_truth(actuation: PitchActuation, vessel: Vessel) -> dict[str, float]:
 
 
 def _check(actuation: PitchActuation) -> None:
-    for name in ("lag_s", "rate_per_s", "set_point_scale", "sensor_scale"):
+    for name in ("lag_s", "rate_per_s", "set_point_scale", "sensor_scale", "sensor_wander_s"):
         value = getattr(actuation, name)
         if not value > 0.0:
             raise SettingsError(f"tug: expected pitch.{name} above 0, found {value:g}; give a positive value.")
-    for name in ("delay_s", "deadband", "play", "sensor_rms"):
+    for name in ("delay_s", "deadband", "play", "sensor_rms", "sensor_wander_rms"):
         value = getattr(actuation, name)
         if not value >= 0.0:
             raise SettingsError(f"tug: expected pitch.{name} of at least 0, found {value:g}.")

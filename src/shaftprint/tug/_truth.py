@@ -18,7 +18,7 @@ from shaftprint.tug.sensors import Fault
 from shaftprint.units import rpm_from_rev_s
 from shaftprint.vessel import RackSensor, Vessel
 
-_PITCH = ("rate_per_s", "deadband", "play", "sensor_rms")
+_PITCH = ("rate_per_s", "deadband", "play", "sensor_rms", "sensor_wander_rms")
 
 SCHEMA = 1
 """Version of the truth file."""

@@ -5,6 +5,7 @@ from typing import Self
 from pydantic import model_validator
 
 from shaftprint.settings import NotNegativeNumber, PositiveNumber, Settings
+from shaftprint.vessel._usual import PITCH_SLOPE_STD
 
 
 class ControllablePitch(Settings):
@@ -30,6 +31,10 @@ class ControllablePitch(Settings):
     """Fastest change of the pitch over diameter [1/s]."""
     play: NotNegativeNumber = 0.0
     """Play between piston and blades, all of it, as pitch over diameter."""
+
+    def usual_slope_std(self, slope: float) -> float:
+        """Return the standard deviation that is usual of a slope, where none is stated."""
+        return PITCH_SLOPE_STD * slope
 
     @model_validator(mode="after")
     def _stops_are_apart(self) -> Self:
