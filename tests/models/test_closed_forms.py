@@ -161,14 +161,16 @@ def gauge_motor(s, p):
 def gauge_pitch(s, p):
     """The same two free bodies, pushed by the governor and by the pitch, solved as they stand in ``M_b, M_s, n``.
 
-    ``M_b - M_s = tau_up s n``, ``M_s - k_q n - q theta = tau_dn s n`` and ``M_b = g n + C (demand - n)``.
+    ``M_b - M_s = tau_up s n``, ``M_s - k_q n - q theta_b = tau_dn s n`` and ``M_b = g n + C (demand - n)``.
     """
     engine = governor(s, p)
     demand = p["c_set"] * mp.exp(-s * p["t_sp"])
     theta = p["c_th"] * mp.exp(-s * p["t_th"]) / (p["tau_th"] * s + 1)
     matrix = mp.matrix([[1, -1, -p["tau_up"] * s], [0, 1, -p["k_q"] - p["tau_dn"] * s], [1, 0, engine - p["g"]]])
     _, torque, speed = mp.lu_solve(matrix, mp.matrix([0, 0, engine * demand]))
-    _, torque_of_pitch, speed_of_pitch = mp.lu_solve(matrix, mp.matrix([0, p["q"] * theta, 0]))
+    _, torque_of_pitch, speed_of_pitch = mp.lu_solve(
+        matrix, mp.matrix([0, p["q"] * mp.exp(-s * p["t_blade"]) * theta, 0])
+    )
     return (
         pick_up(s, p) * speed,
         pick_up(s, p) * speed_of_pitch,

@@ -3,12 +3,18 @@
 The two free bodies of GAUGE-CLOSED, and a propeller that takes more torque at more pitch::
 
     upstream    M_b - M_s = tau_up s n            M_b = g n + v exp(-s t_d) F X,   X = C (c_set exp(-s t_sp) n_set - n)
-    downstream  M_s - M_p = tau_dn s n            M_p = k_q n + q theta
-    pitch       theta = c_th exp(-s t_th) / (tau_th s + 1) theta_set
+    downstream  M_s - M_p = tau_dn s n            M_p = k_q n + q theta_b
+    piston      theta = c_th exp(-s t_th) / (tau_th s + 1) theta_set
+    blades      theta_b = exp(-s t_blade) theta
 
 ``q`` is that of D. Stapersma and A. Vrijdag, Linearisation of a ship propulsion system model (Ocean Engineering 142,
 2017, 441-457), at zero advance, where their ``b`` is 0. Neither shaft nor torque acts back on the pitch: the hydraulics
 hold it.
+
+Between piston and blades is play. Blades that stay half a play ``h`` behind whichever way the piston goes are, for a
+motion of many lines, late by ``t_blade = sqrt(2 / pi) h / sigma`` at all of them, ``sigma`` the rms of the rate of the
+piston (statistical linearisation: A. Gelb and W. E. Vander Velde, Multiple-input describing functions and nonlinear
+system design, 1968, chapter 7). A feedback whose latency is other than stated shows in it too.
 """
 
 from shaftprint.catalogue._gauge import (
@@ -55,6 +61,15 @@ T_TH = Parameter(
 C_TH = Parameter(
     "c_th", "-", 0.5, 2.0, 1.0, "change of pitch that is reached over that asked for", role=ShipRole.PITCH_SCALE
 )
+T_BLADE = Parameter(
+    "t_blade",
+    "s",
+    -0.1,
+    0.5,
+    0.0,
+    "time by which the blades follow what is shown of the pitch: play, and an error of the feedback's latency",
+    role=ShipRole.BLADE_LATENESS,
+)
 C_PITCH = Parameter(
     "c_pitch", "-", 0.8, 1.25, 1.0, "change of pitch that is shown over that reached", role=ShipRole.PITCH_SENSOR_SCALE
 )
@@ -64,15 +79,15 @@ def gauge_pitch() -> Structure:
     """Return the gauge-aware closed loop with a controllable pitch: ``n``, ``M_s`` and ``theta`` from both set points.
 
     From ``n_set`` it is GAUGE-CLOSED, and the pitch stands. From ``theta_set`` the governor works against the torque
-    that the pitch takes: ``n = -q theta / ((tau_up + tau_dn) s + k_q - g) / (1 + L)`` and
-    ``M_s = (tau_dn s + k_q) n + q theta``, and what is shown of the pitch is ``c_pitch theta``.
+    that the blades take: ``n = -q theta_b / ((tau_up + tau_dn) s + k_q - g) / (1 + L)`` and
+    ``M_s = (tau_dn s + k_q) n + q theta_b``, and what is shown of the pitch is ``c_pitch theta``.
     """
     shaft, load = Shaft((TAU_DN, TAU_UP), K_Q, G), TorqueBalance(TAU_DN, K_Q)
     drive = PIGovernor(GAUGE_K_P, GAUGE_K_I) * Gain(V_ONE) * Delay(T_D) * SecondOrderLag(GAUGE_OMEGA_N, GAUGE_ZETA)
     loop = drive * shaft
     left_of_error = Sensitivity(loop)
     pitch = Gain(C_TH) * Delay(T_TH) * FirstOrderLag(TAU_TH)
-    forced = Gain(Q) * pitch
+    forced = Gain(Q) * pitch * Delay(T_BLADE)
     by_set_point = loop * left_of_error * Delay(T_SP) * Gain(C_SET)
     by_pitch = -(forced * shaft * left_of_error)
     speed_sensor, torque_sensor = AveragingSensor(T_AVERAGE, T_HOLD, T_PICKUP), Delay(T_GAUGE) * FirstOrderLag(T_FILTER)

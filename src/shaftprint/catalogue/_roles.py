@@ -115,6 +115,8 @@ class ShipRole:
     """Time constant with which a controllable pitch follows its set point."""
     PITCH_DELAY: Final = _line("pitch delay", "s", "delay")
     """Time after which it begins to follow."""
+    BLADE_LATENESS: Final = _line("blade lateness", "s", "delay", "latency")
+    """Time by which the blades of a controllable pitch follow what is shown of it."""
     PITCH_SCALE: Final = _line("pitch scale", "-", "load")
     """Change of pitch that is reached over that which is asked for."""
     PITCH_SENSOR_SCALE: Final = Role(name="pitch sensor scale", unit="-", basis=frozenset(("load",)), of_sensor=True)
