@@ -176,7 +176,7 @@ def table(outcomes: Sequence[Mapping[str, object]]) -> str:
         [
             f"{len(fitted)} recordings of ten minutes, {len(outcomes) - len(fitted)} refused, {trusted} trustworthy; "
             f"{np.median([one['cpu_s'] for one in fitted]):.1f} CPU s each. {PITCH} was rejected in {rejected[PITCH]}, "
-            f"the same with a fixed pitch in {rejected[FIXED]} of them; {CLOSED}, which looks at the lines of the speed "
+            f"the same with a fixed pitch in {rejected[FIXED]} of them; {CLOSED}, which sees the lines of the speed "
             f"alone, in {rejected[CLOSED]}.",
             "",
             "| number | recordings | stated deviation | over the value | median error, deviations | covered |",
