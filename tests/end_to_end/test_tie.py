@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from shaftprint.catalogue import structure
+from shaftprint.propeller import wageningen_b
 from shaftprint.tug import Coupling, Tug, like_stan_tug_1205, linearised_response, normalised_truth
 from shaftprint.vessel import load_vessel
 
@@ -141,6 +142,40 @@ def test_tie_would_notice_a_structure_without_inflow(vessel):
     _, plain = composed("GAUGE-CLOSED", parameters_of(tug))
     simulated = linearised_response(tug, vessel, OMEGA_RAD_S / (2.0 * np.pi))[:, 0]
     assert np.abs(simulated / plain - 1.0).max() > 0.1
+
+
+@pytest.mark.parametrize(
+    "given", [{}, {"lag_s": 1.4, "delay_s": 0.31, "set_point_scale": 1.05}, {"delay_s": 0.0, "sensor_scale": 0.97}]
+)
+def test_linearised_ship_with_a_controllable_pitch_is_the_composed_structure(given):
+    research = load_vessel("nifs-research-vessel")
+    tug = like_stan_tug_1205(research)
+    tug = replace(tug, g=-0.2, pitch=replace(tug.pitch, **given))
+    seconds_per_kg_m2 = 2.0 * np.pi * 600.0 / 60.0 / 3.91 / 32990.0
+    known = parameters_of(tug) | {
+        "tau_up": seconds_per_kg_m2 * (130.0 * 3.91**2 + 75.0),
+        "tau_dn": seconds_per_kg_m2 * 1077.0,
+        "q": wageningen_b(blades=4, area_ratio=0.60).at(0.0, 0.80).q,
+        "tau_th": tug.pitch.lag_s,
+        "t_th": tug.pitch.delay_s,
+        "c_th": tug.pitch.set_point_scale,
+        "c_pitch": tug.pitch.sensor_scale,
+    }
+    outputs, model = composed("GAUGE-PITCH", known)
+    by_input = model.reshape(len(outputs), 2, -1)
+    for place, name in enumerate(("n_set", "theta_set")):
+        hertz = OMEGA_RAD_S / (2.0 * np.pi)
+        simulated = linearised_response(tug, research, hertz, outputs=outputs, input=name)[:, 0]
+        # the speed does not move the pitch: 0 on both sides
+        rows = 2 if name == "n_set" else 3
+        assert np.all(simulated[rows:] == by_input[rows:, place])
+        ratio = simulated[:rows] / by_input[:rows, place]
+        assert np.abs(ratio) == pytest.approx(np.ones(ratio.shape), abs=1e-5)
+        assert np.degrees(np.angle(ratio)) == pytest.approx(np.zeros(ratio.shape), abs=1e-3)
+    told = normalised_truth(tug, research)
+    assert {name: told[name] for name in ("q", "tau_th", "t_th", "c_th", "c_pitch")} == pytest.approx(
+        {name: known[name] for name in ("q", "tau_th", "t_th", "c_th", "c_pitch")}
+    )
 
 
 ELASTIC = {

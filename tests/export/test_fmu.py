@@ -30,7 +30,20 @@ def same(one, two):
 
 @pytest.mark.parametrize("version", [2, 3])
 @pytest.mark.parametrize(
-    "name", ["OL1", "OL5", "CL1", "CL4", "CL4-PADE5", "INITIAL", "GAUGE-CLOSED", "GAUGE-ECU", "GOVERNOR", "FREE-PITCH"]
+    "name",
+    [
+        "OL1",
+        "OL5",
+        "CL1",
+        "CL4",
+        "CL4-PADE5",
+        "INITIAL",
+        "GAUGE-CLOSED",
+        "GAUGE-ECU",
+        "GOVERNOR",
+        "FREE-PITCH",
+        "GAUGE-PITCH",
+    ],
 )
 def test_fmpy_finds_nothing_to_complain_about(exported, tmp_path, name, version):
     validation = pytest.importorskip("fmpy.validation", reason="FMPy checks the description")

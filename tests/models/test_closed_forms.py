@@ -158,6 +158,29 @@ def gauge_motor(s, p):
     return pick_up(s, p) * speed, torque * telemetry(s, p)
 
 
+def gauge_pitch(s, p):
+    """The same two free bodies, pushed by the governor and by the pitch, solved as they stand in ``M_b, M_s, n``.
+
+    ``M_b - M_s = tau_up s n``, ``M_s - k_q n - q theta_b = tau_dn s n`` and ``M_b = g n + C (demand - n)``.
+    """
+    engine = governor(s, p)
+    demand = p["c_set"] * mp.exp(-s * p["t_sp"])
+    theta = p["c_th"] * mp.exp(-s * p["t_th"]) / (p["tau_th"] * s + 1)
+    matrix = mp.matrix([[1, -1, -p["tau_up"] * s], [0, 1, -p["k_q"] - p["tau_dn"] * s], [1, 0, engine - p["g"]]])
+    _, torque, speed = mp.lu_solve(matrix, mp.matrix([0, 0, engine * demand]))
+    _, torque_of_pitch, speed_of_pitch = mp.lu_solve(
+        matrix, mp.matrix([0, p["q"] * mp.exp(-s * p["t_blade"]) * theta, 0])
+    )
+    return (
+        pick_up(s, p) * speed,
+        pick_up(s, p) * speed_of_pitch,
+        telemetry(s, p) * torque,
+        telemetry(s, p) * torque_of_pitch,
+        mp.mpc(0),
+        p["c_pitch"] * theta,
+    )
+
+
 def governor_alone(s, p):
     """The rack from the set point, which comes late, and from the speed, which does not; both seen ``t_rack`` late."""
     rack = (p["K_p"] + p["K_i"] / s) * mp.exp(-s * p["t_rack"])
@@ -232,6 +255,7 @@ FORMS = {
     "GAUGE-ELASTIC": gauge_elastic,
     "GAUGE-ECU": gauge_ecu,
     "GAUGE-MOTOR": gauge_motor,
+    "GAUGE-PITCH": gauge_pitch,
     "GOVERNOR": governor_alone,
     "ENGINE": engine,
     "FREE-CORE": sailing_core,
@@ -298,7 +322,7 @@ def test_a_coupling_without_end_of_stiffness_is_a_rigid_line():
 
 
 # of many parameters, each with derivatives of 50 digits
-LONG = ("FREE-PITCH", "FREE-LOG", "FREE-CLOSED", "GAUGE-ECU", "GAUGE-ELASTIC", "GAUGE-INFLOW")
+LONG = ("FREE-PITCH", "GAUGE-PITCH", "FREE-LOG", "FREE-CLOSED", "GAUGE-ECU", "GAUGE-ELASTIC", "GAUGE-INFLOW")
 
 
 @pytest.mark.parametrize(

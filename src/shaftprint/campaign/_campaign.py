@@ -9,6 +9,7 @@ from typing import Self
 from pydantic import Field, model_validator
 
 from shaftprint.arguments import refusing_none
+from shaftprint.campaign._beside import faults_beside, runs_beside
 from shaftprint.campaign._binary_sequence import BinarySequence
 from shaftprint.campaign._excitation import Excitation
 from shaftprint.campaign._excitations import SPEED_SET_POINT, Chirp, Sine, Staircase
@@ -34,7 +35,8 @@ class Campaign(Shown, Settings):
     offset_rpm: PositiveNumber | None = None
     """Engine speed for which that asks [rpm]; the working point's of the vessel file where it is not given."""
     further_offsets_v: Mapping[Name, Number] = Field(default_factory=dict)
-    """Middle of the sines that move something else than the set point of the speed [V], by the name of that input."""
+    """Middle of the sines and multisines that move something else than the set point of the speed [V], by the name of
+    that input."""
     sample_rate_hz: PositiveNumber | None = None
     """Rate at which the test is meant to be recorded [Hz]; no frequency may reach half of it."""
     ramp_s: PositiveNumber | None = None
@@ -82,8 +84,16 @@ class Campaign(Shown, Settings):
 
     @property
     def legs(self) -> tuple[Leg, ...]:
-        """What repeats itself at a level of its own, in the order of time."""
-        return tuple(excitation for excitation in self.excitations if isinstance(excitation, Leg))
+        """What moves the speed and repeats itself at a level of its own, in the order of time."""
+        return tuple(one for one in self.of_input().excitations if isinstance(one, Leg))
+
+    def beside(self, leg: Leg) -> tuple[Multisine, ...]:
+        """Return the multisines that move something else in the periods of a leg."""
+        return tuple(one for one in self._of_further_inputs if runs_beside(one, leg))
+
+    @property
+    def _of_further_inputs(self) -> tuple[Multisine, ...]:
+        return tuple(one for one in self.multisines if one.input != SPEED_SET_POINT)
 
     @property
     def moves(self) -> tuple[Move, ...]:
@@ -99,7 +109,7 @@ class Campaign(Shown, Settings):
     @property
     def inputs(self) -> tuple[str, ...]:
         """What is moved, the set point of the speed first."""
-        return tuple(dict.fromkeys((SPEED_SET_POINT, *(sine.input for sine in self.sines))))
+        return tuple(dict.fromkeys((SPEED_SET_POINT, *(one.input for one in (*self.sines, *self.multisines)))))
 
     def middle_v(self, name: str) -> float:
         """Return the voltage of an input outside of every excitation [V]; 0 where the campaign does not name it."""
@@ -107,11 +117,13 @@ class Campaign(Shown, Settings):
 
     def of_input(self, name: str = SPEED_SET_POINT) -> Self:
         """Return the campaign with those excitations alone that move one input."""
-        sines = tuple(sine for sine in self.sines if sine.input == name)
+        moving = {
+            "sines": tuple(sine for sine in self.sines if sine.input == name),
+            "multisines": tuple(one for one in self.multisines if one.input == name),
+        }
         if name == SPEED_SET_POINT:
-            return self.model_copy(update={"sines": sines})
-        nothing = dict.fromkeys(("multisines", "binary_sequences", "chirps", "staircases"), ())
-        return self.model_copy(update={"sines": sines} | nothing)
+            return self.model_copy(update=moving)
+        return self.model_copy(update=moving | dict.fromkeys(("binary_sequences", "chirps", "staircases"), ()))
 
     @model_validator(mode="after")
     def _can_be_sailed(self) -> Self:
@@ -121,6 +133,7 @@ class Campaign(Shown, Settings):
             *self._overlaps(),
             *self._too_late(),
             *self._too_fast(),
+            *faults_beside(self._of_further_inputs, self.legs, self.further_offsets_v),
             *faults_of(self.moves, ramp_s=self.ramp_s, ramp_v_per_s=self.ramp_v_per_s),
         ]
         if not self.excitations:
@@ -132,7 +145,7 @@ class Campaign(Shown, Settings):
     def _without_offset(self) -> list[str]:
         missing = [name for name in self.inputs if name != SPEED_SET_POINT and name not in self.further_offsets_v]
         return [
-            f"expected further_offsets_v.{name}, the middle of the sines that move it, found none." for name in missing
+            f"expected further_offsets_v.{name}, the middle of the tests that move it, found none." for name in missing
         ]
 
     def _names_twice(self) -> list[str]:
@@ -144,7 +157,7 @@ class Campaign(Shown, Settings):
         return [
             f"expected {later.name} to start after {earlier.name} has stopped at {earlier.stop_s:g} s, "
             f"found a start at {later.start_s:g} s."
-            for earlier, later in pairwise(self.excitations)
+            for earlier, later in pairwise(one for one in self.excitations if one not in self._of_further_inputs)
             if later.start_s < earlier.stop_s
         ]
 
@@ -160,7 +173,8 @@ class Campaign(Shown, Settings):
         if self.sample_rate_hz is None:
             return []
         highest = [(sine.name, sine.frequency_hz) for sine in self.sines]
-        highest += [(leg.name, max(leg.lines) / leg.length_of_period_s) for leg in self.legs]
+        legs = (*self.legs, *self._of_further_inputs)
+        highest += [(leg.name, max(leg.lines) / leg.length_of_period_s) for leg in legs]
         highest += [(chirp.name, max(chirp.start_frequency_hz, chirp.stop_frequency_hz)) for chirp in self.chirps]
         nyquist = self.sample_rate_hz / 2.0
         return [

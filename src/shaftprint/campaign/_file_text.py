@@ -3,13 +3,16 @@
 from collections.abc import Mapping
 
 from shaftprint.campaign._campaign import Campaign
+from shaftprint.campaign._excitations import SPEED_SET_POINT
 from shaftprint.escape import toml_string
 
 TESTS = ("staircases", "sines", "multisines", "binary_sequences", "chirps")
 """Lists of tests, in the order in which a file has them."""
 
 # Fields that few tests need: they stand in a file where they say something.
-_SELDOM = {"phase_rad": 0.0, "first_clock": 0}
+_SELDOM: Mapping[str, object] = {"phase_rad": 0.0, "first_clock": 0}
+# a multisine moves something else than the speed in few tests
+_SELDOM_OF: Mapping[str, Mapping[str, object]] = {"multisines": {**_SELDOM, "input": SPEED_SET_POINT}}
 # Digits behind the point: a period of half a minute is then right to the last sample of a day.
 _DIGITS = 12
 
@@ -39,8 +42,8 @@ def tests_text(campaign: Campaign) -> str:
     parts = []
     for section in TESTS:
         for test in getattr(campaign, section):
-            fields = test.model_dump(exclude_none=True).items()
-            lines = [f"{key} = {_value(value)}" for key, value in fields if _SELDOM.get(key) != value]
+            fields, seldom = test.model_dump(exclude_none=True).items(), _SELDOM_OF.get(section, _SELDOM)
+            lines = [f"{key} = {_value(value)}" for key, value in fields if seldom.get(key) != value]
             parts.append("\n".join([f"[[{section}]]", *lines]))
     return "\n\n".join(parts) + "\n"
 

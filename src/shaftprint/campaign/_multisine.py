@@ -8,8 +8,9 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from shaftprint.arrays import FloatArray
+from shaftprint.campaign._excitations import SPEED_SET_POINT
 from shaftprint.campaign._leg import Leg
-from shaftprint.settings import Number, PositiveInteger, PositiveNumber
+from shaftprint.settings import Name, Number, PositiveInteger, PositiveNumber
 
 # So many samples are summed at a time: their phasors stay in the processor's cache.
 _BLOCK = 8192
@@ -23,6 +24,9 @@ class Multisine(Leg):
     With odd harmonics alone the square of the speed, which the propeller's torque follows, falls between the lines.
     """
 
+    input: Name = SPEED_SET_POINT
+    """What it moves: a table of the vessel file's sensors. What moves something else than the set point of the speed
+    runs beside a leg of that, in the same periods, on lines of its own."""
     period_s: PositiveNumber
     """Period [s]; the lines are multiples of its reciprocal."""
     harmonics: Annotated[tuple[PositiveInteger, ...], Field(min_length=1)]

@@ -7,7 +7,7 @@ import numpy as np
 
 from shaftprint.card._disagreement import Disagreement
 from shaftprint.card._first_mode import first_mode
-from shaftprint.card._series import open_water_curve, series_torque
+from shaftprint.card._series import open_water_curve, series_torque, tested_pitch
 from shaftprint.units import rev_s_from_rpm
 from shaftprint.vessel import Vessel
 
@@ -25,9 +25,9 @@ def disagreements(vessel: Vessel) -> tuple[Disagreement, ...]:
 
     Held against each other are gear ratio, engine and propeller speed; working speed, idle and highest speed; working
     torque, full-load curve, rated power and full scale of the gauge; working torque, torque coefficient and propeller
-    series; underway the speed of the ship, at which thrust is to meet resistance; inertias and stiffnesses of the
-    links. A torque that is off by a factor of
-    two contradicts the series, by a quarter it is strange.
+    series; a controllable pitch and the series; underway the speed of the ship, at which thrust is to meet resistance;
+    inertias and stiffnesses of the links. A torque that is off by a factor of two contradicts the series, by a quarter
+    it is strange.
     """
     of_propeller = (_thrust,) if vessel.is_underway else (_series, _coefficient)
     checks = (
@@ -37,6 +37,7 @@ def disagreements(vessel: Vessel) -> tuple[Disagreement, ...]:
         _full_load_curve,
         _engine_load,
         *of_propeller,
+        _pitch,
         _full_scale,
         first_mode,
     )
@@ -225,6 +226,37 @@ def _thrust(vessel: Vessel) -> Iterator[Disagreement]:
             advice="correct the speed (m/s, not knots), resistance_n, shafts, wake_fraction or the propeller",
             is_contradiction=apart > _CONTRADICTION,
         )
+
+
+def _pitch(vessel: Vessel) -> Iterator[Disagreement]:
+    """Hold a controllable pitch against the series that is to say what it does to the torque."""
+    pitch, propeller = vessel.pitch, vessel.propeller
+    if pitch is None or pitch.torque_slope is not None:
+        return
+    tested = tested_pitch(propeller)
+    if tested is None:
+        yield Disagreement(
+            field="pitch.torque_slope",
+            expected="it, or a propeller.series with blades and area_ratio that were tested, which gives it",
+            found=f"neither, with {propeller.series or 'no series'}",
+            advice="name the series, or state d ln K_Q / d ln (P/D) at zero advance, 1.7 to 2.3 as a rule",
+            is_contradiction=True,
+        )
+        return
+    name, lowest, highest = tested
+    for field, ratio, is_contradiction in (
+        ("propeller.pitch_ratio", propeller.pitch_ratio, True),
+        ("pitch.lowest_ratio", pitch.lowest_ratio, False),
+        ("pitch.highest_ratio", pitch.highest_ratio, False),
+    ):
+        if not lowest <= ratio <= highest:
+            yield Disagreement(
+                field=field,
+                expected=f"a pitch from {lowest:g} to {highest:g}, where {name} was tested",
+                found=f"{ratio:g}",
+                advice="correct it, or state pitch.torque_slope, which then is not taken from the series",
+                is_contradiction=is_contradiction,
+            )
 
 
 def _full_scale(vessel: Vessel) -> Iterator[Disagreement]:

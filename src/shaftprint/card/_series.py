@@ -66,6 +66,17 @@ def open_water_curve(propeller: Propeller) -> OpenWaterCurve | None:
     return curve
 
 
+def tested_pitch(propeller: Propeller) -> tuple[str, float, float] | None:
+    """Return name, lowest and highest pitch ratio of the series of a propeller; None where none is named or tested."""
+    if propeller.series is None:
+        return None
+    try:
+        curve = _curve(propeller.series, propeller.blades, propeller.area_ratio)
+    except PropellerError:
+        return None
+    return curve.name, curve.lowest_pitch_ratio, curve.highest_pitch_ratio
+
+
 def is_in_nozzle(series: str | None) -> bool:
     """Return whether the name of a series says that the propeller turns in a nozzle."""
     return series is not None and any(word in series.lower() for word in _IN_NOZZLE)

@@ -12,7 +12,7 @@ from shaftprint.catalogue._roles import ROLES, ShipRole
 from shaftprint.catalogue._sailing_at_large import pitch_actuator, sailing_at_large
 from shaftprint.catalogue._sailing_blocks import PitchSpeed, SailingShaft, SailingSpeed, SailingTorque
 from shaftprint.catalogue._shipped import expect_roles, shipped_structure
-from shaftprint.catalogue._thesis import CLOSED_LOOPS, STRUCTURES, structure
+from shaftprint.catalogue._thesis import CLOSED_LOOPS, PITCHED_LOOP, STRUCTURES, structure
 from shaftprint.catalogue._thesis_figures import Family, thesis_families
 from shaftprint.catalogue._thesis_values import THESIS_VALUES
 from shaftprint.catalogue._two_masses import two_mass_line
@@ -21,6 +21,7 @@ __all__ = [
     "AHEAD_S",
     "CLOSED_LOOPS",
     "DRIVES",
+    "PITCHED_LOOP",
     "ROLES",
     "SIGNAL_MEANINGS",
     "SIGNAL_UNITS",

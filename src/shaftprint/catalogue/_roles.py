@@ -109,6 +109,18 @@ class ShipRole:
     """Time for which a pick-up's value is held."""
     PICK_UP_DELAY: Final = _sensor("pick-up delay", "s", "speed")
     """Delay of a pick-up's value."""
+    PITCH_SLOPE: Final = Role(name="pitch slope", unit="-", basis=frozenset(("load",)))
+    """Slope of the propeller torque with its pitch, ``d ln K_Q / d ln theta``."""
+    PITCH_LAG: Final = _line("pitch lag", "s", "delay")
+    """Time constant with which a controllable pitch follows its set point."""
+    PITCH_DELAY: Final = _line("pitch delay", "s", "delay")
+    """Time after which it begins to follow."""
+    BLADE_LATENESS: Final = _line("blade lateness", "s", "delay", "latency")
+    """Time by which the blades of a controllable pitch follow what is shown of it."""
+    PITCH_SCALE: Final = _line("pitch scale", "-", "load")
+    """Change of pitch that is reached over that which is asked for."""
+    PITCH_SENSOR_SCALE: Final = Role(name="pitch sensor scale", unit="-", basis=frozenset(("load",)), of_sensor=True)
+    """Change of pitch that is shown over that which is reached."""
     TORQUE: Final = _line("torque", "", "torque")
     """Made of torques in N m, such as the torque coefficient."""
     SPEED: Final = _line("speed", "", "speed")

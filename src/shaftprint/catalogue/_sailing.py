@@ -52,8 +52,16 @@ E = Parameter("e", "-", 1.0, 8.0, 3.0, "slope of the resistance, d ln R / d ln v
 TAU_U = Parameter("tau_u", "s", 0.5, 200.0, 8.0, "time of the ship, m v / R")
 SIGMA = Parameter("sigma", "-", 0.0, 1.0, 1.0, "share of the thrust whose shafts follow the set point", held=True)
 P = Parameter("p", "-", 0.0, 6.0, 2.4, "slope of the thrust coefficient with pitch, d ln K_T / d ln theta")
-Q = Parameter("q", "-", 0.0, 6.0, 2.7, "slope of the torque coefficient with pitch, d ln K_Q / d ln theta")
-TAU_TH = Parameter("tau_th", "s", 0.0, 10.0, 1.0, "lag of the pitch actuator")
+Q = Parameter(
+    "q",
+    "-",
+    0.0,
+    6.0,
+    2.7,
+    "slope of the torque coefficient with pitch, d ln K_Q / d ln theta",
+    role=ShipRole.PITCH_SLOPE,
+)
+TAU_TH = Parameter("tau_th", "s", 0.0, 10.0, 1.0, "lag of the pitch actuator", role=ShipRole.PITCH_LAG)
 T_LOG = Parameter(
     "t_log",
     "s",

@@ -145,6 +145,11 @@ class Constant(Expression):
         return np.array([self.number]), np.array([1.0])
 
 
+def is_nothing(expression: Expression) -> bool:
+    """Return whether a response is the number 0: its input does not move its output."""
+    return isinstance(expression, Constant) and expression.number == 0.0
+
+
 def _nodes(node: Expression, seen: set[int]) -> Iterator[Expression]:
     if id(node) in seen:
         return

@@ -23,7 +23,7 @@ from shaftprint.models._assembly import (
 )
 from shaftprint.models._block import Block
 from shaftprint.models._combination import Combination
-from shaftprint.models._expression import Expression, Walk
+from shaftprint.models._expression import Expression, Walk, is_nothing
 from shaftprint.models._parameter import Parameter
 from shaftprint.models._renaming import Renaming
 from shaftprint.models._role import Role
@@ -260,6 +260,8 @@ class Structure(Shown):
     def of_input(self, name: str) -> "Structure":
         """Return the structure from one of its inputs alone, with all of its parameters.
 
+        Outputs that this input does not move are left out.
+
         Raises
         ------
         StructureError
@@ -268,7 +270,8 @@ class Structure(Shown):
         if name not in self.inputs:
             raise StructureError(f"structure {self.name} has no input {name}; it has {', '.join(self.inputs)}.")
         paths = dict(zip(self.channels, self.paths, strict=True))
-        return replace(self, input=name, inputs=(name,), outputs={one: paths[one, name] for one in self.outputs})
+        moved = {one: paths[one, name] for one in self.outputs if not is_nothing(paths[one, name])}
+        return replace(self, input=name, inputs=(name,), outputs=moved)
 
     def named(self, values: ArrayLike) -> dict[str, FloatArray]:
         """Return every parameter by name, tied ones included.

@@ -63,6 +63,8 @@ class ChannelSignal:
     """Value at the working point, over which deviations are taken."""
     reference_std: float = 0.0
     """Standard deviation of the value at the working point, without the scale of the sensor."""
+    moved_by: str = ""
+    """Symbol of the one excitation that moves it, such as ``theta_set``; empty where every test may."""
     cycle_s: float = 0.0
     """Time from one value to the next, which is how often the quantity is really sampled [s]; 0 at every sample."""
     averaging_s: float = 0.0
@@ -76,6 +78,10 @@ class ChannelSignal:
     def is_side(self) -> bool:
         """Whether it comes seldom, so that it may be missing at a line."""
         return self.role is ChannelRole.SIDE
+
+    def answers(self, excitation: str) -> bool:
+        """Return whether it may move when an excitation, by its symbol, is moved."""
+        return self.moved_by in ("", excitation)
 
     @property
     def nyquist_hz(self) -> float:

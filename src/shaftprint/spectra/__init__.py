@@ -22,7 +22,7 @@ For drives that are no ships `response_from_arrays` makes a response from plain 
 
 from shaftprint.spectra._closed_loop import plant_from_closed_loop
 from shaftprint.spectra._frequency_response import FrequencyResponse
-from shaftprint.spectra._leg_spectra import estimate_legs
+from shaftprint.spectra._leg_spectra import SPEED, estimate_inputs_of_legs, estimate_legs
 from shaftprint.spectra._line_responses import NOT_MEASURED_STD, measured
 from shaftprint.spectra._measured_inputs import with_measured_inputs
 from shaftprint.spectra._open_loop import governor_and_engine, open_loop
@@ -46,6 +46,7 @@ from shaftprint.spectra.records import Arbitrary, Excitation, Periodic, response
 
 __all__ = [
     "NOT_MEASURED_STD",
+    "SPEED",
     "Arbitrary",
     "ExactBin",
     "Excitation",
@@ -63,6 +64,7 @@ __all__ = [
     "WindowSamples",
     "circular_covariance",
     "coherence_covariance",
+    "estimate_inputs_of_legs",
     "estimate_legs",
     "estimate_response",
     "estimate_spectra",

@@ -1,7 +1,7 @@
 """The verb for legs: from signals and campaign to the response of each leg about its own working point."""
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
@@ -17,11 +17,14 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from shaftprint.arrays import BoolArray
-    from shaftprint.campaign import Campaign, Leg
-    from shaftprint.signals import LegState, Signals, SpeedSignal
+    from shaftprint.campaign import Campaign, Leg, Multisine
+    from shaftprint.signals import ExcitationSignal, LegState, Signals, SpeedSignal
     from shaftprint.spectra.legs import LegFinding, LegLines
     from shaftprint.spectra.lines import LineMeasurement
 
+SPEED = "n_set"
+"""Symbol of the set point of the speed."""
+_Lines: TypeAlias = tuple[tuple[int, ...], tuple[int, ...]]
 # A line this close to half the rate of the grid is bent by the anti-alias filter.
 _HIGHEST_SHARE_OF_RATE = 0.45
 
@@ -49,20 +52,64 @@ def estimate_legs(signals: "Signals", campaign: "Campaign") -> dict[str, Spectra
     ResponseError
         If a channel holds values that are not numbers or does not move, or the set point of a leg stands still.
     """
+    return {name: by_input[SPEED] for name, by_input in estimate_inputs_of_legs(signals, campaign).items()}
+
+
+@refusing_none(ResponseError)
+def estimate_inputs_of_legs(signals: "Signals", campaign: "Campaign") -> dict[str, dict[str, Spectra]]:
+    """Measure every leg of a campaign as ``estimate_legs`` does, and what was moved beside the speed in its periods.
+
+    Two inputs that have lines of their own in the same periods are told apart line by line, as if each had been moved
+    alone: what is nonlinear in both falls between the lines where all harmonics are odd.
+
+    Parameters
+    ----------
+    signals, campaign
+        As of ``estimate_legs``.
+
+    Returns
+    -------
+    Of each leg by its name, in order of time, what its inputs show by their symbols, that of the speed first.
+
+    Raises
+    ------
+    ResponseError
+        As ``estimate_legs``, or if the vessel file names no sensor of what was moved.
+    """
     by_name = {leg.name: leg for leg in campaign.legs}
-    return {state.name: _leg(signals.about(state.name), by_name[state.name], state) for state in signals.legs}
+    found = {}
+    for state in signals.legs:
+        about, leg = signals.about(state.name), by_name[state.name]
+        beside = campaign.beside(leg)
+        moved = tuple(leg.lines), tuple(sorted(harmonic for one in beside for harmonic in one.lines))
+        excitations = {SPEED: leg, **{_symbol_of(one, signals): one for one in beside}}
+        found[state.name] = {
+            symbol: _leg(about, one, state, about.excitations[symbol], moved) for symbol, one in excitations.items()
+        }
+    return found
 
 
-def _leg(signals: "Signals", leg: "Leg", state: "LegState") -> Spectra:
-    sensor, moved = signals.engine_speed, signals.excitations["n_set"]
-    measured = _measured(signals, leg, state, sensor)
+def _symbol_of(multisine: "Multisine", signals: "Signals") -> str:
+    for name, moved in signals.excitations.items():
+        if moved.input == multisine.input:
+            return name
+    raise ResponseError(
+        f"{multisine.name}: expected [sensors.{multisine.input}] in the vessel file, which {multisine.name} moves, "
+        "found none."
+    )
+
+
+def _leg(signals: "Signals", leg: "Leg", state: "LegState", moved: "ExcitationSignal", lines_of: "_Lines") -> Spectra:
+    """Return what one input of a leg shows; ``lines_of`` are the harmonics of the speed, and those of all else."""
+    sensor = signals.engine_speed
+    measured = _measured(signals, leg, replace(state, name=leg.name), sensor, moved.name, lines_of)
     expected = np.array([leg.lines[harmonic] for harmonic in measured.harmonics]) * abs(moved.per_volt)
     finding = check_leg(measured, expected=expected / moved.reference, moved=moved)
     kept = [place for place, line in enumerate(measured.lines) if line.window.line not in finding.silent]
     lines = [measured.lines[place] for place in kept]
     if not lines:
         raise ResponseError(
-            f"{leg.name}: expected a set point that moves at the lines of the campaign, found none of them between "
+            f"{leg.name}: expected a {moved.words} that moves at the lines of the campaign, found none of them between "
             f"{measured.window.state.start_s:g} and {measured.window.state.stop_s:g} s: check that campaign and "
             "recording belong together."
         )
@@ -80,7 +127,8 @@ def _leg(signals: "Signals", leg: "Leg", state: "LegState") -> Spectra:
         hold_s=sensor.hold_s,
         pick_up_delay_s=sensor.delay_s,
     )
-    against = (*leg_clock_reasons(measured), *leg_shape_reasons(measured), *shift_reasons(response))
+    of_response = shift_reasons(response) if moved.from_engine else ()
+    against = (*leg_clock_reasons(measured), *leg_shape_reasons(measured), *of_response)
     return Spectra(
         response=replace(response, reasons=(*signals.reasons, *against)),
         windows=tuple(line.window for line in lines),
@@ -119,18 +167,31 @@ def _judged(
     return remarks, used
 
 
-def _measured(signals: "Signals", leg: "Leg", state: "LegState", sensor: "SpeedSignal") -> "LegLines":
-    """Return the lines of a leg in every channel but further set points."""
+def _below(harmonics: "Sequence[int]", highest: float) -> list[int]:
+    return [harmonic for harmonic in harmonics if harmonic <= highest]
+
+
+def _measured(
+    signals: "Signals",
+    leg: "Leg",
+    state: "LegState",
+    sensor: "SpeedSignal",
+    excitation: str,
+    lines_of: "_Lines",
+) -> "LegLines":
+    """Return the lines of one input of a leg in every channel that answers it."""
     highest = _HIGHEST_SHARE_OF_RATE * signals.rate_hz * leg.length_of_period_s
-    harmonics = [harmonic for harmonic in leg.lines if harmonic <= highest]
-    apart = {*signals.excitations, *signals.messages} - {"n_set"}
-    channels = {name: signal for name, signal in signals.channels.items() if name not in apart}
+    harmonics = _below(tuple(leg.lines), highest)
+    apart = {*signals.excitations, *signals.messages} - {excitation}
+    channels = {
+        name: signal for name, signal in signals.channels.items() if name not in apart and signal.answers(excitation)
+    }
     window = cut_leg(
         {name: signal.values for name, signal in channels.items()},
         {name: signal.reference for name, signal in channels.items()},
         state,
         harmonics,
-        excitation="n_set",
+        excitation=excitation,
         rate_hz=signals.rate_hz,
         start_s=signals.start_s,
     )
@@ -138,7 +199,7 @@ def _measured(signals: "Signals", leg: "Leg", state: "LegState", sensor: "SpeedS
         values = window.of(name)
         if not np.isfinite(values).all():
             raise ResponseError(f"{leg.name}: expected numbers in {name}, found some that are not: repair the signal.")
-        if name != "n_set" and np.ptp(values) == 0.0:
+        if name != excitation and np.ptp(values) == 0.0:
             raise ResponseError(
                 f"{leg.name}: expected {name} to move, found a constant from {state.start_s:g} to {state.stop_s:g} "
                 "s: the sensor or its channel is dead."
@@ -146,8 +207,10 @@ def _measured(signals: "Signals", leg: "Leg", state: "LegState", sensor: "SpeedS
     return measure_leg(
         window,
         harmonics,
-        excitation="n_set",
+        excitation=excitation,
         speed=sensor.name,
+        of_speed=_below(lines_of[0], highest),
+        beside=_below(lines_of[1], highest),
         orders=signals.orders,
         references={name: signal.reference for name, signal in channels.items()},
         messages=signals.messages,

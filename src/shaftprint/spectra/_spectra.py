@@ -196,7 +196,8 @@ def _excitation(signals: "Signals", name: str) -> "ExcitationSignal":
 def _channels_on_grid(signals: "Signals", moved: "ExcitationSignal") -> tuple[str, ...]:
     """Return the channels that a window is cut out of: what was moved, and what answers on the grid."""
     apart = {*signals.excitations, *signals.messages} - {moved.name}
-    return tuple(name for name in signals.channels if name not in apart)
+    answers = (name for name, signal in signals.channels.items() if signal.answers(moved.name))
+    return tuple(name for name in answers if name not in apart)
 
 
 def _speed_signal(signals: "Signals", speed: str | None) -> "SpeedSignal":

@@ -1,13 +1,13 @@
 """Legs of a campaign: one line at several working points, fitted to all of their responses at once."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from shaftprint.identify import Identification
 from shaftprint.identify.fit import FitTest, part_tests
 from shaftprint.models import Structure, at_working_point
-from shaftprint.spectra import FrequencyResponse, Spectra, estimate_legs
+from shaftprint.spectra import SPEED, FrequencyResponse, Spectra, estimate_inputs_of_legs
 from shaftprint.units import rev_s_from_rpm
 
 if TYPE_CHECKING:
@@ -27,6 +27,13 @@ class LegMeasurement:
     """Response about that working point."""
     rack: float | None = None
     """Mean fuel rack of the leg, where it was logged throughout."""
+    further: Mapping[str, Spectra] = field(default_factory=dict)
+    """Responses to what was moved beside the speed in the same periods, by its symbol."""
+
+    @property
+    def responses(self) -> tuple[FrequencyResponse, ...]:
+        """The responses to all that was moved, to the speed's set point first."""
+        return (self.spectra.response, *(one.response for one in self.further.values()))
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -43,13 +50,14 @@ class LegTest:
 
 def legs_of(signals: "Signals", campaign: "Campaign") -> tuple[LegMeasurement, ...]:
     """Return every leg of a campaign that the recording holds, that of the recording's working point first."""
-    spectra = estimate_legs(signals, campaign)
+    inputs = estimate_inputs_of_legs(signals, campaign)
     legs = (
         LegMeasurement(
             name=state.name,
             working_point=state.working_point,
-            spectra=spectra[state.name],
+            spectra=inputs[state.name][SPEED],
             rack=rack_of(signals.about(state.name)),
+            further={name: one for name, one in inputs[state.name].items() if name != SPEED},
         )
         for state in signals.legs
     )

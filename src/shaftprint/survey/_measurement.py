@@ -94,8 +94,9 @@ def measure(
     further = {
         name: estimate_spectra(signals, trial.campaign, method=method, excitation=name)
         for name, moved in signals.excitations.items()
-        if name != spectra.response.inputs[0] and moved.input in trial.campaign.inputs
+        if name != spectra.response.inputs[0] and trial.campaign.of_input(moved.input).sines
     }
+    further = {**(legs[0].further if legs else {}), **further}
     responses = responses_of(spectra.response, set_point_latency_s=latency)
     give_back_memory()
     return Measurement(
@@ -159,7 +160,11 @@ def of_legs(measurement: Measurement, names: Sequence[str]) -> Measurement:
         signals=measurement.signals.about(first.name),
         spectra=first.spectra,
         legs=kept,
-        responses=responses_of(first.spectra.response),
+        responses=(
+            *responses_of(first.spectra.response),
+            *(one.response for one in first.further.values()),
+        ),
+        further=first.further,
     )
 
 
@@ -173,12 +178,17 @@ def pairs_of(structure: Structure, measurement: Measurement) -> tuple[tuple[Stru
     StructureError
         If the recording does not give the response that a structure describes.
     """
-    responses, answers = measurement.responses, {*structure.outputs}
-    excited = {response.inputs[0]: response for response in responses if answers <= {*response.outputs}}
-    if len(structure.inputs) > 1 and {*structure.inputs} <= {*excited}:
-        return tuple((structure.of_input(name), excited[name]) for name in structure.inputs)
+    responses = measurement.responses
     main, rack = measurement.signals.working_point, rack_of(measurement.signals)
-    further = (leg for leg in measurement.legs if leg.working_point != main)
+    further = tuple(leg for leg in measurement.legs if leg.working_point != main)
+    parts = _by_input(structure, responses)
+    if len(structure.inputs) > 1 and parts:
+        of_legs = (
+            (structure_at(part, leg.working_point, main=main), response)
+            for leg in further
+            for part, response in _by_input(structure, leg.responses)
+        )
+        return (*parts, *of_legs)
     knows_rack = "X" in (*structure.outputs, *structure.inputs)
     return (
         (structure, response_of(structure, responses)),
@@ -195,6 +205,19 @@ def pairs_of(structure: Structure, measurement: Measurement) -> tuple[tuple[Stru
             for leg in further
         ),
     )
+
+
+def _by_input(
+    structure: Structure, responses: Sequence[FrequencyResponse]
+) -> tuple[tuple[Structure, FrequencyResponse], ...]:
+    """Return the part of a structure behind each of its inputs with its response; nothing where one was not moved."""
+    parts = [structure.of_input(name) for name in structure.inputs]
+    found = [
+        next((one for one in responses if part.inputs == one.inputs and {*part.outputs} <= {*one.outputs}), None)
+        for part in parts
+    ]
+    every = tuple((part, one) for part, one in zip(parts, found, strict=True) if one is not None)
+    return every if len(every) == len(parts) else ()
 
 
 def response_of(structure: Structure, responses: Sequence[FrequencyResponse]) -> FrequencyResponse:

@@ -182,7 +182,7 @@ def run(
     trial = replace(trial, sources=(*trial.sources, *sources))
     chosen = tuple(
         one if isinstance(one, Structure) else of_vessel(shipped_structure(one), trial.vessel)
-        for one in structures or (default_structure(trial.vessel),)
+        for one in structures or (default_structure(trial.vessel, trial.campaign),)
     )
     measurement = of_legs(measure(recording, trial, mode=mode, progress=progress), legs)
     measurement = replace(measurement, began=_began(tested_at, measurement.began, trial))

@@ -34,6 +34,8 @@ from shaftprint.tug._like_stan_tug import like_stan_tug_1205
 from shaftprint.tug._linearise import linearised_response
 from shaftprint.tug._linearise_both import linearised_both
 from shaftprint.tug._noise import Noise
+from shaftprint.tug._pitch_actuation import PitchActuation
+from shaftprint.tug._pitch_series import steepened, torque_over_pitch
 from shaftprint.tug._sail import sail
 from shaftprint.tug._sail_as import sail_as
 from shaftprint.tug._sail_both import TruthOfBoth, sail_both
@@ -58,6 +60,7 @@ __all__ = [
     "Fault",
     "IdealSignals",
     "Noise",
+    "PitchActuation",
     "SailedTest",
     "Sailing",
     "SharedWater",
@@ -86,6 +89,8 @@ __all__ = [
     "ship_at",
     "simulate_signals",
     "simulated_fleet",
+    "steepened",
+    "torque_over_pitch",
     "truth_path",
     "vessel_at",
     "with_delay",

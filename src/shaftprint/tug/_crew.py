@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from shaftprint.campaign import Campaign
 from shaftprint.errors import SettingsError
 from shaftprint.recording import RecordingWriter
+from shaftprint.tug._pitch_actuation import PitchActuation
 from shaftprint.tug._truth import StripTruth, Truth, rack_latency_s, tell_truth
 from shaftprint.tug._tug import Tug
 from shaftprint.tug.plant import (
@@ -16,6 +17,7 @@ from shaftprint.tug.plant import (
     WAY,
     Demand,
     Stretch,
+    actuation_of,
     build_plant,
     equilibrium,
     steady_load_nm,
@@ -30,6 +32,7 @@ from shaftprint.tug.sensors import (
     Helm,
     HelmMessages,
     PickUp,
+    PitchFeedback,
     PitchLever,
     SpeedLog,
     SpeedMessages,
@@ -76,11 +79,11 @@ class Crew:
                 f"found a duration of {campaign.duration_s:g} s."
             )
         self._expect_fast_logger()
-        # bus, log, pitch and demand come last: without them the others draw the same numbers
-        process, torque, set_point, *speeds, bus, log, pitch, demand = (
+        # bus, log, pitch, demand and feedback come last: without them the others draw the same numbers
+        process, torque, set_point, *speeds, bus, log, pitch, demand, feedback = (
             np.random.default_rng(child)
             for child in np.random.SeedSequence(seed if line is None else (seed, line)).spawn(
-                7 + len(vessel.sensors.speed)
+                8 + len(vessel.sensors.speed)
             )
         )
         duration_s = campaign.duration_s
@@ -105,12 +108,15 @@ class Crew:
         self._control_unit = self._watch_bus(float(first[RACK]), bus)
         self._log = self._read_log(float(first[WAY]), log)
         self._lever = self._stand_by_lever(pitch)
+        self._feedback = self._watch_pitch(feedback)
         asked = vessel.sensors.demand
         self._demand = (
             None if asked is None else DemandMessages(asked, rate_hz=self._rate_hz, rng=demand, bus=Bus.of(tug))
         )
-        on_board = (self._helm, *self._speeds, self._gauge, self._control_unit, self._log, self._lever, self._demand)
-        self._sensors: tuple[_Sensor, ...] = tuple(sensor for sensor in on_board if sensor is not None)
+        on_board = (self._helm, *self._speeds, self._gauge, self._control_unit, self._log)
+        of_pitch = (self._lever, self._feedback)
+        every = (*on_board, *of_pitch, self._demand)
+        self._sensors: tuple[_Sensor, ...] = tuple(sensor for sensor in every if sensor is not None)
         self._limited = {excitation.name: 0 for excitation in campaign.excitations}
 
     def _expect_fast_logger(self) -> None:
@@ -155,6 +161,19 @@ class Crew:
         if sensor is None:
             return None
         return PitchLever(sensor.channel, self._tug, self._campaign, rng=rng)
+
+    def _watch_pitch(self, rng: np.random.Generator) -> PitchFeedback | None:
+        sensor = self._vessel.sensors.pitch
+        if sensor is None:
+            return None
+        sailing = self._tug.sailing
+        return PitchFeedback(
+            sensor,
+            actuation_of(self._tug) or PitchActuation(),
+            pitch_ratio=self._vessel.propeller.pitch_ratio if sailing is None else sailing.pitch_ratio,
+            rate_hz=self._rate_hz,
+            rng=rng,
+        )
 
     def _watch_bus(self, first_rack: float, rng: np.random.Generator) -> ControlUnit | None:
         sensor = self._vessel.sensors.rack
@@ -257,6 +276,14 @@ class Crew:
                 rate_hz=self._rate_hz,
                 scale=VOLT_PER_COUNT,
                 long_name="set point of the pitch of the propeller",
+            )
+        if self._feedback is not None:
+            writer.declare(
+                self._feedback.channel,
+                unit="V",
+                rate_hz=self._rate_hz,
+                scale=VOLT_PER_COUNT,
+                long_name="feedback of the pitch of the propeller",
             )
         self._declare_slow_channels(writer)
 

@@ -5,6 +5,8 @@ from dataclasses import replace
 
 from shaftprint.errors import SettingsError
 from shaftprint.tug._coupling import stated_coupling
+from shaftprint.tug._pitch_actuation import PitchActuation, pitch_torque
+from shaftprint.tug._pitch_series import steepened, torque_over_pitch
 from shaftprint.tug._sailing import CURVES_PITCH_RATIO, CURVES_SERIES, Sailing
 from shaftprint.tug._truth import normalised_truth
 from shaftprint.tug._tug import Tug
@@ -26,8 +28,9 @@ def like_stan_tug_1205(vessel: Vessel, *, offset_v: float = _AT_THE_QUAY_V) -> T
     The lever asks for the ship's working speed at -5 V where it is tested at the quay, and at the voltage of the
     campaign underway; volts are those of the tug. A line with less inertia over its torque has a governor with as much
     smaller gains, which crosses over where that of the tug does and is as far from hunting. A motor has the dead time
-    and lag of a converter. A ship whose vessel file states a speed of the ship sails free, with its wake fraction and
-    thrust deduction. Where the links of its vessel file have one spring, that is its coupling.
+    and lag of a converter; a controllable pitch follows as the vessel file says. A ship whose vessel file states a
+    speed of the ship sails free, with its wake fraction and thrust deduction. Where the links of its vessel file have
+    one spring, that is its coupling.
 
     Parameters
     ----------
@@ -41,8 +44,12 @@ def like_stan_tug_1205(vessel: Vessel, *, offset_v: float = _AT_THE_QUAY_V) -> T
     SettingsError
         If it is to sail free with another propeller than the simulated ship has curves of.
     """
-    tug = replace(Tug.stan_tug_1205() if vessel.motor is None else _ELECTRIC, sailing=_sailing(vessel))
-    tug = replace(tug, coupling=stated_coupling(vessel))
+    tug = replace(
+        Tug.stan_tug_1205() if vessel.motor is None else _ELECTRIC,
+        sailing=_sailing(vessel),
+        pitch=_pitch(vessel),
+        coupling=stated_coupling(vessel),
+    )
     further_v = offset_v - _AT_THE_QUAY_V if vessel.is_underway else 0.0
     asked_rpm = _AT_THE_QUAY_RPM + tug.set_point_slope_rpm_per_v * further_v
     speed = vessel.working_point.engine_speed_rpm / asked_rpm
@@ -54,6 +61,21 @@ def like_stan_tug_1205(vessel: Vessel, *, offset_v: float = _AT_THE_QUAY_V) -> T
         proportional_gain=gain * tug.proportional_gain,
         integral_gain_per_s=gain * tug.integral_gain_per_s,
     )
+
+
+def _pitch(vessel: Vessel) -> PitchActuation | None:
+    """Return how a controllable pitch follows, as the vessel file says of it; None underway or where it is fixed."""
+    stated = vessel.pitch
+    if stated is None or vessel.is_underway:
+        return None
+    actuation = PitchActuation(
+        lag_s=stated.lag_s, delay_s=stated.delay_s, rate_per_s=stated.rate_per_s, play=stated.play
+    )
+    if stated.torque_slope is None:
+        return actuation
+    rest, powers = vessel.propeller.pitch_ratio, torque_over_pitch(vessel)
+    factor = stated.torque_slope / (rest * pitch_torque(replace(actuation, torque_powers=powers), vessel)[1])
+    return replace(actuation, torque_powers=steepened(powers, rest, factor))
 
 
 def _sailing(vessel: Vessel) -> Sailing | None:

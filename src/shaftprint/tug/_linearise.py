@@ -7,6 +7,7 @@ from numpy.typing import ArrayLike
 
 from shaftprint.arrays import ComplexArray, FloatArray
 from shaftprint.errors import SettingsError
+from shaftprint.tug._pitch_actuation import pitch_torque
 from shaftprint.tug._tug import Tug
 from shaftprint.tug.plant import (
     ANGLE,
@@ -19,6 +20,7 @@ from shaftprint.tug.plant import (
     TWIST,
     WAY,
     Plant,
+    actuation_of,
     build_plant,
     derivatives,
     equilibrium,
@@ -50,10 +52,10 @@ def linearised_response(
         Frequencies [Hz], shape (lines,).
     outputs
         Which responses: ``n``, ``M_s``, ``X``, the fuel rack that the governor gives before the delay, and of a tug
-        that sails ``v_s``, the speed of the ship.
+        that sails ``v_s``, the speed of the ship, of one with a controllable pitch at the quay ``theta``, its feedback.
     input
-        ``n_set``; ``load``, a share by which the propeller takes more torque; or of a tug that sails ``theta_set``, the
-        set point of the pitch.
+        ``n_set``; ``load``, a share by which the propeller takes more torque; or of a tug that sails or has a
+        controllable pitch ``theta_set``, the set point of the pitch.
 
     Returns
     -------
@@ -66,7 +68,7 @@ def linearised_response(
     SettingsError
         If the truth is not physical or an output has another name.
     """
-    names = ("n", "M_s", "X") if tug.sailing is None else ("n", "M_s", "X", "v_s")
+    names = ("n", "M_s", "X", *(("theta",) if tug.pitch is not None else ()), *(("v_s",) if tug.sailing else ()))
     unknown = [name for name in outputs if name not in names]
     if unknown:
         words = f"{', '.join(names[:-1])} and {names[-1]}"
@@ -74,7 +76,7 @@ def linearised_response(
     plant = build_plant(tug, vessel)
     speed, driving_nm = working_point(tug, vessel)
     torque = vessel.working_point.turning * driving_nm
-    slope = _slopes(plant, speed)
+    slope = _slopes(plant, speed, () if tug.pitch is None else pitch_torque(tug.pitch, vessel))
     rack = working_point_rack(tug, vessel)
     s = 2j * np.pi * np.asarray(frequency_hz, dtype=np.float64)
     # the torque of a motor follows in a lag of first order
@@ -90,7 +92,7 @@ def linearised_response(
         rack_given, gauge = slope[_GIVEN], slope[_GAUGE]
         inner = slope[states, _RACK_DELAYED] * delay
         system = value * np.eye(inner.size) - slope[np.ix_(states, states)] - np.outer(inner, rack_given[states])
-        moved, size, late = _excitation(tug, input, value, speed)
+        moved, size, late = _excitation(tug, vessel, input, value, speed)
         right = slope[states, moved] + inner * rack_given[moved]
         x = np.linalg.solve(system, right) * late
         responses = {
@@ -98,25 +100,37 @@ def linearised_response(
             "M_s": (gauge[states] @ x + gauge[moved] * late) * size / torque,
             "X": (rack_given[states] @ x + rack_given[moved] * late) * size / rack,
         }
+        if tug.pitch is not None:
+            responses["theta"] = late * tug.pitch.sensor_scale if moved == _PITCH else 0.0
         if plant.sails:
             responses["v_s"] = x[-1] * size / way
         response[:, 0, line] = [responses[name] for name in outputs]
     return response
 
 
-def _excitation(tug: Tug, name: str, s: complex, speed: float) -> tuple[int, float, complex]:
+def _excitation(tug: Tug, vessel: Vessel, name: str, s: complex, speed: float) -> tuple[int, float, complex]:
     """Return place of what is moved, its working point, and what comes between its set point and the line."""
     if name == "n_set":
         return _DEMAND, speed, complex(np.exp(-s * tug.set_point_latency_s))
     if name == "load":
         return _LOAD, 1.0, 1.0 + 0.0j
-    if name != "theta_set" or tug.sailing is None:
-        raise SettingsError(f"input: expected n_set or load, or theta_set of a tug that sails, found {name}.")
-    return _PITCH, tug.sailing.pitch_ratio, 1.0 / (tug.sailing.pitch_lag_s * s + 1.0)
+    actuation = actuation_of(tug)
+    if name != "theta_set" or actuation is None:
+        raise SettingsError(
+            "input: expected n_set or load, or theta_set of a tug that sails or has a controllable pitch, found "
+            f"{name}."
+        )
+    ratio = vessel.propeller.pitch_ratio if tug.sailing is None else tug.sailing.pitch_ratio
+    follows = actuation.set_point_scale * np.exp(-s * actuation.delay_s) / (actuation.lag_s * s + 1.0)
+    return _PITCH, ratio, complex(follows)
 
 
-def _slopes(plant: Plant, engine_speed_rev_s: float) -> FloatArray:
-    """Return the slopes of the rates, the rack given and the gauge torque, shape (11, 13)."""
+def _slopes(plant: Plant, engine_speed_rev_s: float, pitch_powers: tuple[float, ...]) -> FloatArray:
+    """Return the slopes of the rates, the rack given and the gauge torque, shape (11, 13).
+
+    ``pitch_powers`` are those of the torque over the pitch at the quay; none where the pitch is fixed or the curves of
+    a ship that sails hold it.
+    """
     state = equilibrium(plant, engine_speed_rev_s)
     centre = np.array([*state, engine_speed_rev_s, state[RACK], 0.0, 0.0])
     # at the quay the rates are at most quadratic: the central difference has no truncation error; underway it is 1e-8
@@ -130,13 +144,15 @@ def _slopes(plant: Plant, engine_speed_rev_s: float) -> FloatArray:
     for index in range(_SIZE):
         shift = np.zeros(_SIZE)
         shift[index] = size[index]
-        difference = _rates(plant, centre + shift) - _rates(plant, centre - shift)
+        difference = _rates(plant, centre + shift, pitch_powers) - _rates(plant, centre - shift, pitch_powers)
         slope[:, index] = difference / (2.0 * size[index])
     return slope
 
 
-def _rates(plant: Plant, vector: FloatArray) -> FloatArray:
+def _rates(plant: Plant, vector: FloatArray, pitch_powers: tuple[float, ...]) -> FloatArray:
     rates: Any = derivatives
-    values = rates.py_func(vector[:_DEMAND], *vector[_DEMAND:_PITCH], vector[_LOAD], 0.0, plant, 1.0, vector[_PITCH])
+    of_pitch = float(np.polynomial.polynomial.polyval(vector[_PITCH], pitch_powers)) if pitch_powers else 1.0
+    load = (1.0 + vector[_LOAD]) * of_pitch - 1.0
+    values = rates.py_func(vector[:_DEMAND], *vector[_DEMAND:_PITCH], load, 0.0, plant, 1.0, vector[_PITCH])
     # the angle's rate, which is the speed, plays no part
     return np.array([*values[:5], 0.0, *values[9:12], values[5], values[6]])

@@ -10,12 +10,15 @@ import numpy as np
 from shaftprint.campaign import Campaign
 from shaftprint.errors import RecordingError
 from shaftprint.notebook import Shown
+from shaftprint.tug._pitch_actuation import pitch_truth
 from shaftprint.tug._sailing import sailing_truth, way_of
 from shaftprint.tug._tug import Tug
 from shaftprint.tug.plant import build_plant, demand_limits, shaft_time_constant_s, working_point, working_point_rack
 from shaftprint.tug.sensors import Fault
 from shaftprint.units import rpm_from_rev_s
 from shaftprint.vessel import RackSensor, Vessel
+
+_PITCH = ("rate_per_s", "deadband", "play", "sensor_rms", "sensor_wander_rms")
 
 SCHEMA = 1
 """Version of the truth file."""
@@ -50,9 +53,9 @@ class Truth(Shown):
     normalised: Mapping[str, float]
     """Parameters normalised at the working point: ``tau_up``, ``tau_dn``, ``tau_t`` [s]; ``tau_w`` [s], the part of
     ``tau_dn`` that is water beyond the vessel's; with an elastic coupling ``k_c`` [1/s], ``d_c`` and ``tau_m`` [s];
-    ``k_q``; ``kappa``, ``tau_i`` [s] of the dynamic inflow; ``g``, ``v``,
-    ``X_0``; ``K_p``, ``K_i`` [1/s], ``t_d`` [s], ``omega_n`` [rad/s], ``zeta``,
-    of a motor ``T_m`` [s] in their place, ``t_sp`` [s]; and where percent torque
+    ``k_q``; with a controllable pitch ``q``, ``tau_th`` [s], ``t_th`` [s], ``c_th`` and ``c_pitch``; ``kappa``,
+    ``tau_i`` [s] of the dynamic inflow; ``g``, ``v``, ``X_0``; ``K_p``, ``K_i`` [1/s], ``t_d`` [s], ``omega_n``
+    [rad/s], ``zeta``, of a motor ``T_m`` [s] in their place, ``t_sp`` [s]; and where percent torque
     was logged ``t_rack`` [s], its latency beyond the vessel's. Underway, in place of ``k_q``: ``w``, ``t``, ``J``,
     ``a``, ``b``, ``e``, ``tau_u`` [s], the speed of the ship ``v_0`` [m/s] and its resistance ``R`` [N]."""
     physical: Mapping[str, float]
@@ -128,7 +131,7 @@ def _actuation_truth(tug: Tug, vessel: Vessel) -> dict[str, float]:
 def _load_truth(tug: Tug, vessel: Vessel) -> dict[str, float]:
     """Return what the torque of the propeller follows: the square of the speed, or the ship."""
     if tug.sailing is None:
-        return {"k_q": 2.0}
+        return {"k_q": 2.0} | ({} if tug.pitch is None else pitch_truth(tug.pitch, vessel))
     speed, _ = working_point(tug, vessel)
     return sailing_truth(tug.sailing, way_of(tug.sailing, vessel), speed / vessel.gearbox.ratio)
 
@@ -144,6 +147,7 @@ def physical_truth(tug: Tug, vessel: Vessel) -> dict[str, float]:
     speed, _ = working_point(tug, vessel)
     rate = tug.rack_rate_limit_per_s
     limited = {} if rate is None else {"rack_rate_limit_per_s": rate}
+    pitch = {} if tug.pitch is None else {f"pitch_{k}": getattr(tug.pitch, k) for k in _PITCH}
     coupling = {} if tug.coupling is None else {f"coupling_{name}": x for name, x in asdict(tug.coupling).items()}
     return {
         "inertia_upstream_kg_m2": plant.inertia_upstream_kg_m2,
@@ -165,6 +169,7 @@ def physical_truth(tug: Tug, vessel: Vessel) -> dict[str, float]:
         "torque_zero_offset_nm": tug.torque_zero_offset_nm,
         **limited,
         **coupling,
+        **pitch,
         **_of_speed_and_generator(tug),
         **demand_limits(tug, vessel).stated,
     }

@@ -5,6 +5,7 @@ from typing import Self
 
 from shaftprint.tug._coupling import Coupling
 from shaftprint.tug._noise import Noise
+from shaftprint.tug._pitch_actuation import PitchActuation
 from shaftprint.tug._sailing import Sailing
 
 # Table 3.4 of the thesis, "Fingerprinting II": angles between the reflection strips [degree]; printed sum 360.02.
@@ -50,6 +51,8 @@ class Tug:
     """Time ``tau_i`` in which the slipstream follows the propeller at the working point [s]; 0.09 to 0.21 s."""
     sailing: Sailing | None = None
     """What makes the ship sail free; ``None``: bollard pull, the ship stands still."""
+    pitch: PitchActuation | None = None
+    """A controllable pitch at the quay; ``None``: the pitch is fixed, or underway as ``sailing`` says."""
     g: float = 0.0
     """Slope of brake torque over engine speed at constant rack, normalised at the working point."""
     v: float = 1.0

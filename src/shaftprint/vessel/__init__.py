@@ -31,9 +31,11 @@ from shaftprint.vessel._limits import OperatingLimits
 from shaftprint.vessel._links import ShaftLink
 from shaftprint.vessel._machinery import Engine, Gearbox, Machine, Motor, Propeller, RackMap, WorkingPoint
 from shaftprint.vessel._orders import Order
+from shaftprint.vessel._pitch import ControllablePitch
 from shaftprint.vessel._sensors import (
     DemandSensor,
     Logger,
+    PitchSensor,
     PitchSetPointSensor,
     RackSensor,
     Sensors,
@@ -50,6 +52,7 @@ __all__ = [
     "ALIVE_MA",
     "LIVE_ZERO_MA",
     "SAMPLES_A_TOOTH",
+    "ControllablePitch",
     "DemandSensor",
     "Engine",
     "GaugedShaft",
@@ -62,6 +65,7 @@ __all__ = [
     "Motor",
     "OperatingLimits",
     "Order",
+    "PitchSensor",
     "PitchSetPointSensor",
     "Propeller",
     "RackMap",

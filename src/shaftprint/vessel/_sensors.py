@@ -22,7 +22,7 @@ from shaftprint.vessel._machinery import Machine
 from shaftprint.vessel._plain_unit import PLAIN_UNIT
 from shaftprint.vessel._set_point import SetPointSensor
 from shaftprint.vessel._shaft_torque import ShaftTorqueSensor
-from shaftprint.vessel._usual import LOG_LATENCY_SHARE, LOG_SCALE_STD
+from shaftprint.vessel._usual import LOG_LATENCY_SHARE, LOG_SCALE_STD, PITCH_SENSOR_STD
 from shaftprint.vessel._wheel import Wheel
 
 SpeedUnit: TypeAlias = Annotated[
@@ -336,6 +336,35 @@ class PitchSetPointSensor(Settings):
     """Relative standard deviation of the pitch for one volt."""
 
 
+class PitchSensor(Settings):
+    """The feedback of a controllable-pitch propeller: what its pitch is, as the piston or a feedback rod shows it."""
+
+    channel: Name
+    """Name of the channel in the recording."""
+    unit: Literal["V"]
+    """Unit of the channel."""
+    pitch_ratio_per_v: Number
+    """Pitch over diameter for one volt [1/V]."""
+    pitch_ratio_at_zero_v: Number
+    """Pitch over diameter at no voltage [-]."""
+    latency_s: NotNegativeNumber = 0.0
+    """Time by which it is late [s]."""
+    scale_std_fraction: PositiveNumber | None = None
+    """Relative standard deviation of a change of pitch over the pitch, as it shows them; see ``scale_std`` where it is
+    not stated."""
+
+    @property
+    def scale_std(self) -> float:
+        """Relative standard deviation of a change of pitch over the pitch, as stated or as usual."""
+        return PITCH_SENSOR_STD if self.scale_std_fraction is None else self.scale_std_fraction
+
+    @model_validator(mode="after")
+    def _has_a_slope(self) -> Self:
+        if self.pitch_ratio_per_v == 0.0:
+            raise ValueError("expected pitch_ratio_per_v other than 0, found 0.")
+        return self
+
+
 class Logger(Settings):
     """The instrument that recorded the channels."""
 
@@ -363,13 +392,15 @@ class Sensors(Settings):
 
     pitch_set_point: PitchSetPointSensor | None = None
     """The set point of the pitch of a controllable-pitch propeller, where it was logged."""
+    pitch: PitchSensor | None = None
+    """The pitch of a controllable-pitch propeller, where it was logged."""
 
     @model_validator(mode="after")
     def _names_and_channels_differ(self) -> Self:
         names = [sensor.name for sensor in self.speed]
         channels = [sensor.channel for sensor in self.speed]
         channels += [self.shaft_torque.channel, self.set_point.channel]
-        further = (self.rack, self.demand, self.ship_speed, self.pitch_set_point)
+        further = (self.rack, self.demand, self.ship_speed, self.pitch_set_point, self.pitch)
         channels += [sensor.channel for sensor in further if sensor is not None]
         errors = []
         for what, values in (("name", names), ("channel", channels)):

@@ -25,3 +25,7 @@ with the temperature of the rubber."""
 COUPLING_DAMPING_STD = 0.3
 """Relative standard deviation of the damping of a link: 0.8 to 1.2 of a rubber coupling's ``psi`` are usual, and it
 changes with amplitude and temperature."""
+PITCH_SENSOR_STD = 0.02
+"""Relative standard deviation of a change of pitch that the feedback of a controllable pitch shows."""
+PITCH_SLOPE_STD = 0.10
+"""Relative standard deviation of the slope of torque over pitch that a propeller series gives a controllable pitch."""

@@ -20,6 +20,7 @@ from shaftprint.vessel._links import ShaftLink, wrong_links
 from shaftprint.vessel._machinery import Curve, Engine, Gearbox, Motor, Propeller, WorkingPoint
 from shaftprint.vessel._motor_words import in_file_words
 from shaftprint.vessel._orders import Order, orders_of
+from shaftprint.vessel._pitch import ControllablePitch, wrong_pitch
 from shaftprint.vessel._sensors import Logger, Sensors
 from shaftprint.vessel._ship import Ship
 from shaftprint.vessel._usual import INERTIA_STD, WASH_SHARE_STD
@@ -40,6 +41,8 @@ class Vessel(Shown, Settings):
     """The reduction gear."""
     propeller: Propeller
     """The propeller."""
+    pitch: ControllablePitch | None = None
+    """Its controllable pitch; None where the pitch is fixed."""
     working_point: WorkingPoint
     """Expected steady state between the test signals."""
     inertia: tuple[InertiaRow, ...] = Field(min_length=2)
@@ -112,6 +115,13 @@ class Vessel(Shown, Settings):
         errors += wrong_links(self.links, self.inertia)
         if self.working_point.is_astern:
             errors += self._wrong_astern()
+        sensors = self.sensors
+        errors += wrong_pitch(
+            self.pitch,
+            self.propeller.pitch_ratio,
+            is_moved=sensors.pitch_set_point is not None,
+            is_shown=sensors.pitch is not None,
+        )
         if self.working_point.ship_speed_m_s is not None and self.hull is None:
             errors.append("expected [hull] beside ship_speed_m_s of the working point, a test underway, found none.")
         if errors:
@@ -158,6 +168,11 @@ class Vessel(Shown, Settings):
     def wash(self) -> tuple[float, float]:
         """Share of its torque that the propeller loses in a twice as fast wash of the other, and its deviation."""
         return (0.0, WASH_SHARE_STD) if self.hull is None else (self.hull.wash_share, self.hull.wash_std)
+
+    @property
+    def shows_pitch(self) -> bool:
+        """Whether a controllable pitch, its set point and what it reaches are logged."""
+        return self.pitch is not None and self.sensors.pitch is not None
 
     @property
     def machine(self) -> Engine | Motor:
@@ -214,6 +229,8 @@ class Vessel(Shown, Settings):
         silent = [row.name for row in self.inertia if row.std_kg_m2 is None]
         if silent:
             usual.append(f"std_kg_m2 of {', '.join(silent)} = {INERTIA_STD:g} of the inertia")
+        if self.sensors.pitch is not None and self.sensors.pitch.scale_std_fraction is None:
+            usual.append(f"sensors.pitch.scale_std_fraction = {self.sensors.pitch.scale_std:g}")
         if self.is_underway and self.sensors.ship_speed is not None:
             log = self.sensors.ship_speed
             if log.scale_std_fraction is None:

@@ -119,7 +119,9 @@ def command(
         return
     # before the folder is made: a mistake in a settings file leaves none
     trial, rng = load_trial(vessel, campaign), np.random.default_rng(options.seed)
-    structures = structures_of(names or (TypedName(default_structure(trial.vessel)),), options, trial.vessel)
+    structures = structures_of(
+        names or (TypedName(default_structure(trial.vessel, trial.campaign)),), options, trial.vessel
+    )
     with output_folder(output, of="identify", force=force) as folder:
         with progress(hidden=no_progress) as steps:
             survey = run(

@@ -107,7 +107,9 @@ def command(
     trial = load_trial(vessel, campaign)
     kept = None if fingerprint is None else fingerprint_at(fingerprint)
     if kept is None:
-        structures = structures_of([structure or TypedName(default_structure(trial.vessel))], options, trial.vessel)
+        structures = structures_of(
+            [structure or TypedName(default_structure(trial.vessel, trial.campaign))], options, trial.vessel
+        )
     else:
         structures = held_structures([structure_to_use(structure, kept)], options)
     with progress(hidden=no_progress) as steps:

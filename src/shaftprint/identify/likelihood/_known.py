@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from shaftprint.card import open_water_curve
 from shaftprint.catalogue import ShipRole, expect_roles
 from shaftprint.identify.likelihood._prior import Prior
 from shaftprint.models import Role, Structure
@@ -35,8 +36,9 @@ def priors_from_vessel(
 
     It is the inertia upstream of the gauge and with it the slope of the engine torque; stiffness and damping of the
     coupling that the links state, and what it drives ahead of the gauge; the latencies of gauge, set point and rack;
-    and the inertia downstream where the structure has no shaft torque to show it. Where it shows, the
-    test is to check the vessel file's inertia, so that the fit does not know it.
+    the scale of what shows a pitch; and the inertia downstream, and the slope of the torque over a pitch, where the
+    structure has no shaft torque to show them. Where it shows, the test is to check what the vessel file says of these,
+    so that the fit does not know it.
 
     Parameters
     ----------
@@ -54,7 +56,7 @@ def priors_from_vessel(
     """
     left_out = set()
     if SHAFT_TORQUE in (*structure.inputs, *structure.outputs):
-        left_out.add(ShipRole.INERTIA_DOWNSTREAM)
+        left_out |= {ShipRole.INERTIA_DOWNSTREAM, ShipRole.PITCH_SLOPE}
     if ShipRole.INERTIA_UPSTREAM not in _free_names(structure):
         left_out.add(ShipRole.ENGINE_SPEED_SLOPE)
     expected = expected_from_vessel(structure, vessel, working_point, mode=mode)
@@ -67,7 +69,7 @@ def expected_from_vessel(
     """Return all that a vessel file states of a structure's free parameters, for those who plan or predict a test.
 
     It is what a fit may know (``priors_from_vessel``, which has the parameters and errors) and what the test is to
-    check: the inertia downstream of the gauge.
+    check: the inertia downstream of the gauge, and the slope of the torque over a controllable pitch.
     """
     expect_roles(structure)
     names = _free_names(structure)
@@ -173,6 +175,26 @@ class _Test:
         )
         return Prior(mean=mean, std=mean * share, sources={"gauge zero": -mean * share}) if share else None
 
+    def pitch_slope(self) -> Prior | None:
+        """Return the slope of the torque over a controllable pitch, stated or of the series; None where it is fixed."""
+        pitch, propeller = self.vessel.pitch, self.vessel.propeller
+        if pitch is None or self.vessel.is_underway:
+            return None
+        curve, slope = open_water_curve(propeller), pitch.torque_slope
+        if slope is None:
+            if curve is None:
+                return None
+            slope = curve.at(0.0, propeller.pitch_ratio).q
+        std = pitch.torque_slope_std or pitch.usual_slope_std(slope)
+        return Prior(mean=slope, std=std, sources={"pitch slope": std})
+
+    def pitch_sensor_scale(self) -> Prior | None:
+        """Return what is known of the scale by which a pitch is shown; None where it is not logged."""
+        sensor = self.vessel.sensors.pitch
+        if sensor is None:
+            return None
+        return Prior(mean=1.0, std=sensor.scale_std, sources={"pitch sensor scale": sensor.scale_std})
+
     def _latency(self, source: str, mean_s: float | None, std_s: float | None) -> Prior | None:
         return Prior(mean=mean_s, std=std_s, sources={source: std_s}) if mean_s is not None and std_s else None
 
@@ -189,5 +211,7 @@ PRIORS: Mapping[Role, Callable[[_Test], Prior | None]] = {
     ShipRole.RACK_LATENCY: _Test.rack_latency,
     ShipRole.LOG_LATENCY: _Test.log_latency,
     ShipRole.LOAD_SLOPE: _Test.load_slope,
+    ShipRole.PITCH_SLOPE: _Test.pitch_slope,
+    ShipRole.PITCH_SENSOR_SCALE: _Test.pitch_sensor_scale,
 }
 """Priors of a vessel file, by role."""

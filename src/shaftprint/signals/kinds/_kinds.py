@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from shaftprint.signals._channel_signals import ChannelRole
 from shaftprint.signals.kinds._pick_up import Speed
-from shaftprint.signals.kinds._pitch import PitchSetPoint
+from shaftprint.signals.kinds._pitch import Pitch, PitchSetPoint
 from shaftprint.signals.kinds._rack import Rack
 from shaftprint.signals.kinds._set_point import SetPoint
 from shaftprint.signals.kinds._ship_speed import ShipSpeed
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from shaftprint.vessel import Vessel
 
 KINDS: "Mapping[str, ChannelKind[Any]]" = MappingProxyType(
-    {kind.name: kind for kind in (SetPoint(), PitchSetPoint(), Speed(), ShipSpeed(), ShaftTorque(), Rack())}
+    {kind.name: kind for kind in (SetPoint(), PitchSetPoint(), Speed(), ShipSpeed(), Pitch(), ShaftTorque(), Rack())}
 )
 """Kinds by symbol, in the order in which their signals stand."""
 

@@ -1,16 +1,17 @@
-"""The set point of the pitch of a controllable-pitch propeller, from the voltage that asks for it."""
+"""The pitch of a controllable-pitch propeller: its set point, from the voltage that asks for it, and its feedback."""
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shaftprint.arrays import frozen_float
+from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.errors import SignalError
-from shaftprint.signals._channel_signals import ChannelRole, ExcitationSignal
-from shaftprint.signals.conditioning import FaultLimits, Reading, fault_limits
+from shaftprint.signals._channel_signals import ChannelRole, ChannelSignal, ExcitationSignal
+from shaftprint.signals.conditioning import FaultLimits, Reading, conditioned, fault_limits
 from shaftprint.signals.kinds._kind import ChannelKind, Source, SteadyState, steady_parts
 from shaftprint.signals.kinds._set_point import read_voltage
-from shaftprint.vessel import PitchSetPointSensor
+from shaftprint.vessel import PitchSensor, PitchSetPointSensor
 
 if TYPE_CHECKING:
     from shaftprint.signals._clock import Clock
@@ -36,12 +37,7 @@ class PitchSetPoint(ChannelKind[PitchSetPointSensor]):
 
     def signal(self, source: Source[PitchSetPointSensor], reading: Reading, steady: SteadyState) -> ExcitationSignal:
         """Return the pitch over its mean in the stretches at the working point."""
-        mean = float(np.concatenate(steady_parts(reading.values, steady.clock, steady.stretches)).mean())
-        if not mean > 0.0:
-            raise SignalError(
-                f"channel {source.channel.name}: expected a pitch ahead while the line stands still, found P/D = "
-                f"{mean:.3g}; correct pitch_ratio_per_v and pitch_ratio_at_zero_v in the vessel file."
-            )
+        mean = _mean_ahead(source.channel.name, reading.values, steady)
         return ExcitationSignal(
             name=self.name,
             channel=source.channel.name,
@@ -55,3 +51,56 @@ class PitchSetPoint(ChannelKind[PitchSetPointSensor]):
             shown_unit="P/D",
             shown_reference=mean,
         )
+
+
+class Pitch(ChannelKind[PitchSensor]):
+    """Pitch over diameter that the blades have [-], as the feedback of its actuator shows it; the speed leaves it."""
+
+    sensor, name, use, role = "pitch", "theta", "pitch", ChannelRole.SIDE
+
+    def limits(self, source: Source[PitchSensor]) -> FaultLimits:
+        """Return the limits of a voltage that may stand still."""
+        return fault_limits(source.channel, holds=False)
+
+    def read(self, source: Source[PitchSensor], clock: "Clock") -> Reading:
+        """Return the pitch on the grid."""
+        channel, sensor = source.channel, source.sensor
+        latency_s = clock.latency_s(sensor.latency_s)
+        reading = conditioned(
+            channel,
+            self.limits(source),
+            clock.grid(channel, latency_s),
+            mode=clock.mode,
+            block_samples=clock.block_samples(channel),
+            advance=clock.advance,
+        )
+        values = sensor.pitch_ratio_per_v * reading.values + sensor.pitch_ratio_at_zero_v
+        return replace(reading, values=values, gaps=tuple(gap.earlier(latency_s) for gap in reading.gaps))
+
+    def signal(self, source: Source[PitchSensor], reading: Reading, steady: SteadyState) -> ChannelSignal:
+        """Return the pitch over its mean in the stretches at the working point."""
+        return ChannelSignal(
+            name=self.name,
+            channel=source.channel.name,
+            role=self.role,
+            values=frozen_float(reading.values),
+            reference=_mean_ahead(source.channel.name, reading.values, steady),
+            moved_by=PitchSetPoint.name,
+        )
+
+
+def _mean_ahead(channel: str, pitch_ratio: FloatArray, steady: SteadyState) -> float:
+    """Return the mean pitch in the stretches at the working point.
+
+    Raises
+    ------
+    SignalError
+        If it is none ahead.
+    """
+    mean = float(np.concatenate(steady_parts(pitch_ratio, steady.clock, steady.stretches)).mean())
+    if not mean > 0.0:
+        raise SignalError(
+            f"channel {channel}: expected a pitch ahead while the line stands still, found P/D = {mean:.3g}; correct "
+            "pitch_ratio_per_v and pitch_ratio_at_zero_v in the vessel file."
+        )
+    return mean

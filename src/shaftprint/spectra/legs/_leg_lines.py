@@ -80,6 +80,8 @@ def measure_leg(
     *,
     excitation: str,
     speed: str,
+    of_speed: Sequence[int] = (),
+    beside: Sequence[int] = (),
     orders: "Sequence[TrackedOrder]" = (),
     references: Mapping[str, float] = MappingProxyType({}),
     messages: "Mapping[str, MessageSignal]" = MappingProxyType({}),
@@ -96,6 +98,9 @@ def measure_leg(
         Name of the channel that is moved.
     speed
         Name of the speed whose square is in the torque.
+    of_speed, beside
+        Harmonics at which the set point of the speed is moved, those of the leg where none are given, and those at
+        which something else is.
     orders
         Orders of the shaft line, which are taken out of the torque.
     references
@@ -103,7 +108,9 @@ def measure_leg(
     messages
         Channels on clocks of their own, about the working point of the leg.
     """
-    linear, found = _linear_window(window, harmonics, orders, references, excitation=excitation, speed=speed)
+    linear, found = _linear_window(
+        window, (of_speed or harmonics, beside), orders, references, excitation=excitation, speed=speed
+    )
     spectrum, periods = linear.spectrum(), window.state.periods
     deviation = (window.of(speed) - 1.0).ravel()
     square = np.fft.rfft(deviation**2)[periods * np.array(harmonics)] * (2.0 / deviation.size)
@@ -168,7 +175,7 @@ class _LegSpectrum:
 
 def _linear_window(
     window: LegWindow,
-    harmonics: Sequence[int],
+    moved: tuple[Sequence[int], Sequence[int]],
     orders: "Sequence[TrackedOrder]",
     references: Mapping[str, float],
     *,
@@ -177,8 +184,9 @@ def _linear_window(
 ) -> tuple[LegWindow, LegOrders | None]:
     """Return a leg with a torque that is linear in the speed, without drift and orders, and what orders there were."""
     values = window.values.copy()
+    of_speed, beside = (np.array(lines, dtype=np.int64) for lines in moved)
     values[window.channels.index(_TORQUE)] = linear_torque(
-        window.of(speed), window.of(_TORQUE), np.array(harmonics), window.state.period_s
+        window.of(speed), window.of(_TORQUE), of_speed, window.state.period_s, beside=beside
     )
     values -= _drift(values)
     return without_leg_orders(

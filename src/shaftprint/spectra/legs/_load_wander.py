@@ -20,9 +20,13 @@ _FASTEST_WANDER_HZ = 0.3
 # Beside this band the torque has the noise of its gauge, which is no wander.
 _GAUGE_NOISE_HZ = (0.5, 1.0)
 _SMOOTHED_BINS = 9
+NO_LINES: IntArray = np.empty(0, dtype=np.int64)
+"""Nothing but the speed is moved."""
 
 
-def linear_torque(speed: FloatArray, torque: FloatArray, lines: IntArray, period_s: float) -> FloatArray:
+def linear_torque(
+    speed: FloatArray, torque: FloatArray, lines: IntArray, period_s: float, *, beside: IntArray = NO_LINES
+) -> FloatArray:
     """Return the torque without the square of the speed and what a wander of the load makes of the lines.
 
     Parameters
@@ -30,17 +34,21 @@ def linear_torque(speed: FloatArray, torque: FloatArray, lines: IntArray, period
     speed, torque
         Over the working point, shape (periods, samples a period).
     lines
-        Harmonics of the period at which there are lines, ascending, shape (lines,).
+        Harmonics of the period at which the set point of the speed has lines, ascending, shape (lines,).
     period_s
         Length of a period [s].
+    beside
+        Harmonics at which something else is moved, such as the pitch, which changes the load on purpose.
     """
     square = speed**2
-    wander = load_wander(speed, torque, lines, period_s)
+    wander = load_wander(speed, torque, lines, period_s, beside=beside)
     linear: FloatArray = torque - (speed - 1.0) ** 2 - wander * (square - 1.0)
     return linear
 
 
-def load_wander(speed: FloatArray, torque: FloatArray, lines: IntArray, period_s: float) -> FloatArray:
+def load_wander(
+    speed: FloatArray, torque: FloatArray, lines: IntArray, period_s: float, *, beside: IntArray = NO_LINES
+) -> FloatArray:
     """Return by how much the load of the propeller differs from its mean over the leg [-], shape of ``speed``.
 
     Each Fourier coefficient is weighted with the share of it that is no noise of the gauge (Wiener filter). At the
@@ -56,10 +64,11 @@ def load_wander(speed: FloatArray, torque: FloatArray, lines: IntArray, period_s
     zero = (1.0 - slope) / mean_load(np.ones_like(square), square, duration_s=periods * period_s)
     load = np.fft.rfft((of_propeller - zero) / (slope * square))
     kept = np.zeros_like(load)
-    bins = np.setdiff1d(np.arange(1, np.searchsorted(hertz, _GAUGE_NOISE_HZ[1])), periods * lines)
-    beside = hertz[bins] >= _GAUGE_NOISE_HZ[0]
-    if beside.any():
-        share = _share(np.abs(load[bins]) ** 2, beside)
+    moved = np.concatenate([lines, beside])
+    bins = np.setdiff1d(np.arange(1, np.searchsorted(hertz, _GAUGE_NOISE_HZ[1])), periods * moved)
+    above = hertz[bins] >= _GAUGE_NOISE_HZ[0]
+    if above.any():
+        share = _share(np.abs(load[bins]) ** 2, above)
         wandering = hertz[bins] < _FASTEST_WANDER_HZ
         kept[bins[wandering]] = (share * load[bins])[wandering]
     wander: FloatArray = np.fft.irfft(kept, speed.size).reshape(speed.shape)

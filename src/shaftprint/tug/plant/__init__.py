@@ -15,6 +15,7 @@ from shaftprint.tug.plant._physics import (
     working_point,
     working_point_rack,
 )
+from shaftprint.tug.plant._pitch import PitchActuator, actuation_of
 from shaftprint.tug.plant._plant import (
     ANGLE,
     ENGINE,
@@ -45,8 +46,10 @@ __all__ = [
     "Demand",
     "DemandLimits",
     "Disturbance",
+    "PitchActuator",
     "Plant",
     "Stretch",
+    "actuation_of",
     "build_plant",
     "demand_limits",
     "demanded_speed",

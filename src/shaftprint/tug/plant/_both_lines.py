@@ -17,7 +17,7 @@ from shaftprint.tug.plant._physics import working_point
 from shaftprint.tug.plant._pitch import lag
 from shaftprint.tug.plant._plant import SPEED, advance
 from shaftprint.tug.plant._traces import Traces
-from shaftprint.tug.plant._voyage import ReadyLine, Stretch, empty_traces, forced, ready_line, stretch_of
+from shaftprint.tug.plant._voyage import Forces, ReadyLine, Stretch, empty_traces, forced, ready_line, stretch_of
 from shaftprint.vessel import Vessel
 
 # The wash that meets a block of steps has left the other propeller before the block begins.
@@ -90,14 +90,14 @@ def voyage_of_both(
             nodes = slice(first, first + block + 1)
             # both loads are known before either line is stepped
             loads = [
-                act[2][nodes] + felt[nodes] - share * other.arriving(block + 1)
+                act.propeller[nodes] + felt[nodes] - share * other.arriving(block + 1)
                 for act, share, other in zip(acts, shares, reversed(washes), strict=True)
             ]
             for line, act, load, trace, wash in zip(lines, acts, loads, traces, washes, strict=True):
                 _step(line, act, load, trace, first=first, step_s=step_s)
                 wash.leaves(trace.shaft_speed_rev_s[first : first + block])
         port, starboard = (
-            stretch_of(trace, act[0], first=done, start_s=0.0, step_s=step_s)
+            stretch_of(trace, act, first=done, start_s=0.0, step_s=step_s)
             for trace, act in zip(traces, acts, strict=True)
         )
         yield port, starboard
@@ -148,14 +148,12 @@ def _expect_at_the_quay(tugs: Sequence[Tug], vessels: Sequence[Vessel]) -> None:
             )
 
 
-def _step(
-    line: ReadyLine, act: tuple[FloatArray, ...], load: FloatArray, trace: Traces, *, first: int, step_s: float
-) -> None:
+def _step(line: ReadyLine, act: Forces, load: FloatArray, trace: Traces, *, first: int, step_s: float) -> None:
     """Step one line through a block of a chunk, as long as its load."""
     block = load.size - 1
-    demand, pitch = (values[2 * first : 2 * (first + block) + 1] for values in act[:2])
+    demand, pitch = (values[2 * first : 2 * (first + block) + 1] for values in (act.asked, act.pitch.blades))
     part = Traces._make(values[first : first + block] for values in trace)
-    engine = act[3][first : first + block + 1]
+    engine = act.engine[first : first + block + 1]
     advance(step_s, demand, pitch, load, engine, line.plant, line.delay, line.carried, part)
 
 

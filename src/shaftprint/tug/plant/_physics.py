@@ -47,6 +47,8 @@ def build_plant(tug: Tug, vessel: Vessel) -> Plant:
     _check(tug)
     if vessel.motor is not None:
         _check_motor(tug)
+    if tug.pitch is not None and tug.sailing is not None:
+        raise SettingsError("tug: expected pitch of a tug at the quay, found it beside sailing, which has its own lag.")
     speed, torque = working_point(tug, vessel)
     ratio, efficiency = vessel.gearbox.ratio, vessel.gearbox.efficiency
     brake = torque / (ratio * efficiency)

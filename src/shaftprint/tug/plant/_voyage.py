@@ -15,7 +15,7 @@ from shaftprint.tug.plant._constants import Plant
 from shaftprint.tug.plant._demand import Demand
 from shaftprint.tug.plant._disturbance import Disturbance
 from shaftprint.tug.plant._physics import build_plant, equilibrium, steady_boost
-from shaftprint.tug.plant._pitch import PitchActuator
+from shaftprint.tug.plant._pitch import PitchActuator, PitchMotion
 from shaftprint.tug.plant._plant import FARTHEST_SHARE, RACK, advance, interpolation_weights
 from shaftprint.tug.plant._traces import Carried, DelayTaps, Traces
 from shaftprint.vessel import Vessel
@@ -39,6 +39,9 @@ class Stretch:
     """Fuel rack that the governor gives, after its limiter and before the delay [fraction], shape (steps,)."""
     limited: BoolArray
     """Whether a limit of torque or rack acts, shape (steps,)."""
+    pitch_change: FloatArray
+    """What the actuator of a controllable pitch has reached, as the deviation of ``P/D`` from that of the working
+    point, shape (steps,)."""
     ship_speed_m_s: FloatArray
     """Speed of the ship through the water [m/s], 0 at the quay, shape (steps,)."""
     demand_rev_s: FloatArray
@@ -84,10 +87,33 @@ def voyage(
         If the truth is not physical, or the delay in the loop is shorter than three steps and not zero.
     """
     line = ready_line(tug, vessel, campaign, step_s=step_s, start_s=start_s)
-    for done, (asked, angle_asked, propeller, engine) in forced(disturbance, line, steps=steps, chunk=chunk):
+    for done, acts in forced(disturbance, line, steps=steps, chunk=chunk):
         traces = empty_traces(min(chunk, steps - done))
-        advance(step_s, asked, angle_asked, propeller, engine, line.plant, line.delay, line.carried, traces)
-        yield stretch_of(traces, asked, first=done, start_s=start_s, step_s=step_s)
+        advance(
+            step_s,
+            acts.asked,
+            acts.pitch.blades,
+            acts.propeller,
+            acts.engine,
+            line.plant,
+            line.delay,
+            line.carried,
+            traces,
+        )
+        yield stretch_of(traces, acts, first=done, start_s=start_s, step_s=step_s)
+
+
+class Forces(NamedTuple):
+    """What acts on the line in a chunk."""
+
+    asked: FloatArray
+    """Speed that is asked for [rev/s], at nodes and middles."""
+    pitch: PitchMotion
+    """What the pitch does."""
+    propeller: FloatArray
+    """Deviation of the propeller's torque that is no matter of its speed, at nodes."""
+    engine: FloatArray
+    """Disturbance of the engine, at nodes."""
 
 
 class ReadyLine(NamedTuple):
@@ -133,8 +159,8 @@ def empty_traces(count: int) -> Traces:
     return Traces(speed, angle, torque, brake, rack, np.empty(count, dtype=np.bool_), way)
 
 
-def stretch_of(traces: Traces, asked: FloatArray, *, first: int, start_s: float, step_s: float) -> Stretch:
-    """Return filled traces as what really happens from a step on, with the demand at half steps from the same step."""
+def stretch_of(traces: Traces, forces: Forces, *, first: int, start_s: float, step_s: float) -> Stretch:
+    """Return filled traces as what really happens from a step on, under what acts from the same step on."""
     count = traces.limited.size
     return Stretch(
         time_s=start_s + step_s * np.arange(first, first + count, dtype=np.float64),
@@ -144,22 +170,24 @@ def stretch_of(traces: Traces, asked: FloatArray, *, first: int, start_s: float,
         brake_torque_nm=traces.brake_torque_nm,
         rack_given=traces.rack_given,
         limited=traces.limited,
+        pitch_change=forces.pitch.piston[: 2 * count : 2],
         ship_speed_m_s=traces.ship_speed_m_s,
-        demand_rev_s=asked[: 2 * count : 2],
+        demand_rev_s=forces.asked[: 2 * count : 2],
     )
 
 
-def forced(
-    disturbance: Disturbance, line: ReadyLine, *, steps: int, chunk: int
-) -> Iterator[tuple[int, tuple[FloatArray, ...]]]:
-    """Yield the first step of each chunk and what acts in it; the next is made while the line is stepped through one.
+def forced(disturbance: Disturbance, line: ReadyLine, *, steps: int, chunk: int) -> Iterator[tuple[int, Forces]]:
+    """Yield the first step of each chunk and what acts in it; the next is made while the line is stepped on."""
 
-    It is demand, pitch, and disturbances of propeller and engine.
-    """
-
-    def acting(count: int) -> tuple[FloatArray, ...]:
+    def acting(count: int) -> Forces:
         propeller, engine, wander = disturbance.next(count)
-        return line.demand.next(count, wander), line.pitch.next(count), propeller, engine
+        motion = line.pitch.next(count)
+        return Forces(
+            asked=line.demand.next(count, wander),
+            pitch=motion,
+            propeller=line.pitch.torque_share(motion.blades, propeller),
+            engine=engine,
+        )
 
     with ThreadPoolExecutor(max_workers=1) as ahead:
         waiting = ahead.submit(acting, min(chunk, steps))

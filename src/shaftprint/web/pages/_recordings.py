@@ -20,13 +20,14 @@ from shaftprint.web.pages._line import records_called
 # as their rooms have them, which would load far more; a test holds both together
 VESSELS: Final = (
     "e-ferry-ellen",
+    "nifs-research-vessel",
     "pt-may",
     "stan-tug-1205",
     "stan-tug-1205-astern",
     "stan-tug-1205-ecu",
     "stan-tug-1205-underway",
 )
-CAMPAIGNS: Final = ("12min", "5min", "dither", "short", "thesis", "transit", "two-speeds")
+CAMPAIGNS: Final = ("12min", "5min", "dither", "pitch", "short", "thesis", "transit", "two-speeds")
 STRUCTURES: Final = (
     "GAUGE-CLOSED",
     "GAUGE-CORE",
@@ -35,6 +36,7 @@ STRUCTURES: Final = (
     "GAUGE-ELASTIC",
     "GAUGE-ECU",
     "GAUGE-MOTOR",
+    "GAUGE-PITCH",
 )
 _LONGEST_WORD: Final = 100
 _MOST_CHOICES: Final = 500
