@@ -29,7 +29,7 @@ from shaftprint.vessel._hull import Hull
 from shaftprint.vessel._inertia import InertiaRow
 from shaftprint.vessel._limits import OperatingLimits
 from shaftprint.vessel._links import ShaftLink
-from shaftprint.vessel._machinery import Engine, Gearbox, Machine, Motor, Propeller, RackMap, WorkingPoint
+from shaftprint.vessel._machinery import Engine, Gearbox, Machine, Motor, Propeller, RackMap
 from shaftprint.vessel._orders import Order
 from shaftprint.vessel._pitch import ControllablePitch
 from shaftprint.vessel._sensors import (
@@ -47,6 +47,7 @@ from shaftprint.vessel._shaft_torque import GaugedShaft, ShaftTorqueSensor
 from shaftprint.vessel._ship import ImoNumber, Ship, ShortName, is_imo_number
 from shaftprint.vessel._vessel import Vessel, load_vessel
 from shaftprint.vessel._wheel import SAMPLES_A_TOOTH, Wheel
+from shaftprint.vessel._working_point import WorkingPoint
 
 __all__ = [
     "ALIVE_MA",

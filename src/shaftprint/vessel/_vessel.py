@@ -17,13 +17,14 @@ from shaftprint.vessel._hull import Hull
 from shaftprint.vessel._inertia import InertiaRow
 from shaftprint.vessel._limits import OperatingLimits
 from shaftprint.vessel._links import ShaftLink, wrong_links
-from shaftprint.vessel._machinery import Curve, Engine, Gearbox, Motor, Propeller, WorkingPoint
+from shaftprint.vessel._machinery import Curve, Engine, Gearbox, Motor, Propeller
 from shaftprint.vessel._motor_words import in_file_words
 from shaftprint.vessel._orders import Order, orders_of
 from shaftprint.vessel._pitch import ControllablePitch, wrong_pitch
 from shaftprint.vessel._sensors import Logger, Sensors
 from shaftprint.vessel._ship import Ship
 from shaftprint.vessel._usual import INERTIA_STD, WASH_SHARE_STD
+from shaftprint.vessel._working_point import WorkingPoint
 
 
 class Vessel(Shown, Settings):
