@@ -300,8 +300,7 @@ def table(outcomes: Mapping[str, Sequence[Mapping[str, Any]]]) -> str:
             "",
             plain_words(of["up to the mode"], at="With a toothed wheel and lines up to 25 Hz"),
             "",
-            plain_words(of["short"], at="With strips and lines up to 3.3 Hz"),
-            "",
+            *([plain_words(of["short"], at="With strips and lines up to 3.3 Hz"), ""] if of["short"] else []),
             f"{len(rigid)} rigid ships, with the wheel and lines up to 25 Hz: {ELASTIC} was offered in "
             f"{sum(one['offered'] for one in rigid)}, {RIGID} rejected in "
             f"{sum(one['p'] < REJECTED_P for one in rigid)}.",

@@ -1,10 +1,10 @@
 """Motion of a line in time, exact between the samples."""
 
+import importlib
 from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-import scipy
 from numpy.typing import ArrayLike
 
 from shaftprint.arrays import FloatArray, frozen_float
@@ -115,7 +115,8 @@ def _march(matrix: FloatArray, gain: FloatArray, torque: FloatArray, step: float
     augmented[:states, :states] = matrix * step
     augmented[:states, states : states + inputs] = gain * step
     augmented[states : states + inputs, states + inputs :] = np.eye(inputs)
-    onward = scipy.linalg.expm(augmented)
+    # loaded where it is used: what knows a coupling beforehand, the fits, needs NumPy only
+    onward: FloatArray = importlib.import_module("scipy.linalg").expm(augmented)
     level, ramp = onward[:states, states : states + inputs], onward[:states, states + inputs :]
     pushed = torque[:-1] @ level.T + np.diff(torque, axis=0) @ ramp.T
     states_in_time = np.empty((torque.shape[0], states))

@@ -56,7 +56,7 @@ _WORDS: "Mapping[ReasonKind, tuple[str, str]]" = {
     ),
     "elastic coupling": (
         "The shaft line twists in a coupling, which the model does not know.",
-        "Identify once more with the model of an elastic line, GAUGE-ELASTIC.",
+        "Identify once more with the model of an elastic line; the next page names it.",
     ),
     "misfit": (
         "The model does not explain the measurements.",
