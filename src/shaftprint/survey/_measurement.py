@@ -166,7 +166,8 @@ def of_legs(measurement: Measurement, names: Sequence[str]) -> Measurement:
 def pairs_of(structure: Structure, measurement: Measurement) -> tuple[tuple[Structure, FrequencyResponse], ...]:
     """Return what is fitted to what: a structure and its response, or for each excited input its part and response.
 
-    Legs at other working points follow, each with the structure at its own.
+    An input that can be moved and stood still in this test has no response; the structure keeps its parameters. Legs at
+    other working points follow, each with the structure at its own.
 
     Raises
     ------
@@ -177,6 +178,9 @@ def pairs_of(structure: Structure, measurement: Measurement) -> tuple[tuple[Stru
     excited = {response.inputs[0]: response for response in responses if answers <= {*response.outputs}}
     if len(structure.inputs) > 1 and {*structure.inputs} <= {*excited}:
         return tuple((structure.of_input(name), excited[name]) for name in structure.inputs)
+    rests = {*structure.inputs} - {*excited}
+    if len(structure.inputs) > 1 and structure.inputs[0] in excited and rests <= {*measurement.signals.excitations}:
+        structure = structure.of_input(structure.inputs[0])
     main, rack = measurement.signals.working_point, rack_of(measurement.signals)
     further = (leg for leg in measurement.legs if leg.working_point != main)
     knows_rack = "X" in (*structure.outputs, *structure.inputs)

@@ -12,12 +12,13 @@ _UNDERWAY, _UNDERWAY_WITH_LOG = "FREE-CLOSED", "FREE-LOG"
 def default_structure(vessel: Vessel) -> str:
     """Return the name of the closed loop that a vessel file asks for: by what drives the line, and where it is tested.
 
-    At the quay it is GAUGE-CLOSED, or GAUGE-MOTOR where a motor drives the line; underway FREE-LOG, or FREE-CLOSED
+    At the quay it is GAUGE-CLOSED, GAUGE-MOTOR where a motor drives the line, or GAUGE-HYBRID where an electric machine
+    is on the gearbox of an engine; underway FREE-LOG, or FREE-CLOSED
     where no log is in the recording.
     """
     if vessel.is_underway and vessel.motor is None:
         return _UNDERWAY if vessel.sensors.ship_speed is None else _UNDERWAY_WITH_LOG
-    return CLOSED_LOOPS[vessel.machine.word]
+    return CLOSED_LOOPS[vessel.drive]
 
 
 def of_vessel(structure: Structure, vessel: Vessel) -> Structure:

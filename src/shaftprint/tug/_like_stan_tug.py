@@ -5,6 +5,7 @@ from dataclasses import replace
 
 from shaftprint.errors import SettingsError
 from shaftprint.tug._sailing import CURVES_PITCH_RATIO, CURVES_SERIES, Sailing
+from shaftprint.tug._shaft_machine import ShaftMachineTruth
 from shaftprint.tug._truth import normalised_truth
 from shaftprint.tug._tug import Tug
 from shaftprint.vessel import Vessel
@@ -24,7 +25,8 @@ def like_stan_tug_1205(vessel: Vessel, *, offset_v: float = _AT_THE_QUAY_V) -> T
 
     The lever asks for the ship's working speed at -5 V where it is tested at the quay, and at the voltage of the
     campaign underway; volts are those of the tug. A line with less inertia over its torque has a governor with as much
-    smaller gains, which crosses over where that of the tug does and is as far from hunting. A motor has the dead time
+    smaller gains, which crosses over where that of the tug does and is as far from hunting. An electric machine on the
+    gearbox has the share of the vessel file; gains go with what the engine gives. A motor has the dead time
     and lag of a converter. A ship whose vessel file states a speed of the ship sails free, with its wake fraction and
     thrust deduction.
 
@@ -40,11 +42,15 @@ def like_stan_tug_1205(vessel: Vessel, *, offset_v: float = _AT_THE_QUAY_V) -> T
     SettingsError
         If it is to sail free with another propeller than the simulated ship has curves of.
     """
+    machine = None if vessel.shaft_machine is None else ShaftMachineTruth(share=vessel.shaft_machine.share)
     tug = replace(Tug.stan_tug_1205() if vessel.motor is None else _ELECTRIC, sailing=_sailing(vessel))
+    tug = replace(tug, shaft_machine=machine)
     further_v = offset_v - _AT_THE_QUAY_V if vessel.is_underway else 0.0
     asked_rpm = _AT_THE_QUAY_RPM + tug.set_point_slope_rpm_per_v * further_v
     speed = vessel.working_point.engine_speed_rpm / asked_rpm
     gain = min(1.0, normalised_truth(tug, vessel)["tau_t"] / _STAN_TUG_INERTIA_S)
+    if machine is not None:
+        gain /= 1.0 - machine.share
     return replace(
         tug,
         set_point_slope_rpm_per_v=speed * tug.set_point_slope_rpm_per_v,

@@ -22,13 +22,15 @@ from shaftprint.tug.plant import (
     build_plant,
     derivatives,
     equilibrium,
+    steady_load_nm,
     working_point,
     working_point_rack,
 )
 from shaftprint.vessel import Vessel
 
-# Places in the vector that is perturbed: nine states, the demand in the ECU, the rack given a delay ago, the pitch.
-_DEMAND, _RACK_DELAYED, _PITCH, _SIZE = 9, 10, 11, 12
+# Places in the vector that is perturbed: nine states, the demand in the ECU, the rack given a delay ago, the pitch,
+# the torque of an electric machine on the gearbox.
+_DEMAND, _RACK_DELAYED, _PITCH, _MACHINE, _SIZE = 9, 10, 11, 12, 13
 # Places in what comes out: the rates of the states, then the rack given and the torque at the gauge.
 _GIVEN, _GAUGE, _RATES = 9, 10, 11
 
@@ -51,13 +53,14 @@ def linearised_response(
         Which responses: ``n``, ``M_s``, ``X``, the fuel rack that the governor gives before the delay, and of a tug
         that sails ``v_s``, the speed of the ship.
     input
-        ``n_set``, or of a tug that sails ``theta_set``, the set point of the pitch.
+        ``n_set``, of a tug that sails ``theta_set``, the set point of the pitch, or where an electric machine is on the
+        gearbox ``M_m``, its torque at the propeller shaft as its channel shows it.
 
     Returns
     -------
     response
-        ``n* / n_set*``, ``M_s* / n_set*`` and ``X* / n_set*`` as asked [-], normalised at the working point, shape
-        (outputs, 1, lines).
+        ``n* / n_set*``, ``M_s* / n_set*`` and ``X* / n_set*`` as asked [-], normalised at the working point, ``M_m`` by
+        the shaft torque there, shape (outputs, 1, lines).
 
     Raises
     ------
@@ -87,7 +90,7 @@ def linearised_response(
         rack_given, gauge = slope[_GIVEN], slope[_GAUGE]
         inner = slope[states, _RACK_DELAYED] * delay
         system = value * np.eye(inner.size) - slope[np.ix_(states, states)] - np.outer(inner, rack_given[states])
-        moved, size, late = _excitation(tug, input, value, speed)
+        moved, size, late = _excitation(tug, input, value, speed, torque)
         right = slope[states, moved] + inner * rack_given[moved]
         x = np.linalg.solve(system, right) * late
         responses = {
@@ -101,19 +104,21 @@ def linearised_response(
     return response
 
 
-def _excitation(tug: Tug, name: str, s: complex, speed: float) -> tuple[int, float, complex]:
+def _excitation(tug: Tug, name: str, s: complex, speed: float, torque: float) -> tuple[int, float, complex]:
     """Return place of what is moved, its working point, and what comes between its set point and the line."""
     if name == "n_set":
         return _DEMAND, speed, complex(np.exp(-s * tug.set_point_latency_s))
+    if name == "M_m" and tug.shaft_machine is not None:
+        return _MACHINE, torque / tug.shaft_machine.shown, 1.0
     if name != "theta_set" or tug.sailing is None:
         raise SettingsError(f"input: expected n_set, or theta_set of a tug that sails, found {name}.")
     return _PITCH, tug.sailing.pitch_ratio, 1.0 / (tug.sailing.pitch_lag_s * s + 1.0)
 
 
 def _slopes(plant: Plant, engine_speed_rev_s: float) -> FloatArray:
-    """Return the slopes of the rates, the rack given and the gauge torque, shape (11, 12)."""
+    """Return the slopes of the rates, the rack given and the gauge torque, shape (11, 13)."""
     state = equilibrium(plant, engine_speed_rev_s)
-    centre = np.array([*state, engine_speed_rev_s, state[RACK], 0.0])
+    centre = np.array([*state, engine_speed_rev_s, state[RACK], 0.0, plant.machine_nm])
     # at the quay the rates are at most quadratic: the central difference has no truncation error; underway it is 1e-8
     size = 1e-4 * centre
     size[RACK_RATE] = size[RACK]
@@ -121,6 +126,7 @@ def _slopes(plant: Plant, engine_speed_rev_s: float) -> FloatArray:
     size[TWIST] = size[TWIST] or 1.0
     size[WAY] = max(size[WAY], 1e-4)
     size[_PITCH] = 1e-4
+    size[_MACHINE] = 1e-4 * steady_load_nm(plant, engine_speed_rev_s / plant.gear_ratio)
     slope = np.empty((_RATES, _SIZE))
     for index in range(_SIZE):
         shift = np.zeros(_SIZE)
@@ -132,6 +138,7 @@ def _slopes(plant: Plant, engine_speed_rev_s: float) -> FloatArray:
 
 def _rates(plant: Plant, vector: FloatArray) -> FloatArray:
     rates: Any = derivatives
-    values = rates.py_func(vector[:_DEMAND], *vector[_DEMAND:_PITCH], 0.0, 0.0, plant, 1.0, vector[_PITCH])
+    moved = vector[_DEMAND:_PITCH]
+    values = rates.py_func(vector[:_DEMAND], *moved, 0.0, 0.0, plant, 1.0, vector[_PITCH], vector[_MACHINE])
     # the angle's rate, which is the speed, plays no part
     return np.array([*values[:5], 0.0, *values[9:12], values[5], values[6]])

@@ -26,6 +26,7 @@ from shaftprint.tug.plant import (
     equilibrium,
     steady_load_nm,
     voyage,
+    working_point,
 )
 from shaftprint.tug.sensors import (
     VOLT_PER_COUNT,
@@ -36,6 +37,7 @@ from shaftprint.tug.sensors import (
     Fault,
     Helm,
     HelmMessages,
+    MachineTorque,
     PickUp,
     PitchLever,
     SpeedLog,
@@ -144,9 +146,9 @@ class _Crew:
                 f"found a duration of {campaign.duration_s:g} s."
             )
         self._expect_fast_logger()
-        # bus, log, pitch and demand come last: without them the others draw the same numbers
-        process, torque, set_point, *speeds, bus, log, pitch, demand = (
-            np.random.default_rng(child) for child in np.random.SeedSequence(seed).spawn(7 + len(vessel.sensors.speed))
+        # bus, log, pitch, demand and machine come last: without them the others draw the same numbers
+        process, torque, set_point, *speeds, bus, log, pitch, demand, machine = (
+            np.random.default_rng(child) for child in np.random.SeedSequence(seed).spawn(8 + len(vessel.sensors.speed))
         )
         duration_s = campaign.duration_s
         plant = build_plant(tug, vessel)
@@ -170,11 +172,21 @@ class _Crew:
         self._control_unit = self._watch_bus(float(first[RACK]), bus)
         self._log = self._read_log(float(first[WAY]), log)
         self._lever = self._stand_by_lever(pitch)
+        self._machine = self._watch_machine(machine)
         asked = vessel.sensors.demand
         self._demand = (
             None if asked is None else DemandMessages(asked, rate_hz=self._rate_hz, rng=demand, bus=Bus.of(tug))
         )
-        on_board = (self._helm, *self._speeds, self._gauge, self._control_unit, self._log, self._lever, self._demand)
+        on_board = (
+            self._helm,
+            *self._speeds,
+            self._gauge,
+            self._control_unit,
+            self._log,
+            self._lever,
+            self._demand,
+            self._machine,
+        )
         self._sensors: tuple[_Sensor, ...] = tuple(sensor for sensor in on_board if sensor is not None)
         self._limited = {excitation.name: 0 for excitation in campaign.excitations}
 
@@ -220,6 +232,17 @@ class _Crew:
         if sensor is None:
             return None
         return PitchLever(sensor.channel, self._tug, self._campaign, rng=rng)
+
+    def _watch_machine(self, rng: np.random.Generator) -> MachineTorque | None:
+        sensor, machine, geared = (
+            self._vessel.sensors.machine_torque,
+            self._tug.shaft_machine,
+            self._vessel.shaft_machine,
+        )
+        if sensor is None or machine is None or geared is None:
+            return None
+        _, torque_nm = working_point(self._tug, self._vessel)
+        return MachineTorque(sensor, geared, machine, torque_nm=torque_nm, rate_hz=self._rate_hz, rng=rng)
 
     def _watch_bus(self, first_rack: float, rng: np.random.Generator) -> ControlUnit | None:
         sensor = self._vessel.sensors.rack
@@ -330,6 +353,14 @@ class _Crew:
                 rate_hz=self._rate_hz,
                 scale=VOLT_PER_COUNT,
                 long_name="set point of the pitch of the propeller",
+            )
+        if self._machine is not None:
+            writer.declare(
+                self._machine.channel,
+                unit="V",
+                rate_hz=self._rate_hz,
+                scale=VOLT_PER_COUNT,
+                long_name="torque of the electric machine on the gearbox, from its converter",
             )
         self._declare_slow_channels(writer)
 

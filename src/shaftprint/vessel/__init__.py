@@ -34,6 +34,7 @@ from shaftprint.vessel._orders import Order
 from shaftprint.vessel._sensors import (
     DemandSensor,
     Logger,
+    MachineTorqueSensor,
     PitchSetPointSensor,
     RackSensor,
     Sensors,
@@ -41,6 +42,7 @@ from shaftprint.vessel._sensors import (
     SpeedSensor,
 )
 from shaftprint.vessel._set_point import SetPointSensor
+from shaftprint.vessel._shaft_machine import ShaftMachine
 from shaftprint.vessel._shaft_torque import GaugedShaft, ShaftTorqueSensor
 from shaftprint.vessel._ship import ImoNumber, Ship, ShortName, is_imo_number
 from shaftprint.vessel._vessel import Vessel, load_vessel
@@ -59,6 +61,7 @@ __all__ = [
     "InertiaRow",
     "Logger",
     "Machine",
+    "MachineTorqueSensor",
     "Motor",
     "OperatingLimits",
     "Order",
@@ -69,6 +72,7 @@ __all__ = [
     "Sensors",
     "SetPointSensor",
     "ShaftLink",
+    "ShaftMachine",
     "ShaftTorqueSensor",
     "Ship",
     "ShipSpeedSensor",

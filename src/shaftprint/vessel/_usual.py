@@ -14,5 +14,9 @@ LOG_LATENCY_SHARE = 0.5
 """Standard deviation of the latency of a log over the time between two of its values."""
 PITCH_STD = 0.01
 """Relative standard deviation of the pitch of a propeller as built."""
+MACHINE_SHARE_STD = 0.02
+"""Standard deviation of the share of the torque that an electric machine on the gearbox gives."""
+MACHINE_TORQUE_STD = 0.02
+"""Relative standard deviation of the scale by which a converter shows the torque of its machine."""
 MASS_STD = 0.03
 """Relative standard deviation of the displacement of a ship."""

@@ -12,6 +12,7 @@ from shaftprint.errors import SettingsError
 from shaftprint.tug._tug import Tug
 from shaftprint.tug.plant._demand import Demand
 from shaftprint.tug.plant._disturbance import Disturbance
+from shaftprint.tug.plant._machine import GearedMachine
 from shaftprint.tug.plant._physics import build_plant, equilibrium, steady_boost
 from shaftprint.tug.plant._pitch import PitchActuator
 from shaftprint.tug.plant._plant import FARTHEST_SHARE, RACK, advance, interpolation_weights
@@ -37,6 +38,9 @@ class Stretch:
     """Fuel rack that the governor gives, after its limiter and before the delay [fraction], shape (steps,)."""
     limited: BoolArray
     """Whether a limit of torque or rack acts, shape (steps,)."""
+    machine_nm: FloatArray
+    """Torque of the electric machine on the gearbox, at the propeller shaft [N m], 0 where there is none, shape
+    (steps,)."""
     ship_speed_m_s: FloatArray
     """Speed of the ship through the water [m/s], 0 at the quay, shape (steps,)."""
     demand_rev_s: FloatArray
@@ -84,6 +88,7 @@ def voyage(
     plant = build_plant(tug, vessel)
     demand = Demand(tug, vessel, campaign, start_s=start_s, step_s=step_s)
     pitch = PitchActuator(tug, vessel, campaign, start_s=start_s, step_s=step_s)
+    machine = GearedMachine(tug, vessel, campaign, plant.machine_nm, start_s=start_s, step_s=step_s)
     delay_steps = plant.delay_s / step_s
     farthest = FARTHEST_SHARE ** abs(plant.delay_exponent)
     # the delayed rack is interpolated over four nodes of which the newest must already be known
@@ -97,12 +102,13 @@ def voyage(
     ring = np.full(1 << int(np.ceil(np.log2(farthest * delay_steps + 8.0))), state[RACK])
     boost = np.array([steady_boost(plant, demand.first)])
     carried = Carried(state=state, history=ring, counter=np.zeros(1, dtype=np.int64), boost=boost)
-    for done, (asked, angle_asked, propeller, engine) in _forced(disturbance, demand, pitch, steps=steps, chunk=chunk):
+    forced = _forced(disturbance, demand, pitch, machine, steps=steps, chunk=chunk)
+    for done, (asked, angle_asked, geared, propeller, engine) in forced:
         count = min(chunk, steps - done)
         speed, angle, torque, brake, rack, way = np.empty((6, count))
         limited = np.empty(count, dtype=np.bool_)
         traces = Traces(speed, angle, torque, brake, rack, limited, way)
-        advance(step_s, asked, angle_asked, propeller, engine, plant, delay, carried, traces)
+        advance(step_s, asked, angle_asked, geared, propeller, engine, plant, delay, carried, traces)
         yield Stretch(
             time_s=start_s + step_s * np.arange(done, done + count, dtype=np.float64),
             shaft_speed_rev_s=speed,
@@ -111,22 +117,29 @@ def voyage(
             brake_torque_nm=brake,
             rack_given=rack,
             limited=limited,
+            machine_nm=geared[: 2 * count : 2],
             ship_speed_m_s=way,
             demand_rev_s=asked[: 2 * count : 2],
         )
 
 
 def _forced(
-    disturbance: Disturbance, demand: Demand, pitch: PitchActuator, *, steps: int, chunk: int
+    disturbance: Disturbance,
+    demand: Demand,
+    pitch: PitchActuator,
+    machine: GearedMachine,
+    *,
+    steps: int,
+    chunk: int,
 ) -> Iterator[tuple[int, tuple[FloatArray, ...]]]:
     """Yield the first step of each chunk and what acts in it; the next is made while the line is stepped through one.
 
-    It is demand, pitch, and disturbances of propeller and engine.
+    It is demand, pitch, torque of the electric machine, and disturbances of propeller and engine.
     """
 
     def acting(count: int) -> tuple[FloatArray, ...]:
         propeller, engine, wander = disturbance.next(count)
-        return demand.next(count, wander), pitch.next(count), propeller, engine
+        return demand.next(count, wander), pitch.next(count), machine.next(count), propeller, engine
 
     with ThreadPoolExecutor(max_workers=1) as ahead:
         waiting = ahead.submit(acting, min(chunk, steps))
