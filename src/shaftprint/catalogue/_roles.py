@@ -107,7 +107,7 @@ class ShipRole:
     """Damping ratio of the actuator's lag."""
     TORQUE_TIME: Final = _line("torque time", "s", "governor")
     """Time constant of a motor's torque."""
-    MACHINE_SHARE: Final = Role(name="machine share", unit="-", over_torque=True)
+    MACHINE_SHARE: Final = Role(name="machine share", unit="-")
     """Torque that an electric machine on the gearbox shows at the working point, over that of the shaft."""
     LOOP_GAIN: Final = _line("loop gain", "", "governor")
     """Gains over each other or over the line, a combination in which the working point cancels; a margin."""

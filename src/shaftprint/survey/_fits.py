@@ -118,9 +118,10 @@ def comparisons_of(
     rng
         For the draws; each group begins with its state.
     """
-    groups: dict[tuple[tuple[str, str], ...], list[Identification]] = {}
+    groups: dict[tuple[tuple[tuple[str, str], ...], ...], list[Identification]] = {}
     for one in fits:
-        groups.setdefault(one.structure.channels, []).append(one)
+        # a structure with a further input is fitted to more lines than one without
+        groups.setdefault(tuple(part.structure.channels for part in one.parts), []).append(one)
     chosen = [group for group in groups.values() if len(group) > 1]
     if not chosen:
         return ()

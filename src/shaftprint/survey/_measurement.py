@@ -5,6 +5,7 @@ from dataclasses import dataclass, field, replace
 from datetime import datetime
 from pathlib import Path
 
+from shaftprint.catalogue import ShipRole
 from shaftprint.clocks import logger_clocks
 from shaftprint.errors import StructureError
 from shaftprint.fingerprint import clock_findings, clock_influences
@@ -181,6 +182,12 @@ def pairs_of(structure: Structure, measurement: Measurement) -> tuple[tuple[Stru
     rests = {*structure.inputs} - {*excited}
     if len(structure.inputs) > 1 and structure.inputs[0] in excited and rests <= {*measurement.signals.excitations}:
         structure = structure.of_input(structure.inputs[0])
+    if any(p.role == ShipRole.MACHINE_SHARE for p in structure.parameters) and len(measurement.working_points) > 1:
+        raise StructureError(
+            f"structure {structure.name}: expected one working point, as the share of the electric machine is that of "
+            f"one, found {len(measurement.working_points)}; choose one of {', '.join(measurement.working_points)} with "
+            "--leg."
+        )
     main, rack = measurement.signals.working_point, rack_of(measurement.signals)
     further = (leg for leg in measurement.legs if leg.working_point != main)
     knows_rack = "X" in (*structure.outputs, *structure.inputs)
