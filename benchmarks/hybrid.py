@@ -56,7 +56,7 @@ def with_share(vessel: Vessel, share: float) -> Vessel:
 def ship(seed: int) -> Ship:
     """Return the ship of a seed; even ones take power in, odd ones take it out."""
     rng = np.random.default_rng([SEED, seed])
-    share = float(rng.uniform(0.15, 0.5) if seed % 2 == 0 else rng.uniform(-0.25, -0.08))
+    share = float(rng.uniform(0.15, 0.5) if seed % 2 == 0 else rng.uniform(-0.22, -0.08))
     gauge = drawn_gauge(with_share(VESSEL, share), rng)
     usual = like_stan_tug_1205(gauge.vessel)
     shown = float(rng.normal(1.0, 0.02))
@@ -125,7 +125,7 @@ def outcome(seed: int) -> dict[str, object]:
         "share": share,
         "cpu_s": time.process_time() - begin,
         "trustworthy": fingerprint.verdict.trustworthy,
-        "limited": max(truth.limited.values()),
+        "limited": max(share for name, share in truth.limited.items() if not name.startswith("St")),
         "numbers": {
             one.name: {"true": true[one.name], "value": one.value, "std": one.std, "interval": interval_of(one)}
             for one in numbers
@@ -157,8 +157,8 @@ def table(outcomes: Sequence[Mapping[str, object]]) -> str:
         [
             f"{len(fitted)} recordings of 18 minutes, {len(outcomes) - len(fitted)} refused, {trusted} trustworthy; "
             f"{np.median([one['cpu_s'] for one in fitted]):.1f} CPU s each. {HYBRID} was rejected in "
-            f"{rejected[HYBRID]}, {DIESEL} on the sines of the speed in {rejected[DIESEL]} of them. The `K_p` of {DIESEL} "
-            f"is more than two deviations off the governor's in {sum(map(_is_contradicted, fitted))}.",
+            f"{rejected[HYBRID]}, {DIESEL} on the sines of the speed in {rejected[DIESEL]} of them. The `K_p` of "
+            f"{DIESEL} is more than two deviations off the governor's in {sum(map(_is_contradicted, fitted))}.",
             "",
             "| number | recordings | stated deviation | median error, deviations | covered |",
             "|---|---|---|---|---|",
