@@ -83,7 +83,8 @@ def true_values(truth: Truth, signals: Signals, of: Ship) -> dict[str, float]:
     """Return the truth as the measured working point normalises it.
 
     Deviations of the torque are shown ``scale`` times as large and divided by the shown mean, in which the zero is. The
-    machine keeps its torque, so that what drift and zero add to the mean is the engine's: its own numbers are over more.
+    machine keeps its torque, so that what drift and zero add to the mean is the engine's: its own numbers are over
+    more.
     """
     model, shown_nm = structure(HYBRID), signals.working_point.shaft_torque_nm
     seen = {p.name: fingerprint_truth(truth, model, signals)[p.name] for p in model.parameters}

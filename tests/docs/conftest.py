@@ -29,7 +29,11 @@ from shaftprint.vessel import load_vessel
 
 pytest.register_assert_rewrite("expected", "expected_exports")
 IDENTIFY = "identify log.csv --vessel mine.toml --campaign test.toml -o result"
-SAILED = ("sail e-ferry-ellen short -o ferry.nc --seed 3", "sail stan-tug-1205-underway dither -o underway.nc")
+SAILED = (
+    "sail e-ferry-ellen short -o ferry.nc --seed 3",
+    "sail foss-carolyn-dorothy machine -o hybrid.nc --seed 3",
+    "sail stan-tug-1205-underway dither -o underway.nc",
+)
 MY_SHIP = """
 import dataclasses
 from shaftprint.catalogue import structure

@@ -23,7 +23,11 @@ from shaftprint.vessel import load_vessel
 
 CHANNELS = {"U_setpoint", "PTM_e", "PTM_1", "PTM_4", "M_s"}
 # Ships beside the tug, with the structure that their vessel file asks for.
-OTHER_SHIPS = {"e-ferry-ellen": "GAUGE-MOTOR", "stan-tug-1205-underway": "FREE-LOG"}
+OTHER_SHIPS = {
+    "e-ferry-ellen": "GAUGE-MOTOR",
+    "foss-carolyn-dorothy": "GAUGE-HYBRID",
+    "stan-tug-1205-underway": "FREE-LOG",
+}
 
 
 def after(words, option):

@@ -18,9 +18,23 @@ from shaftprint.web.access import Role
 from shaftprint.web.pages._line import records_called
 
 # as their rooms have them, which would load far more; a test holds both together
-VESSELS: Final = ("e-ferry-ellen", "stan-tug-1205", "stan-tug-1205-ecu", "stan-tug-1205-underway")
-CAMPAIGNS: Final = ("12min", "5min", "dither", "short", "thesis", "transit", "two-speeds")
-STRUCTURES: Final = ("GAUGE-CLOSED", "GAUGE-CORE", "GAUGE-OPEN", "GAUGE-INFLOW", "GAUGE-ECU", "GAUGE-MOTOR")
+VESSELS: Final = (
+    "e-ferry-ellen",
+    "foss-carolyn-dorothy",
+    "stan-tug-1205",
+    "stan-tug-1205-ecu",
+    "stan-tug-1205-underway",
+)
+CAMPAIGNS: Final = ("12min", "5min", "dither", "machine", "short", "thesis", "transit", "two-speeds")
+STRUCTURES: Final = (
+    "GAUGE-CLOSED",
+    "GAUGE-CORE",
+    "GAUGE-OPEN",
+    "GAUGE-INFLOW",
+    "GAUGE-ECU",
+    "GAUGE-MOTOR",
+    "GAUGE-HYBRID",
+)
 _LONGEST_WORD: Final = 100
 _MOST_CHOICES: Final = 500
 
