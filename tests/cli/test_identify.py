@@ -84,7 +84,11 @@ def test_recording_of_another_format(run, recording, tmp_path):
         (("--colour", "red"), 2, "No such option '--colour'"),
         (("--campaign", "thesis"), 1, "found a recording from 0.0 to 860.0 s"),
         (("--campaign", "trip.toml"), 1, "trip.toml: expected a settings file, found nothing there"),
-        (("--vessel", "tor"), 1, "one of the shipped names e-ferry-ellen, nifs-research-vessel, pt-may, stan-tug-1205"),
+        (
+            ("--vessel", "tor"),
+            1,
+            "one of the shipped names e-ferry-ellen, foss-carolyn-dorothy, nifs-research-vessel, pt-may, stan-tug-1205",
+        ),
     ],
 )
 def test_wrong_input_leaves_nothing_behind(run, recording, tmp_path, options, code, message):

@@ -25,6 +25,7 @@ CHANNELS = {"U_setpoint", "PTM_e", "PTM_1", "PTM_4", "M_s"}
 # Ships beside the tug, with the structure that their vessel file asks for.
 OTHER_SHIPS = {
     "e-ferry-ellen": "GAUGE-MOTOR",
+    "foss-carolyn-dorothy": "GAUGE-HYBRID",
     "nifs-research-vessel": "GAUGE-PITCH",
     "pt-may": "GAUGE-CLOSED",
     "stan-tug-1205-astern": "GAUGE-CLOSED",

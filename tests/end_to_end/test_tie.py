@@ -11,7 +11,7 @@ import pytest
 
 from shaftprint.catalogue import structure
 from shaftprint.propeller import wageningen_b
-from shaftprint.tug import Coupling, Tug, like_stan_tug_1205, linearised_response, normalised_truth
+from shaftprint.tug import Coupling, ShaftMachineTruth, Tug, like_stan_tug_1205, linearised_response, normalised_truth
 from shaftprint.vessel import load_vessel
 
 OMEGA_RAD_S = np.geomspace(0.1, 10.0, 200)
@@ -176,6 +176,31 @@ def test_linearised_ship_with_a_controllable_pitch_is_the_composed_structure(giv
     assert {name: told[name] for name in ("q", "tau_th", "t_th", "c_th", "c_pitch")} == pytest.approx(
         {name: known[name] for name in ("q", "tau_th", "t_th", "c_th", "c_pitch")}
     )
+
+
+@pytest.mark.parametrize(
+    ("share", "shown", "given"),
+    [(0.35, 1.0, {}), (-0.25, 0.97, {"g": -0.3, "v": 1.2}), (0.6, 1.02, {"g": 0.2, "governor_delay_s": 0.0437})],
+    ids=["power taken in", "power taken out", "most from the machine"],
+)
+def test_linearised_hybrid_is_the_composed_structure(share, shown, given):
+    hybrid = load_vessel("foss-carolyn-dorothy")
+    machine = ShaftMachineTruth(share=share, shown=shown)
+    tug = replace(like_stan_tug_1205(hybrid), shaft_machine=machine, **given)
+    seconds_per_kg_m2 = 2.0 * np.pi * 1200.0 / 60.0 / 6.8 / 31236.0
+    known = parameters_of(tug) | {
+        "tau_up": seconds_per_kg_m2 * ((13.0 + 2.5 + 9.0) * 6.8**2 + 60.0),
+        "tau_dn": seconds_per_kg_m2 * (560.0 + 224.0 + 15.0),
+        # the converter shows its torque by a factor of its own, of which the share is a part too
+        "c_m": 1.0 / shown,
+        "share": share * shown,
+    }
+    outputs, model = composed("GAUGE-HYBRID", known)
+    for place, name in enumerate(("n_set", "M_m")):
+        simulated = linearised_response(tug, hybrid, OMEGA_RAD_S / (2.0 * np.pi), outputs=outputs, input=name)[:, 0]
+        ratio = simulated / model.reshape(len(outputs), 2, -1)[:, place]
+        assert np.abs(ratio) == pytest.approx(np.ones(ratio.shape), abs=1e-5)
+        assert np.degrees(np.angle(ratio)) == pytest.approx(np.zeros(ratio.shape), abs=1e-3)
 
 
 ELASTIC = {

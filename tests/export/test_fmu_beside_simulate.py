@@ -18,24 +18,40 @@ SPEED_RPM, TORQUE_NM = 1183.8, 1740.0
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("name_of_line", "rows_a_second"),
-    [("GAUGE-CLOSED", 100), ("GAUGE-CLOSED", 1000), ("GAUGE-MOTOR", 100), ("GAUGE-ELASTIC", 1000)],
+    [
+        ("GAUGE-CLOSED", 100),
+        ("GAUGE-CLOSED", 1000),
+        ("GAUGE-MOTOR", 100),
+        ("GAUGE-ELASTIC", 1000),
+        ("GAUGE-HYBRID", 100),
+        ("GAUGE-HYBRID", 1000),
+    ],
 )
 def test_a_held_step_moves_the_line_as_it_moves_the_fmu(fmu, tmp_path, name_of_line, rows_a_second):
     """Rows of 10 ms were 0.3 rpm beside the FMU when values were held by steps of the solver."""
     fmpy = pytest.importorskip("fmpy")
     time = np.arange(0.0, LAST_S, 1.0 / rows_a_second)
     asked = np.where(time >= STEP_S - 1e-9, JUMP, 0.0)
-    rows = "".join(f"{second:.4f},{value}\n" for second, value in zip(time, asked, strict=True))
-    (tmp_path / "input.csv").write_text(f"time [s],n_set [-]\n{rows}", encoding="utf-8")
+    model = structure(name_of_line)
+    inputs = {"n_set": ("engine_speed_set_point", asked, SPEED_RPM * (1.0 + asked))}
+    if len(model.inputs) > 1:
+        # the second input jumps later, and back
+        other = np.where((time >= 2.0 * STEP_S - 1e-9) & (time < 4.0 * STEP_S - 1e-9), -2.0 * JUMP, 0.0)
+        inputs[model.inputs[1]] = (model.inputs[1], other, other)
+    table = [time, *(deviation for _, deviation, _ in inputs.values())]
+    rows = "".join(f"{second:.4f},{','.join(map(str, values))}\n" for second, *values in zip(*table, strict=True))
+    heading = ",".join(f"{name} [-]" for name in inputs)
+    (tmp_path / "input.csv").write_text(f"time [s],{heading}\n{rows}", encoding="utf-8")
     files = ["--input", str(tmp_path / "input.csv"), "-o", str(tmp_path / "output.csv")]
     done = CliRunner().invoke(shaftprint, ["simulate", "--structure", name_of_line, "--hold", *files])
     assert done.exit_code == 0, done.stderr
     with (tmp_path / "output.csv").open(encoding="utf-8", newline="") as file:
         printed = list(csv.DictReader(file))
-    name = "engine_speed_set_point"
-    held = np.array(list(zip(time, SPEED_RPM * (1.0 + asked), strict=True)), dtype=[("time", float), (name, float)])
+    columns = [time, *(values for _, _, values in inputs.values())]
+    kinds = [("time", float), *((name, float) for name, _, _ in inputs.values())]
+    held = np.array(list(zip(*columns, strict=True)), dtype=kinds)
     moved = fmpy.simulate_fmu(
-        fmu(structure(name_of_line)),
+        fmu(model),
         stop_time=float(time[-1]),
         step_size=1.0 / rows_a_second,
         output_interval=1.0 / rows_a_second,

@@ -146,6 +146,24 @@ def gauge_elastic(s, p):
     return pick_up(s, p) * speed, torque * telemetry(s, p)
 
 
+def gauge_hybrid(s, p):
+    """The same two free bodies with a torque from outside upstream; the engine gives what is left of the whole.
+
+    ``M_b = (1 - c_m share) (g n + v C e^(-s t_d) F (c_set e^(-s t_sp) n_set - n))`` and
+    ``M_b + c_m M_m - M_s = tau_up s n``, solved for either input alone.
+    """
+    given = 1 - p["c_m"] * p["share"]
+    engine = given * governor(s, p)
+    demand = p["c_set"] * mp.exp(-s * p["t_sp"])
+    matrix = mp.matrix(
+        [[1, -1, -p["tau_up"] * s], [0, 1, -p["k_q"] - p["tau_dn"] * s], [1, 0, engine - given * p["g"]]]
+    )
+    _, torque, speed = mp.lu_solve(matrix, mp.matrix([0, 0, engine * demand]))
+    _, moved, turned = mp.lu_solve(matrix, mp.matrix([-p["c_m"], 0, 0]))
+    seen, shown = pick_up(s, p), telemetry(s, p)
+    return seen * speed, seen * turned, shown * torque, shown * moved
+
+
 def gauge_motor(s, p):
     """The same two free bodies; the torque follows the PI controller late and by a lag of first order.
 
@@ -256,6 +274,7 @@ FORMS = {
     "GAUGE-ECU": gauge_ecu,
     "GAUGE-MOTOR": gauge_motor,
     "GAUGE-PITCH": gauge_pitch,
+    "GAUGE-HYBRID": gauge_hybrid,
     "GOVERNOR": governor_alone,
     "ENGINE": engine,
     "FREE-CORE": sailing_core,
@@ -322,7 +341,16 @@ def test_a_coupling_without_end_of_stiffness_is_a_rigid_line():
 
 
 # of many parameters, each with derivatives of 50 digits
-LONG = ("FREE-PITCH", "GAUGE-PITCH", "FREE-LOG", "FREE-CLOSED", "GAUGE-ECU", "GAUGE-ELASTIC", "GAUGE-INFLOW")
+LONG = (
+    "FREE-PITCH",
+    "GAUGE-PITCH",
+    "FREE-LOG",
+    "FREE-CLOSED",
+    "GAUGE-ECU",
+    "GAUGE-ELASTIC",
+    "GAUGE-HYBRID",
+    "GAUGE-INFLOW",
+)
 
 
 @pytest.mark.parametrize(

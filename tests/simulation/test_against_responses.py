@@ -78,6 +78,7 @@ SHIPPED = (
     "GAUGE-CORE",
     "GAUGE-OPEN",
     "GAUGE-ELASTIC",
+    "GAUGE-HYBRID",
     "GAUGE-INFLOW",
     "GAUGE-ECU",
     "ENGINE",

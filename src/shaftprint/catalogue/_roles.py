@@ -67,6 +67,22 @@ class ShipRole:
     """Proportional gain of the governor."""
     INTEGRAL_GAIN: Final = _gain("integral", "1/s", "N m/(rpm s)", "rate of change of torque")
     """Integral gain of the governor."""
+    OWN_PROPORTIONAL_GAIN: Final = Role(
+        name="proportional gain of the engine's own torque",
+        unit="-",
+        basis=frozenset(("governor",)),
+        over_torque=True,
+        rack_power=-1,
+    )
+    """Proportional gain of the governor over what the engine alone gives, beside an electric machine."""
+    OWN_INTEGRAL_GAIN: Final = Role(
+        name="integral gain of the engine's own torque",
+        unit="1/s",
+        basis=frozenset(("governor",)),
+        over_torque=True,
+        rack_power=-1,
+    )
+    """Integral gain of the governor over what the engine alone gives, beside an electric machine."""
     DERIVATIVE_GAIN: Final = Role(name="derivative gain", unit="s", over_torque=True, rack_power=-1)
     """Derivative gain of the governor."""
     ENGINE_SPEED_SLOPE: Final = Role(
@@ -91,8 +107,12 @@ class ShipRole:
     """Damping ratio of the actuator's lag."""
     TORQUE_TIME: Final = _line("torque time", "s", "governor")
     """Time constant of a motor's torque."""
+    MACHINE_SHARE: Final = Role(name="machine share", unit="-")
+    """Torque that an electric machine on the gearbox shows at the working point, over that of the shaft."""
     LOOP_GAIN: Final = _line("loop gain", "", "governor")
     """Gains over each other or over the line, a combination in which the working point cancels; a margin."""
+    MACHINE_SCALE: Final = _sensor("machine scale", "-", "torque")
+    """Torque of an electric machine over that which its converter shows, as the torque gauge shows torques."""
     SET_POINT_SCALE: Final = _sensor("set-point scale", "-", "set point")
     """Scale error of the measured set point."""
     SET_POINT_OFFSET: Final = _sensor("set-point offset", "-", "set point")

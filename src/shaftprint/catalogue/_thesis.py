@@ -18,6 +18,7 @@ from shaftprint.catalogue._gauge import (
     gauge_open,
     governor,
 )
+from shaftprint.catalogue._hybrid import gauge_hybrid
 from shaftprint.catalogue._pitch import gauge_pitch
 from shaftprint.catalogue._roles import ShipRole
 from shaftprint.catalogue._sailing import free_closed, free_core, free_log, free_pitch, free_ship
@@ -210,6 +211,7 @@ STRUCTURES: Mapping[str, Callable[[], Structure]] = {
     "GAUGE-ELASTIC": gauge_elastic,
     "GAUGE-ECU": gauge_ecu,
     "GAUGE-MOTOR": gauge_motor,
+    "GAUGE-HYBRID": gauge_hybrid,
     "GAUGE-PITCH": gauge_pitch,
     "GOVERNOR": governor,
     "ENGINE": engine,
@@ -221,7 +223,7 @@ STRUCTURES: Mapping[str, Callable[[], Structure]] = {
 }
 
 
-CLOSED_LOOPS: Mapping[str, str] = {"engine": "GAUGE-CLOSED", "motor": "GAUGE-MOTOR"}
+CLOSED_LOOPS: Mapping[str, str] = {"engine": "GAUGE-CLOSED", "motor": "GAUGE-MOTOR", "hybrid": "GAUGE-HYBRID"}
 """Names of the closed loops of ships, by what drives the line."""
 PITCHED_LOOP = "GAUGE-PITCH"
 """Name of the closed loop of an engine and a propeller of controllable pitch, at the quay."""

@@ -1,5 +1,7 @@
 """The truth of a simulated recording under the names of a fingerprint, to be printed beside the estimates."""
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from shaftprint.catalogue import ShipRole
@@ -68,7 +70,23 @@ def _parameters(truth: Truth, structure: Structure, signals: Signals) -> dict[st
         elif parameter.name in truth.normalised:
             scale = moved if parameter.role and parameter.role.over_torque else 1.0
             values[parameter.name] = truth.normalised[parameter.name] * scale
-    return values
+    return values | _beside_machine(structure, values, truth.shaft_torque_nm / point.shaft_torque_nm)
+
+
+def _beside_machine(structure: Structure, values: Mapping[str, float], torque_share: float) -> dict[str, float]:
+    """Return what changes where an electric machine keeps its torque while that of the propeller drifts.
+
+    The engine gives the rest, over which its own numbers are.
+    """
+    share = next((p.name for p in structure.parameters if p.role == ShipRole.MACHINE_SHARE), None)
+    if share is None or share not in values:
+        return {}
+    given = torque_share * values[share]
+    own = (1.0 - values[share]) / (1.0 - given)
+    of_engine = (ShipRole.OWN_PROPORTIONAL_GAIN, ShipRole.OWN_INTEGRAL_GAIN, ShipRole.ENGINE_SPEED_SLOPE)
+    names = [p.name for p in structure.parameters if p.role in of_engine]
+    scale = next(values[p.name] for p in structure.parameters if p.role == ShipRole.MACHINE_SCALE)
+    return {share: given / scale} | {name: own * values[name] for name in names}
 
 
 def _calibration(truth: Truth, signals: Signals) -> dict[str, float]:

@@ -23,13 +23,16 @@ OWN_FILE_HELP = "a shipped one, or my_ship.py:my_loop for one of your own file, 
 TypedName = NewType("TypedName", str)
 """The name of a structure as the user typed it, which may be that of a file to run; a text out of a file is no such."""
 
-CLOSED_LOOP_HELP = f"{CLOSED_LOOPS['engine']}, or {CLOSED_LOOPS['motor']} where a motor drives the line"
+CLOSED_LOOP_HELP = (
+    f"{CLOSED_LOOPS['engine']}, {CLOSED_LOOPS['motor']} where a motor drives the line, or "
+    f"{CLOSED_LOOPS['hybrid']} where one helps an engine"
+)
 DEFAULT_HELP = f"{CLOSED_LOOP_HELP}, or FREE-LOG underway"
 
 
 def closed_loop_of(vessel: Vessel | None) -> TypedName:
     """Return the closed loop of what drives a line; that of an engine where no vessel file is given."""
-    return TypedName(CLOSED_LOOPS["engine" if vessel is None else vessel.machine.word])
+    return TypedName(CLOSED_LOOPS["engine" if vessel is None else vessel.drive])
 
 
 def structure_to_use(name: TypedName | None, fingerprint: Fingerprint) -> Structure:

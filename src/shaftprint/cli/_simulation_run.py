@@ -17,7 +17,7 @@ from shaftprint.simulation import simulate, simulate_exactly
 
 # Derivatives that the simulation takes at a time; more at once would only take more memory.
 AT_ONCE = 8
-DEVIATIONS = ("n_set", "n", "e", "M_s", "X", "v_s", "theta_set")
+DEVIATIONS = ("n_set", "n", "e", "M_s", "X", "v_s", "theta_set", "M_m")
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

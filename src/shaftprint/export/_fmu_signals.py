@@ -35,6 +35,7 @@ _DEVIATIONS = {
     "X": ("X", "-", "deviation of the fuel rack over its working-point value"),
     "v_s": ("v_s", "-", "deviation of the speed of the ship over its working-point value"),
     "theta": ("theta", "-", "deviation of the pitch, as its feedback shows it, over its working-point value"),
+    "M_m": ("M_m", "-", "deviation of the electric machine's torque over the working-point shaft torque"),
     "theta_set": ("theta_set", "-", "deviation of the set point of the pitch over its working-point value"),
 }
 

@@ -31,6 +31,7 @@ from shaftprint.identify.comparison import compare_structures
 from shaftprint.identify.fit import Identification, identify, identify_jointly
 from shaftprint.identify.judgement import Requirements, Verdict, assess
 from shaftprint.identify.likelihood import (
+    SHARE_ROUNDING,
     MaximumLikelihood,
     Prior,
     StudentT,
@@ -54,6 +55,7 @@ from shaftprint.identify.search import LatinHypercube, Settings, Uniform
 from shaftprint.identify.uncertainty import bootstrap, profile, profile_intervals
 
 __all__ = [
+    "SHARE_ROUNDING",
     "STAN_TUG_NOISE",
     "STAN_TUG_NOISE_AT_SPEEDS",
     "Identification",

@@ -13,6 +13,7 @@ quantity        unit    meaning and sign
                         drives the propeller
 ``X``           -       deviation of the fuel rack over its working-point value; positive for more fuel
 ``v_s``         -       deviation of the speed of the ship over its working-point value; positive faster ahead
+``M_m``         -       deviation of the torque of an electric machine, at the propeller shaft and over ``M_s0``
 ``theta_set``   -       deviation of the set point of the pitch over its working-point value; positive for more thrust
 ``s``           rad/s   Laplace variable, ``1j omega`` on the frequency axis
 ``tau``         s       inertia time ``2 pi I n_s0 / M_s0``, of the inertia that the index names

@@ -66,7 +66,7 @@ def tug_of_plan(test: "PlannedTest", vessel: "Vessel") -> Tug:
     if missing:
         raise DesignError(
             f"rehearsal of {plan.ship.structure.name}: expected a closed loop such as "
-            f"{CLOSED_LOOPS[vessel.machine.word]}, which is what can be simulated, found one without "
+            f"{CLOSED_LOOPS[vessel.drive]}, which is what can be simulated, found one without "
             f"{', '.join(missing)}; plan it without --rehearse."
         )
     speed_rev_s = rev_s_from_rpm(limits.engine_speed_rpm)

@@ -126,6 +126,8 @@ class ExcitationSignal(ChannelSignal):
     """The working point in that unit."""
     value_rate_hz: float = math.inf
     """Values a second that a spline joins [Hz]; infinite where the logger samples as fast as the signals."""
+    share: float | None = None
+    """Of the torque of an electric machine, its mean at the working point over the shaft torque."""
     is_obeyed: bool = False
     """Whether the governor holds each value until the next."""
 

@@ -25,6 +25,7 @@ _UNITS = {
     "M_s": ("N m", "shaft torque at the gauge"),
     "X": ("-", "fuel rack, share of the full rack"),
     "theta_set": ("-", "pitch set point, P/D"),
+    "M_m": ("N m", "torque of the electric machine at the propeller shaft"),
     "v_s": ("m/s", "speed of the ship"),
 }
 

@@ -7,7 +7,15 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from shaftprint.catalogue import ShipRole
-from shaftprint.identify import Identification, Prior, Settings, identify, identify_jointly, priors_from_vessel
+from shaftprint.identify import (
+    SHARE_ROUNDING,
+    Identification,
+    Prior,
+    Settings,
+    identify,
+    identify_jointly,
+    priors_from_vessel,
+)
 from shaftprint.identify.comparison import StructureComparison, compare_fits
 from shaftprint.models import Structure
 from shaftprint.signals import Signals, WorkingPoint
@@ -22,7 +30,8 @@ def priors_of(
 ) -> dict[str, Prior]:
     """Return the priors of a structure: those of the vessel file, and what the user states instead or besides."""
     known = priors_from_vessel(structure, vessel, signals.working_point, mode=signals.mode)
-    return known | _from_demand(structure, vessel, signals) | dict(stated or {})
+    measured = _from_demand(structure, vessel, signals) | _from_machine(structure, signals)
+    return known | measured | dict(stated or {})
 
 
 def _from_demand(structure: Structure, vessel: Vessel, signals: Signals) -> dict[str, Prior]:
@@ -34,6 +43,15 @@ def _from_demand(structure: Structure, vessel: Vessel, signals: Signals) -> dict
     sources = {name: part for name, part in parts.items() if part}
     prior = Prior(mean=found.delay_s, std=math.hypot(*parts.values()), sources=sources)
     return {one.name: prior for one in structure.free if one.role == ShipRole.SET_POINT_LATENCY}
+
+
+def _from_machine(structure: Structure, signals: Signals) -> dict[str, Prior]:
+    """Return the share of the torque that an electric machine on the gearbox showed, in place of the vessel file's."""
+    shown = [moved.share for moved in signals.excitations.values() if moved.share is not None]
+    if not shown:
+        return {}
+    prior = Prior(mean=shown[0], std=SHARE_ROUNDING, sources={"machine share": SHARE_ROUNDING})
+    return {one.name: prior for one in structure.free if one.role == ShipRole.MACHINE_SHARE}
 
 
 def stated_working_point(vessel: Vessel) -> WorkingPoint:
@@ -100,9 +118,10 @@ def comparisons_of(
     rng
         For the draws; each group begins with its state.
     """
-    groups: dict[tuple[tuple[str, str], ...], list[Identification]] = {}
+    groups: dict[tuple[tuple[tuple[str, str], ...], ...], list[Identification]] = {}
     for one in fits:
-        groups.setdefault(one.structure.channels, []).append(one)
+        # a structure with a further input is fitted to more lines than one without
+        groups.setdefault(tuple(part.structure.channels for part in one.parts), []).append(one)
     chosen = [group for group in groups.values() if len(group) > 1]
     if not chosen:
         return ()

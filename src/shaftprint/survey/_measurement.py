@@ -5,6 +5,7 @@ from dataclasses import dataclass, field, replace
 from datetime import datetime
 from pathlib import Path
 
+from shaftprint.catalogue import ShipRole
 from shaftprint.clocks import logger_clocks
 from shaftprint.errors import StructureError
 from shaftprint.fingerprint import clock_findings, clock_influences
@@ -171,7 +172,8 @@ def of_legs(measurement: Measurement, names: Sequence[str]) -> Measurement:
 def pairs_of(structure: Structure, measurement: Measurement) -> tuple[tuple[Structure, FrequencyResponse], ...]:
     """Return what is fitted to what: a structure and its response, or for each excited input its part and response.
 
-    Legs at other working points follow, each with the structure at its own.
+    An input that can be moved and stood still in this test has no response; the structure keeps its parameters. Legs at
+    other working points follow, each with the structure at its own.
 
     Raises
     ------
@@ -179,6 +181,11 @@ def pairs_of(structure: Structure, measurement: Measurement) -> tuple[tuple[Stru
         If the recording does not give the response that a structure describes.
     """
     responses = measurement.responses
+    _expect_share_of_one_point(structure, measurement)
+    moved = {response.inputs[0] for response in responses}
+    rests = {*structure.inputs} - moved
+    if rests and structure.inputs[0] in moved and rests <= {*measurement.signals.excitations}:
+        structure = structure.of_input(structure.inputs[0])
     main, rack = measurement.signals.working_point, rack_of(measurement.signals)
     further = tuple(leg for leg in measurement.legs if leg.working_point != main)
     parts = _by_input(structure, responses)
@@ -205,6 +212,15 @@ def pairs_of(structure: Structure, measurement: Measurement) -> tuple[tuple[Stru
             for leg in further
         ),
     )
+
+
+def _expect_share_of_one_point(structure: Structure, measurement: Measurement) -> None:
+    if any(p.role == ShipRole.MACHINE_SHARE for p in structure.parameters) and len(measurement.working_points) > 1:
+        raise StructureError(
+            f"structure {structure.name}: expected one working point, as the share of the electric machine is that of "
+            f"one, found {len(measurement.working_points)}; choose one of {', '.join(measurement.working_points)} with "
+            "--leg."
+        )
 
 
 def _by_input(

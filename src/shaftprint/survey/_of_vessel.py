@@ -9,8 +9,8 @@ from shaftprint.units import rev_s_from_rpm
 from shaftprint.vessel import Vessel
 
 _OF_SENSORS = {ShipRole.LOAD_SLOPE: (1.0, 3.0), ShipRole.LOG_LATENCY: (-2.0, 2.0)}
-# A ship with way on answers its shafts; only engines drive the free-sailing structures.
 _PITCH = "pitch_set_point"
+# A ship with way on answers its shafts; only engines drive the free-sailing structures.
 _UNDERWAY, _UNDERWAY_WITH_LOG = "FREE-CLOSED", "FREE-LOG"
 # What is known to some per cent is free up to this multiple.
 _WIDE = 2.0
@@ -19,15 +19,15 @@ _WIDE = 2.0
 def default_structure(vessel: Vessel, campaign: Campaign) -> str:
     """Return the name of the closed loop that a test asks for: by what drives the line, where, and what is moved.
 
-    At the quay it is GAUGE-CLOSED, GAUGE-MOTOR where a motor drives the line, or GAUGE-PITCH where an engine does and
-    its campaign moves a pitch that is logged; underway FREE-LOG, or FREE-CLOSED
-    where no log is in the recording.
+    At the quay it is GAUGE-CLOSED, GAUGE-MOTOR where a motor drives the line, GAUGE-HYBRID where an electric machine is
+    on the gearbox of an engine, or GAUGE-PITCH where the campaign moves a pitch that is logged; underway FREE-LOG, or
+    FREE-CLOSED where no log is in the recording.
     """
     if vessel.is_underway and vessel.motor is None:
         return _UNDERWAY if vessel.sensors.ship_speed is None else _UNDERWAY_WITH_LOG
     if vessel.shows_pitch and vessel.motor is None and _PITCH in campaign.inputs:
         return PITCHED_LOOP
-    return CLOSED_LOOPS[vessel.machine.word]
+    return CLOSED_LOOPS[vessel.drive]
 
 
 def of_vessel(structure: Structure, vessel: Vessel) -> Structure:

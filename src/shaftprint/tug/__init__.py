@@ -9,6 +9,8 @@ quantity                     unit       meaning and sign
 ``M_s``                      N m        torque at the gauge, positive when the engine drives the propeller
 ``T``                        N m        torque of an elastic coupling, positive as ``M_s``
 ``M_b``                      N m        brake torque at the engine flange, negative when the engine is motored
+``M_m``                      N m        torque of an electric machine on the gearbox at the propeller shaft, negative
+                                        when it is taken out
 ``X``                        1          fuel rack above zero-torque running; 1 gives rated torque at rated speed
 ``U``                        V          set-point voltage; more negative asks for more speed
 ``t_d``, ``t_sp``            s          delays inside the loop and before it
@@ -40,6 +42,7 @@ from shaftprint.tug._sail import sail
 from shaftprint.tug._sail_as import sail_as
 from shaftprint.tug._sail_both import TruthOfBoth, sail_both
 from shaftprint.tug._sailing import Sailing
+from shaftprint.tug._shaft_machine import ShaftMachineTruth
 from shaftprint.tug._shared_water import SharedWater
 from shaftprint.tug._simulated_fleet import (
     SailedTest,
@@ -63,6 +66,7 @@ __all__ = [
     "PitchActuation",
     "SailedTest",
     "Sailing",
+    "ShaftMachineTruth",
     "SharedWater",
     "ShipWork",
     "SimulatedFleet",

@@ -21,6 +21,7 @@ from shaftprint.tug.plant import (
     build_plant,
     equilibrium,
     steady_load_nm,
+    working_point,
 )
 from shaftprint.tug.sensors import (
     VOLT_PER_COUNT,
@@ -31,6 +32,7 @@ from shaftprint.tug.sensors import (
     Fault,
     Helm,
     HelmMessages,
+    MachineTorque,
     PickUp,
     PitchFeedback,
     PitchLever,
@@ -79,11 +81,11 @@ class Crew:
                 f"found a duration of {campaign.duration_s:g} s."
             )
         self._expect_fast_logger()
-        # bus, log, pitch, demand and feedback come last: without them the others draw the same numbers
-        process, torque, set_point, *speeds, bus, log, pitch, demand, feedback = (
+        # bus, log, pitch, demand, feedback and machine come last: without them the others draw the same numbers
+        process, torque, set_point, *speeds, bus, log, pitch, demand, feedback, machine = (
             np.random.default_rng(child)
             for child in np.random.SeedSequence(seed if line is None else (seed, line)).spawn(
-                8 + len(vessel.sensors.speed)
+                9 + len(vessel.sensors.speed)
             )
         )
         duration_s = campaign.duration_s
@@ -109,13 +111,14 @@ class Crew:
         self._log = self._read_log(float(first[WAY]), log)
         self._lever = self._stand_by_lever(pitch)
         self._feedback = self._watch_pitch(feedback)
+        self._machine = self._watch_machine(machine)
         asked = vessel.sensors.demand
         self._demand = (
             None if asked is None else DemandMessages(asked, rate_hz=self._rate_hz, rng=demand, bus=Bus.of(tug))
         )
         on_board = (self._helm, *self._speeds, self._gauge, self._control_unit, self._log)
         of_pitch = (self._lever, self._feedback)
-        every = (*on_board, *of_pitch, self._demand)
+        every = (*on_board, *of_pitch, self._demand, self._machine)
         self._sensors: tuple[_Sensor, ...] = tuple(sensor for sensor in every if sensor is not None)
         self._limited = {excitation.name: 0 for excitation in campaign.excitations}
 
@@ -174,6 +177,17 @@ class Crew:
             rate_hz=self._rate_hz,
             rng=rng,
         )
+
+    def _watch_machine(self, rng: np.random.Generator) -> MachineTorque | None:
+        sensor, machine, geared = (
+            self._vessel.sensors.machine_torque,
+            self._tug.shaft_machine,
+            self._vessel.shaft_machine,
+        )
+        if sensor is None or machine is None or geared is None:
+            return None
+        _, torque_nm = working_point(self._tug, self._vessel)
+        return MachineTorque(sensor, geared, machine, torque_nm=torque_nm, rate_hz=self._rate_hz, rng=rng)
 
     def _watch_bus(self, first_rack: float, rng: np.random.Generator) -> ControlUnit | None:
         sensor = self._vessel.sensors.rack
@@ -284,6 +298,14 @@ class Crew:
                 rate_hz=self._rate_hz,
                 scale=VOLT_PER_COUNT,
                 long_name="feedback of the pitch of the propeller",
+            )
+        if self._machine is not None:
+            writer.declare(
+                self._machine.channel,
+                unit="V",
+                rate_hz=self._rate_hz,
+                scale=VOLT_PER_COUNT,
+                long_name="torque of the electric machine on the gearbox, from its converter",
             )
         self._declare_slow_channels(writer)
 

@@ -8,6 +8,7 @@ from shaftprint.tug._coupling import stated_coupling
 from shaftprint.tug._pitch_actuation import PitchActuation, pitch_torque
 from shaftprint.tug._pitch_series import steepened, torque_over_pitch
 from shaftprint.tug._sailing import CURVES_PITCH_RATIO, CURVES_SERIES, Sailing
+from shaftprint.tug._shaft_machine import ShaftMachineTruth
 from shaftprint.tug._truth import normalised_truth
 from shaftprint.tug._tug import Tug
 from shaftprint.vessel import Vessel
@@ -27,10 +28,11 @@ def like_stan_tug_1205(vessel: Vessel, *, offset_v: float = _AT_THE_QUAY_V) -> T
 
     The lever asks for the ship's working speed at -5 V where it is tested at the quay, and at the voltage of the
     campaign underway; volts are those of the tug. A line with less inertia over its torque has a governor with as much
-    smaller gains, which crosses over where that of the tug does and is as far from hunting. A motor has the dead time
-    and lag of a converter; a controllable pitch follows as the vessel file says. A ship whose vessel file states a
-    speed of the ship sails free, with its wake fraction and thrust deduction. Where the links of its vessel file have
-    one spring, that is its coupling.
+    smaller gains, which crosses over where that of the tug does and is as far from hunting. An electric machine on the
+    gearbox has the share of the vessel file; gains go with what the engine gives. A motor has the dead time and lag of
+    a converter; a controllable pitch follows as the vessel file says. A ship whose vessel file states a speed of the
+    ship sails free, with its wake fraction and thrust deduction. Where the links of its vessel file have one spring,
+    that is its coupling.
 
     Parameters
     ----------
@@ -44,16 +46,20 @@ def like_stan_tug_1205(vessel: Vessel, *, offset_v: float = _AT_THE_QUAY_V) -> T
     SettingsError
         If it is to sail free with another propeller than the simulated ship has curves of.
     """
+    machine = None if vessel.shaft_machine is None else ShaftMachineTruth(share=vessel.shaft_machine.share)
     tug = replace(
         Tug.stan_tug_1205() if vessel.motor is None else _ELECTRIC,
         sailing=_sailing(vessel),
         pitch=_pitch(vessel),
         coupling=stated_coupling(vessel),
+        shaft_machine=machine,
     )
     further_v = offset_v - _AT_THE_QUAY_V if vessel.is_underway else 0.0
     asked_rpm = _AT_THE_QUAY_RPM + tug.set_point_slope_rpm_per_v * further_v
     speed = vessel.working_point.engine_speed_rpm / asked_rpm
     gain = min(1.0, normalised_truth(tug, vessel)["tau_t"] / _STAN_TUG_INERTIA_S)
+    if machine is not None:
+        gain /= 1.0 - machine.share
     return replace(
         tug,
         set_point_slope_rpm_per_v=speed * tug.set_point_slope_rpm_per_v,

@@ -24,14 +24,15 @@ from shaftprint.tug.plant import (
     build_plant,
     derivatives,
     equilibrium,
+    steady_load_nm,
     working_point,
     working_point_rack,
 )
 from shaftprint.vessel import Vessel
 
 # Places in the vector that is perturbed: nine states, the demand in the ECU, the rack given a delay ago, the pitch, the
-# disturbance of the propeller's torque.
-_DEMAND, _RACK_DELAYED, _PITCH, _LOAD, _SIZE = 9, 10, 11, 12, 13
+# disturbance of the propeller's torque, the torque of an electric machine on the gearbox.
+_DEMAND, _RACK_DELAYED, _PITCH, _LOAD, _MACHINE, _SIZE = 9, 10, 11, 12, 13, 14
 # Places in what comes out: the rates of the states, then the rack given and the torque at the gauge.
 _GIVEN, _GAUGE, _RATES = 9, 10, 11
 
@@ -54,14 +55,15 @@ def linearised_response(
         Which responses: ``n``, ``M_s``, ``X``, the fuel rack that the governor gives before the delay, and of a tug
         that sails ``v_s``, the speed of the ship, of one with a controllable pitch at the quay ``theta``, its feedback.
     input
-        ``n_set``; ``load``, a share by which the propeller takes more torque; or of a tug that sails or has a
-        controllable pitch ``theta_set``, the set point of the pitch.
+        ``n_set``; ``load``, a share by which the propeller takes more torque; of a tug that sails or has a controllable
+        pitch ``theta_set``, the set point of the pitch; or where an electric machine is on the gearbox ``M_m``, its
+        torque at the propeller shaft as its channel shows it.
 
     Returns
     -------
     response
-        ``n* / n_set*``, ``M_s* / n_set*`` and ``X* / n_set*`` as asked [-], normalised at the working point, shape
-        (outputs, 1, lines).
+        ``n* / n_set*``, ``M_s* / n_set*`` and ``X* / n_set*`` as asked [-], normalised at the working point, ``M_m`` by
+        the shaft torque there, shape (outputs, 1, lines).
 
     Raises
     ------
@@ -92,7 +94,7 @@ def linearised_response(
         rack_given, gauge = slope[_GIVEN], slope[_GAUGE]
         inner = slope[states, _RACK_DELAYED] * delay
         system = value * np.eye(inner.size) - slope[np.ix_(states, states)] - np.outer(inner, rack_given[states])
-        moved, size, late = _excitation(tug, vessel, input, value, speed)
+        moved, size, late = _excitation(tug, vessel, input, value, (speed, driving_nm))
         right = slope[states, moved] + inner * rack_given[moved]
         x = np.linalg.solve(system, right) * late
         responses = {
@@ -108,17 +110,22 @@ def linearised_response(
     return response
 
 
-def _excitation(tug: Tug, vessel: Vessel, name: str, s: complex, speed: float) -> tuple[int, float, complex]:
-    """Return place of what is moved, its working point, and what comes between its set point and the line."""
+def _excitation(tug: Tug, vessel: Vessel, name: str, s: complex, at: tuple[float, float]) -> tuple[int, float, complex]:
+    """Return place of what is moved, its working point, and what comes between its set point and the line.
+
+    ``at`` are engine speed [rev/s] and driving torque at the shaft [N m] of the working point.
+    """
     if name == "n_set":
-        return _DEMAND, speed, complex(np.exp(-s * tug.set_point_latency_s))
+        return _DEMAND, at[0], complex(np.exp(-s * tug.set_point_latency_s))
     if name == "load":
         return _LOAD, 1.0, 1.0 + 0.0j
+    if name == "M_m" and tug.shaft_machine is not None:
+        return _MACHINE, at[1] / tug.shaft_machine.shown, 1.0 + 0.0j
     actuation = actuation_of(tug)
     if name != "theta_set" or actuation is None:
         raise SettingsError(
-            "input: expected n_set or load, or theta_set of a tug that sails or has a controllable pitch, found "
-            f"{name}."
+            "input: expected n_set or load, theta_set of a tug that sails or has a controllable pitch, or M_m where "
+            f"an electric machine is on the gearbox, found {name}."
         )
     ratio = vessel.propeller.pitch_ratio if tug.sailing is None else tug.sailing.pitch_ratio
     follows = actuation.set_point_scale * np.exp(-s * actuation.delay_s) / (actuation.lag_s * s + 1.0)
@@ -126,13 +133,13 @@ def _excitation(tug: Tug, vessel: Vessel, name: str, s: complex, speed: float) -
 
 
 def _slopes(plant: Plant, engine_speed_rev_s: float, pitch_powers: tuple[float, ...]) -> FloatArray:
-    """Return the slopes of the rates, the rack given and the gauge torque, shape (11, 13).
+    """Return the slopes of the rates, the rack given and the gauge torque, shape (11, 14).
 
     ``pitch_powers`` are those of the torque over the pitch at the quay; none where the pitch is fixed or the curves of
     a ship that sails hold it.
     """
     state = equilibrium(plant, engine_speed_rev_s)
-    centre = np.array([*state, engine_speed_rev_s, state[RACK], 0.0, 0.0])
+    centre = np.array([*state, engine_speed_rev_s, state[RACK], 0.0, 0.0, plant.machine_nm])
     # at the quay the rates are at most quadratic: the central difference has no truncation error; underway it is 1e-8
     size = 1e-4 * centre
     size[RACK_RATE] = size[RACK]
@@ -140,6 +147,7 @@ def _slopes(plant: Plant, engine_speed_rev_s: float, pitch_powers: tuple[float, 
     size[TWIST] = size[TWIST] or 1.0
     size[WAY] = max(size[WAY], 1e-4)
     size[_PITCH] = size[_LOAD] = 1e-4
+    size[_MACHINE] = 1e-4 * steady_load_nm(plant, engine_speed_rev_s / plant.gear_ratio)
     slope = np.empty((_RATES, _SIZE))
     for index in range(_SIZE):
         shift = np.zeros(_SIZE)
@@ -153,6 +161,7 @@ def _rates(plant: Plant, vector: FloatArray, pitch_powers: tuple[float, ...]) ->
     rates: Any = derivatives
     of_pitch = float(np.polynomial.polynomial.polyval(vector[_PITCH], pitch_powers)) if pitch_powers else 1.0
     load = (1.0 + vector[_LOAD]) * of_pitch - 1.0
-    values = rates.py_func(vector[:_DEMAND], *vector[_DEMAND:_PITCH], load, 0.0, plant, 1.0, vector[_PITCH])
+    moved, pitch, machine = vector[_DEMAND:_PITCH], vector[_PITCH], vector[_MACHINE]
+    values = rates.py_func(vector[:_DEMAND], *moved, load, 0.0, plant, 1.0, pitch, machine)
     # the angle's rate, which is the speed, plays no part
     return np.array([*values[:5], 0.0, *values[9:12], values[5], values[6]])

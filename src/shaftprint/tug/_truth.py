@@ -52,10 +52,11 @@ class Truth(Shown):
     """Sample rate of every channel [Hz]."""
     normalised: Mapping[str, float]
     """Parameters normalised at the working point: ``tau_up``, ``tau_dn``, ``tau_t`` [s]; ``tau_w`` [s], the part of
-    ``tau_dn`` that is water beyond the vessel's; with an elastic coupling ``k_c`` [1/s], ``d_c`` and ``tau_m`` [s];
-    ``k_q``; with a controllable pitch ``q``, ``tau_th`` [s], ``t_th`` [s], ``c_th`` and ``c_pitch``; ``kappa``,
-    ``tau_i`` [s] of the dynamic inflow; ``g``, ``v``, ``X_0``; ``K_p``, ``K_i`` [1/s], ``t_d`` [s], ``omega_n``
-    [rad/s], ``zeta``, of a motor ``T_m`` [s] in their place, ``t_sp`` [s]; and where percent torque
+    ``tau_dn`` that is water beyond the vessel's; with an electric machine on the gearbox its ``share`` and ``c_m``;
+    with an elastic coupling ``k_c`` [1/s], ``d_c`` and ``tau_m`` [s]; ``k_q``; with a controllable pitch ``q``,
+    ``tau_th`` [s], ``t_th`` [s], ``c_th`` and ``c_pitch``; ``kappa``, ``tau_i`` [s] of the dynamic inflow; ``g``,
+    ``v``, ``X_0``; ``K_p``, ``K_i`` [1/s], ``t_d`` [s], ``omega_n`` [rad/s], ``zeta``, of a motor ``T_m`` [s] in their
+    place, ``t_sp`` [s]; and where percent torque
     was logged ``t_rack`` [s], its latency beyond the vessel's. Underway, in place of ``k_q``: ``w``, ``t``, ``J``,
     ``a``, ``b``, ``e``, ``tau_u`` [s], the speed of the ship ``v_0`` [m/s] and its resistance ``R`` [N]."""
     physical: Mapping[str, float]
@@ -94,6 +95,7 @@ def normalised_truth(tug: Tug, vessel: Vessel) -> dict[str, float]:
         "tau_t": upstream + downstream,
         "tau_w": shaft_time_constant_s(tug.entrained_water_kg_m2, tug, vessel),
         **_coupling_truth(tug, vessel),
+        **_machine_truth(tug),
         **_load_truth(tug, vessel),
         "kappa": tug.inflow_gain,
         "tau_i": tug.inflow_time_s,
@@ -119,6 +121,12 @@ def _coupling_truth(tug: Tug, vessel: Vessel) -> dict[str, float]:
         "d_c": scale * tug.coupling.damping_nm_s_rad,
         "tau_m": scale * tug.coupling.driven_kg_m2,
     }
+
+
+def _machine_truth(tug: Tug) -> dict[str, float]:
+    """Return what of the torque an electric machine gives, and its torque over that which its channel shows."""
+    machine = tug.shaft_machine
+    return {} if machine is None else {"share": machine.share, "c_m": 1.0 / machine.shown}
 
 
 def _actuation_truth(tug: Tug, vessel: Vessel) -> dict[str, float]:

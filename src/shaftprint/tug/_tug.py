@@ -7,6 +7,7 @@ from shaftprint.tug._coupling import Coupling
 from shaftprint.tug._noise import Noise
 from shaftprint.tug._pitch_actuation import PitchActuation
 from shaftprint.tug._sailing import Sailing
+from shaftprint.tug._shaft_machine import ShaftMachineTruth
 
 # Table 3.4 of the thesis, "Fingerprinting II": angles between the reflection strips [degree]; printed sum 360.02.
 STRIP_ANGLES_DEG = (90.40, 87.24, 90.74, 91.64)
@@ -40,6 +41,8 @@ class Tug:
     """Inertia downstream of the torque gauge, with entrained water [kg m2]; ``None``: the vessel's."""
     coupling: Coupling | None = None
     """An elastic coupling between engine and torque gauge; ``None``: a rigid line."""
+    shaft_machine: ShaftMachineTruth | None = None
+    """The electric machine on the gearbox, where the vessel file has one; ``None``: the engine drives alone."""
     entrained_water_kg_m2: float = 0.0
     """Entrained water beyond what the inertia downstream already contains [kg m2]; it moves with the propeller."""
     inflow_gain: float = 0.0

@@ -35,6 +35,7 @@ from shaftprint.vessel._pitch import ControllablePitch
 from shaftprint.vessel._sensors import (
     DemandSensor,
     Logger,
+    MachineTorqueSensor,
     PitchSensor,
     PitchSetPointSensor,
     RackSensor,
@@ -43,6 +44,7 @@ from shaftprint.vessel._sensors import (
     SpeedSensor,
 )
 from shaftprint.vessel._set_point import SetPointSensor
+from shaftprint.vessel._shaft_machine import ShaftMachine
 from shaftprint.vessel._shaft_torque import GaugedShaft, ShaftTorqueSensor
 from shaftprint.vessel._ship import ImoNumber, Ship, ShortName, is_imo_number
 from shaftprint.vessel._vessel import Vessel, load_vessel
@@ -63,6 +65,7 @@ __all__ = [
     "InertiaRow",
     "Logger",
     "Machine",
+    "MachineTorqueSensor",
     "Motor",
     "OperatingLimits",
     "Order",
@@ -74,6 +77,7 @@ __all__ = [
     "Sensors",
     "SetPointSensor",
     "ShaftLink",
+    "ShaftMachine",
     "ShaftTorqueSensor",
     "Ship",
     "ShipSpeedSensor",

@@ -22,7 +22,7 @@ from shaftprint.vessel._machinery import Machine
 from shaftprint.vessel._plain_unit import PLAIN_UNIT
 from shaftprint.vessel._set_point import SetPointSensor
 from shaftprint.vessel._shaft_torque import ShaftTorqueSensor
-from shaftprint.vessel._usual import LOG_LATENCY_SHARE, LOG_SCALE_STD, PITCH_SENSOR_STD
+from shaftprint.vessel._usual import LOG_LATENCY_SHARE, LOG_SCALE_STD, MACHINE_TORQUE_STD, PITCH_SENSOR_STD
 from shaftprint.vessel._wheel import Wheel
 
 SpeedUnit: TypeAlias = Annotated[
@@ -365,6 +365,37 @@ class PitchSensor(Settings):
         return self
 
 
+class MachineTorqueSensor(Settings):
+    """The torque of an electric machine on the gearbox as its converter shows it, and how it is asked for.
+
+    The voltage of a campaign asks for a torque on the same line on which the channel shows what is reached.
+    """
+
+    channel: Name
+    """Name of the channel in the recording."""
+    unit: Literal["V"]
+    """Unit of the channel."""
+    torque_nm_per_v: Number
+    """Torque at the shaft of the machine for one volt [N m/V]."""
+    torque_nm_at_zero_v: Number = 0.0
+    """Torque at no voltage [N m]."""
+    latency_s: NotNegativeNumber = 0.0
+    """Time by which the channel is late [s]."""
+    scale_std_fraction: PositiveNumber | None = None
+    """Relative standard deviation of the torque it shows; see ``scale_std`` where it is not stated."""
+
+    @property
+    def scale_std(self) -> float:
+        """Relative standard deviation of the torque it shows, as stated or as usual."""
+        return MACHINE_TORQUE_STD if self.scale_std_fraction is None else self.scale_std_fraction
+
+    @model_validator(mode="after")
+    def _has_a_slope(self) -> Self:
+        if self.torque_nm_per_v == 0.0:
+            raise ValueError("expected torque_nm_per_v other than 0, found 0.")
+        return self
+
+
 class Logger(Settings):
     """The instrument that recorded the channels."""
 
@@ -394,13 +425,15 @@ class Sensors(Settings):
     """The set point of the pitch of a controllable-pitch propeller, where it was logged."""
     pitch: PitchSensor | None = None
     """The pitch of a controllable-pitch propeller, where it was logged."""
+    machine_torque: MachineTorqueSensor | None = None
+    """The torque of an electric machine on the gearbox, where it was logged."""
 
     @model_validator(mode="after")
     def _names_and_channels_differ(self) -> Self:
         names = [sensor.name for sensor in self.speed]
         channels = [sensor.channel for sensor in self.speed]
         channels += [self.shaft_torque.channel, self.set_point.channel]
-        further = (self.rack, self.demand, self.ship_speed, self.pitch_set_point, self.pitch)
+        further = (self.rack, self.demand, self.ship_speed, self.pitch_set_point, self.pitch, self.machine_torque)
         channels += [sensor.channel for sensor in further if sensor is not None]
         errors = []
         for what, values in (("name", names), ("channel", channels)):

@@ -17,6 +17,10 @@ PITCH_STD = 0.01
 WASH_SHARE_STD = 0.02
 """Standard deviation, about none, of the share of its torque that a propeller loses in a twice as fast wash of the
 other one."""
+MACHINE_SHARE_STD = 0.02
+"""Standard deviation of the share of the torque that an electric machine on the gearbox gives."""
+MACHINE_TORQUE_STD = 0.02
+"""Relative standard deviation of the scale by which a converter shows the torque of its machine."""
 MASS_STD = 0.03
 """Relative standard deviation of the displacement of a ship."""
 COUPLING_STIFFNESS_STD = 0.1

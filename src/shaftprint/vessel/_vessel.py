@@ -22,6 +22,7 @@ from shaftprint.vessel._motor_words import in_file_words
 from shaftprint.vessel._orders import Order, orders_of
 from shaftprint.vessel._pitch import ControllablePitch, wrong_pitch
 from shaftprint.vessel._sensors import Logger, Sensors
+from shaftprint.vessel._shaft_machine import ShaftMachine, wrong_shaft_machine
 from shaftprint.vessel._ship import Ship
 from shaftprint.vessel._usual import INERTIA_STD, WASH_SHARE_STD
 from shaftprint.vessel._working_point import WorkingPoint
@@ -38,6 +39,8 @@ class Vessel(Shown, Settings):
     """The engine, where one drives the line."""
     motor: Motor | None = None
     """The electric motor, where one drives the line."""
+    shaft_machine: ShaftMachine | None = None
+    """An electric machine beside the engine on the gearbox, where there is one."""
     gearbox: Gearbox
     """The reduction gear."""
     propeller: Propeller
@@ -70,6 +73,7 @@ class Vessel(Shown, Settings):
             machine.word: f"{machine.rated_power_kw:g} kW at {machine.rated_speed_rpm:g} rpm"
             + (f", {machine.cylinders} cylinders" if isinstance(machine, Engine) else ""),
             "gearbox": f"ratio {gearbox.ratio:g}, efficiency {gearbox.efficiency:g}",
+            **self._machine_fact(),
             "propeller": f"{propeller.blades} blades, {propeller.diameter_m:g} m, P/D {propeller.pitch_ratio:g}",
             "working point": f"{point.engine_speed_rpm:g} rpm, {point.shaft_torque_nm:g} N m"
             f"{', astern' * point.is_astern}",
@@ -78,6 +82,17 @@ class Vessel(Shown, Settings):
             "channels": shortened(channels),
         }
         return Summary(title=f"Vessel {self.name}", facts=facts)
+
+    def _machine_fact(self) -> dict[str, str]:
+        """Return the electric machine on the gearbox in words, where there is one."""
+        machine = self.shaft_machine
+        if machine is None:
+            return {}
+        does = "takes out" if machine.share < 0.0 else "gives"
+        return {
+            "electric machine": f"{machine.rated_power_kw:g} kW at {machine.rated_speed_rpm:g} rpm, {does} "
+            f"{100.0 * abs(machine.share):.3g} % of the torque"
+        }
 
     @model_validator(mode="before")
     @classmethod
@@ -122,6 +137,13 @@ class Vessel(Shown, Settings):
             self.propeller.pitch_ratio,
             is_moved=sensors.pitch_set_point is not None,
             is_shown=sensors.pitch is not None,
+        )
+        errors += wrong_shaft_machine(
+            self.shaft_machine,
+            self.engine,
+            self.gearbox,
+            self.working_point,
+            is_shown=self.sensors.machine_torque is not None,
         )
         if self.working_point.ship_speed_m_s is not None and self.hull is None:
             errors.append("expected [hull] beside ship_speed_m_s of the working point, a test underway, found none.")
@@ -184,6 +206,18 @@ class Vessel(Shown, Settings):
         return self.engine
 
     @property
+    def drive(self) -> Literal["engine", "motor", "hybrid"]:
+        """What drives the line: an engine, a motor, or an engine with an electric machine on its gearbox."""
+        if self.motor is not None:
+            return "motor"
+        return "engine" if self.shaft_machine is None else "hybrid"
+
+    @property
+    def engine_share(self) -> float:
+        """Torque that the engine gives at the working point over the whole: 1 where no electric machine helps."""
+        return 1.0 if self.shaft_machine is None else 1.0 - self.shaft_machine.share
+
+    @property
     def motoring(self) -> Curve | None:
         """Braking torque over speed as positive numbers: an engine's without fuel, a motor's highest; None: unknown."""
         if self.motor is not None:
@@ -242,11 +276,15 @@ class Vessel(Shown, Settings):
 
     def _inertia_kg_m2(self, gauge: Literal["upstream", "downstream"]) -> float:
         ratio = self.gearbox.ratio
-        return math.fsum(row.referred_kg_m2(ratio) for row in self.inertia if row.gauge == gauge)
+        machine = self.shaft_machine if gauge == "upstream" else None
+        geared = 0.0 if machine is None else machine.referred_kg_m2
+        return math.fsum((geared, *(row.referred_kg_m2(ratio) for row in self.inertia if row.gauge == gauge)))
 
     def _inertia_std_kg_m2(self, gauge: Literal["upstream", "downstream"]) -> float:
         ratio = self.gearbox.ratio
-        return math.hypot(*(row.referred_std_kg_m2(ratio) for row in self.inertia if row.gauge == gauge))
+        machine = self.shaft_machine if gauge == "upstream" else None
+        geared = 0.0 if machine is None else machine.referred_std_kg_m2
+        return math.hypot(geared, *(row.referred_std_kg_m2(ratio) for row in self.inertia if row.gauge == gauge))
 
 
 @refusing_none(SettingsError)

@@ -6,6 +6,7 @@ from shaftprint.identify.likelihood._fit_percent import fit_ceiling, fit_percent
 from shaftprint.identify.likelihood._fitted_response import FittedResponse, channel_names, channels_of
 from shaftprint.identify.likelihood._known import (
     PRIOR_OF_G,
+    SHARE_ROUNDING,
     expected_from_vessel,
     priors_from_vessel,
     stated_by_vessel,
@@ -22,6 +23,7 @@ from shaftprint.identify.likelihood._wishart import estimated_shapes
 
 __all__ = [
     "PRIOR_OF_G",
+    "SHARE_ROUNDING",
     "CheckKind",
     "Experiment",
     "FittedResponse",

@@ -28,6 +28,9 @@ PRIOR_OF_G = Prior(mean=0.0, std=0.1)
 
 SHAFT_TORQUE = "M_s"
 
+SHARE_ROUNDING = 0.002
+"""Standard deviation of the share that an electric machine shows: how far it cannot be told is in its scale."""
+
 
 def priors_from_vessel(
     structure: Structure, vessel: "Vessel", working_point: "WorkingPoint", *, mode: "Mode" = "shaftprint"
@@ -195,6 +198,29 @@ class _Test:
             return None
         return Prior(mean=1.0, std=sensor.scale_std, sources={"pitch sensor scale": sensor.scale_std})
 
+    def machine_scale(self) -> Prior | None:
+        """Return how far converter and gauge may be apart; None where no electric machine is on the gearbox.
+
+        Where no channel shows its torque, the share of the vessel file stands for it.
+        """
+        machine, sensor = self.vessel.shaft_machine, self.vessel.sensors.machine_torque
+        if machine is None:
+            return None
+        shown = machine.share_std / abs(machine.share) if sensor is None and machine.share else 0.0
+        parts = {
+            "machine torque": -shown if sensor is None else -sensor.scale_std,
+            "gauge scale": self.vessel.sensors.shaft_torque.scale_std,
+        }
+        sources = {name: part for name, part in parts.items() if part}
+        return Prior(mean=1.0, std=float(np.linalg.norm(list(sources.values()))), sources=sources) if sources else None
+
+    def machine_share(self) -> Prior | None:
+        """Return the share of the vessel file; None where no electric machine is on the gearbox."""
+        machine = self.vessel.shaft_machine
+        if machine is None:
+            return None
+        return Prior(mean=machine.share, std=SHARE_ROUNDING, sources={"machine share": SHARE_ROUNDING})
+
     def _latency(self, source: str, mean_s: float | None, std_s: float | None) -> Prior | None:
         return Prior(mean=mean_s, std=std_s, sources={source: std_s}) if mean_s is not None and std_s else None
 
@@ -213,5 +239,7 @@ PRIORS: Mapping[Role, Callable[[_Test], Prior | None]] = {
     ShipRole.LOAD_SLOPE: _Test.load_slope,
     ShipRole.PITCH_SLOPE: _Test.pitch_slope,
     ShipRole.PITCH_SENSOR_SCALE: _Test.pitch_sensor_scale,
+    ShipRole.MACHINE_SCALE: _Test.machine_scale,
+    ShipRole.MACHINE_SHARE: _Test.machine_share,
 }
 """Priors of a vessel file, by role."""

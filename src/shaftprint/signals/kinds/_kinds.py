@@ -5,6 +5,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from shaftprint.signals._channel_signals import ChannelRole
+from shaftprint.signals.kinds._machine_torque import MachineTorque
 from shaftprint.signals.kinds._pick_up import Speed
 from shaftprint.signals.kinds._pitch import Pitch, PitchSetPoint
 from shaftprint.signals.kinds._rack import Rack
@@ -18,7 +19,19 @@ if TYPE_CHECKING:
     from shaftprint.vessel import Vessel
 
 KINDS: "Mapping[str, ChannelKind[Any]]" = MappingProxyType(
-    {kind.name: kind for kind in (SetPoint(), PitchSetPoint(), Speed(), ShipSpeed(), Pitch(), ShaftTorque(), Rack())}
+    {
+        kind.name: kind
+        for kind in (
+            SetPoint(),
+            PitchSetPoint(),
+            MachineTorque(),
+            Speed(),
+            ShipSpeed(),
+            Pitch(),
+            ShaftTorque(),
+            Rack(),
+        )
+    }
 )
 """Kinds by symbol, in the order in which their signals stand."""
 

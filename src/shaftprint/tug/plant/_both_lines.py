@@ -151,10 +151,11 @@ def _expect_at_the_quay(tugs: Sequence[Tug], vessels: Sequence[Vessel]) -> None:
 def _step(line: ReadyLine, act: Forces, load: FloatArray, trace: Traces, *, first: int, step_s: float) -> None:
     """Step one line through a block of a chunk, as long as its load."""
     block = load.size - 1
-    demand, pitch = (values[2 * first : 2 * (first + block) + 1] for values in (act.asked, act.pitch.blades))
+    halves = slice(2 * first, 2 * (first + block) + 1)
+    demand, pitch, machine = act.asked[halves], act.pitch.blades[halves], act.machine[halves]
     part = Traces._make(values[first : first + block] for values in trace)
     engine = act.engine[first : first + block + 1]
-    advance(step_s, demand, pitch, load, engine, line.plant, line.delay, line.carried, part)
+    advance(step_s, demand, pitch, machine, load, engine, line.plant, line.delay, line.carried, part)
 
 
 class _Wash:

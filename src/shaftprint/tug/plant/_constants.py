@@ -66,6 +66,9 @@ class Plant(NamedTuple):
     """Damping of the coupling, at the propeller shaft [N m s/rev]."""
     inertia_driven_kg_m2: float = 0.0
     """Part of the inertia upstream of the gauge that lies behind the coupling [kg m2]."""
+    machine_nm: float = 0.0
+    """Torque of the electric machine on the gearbox at the working point, at the propeller shaft [N m]; negative where
+    it is taken out, 0 where there is none."""
     sails: bool = False
     """Whether the ship has way on; if not, ``way`` plays no part."""
     way: Way = AT_THE_QUAY

@@ -51,7 +51,8 @@ def build_plant(tug: Tug, vessel: Vessel) -> Plant:
         raise SettingsError("tug: expected pitch of a tug at the quay, found it beside sailing, which has its own lag.")
     speed, torque = working_point(tug, vessel)
     ratio, efficiency = vessel.gearbox.ratio, vessel.gearbox.efficiency
-    brake = torque / (ratio * efficiency)
+    machine_nm = _machine_nm(tug, vessel, torque)
+    brake = (torque - machine_nm) / (ratio * efficiency)
     # a gearbox that reverses: the engine turns as ever
     turning = vessel.working_point.turning
     speed_slope = tug.g * brake / speed
@@ -98,9 +99,34 @@ def build_plant(tug: Tug, vessel: Vessel) -> Plant:
         coupling_nm_rev=0.0 if coupling is None else 2.0 * math.pi * coupling.stiffness_nm_rad,
         coupling_nm_s_rev=0.0 if coupling is None else 2.0 * math.pi * coupling.damping_nm_s_rad,
         inertia_driven_kg_m2=0.0 if coupling is None else coupling.driven_kg_m2,
+        machine_nm=machine_nm,
         sails=tug.sailing is not None,
         way=AT_THE_QUAY if tug.sailing is None else way_of(tug.sailing, vessel),
     )
+
+
+def _machine_nm(tug: Tug, vessel: Vessel, torque_nm: float) -> float:
+    """Return the torque of the electric machine on the gearbox at the propeller shaft [N m]; 0 where there is none.
+
+    Raises
+    ------
+    SettingsError
+        If vessel and truth do not both have one, or the engine has nothing left to give.
+    """
+    machine = tug.shaft_machine
+    if (machine is None) != (vessel.shaft_machine is None):
+        have, lack = ("vessel", "tug") if machine is None else ("tug", "vessel")
+        raise SettingsError(
+            f"{lack}: expected a shaft_machine, as the {have} has one on its gearbox, found none; give both or neither."
+        )
+    if machine is None:
+        return 0.0
+    if not -1.0 <= machine.share < 1.0:
+        raise SettingsError(
+            f"tug: expected shaft_machine.share from -1 to below 1, found {machine.share:g}; the engine gives the rest "
+            "of the torque."
+        )
+    return machine.share * torque_nm
 
 
 class _TorqueLimits(NamedTuple):
@@ -172,7 +198,7 @@ def equilibrium(plant: Plant, engine_speed_rev_s: float) -> FloatArray:
     """Return the state in which the line runs steadily at an engine speed [rev/s], angle zero, shape (states,)."""
     speed_s = engine_speed_rev_s / plant.gear_ratio
     load = steady_load_nm(plant, speed_s)
-    brake = load / (plant.gear_ratio * plant.efficiency)
+    brake = (load - plant.machine_nm) / (plant.gear_ratio * plant.efficiency)
     rack = (brake - plant.speed_slope_nm_s * engine_speed_rev_s - plant.rack_offset_nm) / plant.rack_slope_nm
     state = np.zeros(STATES)
     state[SPEED], state[INTEGRAL], state[RACK], state[SLIPSTREAM] = speed_s, rack, rack, speed_s
@@ -192,7 +218,7 @@ def steady_load_nm(plant: Plant, shaft_speed_rev_s: float) -> float:
 def steady_boost(plant: Plant, engine_speed_rev_s: float) -> float:
     """Return the boost in steady running at an engine speed [rev/s]: the share of the full-load torque, at most 1."""
     speed_s = engine_speed_rev_s / plant.gear_ratio
-    brake = steady_load_nm(plant, speed_s) / (plant.gear_ratio * plant.efficiency)
+    brake = (steady_load_nm(plant, speed_s) - plant.machine_nm) / (plant.gear_ratio * plant.efficiency)
     return min(brake / float(np.interp(engine_speed_rev_s, plant.limit_speed_rev_s, plant.limit_torque_nm)), 1.0)
 
 

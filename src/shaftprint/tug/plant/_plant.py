@@ -40,6 +40,10 @@ as a gearbox, and ``phi`` the twist in revolutions::
     2 pi (I_up - I_m) dn_1/dt = i eta M_b - T        T = 2 pi (k phi + c (n_1 - n_s))        dphi/dt = n_1 - n_s
     2 pi (I_m + I_dn) dn_s/dt = T - M_p              M_s = M_p + 2 pi I_dn dn_s/dt
 
+An electric machine on the gearbox, a motor or a shaft generator, gives or takes a torque ``M_m`` upstream of the gauge,
+at the propeller shaft; its converter controls it, so that it does not follow the speed, and what acts is given from
+outside. It is added to ``i eta M_b``.
+
 Gains and delay may go with a power of the engine speed, ``K (n_e / n_e0)^a`` and ``t_d (n_e / n_e0)^b``, at any time.
 """
 
@@ -157,7 +161,7 @@ def governor_rack(speed_s, integral, demand, plant, air=1.0):  # type: ignore[no
 
 @compiled(inline="always")
 def derivatives(  # type: ignore[no-untyped-def]
-    state, demand, rack_delayed, propeller_noise, engine_noise, plant, air=1.0, pitch=0.0
+    state, demand, rack_delayed, propeller_noise, engine_noise, plant, air=1.0, pitch=0.0, machine=0.0
 ):
     """Return rates of five states, rack given, ``M_s``, ``M_b``, whether it is limited, rates of the last three."""
     speed_s, integral, rack, rack_rate, slipstream = state[0], state[1], state[2], state[3], state[4]
@@ -180,7 +184,7 @@ def derivatives(  # type: ignore[no-untyped-def]
         hydrodynamic += plant.inflow_gain * plant.propeller_nm_s2 * abs(speed_s) * (speed_s - slipstream)
         slipstream_rate = plant.inflow_per_rev * (speed_s * abs(speed_s) - slipstream * abs(slipstream))
     propeller = hydrodynamic * (1.0 + propeller_noise)
-    drive = plant.gear_ratio * plant.efficiency * brake + load * engine_noise
+    drive = plant.gear_ratio * plant.efficiency * brake + load * engine_noise + machine
     if plant.coupling_nm_rev == 0.0:
         inertia = plant.inertia_upstream_kg_m2 + plant.inertia_downstream_kg_m2
         acceleration = (drive - propeller) / (2.0 * np.pi * inertia)
@@ -272,18 +276,18 @@ def _moved(x, h, rates):  # type: ignore[no-untyped-def]
 
 
 @compiled(inline="always")
-def _runge_kutta(h, x, k1, demand, past, propeller, engine, plant, air, pitch):  # type: ignore[no-untyped-def]
+def _runge_kutta(h, x, k1, demand, past, propeller, engine, plant, air, pitch, machine):  # type: ignore[no-untyped-def]
     """Return the state after a step of the classical fourth-order method, whose first rates ``k1`` are known.
 
-    ``demand``, ``past``, ``propeller``, ``engine`` and ``pitch`` hold the inputs at the start, middle and end of the
-    step.
+    ``demand``, ``past``, ``propeller``, ``engine``, ``pitch`` and ``machine`` hold the inputs at the start, middle and
+    end of the step.
     """
     x2 = _moved(x, 0.5 * h, k1)
-    k2 = derivatives(x2, demand[1], past[1], propeller[1], engine[1], plant, air, pitch[1])
+    k2 = derivatives(x2, demand[1], past[1], propeller[1], engine[1], plant, air, pitch[1], machine[1])
     x3 = _moved(x, 0.5 * h, k2)
-    k3 = derivatives(x3, demand[1], past[1], propeller[1], engine[1], plant, air, pitch[1])
+    k3 = derivatives(x3, demand[1], past[1], propeller[1], engine[1], plant, air, pitch[1], machine[1])
     x4 = _moved(x, h, k3)
-    k4 = derivatives(x4, demand[2], past[2], propeller[2], engine[2], plant, air, pitch[2])
+    k4 = derivatives(x4, demand[2], past[2], propeller[2], engine[2], plant, air, pitch[2], machine[2])
     part = h / 6.0
     return (
         x[0] + part * (k1[0] + 2.0 * k2[0] + 2.0 * k3[0] + k4[0]),
@@ -300,12 +304,13 @@ def _runge_kutta(h, x, k1, demand, past, propeller, engine, plant, air, pitch): 
 
 @compiled(nogil=True)
 def advance(  # type: ignore[no-untyped-def]
-    step_s, demand, pitch, propeller_noise, engine_noise, plant, delay, carried, traces
+    step_s, demand, pitch, machine, propeller_noise, engine_noise, plant, delay, carried, traces
 ) -> None:
     """Step the line and fill the traces.
 
-    ``demand`` and ``pitch`` have two values a step and one more (half steps); the disturbances one value a step
-    and one more. All that goes on is carried, so that the result does not depend on how the time is cut into calls.
+    ``demand``, ``pitch`` and ``machine`` have two values a step and one more (half steps); the disturbances one value a
+    step and one more. All that goes on is carried, so that the result does not depend on how the time is cut into
+    calls.
     """
     state, history = carried.state, carried.history
     x = (state[0], state[1], state[2], state[3], state[4], state[5], state[6], state[7], state[8])
@@ -317,6 +322,7 @@ def advance(  # type: ignore[no-untyped-def]
         engine = (engine_noise[j], 0.5 * (engine_noise[j] + engine_noise[j + 1]), engine_noise[j + 1])
         demands = (demand[2 * j], demand[2 * j + 1], demand[2 * j + 2])
         blades = (pitch[2 * j], pitch[2 * j + 1], pitch[2 * j + 2])
+        geared = (machine[2 * j], machine[2 * j + 1], machine[2 * j + 2])
         if plant.delay_exponent == 0.0:
             past = (
                 _past(history, mask, k + delay.first[0], delay.weights[0]),
@@ -332,7 +338,7 @@ def advance(  # type: ignore[no-untyped-def]
                 _past_at(history, mask, k, 1.0 - steps),
             )
         air = plant.air_share + (1.0 - plant.air_share) * carried.boost[0]
-        rates = derivatives(x, demands[0], past[0], propeller[0], engine[0], plant, air, blades[0])
+        rates = derivatives(x, demands[0], past[0], propeller[0], engine[0], plant, air, blades[0], geared[0])
         # the limiter of the rate keeps no state of its own: it starts from the rack that it gave last
         last = history[(k - 1) & mask]
         rack_given = min(max(rates[5], last - largest_change), last + largest_change)
@@ -347,7 +353,7 @@ def advance(  # type: ignore[no-untyped-def]
         if plant.air_share < 1.0:
             _, full_load = torque_limits(plant.gear_ratio * _engine_end(x, plant), plant)
             carried.boost[0] += step_s / plant.turbocharger_lag_s * (rates[7] / full_load - carried.boost[0])
-        x = _runge_kutta(step_s, x, rates, demands, past, propeller, engine, plant, air, blades)
+        x = _runge_kutta(step_s, x, rates, demands, past, propeller, engine, plant, air, blades, geared)
         k += 1
     state[0], state[1], state[2], state[3], state[4], state[5], state[6], state[7], state[8] = x
     carried.counter[0] = k

@@ -14,6 +14,7 @@ from shaftprint.tug._tug import Tug
 from shaftprint.tug.plant._constants import Plant
 from shaftprint.tug.plant._demand import Demand
 from shaftprint.tug.plant._disturbance import Disturbance
+from shaftprint.tug.plant._machine import GearedMachine
 from shaftprint.tug.plant._physics import build_plant, equilibrium, steady_boost
 from shaftprint.tug.plant._pitch import PitchActuator, PitchMotion
 from shaftprint.tug.plant._plant import FARTHEST_SHARE, RACK, advance, interpolation_weights
@@ -42,6 +43,9 @@ class Stretch:
     pitch_change: FloatArray
     """What the actuator of a controllable pitch has reached, as the deviation of ``P/D`` from that of the working
     point, shape (steps,)."""
+    machine_nm: FloatArray
+    """Torque of the electric machine on the gearbox, at the propeller shaft [N m], 0 where there is none, shape
+    (steps,)."""
     ship_speed_m_s: FloatArray
     """Speed of the ship through the water [m/s], 0 at the quay, shape (steps,)."""
     demand_rev_s: FloatArray
@@ -93,6 +97,7 @@ def voyage(
             step_s,
             acts.asked,
             acts.pitch.blades,
+            acts.machine,
             acts.propeller,
             acts.engine,
             line.plant,
@@ -110,6 +115,8 @@ class Forces(NamedTuple):
     """Speed that is asked for [rev/s], at nodes and middles."""
     pitch: PitchMotion
     """What the pitch does."""
+    machine: FloatArray
+    """Torque of an electric machine on the gearbox, at the propeller shaft [N m], at nodes and middles."""
     propeller: FloatArray
     """Deviation of the propeller's torque that is no matter of its speed, at nodes."""
     engine: FloatArray
@@ -122,6 +129,7 @@ class ReadyLine(NamedTuple):
     plant: Plant
     demand: Demand
     pitch: PitchActuator
+    machine: GearedMachine
     delay: DelayTaps
     carried: Carried
 
@@ -137,6 +145,7 @@ def ready_line(tug: Tug, vessel: Vessel, campaign: Campaign, *, step_s: float, s
     plant = build_plant(tug, vessel)
     demand = Demand(tug, vessel, campaign, start_s=start_s, step_s=step_s)
     pitch = PitchActuator(tug, vessel, campaign, start_s=start_s, step_s=step_s)
+    machine = GearedMachine(tug, vessel, campaign, plant.machine_nm, start_s=start_s, step_s=step_s)
     delay_steps = plant.delay_s / step_s
     farthest = FARTHEST_SHARE ** abs(plant.delay_exponent)
     # the delayed rack is interpolated over four nodes of which the newest must already be known
@@ -150,7 +159,7 @@ def ready_line(tug: Tug, vessel: Vessel, campaign: Campaign, *, step_s: float, s
     ring = np.full(1 << int(np.ceil(np.log2(farthest * delay_steps + 8.0))), state[RACK])
     boost = np.array([steady_boost(plant, demand.first)])
     carried = Carried(state=state, history=ring, counter=np.zeros(1, dtype=np.int64), boost=boost)
-    return ReadyLine(plant, demand, pitch, delay, carried)
+    return ReadyLine(plant, demand, pitch, machine, delay, carried)
 
 
 def empty_traces(count: int) -> Traces:
@@ -170,6 +179,7 @@ def stretch_of(traces: Traces, forces: Forces, *, first: int, start_s: float, st
         brake_torque_nm=traces.brake_torque_nm,
         rack_given=traces.rack_given,
         limited=traces.limited,
+        machine_nm=forces.machine[: 2 * count : 2],
         pitch_change=forces.pitch.piston[: 2 * count : 2],
         ship_speed_m_s=traces.ship_speed_m_s,
         demand_rev_s=forces.asked[: 2 * count : 2],
@@ -185,6 +195,7 @@ def forced(disturbance: Disturbance, line: ReadyLine, *, steps: int, chunk: int)
         return Forces(
             asked=line.demand.next(count, wander),
             pitch=motion,
+            machine=line.machine.next(count),
             propeller=line.pitch.torque_share(motion.blades, propeller),
             engine=engine,
         )

@@ -11,6 +11,7 @@ from shaftprint.tug.sensors._faults import Fault, draw_dropouts, draw_times
 from shaftprint.tug.sensors._gauge import TorqueGauge, shaft_orders
 from shaftprint.tug.sensors._helm import PITCH_INPUT, Helm, HelmMessages, PitchLever
 from shaftprint.tug.sensors._log import SpeedLog
+from shaftprint.tug.sensors._machine_torque import MachineTorque
 from shaftprint.tug.sensors._pitch_feedback import PitchFeedback
 from shaftprint.tug.sensors._pulses import VOLT_PER_COUNT, PickUp
 from shaftprint.tug.sensors._speed_meter import SpeedMessages, SpeedMeter
@@ -26,6 +27,7 @@ __all__ = [
     "Fault",
     "Helm",
     "HelmMessages",
+    "MachineTorque",
     "PickUp",
     "PitchFeedback",
     "PitchLever",

@@ -20,6 +20,7 @@ from shaftprint.web.pages._line import records_called
 # as their rooms have them, which would load far more; a test holds both together
 VESSELS: Final = (
     "e-ferry-ellen",
+    "foss-carolyn-dorothy",
     "nifs-research-vessel",
     "pt-may",
     "stan-tug-1205",
@@ -27,7 +28,7 @@ VESSELS: Final = (
     "stan-tug-1205-ecu",
     "stan-tug-1205-underway",
 )
-CAMPAIGNS: Final = ("12min", "5min", "dither", "pitch", "short", "thesis", "transit", "two-speeds")
+CAMPAIGNS: Final = ("12min", "5min", "dither", "machine", "pitch", "short", "thesis", "transit", "two-speeds")
 STRUCTURES: Final = (
     "GAUGE-CLOSED",
     "GAUGE-CORE",
@@ -37,6 +38,7 @@ STRUCTURES: Final = (
     "GAUGE-ECU",
     "GAUGE-MOTOR",
     "GAUGE-PITCH",
+    "GAUGE-HYBRID",
 )
 _LONGEST_WORD: Final = 100
 _MOST_CHOICES: Final = 500

@@ -1,0 +1,173 @@
+"""The gauge-aware structure of a diesel with an electric machine on its gearbox: two inputs, two outputs.
+
+The two free bodies of GAUGE-CLOSED, upstream of which a converter adds a torque that it controls::
+
+    upstream    M_b + c_m M_m - M_s = tau_up s n        M_b = (1 - c_m share) (g n + v exp(-s t_d) F X)
+    downstream  M_s - M_p = tau_dn s n                  M_p = k_q n,    X = C (c_set exp(-s t_sp) n_set - n)
+
+``M_m`` is the torque that the converter shows, at the propeller shaft and over the whole torque of the working point;
+``share`` is its value there, negative of a generator. ``g``, ``v``, ``K_p`` and ``K_i`` are normalised by the torque
+that the engine itself gives, ``1 - c_m share`` of the whole.
+"""
+
+from collections.abc import Mapping
+
+from shaftprint.arrays import FloatArray
+from shaftprint.catalogue._gauge import (
+    C_SET,
+    GAUGE_K_I,
+    GAUGE_K_P,
+    GAUGE_OMEGA_N,
+    GAUGE_ZETA,
+    K_Q,
+    T_AVERAGE,
+    T_D,
+    T_FILTER,
+    T_GAUGE,
+    T_HOLD,
+    T_PICKUP,
+    T_SP,
+    TAU_DN,
+    TAU_UP,
+    V_ONE,
+    G,
+)
+from shaftprint.catalogue._roles import ShipRole
+from shaftprint.models import (
+    AveragingSensor,
+    Combination,
+    Delay,
+    FirstOrderLag,
+    Gain,
+    Parameter,
+    PIGovernor,
+    RationalBlock,
+    SecondOrderLag,
+    Sensitivity,
+    Structure,
+    TorqueBalance,
+)
+
+SHARE = Parameter(
+    "share",
+    "-",
+    -1.0,
+    0.9,
+    0.0,
+    "torque of the electric machine as its converter shows it, over that of the shaft; negative where it generates",
+    role=ShipRole.MACHINE_SHARE,
+)
+C_M = Parameter(
+    "c_m",
+    "-",
+    0.85,
+    1.15,
+    1.0,
+    "torque of the electric machine over that which its converter shows",
+    role=ShipRole.MACHINE_SCALE,
+)
+OWN_K_P = Parameter(
+    "K_p",
+    "-",
+    GAUGE_K_P.lower,
+    GAUGE_K_P.upper,
+    GAUGE_K_P.value,
+    "proportional gain of the governor, over the torque of the engine alone",
+    role=ShipRole.OWN_PROPORTIONAL_GAIN,
+)
+OWN_K_I = Parameter(
+    "K_i",
+    "1/s",
+    GAUGE_K_I.lower,
+    GAUGE_K_I.upper,
+    GAUGE_K_I.value,
+    "integral gain of the governor, over the torque of the engine alone",
+    role=ShipRole.OWN_INTEGRAL_GAIN,
+)
+
+
+def gauge_hybrid() -> Structure:
+    """Return the gauge-aware closed loop with an electric machine, ``n`` and ``M_s`` from ``n_set`` and ``M_m``.
+
+    With ``Z = (tau_up + tau_dn) s + k_q - (1 - c_m share) g`` and ``L = (1 - c_m share) v C exp(-s t_d) F / Z`` it is
+    ``n = sensor / (1 + L) (c_set exp(-s t_sp) L n_set + c_m / Z M_m)``, and
+    ``M_s = (tau_dn s + k_q) exp(-s t_gauge) / (T_filter s + 1) n`` without the speed sensor. Where ``share`` is 0 and
+    the machine stands still it is GAUGE-CLOSED.
+    """
+    shaft = RationalBlock(_shaft, (TAU_DN, TAU_UP, K_Q, G, C_M, SHARE))
+    engine = (
+        RationalBlock(_of_engine, (C_M, SHARE)) * Gain(V_ONE) * Delay(T_D) * SecondOrderLag(GAUGE_OMEGA_N, GAUGE_ZETA)
+    )
+    loop = PIGovernor(OWN_K_P, OWN_K_I) * engine * shaft
+    left_of_error = Sensitivity(loop)
+    moved = {"n_set": loop * left_of_error * Delay(T_SP) * Gain(C_SET), "M_m": Gain(C_M) * shaft * left_of_error}
+    sensor = AveragingSensor(T_AVERAGE, T_HOLD, T_PICKUP)
+    gauge = TorqueBalance(TAU_DN, K_Q) * Delay(T_GAUGE) * FirstOrderLag(T_FILTER)
+    return Structure(
+        name="GAUGE-HYBRID",
+        title="gauge-aware closed loop with an electric machine on the gearbox",
+        inputs=tuple(moved),
+        outputs={
+            "n": {name: speed * sensor for name, speed in moved.items()},
+            "M_s": {name: speed * gauge for name, speed in moved.items()},
+        },
+        combinations=_combinations(),
+    )
+
+
+def _shaft(
+    tau_dn: FloatArray, tau_up: FloatArray, k_q: FloatArray, g: FloatArray, c_m: FloatArray, share: FloatArray
+) -> tuple[list[FloatArray], list[FloatArray]]:
+    """Return ``n`` over the torque upstream, ``1 / Z``."""
+    return [1.0 + 0.0 * k_q], [tau_up + tau_dn, k_q - (1.0 - c_m * share) * g]
+
+
+def _of_engine(c_m: FloatArray, share: FloatArray) -> tuple[list[FloatArray], list[FloatArray]]:
+    """Return what of the torque the engine gives."""
+    return [1.0 - c_m * share], [1.0 + 0.0 * c_m]
+
+
+def _given(p: Mapping[str, FloatArray]) -> FloatArray:
+    return 1.0 - p["c_m"] * p["share"]
+
+
+def _combinations() -> tuple[Combination, ...]:
+    """Return what a test of the closed loop finds better than the parameters it is made of."""
+    return (
+        Combination(name="1 - c_m share", unit="-", of=_given, meaning="torque of the engine over that of the shaft"),
+        Combination(
+            name="t_d + t_sp",
+            unit="s",
+            of=lambda p: p["t_d"] + p["t_sp"],
+            meaning="total delay",
+            role=ShipRole.TOTAL_DELAY,
+        ),
+        Combination(
+            name="K_p / K_i",
+            unit="s",
+            of=lambda p: p["K_p"] / p["K_i"],
+            meaning="reset time of the governor",
+            role=ShipRole.LOOP_GAIN,
+        ),
+        Combination(
+            name="K_p of the shaft",
+            unit="-",
+            of=lambda p: _given(p) * p["v"] * p["K_p"],
+            meaning="proportional gain of governor and engine, over the torque of the shaft",
+            role=ShipRole.PROPORTIONAL_GAIN,
+        ),
+        Combination(
+            name="K_i of the shaft",
+            unit="1/s",
+            of=lambda p: _given(p) * p["v"] * p["K_i"],
+            meaning="integral gain of both, over the torque of the shaft",
+            role=ShipRole.INTEGRAL_GAIN,
+        ),
+        Combination(
+            name="K_p of the shaft / (tau_up + tau_dn)",
+            unit="1/s",
+            of=lambda p: _given(p) * p["v"] * p["K_p"] / (p["tau_up"] + p["tau_dn"]),
+            meaning="loop gain at high frequency",
+            role=ShipRole.LOOP_GAIN,
+        ),
+    )

@@ -1,0 +1,44 @@
+"""The torque of an electric machine on the gearbox as its converter shows it."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from shaftprint.arrays import FloatArray
+from shaftprint.tug._shaft_machine import ShaftMachineTruth
+from shaftprint.tug.plant import Stretch
+from shaftprint.tug.sensors._faults import Fault
+from shaftprint.tug.sensors._late import Late
+from shaftprint.tug.sensors._pulses import VOLT_PER_COUNT
+from shaftprint.vessel import MachineTorqueSensor, ShaftMachine
+
+
+class MachineTorque:
+    """Stream of the raw counts of the machine's torque, a latency late, with white noise."""
+
+    def __init__(
+        self,
+        sensor: MachineTorqueSensor,
+        geared: ShaftMachine,
+        truth: ShaftMachineTruth,
+        *,
+        torque_nm: float,
+        rate_hz: float,
+        rng: np.random.Generator,
+    ) -> None:
+        self.channel = sensor.channel
+        self._sensor, self._rng = sensor, rng
+        self._machine_nm = truth.shown / geared.shaft_nm(1.0)
+        self._rms_nm = truth.shown_rms * torque_nm / geared.shaft_nm(1.0)
+        self._late = Late(sensor.latency_s * rate_hz)
+
+    def next(self, stretch: Stretch) -> NDArray[np.int16]:
+        """Return the counts of the next stretch, shape (steps,)."""
+        shown = self._machine_nm * self._late.next(stretch.machine_nm)
+        shown += self._rms_nm * self._rng.standard_normal(shown.size)
+        volts = (shown - self._sensor.torque_nm_at_zero_v) / self._sensor.torque_nm_per_v
+        counts: FloatArray = np.rint(volts / VOLT_PER_COUNT)
+        return counts.clip(-32768, 32767).astype(np.int16)
+
+    def faults(self) -> list[Fault]:
+        """Return no fault."""
+        return []
