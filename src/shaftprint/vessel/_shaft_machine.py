@@ -82,7 +82,7 @@ def wrong_shaft_machine(
             "expected no [shaft_machine] beside [motor], found one; it is an electric machine beside an engine, give "
             "[engine]."
         ]
-    errors, torque_nm = [], point.shaft_torque_nm
+    errors, torque_nm = [], point.driving_torque_nm
     # what the machine gives at its own shaft, over what it may
     machine_nm = abs(machine.share) * torque_nm / abs(machine.shaft_nm(1.0))
     # torque up to rated speed, power above

@@ -121,6 +121,11 @@ def _machine_nm(tug: Tug, vessel: Vessel, torque_nm: float) -> float:
         )
     if machine is None:
         return 0.0
+    if vessel.working_point.is_astern:
+        raise SettingsError(
+            f"vessel {vessel.name}: expected a shaft that turns ahead where an electric machine is on the gearbox of a "
+            "simulated ship, found one that turns astern; leave out working_point.direction or [shaft_machine]."
+        )
     if not -1.0 <= machine.share < 1.0:
         raise SettingsError(
             f"tug: expected shaft_machine.share from -1 to below 1, found {machine.share:g}; the engine gives the rest "
