@@ -156,9 +156,10 @@ def table(outcomes: Sequence[Mapping[str, object]]) -> str:
         covered = [one["interval"][0] <= one["true"] <= one["interval"][1] for one in numbers]
         inside += covered
         off = np.array([one["value"] - one["true"] for one in numbers])
-        scale = np.abs([one["value"] for one in numbers])
+        true = np.abs([one["true"] for one in numbers])
         stated = np.array([one["std"] for one in numbers], dtype=float)
-        per_cent = f"{100.0 * np.median(stated / scale):.2g} %" if np.median(scale) > np.median(stated) else ""
+        share = float(np.nanmedian(stated)) / float(np.median(true))
+        per_cent = f"{100.0 * share:.2g} %" if share < 1.0 else ""
         rows.append(
             f"| `{name}` | {len(numbers)} | {np.nanmedian(stated):.2g} | {per_cent} | {np.median(off / stated):+.2f} | "
             f"{100.0 * np.mean(covered):.0f} % |"
