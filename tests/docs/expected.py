@@ -111,8 +111,20 @@ def expect_inspection(folder, printed, words):
                               "and 12 rad/s, where the loop crosses over.")  # fmt: skip
 
 
+def expect_both_shafts(place, printed):
+    """Both sides are the simulated tug: 17.0 kg m2 behind each gauge, whose scale is right."""
+    for side in ("port", "starboard"):
+        found = read_fingerprint(place / side / "fingerprint.json")
+        assert found.quantity("I_dn").value == pytest.approx(17.0, rel=0.02)
+    assert "Is starboard other than port? No" in printed
+    assert (place / "comparison" / "index.html").is_file()
+
+
 def expect_identification(folder, printed, words):
     place = folder / after(words, "-o")
+    if "--starboard" in words:
+        expect_both_shafts(place, printed)
+        return
     found = read_fingerprint(place / "fingerprint.json")
     if other_ship(words):
         assert found.structure == OTHER_SHIPS[other_ship(words)]
@@ -148,6 +160,10 @@ def expect_saved_fingerprint(folder, printed, words):
 
 def expect_recording(folder, printed, words):
     path = folder / after(words, "-o")
+    if "--starboard" in words:
+        with read_recording(path) as recording:
+            assert set(recording.channels) == CHANNELS | {f"{name}_starboard" for name in CHANNELS}
+        return
     if other_ship(words):
         sensors, campaign = load_vessel(words[1]).sensors, load_campaign(words[2])
         with read_recording(path) as recording:

@@ -14,7 +14,7 @@ import pytest
 from pages import PAGES, ROOT, blocks, python_of
 
 from shaftprint.bench import equipped
-from shaftprint.campaign import Campaign
+from shaftprint.campaign import Campaign, CampaignOfBoth
 from shaftprint.drive import Drive
 from shaftprint.export import exported_model, write_matlab
 from shaftprint.fingerprint import read_fingerprint
@@ -85,7 +85,14 @@ def test_a_reader_that_a_package_names_so_is_used(acme):
 
 
 def test_toml_is_of_a_page_with_a_check_of_its_own():
-    known = {"docs/astern.md", "docs/drives.md", "docs/formats.md", "docs/legs.md", "docs/serve.md"}
+    known = {
+        "docs/astern.md",
+        "docs/both-shafts.md",
+        "docs/drives.md",
+        "docs/formats.md",
+        "docs/legs.md",
+        "docs/serve.md",
+    }
     assert {page.values[0] for page in of("toml")} == known
 
 
@@ -116,6 +123,14 @@ def test_the_table_of_the_page_on_tests_astern_is_that_of_the_series():
         found = [float(number) for number in numbers.split(" | ")]
         assert found == pytest.approx(expected, abs=0.0051)
         assert found[3:5] == pytest.approx(expected[3:5], abs=6e-5)
+
+
+def test_the_campaign_of_the_page_on_both_shafts_is_one():
+    ((_, text),) = (block for block in blocks("docs/both-shafts.md") if block[0] == "toml")
+    campaign = CampaignOfBoth.model_validate(tomllib.loads(text))
+    port, starboard = (side.multisines[0] for side in campaign.sides)
+    assert campaign.excited == "at once"
+    assert not {*port.harmonics} & {*starboard.harmonics}
 
 
 def test_the_users_of_the_page_on_the_server_can_be_read(tmp_path):
