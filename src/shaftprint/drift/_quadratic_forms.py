@@ -69,10 +69,10 @@ def _of_tests(numbers: ClassNumbers, ships: tuple[int, ...], weighing: "_Project
     seen, through = numbers.building.T @ sides, weighing.blocks @ numbers.building
     moved = own @ through
     across = inner @ (sides.transpose(0, 2, 1) @ own @ sides).sum(axis=0) @ inner
-    expected = (through * moved).sum(axis=(0, 1))
+    expected: FloatArray = (through * moved).sum(axis=(0, 1))
     expected += ((seen @ across - 2.0 * moved.transpose(0, 2, 1) @ sides @ inner) * seen).sum(axis=(0, 2))
-    common: FloatArray = ((numbers.building.T @ weighing.times(_apart(numbers, ships))) ** 2).sum(axis=(0, 2))
-    return expected + common
+    expected += ((numbers.building.T @ weighing.times(_apart(numbers, ships))) ** 2).sum(axis=(0, 2))
+    return expected
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
