@@ -19,8 +19,8 @@ class ControllablePitch(Settings):
     highest_ratio: PositiveNumber
     """Highest pitch over diameter, at the stop."""
     torque_slope: PositiveNumber | None = None
-    """``d ln K_Q / d ln (P/D)`` at zero advance and the pitch of the working point; where it is not stated, the simulated
-    ship has that of the propeller's series."""
+    """``d ln K_Q / d ln (P/D)`` at zero advance and the pitch of the working point; where it is not stated, the
+    simulated ship has that of the propeller's series."""
     torque_slope_std: PositiveNumber | None = None
     """Standard deviation of that slope; 10 % of it where it is not stated."""
     lag_s: PositiveNumber = 0.6
