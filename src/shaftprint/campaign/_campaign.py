@@ -109,7 +109,8 @@ class Campaign(Shown, Settings):
     @property
     def inputs(self) -> tuple[str, ...]:
         """What is moved, the set point of the speed first."""
-        return tuple(dict.fromkeys((SPEED_SET_POINT, *(one.input for one in (*self.sines, *self.multisines)))))
+        moved = (*(sine.input for sine in self.sines), *(one.input for one in self.multisines))
+        return tuple(dict.fromkeys((SPEED_SET_POINT, *moved)))
 
     def middle_v(self, name: str) -> float:
         """Return the voltage of an input outside of every excitation [V]; 0 where the campaign does not name it."""

@@ -19,10 +19,10 @@ class ControllablePitch(Settings):
     highest_ratio: PositiveNumber
     """Highest pitch over diameter, at the stop."""
     torque_slope: PositiveNumber | None = None
-    """``d ln K_Q / d ln (P/D)`` at zero advance and the pitch of the working point; that of the propeller's series
-    where it is not stated."""
+    """``d ln K_Q / d ln (P/D)`` at zero advance and the pitch of the working point; where it is not stated, the
+    simulated ship has that of the propeller's series."""
     torque_slope_std: PositiveNumber | None = None
-    """Standard deviation of that slope."""
+    """Standard deviation of that slope; 10 % of it where it is not stated."""
     lag_s: PositiveNumber = 0.6
     """Time constant with which the hydraulic actuator follows its set point [s]."""
     delay_s: NotNegativeNumber = 0.15

@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shaftprint.card import open_water_curve
 from shaftprint.catalogue import ShipRole, expect_roles
 from shaftprint.identify.likelihood._prior import Prior
 from shaftprint.models import Role, Structure
@@ -179,17 +178,12 @@ class _Test:
         return Prior(mean=mean, std=mean * share, sources={"gauge zero": -mean * share}) if share else None
 
     def pitch_slope(self) -> Prior | None:
-        """Return the slope of the torque over a controllable pitch, stated or of the series; None where it is fixed."""
-        pitch, propeller = self.vessel.pitch, self.vessel.propeller
-        if pitch is None or self.vessel.is_underway:
+        """Return the stated slope of the torque over a controllable pitch at the quay; None where none is stated."""
+        pitch = self.vessel.pitch
+        if pitch is None or pitch.torque_slope is None or self.vessel.is_underway:
             return None
-        curve, slope = open_water_curve(propeller), pitch.torque_slope
-        if slope is None:
-            if curve is None:
-                return None
-            slope = curve.at(0.0, propeller.pitch_ratio).q
-        std = pitch.torque_slope_std or pitch.usual_slope_std(slope)
-        return Prior(mean=slope, std=std, sources={"pitch slope": std})
+        std = pitch.torque_slope_std or pitch.usual_slope_std(pitch.torque_slope)
+        return Prior(mean=pitch.torque_slope, std=std, sources={"pitch slope": std})
 
     def pitch_sensor_scale(self) -> Prior | None:
         """Return what is known of the scale by which a pitch is shown; None where it is not logged."""
