@@ -144,7 +144,8 @@ class CourseSearch:
         columns = self.columns[:rows]
         left = columns - basis @ (basis.T @ columns)
         length = np.linalg.norm(left, axis=0)
-        length = np.where(length > _ROUNDING * np.linalg.norm(columns, axis=0), length, 0.0)
+        # beside the whole course: of one that begins later there is rounding alone
+        length = np.where(length > _ROUNDING * np.linalg.norm(self.columns, axis=0), length, 0.0)
         return np.where(length > 0.0, left / np.where(length > 0.0, length, 1.0), 0.0), length
 
     def _p_value(self, noise: FloatArray) -> float:
