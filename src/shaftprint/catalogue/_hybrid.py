@@ -100,7 +100,7 @@ def gauge_hybrid() -> Structure:
     )
     loop = PIGovernor(OWN_K_P, OWN_K_I) * engine * shaft
     left_of_error = Sensitivity(loop)
-    moved = {"n_set": loop * left_of_error * Delay(T_SP) * Gain(C_SET), "M_m": Gain(C_M) * shaft * left_of_error}
+    moved = {"n_set": Delay(T_SP) * Gain(C_SET) * loop * left_of_error, "M_m": Gain(C_M) * shaft * left_of_error}
     sensor = AveragingSensor(T_AVERAGE, T_HOLD, T_PICKUP)
     gauge = Delay(T_GAUGE) * FirstOrderLag(T_FILTER)
     return Structure(
