@@ -33,11 +33,14 @@ def test_a_held_step_moves_the_line_as_it_moves_the_fmu(fmu, tmp_path, name_of_l
     time = np.arange(0.0, LAST_S, 1.0 / rows_a_second)
     asked = np.where(time >= STEP_S - 1e-9, JUMP, 0.0)
     model = structure(name_of_line)
+    seen = np.ones(time.size, dtype=bool)
     inputs = {"n_set": ("engine_speed_set_point", asked, SPEED_RPM * (1.0 + asked))}
     if len(model.inputs) > 1:
         # the second input jumps later, and back
         other = np.where((time >= 2.0 * STEP_S - 1e-9) & (time < 4.0 * STEP_S - 1e-9), -2.0 * JUMP, 0.0)
         inputs[model.inputs[1]] = (model.inputs[1], other, other)
+        # a torque that jumps is at the gauge at once: printed is what is after the jump, the FMU shows what was before
+        seen = np.concatenate([[True], np.diff(other) == 0.0])
     table = [time, *(deviation for _, deviation, _ in inputs.values())]
     rows = "".join(f"{second:.4f},{','.join(map(str, values))}\n" for second, *values in zip(*table, strict=True))
     heading = ",".join(f"{name} [-]" for name in inputs)
@@ -62,4 +65,5 @@ def test_a_held_step_moves_the_line_as_it_moves_the_fmu(fmu, tmp_path, name_of_l
     for column, output, size in (("n", "engine_speed", SPEED_RPM), ("M_s", "shaft_torque", TORQUE_NM)):
         own = next(key for key in printed[0] if key.split(" [")[0] == column)
         deviation = np.interp(time, moved["time"], moved[output]) / size - 1.0
-        np.testing.assert_allclose([float(row[own]) for row in printed], deviation, atol=1e-6)
+        own_deviation = np.array([float(row[own]) for row in printed])
+        np.testing.assert_allclose(own_deviation[seen], deviation[seen], atol=1e-6)

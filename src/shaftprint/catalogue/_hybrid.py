@@ -100,16 +100,16 @@ def gauge_hybrid() -> Structure:
     )
     loop = PIGovernor(OWN_K_P, OWN_K_I) * engine * shaft
     left_of_error = Sensitivity(loop)
-    moved = {"n_set": loop * left_of_error * Delay(T_SP) * Gain(C_SET), "M_m": Gain(C_M) * shaft * left_of_error}
+    moved = {"n_set": Delay(T_SP) * Gain(C_SET) * loop * left_of_error, "M_m": Gain(C_M) * shaft * left_of_error}
     sensor = AveragingSensor(T_AVERAGE, T_HOLD, T_PICKUP)
-    gauge = TorqueBalance(TAU_DN, K_Q) * Delay(T_GAUGE) * FirstOrderLag(T_FILTER)
+    gauge = Delay(T_GAUGE) * FirstOrderLag(T_FILTER)
     return Structure(
         name="GAUGE-HYBRID",
         title="gauge-aware closed loop with an electric machine on the gearbox",
         inputs=tuple(moved),
         outputs={
             "n": {name: speed * sensor for name, speed in moved.items()},
-            "M_s": {name: speed * gauge for name, speed in moved.items()},
+            "M_s": {name: speed * TorqueBalance(TAU_DN, K_Q) * gauge for name, speed in moved.items()},
         },
         combinations=_combinations(),
     )

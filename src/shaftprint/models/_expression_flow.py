@@ -205,6 +205,37 @@ def split_shift(flow: Flow, expression: Expression, signal: Formula) -> tuple[Fo
     return response, shift
 
 
+def split_common_shift(flow: Flow, paths: Sequence[tuple[Expression, Formula]]) -> tuple[tuple[Formula, ...], Formula]:
+    """Return what each path makes of its signal without the delays that end them all, and the sum of these delays.
+
+    The latency of a sensor may be corrected by too much for an output of several inputs too.
+    """
+    parts = [factors(expression) for expression, _ in paths]
+    ends = [_delays_at_the_end(one) for one in parts]
+    shared = [name for name in ends[0] if all(name in end for end in ends[1:])]
+    responses = []
+    for one, end, (_, signal) in zip(parts, ends, paths, strict=True):
+        left_out = {end[name] for name in shared}
+        kept = [part for place, part in enumerate(one) if place not in left_out]
+        responses.append(along(flow, kept, signal))
+    shift = number(0.0)
+    for name in shared:
+        shift = shift + flow.parameter(name)
+    return tuple(responses), shift
+
+
+def _delays_at_the_end(parts: Sequence[Expression]) -> dict[str, int]:
+    """Return the places of the delays behind the last loop, by the names of their parameters."""
+    places: dict[str, int] = {}
+    for place in range(len(parts) - 1, -1, -1):
+        part = parts[place]
+        if not _is_linear(part):
+            break
+        if isinstance(part, Delay):
+            places[part.time.name] = place
+    return places
+
+
 def _is_linear(part: Expression) -> bool:
     """Return whether a part may change places with a delay: no loop is closed at it, and its blocks are linear."""
     if isinstance(part, Sensitivity):

@@ -5,8 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from shaftprint.errors import StructureError
-from shaftprint.models._expression import Expression
-from shaftprint.models._expression_flow import split_shift, through
+from shaftprint.models._expression_flow import split_common_shift, split_shift
 from shaftprint.models._structure import Structure
 from shaftprint.models.equations import Flow, Formula, Past, as_formula, number, postorder, replaced, swept
 
@@ -119,14 +118,11 @@ def _output(flow: Flow, structure: Structure, output: str, inputs: Mapping[str, 
     if len(paths) == 1:
         ((source, path),) = paths.items()
         return split_shift(flow, path, inputs[source])
-    return _sum(flow, paths, inputs), number(0.0)
-
-
-def _sum(flow: Flow, paths: Mapping[str, Expression], inputs: Mapping[str, Formula]) -> Formula:
+    parts, shift = split_common_shift(flow, [(path, inputs[source]) for source, path in paths.items()])
     total = number(0.0)
-    for source, path in paths.items():
-        total = total + through(flow, path, inputs[source])
-    return total
+    for part in parts:
+        total = total + part
+    return total, shift
 
 
 def completed(
