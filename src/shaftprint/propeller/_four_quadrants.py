@@ -5,7 +5,6 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-import scipy
 from numpy.typing import ArrayLike
 
 from shaftprint.arrays import FloatArray, frozen_float
@@ -64,7 +63,7 @@ class FourQuadrantCurve(Shown):
     def at(self, advance_angle_rad: ArrayLike, pitch_ratio: float) -> tuple[FloatArray, FloatArray]:
         """Return ``C_T*`` and ``C_Q*`` at advance angles [rad], of their shape.
 
-        Between the pitches that were tested a cubic spline goes through the coefficients.
+        Between the pitches that were tested the polynomial through all of them holds for each coefficient.
 
         Raises
         ------
@@ -136,7 +135,13 @@ class FourQuadrantCurve(Shown):
                 f"{self.name}: expected a pitch ratio P/D from {lowest:g} to {highest:g}, found {pitch_ratio:g}; its "
                 "four quadrants were not tested there."
             )
-        return np.asarray(scipy.interpolate.CubicSpline(self.pitch_ratios, self.coefficients)(pitch_ratio))
+        # Lagrange's weights
+        apart = self.pitch_ratios[:, None] - self.pitch_ratios
+        np.fill_diagonal(apart, 1.0)
+        towards = np.tile(pitch_ratio - self.pitch_ratios, (self.pitch_ratios.size, 1))
+        np.fill_diagonal(towards, 1.0)
+        weights = np.prod(towards / apart, axis=1)
+        return np.asarray(np.tensordot(weights, self.coefficients, axes=1))
 
 
 def four_quadrants(*, blades: int, area_ratio: float) -> FourQuadrantCurve:
