@@ -80,7 +80,7 @@ def straightened(
     for single, response, slope, distance in zip(singles, responses, slopes, apart, strict=False):
         values, turn = single.values.copy(), np.eye(len(names))
         values[places] += straight @ (response - slopes[-1] @ distance)
-        turn[np.ix_(places, of_model)] += straight @ (slope - slopes[-1])
+        turn[np.ix_(places, np.array(of_model))] += straight @ (slope - slopes[-1])
         loadings = {source: turn @ change for source, change in single.loadings.items()}
         found.append(replace(single, values=values, own=turn @ single.own @ turn.T, loadings=loadings))
     return tuple(found)
