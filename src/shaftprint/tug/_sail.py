@@ -26,7 +26,6 @@ from shaftprint.tug.plant import (
     equilibrium,
     steady_load_nm,
     voyage,
-    working_point,
 )
 from shaftprint.tug.sensors import (
     VOLT_PER_COUNT,
@@ -172,22 +171,15 @@ class _Crew:
         self._control_unit = self._watch_bus(float(first[RACK]), bus)
         self._log = self._read_log(float(first[WAY]), log)
         self._lever = self._stand_by_lever(pitch)
-        self._machine = self._watch_machine(machine)
+        self._machine = MachineTorque.of(tug, vessel, rate_hz=self._rate_hz, rng=machine)
         asked = vessel.sensors.demand
         self._demand = (
             None if asked is None else DemandMessages(asked, rate_hz=self._rate_hz, rng=demand, bus=Bus.of(tug))
         )
-        on_board = (
-            self._helm,
-            *self._speeds,
-            self._gauge,
-            self._control_unit,
-            self._log,
-            self._lever,
-            self._demand,
-            self._machine,
+        on_board = (self._helm, *self._speeds, self._gauge, self._control_unit, self._log, self._lever, self._demand)
+        self._sensors: tuple[_Sensor, ...] = tuple(
+            sensor for sensor in (*on_board, self._machine) if sensor is not None
         )
-        self._sensors: tuple[_Sensor, ...] = tuple(sensor for sensor in on_board if sensor is not None)
         self._limited = {excitation.name: 0 for excitation in campaign.excitations}
 
     def _expect_fast_logger(self) -> None:
@@ -232,17 +224,6 @@ class _Crew:
         if sensor is None:
             return None
         return PitchLever(sensor.channel, self._tug, self._campaign, rng=rng)
-
-    def _watch_machine(self, rng: np.random.Generator) -> MachineTorque | None:
-        sensor, machine, geared = (
-            self._vessel.sensors.machine_torque,
-            self._tug.shaft_machine,
-            self._vessel.shaft_machine,
-        )
-        if sensor is None or machine is None or geared is None:
-            return None
-        _, torque_nm = working_point(self._tug, self._vessel)
-        return MachineTorque(sensor, geared, machine, torque_nm=torque_nm, rate_hz=self._rate_hz, rng=rng)
 
     def _watch_bus(self, first_rack: float, rng: np.random.Generator) -> ControlUnit | None:
         sensor = self._vessel.sensors.rack
@@ -346,22 +327,11 @@ class _Crew:
             offset=self._gauge.offset,
             long_name="torque telemetry of the propeller shaft",
         )
-        if self._lever is not None:
-            writer.declare(
-                self._lever.channel,
-                unit="V",
-                rate_hz=self._rate_hz,
-                scale=VOLT_PER_COUNT,
-                long_name="set point of the pitch of the propeller",
-            )
-        if self._machine is not None:
-            writer.declare(
-                self._machine.channel,
-                unit="V",
-                rate_hz=self._rate_hz,
-                scale=VOLT_PER_COUNT,
-                long_name="torque of the electric machine on the gearbox, from its converter",
-            )
+        names = {"set point of the pitch of the propeller": self._lever, MachineTorque.words: self._machine}
+        for name, voltage in names.items():
+            if voltage is not None:
+                rate_hz, scale = self._rate_hz, VOLT_PER_COUNT
+                writer.declare(voltage.channel, unit="V", rate_hz=rate_hz, scale=scale, long_name=name)
         self._declare_slow_channels(writer)
 
     def _clock_of(self, sensor: _Sensor) -> _SensorClock:
