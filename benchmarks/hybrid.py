@@ -88,7 +88,7 @@ def true_values(truth: Truth, signals: Signals, of: Ship) -> dict[str, float]:
     """
     model, shown_nm = structure(HYBRID), signals.working_point.shaft_torque_nm
     seen = {p.name: fingerprint_truth(truth, model, signals)[p.name] for p in model.parameters}
-    given, shown = truth.normalised["share"], truth.normalised["c_m"]
+    given, shown = truth.normalised["s_m"], truth.normalised["c_m"]
     over = of.scale * truth.shaft_torque_nm / shown_nm
     by_inertia = over * 60.0 * signals.working_point.engine_speed_rev_s / truth.engine_speed_rpm
     for parameter in model.parameters:
@@ -97,7 +97,7 @@ def true_values(truth: Truth, signals: Signals, of: Ship) -> dict[str, float]:
     own = (1.0 - given) / (1.0 - given * over)
     seen |= {name: own * seen[name] for name in OF_ENGINE}
     seen["c_m"] = of.scale * shown
-    seen["share"] = given * over / seen["c_m"]
+    seen["s_m"] = given * over / seen["c_m"]
     seen["k_q"] *= 1.0 - of.scale * of.zero_nm / shown_nm
     seen["t_gauge"] = of.late_s
     seen |= {one.name: float(one.of(seen)) for one in model.combinations}  # type: ignore[arg-type]

@@ -83,6 +83,7 @@ def test_what_moves_with_the_working_point_is_not_of_the_line():
         "inertia", "inertia upstream", "inertia downstream", "proportional gain", "integral gain", "derivative gain",
         "engine slope with speed", "engine slope with rack", "load slope", "inflow slope",
         "inertia driven", "coupling stiffness", "coupling damping",
+        "proportional gain of the engine's own torque", "integral gain of the engine's own torque",
     }  # fmt: skip
 
 

@@ -26,7 +26,7 @@ def test_engine_and_machine_are_identified_with_the_truth_in_their_intervals(sai
     assert fingerprint["structure"] == "GAUGE-HYBRID"
     assert fingerprint["verdict"]["trustworthy"]
     numbers = {one["name"]: one for one in fingerprint["parameters"]}
-    for name in ("K_p", "K_i", "c_m", "share", "t_d", "t_sp", "tau_up", "g"):
+    for name in ("K_p", "K_i", "c_m", "s_m", "t_d", "t_sp", "tau_up", "g"):
         low, high = numbers[name]["interval_95"]
         margin = 0.5 * (high - low)
         assert low - margin <= truth[name] <= high + margin, name

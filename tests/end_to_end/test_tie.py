@@ -193,7 +193,7 @@ def test_linearised_hybrid_is_the_composed_structure(share, shown, given):
         "tau_dn": seconds_per_kg_m2 * (560.0 + 224.0 + 15.0),
         # the converter shows its torque by a factor of its own, of which the share is a part too
         "c_m": 1.0 / shown,
-        "share": share * shown,
+        "s_m": share * shown,
     }
     outputs, model = composed("GAUGE-HYBRID", known)
     for place, name in enumerate(("n_set", "M_m")):

@@ -149,10 +149,10 @@ def gauge_elastic(s, p):
 def gauge_hybrid(s, p):
     """The same two free bodies with a torque from outside upstream; the engine gives what is left of the whole.
 
-    ``M_b = (1 - c_m share) (g n + v C e^(-s t_d) F (c_set e^(-s t_sp) n_set - n))`` and
+    ``M_b = (1 - c_m s_m) (g n + v C e^(-s t_d) F (c_set e^(-s t_sp) n_set - n))`` and
     ``M_b + c_m M_m - M_s = tau_up s n``, solved for either input alone.
     """
-    given = 1 - p["c_m"] * p["share"]
+    given = 1 - p["c_m"] * p["s_m"]
     engine = given * governor(s, p)
     demand = p["c_set"] * mp.exp(-s * p["t_sp"])
     matrix = mp.matrix(

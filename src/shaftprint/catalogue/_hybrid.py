@@ -2,12 +2,12 @@
 
 The two free bodies of GAUGE-CLOSED, upstream of which a converter adds a torque that it controls::
 
-    upstream    M_b + c_m M_m - M_s = tau_up s n        M_b = (1 - c_m share) (g n + v exp(-s t_d) F X)
+    upstream    M_b + c_m M_m - M_s = tau_up s n        M_b = (1 - c_m s_m) (g n + v exp(-s t_d) F X)
     downstream  M_s - M_p = tau_dn s n                  M_p = k_q n,    X = C (c_set exp(-s t_sp) n_set - n)
 
 ``M_m`` is the torque that the converter shows, at the propeller shaft and over the whole torque of the working point;
-``share`` is its value there, negative of a generator. ``g``, ``v``, ``K_p`` and ``K_i`` are normalised by the torque
-that the engine itself gives, ``1 - c_m share`` of the whole.
+``s_m`` is its value there, negative of a generator. ``g``, ``v``, ``K_p`` and ``K_i`` are normalised by the torque
+that the engine itself gives, ``1 - c_m s_m`` of the whole.
 """
 
 from collections.abc import Mapping
@@ -49,7 +49,7 @@ from shaftprint.models import (
 )
 
 SHARE = Parameter(
-    "share",
+    "s_m",
     "-",
     -1.0,
     0.9,
@@ -89,9 +89,9 @@ OWN_K_I = Parameter(
 def gauge_hybrid() -> Structure:
     """Return the gauge-aware closed loop with an electric machine, ``n`` and ``M_s`` from ``n_set`` and ``M_m``.
 
-    With ``Z = (tau_up + tau_dn) s + k_q - (1 - c_m share) g`` and ``L = (1 - c_m share) v C exp(-s t_d) F / Z`` it is
+    With ``Z = (tau_up + tau_dn) s + k_q - (1 - c_m s_m) g`` and ``L = (1 - c_m s_m) v C exp(-s t_d) F / Z`` it is
     ``n = sensor / (1 + L) (c_set exp(-s t_sp) L n_set + c_m / Z M_m)``, and
-    ``M_s = (tau_dn s + k_q) exp(-s t_gauge) / (T_filter s + 1) n`` without the speed sensor. Where ``share`` is 0 and
+    ``M_s = (tau_dn s + k_q) exp(-s t_gauge) / (T_filter s + 1) n`` without the speed sensor. Where ``s_m`` is 0 and
     the machine stands still it is GAUGE-CLOSED.
     """
     shaft = RationalBlock(_shaft, (TAU_DN, TAU_UP, K_Q, G, C_M, SHARE))
@@ -128,13 +128,13 @@ def _of_engine(c_m: FloatArray, share: FloatArray) -> tuple[list[FloatArray], li
 
 
 def _given(p: Mapping[str, FloatArray]) -> FloatArray:
-    return 1.0 - p["c_m"] * p["share"]
+    return 1.0 - p["c_m"] * p["s_m"]
 
 
 def _combinations() -> tuple[Combination, ...]:
     """Return what a test of the closed loop finds better than the parameters it is made of."""
     return (
-        Combination(name="1 - c_m share", unit="-", of=_given, meaning="torque of the engine over that of the shaft"),
+        Combination(name="1 - c_m s_m", unit="-", of=_given, meaning="torque of the engine over that of the shaft"),
         Combination(
             name="t_d + t_sp",
             unit="s",

@@ -21,7 +21,6 @@ from shaftprint.tug.plant import (
     build_plant,
     equilibrium,
     steady_load_nm,
-    working_point,
 )
 from shaftprint.tug.sensors import (
     VOLT_PER_COUNT,
@@ -111,7 +110,7 @@ class Crew:
         self._log = self._read_log(float(first[WAY]), log)
         self._lever = self._stand_by_lever(pitch)
         self._feedback = self._watch_pitch(feedback)
-        self._machine = self._watch_machine(machine)
+        self._machine = MachineTorque.of(tug, vessel, rate_hz=self._rate_hz, rng=machine)
         asked = vessel.sensors.demand
         self._demand = (
             None if asked is None else DemandMessages(asked, rate_hz=self._rate_hz, rng=demand, bus=Bus.of(tug))
@@ -177,17 +176,6 @@ class Crew:
             rate_hz=self._rate_hz,
             rng=rng,
         )
-
-    def _watch_machine(self, rng: np.random.Generator) -> MachineTorque | None:
-        sensor, machine, geared = (
-            self._vessel.sensors.machine_torque,
-            self._tug.shaft_machine,
-            self._vessel.shaft_machine,
-        )
-        if sensor is None or machine is None or geared is None:
-            return None
-        _, torque_nm = working_point(self._tug, self._vessel)
-        return MachineTorque(sensor, geared, machine, torque_nm=torque_nm, rate_hz=self._rate_hz, rng=rng)
 
     def _watch_bus(self, first_rack: float, rng: np.random.Generator) -> ControlUnit | None:
         sensor = self._vessel.sensors.rack
@@ -283,30 +271,15 @@ class Crew:
             offset=self._gauge.offset,
             long_name="torque telemetry of the propeller shaft",
         )
-        if self._lever is not None:
-            writer.declare(
-                self._lever.channel,
-                unit="V",
-                rate_hz=self._rate_hz,
-                scale=VOLT_PER_COUNT,
-                long_name="set point of the pitch of the propeller",
-            )
-        if self._feedback is not None:
-            writer.declare(
-                self._feedback.channel,
-                unit="V",
-                rate_hz=self._rate_hz,
-                scale=VOLT_PER_COUNT,
-                long_name="feedback of the pitch of the propeller",
-            )
-        if self._machine is not None:
-            writer.declare(
-                self._machine.channel,
-                unit="V",
-                rate_hz=self._rate_hz,
-                scale=VOLT_PER_COUNT,
-                long_name="torque of the electric machine on the gearbox, from its converter",
-            )
+        names = {
+            "set point of the pitch of the propeller": self._lever,
+            "feedback of the pitch of the propeller": self._feedback,
+            MachineTorque.words: self._machine,
+        }
+        for name, voltage in names.items():
+            if voltage is not None:
+                rate_hz, scale = self._rate_hz, VOLT_PER_COUNT
+                writer.declare(voltage.channel, unit="V", rate_hz=rate_hz, scale=scale, long_name=name)
         self._declare_slow_channels(writer)
 
     def _clock_of(self, sensor: _Sensor) -> _SensorClock:

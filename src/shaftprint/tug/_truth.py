@@ -52,7 +52,7 @@ class Truth(Shown):
     """Sample rate of every channel [Hz]."""
     normalised: Mapping[str, float]
     """Parameters normalised at the working point: ``tau_up``, ``tau_dn``, ``tau_t`` [s]; ``tau_w`` [s], the part of
-    ``tau_dn`` that is water beyond the vessel's; with an electric machine on the gearbox its ``share`` and ``c_m``;
+    ``tau_dn`` that is water beyond the vessel's; with an electric machine on the gearbox its ``s_m`` and ``c_m``;
     with an elastic coupling ``k_c`` [1/s], ``d_c`` and ``tau_m`` [s]; ``k_q``; with a controllable pitch ``q``,
     ``tau_th`` [s], ``t_th`` [s], ``c_th`` and ``c_pitch``; ``kappa``, ``tau_i`` [s] of the dynamic inflow; ``g``,
     ``v``, ``X_0``; ``K_p``, ``K_i`` [1/s], ``t_d`` [s], ``omega_n`` [rad/s], ``zeta``, of a motor ``T_m`` [s] in their
@@ -126,7 +126,7 @@ def _coupling_truth(tug: Tug, vessel: Vessel) -> dict[str, float]:
 def _machine_truth(tug: Tug) -> dict[str, float]:
     """Return what of the torque an electric machine gives, and its torque over that which its channel shows."""
     machine = tug.shaft_machine
-    return {} if machine is None else {"share": machine.share, "c_m": 1.0 / machine.shown}
+    return {} if machine is None else {"s_m": machine.share, "c_m": 1.0 / machine.shown}
 
 
 def _actuation_truth(tug: Tug, vessel: Vessel) -> dict[str, float]:

@@ -29,13 +29,13 @@ from shaftprint.vessel._hull import Hull
 from shaftprint.vessel._inertia import InertiaRow
 from shaftprint.vessel._limits import OperatingLimits
 from shaftprint.vessel._links import ShaftLink
+from shaftprint.vessel._machine_torque import MachineTorqueSensor
 from shaftprint.vessel._machinery import Engine, Gearbox, Machine, Motor, Propeller, RackMap
 from shaftprint.vessel._orders import Order
 from shaftprint.vessel._pitch import ControllablePitch
 from shaftprint.vessel._sensors import (
     DemandSensor,
     Logger,
-    MachineTorqueSensor,
     PitchSensor,
     PitchSetPointSensor,
     RackSensor,

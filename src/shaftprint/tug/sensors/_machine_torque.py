@@ -1,19 +1,34 @@
 """The torque of an electric machine on the gearbox as its converter shows it."""
 
+from typing import Self
+
 import numpy as np
 from numpy.typing import NDArray
 
 from shaftprint.arrays import FloatArray
 from shaftprint.tug._shaft_machine import ShaftMachineTruth
-from shaftprint.tug.plant import Stretch
+from shaftprint.tug._tug import Tug
+from shaftprint.tug.plant import Stretch, working_point
 from shaftprint.tug.sensors._faults import Fault
 from shaftprint.tug.sensors._late import Late
 from shaftprint.tug.sensors._pulses import VOLT_PER_COUNT
-from shaftprint.vessel import MachineTorqueSensor, ShaftMachine
+from shaftprint.vessel import MachineTorqueSensor, ShaftMachine, Vessel
 
 
 class MachineTorque:
     """Stream of the raw counts of the machine's torque, a latency late, with white noise."""
+
+    words = "torque of the electric machine on the gearbox, from its converter"
+    """What the channel is."""
+
+    @classmethod
+    def of(cls, tug: Tug, vessel: Vessel, *, rate_hz: float, rng: np.random.Generator) -> Self | None:
+        """Return the stream of a ship; None where it has no such machine or no channel of it."""
+        sensor, geared, machine = vessel.sensors.machine_torque, vessel.shaft_machine, tug.shaft_machine
+        if sensor is None or geared is None or machine is None:
+            return None
+        _, torque_nm = working_point(tug, vessel)
+        return cls(sensor, geared, machine, torque_nm=torque_nm, rate_hz=rate_hz, rng=rng)
 
     def __init__(
         self,
