@@ -98,16 +98,20 @@ def _expect_same_files(fingerprint: Fingerprint, arguments: JobArguments) -> Non
 
 
 def _expect_structure_of(arguments: JobArguments) -> None:
-    """Refuse the closed loop of a diesel, which a job has where none was named, for a line that a motor drives.
+    """Refuse the closed loop of a diesel, which a job has where none was named, for a line with an electric machine.
 
     Raises
     ------
     StructureError
         If it is that.
     """
-    of_engine, of_motor = CLOSED_LOOPS["engine"], CLOSED_LOOPS["motor"]
-    if arguments.structure.upper() == of_engine and load_vessel(arguments.vessel).motor is not None:
+    of_engine = CLOSED_LOOPS["engine"]
+    if arguments.structure.upper() != of_engine:
+        return
+    drive = load_vessel(arguments.vessel).drive
+    if drive != "engine":
+        line = "that a motor drives" if drive == "motor" else "with an electric machine on its gearbox"
         raise StructureError(
-            f"{arguments.recording}: expected the structure of a line that a motor drives, as {arguments.vessel} says, "
-            f"found {of_engine}; ask for --structure {of_motor}."
+            f"{arguments.recording}: expected the structure of a line {line}, as {arguments.vessel} says, found "
+            f"{of_engine}; ask for --structure {CLOSED_LOOPS[drive]}."
         )
