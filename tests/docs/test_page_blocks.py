@@ -14,7 +14,7 @@ import pytest
 from pages import PAGES, ROOT, blocks, python_of
 
 from shaftprint.bench import equipped
-from shaftprint.campaign import Campaign, CampaignOfBoth
+from shaftprint.campaign import Campaign, CampaignOfBoth, load_campaign
 from shaftprint.drive import Drive
 from shaftprint.export import exported_model, write_matlab
 from shaftprint.fingerprint import read_fingerprint
@@ -91,6 +91,7 @@ def test_toml_is_of_a_page_with_a_check_of_its_own():
         "docs/drives.md",
         "docs/formats.md",
         "docs/legs.md",
+        "docs/pitch.md",
         "docs/serve.md",
     }
     assert {page.values[0] for page in of("toml")} == known
@@ -102,6 +103,15 @@ def test_the_campaign_of_the_page_on_legs_is_one():
     # as its comments say
     multisine, binary = campaign.legs
     assert (multisine.periods, binary.length_of_period_s) == (4, 126 * 0.25)
+
+
+def test_the_multisine_of_the_page_on_a_pitch_is_the_shipped_one():
+    ((_, text),) = (block for block in blocks("docs/pitch.md") if block[0] == "toml")
+    (multisine,) = tomllib.loads(text)["multisines"]
+    shipped = next(one for one in load_campaign("pitch").multisines if one.name == multisine["name"]).model_dump()
+    for name, value in multisine.items():
+        # the page shows the first lines of many
+        assert value == (list(shipped[name])[: len(value)] if isinstance(value, list) else shipped[name])
 
 
 def test_the_vessel_file_of_the_page_on_tests_astern_is_the_shipped_one():

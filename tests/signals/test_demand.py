@@ -88,10 +88,10 @@ def test_what_was_found_is_known_of_the_latency(vessel):
         set_point_v=-5.0, load_std=0.001,
     )  # fmt: skip
     found = SetPointDelay(channel="Desired", delay_s=0.052, std_s=0.0003, lines=9)
-    signals = SimpleNamespace(set_point_delay=found, working_point=point, mode="shaftprint")
+    signals = SimpleNamespace(set_point_delay=found, working_point=point, mode="shaftprint", excitations={})
     known = vessel_with_demand(vessel, latency_s=0.01, latency_std_s=0.0004)
     prior = priors_of(structure("GAUGE-CLOSED"), known, signals)["t_sp"]
     assert (prior.mean, prior.std) == (0.052, pytest.approx(0.0005))
     assert prior.sources == {"demand noise": 0.0003, "demand latency": 0.0004}
-    without = SimpleNamespace(set_point_delay=None, working_point=point, mode="shaftprint")
+    without = SimpleNamespace(set_point_delay=None, working_point=point, mode="shaftprint", excitations={})
     assert "t_sp" not in priors_of(structure("GAUGE-CLOSED"), known, without)

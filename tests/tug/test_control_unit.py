@@ -36,6 +36,8 @@ def stretch_of(rack: np.ndarray, start: int = 0, *, engine_rpm: float = 0.0) -> 
         brake_torque_nm=zeros,
         rack_given=rack,
         limited=zeros > 0.0,
+        machine_nm=zeros,
+        pitch_change=zeros,
         ship_speed_m_s=zeros,
         demand_rev_s=zeros,
     )

@@ -33,6 +33,8 @@ def values(log: SpeedLog, speed: np.ndarray, stretch_samples: int) -> np.ndarray
                     brake_torque_nm=zeros[part],
                     rack_given=zeros[part],
                     limited=zeros[part] > 0.0,
+                    machine_nm=zeros[part],
+                    pitch_change=zeros[part],
                     ship_speed_m_s=speed[part],
                     demand_rev_s=np.zeros(1),
                 )

@@ -258,9 +258,7 @@ class Structure(Shown):
         )
 
     def of_input(self, name: str) -> "Structure":
-        """Return the structure from one of its inputs alone, with all of its parameters.
-
-        Outputs that this input does not move are left out.
+        """Return the structure from one input alone to the outputs that it moves, with all of its parameters.
 
         Raises
         ------

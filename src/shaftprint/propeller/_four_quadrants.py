@@ -30,9 +30,9 @@ class ThrustAndTorque(NamedTuple):
     """Forces of one propeller, of the shape of its speeds."""
 
     thrust_n: FloatArray
-    """Thrust [N], positive ahead."""
+    """Thrust [N], positive ahead, shape as above."""
     torque_nm: FloatArray
-    """Torque that the shaft must give [N m], positive where it would turn the propeller ahead."""
+    """Torque that the shaft must give [N m], positive where it would turn the propeller ahead, shape as above."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)

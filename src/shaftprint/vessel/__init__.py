@@ -33,11 +33,10 @@ from shaftprint.vessel._machine_torque import MachineTorqueSensor
 from shaftprint.vessel._machinery import Engine, Gearbox, Machine, Motor, Propeller, RackMap
 from shaftprint.vessel._orders import Order
 from shaftprint.vessel._pitch import ControllablePitch
+from shaftprint.vessel._pitch_sensors import PitchSensor, PitchSetPointSensor
 from shaftprint.vessel._sensors import (
     DemandSensor,
     Logger,
-    PitchSensor,
-    PitchSetPointSensor,
     RackSensor,
     Sensors,
     ShipSpeedSensor,

@@ -20,10 +20,11 @@ from shaftprint.settings import (
 from shaftprint.units import ANGLES_REV, M_S_PER_KNOT, REV_S_PER_UNIT
 from shaftprint.vessel._machine_torque import MachineTorqueSensor
 from shaftprint.vessel._machinery import Machine
+from shaftprint.vessel._pitch_sensors import PitchSensor, PitchSetPointSensor
 from shaftprint.vessel._plain_unit import PLAIN_UNIT
 from shaftprint.vessel._set_point import SetPointSensor
 from shaftprint.vessel._shaft_torque import ShaftTorqueSensor
-from shaftprint.vessel._usual import LOG_LATENCY_SHARE, LOG_SCALE_STD, PITCH_SENSOR_STD
+from shaftprint.vessel._usual import LOG_LATENCY_SHARE, LOG_SCALE_STD
 from shaftprint.vessel._wheel import Wheel
 
 SpeedUnit: TypeAlias = Annotated[
@@ -320,50 +321,6 @@ class ShipSpeedSensor(Settings):
     def m_s_per_unit(self) -> float:
         """Speed for one unit of the channel [m/s]."""
         return M_S_PER_KNOT if self.unit == "kn" else 1.0
-
-
-class PitchSetPointSensor(Settings):
-    """The voltage that asks a controllable-pitch propeller for its pitch."""
-
-    channel: Name
-    """Name of the channel in the recording."""
-    unit: Literal["V"]
-    """Unit of the channel."""
-    pitch_ratio_per_v: Number
-    """Pitch over diameter for one volt [1/V]."""
-    pitch_ratio_at_zero_v: Number
-    """Pitch over diameter at no voltage [-]."""
-    scale_std_fraction: NotNegativeNumber = 0.0
-    """Relative standard deviation of the pitch for one volt."""
-
-
-class PitchSensor(Settings):
-    """The feedback of a controllable-pitch propeller: what its pitch is, as the piston or a feedback rod shows it."""
-
-    channel: Name
-    """Name of the channel in the recording."""
-    unit: Literal["V"]
-    """Unit of the channel."""
-    pitch_ratio_per_v: Number
-    """Pitch over diameter for one volt [1/V]."""
-    pitch_ratio_at_zero_v: Number
-    """Pitch over diameter at no voltage [-]."""
-    latency_s: NotNegativeNumber = 0.0
-    """Time by which it is late [s]."""
-    scale_std_fraction: PositiveNumber | None = None
-    """Relative standard deviation of a change of pitch over the pitch, as it shows them; see ``scale_std`` where it is
-    not stated."""
-
-    @property
-    def scale_std(self) -> float:
-        """Relative standard deviation of a change of pitch over the pitch, as stated or as usual."""
-        return PITCH_SENSOR_STD if self.scale_std_fraction is None else self.scale_std_fraction
-
-    @model_validator(mode="after")
-    def _has_a_slope(self) -> Self:
-        if self.pitch_ratio_per_v == 0.0:
-            raise ValueError("expected pitch_ratio_per_v other than 0, found 0.")
-        return self
 
 
 class Logger(Settings):

@@ -26,6 +26,7 @@ VESSELS: Final = (
     "stan-tug-1205",
     "stan-tug-1205-astern",
     "stan-tug-1205-ecu",
+    "stan-tug-1205-starboard",
     "stan-tug-1205-underway",
 )
 CAMPAIGNS: Final = ("12min", "5min", "dither", "machine", "pitch", "short", "thesis", "transit", "two-speeds")
