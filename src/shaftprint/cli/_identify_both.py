@@ -53,7 +53,7 @@ def identify_both_lines(
 ) -> None:
     """Identify both lines, print and write the results of each side and the comparison of both."""
     trials = load_trials_of_both(*vessels, campaign, about.conditions)
-    chosen = names or (TypedName(default_structure(trials[0].vessel)),)
+    chosen = names or (TypedName(default_structure(trials[0].vessel, trials[0].campaign)),)
     structures = structures_of(chosen, options, trials[0].vessel)
     of_user = structure_sources(names)
     port, starboard = (replace(trial, sources=(*trial.sources, *of_user)) for trial in trials)

@@ -157,8 +157,8 @@ def _pooled(periods: ComplexArray) -> FloatArray:
     count, lines = periods.shape
     single = np.sum(np.abs(periods - periods.mean(axis=0)) ** 2, axis=0) / (2.0 * (count - 1))
     around = [single[max(0, at - _BESIDE) : min(lines, at + _BESIDE + 1)].mean() for at in range(lines)]
-    larger: FloatArray = np.maximum(single, np.array(around))
-    return larger / count
+    of_mean: FloatArray = np.maximum(single, np.array(around)) / count
+    return of_mean
 
 
 def wash_sentences(washes: "Mapping[str, Wash]") -> tuple[str, ...]:

@@ -11,7 +11,8 @@ from shaftprint.units import rev_s_from_rpm
 from shaftprint.vessel._usual import INERTIA_STD, MACHINE_SHARE_STD
 
 if TYPE_CHECKING:
-    from shaftprint.vessel._machinery import Engine, Gearbox, WorkingPoint
+    from shaftprint.vessel._machinery import Engine, Gearbox
+    from shaftprint.vessel._working_point import WorkingPoint
 
 _ROUNDING = 1e-6
 
