@@ -35,6 +35,7 @@ SAILED = (
     "sail pt-may short -o towboat.nc --seed 3",
     "sail nifs-research-vessel pitch -o research.nc --seed 3",
     "sail foss-carolyn-dorothy machine -o hybrid.nc --seed 3",
+    "sail stan-tug-1205 at-once --starboard stan-tug-1205-starboard -o both.nc --seed 3",
     "sail stan-tug-1205-underway dither -o underway.nc",
 )
 MY_SHIP = """

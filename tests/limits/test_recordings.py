@@ -97,11 +97,3 @@ def test_two_limits_that_hold_each_other_in_place_of_the_true_ones(both_torque_l
     assert set(found.kinds) == {Kind.TORQUE, Kind.MOTORING}
     assert number(found, "share").lower <= share <= number(found, "share").upper
     assert number(found, "M_min").lower <= lowest_nm <= number(found, "M_min").upper
-
-
-def test_a_motoring_limit_that_only_falls_to_half_speed_show(both_torque_limits_of):
-    """Seed 100: the line falls to 50 % of its speed for half a second; the limit acts in those two steps alone."""
-    share, lowest_nm, found = both_torque_limits_of(100)
-    assert set(found.kinds) == {Kind.TORQUE, Kind.MOTORING}
-    assert number(found, "share").lower <= share <= number(found, "share").upper
-    assert number(found, "M_min").lower <= lowest_nm <= number(found, "M_min").upper

@@ -59,6 +59,6 @@ def _driven(structure: Structure, vessel: Vessel) -> dict[str, tuple[float, floa
     tau = inertia_time_s(
         min(_WIDE * coupling.driven_kg_m2, vessel.inertia_upstream_kg_m2),
         shaft_speed_rev_s=rev_s_from_rpm(point.engine_speed_rpm) / vessel.gearbox.ratio,
-        shaft_torque_nm=point.shaft_torque_nm,
+        shaft_torque_nm=point.driving_torque_nm,
     )
     return dict.fromkeys(names, (0.0, tau))

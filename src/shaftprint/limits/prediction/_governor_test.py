@@ -25,7 +25,7 @@ LAST_S = 1.0
 AFTER_S = 3.0
 LEAST_SPEED = 0.1
 # Below this deviation of the speed pulses are too rare for the acceleration between them, and for this long beside [s].
-SLOW, BESIDE_S = -0.55, 0.5
+SLOW, BESIDE_S = -0.45, 1.0
 # After a stretch that is not known the integrator of the governor is not either, until the observer leads it back [s].
 SETTLED_S = 25.0
 
