@@ -32,8 +32,9 @@ def test_line_and_pitch_are_identified_with_the_truth_in_their_intervals(identif
 
 
 def test_its_model_is_exported(identified, invoke):
-    done = invoke("export", "csv", identified / "result" / "fingerprint.json", "-o", identified / "tables")
-    assert done.exit_code == 0, done.stderr
+    for form, name in (("csv", "tables"), ("json", "model.json")):
+        done = invoke("export", form, identified / "result" / "fingerprint.json", "-o", identified / name)
+        assert done.exit_code == 0, done.stderr
 
 
 def test_the_line_of_the_speed_alone_is_identified_from_the_same_recording(identified, invoke):

@@ -4,10 +4,12 @@ import json
 from pathlib import Path
 from typing import Any, Final
 
+import numpy as np
 from numpy.typing import ArrayLike
 
 from shaftprint import __version__
 from shaftprint.arguments import refusing_none
+from shaftprint.arrays import FloatArray
 from shaftprint.errors import ExportError
 from shaftprint.export._model import ExportedModel, exported_model
 from shaftprint.export._model_response import ModelResponse, model_response
@@ -144,13 +146,18 @@ def _linear(linear: DelayModel) -> dict[str, Any]:
     }
 
 
+def _finite_or_null(values: FloatArray) -> Any:
+    """Return nested lists with null where an input moves nothing, so that there is no level."""
+    return np.where(np.isfinite(values), values.astype(object), None).tolist()
+
+
 def _response(modelled: ModelResponse) -> dict[str, Any]:
     return {
         "axes": ["output", "input", "frequency"],
         "omega_rad_s": modelled.omega_rad_s.tolist(),
         "real": modelled.response.real.tolist(),
         "imaginary": modelled.response.imag.tolist(),
-        "magnitude_db": modelled.magnitude_db.tolist(),
+        "magnitude_db": _finite_or_null(modelled.magnitude_db),
         "magnitude_std_db": modelled.magnitude_std_db.tolist(),
         "phase_deg": modelled.phase_deg.tolist(),
         "phase_std_deg": modelled.phase_std_deg.tolist(),

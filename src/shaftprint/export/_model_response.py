@@ -34,8 +34,9 @@ class ModelResponse:
 
     @property
     def magnitude_db(self) -> FloatArray:
-        """``20 log10 |H|`` [dB], shape (outputs, inputs, frequencies)."""
-        return np.asarray(20.0 * np.log10(np.abs(self.response)))
+        """``20 log10 |H|`` [dB], minus infinite where an input moves nothing, shape (outputs, inputs, frequencies)."""
+        with np.errstate(divide="ignore"):
+            return np.asarray(20.0 * np.log10(np.abs(self.response)))
 
     @property
     def phase_deg(self) -> FloatArray:
@@ -58,10 +59,11 @@ class ModelResponse:
         return channel_covariance(self.covariance, self.response.shape[0])
 
     def _along(self, real: FloatArray, imaginary: FloatArray) -> FloatArray:
-        """Return the variance along a direction of each response, over the fourth power of its size."""
+        """Return the variance along a direction of each response, over the fourth power of its size; 0 without one."""
         direction = np.stack([real, imaginary], axis=-1)
         variance = np.einsum("...i,...ij,...j->...", direction, self.channel_covariance, direction)
-        return np.asarray(np.maximum(variance, 0.0) / np.abs(self.response) ** 4)
+        size = np.abs(self.response) ** 4
+        return np.divide(np.maximum(variance, 0.0), size, out=np.zeros_like(size), where=size > 0.0)
 
 
 def channel_covariance(covariance: FloatArray, outputs: int) -> FloatArray:
