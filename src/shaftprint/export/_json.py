@@ -148,7 +148,9 @@ def _linear(linear: DelayModel) -> dict[str, Any]:
 
 def _finite_or_null(values: FloatArray) -> Any:
     """Return nested lists with null where an input moves nothing, so that there is no level."""
-    return np.where(np.isfinite(values), values.astype(object), None).tolist()
+    levels = values.astype(object)
+    levels[~np.isfinite(values)] = None
+    return levels.tolist()
 
 
 def _response(modelled: ModelResponse) -> dict[str, Any]:

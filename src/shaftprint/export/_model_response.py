@@ -63,7 +63,8 @@ class ModelResponse:
         direction = np.stack([real, imaginary], axis=-1)
         variance = np.einsum("...i,...ij,...j->...", direction, self.channel_covariance, direction)
         size = np.abs(self.response) ** 4
-        return np.divide(np.maximum(variance, 0.0), size, out=np.zeros_like(size), where=size > 0.0)
+        over: FloatArray = np.divide(np.maximum(variance, 0.0), size, out=np.zeros_like(size), where=size > 0.0)
+        return over
 
 
 def channel_covariance(covariance: FloatArray, outputs: int) -> FloatArray:
