@@ -10,22 +10,18 @@ so that they are not made again, and what is said of them is.
 writes the table of ``docs/astern.md``; an outcome is a small JSON file, so that a run goes on where it ended.
 """
 
-import argparse
-import json
 import tempfile
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from functools import partial
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
-from benchmarks.electric import interval_of
-from benchmarks.kept_outcomes import kept
+from benchmarks.drawn_lines import command, counted, numbers_of, rows_of, seen_by_gauge, spent
 from benchmarks.limits import line_of
 from benchmarks.monte_carlo_recordings import PRIOR_OF_G, Ship, drawn_gauge
-from benchmarks.monte_carlo_tables import write_between_marks
 from shaftprint.campaign import load_campaign
 from shaftprint.catalogue import structure
 from shaftprint.cli._demo_truth import fingerprint_truth
@@ -42,7 +38,6 @@ VESSEL, CAMPAIGN = load_vessel("stan-tug-1205-astern"), load_campaign("short")
 STRUCTURE = "GAUGE-CLOSED"
 SEED = 84
 PAGE = Path(__file__).parents[1] / "docs" / "astern.md"
-BEGIN, END = "<!-- astern: begin -->\n", "<!-- astern: end -->\n"
 AHEAD_NM = 1956.0
 """What the propeller would take ahead at the speed of the working point, by its series [N m]."""
 ASTERN_WORDS = "Of a shaft that turns astern"
@@ -69,22 +64,14 @@ def ship(seed: int) -> Ship:
 def true_values(truth: Truth, signals: Signals, of: Ship) -> dict[str, float]:
     """Return the truth as the measured working point normalises it.
 
-    Deviations of the torque are shown ``scale`` times as large and divided by the shown mean, in which the zero is; the
-    zero counts ahead, the mean the way the shaft turns.
+    The zero of the gauge counts ahead, the mean the way the shaft turns.
     """
     model, shown_nm = structure(STRUCTURE), signals.working_point.shaft_torque_nm
-    named = fingerprint_truth(truth, model, signals)
-    seen = {p.name: named[p.name] for p in model.parameters}
-    for parameter in model.parameters:
-        if parameter.role is not None and parameter.role.over_torque:
-            seen[parameter.name] *= of.scale
-    seen["k_q"] *= 1.0 + of.scale * of.zero_nm / shown_nm
-    seen["t_gauge"] = of.late_s
-    seen |= {one.name: float(one.of(seen)) for one in model.combinations}  # type: ignore[arg-type]
+    seen = seen_by_gauge(fingerprint_truth(truth, model, signals), model, of, shown_nm=-shown_nm)
     turning_s = truth.engine_speed_rpm / 60.0 / VESSEL.gearbox.ratio
     force_m = VESSEL.water_density_kg_m3 * turning_s**2 * VESSEL.propeller.diameter_m**5
     further = {"K_Q": truth.shaft_torque_nm / force_m, "gauge zero share": -100.0 * of.zero_nm / truth.shaft_torque_nm}
-    return seen | {"I_dn": named["I_dn"], "I_up": named["I_up"]} | further
+    return seen | further
 
 
 def said_to_be_ahead(*, gauge_turned: bool) -> Vessel:
@@ -114,17 +101,12 @@ def outcome(seed: int) -> dict[str, object]:
             "gauge turned": _contradicted(survey, said_to_be_ahead(gauge_turned=True)),
         }
     true, fingerprint = true_values(truth, survey.signals, drawn), survey.fingerprint
-    numbers = [*fingerprint.parameters, *fingerprint.combinations, *fingerprint.physical]
     return {
         "seed": seed,
         "cpu_s": cpu_s,
         "trustworthy": fingerprint.verdict.trustworthy,
         "p": survey.identification.p_value,
-        "numbers": {
-            one.name: {"true": true[one.name], "value": one.value, "std": one.std, "interval": interval_of(one)}
-            for one in numbers
-            if one.name in true
-        },
+        "numbers": numbers_of(fingerprint, true),
         "called ahead wrongly": ASTERN_WORDS in " ".join(fingerprint.findings),
         "ahead": ahead,
     }
@@ -146,61 +128,22 @@ def _contradicted(survey: Survey, vessel: Vessel) -> bool:
     return ASTERN_WORDS in " ".join(findings_of(fit, physical, Budget(sources=(), rows=()), {}, vessel=vessel))
 
 
-def table(outcomes: Sequence[Mapping[str, object]]) -> str:
+def table(outcomes: Sequence[Mapping[str, Any]]) -> str:
     """Return a row for each number, and how often "ahead" was contradicted, in Markdown."""
     fitted = [one for one in outcomes if "refused" not in one]
-    names = list(dict.fromkeys(name for one in fitted for name in one["numbers"]))  # type: ignore[attr-defined]
-    rows, inside = [], []
-    for name in names:
-        numbers = [one["numbers"][name] for one in fitted if name in one["numbers"]]  # type: ignore[index,operator]
-        covered = [one["interval"][0] <= one["true"] <= one["interval"][1] for one in numbers]
-        inside += covered
-        off = np.array([one["value"] - one["true"] for one in numbers])
-        true = np.abs([one["true"] for one in numbers])
-        stated = np.array([one["std"] for one in numbers], dtype=float)
-        share = float(np.nanmedian(stated)) / float(np.median(true))
-        per_cent = f"{100.0 * share:.2g} %" if share < 1.0 else ""
-        rows.append(
-            f"| `{name}` | {len(numbers)} | {np.nanmedian(stated):.2g} | {per_cent} | {np.median(off / stated):+.2f} | "
-            f"{100.0 * np.mean(covered):.0f} % |"
-        )
-    ahead = {way: sum(one["ahead"][way] for one in fitted) for way in ("as it stands", "gauge turned")}  # type: ignore[index]
+    ahead = {way: sum(one["ahead"][way] for one in fitted) for way in ("as it stands", "gauge turned")}
     wrongly = sum(bool(one["called ahead wrongly"]) for one in fitted)
-    trusted = sum(bool(one["trustworthy"]) for one in fitted)
-    rejected = sum(one["p"] < 0.05 for one in fitted)  # type: ignore[operator]
+    rejected = sum(one["p"] < 0.05 for one in fitted)
     return "\n".join(
         [
-            f"{len(fitted)} recordings of 14 minutes, {len(outcomes) - len(fitted)} refused, {trusted} trustworthy, p "
-            f"below 0.05 in {rejected}; {np.median([one['cpu_s'] for one in fitted]):.1f} CPU s each. A vessel file "
-            f"that says ahead was contradicted in {ahead['as it stands']}, and in {ahead['gauge turned']} where the "
-            f"sign of its gauge was turned; the right file in {wrongly}.",
+            f"{counted(outcomes, fitted, length='14 minutes')}, p below 0.05 in {rejected}; {spent(fitted)}. A vessel "
+            f"file that says ahead was contradicted in {ahead['as it stands']}, and in {ahead['gauge turned']} where "
+            f"the sign of its gauge was turned; the right file in {wrongly}.",
             "",
-            "| number | recordings | stated deviation | over the value | median error, deviations | covered |",
-            "|---|---|---|---|---|---|",
-            *rows,
-            f"| all | | | | | {100.0 * np.mean(inside):.1f} % |",
+            *rows_of(fitted),
         ]
     )
 
 
-def main() -> None:
-    """Sail and fit what is not there, and print the table of what is."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--seeds", type=int, default=50, help="number of recordings")
-    parser.add_argument("--first", type=int, default=0, help="number of the first")
-    parser.add_argument("--outcomes", type=Path, default=Path("build/astern"), help="folder of the outcomes")
-    parser.add_argument("--write", action="store_true", help="put the table into its page")
-    options = parser.parse_args()
-    options.outcomes.mkdir(parents=True, exist_ok=True)
-    found = []
-    for seed in range(options.first, options.first + options.seeds):
-        found.append(kept(options.outcomes / f"{seed:03d}.json", partial(outcome, seed)))
-        print(json.dumps(found[-1]), flush=True)
-    text = table(found)
-    print(text)
-    if options.write:
-        write_between_marks(PAGE, text, BEGIN, END)
-
-
 if __name__ == "__main__":
-    main()
+    command(__doc__, "astern", outcome, table, page=PAGE)

@@ -21,7 +21,7 @@ from typing import Any
 
 import numpy as np
 
-from benchmarks.electric import interval_of
+from benchmarks.drawn_lines import REJECTED_P, covers, names_in, numbers_of, rows_of, seen_by_gauge
 from benchmarks.kept_outcomes import kept
 from benchmarks.limits import line_of
 from benchmarks.monte_carlo_recordings import Ship, drawn_gauge
@@ -45,7 +45,6 @@ DAMPING_RATIOS = (0.04, 0.1)
 """Of the mode; a relative damping of 0.5 to 1.25."""
 STIFFNESS_STD, DAMPING_STD = 0.12, 0.25
 """What the vessel file states of its coupling, over the values."""
-REJECTED_P = 0.01
 COUPLED = ("Elastic coupling CX45, primary", "Elastic coupling CX45, secondary")
 SHORT = load_campaign("short")
 HIGH_HZ = (4.4, 6.1, 7.3, 8.6, 11.2, 12.7, 14.2, 17.1, 18.6, 21.3, 23.4, 25.4)
@@ -159,36 +158,17 @@ def drawn(vessel: Vessel, seed: int, *, elastic: bool) -> Drawn:
 
 
 def true_values(truth: Truth, signals: Signals, of: Ship, name: str) -> dict[str, float]:
-    """Return the truth as the measured working point normalises it, by the names of a structure.
-
-    Deviations of the torque are shown ``scale`` times as large and divided by the shown mean, in which the zero is.
-    """
+    """Return the truth as the measured working point normalises it, by the names of a structure."""
     model, shown_nm = structure(name), signals.working_point.shaft_torque_nm
     named = fingerprint_truth(truth, model, signals)
-    seen = {p.name: named[p.name] for p in model.parameters}
-    for parameter in model.parameters:
-        if parameter.role is not None and parameter.role.over_torque:
-            seen[parameter.name] *= of.scale
-    seen["k_q"] *= 1.0 - of.scale * of.zero_nm / shown_nm
-    seen["t_gauge"] = of.late_s
-    seen |= {one.name: float(one.of(seen)) for one in model.combinations}  # type: ignore[arg-type]
-    return seen | {key: named[key] for key in ("I_dn", "I_up", "k", "d") if key in named}
+    seen = seen_by_gauge(named, model, of, shown_nm=shown_nm)
+    return seen | {key: named[key] for key in ("k", "d") if key in named}
 
 
-def numbers_of(fingerprint: Fingerprint, true: Mapping[str, float]) -> dict[str, Any]:
-    """Return truth, value, deviation and interval of each number whose truth is known, and whether it is trusted."""
-    numbers = [*fingerprint.parameters, *fingerprint.combinations, *fingerprint.physical]
-    return {
-        one.name: {
-            "true": true[one.name],
-            "value": one.value,
-            "std": one.std,
-            "interval": interval_of(one),
-            "trusted": one.name in fingerprint.verdict.trusted,
-        }
-        for one in numbers
-        if one.name in true
-    }
+def judged(fingerprint: Fingerprint, true: Mapping[str, float]) -> dict[str, Any]:
+    """Return each number whose truth is known, and whether it is trusted."""
+    trusted = fingerprint.verdict.trusted
+    return {name: one | {"trusted": name in trusted} for name, one in numbers_of(fingerprint, true).items()}
 
 
 def tested(test: str, seed: int, *, elastic: bool) -> dict[str, Any]:
@@ -215,7 +195,7 @@ def tested(test: str, seed: int, *, elastic: bool) -> dict[str, Any]:
         "first": bool(fingerprint.verdict.reasons) and fingerprint.verdict.reasons[0].kind == "elastic coupling",
         "suspects": [one.words for one in fingerprint.verdict.suspects],
         "sentences": list(fingerprint.verdict.sentences[:3]),
-        "numbers": numbers_of(fingerprint, true_values(truth, survey.signals, of.ship, RIGID)),
+        "numbers": judged(fingerprint, true_values(truth, survey.signals, of.ship, RIGID)),
     }
     return result | ({"elastic": _elastic(survey, truth, of.ship)} if elastic and len(survey.fits) > 1 else {})
 
@@ -227,7 +207,7 @@ def _elastic(survey: Survey, truth: Truth, of: Ship) -> dict[str, Any]:
     return {
         "p": fit.p_value,
         "trustworthy": fingerprint.verdict.trustworthy,
-        "numbers": numbers_of(fingerprint, true_values(truth, survey.signals, of, ELASTIC)),
+        "numbers": judged(fingerprint, true_values(truth, survey.signals, of, ELASTIC)),
     }
 
 
@@ -248,35 +228,11 @@ def outcome(part: str, seed: int, folder: Path) -> dict[str, Any]:
     return found
 
 
-def rows_of(found: Sequence[Mapping[str, Any]]) -> tuple[list[str], list[bool]]:
-    """Return a row for each number of the elastic line, the first ones of the line first, and whether each held."""
-    names = list(dict.fromkeys(name for one in found for name in one["numbers"]))
-    rows, inside = [], []
-    for name in sorted(names, key=lambda one: (one not in NUMBERS, names.index(one))):
-        numbers = [one["numbers"][name] for one in found if name in one["numbers"]]
-        covered = [held(one) for one in numbers]
-        inside += covered
-        off = np.array([one["value"] - one["true"] for one in numbers])
-        stated = np.array([one["std"] for one in numbers], dtype=float)
-        scale = np.array([abs(one["true"]) for one in numbers])
-        per_cent = f"{100.0 * np.median(stated / scale):.2g} %" if scale.min() > 0.0 else ""
-        rows.append(
-            f"| `{name}` | {len(numbers)} | {np.nanmedian(stated):.2g} | {per_cent} | {np.median(off / stated):+.2f} | "
-            f"{100.0 * np.mean(covered):.0f} % |"
-        )
-    return rows, inside
-
-
-def held(number: Mapping[str, Any]) -> bool:
-    """Return whether the truth lies in the interval that is stated."""
-    return bool(number["interval"][0] <= number["true"] <= number["interval"][1])
-
-
 def plain_words(found: Sequence[Mapping[str, Any]], *, at: str) -> str:
     """Return how often the rigid line was rejected or told better of, and whether what it trusts elsewhere is right."""
     left = [one for one in found if one["trustworthy"]]
     trusted = [number for one in left for number in one["numbers"].values() if number["trusted"]]
-    right = [held(number) for number in trusted]
+    right = [covers(number) for number in trusted]
     share = f", of whose trusted numbers {100.0 * np.mean(right):.1f} % held the truth" if right else ""
     wrong = sum(one["p"] < REJECTED_P for one in found)
     return (
@@ -291,7 +247,8 @@ def table(outcomes: Mapping[str, Sequence[Mapping[str, Any]]]) -> str:
     """Return how often the coupling was offered, and a row for each number of the elastic line, in Markdown."""
     of = {part: [one for one in found if "refused" not in one] for part, found in outcomes.items()}
     offered = [one["elastic"] for one in of["up to the mode"] if "elastic" in one]
-    rows, inside = rows_of(offered)
+    names = names_in(offered)
+    order = sorted(names, key=lambda one: (one not in NUMBERS, names.index(one)))
     rigid = of["rigid"]
     spent = np.median([one["cpu_s"] for found in of.values() for one in found])
     return "\n".join(
@@ -308,10 +265,7 @@ def table(outcomes: Mapping[str, Sequence[Mapping[str, Any]]]) -> str:
             f"{ELASTIC} where it was offered, {sum(one['trustworthy'] for one in offered)} of {len(offered)} "
             "trustworthy:",
             "",
-            "| number | recordings | stated deviation | over the value | median error, deviations | covered |",
-            "|---|---|---|---|---|---|",
-            *rows,
-            f"| all | | | | | {100.0 * np.mean(inside):.1f} % |",
+            *rows_of(offered, order),
         ]
     )
 

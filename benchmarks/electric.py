@@ -8,28 +8,23 @@ minutes is identified as a user would, with the vessel file as it is.
 writes the table of ``docs/electric.md``; an outcome is a small JSON file, so that a run goes on where it ended.
 """
 
-import argparse
-import json
 import tempfile
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from functools import partial
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
-from benchmarks.kept_outcomes import kept
+from benchmarks.drawn_lines import REJECTED_P, command, counted, numbers_of, rejected_in, rows_of, seen_by_gauge, spent
 from benchmarks.limits import VESSEL as TUG
 from benchmarks.limits import line_of
 from benchmarks.monte_carlo_recordings import Ship, drawn_gauge
-from benchmarks.monte_carlo_tables import write_between_marks
 from shaftprint.campaign import load_campaign
 from shaftprint.catalogue import structure
 from shaftprint.cli._demo_truth import fingerprint_truth
-from shaftprint.distributions import NORMAL_95
 from shaftprint.errors import ShaftprintError
-from shaftprint.fingerprint import Quantity
 from shaftprint.signals import Signals
 from shaftprint.survey import run
 from shaftprint.tug import Truth, like_stan_tug_1205, sail
@@ -38,10 +33,7 @@ from shaftprint.vessel import load_vessel
 VESSEL, CAMPAIGN = load_vessel("e-ferry-ellen"), load_campaign("short")
 MOTOR, DIESEL = "GAUGE-MOTOR", "GAUGE-CLOSED"
 SEED = 18
-REJECTED_P = 0.01
-"""Chance below which the program calls a structure rejected."""
 PAGE = Path(__file__).parents[1] / "docs" / "electric.md"
-BEGIN, END = "<!-- electric: begin -->\n", "<!-- electric: end -->\n"
 
 
 def ship(seed: int) -> Ship:
@@ -65,20 +57,9 @@ def ship(seed: int) -> Ship:
 
 
 def true_values(truth: Truth, signals: Signals, of: Ship) -> dict[str, float]:
-    """Return the truth as the measured working point normalises it.
-
-    Deviations of the torque are shown ``scale`` times as large and divided by the shown mean, in which the zero is.
-    """
+    """Return the truth as the measured working point normalises it."""
     model, shown_nm = structure(MOTOR), signals.working_point.shaft_torque_nm
-    named = fingerprint_truth(truth, model, signals)
-    seen = {p.name: named[p.name] for p in model.parameters}
-    for parameter in model.parameters:
-        if parameter.role is not None and parameter.role.over_torque:
-            seen[parameter.name] *= of.scale
-    seen["k_q"] *= 1.0 - of.scale * of.zero_nm / shown_nm
-    seen["t_gauge"] = of.late_s
-    seen |= {one.name: float(one.of(seen)) for one in model.combinations}  # type: ignore[arg-type]
-    return seen | {"I_dn": named["I_dn"], "I_up": named["I_up"]}
+    return seen_by_gauge(fingerprint_truth(truth, model, signals), model, of, shown_nm=shown_nm)
 
 
 def motor_on_a_diesel(seed: int) -> float:
@@ -93,11 +74,6 @@ def motor_on_a_diesel(seed: int) -> float:
     return float(survey.identification.p_value or 0.0)
 
 
-def interval_of(one: Quantity) -> tuple[float, float]:
-    """Return the interval that is printed for a number."""
-    return one.interval_95 or (one.value - NORMAL_95 * one.std, one.value + NORMAL_95 * one.std)
-
-
 def outcome(seed: int) -> dict[str, object]:
     """Sail and fit the ship of a seed."""
     drawn = ship(seed)
@@ -110,76 +86,32 @@ def outcome(seed: int) -> dict[str, object]:
         except ShaftprintError as error:
             return {"seed": seed, "refused": str(error)}
     true, fingerprint = true_values(truth, survey.signals, drawn), survey.fingerprint
-    numbers = [*fingerprint.parameters, *fingerprint.combinations, *fingerprint.physical]
     return {
         "seed": seed,
         "cpu_s": time.process_time() - begin,
         "trustworthy": fingerprint.verdict.trustworthy,
-        "numbers": {
-            one.name: {"true": true[one.name], "value": one.value, "std": one.std, "interval": interval_of(one)}
-            for one in numbers
-            if one.name in true
-        },
+        "numbers": numbers_of(fingerprint, true),
         "p": {fit.structure.name: fit.p_value for fit in survey.fits},
         "preferred": survey.comparisons[0].best.name,
         "motor_on_a_diesel": motor_on_a_diesel(seed),
     }
 
 
-def table(outcomes: Sequence[Mapping[str, object]]) -> str:
+def table(outcomes: Sequence[Mapping[str, Any]]) -> str:
     """Return a row for each number, and how often each structure was rejected, in Markdown."""
     fitted = [one for one in outcomes if "refused" not in one]
-    names = list(dict.fromkeys(name for one in fitted for name in one["numbers"]))  # type: ignore[attr-defined]
-    rows, inside = [], []
-    for name in names:
-        numbers = [one["numbers"][name] for one in fitted if name in one["numbers"]]  # type: ignore[index,operator]
-        covered = [one["interval"][0] <= one["true"] <= one["interval"][1] for one in numbers]
-        inside += covered
-        off = np.array([one["value"] - one["true"] for one in numbers])
-        scale = np.array([abs(one["true"]) for one in numbers])
-        stated = np.array([one["std"] for one in numbers], dtype=float)
-        per_cent = f"{100.0 * np.median(stated / scale):.2g} %" if scale.min() > 0.0 else ""
-        rows.append(
-            f"| `{name}` | {len(numbers)} | {np.nanmedian(stated):.2g} | {per_cent} | {np.median(off / stated):+.2f} | "
-            f"{100.0 * np.mean(covered):.0f} % |"
-        )
-    rejected = {n: sum(one["p"][n] < REJECTED_P for one in fitted) for n in (MOTOR, DIESEL)}  # type: ignore[index]
     preferred = sum(one["preferred"] == MOTOR for one in fitted)
-    other_way = sum(one["motor_on_a_diesel"] < REJECTED_P for one in fitted)  # type: ignore[operator]
-    trusted = sum(bool(one["trustworthy"]) for one in fitted)
+    other_way = sum(one["motor_on_a_diesel"] < REJECTED_P for one in fitted)
     return "\n".join(
         [
-            f"{len(fitted)} recordings of 14 minutes, {len(outcomes) - len(fitted)} refused, {trusted} trustworthy; "
-            f"{np.median([one['cpu_s'] for one in fitted]):.1f} CPU s each. {MOTOR} was rejected in {rejected[MOTOR]}, "
-            f"{DIESEL} in {rejected[DIESEL]} of them; {MOTOR} had the lower BIC in {preferred}. "
-            f"On as many recordings of drawn diesels {MOTOR} was rejected in {other_way}.",
+            f"{counted(outcomes, fitted, length='14 minutes')}; {spent(fitted)}. {MOTOR} was rejected in "
+            f"{rejected_in(fitted, MOTOR)}, {DIESEL} in {rejected_in(fitted, DIESEL)} of them; {MOTOR} had the lower "
+            f"BIC in {preferred}. On as many recordings of drawn diesels {MOTOR} was rejected in {other_way}.",
             "",
-            "| number | recordings | stated deviation | over the value | median error, deviations | covered |",
-            "|---|---|---|---|---|---|",
-            *rows,
-            f"| all | | | | | {100.0 * np.mean(inside):.1f} % |",
+            *rows_of(fitted),
         ]
     )
 
 
-def main() -> None:
-    """Sail and fit what is not there, and print the table of what is."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--seeds", type=int, default=50, help="number of recordings")
-    parser.add_argument("--first", type=int, default=0, help="number of the first")
-    parser.add_argument("--outcomes", type=Path, default=Path("build/electric"), help="folder of the outcomes")
-    parser.add_argument("--write", action="store_true", help="put the table into its page")
-    options = parser.parse_args()
-    options.outcomes.mkdir(parents=True, exist_ok=True)
-    found = []
-    for seed in range(options.first, options.first + options.seeds):
-        found.append(kept(options.outcomes / f"{seed:03d}.json", partial(outcome, seed)))
-        print(json.dumps(found[-1]), flush=True)
-    text = table(found)
-    print(text)
-    if options.write:
-        write_between_marks(PAGE, text, BEGIN, END)
-
-
 if __name__ == "__main__":
-    main()
+    command(__doc__, "electric", outcome, table, page=PAGE)

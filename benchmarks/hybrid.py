@@ -12,21 +12,17 @@ that it cannot be rejected there. What contradicts it is its gain, which is not 
 writes the table of ``docs/hybrid.md``; an outcome is a small JSON file, so that a run goes on where it ended.
 """
 
-import argparse
-import json
 import tempfile
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from functools import partial
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
-from benchmarks.electric import interval_of
-from benchmarks.kept_outcomes import kept
+from benchmarks.drawn_lines import command, counted, numbers_of, rejected_in, rows_of, spent
 from benchmarks.monte_carlo_recordings import Ship, drawn_gauge
-from benchmarks.monte_carlo_tables import write_between_marks
 from shaftprint.campaign import load_campaign
 from shaftprint.catalogue import structure
 from shaftprint.cli._demo_truth import fingerprint_truth
@@ -39,10 +35,7 @@ from shaftprint.vessel import Vessel, load_vessel
 VESSEL, CAMPAIGN = load_vessel("foss-carolyn-dorothy"), load_campaign("machine")
 HYBRID, DIESEL = "GAUGE-HYBRID", "GAUGE-CLOSED"
 SEED = 1805
-REJECTED_P = 0.01
-"""Chance below which the program calls a structure rejected."""
 PAGE = Path(__file__).parents[1] / "docs" / "hybrid.md"
-BEGIN, END = "<!-- hybrid: begin -->\n", "<!-- hybrid: end -->\n"
 OF_ENGINE = ("K_p", "K_i", "g")
 """Numbers that are normalised by the torque of the engine alone."""
 
@@ -119,7 +112,6 @@ def outcome(seed: int) -> dict[str, object]:
         except ShaftprintError as error:
             return {"seed": seed, "refused": str(error)}
     true, fingerprint = true_values(truth, survey.signals, drawn), survey.fingerprint
-    numbers = [*fingerprint.parameters, *fingerprint.combinations, *fingerprint.physical]
     plain = next(one for one in survey.fits[1].parameters if one.name == "K_p")
     return {
         "seed": seed,
@@ -127,44 +119,23 @@ def outcome(seed: int) -> dict[str, object]:
         "cpu_s": time.process_time() - begin,
         "trustworthy": fingerprint.verdict.trustworthy,
         "limited": max(share for name, share in truth.limited.items() if not name.startswith("St")),
-        "numbers": {
-            one.name: {"true": true[one.name], "value": one.value, "std": one.std, "interval": interval_of(one)}
-            for one in numbers
-            if one.name in true
-        },
+        "numbers": numbers_of(fingerprint, true),
         "p": {fit.structure.name: fit.p_value for fit in survey.fits},
         "plain_gain": {"value": plain.value, "std": plain.std, "true": true["K_p"]},
     }
 
 
-def table(outcomes: Sequence[Mapping[str, object]]) -> str:
+def table(outcomes: Sequence[Mapping[str, Any]]) -> str:
     """Return a row for each number, and how often each structure was rejected or contradicted, in Markdown."""
     fitted = [one for one in outcomes if "refused" not in one]
-    names = list(dict.fromkeys(name for one in fitted for name in one["numbers"]))  # type: ignore[attr-defined]
-    rows, inside = [], []
-    for name in names:
-        numbers = [one["numbers"][name] for one in fitted if name in one["numbers"]]  # type: ignore[index,operator]
-        covered = [one["interval"][0] <= one["true"] <= one["interval"][1] for one in numbers]
-        inside += covered
-        off = np.array([one["value"] - one["true"] for one in numbers])
-        stated = np.array([one["std"] for one in numbers], dtype=float)
-        rows.append(
-            f"| `{name}` | {len(numbers)} | {np.nanmedian(stated):.2g} | {np.median(off / stated):+.2f} | "
-            f"{100.0 * np.mean(covered):.0f} % |"
-        )
-    rejected = {n: sum(one["p"][n] < REJECTED_P for one in fitted) for n in (HYBRID, DIESEL)}  # type: ignore[index]
-    trusted = sum(bool(one["trustworthy"]) for one in fitted)
     return "\n".join(
         [
-            f"{len(fitted)} recordings of 18 minutes, {len(outcomes) - len(fitted)} refused, {trusted} trustworthy; "
-            f"{np.median([one['cpu_s'] for one in fitted]):.1f} CPU s each. {HYBRID} was rejected in "
-            f"{rejected[HYBRID]}, {DIESEL} on the sines of the speed in {rejected[DIESEL]} of them. The `K_p` of "
-            f"{DIESEL} is more than two deviations off the governor's in {sum(map(_is_contradicted, fitted))}.",
+            f"{counted(outcomes, fitted, length='18 minutes')}; {spent(fitted)}. {HYBRID} was rejected in "
+            f"{rejected_in(fitted, HYBRID)}, {DIESEL} on the sines of the speed in {rejected_in(fitted, DIESEL)} of "
+            f"them. The `K_p` of {DIESEL} is more than two deviations off the governor's in "
+            f"{sum(map(_is_contradicted, fitted))}.",
             "",
-            "| number | recordings | stated deviation | median error, deviations | covered |",
-            "|---|---|---|---|---|",
-            *rows,
-            f"| all | | | | {100.0 * np.mean(inside):.1f} % |",
+            *rows_of(fitted),
         ]
     )
 
@@ -174,24 +145,5 @@ def _is_contradicted(one: Mapping[str, object]) -> bool:
     return abs(gain["value"] - gain["true"]) > 2.0 * gain["std"]
 
 
-def main() -> None:
-    """Sail and fit what is not there, and print the table of what is."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--seeds", type=int, default=50, help="number of recordings")
-    parser.add_argument("--first", type=int, default=0, help="number of the first")
-    parser.add_argument("--outcomes", type=Path, default=Path("build/hybrid"), help="folder of the outcomes")
-    parser.add_argument("--write", action="store_true", help="put the table into its page")
-    options = parser.parse_args()
-    options.outcomes.mkdir(parents=True, exist_ok=True)
-    found = []
-    for seed in range(options.first, options.first + options.seeds):
-        found.append(kept(options.outcomes / f"{seed:03d}.json", partial(outcome, seed)))
-        print(json.dumps(found[-1]), flush=True)
-    text = table(found)
-    print(text)
-    if options.write:
-        write_between_marks(PAGE, text, BEGIN, END)
-
-
 if __name__ == "__main__":
-    main()
+    command(__doc__, "hybrid", outcome, table, page=PAGE)

@@ -4,26 +4,21 @@
 writes the table of ``docs/nonlinear.md``; an outcome is a small JSON file, so that a run goes on where it ended.
 """
 
-import argparse
-import json
 import tempfile
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from benchmarks.kept_outcomes import kept
+from benchmarks.drawn_lines import command
 from benchmarks.limits import VESSEL, line_of
-from benchmarks.monte_carlo_tables import write_between_marks
 from shaftprint.arrays import FloatArray
 from shaftprint.campaign import load_campaign
 from shaftprint.catalogue import structure
 from shaftprint.cli._demo_truth import fingerprint_truth
-from shaftprint.distributions import NORMAL_95
 from shaftprint.errors import ShaftprintError
 from shaftprint.fingerprint import Quantity
 from shaftprint.signals import Signals
@@ -35,7 +30,6 @@ SEED = 2026
 SHARE, MOTORING_NM = (0.85, 1.0), (200.0, 350.0)
 JUDGED = ("K_p", "K_i", "t_d", "t_sp", "omega_n", "zeta", "tau_dn", "k_q", "m_max", "m_min", "T_aw")
 PAGE = Path(__file__).parents[1] / "docs" / "nonlinear.md"
-BEGIN, END = "<!-- one fit: begin -->\n", "<!-- one fit: end -->\n"
 
 
 def ship(seed: int) -> tuple[Tug, float]:
@@ -78,9 +72,9 @@ def outcome(seed: int) -> dict[str, object]:
 
 def _covers(found: Quantity, true: float) -> bool:
     """Return whether the stated 95 % interval holds the truth."""
-    low, high = found.interval_95 or (found.value - NORMAL_95 * found.std, found.value + NORMAL_95 * found.std)
-    below, above = found.interval_open
-    return (below or low <= true) and (above or true <= high)
+    # an open end is no number, and excludes nothing
+    low, high = found.limits_95
+    return not (true < low or true > high)
 
 
 def _true(truth: Truth, tug: Tug, share: float, signals: Signals) -> Mapping[str, float]:
@@ -136,24 +130,5 @@ def _share(name: str, outcomes: Sequence[Mapping[str, Any]]) -> float:
     return 100.0 * float(np.mean(_of(name, "covered", outcomes)))
 
 
-def main() -> None:
-    """Sail and fit what is not there, and print the table of what is."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--seeds", type=int, default=100, help="number of recordings")
-    parser.add_argument("--first", type=int, default=0, help="number of the first")
-    parser.add_argument("--outcomes", type=Path, default=Path("build/one_fit"), help="folder of the outcomes")
-    parser.add_argument("--write", action="store_true", help="put the table into its page")
-    options = parser.parse_args()
-    options.outcomes.mkdir(parents=True, exist_ok=True)
-    found = []
-    for seed in range(options.first, options.first + options.seeds):
-        found.append(kept(options.outcomes / f"{seed:03d}.json", partial(outcome, seed)))
-        print(json.dumps(found[-1]), flush=True)
-    text = table(found)
-    print(text)
-    if options.write:
-        write_between_marks(PAGE, text, BEGIN, END)
-
-
 if __name__ == "__main__":
-    main()
+    command(__doc__, "one_fit", outcome, table, page=PAGE, seeds=100)

@@ -9,21 +9,17 @@ as it is. Beside it stands the same structure with a fixed pitch, whose torque d
 writes the table of ``docs/pitch.md``; an outcome is a small JSON file, so that a run goes on where it ended.
 """
 
-import argparse
-import json
 import tempfile
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from functools import partial
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
-from benchmarks.electric import interval_of
-from benchmarks.kept_outcomes import kept
+from benchmarks.drawn_lines import command, counted, numbers_of, rejected_in, rows_of, seen_by_gauge, spent
 from benchmarks.monte_carlo_recordings import Ship, drawn_gauge
-from benchmarks.monte_carlo_tables import write_between_marks
 from shaftprint.campaign import load_campaign
 from shaftprint.catalogue import structure
 from shaftprint.cli._demo_truth import fingerprint_truth
@@ -42,10 +38,7 @@ INPUT, STEP_S = "pitch_set_point", 0.002
 SEED = 19
 SLOPE_STD = 0.10
 """Relative standard deviation of the slope of the torque about that of the series."""
-REJECTED_P = 0.01
-"""Chance below which the program calls a structure rejected."""
 PAGE = Path(__file__).parents[1] / "docs" / "pitch.md"
-BEGIN, END = "<!-- pitch: begin -->\n", "<!-- pitch: end -->\n"
 
 
 def fixed_pitch() -> Structure:
@@ -92,22 +85,11 @@ def ship(seed: int) -> Ship:
 
 
 def true_values(truth: Truth, signals: Signals, of: Ship) -> dict[str, float]:
-    """Return the truth as the measured working point normalises it.
-
-    Deviations of the torque are shown ``scale`` times as large and divided by the shown mean, in which the zero is.
-    """
+    """Return the truth as the measured working point normalises it."""
     model, shown_nm = structure(PITCH), signals.working_point.shaft_torque_nm
     named = fingerprint_truth(truth, model, signals)
-    seen = {p.name: named[p.name] for p in model.parameters}
-    for parameter in model.parameters:
-        if parameter.role is not None and parameter.role.over_torque:
-            seen[parameter.name] *= of.scale
-    for slope in ("k_q", "q"):
-        seen[slope] *= 1.0 - of.scale * of.zero_nm / shown_nm
-    seen["t_gauge"] = of.late_s
-    seen["t_blade"] = blade_lateness_s(of.tug)
-    seen |= {one.name: float(one.of(seen)) for one in model.combinations}  # type: ignore[arg-type]
-    return seen | {"I_dn": named["I_dn"], "I_up": named["I_up"]}
+    late_s = blade_lateness_s(of.tug)
+    return seen_by_gauge(named, model, of, shown_nm=shown_nm, slopes=("k_q", "q"), t_blade=late_s)
 
 
 def blade_lateness_s(tug: Tug) -> float:
@@ -137,73 +119,28 @@ def outcome(seed: int) -> dict[str, object]:
         except ShaftprintError as error:
             return {"seed": seed, "refused": str(error)}
     true, fingerprint = true_values(truth, survey.signals, drawn), survey.fingerprint
-    numbers = [*fingerprint.parameters, *fingerprint.combinations, *fingerprint.physical]
     return {
         "seed": seed,
         "cpu_s": time.process_time() - begin,
         "trustworthy": fingerprint.verdict.trustworthy,
         "limited": max(truth.limited.values()),
-        "numbers": {
-            one.name: {"true": true[one.name], "value": one.value, "std": one.std, "interval": interval_of(one)}
-            for one in numbers
-            if one.name in true
-        },
+        "numbers": numbers_of(fingerprint, true),
         "p": {fit.structure.name: fit.p_value for fit in survey.fits},
     }
 
 
-def table(outcomes: Sequence[Mapping[str, object]]) -> str:
+def table(outcomes: Sequence[Mapping[str, Any]]) -> str:
     """Return a row for each number, and how often each structure was rejected, in Markdown."""
     fitted = [one for one in outcomes if "refused" not in one]
-    names = list(dict.fromkeys(name for one in fitted for name in one["numbers"]))  # type: ignore[attr-defined]
-    rows, inside = [], []
-    for name in names:
-        numbers = [one["numbers"][name] for one in fitted if name in one["numbers"]]  # type: ignore[index,operator]
-        covered = [one["interval"][0] <= one["true"] <= one["interval"][1] for one in numbers]
-        inside += covered
-        off = np.array([one["value"] - one["true"] for one in numbers])
-        scale = np.array([abs(one["true"]) for one in numbers])
-        stated = np.array([one["std"] for one in numbers], dtype=float)
-        per_cent = f"{100.0 * np.median(stated / scale):.2g} %" if scale.min() > 0.0 else ""
-        rows.append(
-            f"| `{name}` | {len(numbers)} | {np.nanmedian(stated):.2g} | {per_cent} | {np.median(off / stated):+.2f} | "
-            f"{100.0 * np.mean(covered):.0f} % |"
-        )
-    names_of = (PITCH, FIXED)
-    rejected = {n: sum(one["p"][n] < REJECTED_P for one in fitted) for n in names_of}  # type: ignore[index]
-    trusted = sum(bool(one["trustworthy"]) for one in fitted)
     return "\n".join(
         [
-            f"{len(fitted)} recordings of ten minutes, {len(outcomes) - len(fitted)} refused, {trusted} trustworthy; "
-            f"{np.median([one['cpu_s'] for one in fitted]):.1f} CPU s each. {PITCH} was rejected in {rejected[PITCH]}, "
-            f"the same with a fixed pitch in {rejected[FIXED]} of them.",
+            f"{counted(outcomes, fitted, length='ten minutes')}; {spent(fitted)}. {PITCH} was rejected in "
+            f"{rejected_in(fitted, PITCH)}, the same with a fixed pitch in {rejected_in(fitted, FIXED)} of them.",
             "",
-            "| number | recordings | stated deviation | over the value | median error, deviations | covered |",
-            "|---|---|---|---|---|---|",
-            *rows,
-            f"| all | | | | | {100.0 * np.mean(inside):.1f} % |",
+            *rows_of(fitted),
         ]
     )
 
 
-def main() -> None:
-    """Sail and fit what is not there, and print the table of what is."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--seeds", type=int, default=50, help="number of recordings")
-    parser.add_argument("--first", type=int, default=0, help="number of the first")
-    parser.add_argument("--outcomes", type=Path, default=Path("build/pitch"), help="folder of the outcomes")
-    parser.add_argument("--write", action="store_true", help="put the table into its page")
-    options = parser.parse_args()
-    options.outcomes.mkdir(parents=True, exist_ok=True)
-    found = []
-    for seed in range(options.first, options.first + options.seeds):
-        found.append(kept(options.outcomes / f"{seed:03d}.json", partial(outcome, seed)))
-        print(json.dumps(found[-1]), flush=True)
-    text = table(found)
-    print(text)
-    if options.write:
-        write_between_marks(PAGE, text, BEGIN, END)
-
-
 if __name__ == "__main__":
-    main()
+    command(__doc__, "pitch", outcome, table, page=PAGE)

@@ -22,7 +22,7 @@ from typing import Any
 
 import numpy as np
 
-from benchmarks.electric import interval_of
+from benchmarks.drawn_lines import covers, numbers_of
 from benchmarks.kept_outcomes import kept
 from benchmarks.leg_outcomes import true_values
 from benchmarks.monte_carlo_recordings import Ship, drawn_gauge
@@ -30,7 +30,6 @@ from benchmarks.monte_carlo_tables import write_between_marks
 from shaftprint.campaign import SIDES, load_campaign_of_both
 from shaftprint.drift import differ
 from shaftprint.errors import ShaftprintError
-from shaftprint.fingerprint import Fingerprint, Quantity
 from shaftprint.identify.likelihood import PRIOR_OF_G
 from shaftprint.report import differences
 from shaftprint.survey import Survey, SurveyOfBoth, load_trials_of_both, run_both
@@ -159,14 +158,7 @@ def _found(both: SurveyOfBoth, truth: TruthOfBoth, drawn: BothShips) -> dict[str
     return {
         "trustworthy": [one.verdict.trustworthy for one in (port, starboard)],
         "p": [one.quality.p_value for one in (port, starboard)],
-        "numbers": {
-            side: {
-                one.name: {"true": true[side][one.name], **_stated(one)}
-                for one in _numbers(survey.fingerprint)
-                if one.name in true[side]
-            }
-            for side, survey in both.sides.items()
-        },
+        "numbers": {side: numbers_of(survey.fingerprint, true[side]) for side, survey in both.sides.items()},
         "differences": {
             one.first.name: {
                 "true": true["starboard"][one.first.name] - true["port"][one.first.name],
@@ -189,16 +181,8 @@ def _found(both: SurveyOfBoth, truth: TruthOfBoth, drawn: BothShips) -> dict[str
     }
 
 
-def _numbers(fingerprint: Fingerprint) -> tuple[Quantity, ...]:
-    return (*fingerprint.parameters, *fingerprint.combinations, *fingerprint.physical)
-
-
-def _stated(one: Quantity) -> dict[str, Any]:
-    return {"value": one.value, "std": one.std, "interval": interval_of(one)}
-
-
 def _row(name: str, found: Sequence[Mapping[str, Any]], inside: list[bool]) -> str:
-    covered = [one["interval"][0] <= one["true"] <= one["interval"][1] for one in found]
+    covered = [covers(one) for one in found]
     inside += covered
     stated = np.array([one["std"] for one in found], dtype=float)
     off = np.array([one["value"] - one["true"] for one in found])

@@ -3,6 +3,21 @@
 from shaftprint.catalogue._roles import ShipRole
 from shaftprint.models import Combination
 
+TOTAL_DELAY = Combination(
+    name="t_d + t_sp",
+    unit="s",
+    of=lambda p: p["t_d"] + p["t_sp"],
+    meaning="total delay",
+    role=ShipRole.TOTAL_DELAY,
+)
+RESET_TIME = Combination(
+    name="K_p / K_i",
+    unit="s",
+    of=lambda p: p["K_p"] / p["K_i"],
+    meaning="reset time of the governor",
+    role=ShipRole.LOOP_GAIN,
+)
+
 
 def motor_combinations() -> tuple[Combination, ...]:
     """Return what a test of a motor's closed loop finds better than the parameters it is made of."""
@@ -47,20 +62,8 @@ def motor_combinations() -> tuple[Combination, ...]:
 def gauge_combinations() -> tuple[Combination, ...]:
     """Return what a test of the closed loop finds better than the parameters it is made of."""
     return (
-        Combination(
-            name="t_d + t_sp",
-            unit="s",
-            of=lambda p: p["t_d"] + p["t_sp"],
-            meaning="total delay",
-            role=ShipRole.TOTAL_DELAY,
-        ),
-        Combination(
-            name="K_p / K_i",
-            unit="s",
-            of=lambda p: p["K_p"] / p["K_i"],
-            meaning="reset time of the governor",
-            role=ShipRole.LOOP_GAIN,
-        ),
+        TOTAL_DELAY,
+        RESET_TIME,
         Combination(
             name="v K_i / (k_q - g)",
             unit="1/s",

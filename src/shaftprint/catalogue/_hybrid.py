@@ -32,6 +32,7 @@ from shaftprint.catalogue._gauge import (
     V_ONE,
     G,
 )
+from shaftprint.catalogue._gauge_combinations import RESET_TIME, TOTAL_DELAY
 from shaftprint.catalogue._roles import ShipRole
 from shaftprint.models import (
     AveragingSensor,
@@ -135,20 +136,8 @@ def _combinations() -> tuple[Combination, ...]:
     """Return what a test of the closed loop finds better than the parameters it is made of."""
     return (
         Combination(name="1 - c_m s_m", unit="-", of=_given, meaning="torque of the engine over that of the shaft"),
-        Combination(
-            name="t_d + t_sp",
-            unit="s",
-            of=lambda p: p["t_d"] + p["t_sp"],
-            meaning="total delay",
-            role=ShipRole.TOTAL_DELAY,
-        ),
-        Combination(
-            name="K_p / K_i",
-            unit="s",
-            of=lambda p: p["K_p"] / p["K_i"],
-            meaning="reset time of the governor",
-            role=ShipRole.LOOP_GAIN,
-        ),
+        TOTAL_DELAY,
+        RESET_TIME,
         Combination(
             name="K_p of the shaft",
             unit="-",

@@ -8,7 +8,8 @@ import numpy as np
 
 from shaftprint.design import Rehearsal, RehearsedTest, rehearse
 from shaftprint.errors import DesignError
-from shaftprint.identify import Identification, Settings, identify, identify_jointly
+from shaftprint.identify import Identification, Settings
+from shaftprint.identify.fit import fit_of
 from shaftprint.recording import read_recording
 from shaftprint.rehearsal._simulated_ship import simulated_truth, tug_of_plan
 from shaftprint.signals import prepare_signals
@@ -82,8 +83,4 @@ def _identified(
         shaft_torque_nm=limits.brake_torque_nm * vessel.gearbox.ratio * vessel.gearbox.efficiency,
     )
     how, rng = Settings(priors=dict(test.plan.priors)), np.random.default_rng(seed)
-    return (
-        identify(*pairs[0], rng=rng, settings=how)
-        if len(pairs) == 1
-        else identify_jointly(pairs, rng=rng, settings=how)
-    )
+    return fit_of(pairs, rng=rng, settings=how)

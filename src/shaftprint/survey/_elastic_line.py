@@ -1,7 +1,6 @@
 """Whether a coupling that twists explains what a rigid line does not: the elastic line, offered beside it."""
 
 import copy
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -9,13 +8,13 @@ import numpy as np
 from shaftprint.catalogue import CLOSED_LOOPS, ShipRole, shipped_structure
 from shaftprint.digits import p_value_text, plain, plain_letters, with_deviation
 from shaftprint.errors import IdentificationError
-from shaftprint.identify import Identification, Settings, identify, identify_jointly
+from shaftprint.identify import Identification, Settings
 from shaftprint.identify.comparison import criteria_of
+from shaftprint.identify.fit import fit_of
 from shaftprint.identify.judgement import explained
 from shaftprint.models import Structure
 from shaftprint.normalisation import Normalisation
 from shaftprint.reasons import Reason
-from shaftprint.spectra import FrequencyResponse
 from shaftprint.survey._elastic_starts import highest_hz, with_elastic_starts
 from shaftprint.survey._measurement import Measurement, pairs_of
 from shaftprint.survey._of_vessel import of_vessel
@@ -90,7 +89,7 @@ def elastic_offer(
     pairs, starts = pairs_of(elastic, measurement), copy.deepcopy(rng)
     how = with_elastic_starts(settings, elastic, rigid)
     try:
-        fit = _fit(pairs, how, starts)
+        fit = fit_of(pairs, rng=starts, settings=how)
     except IdentificationError:
         # no stable line with a coupling: there is none to offer
         return None
@@ -120,18 +119,11 @@ def begun_at_rigid(elastic: Structure, measurement: Measurement, settings: Setti
     known = {name: prior for name, prior in settings.priors.items() if name in {p.name for p in rigid.free}}
     try:
         # a stream of its own: no result depends on whether another structure is fitted beside it
-        fit = _fit(pairs_of(rigid, measurement), replace(settings, priors=known), np.random.default_rng(1))
+        how, starts = replace(settings, priors=known), np.random.default_rng(1)
+        fit = fit_of(pairs_of(rigid, measurement), rng=starts, settings=how)
     except IdentificationError:
         return settings
     return with_elastic_starts(settings, elastic, fit)
-
-
-def _fit(
-    pairs: Sequence[tuple[Structure, FrequencyResponse]], settings: Settings, rng: np.random.Generator
-) -> Identification:
-    if len(pairs) == 1:
-        return identify(*pairs[0], rng=rng, settings=settings)
-    return identify_jointly(pairs, rng=rng, settings=settings)
 
 
 def _sentence(fit: Identification, gap: float, measurement: Measurement, vessel: Vessel) -> str:

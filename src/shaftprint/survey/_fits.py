@@ -12,11 +12,10 @@ from shaftprint.identify import (
     Identification,
     Prior,
     Settings,
-    identify,
-    identify_jointly,
     priors_from_vessel,
 )
 from shaftprint.identify.comparison import StructureComparison, compare_fits
+from shaftprint.identify.fit import fit_of
 from shaftprint.models import Structure
 from shaftprint.signals import Signals, WorkingPoint
 from shaftprint.survey._measurement import Measurement, pairs_of
@@ -98,10 +97,7 @@ def fit(
     fits = []
     for structure in structures:
         pairs, how = pairs_of(structure, measurement), settings[structure.name]
-        if len(pairs) == 1:
-            fits.append(identify(*pairs[0], rng=copy.deepcopy(rng), settings=how))
-        else:
-            fits.append(identify_jointly(pairs, rng=copy.deepcopy(rng), settings=how))
+        fits.append(fit_of(pairs, rng=copy.deepcopy(rng), settings=how))
         progress.advance(1.0)
     return tuple(fits)
 

@@ -43,6 +43,10 @@ class WorkingPoint(Settings):
         """1 where the shaft turns ahead, -1 astern."""
         return -1.0 if self.is_astern else 1.0
 
+    def turns_backward(self, shaft: str) -> bool:
+        """Return whether a shaft turns against its way ahead: an engine never does, a gearbox reverses behind it."""
+        return self.is_astern and shaft == "propeller"
+
     @property
     def driving_torque_nm(self) -> float:
         """Shaft torque [N m], positive as it drives the propeller the way it turns."""

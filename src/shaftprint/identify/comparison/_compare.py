@@ -7,14 +7,13 @@ import numpy as np
 
 from shaftprint.arguments import refusing_none
 from shaftprint.errors import IdentificationError
-from shaftprint.identify.comparison._again import fit_of
 from shaftprint.identify.comparison._comparison import Candidate, StructureComparison
 from shaftprint.identify.comparison._criteria import criteria_of
 from shaftprint.identify.comparison._hold_out import HoldOut, hold_out
 from shaftprint.identify.comparison._likelihood_ratio import LikelihoodRatio, likelihood_ratio
 from shaftprint.identify.comparison._nesting import nesting
 from shaftprint.identify.comparison._sentences import comparison_words
-from shaftprint.identify.fit import Identification
+from shaftprint.identify.fit import Identification, fit_of
 from shaftprint.identify.search import Settings
 from shaftprint.models import Structure
 from shaftprint.spectra import FrequencyResponse

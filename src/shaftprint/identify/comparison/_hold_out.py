@@ -14,8 +14,7 @@ import numpy as np
 
 from shaftprint.arrays import BoolArray, ComplexArray, FloatArray
 from shaftprint.errors import IdentificationError
-from shaftprint.identify.comparison._again import fit_of
-from shaftprint.identify.fit import Identification, variance_along
+from shaftprint.identify.fit import Identification, fit_of, variance_along
 from shaftprint.identify.likelihood import Experiment, channels_of, load_factors
 from shaftprint.spectra import FrequencyResponse
 

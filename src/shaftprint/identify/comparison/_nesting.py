@@ -12,8 +12,7 @@ import numpy as np
 from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.distributions import chi_square_tail
 from shaftprint.errors import IdentificationError
-from shaftprint.identify.comparison._again import fit_of
-from shaftprint.identify.fit import Identification
+from shaftprint.identify.fit import Identification, fit_of
 from shaftprint.identify.likelihood import Objective, load_factors
 from shaftprint.spectra import FrequencyResponse
 

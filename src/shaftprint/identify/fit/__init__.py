@@ -1,6 +1,7 @@
 """The verb and what it found: values, covariance, test of fit, other optima, the cost along a parameter."""
 
 from shaftprint.identify.fit._covariance import estimate_covariance, known_covariance, variance_along
+from shaftprint.identify.fit._fit_of import fit_of
 from shaftprint.identify.fit._fit_test import FitTest
 from shaftprint.identify.fit._identification import Cluster, Estimate, Identification
 from shaftprint.identify.fit._identify import identify, identify_jointly
@@ -28,6 +29,7 @@ __all__ = [
     "Refits",
     "Scan",
     "estimate_covariance",
+    "fit_of",
     "has_measured_inputs",
     "identify",
     "identify_jointly",

@@ -71,7 +71,7 @@ def read_encoder(source: Source[SpeedSensor], clock: "Clock") -> SpeedReading:
     stops = _stops(speed, usual, clock, channel.name)
     bridge(speed, stops, start_s=clock.start_s, rate_hz=clock.rate_hz)
     gaps = [gap.earlier(latency_s) for gap in reading.gaps]
-    astern = source.vessel.working_point.is_astern and sensor.shaft == "propeller"
+    astern = source.vessel.working_point.turns_backward(sensor.shaft)
     backwards = (
         f"channel {channel.name} counts up while the shaft turns astern: its sign was turned"
         if astern

@@ -87,7 +87,7 @@ class Speed(ChannelKind[SpeedSensor]):
             return read_encoder(source, clock)
         ratio = vessel.gearbox.engine_over(source.sensor.shaft)
         if not source.sensor.gives_pulses:
-            astern = vessel.working_point.is_astern and source.sensor.shaft == "propeller"
+            astern = vessel.working_point.turns_backward(source.sensor.shaft)
             return read_instrument(source.channel, source.sensor, clock, engine_over_shaft=ratio, astern=astern)
         # teeth that pass too fast come back as slow ones: what the recording shows is not enough
         expect_samples(source.channel, wheel, rev_s_from_rpm(vessel.working_point.engine_speed_rpm) / ratio)

@@ -140,7 +140,7 @@ class PickUp:
         counted = marked_edge if not sensor.toothed.extra else marked_edge[: -sensor.toothed.extra]
         turns = turns_of(sensor, vessel)
         # pulses do not show which way a shaft turns, but strips and teeth pass in their other order
-        forward = vessel.working_point.turning if sensor.shaft == "propeller" else 1.0
+        forward = -1.0 if vessel.working_point.turns_backward(sensor.shaft) else 1.0
         if forward < 0.0:
             marked_edge, counted = _other_order(marked_edge), _other_order(counted)
         self.angle_rev = np.diff(np.append(counted, 1.0 + counted[0]))

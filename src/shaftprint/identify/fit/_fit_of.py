@@ -1,10 +1,11 @@
-"""The same structures fitted again: to some of the lines, or to other data at the same lines."""
+"""A fit to as many responses as there are: to one, or to several jointly."""
 
 from collections.abc import Sequence
 
 import numpy as np
 
-from shaftprint.identify.fit import Identification, identify, identify_jointly
+from shaftprint.identify.fit._identification import Identification
+from shaftprint.identify.fit._identify import identify, identify_jointly
 from shaftprint.identify.search import Settings
 from shaftprint.models import Structure
 from shaftprint.spectra import FrequencyResponse
