@@ -209,14 +209,23 @@ def _diagonal(matrix: FloatArray) -> FloatArray:
 
 
 def _bounded_step(at: _Position, lower: FloatArray, upper: FloatArray) -> tuple[FloatArray, BoolArray]:
-    """Return the damped step of every start that stays inside the box, and whether it is the best such step."""
-    to_lower, to_upper = lower - at.theta, upper - at.theta
+    """Return the damped step of every start that stays inside the box, and whether it is the best such step.
+
+    Parameters are scaled until every element of ``D`` is near one: derivatives of a start far from the data can differ
+    by 28 decades, and the elimination, which exchanges rows alone, would call such a system singular. The factors are
+    powers of two, so that nothing is rounded and a bound is still met exactly.
+    """
+    unit = np.ldexp(1.0, -(np.frexp(at.scale)[1] // 2))
+    to_lower, to_upper = (lower - at.theta) / unit, (upper - at.theta) / unit
+    gradient = at.gradient * unit
     damped = at.hessian.copy()
     _diagonal(damped)[...] += at.damping[:, None] * at.scale
+    damped *= unit[:, :, None] * unit[:, None, :]
     low, high = to_lower >= 0.0, to_upper <= 0.0
     if low.any() or high.any():
-        low, high = low & (at.gradient > 0.0), high & (at.gradient < 0.0)
-    return _held_step(damped, at.gradient, to_lower, to_upper, low, high, BOUND_PASSES)
+        low, high = low & (gradient > 0.0), high & (gradient < 0.0)
+    step, settled = _held_step(damped, gradient, to_lower, to_upper, low, high, BOUND_PASSES)
+    return step * unit, settled
 
 
 def _held_step(
