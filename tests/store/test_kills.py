@@ -16,13 +16,13 @@ ROOT = Path(__file__).parents[2]
 @pytest.mark.slow
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="Windows has no fork, and no signal that ends a process at once")
 def test_nothing_acknowledged_is_lost_when_writers_are_killed(url):
-    """Twenty writers, each killed within 1.5 s; the benchmark kills a thousand."""
-    command = ["-m", "benchmarks.store", "--count", "0", "--kills", "20", "--life", "1.5", "--killed-store", url]
+    """Twenty writers, ten of them killed within 0.3 s of their first record; the benchmark kills a thousand."""
+    command = ["-m", "benchmarks.store", "--count", "0", "--kills", "20", "--killed-store", url]
     done = subprocess.run([sys.executable, *command], cwd=ROOT, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     ((acknowledged, lost),) = re.findall(r"20 writers killed: lost of (\d+) acknowledged \| 0 \| (\d+) \|", done.stdout)
     assert "| damaged records | 0 | 0 |" in done.stdout
-    assert (int(lost), int(acknowledged) > 10) == (0, True)
+    assert (int(lost), int(acknowledged) >= 10) == (0, True)
 
 
 @pytest.mark.slow
