@@ -167,17 +167,25 @@ def test_a_fingerprint_of_an_earlier_version_is_said(before):
     assert "has no joint covariance; identify its recording again" in sentence
 
 
+def with_held(fingerprint, name):
+    own = [list(row) for row in fingerprint.joint.own_covariance]
+    at = fingerprint.joint.names.index(name)
+    for other in range(len(own)):
+        own[other][at] = own[at][other] = 0.0
+    joint = fingerprint.joint.model_copy(update={"own_covariance": tuple(map(tuple, own))})
+    return fingerprint.model_copy(update={"joint": joint})
+
+
 def test_a_number_that_was_held_is_left_out(before):
-    own = [list(row) for row in before.joint.own_covariance]
-    place = before.joint.names.index("I_up")
-    for at in range(len(own)):
-        own[at][place] = own[place][at] = 0.0
-    held = before.model_copy(
-        update={"joint": before.joint.model_copy(update={"own_covariance": tuple(map(tuple, own))})}
-    )
-    finding = differ(before, held)
+    finding = differ(before, with_held(before, "I_up"))
     assert finding.left_out == {"I_up": "it was held"}
     assert finding.changes == ()
+
+
+def test_a_cause_that_could_not_be_judged_is_not_excluded(before):
+    finding = differ(before, with_held(fingerprint(t_d=1.2), "t_d"))
+    assert [cause.name for cause in finding.not_judged] == ["delay of governor and fuel"]
+    assert finding_sentences(finding)[-1] == "Not excluded, since it could not be judged: delay of governor and fuel."
 
 
 def test_numbers_of_which_one_follows_from_another_are_not_judged_together(before):

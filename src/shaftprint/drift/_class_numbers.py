@@ -11,7 +11,7 @@ from shaftprint.catalogue import ShipRole
 from shaftprint.drift._causes import GAUGE_SCALE, Cause
 from shaftprint.drift._dated import DatedTest
 from shaftprint.drift._history import History
-from shaftprint.drift._pair import at_bound, directions_of, doubts_of, judged_together, left_out_of, not_judged
+from shaftprint.drift._pair import directions_of, doubts_of, judged_together, left_out_of, not_judged
 from shaftprint.drift._series import own_covariances, stated_errors
 from shaftprint.drift._shared_errors import is_common
 from shaftprint.drift._single_test import SingleTest, single_test
@@ -128,7 +128,7 @@ def class_numbers(
     own = list(own_covariances(tests, singles, len(tests)))
     weights = _weights(ships, own)
     alone, common = _left_open(ships, singles, weights, [one + load for one in own])
-    causes, directions = directions_of(roles, singles[0].loadings.get(GAUGE_SCALE), at_bound(doubts))
+    causes, directions = directions_of(roles, singles[0].loadings.get(GAUGE_SCALE))
     stated = np.array([(tolerances or {}).get(cause, cause.tolerance) for cause in causes])
     return ClassNumbers(
         names=names,

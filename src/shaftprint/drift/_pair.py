@@ -25,7 +25,6 @@ if TYPE_CHECKING:
     from shaftprint.models import Role
 
 NOT_POSITIVE = "it is not larger than zero"
-AT_BOUND = "the search stopped at its bound"
 HELD = "it was held"
 NOT_IN_ALL = "it is not in all fingerprints"
 OTHER_DIRECTION = "the shaft did not turn the same way, and the propeller takes another torque astern"
@@ -79,7 +78,7 @@ def pair_of(
     # the propeller takes another torque on another day
     shared = shared_errors(first, other)
     load = np.array([load_repeatability * (role == ShipRole.TORQUE) for role in roles.values()])
-    causes, directions = directions_of(roles, before.loadings.get(GAUGE_SCALE), at_bound(doubts))
+    causes, directions = directions_of(roles, before.loadings.get(GAUGE_SCALE))
     return Pair(
         names=names,
         left_out=left_out_of(doubts),
@@ -121,27 +120,21 @@ def not_judged(
 
 
 def judged_together(doubts: Mapping[str, str]) -> tuple[str, ...]:
-    """Return the numbers that are judged together: those without a doubt, and those that stopped at a bound.
-
-    What is at a bound was pushed there along its own column of the covariance, which changes no score of what moves
-    other numbers. Without it they would lose what is known of them against each other.
-    """
-    return tuple(name for name, doubt in doubts.items() if doubt in ("", AT_BOUND))
+    """Return the numbers that are judged together: those without a doubt."""
+    return tuple(name for name, doubt in doubts.items() if not doubt)
 
 
 def left_out_of(doubts: Mapping[str, str]) -> dict[str, str]:
     """Return why the other numbers are not judged, by name."""
-    together = judged_together(doubts)
-    return {name: doubt for name, doubt in doubts.items() if name not in together}
-
-
-def at_bound(doubts: Mapping[str, str]) -> tuple[str, ...]:
-    """Return the numbers that stopped at a bound in one of the tests: what moves them is not asked for."""
-    return tuple(name for name, doubt in doubts.items() if doubt == AT_BOUND)
+    return {name: doubt for name, doubt in doubts.items() if doubt}
 
 
 def doubts_of(*fingerprints: "Fingerprint") -> dict[str, str]:
-    """Return why each number of several fingerprints is not judged; empty for those that are."""
+    """Return why each number of several fingerprints is not judged; empty for those that are.
+
+    One that stopped at its bound is judged: it was pushed there along its column of the covariance, which in the metric
+    of that covariance is towards the truth, since the truth is inside the bounds.
+    """
     joints = [fingerprint.joint for fingerprint in fingerprints if fingerprint.joint is not None]
     every = dict.fromkeys(name for joint in joints for name in joint.names)
     doubts = {name: next(filter(None, (_doubt(name, one) for one in fingerprints)), "") for name in every}
@@ -161,8 +154,6 @@ def _doubt(name: str, fingerprint: "Fingerprint") -> str:
     kinds = (reason.kind for reason in fingerprint.verdict.reasons)
     if doubt := next((AFFECTED[kind][1] for kind in kinds if depends_on(_estimate(number), kind)), ""):
         return doubt
-    if any(one.at_bound and one.role == number.role for one in fingerprint.parameters):
-        return AT_BOUND
     return NOT_POSITIVE if is_share(number.role) and number.value <= 0.0 else ""
 
 
@@ -199,9 +190,7 @@ def _covariance(before: SingleTest, after: SingleTest, shared: SharedErrors, *, 
     return covariance
 
 
-def directions_of(
-    roles: "dict[str, Role | None]", scale: FloatArray | None, unasked: tuple[str, ...] = ()
-) -> tuple[tuple[Cause, ...], FloatArray]:
+def directions_of(roles: "dict[str, Role | None]", scale: FloatArray | None) -> tuple[tuple[Cause, ...], FloatArray]:
     """Return what may have moved the numbers, and how.
 
     Parameters
@@ -210,16 +199,10 @@ def directions_of(
         Role of each number.
     scale
         What one standard deviation of the scale of the gauge does to them; None where it is known exactly.
-    unasked
-        Numbers of which it is not asked what has moved them.
     """
     names = list(roles)
     moved = {cause: by_role(cause, roles) for cause in CAUSES}
-    columns = {
-        cause: np.isin(names, there).astype(np.float64)
-        for cause, there in moved.items()
-        if there and not set(there) & set(unasked)
-    }
+    columns = {cause: np.isin(names, there).astype(np.float64) for cause, there in moved.items() if there}
     torque = list(roles.values()).index(ShipRole.TORQUE) if ShipRole.TORQUE in roles.values() else None
     if scale is not None and torque is not None and scale[torque]:
         # the torque coefficient goes with the scale itself

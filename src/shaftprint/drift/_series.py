@@ -13,7 +13,6 @@ from shaftprint.drift._dated import EVENTS
 from shaftprint.drift._history import SECONDS_PER_YEAR, History
 from shaftprint.drift._pair import (
     alike,
-    at_bound,
     directions_of,
     doubts_of,
     judged_together,
@@ -82,7 +81,7 @@ def series_of(history: History, *, made: int, load_repeatability: float, moved: 
     start = history.tests[0].at
     time_a = np.array([(test.at - start).total_seconds() / SECONDS_PER_YEAR for test in history.tests])
     load = np.diag([(load_repeatability * (role == ShipRole.TORQUE)) ** 2 for role in roles.values()])
-    causes, directions = directions_of(roles, singles[0].loadings.get(GAUGE_SCALE), at_bound(doubts))
+    causes, directions = directions_of(roles, singles[0].loadings.get(GAUGE_SCALE))
     return Series(
         names=names,
         left_out=left_out_of(doubts),
