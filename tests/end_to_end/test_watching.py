@@ -70,7 +70,7 @@ def test_the_cause_is_named_with_its_size(tested, first):
 
 
 def test_a_number_at_its_bound_is_judged_as_any_other(tested, first):
-    """Without the builder's inertia the first search stops where the delay is zero; 20 ms more are seen all the same."""
+    """Without the builder's inertia the first search stops at a delay of zero; 20 ms more are seen all the same."""
     assert first.quantity("t_d").at_bound
     best = differ(first, tested(LONGER_DELAY, seed=32)).changes[0].best
     assert best.cause.name == "delay of governor and fuel"
