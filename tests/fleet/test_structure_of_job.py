@@ -1,16 +1,20 @@
-"""A job for which no structure was named, of a line with an electric machine: refused before its recording is read."""
+"""A job for which no structure was named gets that of its vessel and campaign, as in ``identify``."""
 
 import pytest
 
-from shaftprint.errors import StructureError
-from shaftprint.fleet import JobArguments
+from shaftprint.campaign import load_campaign
+from shaftprint.fleet import job_arguments
 from shaftprint.fleet.computing import survey_of_job
+from shaftprint.tug import sail
+from shaftprint.vessel import load_vessel
 
 
-@pytest.mark.parametrize(
-    ("vessel", "structure"), [("e-ferry-ellen", "GAUGE-MOTOR"), ("foss-carolyn-dorothy", "GAUGE-HYBRID")]
-)
-def test_the_closed_loop_of_a_diesel_is_refused_for_another_line(vessel, structure):
-    asked = JobArguments(recording="nowhere.nc", vessel=vessel, campaign="short")
-    with pytest.raises(StructureError, match=rf"found GAUGE-CLOSED; ask for --structure {structure}\."):
-        survey_of_job(asked, tell=lambda _: None)
+@pytest.mark.slow
+@pytest.mark.parametrize(("asked", "structure"), [({}, "GAUGE-MOTOR"), ({"structure": "GAUGE-CLOSED"}, "GAUGE-CLOSED")])
+def test_a_job_has_the_structure_of_its_line_where_none_was_named(asked, structure, tmp_path):
+    recording = tmp_path / "ferry.nc"
+    sail(load_vessel("e-ferry-ellen"), load_campaign("5min"), recording, seed=1)
+    job = job_arguments(
+        recording, "e-ferry-ellen", "5min", named="the test", tested_at="2026-03-31T09:30+02:00", **asked
+    )
+    assert survey_of_job(job, tell=lambda _: None).fingerprint.structure == structure

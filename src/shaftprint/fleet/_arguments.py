@@ -25,8 +25,10 @@ class JobArguments(Settings):
     """Path of the vessel file, or the name of a shipped one."""
     campaign: Name
     """Path of the campaign file, or the name of a shipped one."""
-    structure: Name = "GAUGE-CLOSED"
-    """Name of a shipped structure. Files with structures of one's own are programs, and no job runs them."""
+    structure: Name | None = None
+    """Name of a shipped structure; that of vessel and campaign, as ``identify`` takes it, where there is none.
+
+    Files with structures of one's own are programs, and no job runs them."""
     legs: tuple[Name, ...] = ()
     """Names of the legs of the campaign to use; all where there are none."""
     starts: PositiveInteger = 50

@@ -43,7 +43,7 @@ def submit(store: Store, recordings: Sequence[JobArguments], *, now: datetime) -
     RecordingError
         If a recording cannot be read; likewise.
     """
-    for name in {one.structure for one in recordings}:
+    for name in {one.structure for one in recordings if one.structure is not None}:
         shipped_structure(name)
     vessels = {name: _vessel_sha256(name) for name in {one.vessel for one in recordings}}
     campaigns = {name: _campaign_sha256(name) for name in {one.campaign for one in recordings}}

@@ -5,14 +5,12 @@ from datetime import datetime
 
 import numpy as np
 
-from shaftprint.catalogue import CLOSED_LOOPS, shipped_structure
-from shaftprint.errors import RecordingError, StructureError
+from shaftprint.errors import RecordingError
 from shaftprint.fingerprint import Fingerprint
 from shaftprint.fleet._arguments import JobArguments
 from shaftprint.identify import Settings
 from shaftprint.models import Structure
 from shaftprint.survey import Measurement, Survey, Trial, priors_of, run
-from shaftprint.vessel import load_vessel
 
 
 class Told:
@@ -61,12 +59,11 @@ def survey_of_job(
         If a file cannot be used, the recording does not give what the structure describes, or a file is not the one
         that was asked for.
     """
-    _expect_structure_of(arguments)
     survey = run(
         arguments.recording,
         arguments.vessel,
         arguments.campaign,
-        structures=(shipped_structure(arguments.structure),),
+        structures=() if arguments.structure is None else (arguments.structure,),
         settings=_settings_of(arguments.starts),
         rng=np.random.default_rng(arguments.seed) if rng is None else rng,
         now=now,
@@ -95,23 +92,3 @@ def _expect_same_files(fingerprint: Fingerprint, arguments: JobArguments) -> Non
                 f"{getattr(arguments, source.role)}: expected the {source.role} file as it was when the job was asked "
                 "for, found it changed; ask for it once more with shaftprint fleet run."
             )
-
-
-def _expect_structure_of(arguments: JobArguments) -> None:
-    """Refuse the closed loop of a diesel, which a job has where none was named, for a line with an electric machine.
-
-    Raises
-    ------
-    StructureError
-        If it is that.
-    """
-    of_engine = CLOSED_LOOPS["engine"]
-    if arguments.structure.upper() != of_engine:
-        return
-    drive = load_vessel(arguments.vessel).drive
-    if drive != "engine":
-        line = "that a motor drives" if drive == "motor" else "with an electric machine on its gearbox"
-        raise StructureError(
-            f"{arguments.recording}: expected the structure of a line {line}, as {arguments.vessel} says, found "
-            f"{of_engine}; ask for --structure {CLOSED_LOOPS[drive]}."
-        )

@@ -15,7 +15,7 @@ def submitted(
     recording: str,
     vessel: str,
     campaign: str,
-    structure: str,
+    structure: str | None,
     ship: str,
     imo: int | None,
     line: str,
@@ -30,7 +30,7 @@ def submitted(
     vessel, campaign
         Paths, or names of files that come with the program.
     structure
-        Name of a structure that comes with the program.
+        Name of a structure that comes with the program; that of vessel and campaign where there is none.
     ship, imo, line
         Which line it is of.
     facts

@@ -175,8 +175,9 @@ async def new_job(asked: Asked) -> Moved:
     recording, line = await asked.read(_source, asked, fields)
     vessel = await asked.read(_settings, asked, fields.get("vessel", ""), VESSELS)
     campaign = await asked.read(_settings, asked, fields.get("campaign", ""), CAMPAIGNS)
-    structure = fields.get("structure", STRUCTURES[0])
-    if structure not in STRUCTURES:
+    # none is that of vessel and campaign
+    structure = fields.get("structure") or None
+    if structure is not None and structure not in STRUCTURES:
         raise HTTPException(400, f"Expected one of the structures {', '.join(STRUCTURES)}, found another one.")
     question = {
         "kind": "submit",

@@ -19,7 +19,7 @@ from shaftprint.store import Job, Store, jobs, open_store
 @click.argument("recordings", metavar="FOLDER|LIST.csv", type=click.Path(path_type=Path))
 @click.option("--vessel", metavar="TEXT", help="Vessel file, or a shipped name such as stan-tug-1205.")
 @click.option("--campaign", metavar="TEXT", help="Campaign file, or a shipped name such as thesis.")
-@click.option("--structure", metavar="NAME", help="Model structure.  [default: GAUGE-CLOSED]")
+@click.option("--structure", metavar="NAME", help="Model structure.  [default: as identify takes it]")
 @click.option("--ship", metavar="NAME", help="Name of the ship, where the vessel file does not say it.")
 @click.option("--imo", type=int, metavar="NUMBER", help="Its IMO number, where the vessel file does not say it.")
 @click.option("--line", metavar="NAME", help="Shaft line, such as port, where the vessel file does not say it.")
