@@ -1,4 +1,8 @@
 # Needs Python >= 3.11, git and make; everything else goes into the folder .venv.
+# Python keeps what it has compiled, whatever the shell says: without it each of some hundred processes of the tests compiles
+# all it imports anew.
+unexport PYTHONDONTWRITEBYTECODE
+
 # Each target installs what it needs from the pinned versions in requirements/, with their hashes.
 
 VENV := .venv
@@ -12,7 +16,7 @@ PYTHON ?= $(shell for p in $(PYTHONS); do \
 ROOMS := signals spectra models catalogue simulation identify
 
 .DEFAULT_GOAL := help
-.PHONY: help demo demo-fleet test test-all lint docs bench wheel offline lock clean
+.PHONY: help demo demo-fleet test test-slow test-all lint docs bench wheel offline lock clean
 
 help: ## Say what can be made
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "  make %-10s %s\n", $$1, $$2}' $(firstword $(MAKEFILE_LIST))
@@ -24,17 +28,20 @@ demo-fleet: $(VENV)/web ## Eight sister ships over five years in a store; demo-f
 	$(BIN)/shaftprint demo --fleet -o demo-fleet
 
 # each core has a worker of its own; only the tests of the calculating rooms are traced, which doubles their time
-QUICK := not slow and not wrong_recordings
-test test-all: export OPENBLAS_NUM_THREADS ?= 1
+QUICK := not slow and not long and not wrong_recordings
+test test-slow test-all: export OPENBLAS_NUM_THREADS ?= 1
 test: $(VENV)/test ## Run the tests that a change needs, with the coverage of the calculating rooms
 	$(BIN)/python -m pytest -n auto --dist loadfile -m "$(QUICK)" $(ROOMS:%=tests/%) \
 		$(ROOMS:%=--cov=shaftprint.%) --cov-branch --cov-report=
 	$(BIN)/python -m coverage report --skip-covered --fail-under 95
 	$(BIN)/python -m pytest -n auto --dist loadfile -m "$(QUICK)" $(ROOMS:%=--ignore=tests/%)
 
-test-all: test ## Run the slow tests and every wrong recording too
-	$(BIN)/python -m pytest -n auto --dist loadfile -m slow
+test-slow: test ## Run the slow tests and every wrong recording too
+	$(BIN)/python -m pytest -n auto --dist loadfile -m "slow and not long"
 	$(BIN)/python -m pytest -n auto --dist worksteal -m wrong_recordings tests/wrong_recordings
+
+test-all: test-slow ## Run the long searches and Monte Carlos too, as before a release
+	$(BIN)/python -m pytest -n auto --dist worksteal -m long
 
 lint: $(VENV)/lint ## Check style, types and the direction of imports
 	$(BIN)/ruff check .

@@ -6,6 +6,7 @@ Run ``python docs/_extensions/room_diagram.py`` after a change of either: it wri
 import ast
 import re
 import tomllib
+from functools import cache
 from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
@@ -22,6 +23,7 @@ def floors() -> list[list[str]]:
     return [[name.strip() for name in layer.split("|")] for layer in layers]
 
 
+@cache
 def imports() -> dict[str, set[str]]:
     """Return which others each room or leaf module imports, also where only types are checked."""
     found: dict[str, set[str]] = {name: set() for floor in floors() for name in floor}
@@ -52,7 +54,7 @@ def table() -> str:
     lines = ["| room | imports |", "|---|---|"]
     for room in order:
         if room not in leaves:
-            names = [f"`{name}`" for name in order if name in imports_of[room] - leaves]
+            names = [f"`{name}`" for name in order if name in imports()[room] - leaves]
             lines.append(f"| `{room}` | {', '.join(names) or 'no room'} |")
     return "\n".join(lines)
 
@@ -61,8 +63,6 @@ def made() -> str:
     """Return all of the page that is made from the code."""
     return f"```text\n{drawing()}\n```\n\n{table()}"
 
-
-imports_of = imports()
 
 if __name__ == "__main__":
     PAGE.write_text(MADE.sub(lambda _: made(), PAGE.read_text(encoding="utf-8")), encoding="utf-8")

@@ -68,7 +68,7 @@ def test_fingerprint_of_a_drive_is_told_from_that_of_a_ship(motor):
         read_drive_fingerprint(folder / "wrong.json")
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_motor_bench_of_seven_kinds_of_records(tmp_path, run_program):
     paths = motor_files(tmp_path)
     assert len(paths) == 7

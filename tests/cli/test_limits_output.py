@@ -15,6 +15,7 @@ from shaftprint.vessel import load_vessel
 pytestmark = pytest.mark.slow
 TRIAL = ("--vessel", "stan-tug-1205", "--campaign", "short", "--no-progress")
 ANTI_WINDUP_S, MOTORING_NM = 0.5, -300.0
+GOVERNOR = {"K_p": 5.7, "K_i": 4.27, "t_d": 0.0703, "t_sp": 0.0518}
 
 
 @pytest.fixture(scope="module")
@@ -44,6 +45,17 @@ def test_the_levels_of_the_model_are_the_true_ones(fingerprint):
     for name, value in expected.items():
         assert abs(found[name].value - value) < 3.0 * found[name].std
     assert found["m_max"].std < 0.06 * expected["m_max"]
+    for name, value in GOVERNOR.items():
+        assert abs(found[name].value - value) < 3.0 * found[name].std, name
+
+
+def test_it_says_what_was_found_and_what_was_not(result):
+    output = result[1]
+    assert (
+        output.index("Limits\n") < output.index("Numbers of the limits") < output.index("Governor that goes with them")
+    )
+    assert "rate limit of the fuel rack: not seen" in output
+    assert "deadband: not seen" in output
 
 
 def test_each_stretch_was_judged_by_limits_that_had_not_seen_it(result, fingerprint):

@@ -57,7 +57,7 @@ def test_offset_and_drift_are_found(duration_s, offset_s, drift, rate_hz, within
     assert found.map.drift == pytest.approx(drift, abs=4.0 * np.sqrt(found.map.covariance[1, 1]))
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_the_standard_deviation_is_right():
     """Forty draws of the noise: distances from the truth in standard deviations at either end."""
     away = []

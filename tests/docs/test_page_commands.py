@@ -1,6 +1,7 @@
 """Every command in a block of a page is run as it stands there, and leaves behind what it says.
 
-What is not as it stands is in ``pages.as_run``. A command that several pages show is run once.
+What is not as it stands is in ``pages.as_run``. A command that several pages show is run once. What takes long and is
+run by tests of its own in ``tests/cli`` is run until it begins to calculate.
 """
 
 import importlib.util
@@ -8,13 +9,25 @@ import shlex
 
 import pytest
 from click.testing import CliRunner
-from expected import EXPECTED
+from expected import EXPECTED, other_ship
 from pages import berth, commands
 
 from shaftprint.cli import shaftprint
 
 pytestmark = pytest.mark.slow
 WINDOWS = ("cp850", "cp1252")
+# Where a command begins to calculate.
+BEGINS = {
+    "identify": ("shaftprint.cli.commands._identify.run", "shaftprint.cli._identify_both.run_both"),
+    "inspect": ("shaftprint.cli.commands._inspect.prepare_signals",),
+    "limits": ("shaftprint.cli.commands._limits.identify_limits",),
+    "sail": ("shaftprint.cli.commands._sail.sail_as", "shaftprint.cli.commands._sail.sail_both_lines"),
+    "sensitivity": ("shaftprint.cli.commands._sensitivity.sensitivity_chart",),
+}
+
+
+class Begun(Exception):
+    """A command was understood, with the files that it names, and has begun to calculate."""
 
 
 def key(words):
@@ -49,7 +62,31 @@ def without_zig(monkeypatch):
     monkeypatch.setattr(importlib.util, "find_spec", found)
 
 
-@pytest.mark.parametrize("line", commands())
+def is_run_elsewhere(line):
+    """Say whether tests in ``tests/cli`` run a command to its end: those of other ships, and the longest."""
+    words = shlex.split(line)
+    of_its_own = other_ship(words) or "--starboard" in words or "my_ship.py:my_loop" in words
+    return words[0] in ("limits", "sensitivity") or (words[0] in ("identify", "inspect", "sail") and bool(of_its_own))
+
+
+@pytest.mark.parametrize("line", [line for line in commands() if is_run_elsewhere(line)])
+def test_a_command_that_is_run_elsewhere_is_understood(line, ashore, without_zig, monkeypatch):
+    words = shlex.split(line)
+    folder = ashore(words)
+    if words[0] != "sail" and not (folder / words[1]).exists():
+        # what another line of the page sails
+        berth(folder / "recording.nc", folder / words[1])
+
+    def begin(*_, **__):
+        raise Begun
+
+    for where in BEGINS[words[0]]:
+        monkeypatch.setattr(where, begin)
+    with pytest.raises(Begun):
+        CliRunner().invoke(shaftprint, words, catch_exceptions=False)
+
+
+@pytest.mark.parametrize("line", [line for line in commands() if not is_run_elsewhere(line)])
 def test_a_command_does_what_its_page_says(line, harbour, printed, ashore, without_zig):
     words = shlex.split(line)
     if line in printed:

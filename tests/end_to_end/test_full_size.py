@@ -24,7 +24,7 @@ from shaftprint.signals import Signals, content_of, prepare_signals
 from shaftprint.spectra import ExactBin, FrequencyResponse, estimate_response, open_loop
 from shaftprint.tug import sail
 
-pytestmark = pytest.mark.slow
+pytestmark = pytest.mark.long
 
 SEED = 1
 TVC_S = 1.016

@@ -146,6 +146,7 @@ def test_what_was_fitted_and_how_is_said(limited_fit):
     assert 1 <= limited_fit.reached[0] <= limited_fit.reached[1] <= 2
 
 
+@pytest.mark.long
 def test_a_deadband_is_found_and_its_sines_are_records(sailed):
     """Noisy sensors, but calm water: disturbances carry the error out of the band, see docs/nonlinear.md."""
     calm = Noise().without(process=True)

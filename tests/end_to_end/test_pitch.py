@@ -39,7 +39,7 @@ def test_linearised_tug_is_free_pitch(tmp_path, lag_s):
         assert simulated[:, 0] == pytest.approx(composed.reshape(3, 2, -1)[:, place], rel=2e-5)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_pitch_is_identified_from_the_raw_recording(tmp_path, tug):
     """The truth lies in every 95 % interval; what the pitch's sines show is sharp.
 

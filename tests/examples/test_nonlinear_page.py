@@ -20,7 +20,7 @@ def defined(tmp_path_factory):
     return names
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_level_and_rate_are_found(defined):
     """The engine has the full-load curve of its vessel file, the rack 1.5 of its travel a second."""
     found = {number.name: number for number in defined["fit"].limits}

@@ -80,7 +80,7 @@ def test_criteria_that_too_few_data_cannot_give_are_not_numbers(make_response):
     assert np.isnan(criteria_of(found).fpe)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("truth", "others"),
     [("CL3", ("CL1", "CL4")), ("CL4", ("CL1", "CL3")), ("OL3", ("OL2", "OL4", "OL5")), ("OL5", ("OL2", "OL3", "OL4"))],

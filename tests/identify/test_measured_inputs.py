@@ -61,7 +61,7 @@ def fitted(response, settings=RACK_KNOWN):
     return identify(structure("GOVERNOR"), response, rng=np.random.default_rng(2), settings=settings)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_stated_uncertainty_is_the_scatter_and_the_test_of_fit_is_uniform():
     """150 tests: of each number 7.5 are outside of the 95 % interval, and by chance at most 16 of them."""
     rng = np.random.default_rng(41)

@@ -53,7 +53,7 @@ def lowest_of_ol3(response, weights):
     return min(found)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("weighting", [MaximumLikelihood(), Unweighted()], ids=["covariance", "unweighted"])
 def test_lowest_point_is_the_best_optimum_of_ol3_in_40_of_40_noise_draws(make_response, weighting):
     noise = np.sqrt(np.sum(10.0 ** (-SNR_DB / 10.0), axis=0) / 2.0)

@@ -77,7 +77,7 @@ def test_one_line_20_deviations_off_moves_only_the_plain_fit(tests, line):
     assert shift[MaximumLikelihood()].max() > (0.9 if line == "S3" else 2.5)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("bad", [None, "S8"])
 def test_stated_deviations_and_profiles_cover_the_truth(tests, bad):
     """95 % of the tests, with a bad line and without: the average information, and rises of the cost below 3.84 / 2."""

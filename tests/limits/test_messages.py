@@ -15,7 +15,7 @@ def drawn(rng, cycle_s):
     return common + cycle_s * rng.uniform(-0.5, 0.5, STD_S.size) + STD_S * rng.standard_normal(STD_S.size)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_the_cycle_is_in_its_interval_as_often_as_stated():
     rng = np.random.default_rng(2)
     inside = 0

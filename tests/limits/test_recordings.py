@@ -52,6 +52,7 @@ def number(found, name):
     return next(one for one in found.numbers if one.name == name)
 
 
+@pytest.mark.long
 def test_a_line_that_rests_near_its_torque_limit(limits_of):
     """Seed 24 has a second optimum, its level 10 % lower and with the limit acting at rest."""
     one, found = limits_of(24)
@@ -62,6 +63,7 @@ def test_a_line_that_rests_near_its_torque_limit(limits_of):
     assert share.upper - share.lower < 0.12 * one.levels["share"]
 
 
+@pytest.mark.long
 def test_a_cycle_whose_phase_drifts_from_jump_to_jump(limits_of):
     """Seed 17: messages of 89.5 ms, jumps every 30 s: each 4 ms later in the cycle than the one before."""
     one, found = limits_of(17)
@@ -71,6 +73,7 @@ def test_a_cycle_whose_phase_drifts_from_jump_to_jump(limits_of):
     assert cycle.upper < 0.25
 
 
+@pytest.mark.long
 def test_a_set_point_with_a_limited_rate(limits_of):
     """Seed 57: 403 rpm/s. On the grid of the simulation the rate came out four deviations too low."""
     one, found = limits_of(57)

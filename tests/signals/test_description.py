@@ -43,7 +43,7 @@ def test_shipped_campaigns_come_back(name):
                 assert getattr(found, key) == pytest.approx(value, rel=2e-3, abs=3e-4)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_drawn_campaigns_of_all_kinds_come_back():
     """Thirty drawn ones: another clock, gain, offset, steps and cycles of the generator, any order, phase and sign."""
     with_something_named = []

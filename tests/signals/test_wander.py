@@ -48,7 +48,7 @@ def means_of(fits):
     return np.array([fit.value[0] for fit in fits]), np.array([fit.std[0] for fit in fits])
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("windows", ["sines", "blocks"])
 @pytest.mark.parametrize("correlation_s", [10.0, 30.0, 100.0])
 def test_stated_deviation_of_a_mean_holds_the_truth_in_nineteen_of_twenty_tests(request, windows, correlation_s):
@@ -78,7 +78,7 @@ def test_white_noise_beside_a_slow_wander_does_not_hide_it(blocks):
     assert np.count_nonzero(np.abs(mean) < 1.96 * std) > TOO_FEW
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_slope_beside_the_mean_is_held_as_often(blocks):
     """``y = 2 + 3 x`` with ``x`` in three levels of a staircase, then at the middle one."""
     begins, ends = blocks

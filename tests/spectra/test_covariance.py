@@ -41,7 +41,7 @@ def repeated(make_window, coloured, *, periods, slope, repeats=REPEATS, noise_of
     return np.array(amplitude), np.array(covariance), samples
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("periods", [4, 7, 18])
 @pytest.mark.parametrize("slope", [0, 1, 2])
 def test_stated_covariance_is_the_scatter_over_repeats(make_window, coloured, periods, slope):

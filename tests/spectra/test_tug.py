@@ -102,7 +102,7 @@ def test_without_noise_the_response_is_the_linear_one(ship, sailed):
     assert np.abs(governor.response[0, 0, 0]) > 50.0
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_with_noise_the_errors_are_as_large_as_stated(ship, sailed):
     # without inflow the propeller load stays what it is in the linear response
     vessel, campaign = ship

@@ -194,7 +194,7 @@ def test_a_record_that_ends_before_the_lag_shows_gives_the_truth_without_noise(m
         fitted(record, transients=False)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_intervals_and_tests_are_right_over_repeats(make_record):
     """200 records of the last chirp, cut in motion, with noise drawn anew at the lines: intervals hold the truth."""
     clean = spectrum_of(make_record(1115.0, 1670.0), "n_set", ("n", "M_s"))

@@ -217,7 +217,7 @@ def test_offset_and_gap_leave_the_estimates_where_they_are(lag):
     assert "lines" not in verdict.reason
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_stated_uncertainty_is_the_scatter_of_two_hundred_tests(lag):
     """200 tests with AR(1) noise: coverage of the 95 % intervals, mean square of the standardised errors, p-values.
 
