@@ -8,10 +8,14 @@ from tests.drift.test_watch import I_ACTION, P_ACTION, looked_at, made
 from tests.known_fits import TRUTH, fitted, taken
 
 from shaftprint.catalogue import structure
-from shaftprint.fingerprint import JointNumbers, NoiseSpectrum
+from shaftprint.fingerprint import JointNumbers, LegRecord, NoiseSpectrum
 from shaftprint.identify import Settings
+from shaftprint.models import at_working_point
 
 MODEL = structure("GAUGE-CLOSED")
+# The speed of the parameters, and another leg's over it; the torque of a propeller goes with its square.
+SPEED_RPM, SLOW = 1183.8, 0.7
+AT = {SPEED_RPM: MODEL, SLOW * SPEED_RPM: at_working_point(MODEL, speed_share=SLOW)}
 FREQUENCY_HZ = (0.02, 0.035, 0.06, 0.15, 0.3, 0.5, 0.8, 1.25, 2.0, 3.3)
 NUMBERS = ("K_p", "K_i", "t_d", "omega_n", "zeta", "tau_dn", "t_sp")
 TIMES = ("t_d", "t_sp")
@@ -20,9 +24,10 @@ SHARE, TESTS, STEP_AT, WEAKER = 0.012, 12, 6, 0.02
 """Relative noise of each response; tests, the first one with a weaker injection, and by how much it is weaker."""
 
 
-def logarithms(values):
-    """Return the logarithms of both responses at the lines as real numbers."""
-    response = np.log(MODEL.response(MODEL.vector(values), 2j * np.pi * np.array(FREQUENCY_HZ)))
+def logarithms(values, speeds):
+    """Return the logarithms of both responses at the lines of each speed as real numbers."""
+    omega = 2.0 * np.pi * np.array(FREQUENCY_HZ)
+    response = np.log([AT[speed].response(MODEL.vector(values), 1j * omega) for speed in speeds])
     return np.concatenate([response.real.ravel(), response.imag.ravel()])
 
 
@@ -34,21 +39,26 @@ def moved(values, apart):
     }
 
 
-def slopes(values):
+def slopes(values, speeds):
     """Return the derivatives of the logarithms, by central differences."""
     steps = 1e-6 * np.eye(len(NUMBERS))
-    return np.array([(logarithms(moved(values, h)) - logarithms(moved(values, -h))) / 2e-6 for h in steps]).T
+    apart = [logarithms(moved(values, h), speeds) - logarithms(moved(values, -h), speeds) for h in steps]
+    return np.array(apart).T / 2e-6
 
 
-def estimate(true, noise):
+def estimate(true, noise, speeds):
     """Return the estimate of a line from noisy responses, as changes from the reference, and its covariance."""
-    data = logarithms(true) + noise
-    found = least_squares(lambda x: (logarithms(moved(TRUTH, x)) - data) / SHARE, np.zeros(len(NUMBERS)), x_scale="jac")
-    at = slopes(moved(TRUTH, found.x)) / SHARE
+    data = logarithms(true, speeds) + noise
+
+    def residuals(x):
+        return (logarithms(moved(TRUTH, x), speeds) - data) / SHARE
+
+    found = least_squares(residuals, np.zeros(len(NUMBERS)), x_scale="jac")
+    at = slopes(moved(TRUTH, found.x), speeds) / SHARE
     return found.x, np.linalg.inv(at.T @ at)
 
 
-def fingerprint(base, place, apart, covariance):
+def fingerprint(base, place, apart, covariance, speeds):
     """Return the fingerprint of an estimate, which states its own covariance."""
     shift = dict(zip(NAMES, apart, strict=True))
     factors = {name: np.exp(change) for name, change in shift.items() if name not in TIMES}
@@ -63,20 +73,40 @@ def fingerprint(base, place, apart, covariance):
     own[0, 0] = 1e-6
     own[1:, 1:] = covariance
     own *= np.outer(size, size)
-    noise = NoiseSpectrum(
-        engine_speed_rpm=1183.8,
-        set_point_per_v=0.21,
-        outputs=("n", "M_s"),
-        frequency_hz=FREQUENCY_HZ,
-        density_real=((((1e-6, 0.0), (0.0, 1e-6))),) * len(FREQUENCY_HZ),
-        density_imaginary=((((0.0, 0.0), (0.0, 0.0))),) * len(FREQUENCY_HZ),
+    noise = tuple(
+        NoiseSpectrum(
+            engine_speed_rpm=speed,
+            set_point_per_v=0.21,
+            outputs=("n", "M_s"),
+            frequency_hz=FREQUENCY_HZ,
+            density_real=((((1e-6, 0.0), (0.0, 1e-6))),) * len(FREQUENCY_HZ),
+            density_imaginary=((((0.0, 0.0), (0.0, 0.0))),) * len(FREQUENCY_HZ),
+        )
+        for speed in speeds
+    )
+    legs = tuple(
+        LegRecord(
+            name=f"M{number}",
+            engine_speed_rpm=base.conditions.engine_speed.value * speed / SPEED_RPM,
+            shaft_torque_nm=base.conditions.shaft_torque.value * (speed / SPEED_RPM) ** 2,
+            set_point_v=-5.0,
+            load=1.0,
+            periods=3,
+            period_s=50.0,
+        )
+        for number, speed in enumerate(speeds)
     )
     joint = JointNumbers(names=names, own_covariance=tuple(map(tuple, own.tolist())), loadings={})
-    return one.model_copy(update={"parameters": parameters, "joint": joint, "noise": (noise,)})
+    return one.model_copy(update={"parameters": parameters, "joint": joint, "noise": noise, "legs": legs})
+
+
+@pytest.fixture(scope="module", params=[1, 2], ids=["one speed", "two speeds"])
+def speeds(request):
+    return tuple(AT)[: request.param]
 
 
 @pytest.fixture(scope="module")
-def histories():
+def histories(speeds):
     """Tests with the frequencies of their lines, and the same without: there the valley stays as it is."""
     base = taken(fitted("GAUGE-CLOSED", TRUTH, share=0.002, settings=Settings(starts=10, priors=PRIORS)))
     rng = np.random.default_rng(5)
@@ -84,8 +114,8 @@ def histories():
     for place in range(TESTS):
         weaker = 1.0 - WEAKER * (place >= STEP_AT)
         true = TRUTH | {name: weaker * TRUTH[name] for name in ("K_p", "K_i")}
-        noise = SHARE * rng.standard_normal(4 * len(FREQUENCY_HZ))
-        tests.append(fingerprint(base, place, *estimate(true, noise)))
+        noise = SHARE * rng.standard_normal(4 * len(FREQUENCY_HZ) * len(speeds))
+        tests.append(fingerprint(base, place, *estimate(true, noise, speeds), speeds))
     return tests, [one.model_copy(update={"noise": ()}) for one in tests]
 
 
@@ -97,10 +127,10 @@ def of_injection(tests):
 
 
 @pytest.mark.slow
-def test_a_step_is_known_as_well_as_the_responses_tell_it(histories):
+def test_a_step_is_known_as_well_as_the_responses_tell_it(histories, speeds):
     """Cramer and Rao's bound of one test, the root of two of it for the difference of two, over the root of six."""
     straight, as_it_is = (of_injection(tests) for tests in histories)
-    at = slopes(TRUTH) / SHARE
+    at = slopes(TRUTH, speeds) / SHARE
     information = at.T @ at
     along = np.isin(NUMBERS, ("K_p", "K_i")).astype(float)
     bound = np.sqrt(2.0 / (along @ information @ along) / STEP_AT)

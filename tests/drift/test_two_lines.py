@@ -20,7 +20,7 @@ PORT, STARBOARD = "stan-tug-1205", "stan-tug-1205-starboard"
 
 
 def side(vessel: str, *, recording: str = "a", **changes: float) -> Fingerprint:
-    values = TRUTH | {name: factor * TRUTH[name] for name, factor in changes.items()}
+    values = TRUTH | {name: factor * TRUTH[name] or factor for name, factor in changes.items()}
     plain = taken(fitted("GAUGE-CLOSED", values, share=0.002, settings=Settings(starts=20, priors=PRIORS)))
     return plain.model_copy(
         update={
@@ -80,15 +80,28 @@ def test_each_gauge_has_a_scale_error_of_its_own(port: Fingerprint, starboard: F
 def test_an_inertia_by_one_drawing_differs_by_a_quarter_of_what_that_leaves_open(
     port: Fingerprint, starboard: Fingerprint
 ) -> None:
-    """sqrt(2 / 16) of what the drawings leave open of each; all of it cancels where both are one piece."""
+    """sqrt(2 / 16) of what the drawings leave open of each, less what the drawing pulls the estimate back to itself."""
     of_drawing = port.joint.loadings_of(("I_up",))["TVC"][0] / port.quantity("I_up").value  # type: ignore[union-attr]
     pieces = deviation(port, starboard, "I_up") ** 2
     piece = deviation(port, port.model_copy(), "I_up") ** 2
     # the gauges move it as far as the test, and not the drawing, tells it
     of_gauge = port.joint.loadings_of(("I_up",))["gauge scale"][0] / port.quantity("I_up").value  # type: ignore[union-attr]
     of_assumption = port.joint.loadings_of(("I_up",))["prior of g"][0] / port.quantity("I_up").value  # type: ignore[union-attr]
-    by_hand = (of_drawing**2 + of_assumption**2) / 8.0 + 2.0 * of_gauge**2
+    by_hand = ((HALF / 1.016 - of_drawing) ** 2 + of_assumption**2) / 8.0 + 2.0 * of_gauge**2
     assert pieces - piece == pytest.approx(by_hand, rel=0.02)
+
+
+@pytest.mark.parametrize("changes", [{"tau_up": 1.0 + 0.25 * HALF / 1.016}, {"g": 0.025}])
+def test_a_line_that_is_one_piece_off_its_drawing_is_as_likely_as_that(
+    port: Fingerprint, changes: dict[str, float]
+) -> None:
+    """One standard deviation of one piece, without noise; gains that make up for it are no change of the governor."""
+    pair = pair_of(port, side(STARBOARD, **changes), load_repeatability=0.005)
+    assert pair is not None
+    assert pair.difference @ np.linalg.solve(pair.covariance, pair.difference) < 1.0
+    gain = pair.directions[:, [cause.name for cause in pair.causes].index("proportional gain of the governor")]
+    score = gain @ np.linalg.solve(pair.covariance, pair.difference)
+    assert abs(score) < np.sqrt(gain @ np.linalg.solve(pair.covariance, gain))
 
 
 def test_numbers_side_by_side_have_the_same_deviations(port: Fingerprint, starboard: Fingerprint) -> None:

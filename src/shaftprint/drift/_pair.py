@@ -172,7 +172,8 @@ def _covariance(before: SingleTest, after: SingleTest, shared: SharedErrors, *, 
 
     What was stated in common cancels where it moves both alike. Of tests with the same lines and structure it does: by
     how much its effects differ is noise of the estimates at which they were worked out, which is in their covariance.
-    Of two lines a share of it is of each piece alone.
+    Of two lines a share of it is of each piece alone. Such a piece is another one in truth too: where the inertia of a
+    line is larger than that of the drawing, its estimates are those of the larger one less what the drawing pulls.
     """
     own = shared.of_each_piece
     covariance = before.own + after.own
@@ -184,7 +185,8 @@ def _covariance(before: SingleTest, after: SingleTest, shared: SharedErrors, *, 
         elif unmoved:
             parts = ()
         else:
-            parts = (np.sqrt(1.0 - own) * (two - one), np.sqrt(own) * one, np.sqrt(own) * two)
+            pieces = (test.stated[source] - test.loadings[source] for test in (before, after))
+            parts = (np.sqrt(1.0 - own) * (two - one), *(np.sqrt(own) * piece for piece in pieces))
         for part in parts:
             covariance = covariance + np.outer(part, part)
     return covariance

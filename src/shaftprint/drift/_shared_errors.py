@@ -8,12 +8,12 @@ than a test, and the water at one side is not that at the other.
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from shaftprint.drift._single_test import PRIOR
 from shaftprint.fingerprint import BEHIND, TVC, FieldValue, stated_behind
 
 if TYPE_CHECKING:
     from shaftprint.fingerprint import Fingerprint
 
-PRIOR = "prior of "
 OF_EACH_PIECE = 1.0 / 16.0
 """Share of the variance of a drawing's or an assumption's error that is another in each of two lines: parts are made to
 a quarter of what their calculation leaves open."""

@@ -8,14 +8,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shaftprint.arrays import FloatArray
+from shaftprint.arrays import BoolArray, FloatArray
 from shaftprint.catalogue import ShipRole
 from shaftprint.errors import FingerprintError
 
 if TYPE_CHECKING:
-    from shaftprint.fingerprint import Fingerprint
+    from collections.abc import Sequence
+
+    from shaftprint.fingerprint import Fingerprint, Quantity
     from shaftprint.models import Role
 
+PRIOR = "prior of "
+"""What the source of a prior without sources of its own is called before the name of the parameter."""
 SHARES = (ShipRole.TORQUE, ShipRole.ACTUATOR_FREQUENCY, ShipRole.ACTUATOR_DAMPING)
 """Roles of numbers that are larger than zero, beside those of physical values."""
 
@@ -30,6 +34,9 @@ class SingleTest:
     """Covariance that the test left open, shape (numbers, numbers)."""
     loadings: dict[str, FloatArray]
     """Change of the numbers for one standard deviation of each source that was stated, shape (numbers,) each."""
+    stated: dict[str, FloatArray]
+    """Change of what is true for one standard deviation of each of these sources, likewise: with the drawings' inertia
+    that of the line itself is another."""
 
 
 def is_share(role: "Role | None") -> bool:
@@ -56,7 +63,20 @@ def single_test(fingerprint: "Fingerprint", names: tuple[str, ...]) -> SingleTes
         values=np.where(shares, np.log(size), values),
         own=_misfit(fingerprint) * joint.covariance_of(names) / np.outer(size, size),
         loadings={source: change / size for source, change in joint.loadings_of(names).items()},
+        stated={source: _stated(fingerprint, source, numbers, shares) for source in joint.loadings},
     )
+
+
+def _stated(fingerprint: "Fingerprint", source: str, numbers: "Sequence[Quantity]", shares: BoolArray) -> FloatArray:
+    """Return the change of each number for one standard deviation of a source of the priors."""
+    by_role = {fingerprint.quantity(name).role: (name, prior) for name, prior in fingerprint.priors.items()}
+    moved = np.zeros(len(numbers))
+    for place, number in enumerate(numbers):
+        if number.role in by_role:
+            name, prior = by_role[number.role]
+            change = prior.std if source == PRIOR + name else prior.sources.get(source, 0.0)
+            moved[place] = change / prior.mean if shares[place] else change
+    return moved
 
 
 def _misfit(fingerprint: "Fingerprint") -> float:

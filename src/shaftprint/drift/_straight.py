@@ -27,9 +27,10 @@ from shaftprint.arrays import FloatArray
 from shaftprint.catalogue import shipped_structure
 from shaftprint.drift._single_test import SingleTest, is_share
 from shaftprint.errors import StructureError
+from shaftprint.models import at_working_point
 
 if TYPE_CHECKING:
-    from shaftprint.fingerprint import Fingerprint
+    from shaftprint.fingerprint import Fingerprint, LegRecord, NoiseSpectrum
     from shaftprint.models import Structure
 
 
@@ -41,8 +42,8 @@ def straightened(
 ) -> tuple[SingleTest, ...]:
     """Return tests in coordinates in which the responses of their model are linear; as they are where that is not told.
 
-    Told it is where all tests are of one structure, a shipped one, with the frequencies of their lines, and at one
-    speed: the parameters of a structure under legs at several speeds are others at each.
+    Told it is where all tests are of one structure, a shipped one, with the frequencies of their lines, at as many
+    speeds each.
 
     Parameters
     ----------
@@ -59,7 +60,7 @@ def straightened(
     model = _model_of(tests)
     if model is None:
         return tuple(singles)
-    structure, frequency_hz = model
+    structure, speeds = model
     roles = [tests[0].quantity(name).role for name in names]
     stands_for = [structure.named_as(role) if role is not None else None for role in roles]
     of_model = [at for at, parameter in enumerate(stands_for) if parameter is not None]
@@ -71,7 +72,9 @@ def straightened(
     unmoved = np.array([one.values for one in singles]) - (0.0 if moved is None else moved)
     apart = (unmoved - unmoved.mean(axis=0))[:, of_model]
     shares = np.array([is_share(roles[at]) for at in of_model], dtype=bool)
-    responses, slopes = _responses(structure, _reference(structure, tests), parameters, apart, shares, frequency_hz)
+    reference = _reference(structure, tests)
+    found_at = [_responses(at, reference, parameters, apart, shares, frequency_hz) for at, frequency_hz in speeds]
+    responses, slopes = (np.concatenate(of_all, axis=1) for of_all in zip(*found_at, strict=True))
     if not (np.all(np.isfinite(responses)) and np.all(np.isfinite(slopes))):
         return tuple(singles)
     straight = np.linalg.pinv(slopes[-1][:, free])
@@ -81,15 +84,23 @@ def straightened(
         values, turn = single.values.copy(), np.eye(len(names))
         values[places] += straight @ (response - slopes[-1] @ distance)
         turn[np.ix_(places, np.array(of_model))] += straight @ (slope - slopes[-1])
-        loadings = {source: turn @ change for source, change in single.loadings.items()}
-        found.append(replace(single, values=values, own=turn @ single.own @ turn.T, loadings=loadings))
+        loadings, stated = (
+            {source: turn @ change for source, change in of_sources.items()}
+            for of_sources in (single.loadings, single.stated)
+        )
+        own = turn @ single.own @ turn.T
+        found.append(replace(single, values=values, own=own, loadings=loadings, stated=stated))
     return tuple(found)
 
 
-def _model_of(tests: "Sequence[Fingerprint]") -> "tuple[Structure, FloatArray] | None":
-    """Return the structure of all tests and the frequencies of their lines [Hz]; None where it is not one, or none."""
+def _model_of(tests: "Sequence[Fingerprint]") -> "tuple[Structure, list[tuple[Structure, FloatArray]]] | None":
+    """Return the structure of all tests, and as it is at each of their speeds with the frequencies of its lines [Hz].
+
+    None where it is not one structure, or the lines of a test are not told.
+    """
     alike = {(test.structure, tuple(sorted(test.held)), tuple(sorted(test.priors))) for test in tests}
-    if len(alike) > 1 or any(len(test.noise) != 1 for test in tests):
+    counts = {len(test.noise) for test in tests}
+    if len(alike) > 1 or len(counts) > 1 or counts == {0}:
         return None
     try:
         structure = shipped_structure(tests[0].structure)
@@ -98,7 +109,27 @@ def _model_of(tests: "Sequence[Fingerprint]") -> "tuple[Structure, FloatArray] |
     known = {one.name for one in tests[0].parameters} | set(tests[0].held)
     if known != set(structure.names):
         return None
-    return structure, np.unique(np.concatenate([test.noise[0].frequency_hz for test in tests]))
+    frequencies = [
+        np.unique(np.concatenate([noise.frequency_hz for noise in of_speed]))
+        for of_speed in zip(*(sorted(test.noise, key=_speed) for test in tests), strict=True)
+    ]
+    if len(frequencies) == 1:
+        return structure, [(structure, frequencies[0])]
+    if any(len(test.legs) != len(frequencies) for test in tests):
+        return None
+    shares = np.mean([[_shares(leg, test) for leg in sorted(test.legs, key=_speed)] for test in tests], axis=0)
+    at = [at_working_point(structure, speed_share=speed, torque_share=torque) for speed, torque in shares.tolist()]
+    return structure, list(zip(at, frequencies, strict=True))
+
+
+def _speed(of_one_speed: "LegRecord | NoiseSpectrum") -> float:
+    return of_one_speed.engine_speed_rpm
+
+
+def _shares(leg: "LegRecord", test: "Fingerprint") -> tuple[float, float]:
+    """Return speed and torque of a leg over those at which the parameters of its test are normalised."""
+    speed_rpm, torque_nm = test.conditions.engine_speed.value, test.conditions.shaft_torque.value
+    return leg.engine_speed_rpm / speed_rpm, leg.shaft_torque_nm / torque_nm
 
 
 def _reference(structure: "Structure", tests: "Sequence[Fingerprint]") -> FloatArray:
