@@ -21,7 +21,7 @@ WINDOWS = ("cp850", "cp1252")
 # What a command calls when it begins to calculate.
 BEGINS = {
     "identify": ("run", "identify_both_lines"),
-    "inspect": ("prepare_signals",),
+    "inspect": ("read_recording",),
     "limits": ("identify_limits",),
     "sail": ("sail_as", "sail_both_lines"),
     "sensitivity": ("sensitivity_chart",),
