@@ -1,9 +1,8 @@
 # Needs Python >= 3.11, git and make; everything else goes into the folder .venv.
-# Python keeps what it has compiled, whatever the shell says: without it each of some hundred processes of the tests compiles
-# all it imports anew.
-unexport PYTHONDONTWRITEBYTECODE
-
 # Each target installs what it needs from the pinned versions in requirements/, with their hashes.
+
+# Python keeps what it has compiled, whatever the shell says: each process of the tests would compile all it imports anew
+unexport PYTHONDONTWRITEBYTECODE
 
 VENV := .venv
 BIN := $(VENV)/bin

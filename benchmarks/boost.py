@@ -37,21 +37,19 @@ def outcome(seed: int) -> dict[str, Any]:
     begin = time.process_time()
     found = identify_limits(signals, CAMPAIGN, VESSEL)
     true: dict[str, Any] = {**truth.normalised, **ship.levels, "share": 1.0, "T_aw": ship.tug.anti_windup_s}
-    numbers = {one.name: (one.value, one.std, (one.lower, one.upper)) for one in found.numbers}
-    for governor in found.governor:
-        half = NORMAL_95 * governor.std
-        numbers[governor.name] = (governor.value, governor.std, (governor.value - half, governor.value + half))
+    numbers = {
+        one.name: {"value": one.value, "std": one.std, "interval": (one.lower, one.upper)} for one in found.numbers
+    }
+    for one in found.governor:
+        half = NORMAL_95 * one.std
+        numbers[one.name] = {"value": one.value, "std": one.std, "interval": (one.value - half, one.value + half)}
     return {
         "seed": seed,
         "acts_s": ship.acts_s,
         "kinds": [kind.name.lower() for kind in found.kinds],
         "gain": float(found.gains.get(Kind.SMOKE, np.nan)),
         "untrusted": [one.name for one in found.numbers if not one.trusted],
-        "numbers": {
-            name: {"true": true[name], "value": value, "std": std, "interval": interval}
-            for name, (value, std, interval) in numbers.items()
-            if name in true
-        },
+        "numbers": {name: {"true": true[name], **number} for name, number in numbers.items() if name in true},
         "cpu_s": time.process_time() - begin,
     }
 

@@ -21,15 +21,6 @@ from shaftprint.tug import read_truth
 from shaftprint.vessel import load_vessel
 
 CHANNELS = {"U_setpoint", "PTM_e", "PTM_1", "PTM_4", "M_s"}
-# Ships beside the tug at the quay.
-OTHER_SHIPS = (
-    "e-ferry-ellen",
-    "foss-carolyn-dorothy",
-    "nifs-research-vessel",
-    "pt-may",
-    "stan-tug-1205-astern",
-    "stan-tug-1205-underway",
-)
 
 
 def after(words, option):
@@ -44,17 +35,6 @@ def rows(printed, heading):
     cells = [re.split(r"\s{2,}", line.strip()) for line in lines[start + 1 :]]
     end = next(place for place, row in enumerate(cells) if row == [""])
     return {row[0]: row[1:] for row in cells[:end]}
-
-
-def uncertain(cell):
-    """Return value and standard deviation of a cell."""
-    value, std = cell.split(" +/- ")
-    return float(value), float(std.split()[0])
-
-
-def other_ship(words):
-    """Return the name of a shipped vessel that is not the tug at the quay; None for the tug."""
-    return next((word for word in words if word in OTHER_SHIPS), None)
 
 
 def expect_demo(folder, printed, words):

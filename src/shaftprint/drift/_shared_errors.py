@@ -8,8 +8,8 @@ than a test, and the water at one side is not that at the other.
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from shaftprint.drift._single_test import PRIOR
 from shaftprint.fingerprint import BEHIND, TVC, FieldValue, stated_behind
+from shaftprint.identify.likelihood import PRIOR_OF
 
 if TYPE_CHECKING:
     from shaftprint.fingerprint import Fingerprint
@@ -88,15 +88,15 @@ def shared_errors(first: "Fingerprint", other: "Fingerprint") -> SharedErrors:
 
 
 def _is_stated(source: str) -> bool:
-    return source in BEHIND or source == TVC or source.startswith(PRIOR)
+    return source in BEHIND or source == TVC or source.startswith(PRIOR_OF)
 
 
 def is_common(source: str, first: "Fingerprint", other: "Fingerprint") -> bool:
     """Return whether two tests were given the same figures for a source of error, so that its error is the same."""
     if _vessel_file(first) is not None and _vessel_file(first) == _vessel_file(other):
         return True
-    if source.startswith(PRIOR):
-        name = source.removeprefix(PRIOR)
+    if source.startswith(PRIOR_OF):
+        name = source.removeprefix(PRIOR_OF)
         one, two = first.priors.get(name), other.priors.get(name)
         return one is not None and two is not None and (one.mean, one.std) == (two.mean, two.std)
     stated = stated_behind(source, first.vessel_fields)

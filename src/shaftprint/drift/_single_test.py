@@ -18,8 +18,6 @@ if TYPE_CHECKING:
     from shaftprint.fingerprint import Fingerprint, Quantity
     from shaftprint.models import Role
 
-PRIOR = "prior of "
-"""What the source of a prior without sources of its own is called before the name of the parameter."""
 SHARES = (ShipRole.TORQUE, ShipRole.ACTUATOR_FREQUENCY, ShipRole.ACTUATOR_DAMPING)
 """Roles of numbers that are larger than zero, beside those of physical values."""
 
@@ -69,14 +67,16 @@ def single_test(fingerprint: "Fingerprint", names: tuple[str, ...]) -> SingleTes
 
 def _stated(fingerprint: "Fingerprint", source: str, numbers: "Sequence[Quantity]", shares: BoolArray) -> FloatArray:
     """Return the change of each number for one standard deviation of a source of the priors."""
-    by_role = {fingerprint.quantity(name).role: (name, prior) for name, prior in fingerprint.priors.items()}
-    moved = np.zeros(len(numbers))
+    by_role = {
+        fingerprint.quantity(name).role: (prior.mean, prior.by_source(name).get(source, 0.0))
+        for name, prior in fingerprint.priors.items()
+    }
+    changes = np.zeros(len(numbers))
     for place, number in enumerate(numbers):
-        if number.role in by_role:
-            name, prior = by_role[number.role]
-            change = prior.std if source == PRIOR + name else prior.sources.get(source, 0.0)
-            moved[place] = change / prior.mean if shares[place] else change
-    return moved
+        if number.role is not None and number.role in by_role:
+            mean, change = by_role[number.role]
+            changes[place] = change / mean if shares[place] else change
+    return changes
 
 
 def _misfit(fingerprint: "Fingerprint") -> float:

@@ -13,6 +13,7 @@ from shaftprint.fingerprint._working_point_share import LOAD_WANDER
 from shaftprint.identify import Identification
 from shaftprint.identify.fit import Estimate
 from shaftprint.identify.judgement import doubts_of
+from shaftprint.identify.likelihood import PRIOR_OF
 from shaftprint.identify.uncertainty import Budget, Profile
 
 if TYPE_CHECKING:
@@ -32,7 +33,6 @@ OFF_ZERO = 2.0
 MOSTLY = 0.5
 # So many of them are named in a sentence.
 MOST_NAMED = 4
-PRIOR_OF = "prior of "
 # What the test itself measures: sources whose names begin so.
 MEASURED = ("noise of ", "working-point ", LOAD_WANDER)
 PERCENT = 100.0

@@ -14,7 +14,7 @@ from shaftprint.identify.likelihood._known import (
 from shaftprint.identify.likelihood._line_test import LineTest
 from shaftprint.identify.likelihood._load_factors import load_factors, with_load
 from shaftprint.identify.likelihood._objective import Objective, Redrawn
-from shaftprint.identify.likelihood._prior import Prior
+from shaftprint.identify.likelihood._prior import PRIOR_OF, Prior
 from shaftprint.identify.likelihood._tails import estimated_tails, student_tails
 from shaftprint.identify.likelihood._term import FittedTerm, Repeats, Term, TermTest, WhitenedTerm
 from shaftprint.identify.likelihood._term_check import CheckKind, TermCheck
@@ -22,6 +22,7 @@ from shaftprint.identify.likelihood._weighting import MaximumLikelihood, Student
 from shaftprint.identify.likelihood._wishart import estimated_shapes
 
 __all__ = [
+    "PRIOR_OF",
     "PRIOR_OF_G",
     "SHARE_ROUNDING",
     "CheckKind",

@@ -9,6 +9,8 @@ from shaftprint.errors import IdentificationError
 
 # The parts of a standard deviation are printed numbers: they need not add up to the last digit.
 SAME_STD = 1e-6
+PRIOR_OF = "prior of "
+"""What the source of a prior that states none is called, before the name of the parameter."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,3 +43,7 @@ class Prior:
                 f"prior {self.mean} +/- {self.std}: expected sources whose squares add up to that of the standard "
                 f"deviation, found {total} from {', '.join(self.sources)}."
             )
+
+    def by_source(self, parameter: str) -> Mapping[str, float]:
+        """Return the parts of the standard deviation by source: the prior itself where it states none."""
+        return self.sources or {PRIOR_OF + parameter: self.std}

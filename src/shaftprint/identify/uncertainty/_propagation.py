@@ -129,6 +129,6 @@ def _prior_effects(identification: Identification, information: PseudoInverse) -
     effects: dict[str, FloatArray] = {}
     for name, prior in identification.settings.priors.items():
         along = information.inverse[:, names.index(name)] / prior.std**2
-        for source, part in (prior.sources or {f"prior of {name}": prior.std}).items():
+        for source, part in prior.by_source(name).items():
             effects[source] = effects.get(source, np.zeros(along.size)) + part * along
     return effects
