@@ -26,7 +26,15 @@ def changed(tmp_path):
 
 
 @pytest.mark.parametrize(
-    "name", ["stan-tug-1205", "stan-tug-1205-astern", "stan-tug-1205-ecu", "stan-tug-1205-underway", "pt-may"]
+    "name",
+    [
+        "stan-tug-1205",
+        "stan-tug-1205-astern",
+        "stan-tug-1205-ecu",
+        "stan-tug-1205-underway",
+        "pt-may",
+        "pt-may-underway",
+    ],
 )
 def test_shipped_vessels_agree_with_themselves(name):
     assert disagreements(load_vessel(name)) == ()
@@ -53,6 +61,15 @@ def test_ratio_beside_the_speed_of_the_propeller(changed):
     )
     # 1800 / 466 = 3.8627, 1.1 % above
     assert not only(changed(old, "propeller_rated_rpm = 466.0 "), "gearbox.ratio").is_contradiction
+
+
+def test_clutch_that_slips_at_full_load(changed):
+    highest = max(changed("blades = 4", "blades = 4").engine.full_load_torque_nm)
+    efficiency = "efficiency = 0.97 "
+    assert disagreements(changed(efficiency, f"clutch_torque_nm = {highest}\n{efficiency}")) == ()
+    found = only(changed(efficiency, f"clutch_torque_nm = {highest - 1.0}\n{efficiency}"), "gearbox.clutch_torque_nm")
+    assert found.is_contradiction
+    assert f"at least the highest torque of the engine, {highest:g} N m" in found.sentence("ship.toml")
 
 
 def test_ratio_upside_down(changed):

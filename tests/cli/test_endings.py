@@ -54,6 +54,21 @@ def test_reader_that_went_away_is_left_to_click(run, monkeypatch, tmp_path):
     assert "Broken pipe" not in result.output
 
 
+@pytest.mark.slow
+def test_results_are_written_for_a_reader_that_went_away(demo, tmp_path):
+    recording = str(demo[0] / "recording.nc")
+    command = (
+        *(sys.executable, "-m", "shaftprint", "identify", recording, "--vessel", "stan-tug-1205"),
+        *("--campaign", "short", "--no-report", "--no-progress", "-o", "result"),
+    )
+    # as `| head -1` does
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, cwd=tmp_path) as process:
+        process.stdout.close()
+        errors = process.stderr.read().decode()
+    assert (process.returncode, errors) == (0, "")
+    assert (tmp_path / "result" / "fingerprint.json").is_file()
+
+
 def test_interruption_is_code_130(run, monkeypatch, tmp_path):
     monkeypatch.setattr(_sail, "sail_as", _raising(KeyboardInterrupt()))
     result = run("sail", "stan-tug-1205", "short", "-o", tmp_path / "x.nc")
@@ -91,9 +106,10 @@ def test_interrupted_voyage_leaves_nothing_behind(tmp_path):
 
 def _interrupted(voyage):
     """Interrupt a process as a person does, again after a while: Python drops an interrupt that meets a finaliser."""
+    # not too soon: one that meets the end of the interpreter kills it
     while True:
         voyage.send_signal(signal.SIGINT)
         try:
-            return voyage.communicate(timeout=5.0)
+            return voyage.communicate(timeout=20.0)
         except subprocess.TimeoutExpired:
             continue

@@ -15,7 +15,7 @@ The simulated tug shares no physics with this room: it reads the file that is wr
 from shaftprint.card._card import Card, Gauge, Pulses
 from shaftprint.card._disagreement import Disagreement
 from shaftprint.card._disagreements import disagreements
-from shaftprint.card._series import open_water_curve
+from shaftprint.card._series import four_quadrant_curve, open_water_curve
 from shaftprint.card._vessel_text import vessel_text
 from shaftprint.card._write import write_vessel
 
@@ -25,6 +25,7 @@ __all__ = [
     "Gauge",
     "Pulses",
     "disagreements",
+    "four_quadrant_curve",
     "open_water_curve",
     "vessel_text",
     "write_vessel",

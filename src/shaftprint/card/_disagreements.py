@@ -24,9 +24,9 @@ def disagreements(vessel: Vessel) -> tuple[Disagreement, ...]:
     """Return what in a vessel file contradicts the rest of it or is strange beside it, contradictions first.
 
     Held against each other are gear ratio, engine and propeller speed; working speed, idle and highest speed; working
-    torque, full-load curve, rated power and full scale of the gauge; working torque, torque coefficient and propeller
-    series; a controllable pitch and the series; underway the speed of the ship, at which thrust is to meet resistance;
-    inertias and stiffnesses of the links. A torque that is off by a factor of two contradicts the series, by a quarter
+    torque, full-load curve, rated power and full scale of the gauge; what a clutch holds and the full-load curve;
+    working torque, torque coefficient and propeller series; a controllable pitch and the series; underway the speed of
+    the ship, at which thrust is to meet resistance; inertias and stiffnesses of the links. A torque that is off by a factor of two contradicts the series, by a quarter
     it is strange.
     """
     of_propeller = (_thrust,) if vessel.is_underway else (_series, _coefficient)
@@ -36,6 +36,7 @@ def disagreements(vessel: Vessel) -> tuple[Disagreement, ...]:
         _working_speed,
         _full_load_curve,
         _engine_load,
+        _clutch,
         *of_propeller,
         _pitch,
         _full_scale,
@@ -125,6 +126,18 @@ def _full_load_curve(vessel: Vessel) -> Iterator[Disagreement]:
             advice=f"correct {'the curve' if vessel.motor is None else 'it'}, or rated_power_kw (kW, not hp) and "
             "rated_speed_rpm",
             is_contradiction=apart > _FINDING,
+        )
+
+
+def _clutch(vessel: Vessel) -> Iterator[Disagreement]:
+    held_nm, highest_nm = vessel.gearbox.clutch_torque_nm, max(vessel.machine.full_load[1])
+    if held_nm is not None and held_nm < highest_nm:
+        yield Disagreement(
+            field="gearbox.clutch_torque_nm",
+            expected=f"at least the highest torque of the {vessel.machine.word}, {highest_nm:g} N m",
+            found=f"{held_nm:g} N m",
+            advice="correct it, in N m at the engine's side: such a clutch slips at full load",
+            is_contradiction=True,
         )
 
 

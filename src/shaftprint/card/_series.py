@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from shaftprint.errors import PropellerError
-from shaftprint.propeller import OpenWaterCurve, four_quadrants, ka4_70_in_19a, wageningen_b
+from shaftprint.propeller import FourQuadrantCurve, OpenWaterCurve, four_quadrants, ka4_70_in_19a, wageningen_b
 from shaftprint.vessel import Propeller
 
 OPEN_AREA_RATIO, NOZZLE_AREA_RATIO = 0.55, 0.70
@@ -63,6 +63,26 @@ def open_water_curve(propeller: Propeller) -> OpenWaterCurve | None:
         curve.at(0.0, propeller.pitch_ratio)
     except PropellerError:
         return None
+    return curve
+
+
+def four_quadrant_curve(propeller: Propeller) -> FourQuadrantCurve:
+    """Return thrust and torque of a propeller with ship and shaft each ahead or astern.
+
+    Raises
+    ------
+    PropellerError
+        If no such curves are known of the propeller, or of its pitch.
+    """
+    if is_in_nozzle(propeller.series):
+        raise PropellerError(
+            f"four quadrants: expected an open propeller, found {propeller.series}; coefficients of no propeller in a "
+            "nozzle are known here."
+        )
+    if propeller.area_ratio is None:
+        raise PropellerError("four quadrants: expected propeller.area_ratio in the vessel file, found none; state it.")
+    curve = four_quadrants(blades=propeller.blades, area_ratio=propeller.area_ratio)
+    curve.of_pitch(propeller.pitch_ratio)
     return curve
 
 

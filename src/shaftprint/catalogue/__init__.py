@@ -3,8 +3,16 @@
 The language in which they are written, blocks and structures, is ``models``; symbols and signs are explained there.
 """
 
+from shaftprint.catalogue._crash_stop import (
+    CRASH_STOP,
+    NOT_OF_THE_LINE,
+    CrashStopSymbol,
+    FourQuadrantPropeller,
+    crash_stop,
+)
 from shaftprint.catalogue._drives import DRIVES, SIGNAL_MEANINGS, SIGNAL_UNITS
 from shaftprint.catalogue._gauge import gauge_governor, gauge_line
+from shaftprint.catalogue._hybrid_at_large import limited_hybrid
 from shaftprint.catalogue._known_propeller import KnownPropeller, sails_free, with_known_propeller
 from shaftprint.catalogue._limited import limited
 from shaftprint.catalogue._limited_governor import AHEAD_S, GovernorSymbol, limited_governor
@@ -20,14 +28,18 @@ from shaftprint.catalogue._two_masses import two_mass_line
 __all__ = [
     "AHEAD_S",
     "CLOSED_LOOPS",
+    "CRASH_STOP",
     "DRIVES",
+    "NOT_OF_THE_LINE",
     "PITCHED_LOOP",
     "ROLES",
     "SIGNAL_MEANINGS",
     "SIGNAL_UNITS",
     "STRUCTURES",
     "THESIS_VALUES",
+    "CrashStopSymbol",
     "Family",
+    "FourQuadrantPropeller",
     "GovernorSymbol",
     "KnownPropeller",
     "PitchSpeed",
@@ -35,11 +47,13 @@ __all__ = [
     "SailingSpeed",
     "SailingTorque",
     "ShipRole",
+    "crash_stop",
     "expect_roles",
     "gauge_governor",
     "gauge_line",
     "limited",
     "limited_governor",
+    "limited_hybrid",
     "pitch_actuator",
     "sailing_at_large",
     "sails_free",

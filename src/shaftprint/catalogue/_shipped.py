@@ -1,19 +1,26 @@
 """Every structure that comes with the package by its name: those of the catalogue, with limits, and of drives.
 
-The gauge-aware closed loop with limits is named by these: ``GAUGE-QUADRATIC``, ``GAUGE-TORQUE-RATE``.
+The gauge-aware closed loop with limits is named by these: ``GAUGE-QUADRATIC``, ``GAUGE-TORQUE-RATE``; with an electric
+machine beside the engine, ``HYBRID-QUADRATIC``, ``HYBRID-TORQUE-CLUTCH``.
 """
 
+from collections.abc import Callable, Mapping
 from functools import cache
 
 from shaftprint.catalogue._drives import DRIVES
+from shaftprint.catalogue._hybrid_at_large import limited_hybrid
 from shaftprint.catalogue._limited import limited
 from shaftprint.catalogue._roles import ShipRole
 from shaftprint.catalogue._thesis import STRUCTURES, structure
 from shaftprint.errors import StructureError
 from shaftprint.models import Role, Structure
 
-_PREFIX, _NONE = "GAUGE-", "QUADRATIC"
+_NONE = "QUADRATIC"
 _LIMITS = ("TORQUE", "RATE", "DEADBAND", "SMOKE")
+_AT_LARGE: Mapping[str, tuple[Callable[..., Structure], tuple[str, ...]]] = {
+    "GAUGE-": (limited, _LIMITS),
+    "HYBRID-": (limited_hybrid, (*_LIMITS, "CLUTCH")),
+}
 
 
 def shipped_structure(name: str) -> Structure:
@@ -31,12 +38,15 @@ def shipped_structure(name: str) -> Structure:
 def _limited_structure(name: str) -> Structure | None:
     """Return the structure with the limits that stand in a name; None if it names none."""
     upper = name.upper()
-    if upper in STRUCTURES or not upper.startswith(_PREFIX):
+    if upper in STRUCTURES:
         return None
-    limits = upper.removeprefix(_PREFIX).split("-")
-    if limits == [_NONE]:
-        return limited()
-    return limited(*(limit.lower() for limit in limits)) if set(limits) <= set(_LIMITS) else None
+    for prefix, (build, known) in _AT_LARGE.items():
+        limits = upper.removeprefix(prefix).split("-") if upper.startswith(prefix) else []
+        if limits == [_NONE]:
+            return build()
+        if limits and set(limits) <= set(known):
+            return build(*(limit.lower() for limit in limits))
+    return None
 
 
 def expect_roles(structure: Structure) -> None:

@@ -13,7 +13,10 @@ from shaftprint.fingerprint import Fingerprint, Quantity, model_with_limits
 from shaftprint.models import Structure
 from shaftprint.spelling import meant
 
-LIMITED_HELP = "GAUGE-QUADRATIC, GAUGE-TORQUE, GAUGE-TORQUE-RATE and so on: GAUGE-CLOSED at large, with limits"
+LIMITED_HELP = (
+    "GAUGE-QUADRATIC, GAUGE-TORQUE, GAUGE-TORQUE-RATE and so on: GAUGE-CLOSED at large, with limits; "
+    "HYBRID-TORQUE-CLUTCH and so on: GAUGE-HYBRID, whose clutch slips"
+)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

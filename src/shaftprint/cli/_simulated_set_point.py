@@ -37,6 +37,10 @@ class Place:
     """Engine speed for one volt of set point [rpm/V]; None where it is not known."""
     intercept_rpm: float | None
     """Engine speed of that line at no voltage [rpm]; None for the one that gives the working point at the offset."""
+    shaft_speed_rpm: float | None = None
+    """Speed of a shaft that clutches part from the engine [rpm]; None where none do."""
+    ship_speed_m_s: float | None = None
+    """Speed of a ship that is stopped [m/s]; None of one that is not."""
 
     def deviation(self, volts: FloatArray, *, offset_v: float | None = None) -> FloatArray:
         """Return the set point as a deviation from the working point [-].

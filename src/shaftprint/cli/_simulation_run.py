@@ -1,8 +1,9 @@
 """A model taken through time, with how well its outputs are known, as columns of a file and panels of a figure."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
@@ -17,7 +18,21 @@ from shaftprint.simulation import simulate, simulate_exactly
 
 # Derivatives that the simulation takes at a time; more at once would only take more memory.
 AT_ONCE = 8
-DEVIATIONS = ("n_set", "n", "e", "M_s", "X", "v_s", "theta_set", "M_m")
+DEVIATIONS = ("n_set", "n", "e", "M_s", "X", "v_s", "theta_set", "M_m", "n_s", "n_l", "M_c")
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Run:
+    """A model, what moves it, and what it is over."""
+
+    model: SimulatedModel
+    """The model."""
+    place: Place | None
+    """Its working point; None where that is not known."""
+    drive: Drive
+    """What moves it."""
+    answers: Callable[["Prediction"], Sequence[str]] = lambda prediction: ()
+    """Says what was asked for, in sentences; nothing where only signals are wanted."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -82,30 +97,48 @@ def _deviation(slopes: FloatArray, covariance: FloatArray) -> FloatArray:
 
 def signals_of(drive: Drive, prediction: Prediction, place: Place | None) -> tuple[SimulatedSignal, ...]:
     """Return inputs and outputs with names and units: rpm and N m where the working point is known."""
+    shown = {} if place is None else _shown_at(place, drive.time_s)
     signals = []
     for name, values in drive.shown.items():
-        signals.append(_signal(name, drive.units[name], values, None, place, is_input=True))
+        signals.append(_signal(name, drive.units[name], values, None, shown.get(name), is_input=True))
     for name, values in prediction.outputs.items():
         std = None if prediction.std is None else prediction.std[name]
-        signals.append(_signal(name, "-" if name in DEVIATIONS else "", values, std, place, is_input=False))
+        unit = "-" if name in DEVIATIONS else ""
+        signals.append(_signal(name, unit, values, std, shown.get(name), is_input=False))
     return tuple(signals)
 
 
+class _Shown(NamedTuple):
+    """How a deviation is shown: ``size (at_rest + value)``."""
+
+    title: str
+    unit: str
+    size: float
+    at_rest: FloatArray | float = 1.0
+
+
+def _shown_at(place: Place, time_s: FloatArray) -> Mapping[str, _Shown]:
+    shown = {
+        "n_set": _Shown("set point", "rpm", place.engine_speed_rpm),
+        "n": _Shown("engine speed", "rpm", place.engine_speed_rpm),
+        "M_s": _Shown("shaft torque", "N m", place.shaft_torque_nm),
+    }
+    if place.shaft_speed_rpm is not None:
+        shown["n_s"] = _Shown("shaft speed", "rpm", place.shaft_speed_rpm)
+    if place.ship_speed_m_s is not None:
+        shown["v_s"] = _Shown("ship speed", "m/s", place.ship_speed_m_s)
+        shown["x_s"] = _Shown("distance", "m", place.ship_speed_m_s, time_s - time_s[0])
+    return shown
+
+
 def _signal(
-    name: str, unit: str, values: FloatArray, std: FloatArray | None, place: Place | None, *, is_input: bool
+    name: str, unit: str, values: FloatArray, std: FloatArray | None, shown: _Shown | None, *, is_input: bool
 ) -> SimulatedSignal:
-    title, size = name, None
-    if place is not None:
-        match name:
-            case "n_set":
-                title, unit, size = "set point", "rpm", place.engine_speed_rpm
-            case "n":
-                title, unit, size = "engine speed", "rpm", place.engine_speed_rpm
-            case "M_s":
-                title, unit, size = "shaft torque", "N m", place.shaft_torque_nm
-    if size is not None:
-        values = size * (1.0 + values)
-        std = None if std is None else size * std
+    title = name
+    if shown is not None:
+        title, unit = shown.title, shown.unit
+        values = shown.size * (shown.at_rest + values)
+        std = None if std is None else shown.size * std
     return SimulatedSignal(
         title=title,
         unit=unit,

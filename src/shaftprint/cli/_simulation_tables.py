@@ -13,6 +13,8 @@ from shaftprint.report import SimulatedSignal
 from shaftprint.tables import MEANING, Table, numbers, rounded, texts, unit_text, with_deviation
 
 VALUE_DIGITS, RANGE_DIGITS, STD_DIGITS = 6, 5, 2
+# Of the largest value: less is what rounding leaves of zero.
+NOTHING = 1e-12
 
 
 def print_simulation(
@@ -44,8 +46,7 @@ def print_simulation(
         (
             signal.title,
             signal.unit,
-            rounded(float(signal.values.min()), RANGE_DIGITS),
-            rounded(float(signal.values.max()), RANGE_DIGITS),
+            *(rounded(end, RANGE_DIGITS) for end in _ends(signal.values)),
             "" if signal.std is None else rounded(float(signal.std.max()), STD_DIGITS),
         )
         for signal in signals
@@ -64,6 +65,13 @@ def print_simulation(
         say(f"The test said nothing of {', '.join(model.not_known)}: the band leaves {pronoun} out.")
     for sentence in warnings:
         say(sentence)
+
+
+def _ends(values: FloatArray) -> tuple[float, float]:
+    """Return the smallest and the largest value, without what rounding leaves of zero."""
+    ends = (float(values.min()), float(values.max()))
+    nothing = NOTHING * max(map(abs, ends))
+    return tuple(0.0 if abs(end) < nothing else end for end in ends)  # type: ignore[return-value]
 
 
 def _value(value: float, std: float | None) -> str:

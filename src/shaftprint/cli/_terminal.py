@@ -73,6 +73,17 @@ def width(*, without_terminal: int) -> int:
     return max(shutil.get_terminal_size((without_terminal, 24)).columns, NARROWEST)
 
 
+def _put(text: str = "", *, err: bool = False) -> None:
+    """Print a text; where whoever reads has gone, as ``| head`` does, what follows is printed nowhere."""
+    try:
+        click.echo(text, err=err)
+    except BrokenPipeError:
+        # the files that a command writes are wanted all the same
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(nowhere, (sys.stderr if err else sys.stdout).fileno())
+        os.close(nowhere)
+
+
 def echo(line: object = "", *, err: bool = False) -> None:
     """Print one line as it is.
 
@@ -86,11 +97,11 @@ def echo(line: object = "", *, err: bool = False) -> None:
     chosen = output()
     text = terminal_line(str(line))
     if err:
-        click.echo(text, err=True)
+        _put(text, err=True)
     elif chosen.document is not None:
         chosen.document.lines += [text.strip()] if text.strip() else []
     elif not chosen.quiet:
-        click.echo(text)
+        _put(text)
 
 
 def say(sentence: str, *, indent: str = "") -> None:
@@ -99,7 +110,7 @@ def say(sentence: str, *, indent: str = "") -> None:
     if chosen.document is not None:
         chosen.document.lines.append(printable(sentence.strip()))
     elif not chosen.quiet:
-        click.echo(_wrapped(sentence, indent, indent) + "\n" * (len(sentence) - len(sentence.rstrip("\n"))))
+        _put(_wrapped(sentence, indent, indent) + "\n" * (len(sentence) - len(sentence.rstrip("\n"))))
 
 
 def answer(text: str | Path) -> None:
@@ -108,7 +119,7 @@ def answer(text: str | Path) -> None:
     if chosen.document is not None:
         chosen.document.answer.append(printable(str(text)))
     else:
-        click.echo(_wrapped(text, "", "") if isinstance(text, str) else terminal_line(str(text)))
+        _put(_wrapped(text, "", "") if isinstance(text, str) else terminal_line(str(text)))
 
 
 def print_findings(title: str, findings: Sequence[str], *, is_answer: bool = False) -> None:
@@ -131,16 +142,16 @@ def print_findings(title: str, findings: Sequence[str], *, is_answer: bool = Fal
         return
     if chosen.quiet and not is_answer:
         return
-    click.echo(_wrapped(title, "", ""))
+    _put(_wrapped(title, "", ""))
     for finding in findings or ("None.",):
-        click.echo(_wrapped(finding, "  * ", "    "))
-    click.echo()
+        _put(_wrapped(finding, "  * ", "    "))
+    _put()
 
 
 def print_lines_of_table(title: str, lines: Sequence[str]) -> None:
     """Print a table that is laid out already, its title in bold on a terminal."""
     for line in (click.style(printable(title), bold=True), "", *map(printable, lines), ""):
-        click.echo(_with_letters_of_the_stream(line))
+        _put(_with_letters_of_the_stream(line))
 
 
 def _with_letters_of_the_stream(line: str) -> str:
@@ -156,7 +167,7 @@ def print_document() -> None:
     """Print the JSON object of a command that has ended, where it was asked for."""
     document = output().document
     if document is not None:
-        click.echo(json.dumps(asdict(document), ensure_ascii=True, allow_nan=False, indent=1))
+        _put(json.dumps(asdict(document), ensure_ascii=True, allow_nan=False, indent=1))
 
 
 def _wrapped(text: str, first: str, following: str) -> str:

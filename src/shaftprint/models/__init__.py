@@ -79,6 +79,7 @@ from shaftprint.models.equations import (
     rebuilt,
     replaced,
     second_order_lag,
+    slipping_clutch,
     stribeck_friction,
     table,
 )
@@ -158,6 +159,7 @@ __all__ = [
     "rebuilt",
     "replaced",
     "second_order_lag",
+    "slipping_clutch",
     "stable_rows",
     "step_response",
     "stribeck_friction",

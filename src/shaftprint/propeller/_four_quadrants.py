@@ -70,7 +70,7 @@ class FourQuadrantCurve(Shown):
         PropellerError
             If the pitch lies outside what was tested.
         """
-        table = self._of_pitch(pitch_ratio)
+        table = self.of_pitch(pitch_ratio)
         angle = np.asarray(advance_angle_rad, dtype=np.float64)[..., None] * np.arange(table.shape[0])
         cosine, sine = np.cos(angle), np.sin(angle)
         return cosine @ table[:, 0] + sine @ table[:, 1], cosine @ table[:, 2] + sine @ table[:, 3]
@@ -122,13 +122,25 @@ class FourQuadrantCurve(Shown):
         PropellerError
             If the pitch lies outside what was tested.
         """
-        around = _AT_RADIUS * math.pi * diameter_m * np.asarray(shaft_speed_rev_s, dtype=np.float64)
+        around = self.around_m(diameter_m) * np.asarray(shaft_speed_rev_s, dtype=np.float64)
         along = np.asarray(advance_m_s, dtype=np.float64)
         thrust, torque = self.at(np.arctan2(along, around), pitch_ratio)
         force = 0.5 * water_density_kg_m3 * (along**2 + around**2) * math.pi / 4.0 * diameter_m**2
         return ThrustAndTorque(thrust_n=force * thrust, torque_nm=force * diameter_m * torque)
 
-    def _of_pitch(self, pitch_ratio: float) -> FloatArray:
+    @staticmethod
+    def around_m(diameter_m: float) -> float:
+        """Return the way around the shaft in one turn [m] at the radius where the speed of the blades is taken."""
+        return _AT_RADIUS * math.pi * diameter_m
+
+    def of_pitch(self, pitch_ratio: float) -> FloatArray:
+        """Return ``A_T``, ``B_T``, ``A_Q`` and ``B_Q`` of each multiple of the advance angle, shape (multiples, 4).
+
+        Raises
+        ------
+        PropellerError
+            If the pitch lies outside what was tested.
+        """
         lowest, highest = float(self.pitch_ratios[0]), float(self.pitch_ratios[-1])
         if not lowest <= pitch_ratio <= highest:
             raise PropellerError(

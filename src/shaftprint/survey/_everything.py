@@ -25,7 +25,6 @@ from shaftprint.survey._survey import Survey
 from shaftprint.time_domain import (
     LimitedModel,
     NonlinearSettings,
-    full_load_shape,
     identify_nonlinear,
     structure_for,
 )
@@ -158,7 +157,11 @@ def _model(survey: Survey, limits: LimitFit) -> LimitedModel:
     if chosen:
         model = structure_for(chosen, survey.vessel, point, start=limits.start)
     else:
-        model = LimitedModel(structure=limited(curve=full_load_shape(survey.vessel, point)), limits=(), start={})
+        model = LimitedModel(
+            structure=limited(curve=survey.vessel.machine.full_load_shape(point.engine_speed_rev_s)),
+            limits=(),
+            start={},
+        )
     held = {name: value for name, value in survey.fingerprint.held.items() if name in model.structure.names}
     return replace(model, structure=model.structure.held_at(**held))
 

@@ -16,7 +16,6 @@ from shaftprint.fingerprint import Fingerprint, FoundBy, LimitNumber, LineWithLi
 from shaftprint.limits import Levels, LimitEstimate
 from shaftprint.models import Structure
 from shaftprint.signals import WorkingPoint
-from shaftprint.time_domain import full_load_shape
 from shaftprint.vessel import Vessel
 
 
@@ -51,7 +50,7 @@ def line_with_limits(
         If the fingerprint is of another structure than the closed loop that limits can be put into.
     """
     chosen = levels.structure_limits
-    curve = full_load_shape(vessel, working_point)
+    curve = vessel.machine.full_load_shape(working_point.engine_speed_rev_s)
     structure = limited(*chosen, curve=curve)
     expect_limitable(fingerprint)
     own = tuple(name for name in structure.names if name not in limited().names)

@@ -1,13 +1,11 @@
 """The truth of the Stan Tug 1205 for another ship: its lever and its governor are set for that ship."""
 
-import math
 from dataclasses import replace
 
-from shaftprint.errors import SettingsError
 from shaftprint.tug._coupling import stated_coupling
 from shaftprint.tug._pitch_actuation import PitchActuation, pitch_torque
 from shaftprint.tug._pitch_series import steepened, torque_over_pitch
-from shaftprint.tug._sailing import CURVES_PITCH_RATIO, CURVES_SERIES, Sailing
+from shaftprint.tug._sailing import Sailing, with_propeller_of
 from shaftprint.tug._shaft_machine import ShaftMachineTruth
 from shaftprint.tug._truth import normalised_truth
 from shaftprint.tug._tug import Tug
@@ -88,16 +86,10 @@ def _sailing(vessel: Vessel) -> Sailing | None:
     """Return what makes a ship sail free; None at the quay."""
     if not vessel.is_underway or vessel.hull is None:
         return None
-    propeller, hull = vessel.propeller, vessel.hull
-    if propeller.series != CURVES_SERIES or not math.isclose(propeller.pitch_ratio, CURVES_PITCH_RATIO):
-        raise SettingsError(
-            f"vessel {vessel.name}: expected a propeller {CURVES_SERIES} with a pitch ratio of "
-            f"{CURVES_PITCH_RATIO:g}, the one that the simulated ship has curves of, found "
-            f"{propeller.series or 'no series'} with {propeller.pitch_ratio:g}; leave out working_point.ship_speed_m_s "
-            "to sail at the quay."
-        )
+    hull = vessel.hull
     usual = Sailing()
-    return Sailing(
+    stated = Sailing(
         wake_fraction=usual.wake_fraction if hull.wake_fraction is None else hull.wake_fraction,
         thrust_deduction=usual.thrust_deduction if hull.thrust_deduction is None else hull.thrust_deduction,
     )
+    return with_propeller_of(stated, vessel)

@@ -1,7 +1,7 @@
 """The truth of a tug that sails free: its propellers, the water around them, and the ship that they push."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -23,6 +23,13 @@ TORQUE_PITCH_POWERS = (
 )
 CURVES_PITCH_RATIO = 1.11
 CURVES_SERIES = "Ka4-70 in nozzle 19A"
+
+# Wageningen B4-70 at P/D 0.9 (M.W.C. Oosterveld and P. van Oossanen, Further computer-analyzed data of the Wageningen
+# B-screw series, 1975), gathered alike.
+OPEN_THRUST_POWERS = (0.4053922, -0.2741408, -0.2332849, 0.0816130)
+OPEN_TORQUE_POWERS = (0.0548038, -0.0314026, -0.0287601, 0.0076989)
+OPEN_PITCH_RATIO = 0.90
+OPEN_SERIES = "Wageningen B4-70"
 
 _BISECTIONS = 200
 
@@ -122,6 +129,41 @@ def way_of(sailing: Sailing, vessel: Vessel) -> Way:
         mass_kg=hull.surging_mass_kg if sailing.surging_mass_kg is None else sailing.surging_mass_kg,
         resistance_at_1_m_s=resistance,
         resistance_exponent=exponent,
+    )
+
+
+def with_propeller_of(sailing: Sailing, vessel: Vessel) -> Sailing:
+    """Return a free-sailing ship with the curves of the vessel's propeller.
+
+    Raises
+    ------
+    SettingsError
+        If it is none of those whose curves are known here.
+    """
+    propeller = vessel.propeller
+    known = {CURVES_SERIES: CURVES_PITCH_RATIO, OPEN_SERIES: OPEN_PITCH_RATIO}
+    series = propeller.series or "no series"
+    if not math.isclose(propeller.pitch_ratio, known.get(series, math.nan)):
+        names = " or ".join(f"{name} with a pitch ratio of {pitch:g}" for name, pitch in known.items())
+        raise SettingsError(
+            f"vessel {vessel.name}: expected a propeller {names}, of which the simulated ship has curves, found "
+            f"{series} with {propeller.pitch_ratio:g}; leave out working_point.ship_speed_m_s to sail at the quay."
+        )
+    if series == CURVES_SERIES:
+        return sailing
+    if vessel.pitch is not None or vessel.sensors.pitch_set_point is not None:
+        raise SettingsError(
+            f"vessel {vessel.name}: expected a fixed pitch underway, found one that is moved; the simulated ship has "
+            f"the curves of {series} at one pitch."
+        )
+    still = ((0.0,) * len(OPEN_THRUST_POWERS),) * 2
+    return replace(
+        sailing,
+        thrust_powers=OPEN_THRUST_POWERS,
+        torque_powers=OPEN_TORQUE_POWERS,
+        thrust_pitch_powers=still,
+        torque_pitch_powers=still,
+        pitch_ratio=OPEN_PITCH_RATIO,
     )
 
 

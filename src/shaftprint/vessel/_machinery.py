@@ -5,6 +5,7 @@ from fractions import Fraction as Ratio
 from itertools import pairwise
 from typing import Annotated, ClassVar, Literal, Self
 
+import numpy as np
 from pydantic import Field, model_validator
 
 from shaftprint.settings import (
@@ -68,6 +69,13 @@ class Machine(Settings):
     def full_load(self) -> Curve:
         """Highest torque over speed, straight between the points and flat beyond them."""
         raise NotImplementedError
+
+    def full_load_shape(self, speed_rev_s: float) -> tuple[tuple[float, float], ...]:
+        """Return corners of ``full_load``: deviations from a speed [rev/s], and torque over that at this speed."""
+        speed_rpm, torque_nm = self.full_load
+        deviation = rev_s_from_rpm(np.array(speed_rpm)) / speed_rev_s - 1.0
+        share = np.array(torque_nm) / np.interp(0.0, deviation, torque_nm)
+        return tuple((float(a), float(b)) for a, b in zip(deviation, share, strict=True))
 
     @property
     def torque_orders(self) -> tuple[Ratio, ...]:
@@ -207,6 +215,10 @@ class Gearbox(Settings):
     """Engine speed over propeller-shaft speed."""
     efficiency: Fraction
     """Power out over power in, from engine flange to torque gauge."""
+    astern_ratio: PositiveNumber | None = None
+    """The same with the clutch of astern closed, above 0; None where nobody states it."""
+    clutch_torque_nm: PositiveNumber | None = None
+    """Torque at the engine's side at which a closed clutch slips [N m]; None where nobody states it."""
     propeller_rated_rpm: PositiveNumber | None = None
     """Speed of the propeller shaft at rated engine speed as the papers state it [rpm]; the ratio is held against it."""
 

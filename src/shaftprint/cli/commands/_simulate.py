@@ -5,12 +5,14 @@ from pathlib import Path
 import click
 import numpy as np
 
+from shaftprint.catalogue import CRASH_STOP
+from shaftprint.cli._crash_stop import LeverMove, crash_stop_run, is_crash_stop, lever_option
 from shaftprint.cli._known_values import named_value, rpm_per_volt_option
 from shaftprint.cli._options import NAMES
 from shaftprint.cli._own_structure import OWN_FILE_HELP, TypedName
 from shaftprint.cli._simulated_model import LIMITED_HELP, simulated_model
 from shaftprint.cli._simulated_set_point import Drive, Place, campaign_drive, file_drive, place_of
-from shaftprint.cli._simulation_run import Prediction, predicted, signals_of, write_signals
+from shaftprint.cli._simulation_run import Prediction, Run, predicted, signals_of, write_signals
 from shaftprint.cli._simulation_tables import print_simulation
 from shaftprint.cli._terminal import answer
 from shaftprint.cli.commands._inertia import picture
@@ -47,7 +49,8 @@ def span_of_time(
 @click.option(
     "--structure",
     metavar="NAME",
-    help=f"Model structure, the fingerprint's with its limits by default: {OWN_FILE_HELP}; or {LIMITED_HELP}.",
+    help=f"Model structure, the fingerprint's with its limits by default: {OWN_FILE_HELP}; or {LIMITED_HELP}; or "
+    f"{CRASH_STOP}, a ship that is stopped by its clutches.",
 )
 @click.option(
     "--linear", is_flag=True, help="Model for small signals, although the fingerprint has the line with its limits."
@@ -67,8 +70,12 @@ def span_of_time(
     type=click.Path(path_type=Path),
     help='Instead of a campaign a CSV, MATLAB or NetCDF file with columns named as the inputs; "set point [rpm]" too.',
 )
+@lever_option
 @click.option("--hold", is_flag=True, help="Keep each value of --input until the next; straight in between otherwise.")
-@click.option("--vessel", help=f"Vessel file, for a working point without a fingerprint: {NAMES} stan-tug-1205.")
+@click.option(
+    "--vessel",
+    help=f"Vessel file, for a working point without a fingerprint, or the ship that is stopped: {NAMES} stan-tug-1205.",
+)
 @rpm_per_volt_option
 @click.option(
     "--between",
@@ -98,6 +105,7 @@ def command(
     given: tuple[tuple[str, float], ...],
     campaign: str | None,
     table: Path | None,
+    moves: tuple[LeverMove, ...],
     hold: bool,
     vessel: str | None,
     rpm_per_volt: float | None,
@@ -118,18 +126,31 @@ def command(
             expect_no_input(path, table, None if fingerprint is None else fingerprint_file(fingerprint))
             expect_free(path, force=force)
     identified = None if fingerprint is None else fingerprint_at(fingerprint)
-    model = simulated_model(structure, identified, dict(given), linear=linear)
-    working_point = place_of(identified, vessel, rpm_per_volt)
-    drive = _drive(campaign, table, model.structure, working_point, hold=hold, span=span, rate_hz=rate_hz)
+    values = dict(given)
+    if is_crash_stop(structure):
+        _expect_only_a_lever(campaign, table, rpm_per_volt)
+        run = crash_stop_run(vessel, identified, values, moves, rate_hz=rate_hz, span=span)
+    else:
+        _expect_no_lever(moves)
+        place = place_of(identified, vessel, rpm_per_volt)
+        model = simulated_model(structure, identified, values, linear=linear)
+        run = Run(
+            model=model,
+            place=place,
+            drive=_drive(campaign, table, model.structure, place, hold=hold, span=span, rate_hz=rate_hz),
+        )
     with progress(hidden=no_progress) as steps:
-        prediction = predicted(model, drive, steps=steps)
-        signals = signals_of(drive, prediction, working_point)
+        prediction = predicted(run.model, run.drive, steps=steps)
+        signals = signals_of(run.drive, prediction, run.place)
         if figure is not None:
             steps.begin("Drawing")
-            _draw(drive, signals, model.structure.name, figure)
+            _draw(run, signals, figure)
         steps.begin("Writing")
-        write_signals(output, drive.time_s, signals, overwrite=force)
-    print_simulation(model, drive.time_s, signals, warnings=_warnings(model.structure, drive, prediction))
+        write_signals(output, run.drive.time_s, signals, overwrite=force)
+    for sentence in run.answers(prediction):
+        answer(sentence)
+    warnings = _warnings(run.model.structure, run.drive, prediction)
+    print_simulation(run.model, run.drive.time_s, signals, warnings=warnings)
     for path in (output, figure):
         if path is not None:
             answer(path)
@@ -153,9 +174,21 @@ def _drive(
     return file_drive(table, structure, place, hold=hold, span=span)
 
 
-def _draw(drive: Drive, signals: tuple[SimulatedSignal, ...], name: str, path: Path) -> None:
+def _expect_only_a_lever(*others: object) -> None:
+    if any(other is not None for other in others):
+        raise click.UsageError(
+            f"{CRASH_STOP} is moved by --lever alone, without --campaign, --input or --rpm-per-volt."
+        )
+
+
+def _expect_no_lever(moves: tuple[LeverMove, ...]) -> None:
+    if moves:
+        raise click.UsageError(f"--lever is for --structure {CRASH_STOP}, whose engine has clutches.")
+
+
+def _draw(run: Run, signals: tuple[SimulatedSignal, ...], path: Path) -> None:
     with written_whole(path, overwrite=True) as part:
-        save_chart(simulation_chart(drive.time_s, signals, name=name), part)
+        save_chart(simulation_chart(run.drive.time_s, signals, name=run.model.structure.name), part)
 
 
 def _warnings(structure: Structure, drive: Drive, prediction: Prediction) -> list[str]:

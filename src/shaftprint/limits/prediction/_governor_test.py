@@ -12,7 +12,7 @@ from shaftprint.errors import SignalError
 from shaftprint.limits.prediction._set_point import GovernorRecord
 from shaftprint.normalisation import Normalisation
 from shaftprint.signals import Signals, deviation
-from shaftprint.time_domain import Decimator, Jump, full_load_shape, jumps_in, with_jumps
+from shaftprint.time_domain import Decimator, Jump, jumps_in, with_jumps
 from shaftprint.vessel import Vessel
 
 # Samples of the record and of its drive a second [Hz]. Above 6 Hz a governor hardly acts, and what a pick-up of one
@@ -185,7 +185,7 @@ def governor_test(signals: Signals, campaign: Campaign, vessel: Vessel) -> Gover
     lost = ~(np.isfinite(speed) & np.isfinite(torque) & np.isfinite(set_point))
     margin, settled = round(BESIDE_S * signals.rate_hz), round(SETTLED_S * signals.rate_hz)
     lost = _within(lost | _within(speed < SLOW, margin, margin), 0, settled)
-    curve = np.array(full_load_shape(vessel, point))
+    curve = np.array(vessel.machine.full_load_shape(point.engine_speed_rev_s))
     set_point = _filled(time, set_point)
     jumps = jumps_in(time, set_point, campaign)
     on_time = np.zeros(len(jumps))

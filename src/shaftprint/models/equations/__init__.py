@@ -1,6 +1,7 @@
 """Equations in time: formulas, their derivatives and values, the flow that a block asks, limits and engine parts."""
 
 from shaftprint.models.equations._calculus import depends, derivative, derivatives, postorder, rebuilt, replaced, swept
+from shaftprint.models.equations._clutch import slipping_clutch
 from shaftprint.models.equations._engine_parts import boosted, firing_delay, full_load, quadratic_propeller
 from shaftprint.models.equations._evaluate import Array, Leaves, evaluate
 from shaftprint.models.equations._flow import Flow, Past
@@ -62,6 +63,7 @@ __all__ = [
     "rebuilt",
     "replaced",
     "second_order_lag",
+    "slipping_clutch",
     "stribeck_friction",
     "swept",
     "table",

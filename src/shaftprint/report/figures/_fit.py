@@ -1,5 +1,6 @@
 """A fitted model through its data: Bode diagram, and below it what it leaves and its band in deviations of the data."""
 
+import math
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -75,5 +76,5 @@ def _model_halves(curve: Curve, channel: int, frequency_hz: FloatArray) -> tuple
         nothing = np.full(frequency_hz.size, np.nan)
         return nothing, nothing
     band = model_band(curve.structure, curve.values, curve.covariance, frequency_hz)
-    magnitude = (band.magnitude_upper_db - band.magnitude_db)[channel] / decibel(float(np.e))
+    magnitude = (band.magnitude_upper_db - band.magnitude_db)[channel] / decibel(math.e)
     return magnitude, np.radians((band.phase_upper_deg - band.phase_deg)[channel])

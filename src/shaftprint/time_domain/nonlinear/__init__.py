@@ -9,7 +9,7 @@ from shaftprint.time_domain.nonlinear._numbers import LimitNumber, limit_numbers
 from shaftprint.time_domain.nonlinear._orders import without_orders
 from shaftprint.time_domain.nonlinear._search import SomeDrawn
 from shaftprint.time_domain.nonlinear._settings import NonlinearSettings
-from shaftprint.time_domain.nonlinear._structure import LimitedModel, full_load_shape, structure_for
+from shaftprint.time_domain.nonlinear._structure import LimitedModel, structure_for
 
 __all__ = [
     "Jump",
@@ -19,7 +19,6 @@ __all__ = [
     "NonlinearFit",
     "NonlinearSettings",
     "SomeDrawn",
-    "full_load_shape",
     "identify_nonlinear",
     "jump_stretches",
     "jumps_in",

@@ -9,7 +9,6 @@ from shaftprint.catalogue import GovernorSymbol, limited
 from shaftprint.errors import IdentificationError
 from shaftprint.models import Structure
 from shaftprint.signals import WorkingPoint
-from shaftprint.units import rev_s_from_rpm
 from shaftprint.vessel import Vessel
 
 ORDER = ("torque", "rate", "deadband", "ramp", "smoke")
@@ -63,7 +62,7 @@ def structure_for(
         )
     names = {*limits, "torque"} if "smoke" in limits else set(limits)
     chosen = tuple(limit for limit in ORDER if limit in names)
-    structure = limited(*chosen, curve=full_load_shape(vessel, working_point))
+    structure = limited(*chosen, curve=vessel.machine.full_load_shape(working_point.engine_speed_rev_s))
     linear = limited().names
     bounds = {p.name: (p.lower, p.upper) for p in structure.parameters if p.name not in linear}
     clipped = {name: float(np.clip(value, *bounds[name])) for name, value in (start or {}).items() if name in bounds}
@@ -71,12 +70,3 @@ def structure_for(
     if start and motoring in bounds and motoring not in start:
         structure = structure.held_at(**{motoring: bounds[motoring][0]})
     return LimitedModel(structure=structure, limits=chosen, start=clipped)
-
-
-def full_load_shape(vessel: Vessel, working_point: WorkingPoint) -> tuple[tuple[float, float], ...]:
-    """Return the full-load curve as speed deviations and torque over that at the working-point speed."""
-    speed_rpm, torque_nm = vessel.machine.full_load
-    speed = rev_s_from_rpm(np.array(speed_rpm)) / working_point.engine_speed_rev_s - 1.0
-    torque = np.array(torque_nm)
-    share = torque / np.interp(0.0, speed, torque)
-    return tuple((float(a), float(b)) for a, b in zip(speed, share, strict=True))

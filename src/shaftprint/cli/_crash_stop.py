@@ -1,0 +1,277 @@
+"""A crash stop for ``simulate``: the ship of a vessel file, moves of the lever, and when and where it stands."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from itertools import pairwise
+
+import click
+import numpy as np
+
+from shaftprint.arrays import FloatArray, frozen_float
+from shaftprint.catalogue import CRASH_STOP
+from shaftprint.cli._own_structure import TypedName
+from shaftprint.cli._simulated_model import SimulatedModel
+from shaftprint.cli._simulated_set_point import SAME_WORKING_POINT, Drive, Place
+from shaftprint.cli._simulation_run import Prediction, Run
+from shaftprint.errors import FingerprintError, StructureError
+from shaftprint.fingerprint import Fingerprint
+from shaftprint.simulation import StoppedShip, stopped_ship
+from shaftprint.spelling import meant
+from shaftprint.tables import with_deviation
+from shaftprint.vessel import load_vessel
+
+GEARS: Mapping[str, float] = {"ahead": 1.0, "neutral": 0.0, "astern": -1.0}
+# What follows the last move, where no end is given; and the steps of the simulation, which a closed clutch needs.
+_AFTER_S, _STEP_S = 120.0, 2.5e-3
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class LeverMove:
+    """What the lever asks for from a time on."""
+
+    time_s: float
+    """When [s]."""
+    speed_rpm: float
+    """Engine speed [rpm]."""
+    gear: float
+    """1 ahead, 0 neither clutch, -1 astern."""
+
+
+class _LeverMoveType(click.ParamType):  # type: ignore[type-arg]
+    """``TIME:SPEED:GEAR``."""
+
+    name = "move"
+
+    def convert(self, value: object, param: click.Parameter | None, ctx: click.Context | None) -> LeverMove:
+        """Return a move as it was typed."""
+        time, speed, gear = (*str(value).split(":"), "", "")[:3]
+        try:
+            move = LeverMove(time_s=float(time), speed_rpm=float(speed), gear=GEARS[gear.strip().lower()])
+        except (ValueError, KeyError):
+            move = None
+        if (
+            move is None
+            or str(value).count(":") != 2
+            or not (0.0 <= move.time_s < np.inf and 0.0 < move.speed_rpm < np.inf)
+        ):
+            self.fail(
+                f"expected a time in s, an engine speed in rpm and one of {', '.join(GEARS)}, such as 5:650:neutral, "
+                f"found {value}.",
+                param,
+                ctx,
+            )
+        return move
+
+
+lever_option = click.option(
+    "--lever",
+    "moves",
+    metavar="TIME:RPM:GEAR",
+    type=_LeverMoveType(),
+    multiple=True,
+    help=f"For {CRASH_STOP}: from this time [s] the lever asks for an engine speed and ahead, neutral or astern, such "
+    "as 5:650:neutral; may be repeated. Ahead at the working point before.",
+)
+
+
+def is_crash_stop(name: TypedName | None) -> bool:
+    """Return whether a user names the structure that needs a vessel file."""
+    return name is not None and name.upper() == CRASH_STOP
+
+
+def crash_stop_run(
+    vessel: str | None,
+    fingerprint: Fingerprint | None,
+    given: Mapping[str, float],
+    moves: tuple[LeverMove, ...],
+    *,
+    rate_hz: float,
+    span: tuple[float, float] | None,
+) -> Run:
+    """Return the crash stop of a ship: numbers of its vessel file, of a fingerprint above them, the user's on top.
+
+    Parameters
+    ----------
+    vessel
+        Vessel file of the ship.
+    fingerprint
+        Test of the same ship underway at the same speed, for governor, engine and inertias.
+    given
+        Values that the user states.
+    moves
+        What the lever asks for.
+    rate_hz, span
+        Samples a second that are written [Hz]; begin and end [s], until two minutes after the last move if not given.
+
+    Raises
+    ------
+    click.UsageError
+        If no vessel or no move is given, or the moves do not follow each other within the span.
+    SettingsError, PropellerError
+        If the vessel file does not describe a ship that can be stopped like this.
+    StructureError
+        If there is no parameter of a name.
+    FingerprintError
+        If the fingerprint has another working point: its numbers are over the torque and speed of that.
+    """
+    if vessel is None:
+        raise click.UsageError(f"{CRASH_STOP} expects --vessel, the ship that is stopped.")
+    ship = stopped_ship(load_vessel(vessel))
+    if fingerprint is not None:
+        _expect_same_point(fingerprint, ship)
+    place = _place(ship)
+    drive = _lever_drive(moves, place, rate_hz=rate_hz, span=span)
+    return Run(
+        model=_model(ship, fingerprint, given),
+        place=place,
+        drive=drive,
+        answers=lambda prediction: _answers(drive, prediction, ship),
+    )
+
+
+def _expect_same_point(fingerprint: Fingerprint, ship: StoppedShip) -> None:
+    conditions, point = fingerprint.conditions, ship.vessel.working_point
+    pairs = {
+        "rpm": (conditions.engine_speed.value, point.engine_speed_rpm),
+        "N m": (conditions.shaft_torque.value, point.shaft_torque_nm),
+    }
+    for unit, (tested, stated) in pairs.items():
+        if abs(tested / stated - 1.0) > SAME_WORKING_POINT:
+            raise FingerprintError(
+                f"{CRASH_STOP}: expected a fingerprint from about {stated:g} {unit}, the working point of "
+                f"{ship.vessel.name}, found one from {tested:.5g} {unit}; its gains and times are over its own."
+            )
+
+
+def _place(ship: StoppedShip) -> Place:
+    point = ship.vessel.working_point
+    return Place(
+        engine_speed_rpm=point.engine_speed_rpm,
+        shaft_torque_nm=point.shaft_torque_nm,
+        slope_rpm_per_v=None,
+        intercept_rpm=None,
+        shaft_speed_rpm=point.engine_speed_rpm / ship.vessel.gearbox.ratio,
+        ship_speed_m_s=point.ship_speed_m_s,
+    )
+
+
+def _model(ship: StoppedShip, fingerprint: Fingerprint | None, given: Mapping[str, float]) -> SimulatedModel:
+    structure, names = ship.structure, ship.structure.names
+    unknown = [name for name in given if name not in names]
+    if unknown:
+        raise StructureError(
+            f"--set {', '.join(unknown)}: expected a parameter of {structure.name}, one of {', '.join(names)}."
+            f"{meant(unknown[0], names)}"
+        )
+    stated = {name: number.value for name, number in ship.stated.items()}
+    tested: dict[str, float] = {}
+    if fingerprint is not None:
+        tested = {q.name: q.value for q in fingerprint.parameters} | dict(fingerprint.held)
+        # a dither does not tell wake, resistance and time of the ship apart
+        tested = {name: value for name, value in tested.items() if name in ship.of_the_line}
+    origins = dict.fromkeys(names, "usual value") | dict.fromkeys(stated, "vessel file")
+    origins |= dict.fromkeys(tested, "fingerprint") | dict.fromkeys(given, "--set")
+    uncertain, covariance = _covariance(ship, fingerprint, origins)
+    std = {} if fingerprint is None else {q.name: q.std for q in fingerprint.parameters}
+    return SimulatedModel(
+        structure=structure,
+        values=frozen_float(structure.vector(stated | tested | dict(given))),
+        origins=tuple(origins[name] for name in names),
+        uncertain=uncertain,
+        covariance=covariance,
+        not_known=tuple(n for n, s in std.items() if origins.get(n) == "fingerprint" and not np.isfinite(s)),
+    )
+
+
+def _covariance(
+    ship: StoppedShip, fingerprint: Fingerprint | None, origins: Mapping[str, str]
+) -> tuple[tuple[str, ...], FloatArray]:
+    """Return which parameters have a deviation, and their covariance: the fingerprint's, then the vessel file's."""
+    tested = () if fingerprint is None else fingerprint.parameters
+    places = [
+        place
+        for place, q in enumerate(tested)
+        if origins.get(q.name) == "fingerprint" and np.isfinite(q.std) and q.std > 0.0
+    ]
+    stated = [name for name, number in ship.stated.items() if origins[name] == "vessel file" and number.std > 0.0]
+    covariance = np.diag([0.0] * len(places) + [ship.stated[name].std ** 2 for name in stated])
+    if fingerprint is not None:
+        whole = np.array(fingerprint.covariance).reshape(len(tested), len(tested))
+        covariance[: len(places), : len(places)] = whole[np.ix_(places, places)]
+    return (*(tested[place].name for place in places), *stated), frozen_float(covariance)
+
+
+def _lever_drive(
+    moves: tuple[LeverMove, ...], place: Place, *, rate_hz: float, span: tuple[float, float] | None
+) -> Drive:
+    times = [move.time_s for move in moves]
+    if not moves or any(later <= earlier for earlier, later in pairwise(times)):
+        raise click.UsageError(f"{CRASH_STOP} expects --lever, one or more, each at a later time than the one before.")
+    begin, end = span or (0.0, times[-1] + _AFTER_S)
+    if not begin <= times[0] or not times[-1] < end:
+        raise click.UsageError(
+            f"--between: expected a stretch that holds all moves of the lever, {times[0]:g} to {times[-1]:g} s, found "
+            f"{begin:g} to {end:g} s."
+        )
+    every = int(np.ceil(1.0 / (rate_hz * _STEP_S) - 1e-9))
+    time = frozen_float(begin + np.arange(int(np.floor((end - begin) * rate_hz + 1e-9)) + 1) / rate_hz)
+    fine = frozen_float(begin + np.arange((time.size - 1) * every + 1) / (rate_hz * every))
+    shown = _asked(moves, place, time)
+    return Drive(
+        time_s=time,
+        every=every,
+        inputs=_asked(moves, place, fine),
+        shown=shown | {"gear": frozen_float(1.0 + shown["gear"])},
+        units=dict.fromkeys(shown, "-"),
+        hold=False,
+    )
+
+
+def _asked(moves: tuple[LeverMove, ...], place: Place, time_s: FloatArray) -> dict[str, FloatArray]:
+    """Return both inputs at times, deviations from ahead at the working point."""
+    latest = np.searchsorted([move.time_s for move in moves], time_s, side="right")
+    speeds = np.array([0.0, *(move.speed_rpm / place.engine_speed_rpm - 1.0 for move in moves)])
+    gears = np.array([0.0, *(move.gear - 1.0 for move in moves)])
+    return {"n_set": frozen_float(speeds[latest]), "gear": frozen_float(gears[latest])}
+
+
+def _answers(drive: Drive, prediction: Prediction, ship: StoppedShip) -> list[str]:
+    """Return when and where the ship stands, from the first move of the lever on, and whether the engine stalls."""
+    vessel = ship.vessel
+    slowest = (1.0 + float(prediction.outputs["n"].min())) * vessel.working_point.engine_speed_rpm
+    idle = vessel.machine.lowest_governed_rpm
+    sentences = [_standstill(drive, prediction, ship.speed_m_s)]
+    if slowest < idle * (1.0 - SAME_WORKING_POINT):
+        sentences.append(
+            f"The engine is dragged down to {max(slowest, 0.0):.0f} rpm, below its {idle:g} rpm of idling: it may "
+            "stall. Close the clutch of astern later, or at more speed."
+        )
+    return sentences
+
+
+def _standstill(drive: Drive, prediction: Prediction, speed_m_s: float) -> str:
+    time, sails = drive.time_s, 1.0 + prediction.outputs["v_s"]
+    distance = speed_m_s * (time - time[0] + prediction.outputs["x_s"])
+    moved = int(np.searchsorted(time, _first_move_s(drive)))
+    later = np.nonzero(sails <= 0.0)[0]
+    if not later.size:
+        return (
+            f"The ship still makes {speed_m_s * sails[-1]:.2f} m/s at {time[-1]:g} s; a later end of --between shows "
+            "when it stands."
+        )
+    at = int(later[0])
+    share = sails[at - 1] / (sails[at - 1] - sails[at])
+    seconds = float(time[at - 1] + share * (time[at] - time[at - 1]) - time[moved])
+    metres = float(distance[at - 1] + share * (distance[at] - distance[at - 1]) - distance[moved])
+    if prediction.std is None:
+        return f"The ship stands {seconds:.1f} s and {metres:.1f} m after the first move of the lever."
+    slope = (sails[at - 1] - sails[at]) / (time[at] - time[at - 1])
+    # where the ship stands, a later stop makes no way
+    of_seconds = with_deviation(seconds, float(prediction.std["v_s"][at] / slope))
+    of_metres = with_deviation(metres, float(speed_m_s * prediction.std["x_s"][at]))
+    return f"The ship stands {of_seconds} s and {of_metres} m after the first move of the lever."
+
+
+def _first_move_s(drive: Drive) -> float:
+    moves = np.any(np.diff([drive.shown[name] for name in ("n_set", "gear")]) != 0.0, axis=0)
+    return float(drive.time_s[np.argmax(moves) + 1])
