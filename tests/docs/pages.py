@@ -24,6 +24,7 @@ SHOWN = {
     "README.md": "What was found",
     "docs/start.md": "Propeller, shaft and entrained water",
     "docs/free-sailing.md": "thrust   T* =",
+    "docs/crash-stop.md": "engine      tau_up",
     "docs/rooms.md": "┌",
     "docs/several-loggers.md": "PTM_1, PTM_4 and M_s were logged",
 }

@@ -30,8 +30,8 @@ OTHER_TEXT = "\n".join(path.read_text(encoding="utf-8") for path in OTHER_TESTS)
 OPENED = {page for page in PAGES if f'"{Path(page).name}"' in OTHER_TEXT}
 WITH_PYTHON = [page for page in PAGES if python_of(page)]
 WITH_COMMANDS = [page for page in PAGES if commands_of(page)]
-# these sail a test and identify it
-SLOW = {"docs/thesis-figures.md", "docs/gallery.md"} | {
+# these sail a test and identify it; the documentation, which .ci/run builds, is built by running them too
+LONG = {"docs/thesis-figures.md", "docs/gallery.md"} | {
     f"docs/tutorials/{name}.md" for name in ("first-fingerprint", "own-structure", "logger-file", "two-loggers", "fmu")
 }
 # Kinds of blocks, each with the file that holds them against something.
@@ -59,7 +59,7 @@ def test_what_is_no_line_for_a_shell_is_there(page):
 @pytest.mark.parametrize(
     "page",
     [
-        pytest.param(page, marks=pytest.mark.slow) if page in SLOW else page
+        pytest.param(page, marks=pytest.mark.long) if page in LONG else page
         for page in WITH_PYTHON
         if page not in OPENED
     ],

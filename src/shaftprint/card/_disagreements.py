@@ -26,8 +26,8 @@ def disagreements(vessel: Vessel) -> tuple[Disagreement, ...]:
     Held against each other are gear ratio, engine and propeller speed; working speed, idle and highest speed; working
     torque, full-load curve, rated power and full scale of the gauge; what a clutch holds and the full-load curve;
     working torque, torque coefficient and propeller series; a controllable pitch and the series; underway the speed of
-    the ship, at which thrust is to meet resistance; inertias and stiffnesses of the links. A torque that is off by a factor of two contradicts the series, by a quarter
-    it is strange.
+    the ship, at which thrust is to meet resistance; inertias and stiffnesses of the links. A torque that is off by a
+    factor of two contradicts the series, by a quarter it is strange.
     """
     of_propeller = (_thrust,) if vessel.is_underway else (_series, _coefficient)
     checks = (
