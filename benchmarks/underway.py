@@ -1,11 +1,11 @@
 """Half an hour of dither in service: to what the numbers of line and ship are known, in two sea states.
 
 A simulated ship sails the shipped campaign ``dither``, 2 % of the speed about 1600 rpm, with the log in the recording:
-the Stan Tug 1205 with its propellers in nozzles, or the PT May with open ones (``--vessel pt-may-underway``). Governor, actuation, inertias, wake, thrust deduction, resistance, mass, pitch, scale, zero and latency of
-the torque gauge, scale and latency of the log and all noise are drawn; the vessel file says what a yard would know.
-Waves swing the torque of the propeller at the frequency at which they are met. Run
-``python -m benchmarks.underway --seeds 50 --write``, about ten seconds a test of one core; outcomes in a folder are not
-sailed again.
+the Stan Tug 1205 with its propellers in nozzles, or the PT May with open ones (``--vessel pt-may-underway``). Governor,
+actuation, inertias, wake, thrust deduction, resistance, mass, pitch, scale, zero and latency of the torque gauge, scale
+and latency of the log and all noise are drawn; the vessel file says what a yard would know. Waves swing the torque of
+the propeller at the frequency at which they are met. Run ``python -m benchmarks.underway --seeds 50 --write``, about
+ten seconds a test of one core; outcomes in a folder are not sailed again.
 """
 
 import argparse
