@@ -72,10 +72,12 @@ def _of_change(change: ShipChange) -> str:
 
 
 def odds_text(odds: float) -> str:
+    """Return odds against one; those that nobody can tell apart are said to be more than the largest."""
     return f"more than {MOST_ODDS:g} : 1" if odds > MOST_ODDS else f"{odds:.0f} : 1"
 
 
 def ways_text(causes: Iterable[Cause]) -> str:
+    """Return what would tell causes apart, each way once."""
     return "; ".join(dict.fromkeys(cause.told_by for cause in causes))
 
 
