@@ -137,7 +137,11 @@ def test_structure_of_ones_own(run, tmp_path):
         (("--free", "mass"), 1, "--free mass: expected a free parameter, one of K_p"),
         (("--value", "mass=1"), 1, "mass"),
         (("--prior", "mass=1+-1"), 1, "prior of mass: structure GAUGE-CLOSED has the free parameters K_p"),
-        (("--structure", "GAUGE-ECU"), 1, "Give a recording of the other channels with --from"),
+        (
+            ("--structure", "GAUGE-ECU"),
+            1,
+            "found that of n, M_s alone. Give a recording of the other channels with --from",
+        ),
         (("--from", "log.nc"), 2, "--from needs --vessel"),
         (("--rpm-per-volt", "250"), 2, "--rpm-per-volt needs --vessel"),
         (("--rpm-per-volt", "0"), 2, "expected a number other than 0, such as -250, found 0"),

@@ -16,7 +16,7 @@ from shaftprint.design import (
     stated_limits,
 )
 from shaftprint.errors import DesignError
-from shaftprint.tug import Tug, simulate_signals
+from shaftprint.tug import Tug, like_stan_tug_1205, normalised_truth, simulate_signals
 from shaftprint.vessel import load_vessel
 
 N_0, TORQUE = 1183.8, 1725.0 / (3.82 * 0.97)
@@ -177,3 +177,22 @@ def test_shipped_tests_keep_the_limits_of_the_shipped_tug(ship, truth, name):
     assert limits_from_vessel(ship, set_point_rpm=251.0).set_point_rpm >= np.max(
         np.abs(deviation[operation.stretches["M1"]])
     )
+
+
+@pytest.mark.parametrize(
+    ("name", "campaign"), [("stan-tug-1205-underway", "dither"), ("nifs-research-vessel", "pitch")]
+)
+def test_underway_and_with_a_moved_pitch_it_is_what_the_simulated_ship_does(name, campaign):
+    vessel, asked = load_vessel(name), load_campaign(campaign)
+    tug = like_stan_tug_1205(vessel, offset_v=asked.offset_v)
+    slope = tug.set_point_slope_rpm_per_v
+    expected = expected_operation(asked, vessel, normalised_truth(tug, vessel), slope_rpm_per_v=slope)
+    sailed = simulate_signals(vessel, asked, tug=tug)
+    for ours, theirs in (
+        (expected.speed_rpm, 60.0 * sailed.engine_speed_rev_s),
+        (expected.shaft_torque_nm, sailed.shaft_torque_nm),
+        (expected.brake_torque_nm, sailed.brake_torque_nm),
+    ):
+        swing = np.ptp(theirs)
+        assert np.ptp(ours) == pytest.approx(swing, rel=0.03)
+        assert np.interp(sailed.time_s, expected.time_s, ours) == pytest.approx(theirs, abs=0.06 * swing)

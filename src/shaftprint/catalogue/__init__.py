@@ -13,10 +13,12 @@ from shaftprint.catalogue._crash_stop import (
 from shaftprint.catalogue._drives import DRIVES, SIGNAL_MEANINGS, SIGNAL_UNITS
 from shaftprint.catalogue._gauge import gauge_governor, gauge_line
 from shaftprint.catalogue._hybrid_at_large import limited_hybrid
-from shaftprint.catalogue._known_propeller import KnownPropeller, sails_free, with_known_propeller
+from shaftprint.catalogue._known_propeller import KnownPropeller, sailing_values, sails_free, with_known_propeller
 from shaftprint.catalogue._limited import limited
 from shaftprint.catalogue._limited_governor import AHEAD_S, GovernorSymbol, limited_governor
+from shaftprint.catalogue._pitch import pitched_with_rack
 from shaftprint.catalogue._roles import ROLES, ShipRole
+from shaftprint.catalogue._sailing import sailing_with_rack
 from shaftprint.catalogue._sailing_at_large import pitch_actuator, sailing_at_large
 from shaftprint.catalogue._sailing_blocks import PitchSpeed, SailingShaft, SailingSpeed, SailingTorque
 from shaftprint.catalogue._shipped import expect_roles, shipped_structure
@@ -55,7 +57,10 @@ __all__ = [
     "limited_governor",
     "limited_hybrid",
     "pitch_actuator",
+    "pitched_with_rack",
     "sailing_at_large",
+    "sailing_values",
+    "sailing_with_rack",
     "sails_free",
     "shipped_structure",
     "structure",

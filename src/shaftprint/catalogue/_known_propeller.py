@@ -87,6 +87,30 @@ def sails_free(structure: Structure) -> bool:
     return set(_OF_THE_SHIP) <= set(structure.names)
 
 
+def sailing_values(
+    structure: Structure, *, exponent: float, time_s: float, slopes: tuple[float, float] | None = None
+) -> dict[str, float]:
+    """Return the values of a free-sailing structure by its names, within its bounds; nothing of one that does not.
+
+    Parameters
+    ----------
+    structure
+        FREE-CORE, FREE-SHIP, FREE-CLOSED, FREE-LOG or FREE-PITCH.
+    exponent
+        Slope of the resistance, ``d ln R / d ln v``.
+    time_s
+        Time of the ship, ``m v / R`` [s].
+    slopes
+        Of thrust and torque coefficient, ``KnownPropeller.slopes``, where they are known.
+    """
+    if not sails_free(structure):
+        return {}
+    a, b, e, tau_u = _OF_THE_SHIP
+    values = {e: exponent, tau_u: time_s} | ({} if slopes is None else {a: slopes[0], b: slopes[1]})
+    bounds = {p.name: (p.lower, p.upper) for p in structure.parameters}
+    return {name: float(np.clip(value, *bounds[name])) for name, value in values.items()}
+
+
 def with_known_propeller(
     structure: Structure, propeller: KnownPropeller, *, mass_kg: float, resistance_n: float | None = None
 ) -> Structure:

@@ -17,6 +17,8 @@ piston (statistical linearisation: A. Gelb and W. E. Vander Velde, Multiple-inpu
 system design, 1968, chapter 7). A feedback whose latency is other than stated shows in it too.
 """
 
+from dataclasses import replace
+
 from shaftprint.catalogue._gauge import (
     C_SET,
     GAUGE_K_I,
@@ -73,6 +75,18 @@ T_BLADE = Parameter(
 C_PITCH = Parameter(
     "c_pitch", "-", 0.8, 1.25, 1.0, "change of pitch that is shown over that reached", role=ShipRole.PITCH_SENSOR_SCALE
 )
+
+
+def pitched_with_rack() -> Structure:
+    """Return the part of GAUGE-PITCH behind the set point of the pitch, with the fuel rack ``X`` in place of the pitch.
+
+    The governor works against what the pitch does to the speed: ``X = -C n``.
+    """
+    part = gauge_pitch().of_input("theta_set")
+    paths = dict(zip([output for output, _ in part.channels], part.paths, strict=True))
+    speed, torque = paths["n"], paths["M_s"]
+    rack = -(PIGovernor(GAUGE_K_P, GAUGE_K_I) * speed)
+    return replace(part, name="PITCH-RACK", outputs={"n": speed, "M_s": torque, "X": rack})
 
 
 def gauge_pitch() -> Structure:

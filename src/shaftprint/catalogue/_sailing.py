@@ -108,7 +108,7 @@ def free_ship() -> Structure:
 
 def free_closed() -> Structure:
     """Return the closed loop of a free-sailing ship: ``n`` and ``M_s`` from ``n_set``."""
-    speed, torque, _ = _governed()
+    speed, torque, _, _ = _governed()
     return Structure(
         name="FREE-CLOSED",
         title="closed loop of a free-sailing ship",
@@ -123,13 +123,25 @@ def free_log() -> Structure:
 
     ``v_s / n = sigma (2 - a) exp(-s t_log) / (tau_u s + e - a)`` in addition to what FREE-CLOSED shows.
     """
-    speed, torque, ship = _governed()
+    speed, torque, ship, _ = _governed()
     return Structure(
         name="FREE-LOG",
         title="closed loop of a free-sailing ship with its speed logged",
         input="n_set",
         outputs={"n": speed * _speed_sensor(), "M_s": torque * _torque_sensor(), "v_s": ship * Delay(T_LOG)},
         combinations=(*_combinations(), *_ship_combinations()),
+    )
+
+
+def sailing_with_rack() -> Structure:
+    """Return FREE-CLOSED with the fuel rack ``X`` that the governor asks for: for what a test asks of the engine."""
+    speed, torque, _, rack = _governed()
+    return Structure(
+        name="FREE-RACK",
+        title="closed loop of a free-sailing ship with its fuel rack",
+        input="n_set",
+        outputs={"n": speed * _speed_sensor(), "M_s": torque * _torque_sensor(), "X": rack},
+        combinations=_combinations(),
     )
 
 
@@ -179,11 +191,13 @@ def free_pitch() -> Structure:
     )
 
 
-def _governed() -> tuple[Expression, Expression, Expression]:
-    """Return ``n``, ``M_s`` and the speed of the ship from ``n_set``, without sensors."""
+def _governed() -> tuple[Expression, Expression, Expression, Expression]:
+    """Return ``n``, ``M_s``, the speed of the ship and the rack from ``n_set``, without sensors."""
     loop = _drive() * SailingShaft((TAU_DN, TAU_UP), _torque(), G)
-    speed = loop * Sensitivity(loop) * _set_point()
-    return speed, speed * (Inertia(TAU_DN) + _torque()), speed * SailingSpeed(A, E, TAU_U, SIGMA)
+    error = Sensitivity(loop) * _set_point()
+    speed = loop * error
+    ship = speed * SailingSpeed(A, E, TAU_U, SIGMA)
+    return speed, speed * (Inertia(TAU_DN) + _torque()), ship, PIGovernor(GAUGE_K_P, GAUGE_K_I) * error
 
 
 def _torque() -> SailingTorque:

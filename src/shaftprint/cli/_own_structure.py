@@ -11,10 +11,12 @@ from pathlib import Path
 from types import CodeType, ModuleType
 from typing import NewType
 
-from shaftprint.catalogue import CLOSED_LOOPS, DRIVES, STRUCTURES, shipped_structure
+from shaftprint.campaign import Campaign
+from shaftprint.catalogue import CLOSED_LOOPS, DRIVES, PITCHED_LOOP, STRUCTURES, shipped_structure
 from shaftprint.errors import ShaftprintError, StructureError
 from shaftprint.fingerprint import Fingerprint, named_structure
 from shaftprint.models import Structure, check_structure
+from shaftprint.survey import default_structure
 from shaftprint.vessel import Vessel
 
 SUFFIX = ".py"
@@ -23,16 +25,23 @@ OWN_FILE_HELP = "a shipped one, or my_ship.py:my_loop for one of your own file, 
 TypedName = NewType("TypedName", str)
 """The name of a structure as the user typed it, which may be that of a file to run; a text out of a file is no such."""
 
-CLOSED_LOOP_HELP = (
-    f"{CLOSED_LOOPS['engine']}, {CLOSED_LOOPS['motor']} where a motor drives the line, or "
-    f"{CLOSED_LOOPS['hybrid']} where one helps an engine"
+DEFAULT_HELP = (
+    f"{CLOSED_LOOPS['engine']}, {CLOSED_LOOPS['motor']} where a motor drives the line, {CLOSED_LOOPS['hybrid']} where "
+    f"one helps an engine, {PITCHED_LOOP} where the campaign moves a logged pitch, or FREE-LOG underway"
 )
-DEFAULT_HELP = f"{CLOSED_LOOP_HELP}, or FREE-LOG underway"
 
 
-def closed_loop_of(vessel: Vessel | None) -> TypedName:
-    """Return the closed loop of what drives a line; that of an engine where no vessel file is given."""
-    return TypedName(CLOSED_LOOPS["engine" if vessel is None else vessel.drive])
+def closed_loop_of(vessel: Vessel | None, campaign: Campaign | None = None) -> TypedName:
+    """Return the closed loop that a test asks for; that of an engine at the quay where no vessel file is given.
+
+    Parameters
+    ----------
+    vessel
+        The installation.
+    campaign
+        What is asked of it; without one the set point of the speed alone.
+    """
+    return TypedName(CLOSED_LOOPS["engine"] if vessel is None else default_structure(vessel, campaign))
 
 
 def structure_to_use(name: TypedName | None, fingerprint: Fingerprint) -> Structure:

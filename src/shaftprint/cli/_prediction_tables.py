@@ -38,7 +38,8 @@ def print_prediction(
     structure = possible.structure
     print_findings("What the test will find", accuracy.sentences, is_answer=True)
     print_table(_accuracy_table(possible, accuracy, intervals))
-    at_all = "at all" if len(responses) == 1 else "at one speed, however long"
+    speeds = sum(response.inputs == responses[0].inputs for response in responses)
+    at_all = "at all" if speeds == 1 else "at one speed, however long"
     print_findings(f"What these outputs can tell {at_all}", possible.sentences)
     visible = visible_changes(accuracy)
     print_tables([_visible_table(visible)])

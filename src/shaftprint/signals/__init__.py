@@ -17,13 +17,21 @@ deviation             1        ``(x - x_0) / x_0`` from the working point
 """
 
 from shaftprint.signals._channel_readings import ChannelReadings, read_channels
-from shaftprint.signals._channel_signals import ChannelRole, ChannelSignal, ExcitationSignal, MessageSignal, SpeedSignal
+from shaftprint.signals._channel_signals import (
+    HIGHEST_SHARE_OF_RATE,
+    ChannelRole,
+    ChannelSignal,
+    ExcitationSignal,
+    MessageSignal,
+    SpeedSignal,
+)
 from shaftprint.signals._clock import Mode
 from shaftprint.signals._content import Content, content_of
 from shaftprint.signals._contradictions import contradictions
 from shaftprint.signals._describe_recording import describe_set_point
 from shaftprint.signals._gaps import Coverage, Gap
 from shaftprint.signals._inspect import ChannelReport, PulseReport, channel_reports, inspect_channels
+from shaftprint.signals._moved_beside import EXCITATIONS, MovedBeside, moved_beside
 from shaftprint.signals._orders import TrackedOrder, tracked_orders
 from shaftprint.signals._prepare import find_tests, prepare_signals
 from shaftprint.signals._signals import Repair, SetPointCalibration, SetPointDelay, Signals, StepDelay, StripAngles
@@ -34,6 +42,8 @@ from shaftprint.signals.kinds import KINDS, ChannelKind
 from shaftprint.signals.levels import deviation
 
 __all__ = [
+    "EXCITATIONS",
+    "HIGHEST_SHARE_OF_RATE",
     "KINDS",
     "ChannelKind",
     "ChannelReadings",
@@ -49,6 +59,7 @@ __all__ = [
     "LegState",
     "MessageSignal",
     "Mode",
+    "MovedBeside",
     "PulseReport",
     "Repair",
     "SetPointCalibration",
@@ -67,6 +78,7 @@ __all__ = [
     "deviation",
     "find_tests",
     "inspect_channels",
+    "moved_beside",
     "prepare_signals",
     "proposed_campaign",
     "read_channels",

@@ -9,8 +9,8 @@ import numpy as np
 from shaftprint.arrays import FloatArray
 from shaftprint.signals._gaps import Coverage, Gap
 
-# Nearer to half the rate of a sensor's values a sine and its alias are hard to tell apart.
-_HIGHEST_SHARE_OF_RATE = 0.45
+HIGHEST_SHARE_OF_RATE = 0.45
+"""Frequency over the rate of a sensor's values nearer to half of which a sine and its alias are hard to tell apart."""
 # Terms of the spline's images fall with the fourth power: the next one is below 1e-7.
 _IMAGES = 40
 
@@ -91,7 +91,7 @@ class ChannelSignal:
     @property
     def highest_hz(self) -> float:
         """Highest frequency at which a sine and its alias are told apart [Hz]."""
-        return _HIGHEST_SHARE_OF_RATE / self.cycle_s if self.cycle_s else math.inf
+        return HIGHEST_SHARE_OF_RATE / self.cycle_s if self.cycle_s else math.inf
 
     def gain(self, frequency_hz: float) -> complex:
         """Return what holding, joining and averaging about their own time make of a sine of amplitude 1.

@@ -5,9 +5,11 @@ The single steps are verbs too: ``measure``, ``fit``, ``survey_of``. Numbers in 
 rooms that they come from.
 """
 
+from shaftprint.survey._assumed_noise import AssumedNoise, assumed_noise
 from shaftprint.survey._both_shafts import SurveyOfBoth, load_trials_of_both, run_both
 from shaftprint.survey._contradiction import contradiction
 from shaftprint.survey._everything import of_joint_fit, with_everything
+from shaftprint.survey._expected_of_ship import expected_of_ship
 from shaftprint.survey._fits import comparisons_of, fit, priors_of, stated_working_point
 from shaftprint.survey._legs import LegMeasurement, LegTest, leg_pairs, leg_tests, legs_of, structure_at
 from shaftprint.survey._legs_apart import LegAlone, apart_reasons, legs_alone
@@ -15,7 +17,7 @@ from shaftprint.survey._limit_hints import hints_of
 from shaftprint.survey._limits import with_limits
 from shaftprint.survey._line_with_limits import expect_limitable, line_with_limits
 from shaftprint.survey._measurement import Measurement, measure, of_legs, pairs_of, response_of, responses_of
-from shaftprint.survey._noise import noise_at_speeds
+from shaftprint.survey._noise import noise_at_speeds, noise_of_further
 from shaftprint.survey._of_vessel import default_structure, of_vessel
 from shaftprint.survey._progress import SILENT, Progress, Silent
 from shaftprint.survey._ship_numbers import ship_numbers
@@ -31,6 +33,7 @@ __all__ = [
     "GAUGE",
     "SET_POINT_OFF",
     "SILENT",
+    "AssumedNoise",
     "LegAlone",
     "LegMeasurement",
     "LegTest",
@@ -44,10 +47,12 @@ __all__ = [
     "Trial",
     "Wash",
     "apart_reasons",
+    "assumed_noise",
     "comparisons_of",
     "contradiction",
     "default_structure",
     "expect_limitable",
+    "expected_of_ship",
     "failed_steps",
     "fingerprint_of",
     "fit",
@@ -65,6 +70,7 @@ __all__ = [
     "load_trials_of_both",
     "measure",
     "noise_at_speeds",
+    "noise_of_further",
     "of_joint_fit",
     "of_legs",
     "of_vessel",

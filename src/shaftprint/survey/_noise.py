@@ -41,6 +41,29 @@ def noise_at_speeds(measurement: "Measurement", campaign: "Campaign") -> dict[fl
     return levels
 
 
+def noise_of_further(measurement: "Measurement", campaign: "Campaign") -> dict[str, NoiseLevels]:
+    """Return the noise levels under what was moved beside the set point of the speed, by its symbol.
+
+    They are those of the working point; one volt is that of the input.
+
+    Parameters
+    ----------
+    measurement, campaign
+        As of ``noise_at_speeds``.
+    """
+    signals = measurement.signals
+    turns = signals.working_point.engine_speed_rev_s
+    return {
+        name: noise_levels(
+            one.response,
+            campaign,
+            set_point_per_v=abs(signals.excitations[name].per_volt / signals.excitations[name].reference),
+            orders_hz=[order.per_turn * turns for order in signals.orders],
+        )
+        for name, one in measurement.further.items()
+    }
+
+
 def _levels(
     response: "FrequencyResponse", campaign: "Campaign", signals: "Signals", point: "WorkingPoint"
 ) -> NoiseLevels:

@@ -16,16 +16,23 @@ _UNDERWAY, _UNDERWAY_WITH_LOG = "FREE-CLOSED", "FREE-LOG"
 _WIDE = 2.0
 
 
-def default_structure(vessel: Vessel, campaign: Campaign) -> str:
+def default_structure(vessel: Vessel, campaign: Campaign | None = None) -> str:
     """Return the name of the closed loop that a test asks for: by what drives the line, where, and what is moved.
 
     At the quay it is GAUGE-CLOSED, GAUGE-MOTOR where a motor drives the line, GAUGE-HYBRID where an electric machine is
     on the gearbox of an engine, or GAUGE-PITCH where the campaign moves a pitch that is logged; underway FREE-LOG, or
     FREE-CLOSED where no log is in the recording.
+
+    Parameters
+    ----------
+    vessel
+        The installation.
+    campaign
+        What is asked of it; without one nothing but the set point of the speed is moved.
     """
     if vessel.is_underway and vessel.motor is None:
         return _UNDERWAY if vessel.sensors.ship_speed is None else _UNDERWAY_WITH_LOG
-    if vessel.shows_pitch and vessel.motor is None and _PITCH in campaign.inputs:
+    if vessel.shows_pitch and vessel.motor is None and campaign is not None and _PITCH in campaign.inputs:
         return PITCHED_LOOP
     return CLOSED_LOOPS[vessel.drive]
 

@@ -12,13 +12,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from shaftprint.card import open_water_curve
 from shaftprint.catalogue import KnownPropeller, sails_free, with_known_propeller
 from shaftprint.fingerprint import Quantity
 from shaftprint.identify import Identification, Prior, Settings, identify
 from shaftprint.identify.search import GivenStarts
 from shaftprint.models import Structure
 from shaftprint.signals import Signals
+from shaftprint.survey._known_propeller import known_propeller
 from shaftprint.vessel import Hull, Vessel
 
 _STARTS = 8
@@ -51,18 +51,15 @@ def ship_numbers(
         If the responses cannot be fitted.
     """
     log, hull = signals.channels.get("v_s"), vessel.hull
-    curve = open_water_curve(vessel.propeller)
-    if log is None or hull is None or curve is None or not sails_free(fit.structure):
+    if log is None or hull is None or not sails_free(fit.structure):
         return ()
-    propeller = KnownPropeller(
-        curve=curve,
-        pitch_ratio=vessel.propeller.pitch_ratio,
-        diameter_m=vessel.propeller.diameter_m,
-        propellers=hull.shafts,
-        water_density_kg_m3=vessel.water_density_kg_m3,
+    propeller = known_propeller(
+        vessel,
         shaft_speed_rev_s=signals.working_point.engine_speed_rev_s / vessel.gearbox.ratio,
         ship_speed_m_s=log.reference,
     )
+    if propeller is None:
+        return ()
     problem = _Problem(fit, hull)
     known = problem.solved(propeller, rng=rng)
     variances = {name: std**2 for name, (_, std) in known.found.items()}

@@ -10,7 +10,7 @@ from shaftprint.cli._command_group import NOT_REACHED
 from shaftprint.cli._known_ship import knowledge_of, stated_ship
 from shaftprint.cli._known_ship_options import KnownShipOptions, known_ship_options
 from shaftprint.cli._options import vessel_option
-from shaftprint.cli._own_structure import CLOSED_LOOP_HELP, OWN_FILE_HELP, TypedName
+from shaftprint.cli._own_structure import DEFAULT_HELP, OWN_FILE_HELP, TypedName
 from shaftprint.cli._plan_options import seconds_of, wish_from, wish_of
 from shaftprint.cli._plan_tables import print_planned_test
 from shaftprint.cli._vessel_file import print_disagreements
@@ -29,7 +29,7 @@ LONGEST_S = 3600.0
     "--structure",
     "structure_name",
     metavar="NAME",
-    help=f"Structure: {OWN_FILE_HELP}; {CLOSED_LOOP_HELP}, or that of --after, when not given.",
+    help=f"Structure: {OWN_FILE_HELP}; {DEFAULT_HELP}, or that of --after, when not given.",
 )
 @click.option(
     "--wish",

@@ -7,10 +7,11 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.campaign import setpoint
-from shaftprint.catalogue import ShipRole, limited
+from shaftprint.catalogue import ShipRole, limited, pitched_with_rack, sailing_with_rack
 from shaftprint.design.operation._operation import Operation
 from shaftprint.errors import DesignError
 from shaftprint.models import Structure
+from shaftprint.signals import moved_beside
 from shaftprint.simulation import simulate
 
 if TYPE_CHECKING:
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
 _RATE_HZ = 200.0
 # A line whose speed goes further than so many times that of the working point from it does not run any more.
 _FARTHEST = 1.0
+_PITCH = "theta_set"
 _ROLES = {ShipRole.INERTIA_UPSTREAM: 0.0, ShipRole.ENGINE_RACK_SLOPE: 1.0, ShipRole.ENGINE_SPEED_SLOPE: 0.0}
 
 
@@ -29,8 +31,9 @@ def expected_operation(
 ) -> Operation:
     """Return what a campaign makes a line do: the closed loop with the quadratic propeller, without noise or limits.
 
-    Upstream of the gauge ``M_b - M_s = tau_up dn/dt``. Without the limits it shows how far beyond them the engine would
-    have to go; what happens there is another question (``simulate``).
+    Upstream of the gauge ``M_b - M_s = tau_up dn/dt``. Underway it is the linear loop of the ship that sails free,
+    FREE-CLOSED; a controllable pitch that is moved adds what GAUGE-PITCH says of it. Without the limits it shows how
+    far beyond them the engine would have to go; what happens there is another question (``simulate``).
 
     Parameters
     ----------
@@ -39,7 +42,8 @@ def expected_operation(
     vessel
         Working point; the campaign's offset asks for its speed, or for ``offset_rpm`` where the campaign states that.
     values
-        Assumed values by name, normalised at that working point; the structure's own where not given.
+        Assumed values by name, normalised at that working point, of the closed loop of the ship; the structure's own
+        where not given.
     slope_rpm_per_v
         Change of the engine speed for one volt [rpm/V], negative where a lower voltage asks for more speed.
 
@@ -48,15 +52,16 @@ def expected_operation(
     DesignError
         If the line stops or runs away with these values: its loop is unstable, or it is asked for too much.
     """
-    line = limited(with_rack=True, by_motor=vessel.motor is not None)
-    vector = line.vector({name: value for name, value in values.items() if name in line.names})
+    is_motor = vessel.motor is not None
+    line = sailing_with_rack() if vessel.is_underway and not is_motor else limited(with_rack=True, by_motor=is_motor)
+    vector = _vector(line, values)
     point = vessel.working_point
     time_s = np.arange(round(campaign.duration_s * _RATE_HZ) + 1) / _RATE_HZ
     offset_rpm = point.engine_speed_rpm if campaign.offset_rpm is None else campaign.offset_rpm
     set_point_rpm = offset_rpm + slope_rpm_per_v * (setpoint(campaign, time_s) - campaign.offset_v)
     with np.errstate(over="ignore", invalid="ignore"):
         trace = simulate(line, vector, time_s, {"n_set": set_point_rpm / point.engine_speed_rpm - 1.0})
-    outputs = trace.outputs
+    outputs = _with_pitch(trace.outputs, campaign, vessel, values, time_s)
     if not np.all(np.abs(outputs["n"]) < _FARTHEST):
         raise DesignError(
             f"campaign {campaign.name}: expected speeds between 0 and {1.0 + _FARTHEST:g} times the working point, "
@@ -74,6 +79,27 @@ def expected_operation(
         torque_demand_nm=brake_nm * (1.0 + demand),
         shaft_torque_nm=point.driving_torque_nm * (1.0 + outputs["M_s"]),
     )
+
+
+def _vector(line: Structure, values: Mapping[str, float]) -> FloatArray:
+    return line.vector({name: value for name, value in values.items() if name in line.names})
+
+
+def _with_pitch(
+    outputs: Mapping[str, FloatArray],
+    campaign: "Campaign",
+    vessel: "Vessel",
+    values: Mapping[str, float],
+    time_s: FloatArray,
+) -> Mapping[str, FloatArray]:
+    """Return outputs with what the motion of a controllable pitch adds to them."""
+    moved = next((one for one in moved_beside(vessel, campaign) if one.symbol == _PITCH), None)
+    if moved is None or vessel.is_underway or vessel.motor is not None:
+        return outputs
+    line = pitched_with_rack()
+    volts = setpoint(campaign, time_s, input=moved.input) - campaign.middle_v(moved.input)
+    trace = simulate(line, _vector(line, values), time_s, {_PITCH: moved.share_per_v * volts})
+    return {name: alone + trace.outputs[name] for name, alone in outputs.items()}
 
 
 def _torques(

@@ -5,19 +5,26 @@ from shaftprint.identify.prediction._formulas import unit_of
 from shaftprint.identify.prediction._identifiability import Identifiability, identifiability
 from shaftprint.identify.prediction._inseparable_groups import Group
 from shaftprint.identify.prediction._line_information import LineInformation, line_information
+from shaftprint.identify.prediction._log_noise import with_log
 from shaftprint.identify.prediction._lost_directions import Direction
 from shaftprint.identify.prediction._noise_at_speeds import noise_at
 from shaftprint.identify.prediction._noise_levels import NoiseLevels, noise_levels, stated_noise
 from shaftprint.identify.prediction._order_cost import common_share
-from shaftprint.identify.prediction._planned_legs import PlannedLeg, first_leg, planned_legs
+from shaftprint.identify.prediction._pitch_noise import PITCH_NOISE
+from shaftprint.identify.prediction._planned_legs import PlannedLeg, first_leg, planned_beside, planned_legs
 from shaftprint.identify.prediction._planned_response import expected_response, planned_lines, planned_response
 from shaftprint.identify.prediction._predicted_intervals import predict_intervals, predict_joint_intervals
+from shaftprint.identify.prediction._research_vessel_noise import RESEARCH_VESSEL_NOISE
 from shaftprint.identify.prediction._stan_tug_noise import STAN_TUG_NOISE
 from shaftprint.identify.prediction._stan_tug_noise_at_speeds import STAN_TUG_NOISE_AT_SPEEDS
+from shaftprint.identify.prediction._stan_tug_noise_underway import STAN_TUG_NOISE_UNDERWAY
 
 __all__ = [
+    "PITCH_NOISE",
+    "RESEARCH_VESSEL_NOISE",
     "STAN_TUG_NOISE",
     "STAN_TUG_NOISE_AT_SPEEDS",
+    "STAN_TUG_NOISE_UNDERWAY",
     "Accuracy",
     "Direction",
     "Group",
@@ -32,6 +39,7 @@ __all__ = [
     "line_information",
     "noise_at",
     "noise_levels",
+    "planned_beside",
     "planned_legs",
     "planned_lines",
     "planned_response",
@@ -41,4 +49,5 @@ __all__ = [
     "predict_joint_intervals",
     "stated_noise",
     "unit_of",
+    "with_log",
 ]

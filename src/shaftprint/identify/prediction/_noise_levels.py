@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import combinations
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -155,9 +156,10 @@ def _tested_lines(campaign: "Campaign") -> dict[str, tuple[float, float]]:
     """Return amplitude [V] and length [s] of every line of a campaign by its name."""
     sines = {sine.name: (sine.amplitude_v, sine.window_s) for sine in campaign.sines}
     of_legs = {
-        f"{leg.name}/{harmonic}": (amplitude_v, leg.window_s)
+        f"{one.name}/{harmonic}": (amplitude_v, one.window_s)
         for leg in campaign.legs
-        for harmonic, amplitude_v in leg.lines.items()
+        for one in (leg, *campaign.beside(leg))
+        for harmonic, amplitude_v in one.lines.items()
     }
     return sines | of_legs
 
@@ -165,25 +167,29 @@ def _tested_lines(campaign: "Campaign") -> dict[str, tuple[float, float]]:
 def stated_noise(
     frequency_hz: Sequence[float],
     densities: Sequence[Sequence[float]],
-    coherences: Sequence[complex],
+    coherences: Sequence[complex] | Sequence[Sequence[complex]],
     *,
     set_point_per_v: float,
     orders_hz: Sequence[float] = (),
+    outputs: Sequence[str] = ("n", "M_s"),
 ) -> NoiseLevels:
-    """Return the noise levels of speed and torque from a table.
+    """Return the noise levels of speed, torque and further outputs from a table.
 
     Parameters
     ----------
     frequency_hz
         Frequencies [Hz], shape (frequencies,).
     densities
-        Densities of ``n`` and ``M_s`` [1/Hz], shape (frequencies, 2).
+        Densities of the outputs [1/Hz], shape (frequencies, outputs).
     coherences
-        Complex coherence of ``n`` and ``M_s``, below 1 in magnitude, shape (frequencies,).
+        Complex coherence of every pair of outputs, below 1 in magnitude: of the first with each later one, then of the
+        second, shape (frequencies, pairs), or (frequencies,) where there is one pair.
     set_point_per_v
         Change of the set point over the working-point speed for one volt [1/V].
     orders_hz
         Where orders of the shaft line stand at the working point [Hz].
+    outputs
+        Names of the outputs.
 
     Raises
     ------
@@ -191,12 +197,14 @@ def stated_noise(
         If the table makes no sense.
     """
     deviation = np.sqrt(np.asarray(densities, dtype=np.float64))
-    shape = np.tile(np.eye(2, dtype=np.complex128), (len(frequency_hz), 1, 1))
-    shape[:, 0, 1], shape[:, 1, 0] = coherences, np.conj(coherences)
+    shape = np.tile(np.eye(len(outputs), dtype=np.complex128), (len(frequency_hz), 1, 1))
+    pairs = np.asarray(coherences, dtype=np.complex128).reshape(len(frequency_hz), -1)
+    for (i, j), coherence in zip(combinations(range(len(outputs)), 2), pairs.T, strict=True):
+        shape[:, i, j], shape[:, j, i] = coherence, np.conj(coherence)
     return NoiseLevels(
         frequency_hz=np.asarray(frequency_hz, dtype=np.float64),
         density=shape * deviation[:, :, None] * deviation[:, None, :],
-        outputs=("n", "M_s"),
+        outputs=tuple(outputs),
         set_point_per_v=set_point_per_v,
         orders_hz=tuple(orders_hz),
     )

@@ -58,6 +58,29 @@ def planned_legs(
     return tuple(_planned(leg, legs[0], noise, 1.0 if rises else -1.0) for leg in legs)
 
 
+def planned_beside(multisine: "Leg", noise: NoiseLevels, *, excitation: str) -> FrequencyResponse:
+    """Return the lines that a multisine of another input beside a leg would give; the values are zero.
+
+    Parameters
+    ----------
+    multisine
+        What moves that input.
+    noise
+        Noise of the outputs under it; one volt is that of the input.
+    excitation
+        Symbol of the input.
+    """
+    lines = multisine.lines
+    return planned_lines(
+        [harmonic / multisine.length_of_period_s for harmonic in lines],
+        noise=noise,
+        amplitude=[noise.set_point_per_v * amplitude_v for amplitude_v in lines.values()],
+        duration_s=multisine.window_s,
+        lines=[f"{multisine.name}/{harmonic}" for harmonic in lines],
+        excitation=excitation,
+    )
+
+
 def _planned(leg: "Leg", first: "Leg", noise: NoiseLevels | Mapping[float, NoiseLevels], sign: float) -> PlannedLeg:
     at_first = noise_at(noise, 1.0)
     ratio = 1.0 + sign * at_first.set_point_per_v * (leg.level_v - first.level_v)

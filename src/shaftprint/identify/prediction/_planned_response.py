@@ -12,7 +12,7 @@ from shaftprint.errors import IdentificationError
 from shaftprint.identify.prediction._noise_levels import NoiseLevels
 from shaftprint.identify.prediction._order_cost import order_cost
 from shaftprint.models import Structure
-from shaftprint.spectra import FrequencyResponse, plan_windows
+from shaftprint.spectra import SPEED, FrequencyResponse, plan_windows
 
 if TYPE_CHECKING:
     from shaftprint.campaign import Campaign
@@ -20,13 +20,24 @@ if TYPE_CHECKING:
 _TORQUE = "M_s"
 # By how much an order enlarges the deviation of a torque before that is worth a remark.
 _WORTH_A_REMARK = 1.5
+# A line of a recording is off its plan by the clocks of generator and logger, a ten-thousandth at most.
+_SAME_FREQUENCY = 1e-3
 
 
-def planned_response(campaign: "Campaign", noise: NoiseLevels) -> FrequencyResponse:
+def planned_response(campaign: "Campaign", noise: NoiseLevels, *, excitation: str = SPEED) -> FrequencyResponse:
     """Return the lines that the sines of a campaign would give, each over its whole periods; the values are zero.
 
     Lines above the highest frequency of the noise levels are not used: a recording of the same ship had no usable line
     there. A line beside an order of the shaft has a torque that is less well known, and a remark.
+
+    Parameters
+    ----------
+    campaign
+        The plan, with the sines of one input alone (``Campaign.of_input``).
+    noise
+        Noise of the outputs under that input.
+    excitation
+        Symbol of that input.
 
     Raises
     ------
@@ -41,6 +52,7 @@ def planned_response(campaign: "Campaign", noise: NoiseLevels) -> FrequencyRespo
         amplitude=[noise.set_point_per_v * amplitudes[window.line] for window in windows],
         duration_s=[window.duration_s for window in windows],
         lines=[window.line for window in windows],
+        excitation=excitation,
     )
     cost = np.array([order_cost(window.frequency_hz, window.duration_s, noise) for window in windows])
     return _with_order_cost(response, cost) if cost.any() else response
@@ -67,6 +79,7 @@ def planned_lines(
     amplitude: ArrayLike,
     duration_s: ArrayLike,
     lines: Sequence[str] = (),
+    excitation: str = SPEED,
 ) -> FrequencyResponse:
     """Return test lines with the covariance that they would have; the values are zero.
 
@@ -82,6 +95,8 @@ def planned_lines(
         Length of each line or of all [s]; lines of one multisine or square wave last equally long.
     lines
         Names of the lines; numbered when empty.
+    excitation
+        Symbol of what is moved.
 
     Raises
     ------
@@ -94,13 +109,13 @@ def planned_lines(
         raise IdentificationError("planned lines: expected positive amplitudes and lengths.")
     spread = noise.at(frequency) * (2.0 / (length * height**2))[:, None, None]
     highest = noise.frequency_hz[-1]
-    used = frequency <= highest
+    used = frequency <= (1.0 + _SAME_FREQUENCY) * highest
     names = tuple(lines) or tuple(f"line {number}" for number in range(1, frequency.size + 1))
     return FrequencyResponse(
         frequency_hz=frequency,
         response=np.zeros((len(noise.outputs), 1, frequency.size), dtype=np.complex128),
         covariance=_real(spread),
-        inputs=("n_set",),
+        inputs=(excitation,),
         outputs=noise.outputs,
         lines=names,
         used=used,

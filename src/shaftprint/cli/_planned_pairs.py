@@ -1,0 +1,115 @@
+"""The structure of ``predict`` with the planned lines that it will be fitted to, at each working point."""
+
+from shaftprint.campaign import Campaign
+from shaftprint.catalogue import shipped_structure
+from shaftprint.cli._own_structure import closed_loop_of
+from shaftprint.cli._ship_before_test import ShipBeforeTest
+from shaftprint.errors import StructureError
+from shaftprint.identify import expected_response, planned_response
+from shaftprint.identify.prediction import PlannedLeg, planned_beside, planned_legs
+from shaftprint.models import Structure
+from shaftprint.signals import EXCITATIONS, MovedBeside, moved_beside
+from shaftprint.spectra import SPEED, FrequencyResponse, open_loop
+from shaftprint.survey import of_vessel
+
+Pair = tuple[Structure, FrequencyResponse]
+
+
+def planned_pairs(chosen: Structure, campaign: Campaign, ship: ShipBeforeTest) -> list[Pair]:
+    """Return the structure with the planned lines from its input to its outputs, at each working point.
+
+    A structure with several inputs is taken apart by input, as for ``identify``: each has lines of its own. One that
+    the campaign does not move has none.
+
+    Raises
+    ------
+    StructureError
+        If the lines of a campaign do not give these.
+    """
+    _expect_one_speed(campaign, ship)
+    if chosen.inputs[0] != SPEED or len(chosen.inputs) == 1:
+        return _pairs_of_speed(chosen, campaign, ship)
+    further = _further(chosen, campaign, ship)
+    legs = _legs(campaign, ship)
+    pairs = _pairs_of_speed(chosen.of_input(SPEED), campaign, ship)
+    for moved in further:
+        part, noise = chosen.of_input(moved.symbol), ship.noise_beside[moved.symbol]
+        alone = campaign.of_input(moved.input)
+        if alone.sines:
+            pairs.append((part, _shown(part, planned_response(alone, noise, excitation=moved.symbol))))
+        for leg in legs:
+            beside = campaign.beside(next(one for one in campaign.legs if one.name == leg.name))
+            pairs += [
+                (leg.structure(part), _shown(part, planned_beside(one, noise, excitation=moved.symbol)))
+                for one in beside
+                if one.input == moved.input
+            ]
+    return pairs
+
+
+def _expect_one_speed(campaign: Campaign, ship: ShipBeforeTest) -> None:
+    levels = {leg.level_v for leg in campaign.legs}
+    if ship.vessel is not None and ship.vessel.is_underway and len(levels) > 1:
+        raise StructureError(
+            f"campaign {campaign.name}: expected legs of one speed underway, where slopes of the propeller and time of "
+            f"the ship belong to one, found {len(levels)} levels; plan a test for each speed."
+        )
+
+
+def _further(chosen: Structure, campaign: Campaign, ship: ShipBeforeTest) -> list[MovedBeside]:
+    """Return what the campaign moves of the further inputs of a structure.
+
+    Raises
+    ------
+    StructureError
+        If an input is none that a campaign moves, or nothing is known of the noise under it.
+    """
+    there = () if ship.vessel is None else moved_beside(ship.vessel, campaign)
+    known = {one.symbol: one for one in there if one.symbol in ship.noise_beside}
+    for name in chosen.inputs[1:]:
+        if name not in known and EXCITATIONS.get(name) in (None, *campaign.inputs):
+            raise _not_known(chosen, ship.noise.outputs)
+    return [known[name] for name in chosen.inputs[1:] if name in known]
+
+
+def _legs(campaign: Campaign, ship: ShipBeforeTest) -> tuple[PlannedLeg, ...]:
+    return planned_legs(campaign, ship.noise_of_legs, rises=ship.slope_rpm_per_v > 0.0)
+
+
+def _pairs_of_speed(chosen: Structure, campaign: Campaign, ship: ShipBeforeTest) -> list[Pair]:
+    """Return what the lines of the speed's set point tell."""
+    loop, of_speed = shipped_structure(closed_loop_of(ship.vessel)), campaign.of_input()
+    if ship.vessel is not None:
+        loop = of_vessel(loop, ship.vessel)
+    if len(loop.inputs) > 1:
+        loop = loop.of_input(SPEED)
+    tests = [(chosen, loop, planned_response(of_speed, ship.noise))] if of_speed.sines or not of_speed.legs else []
+    tests += [(leg.structure(chosen), leg.structure(loop), leg.response) for leg in _legs(campaign, ship)]
+    return [(at_leg, _from_input(at_leg, loop_there, closed)) for at_leg, loop_there, closed in tests]
+
+
+def _from_input(chosen: Structure, loop: Structure, closed: FrequencyResponse) -> FrequencyResponse:
+    """Return planned lines from a structure's input to its outputs, of those from the set point."""
+    responses = {SPEED: closed}
+    if chosen.inputs in (("e",), ("M_s",)):
+        shown = closed.of_outputs(*loop.outputs)
+        governor, core = open_loop(expected_response(shown, loop))
+        responses |= {"e": governor, "M_s": core}
+    response = responses.get(chosen.input) if len(chosen.inputs) == 1 else None
+    if response is None:
+        raise _not_known(chosen, closed.outputs)
+    return _shown(chosen, response)
+
+
+def _shown(chosen: Structure, response: FrequencyResponse) -> FrequencyResponse:
+    if not set(chosen.outputs) <= set(response.outputs):
+        raise _not_known(chosen, response.outputs)
+    return response
+
+
+def _not_known(chosen: Structure, known: tuple[str, ...]) -> StructureError:
+    return StructureError(
+        f"structure {chosen.name} goes from {', '.join(chosen.inputs)} to {', '.join(chosen.outputs)}; expected the "
+        f"noise of all its outputs under what the campaign moves, found that of {', '.join(known)} alone. Give a "
+        "recording of the other channels with --from."
+    )

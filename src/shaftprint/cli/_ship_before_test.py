@@ -1,0 +1,154 @@
+"""What ``predict`` knows of a ship before its test: priors and noise, from the vessel file and perhaps a recording."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+import click
+
+from shaftprint.campaign import Campaign
+from shaftprint.cli.output import progress
+from shaftprint.errors import StructureError
+from shaftprint.identify import NoiseLevels, Prior, noise_at, priors_from_vessel
+from shaftprint.identify.prediction import first_leg
+from shaftprint.models import Structure
+from shaftprint.survey import (
+    assumed_noise,
+    load_trial,
+    measure,
+    noise_at_speeds,
+    noise_of_further,
+    priors_of,
+    stated_working_point,
+)
+from shaftprint.units import rpm_from_rev_s
+from shaftprint.vessel import Vessel
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class ShipBeforeTest:
+    """What is known of the ship before the test."""
+
+    priors: Mapping[str, Prior]
+    """What a fit will know, by parameter."""
+    noise: NoiseLevels
+    """Noise under sines of the speed's set point."""
+    noise_of_legs: Mapping[float, NoiseLevels]
+    """The same by the speed of a leg over that of the first."""
+    noise_beside: Mapping[str, NoiseLevels] = field(default_factory=dict)
+    """Noise under what is moved beside the speed, by its symbol."""
+    slope_rpm_per_v: float
+    """Change of the engine speed for one volt [rpm/V]."""
+    words: str
+    """Where the noise is from."""
+    vessel: Vessel | None = None
+    """The installation; None where no vessel file is given."""
+
+
+def recorded_ship(
+    path: Path, vessel: Vessel, campaign: str | Campaign, chosen: Structure, planned: Campaign, *, no_progress: bool
+) -> ShipBeforeTest:
+    """Return what a recording tells of the noise, and what it and the vessel file know.
+
+    Parameters
+    ----------
+    path, campaign
+        The recording, and what was asked of the ship in it.
+    vessel
+        The installation.
+    chosen
+        The structure whose test is predicted.
+    planned
+        The test that is predicted.
+    no_progress
+        Whether nothing is told meanwhile.
+
+    Raises
+    ------
+    ShaftprintError
+        If the recording cannot be read or does not give usable responses.
+    """
+    trial = load_trial(vessel, campaign)
+    with progress(hidden=no_progress) as steps:
+        measurement = measure(path, trial, mode="shaftprint", progress=steps)
+    signals = measurement.signals
+    slope = signals.calibration.slope_rev_s_per_v * signals.dc_scale
+    levels = noise_at_speeds(measurement, trial.campaign)
+    point_rpm = rpm_from_rev_s(signals.working_point.engine_speed_rev_s)
+    noise = noise_at(levels, point_rpm)
+    from_point_v = first_leg(planned).level_v - signals.working_point.set_point_v if planned.legs else 0.0
+    first_rpm = point_rpm + rpm_from_rev_s(slope) * from_point_v
+    return ShipBeforeTest(
+        priors=priors_of(chosen, trial.vessel, signals),
+        noise=noise,
+        noise_of_legs={rpm / first_rpm: level for rpm, level in levels.items()},
+        noise_beside=noise_of_further(measurement, trial.campaign),
+        slope_rpm_per_v=rpm_from_rev_s(slope),
+        words=f"noise of {path.name}",
+        vessel=trial.vessel,
+    )
+
+
+def assumed_ship(
+    vessel: Vessel | None, rpm_per_volt: float | None, chosen: Structure, planned: Campaign
+) -> ShipBeforeTest:
+    """Return the noise of a simulated ship, and what the vessel file knows where there is one.
+
+    Parameters
+    ----------
+    vessel
+        The installation, if any.
+    rpm_per_volt
+        Change of the engine speed for one volt [rpm/V]; as on the Stan Tug where it is not given.
+    chosen
+        The structure whose test is predicted.
+    planned
+        The test that is predicted.
+
+    Raises
+    ------
+    click.UsageError
+        If a slope is given and no vessel file.
+    StructureError
+        If the first leg would stand still.
+    """
+    assumed = assumed_noise(vessel, planned)
+    if vessel is None:
+        if rpm_per_volt is not None:
+            raise click.UsageError("--rpm-per-volt needs --vessel, which says at what speed.")
+        # with less voltage the tug goes faster; its speed plays no part without a vessel
+        return ShipBeforeTest(
+            priors={},
+            noise=assumed.sines,
+            noise_of_legs=_of_legs(assumed.legs, planned, -assumed.sines.set_point_per_v),
+            slope_rpm_per_v=-1.0,
+            words=assumed.words,
+        )
+    speed_rpm = vessel.working_point.engine_speed_rpm
+    slope = -assumed.sines.set_point_per_v * speed_rpm if rpm_per_volt is None else rpm_per_volt
+    return ShipBeforeTest(
+        priors=priors_from_vessel(chosen, vessel, stated_working_point(vessel)),
+        noise=replace(assumed.sines, set_point_per_v=abs(slope) / speed_rpm),
+        noise_of_legs=_of_legs(assumed.legs, planned, slope / speed_rpm),
+        noise_beside=assumed.beside,
+        slope_rpm_per_v=slope,
+        words=assumed.words,
+        vessel=vessel,
+    )
+
+
+def _of_legs(levels: Mapping[float, NoiseLevels], planned: Campaign, per_v: float) -> dict[float, NoiseLevels]:
+    """Return the noise by the speed of a leg over that of the first, the working point at the offset.
+
+    Raises
+    ------
+    StructureError
+        If the first leg would stand still.
+    """
+    first = 1.0 + per_v * (first_leg(planned).level_v - planned.offset_v) if planned.legs else 1.0
+    if not first > 0.0:
+        raise StructureError(
+            f"campaign {planned.name}: expected legs at which the engine turns, found a first leg at "
+            f"{first:.2g} of the working speed; check level_v and the line from volts to speed, --rpm-per-volt."
+        )
+    return {share / first: replace(level, set_point_per_v=abs(per_v) / share) for share, level in levels.items()}

@@ -1,0 +1,74 @@
+"""The noise that is assumed of a ship without a recording: that of the simulated ship that is most like it."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+
+from shaftprint.campaign import Campaign
+from shaftprint.identify import STAN_TUG_NOISE, STAN_TUG_NOISE_AT_SPEEDS, NoiseLevels
+from shaftprint.identify.prediction import PITCH_NOISE, RESEARCH_VESSEL_NOISE, STAN_TUG_NOISE_UNDERWAY, with_log
+from shaftprint.signals import HIGHEST_SHARE_OF_RATE, moved_beside
+from shaftprint.vessel import Vessel
+
+_LOG, _PITCH = "v_s", "theta_set"
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class AssumedNoise:
+    """Noise of a simulated ship, over the values of the working point as everywhere."""
+
+    sines: NoiseLevels
+    """Under sines of the speed's set point; one volt is that of the simulated ship."""
+    legs: Mapping[float, NoiseLevels]
+    """The same in legs, by their speed over that of the working point."""
+    beside: Mapping[str, NoiseLevels] = field(default_factory=dict)
+    """Under what a campaign moves beside the speed, by its symbol; one volt is that of the vessel file."""
+    words: str
+    """Where it is from, such as ``noise of the Stan Tug 1205 assumed for Stan Tug 1205, port``."""
+
+
+def assumed_noise(vessel: Vessel | None = None, campaign: Campaign | None = None) -> AssumedNoise:
+    """Return the noise that is assumed of a ship without a recording.
+
+    At the quay it is that of the simulated Stan Tug in bollard pull; underway that of the same tug at 9 knots, with a
+    log where the vessel file has one: of its cycle, and of the noise of a value of the tug's. Where a pitch is moved
+    at the quay it is that of the simulated research vessel, with the feedback of the pitch.
+
+    Parameters
+    ----------
+    vessel
+        The installation; the Stan Tug at the quay where it is not given.
+    campaign
+        What is asked of it, for what moves beside the speed.
+    """
+    whose = "" if vessel is None else f" for {vessel.name}"
+    beside = {} if vessel is None or campaign is None else _beside(vessel, campaign)
+    if vessel is not None and vessel.is_underway:
+        levels, words = _underway(vessel), f"noise of the Stan Tug 1205 underway assumed{whose}"
+        return AssumedNoise(sines=levels, legs={1.0: levels}, beside=beside, words=words)
+    if _PITCH in beside:
+        levels, words = RESEARCH_VESSEL_NOISE, f"noise of the simulated research vessel assumed{whose}"
+        return AssumedNoise(sines=levels, legs={1.0: levels}, beside=beside, words=words)
+    words = f"noise of the Stan Tug 1205 assumed{whose}"
+    return AssumedNoise(sines=STAN_TUG_NOISE, legs=STAN_TUG_NOISE_AT_SPEEDS, beside=beside, words=words)
+
+
+def _beside(vessel: Vessel, campaign: Campaign) -> dict[str, NoiseLevels]:
+    """Return the noise under what a campaign moves beside the speed; of an electric machine that of the Stan Tug."""
+    return {
+        moved.symbol: replace(
+            PITCH_NOISE if moved.symbol == _PITCH else STAN_TUG_NOISE, set_point_per_v=moved.share_per_v
+        )
+        for moved in moved_beside(vessel, campaign)
+    }
+
+
+def _underway(vessel: Vessel) -> NoiseLevels:
+    log, speed_m_s = vessel.sensors.ship_speed, vessel.working_point.ship_speed_m_s
+    if log is None or speed_m_s is None:
+        return STAN_TUG_NOISE_UNDERWAY.of_outputs(*(name for name in STAN_TUG_NOISE_UNDERWAY.outputs if name != _LOG))
+    return with_log(
+        STAN_TUG_NOISE_UNDERWAY,
+        cycle_s=log.cycle_s,
+        highest_hz=HIGHEST_SHARE_OF_RATE / log.cycle_s,
+        ship_speed_m_s=speed_m_s,
+    )
