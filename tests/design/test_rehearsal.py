@@ -1,5 +1,7 @@
 """A rehearsal with results that are made up, so that bias, scatter and coverage are known."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -66,3 +68,15 @@ def test_without_any_result(plan):
 
     with pytest.raises(DesignError, match=r"rehearsal with 2 seeds: expected a result of at least one, .* nothing\."):
         rehearse(plan, sail, truth={"K_p": 1.0}, seeds=(1, 2))
+
+
+def test_a_number_that_the_plan_does_not_show_is_no_error_of_it(plan, truth):
+    shown = tuple(replace(one, std=np.inf) if one.name == "g" else one for one in plan.predicted.parameters)
+    unknown = replace(plan, predicted=replace(plan.predicted, parameters=shown))
+    rehearsal = rehearse(
+        unknown,
+        lambda seed: sailing(plan, truth, errors={"K_p": 1.0, "g": 50.0}),
+        truth={"K_p": truth["K_p"], "g": truth["g"], "no such number": 1.0},
+        seeds=(1,),
+    )
+    assert rehearsal.names == ("K_p",)

@@ -13,7 +13,13 @@ from shaftprint.catalogue._crash_stop import (
 from shaftprint.catalogue._drives import DRIVES, SIGNAL_MEANINGS, SIGNAL_UNITS
 from shaftprint.catalogue._gauge import gauge_governor, gauge_line
 from shaftprint.catalogue._hybrid_at_large import limited_hybrid
-from shaftprint.catalogue._known_propeller import KnownPropeller, sailing_values, sails_free, with_known_propeller
+from shaftprint.catalogue._known_propeller import (
+    OF_THE_SHIP,
+    KnownPropeller,
+    sailing_values,
+    sails_free,
+    with_known_propeller,
+)
 from shaftprint.catalogue._limited import limited
 from shaftprint.catalogue._limited_governor import AHEAD_S, GovernorSymbol, limited_governor
 from shaftprint.catalogue._pitch import pitched_with_rack
@@ -33,6 +39,7 @@ __all__ = [
     "CRASH_STOP",
     "DRIVES",
     "NOT_OF_THE_LINE",
+    "OF_THE_SHIP",
     "PITCHED_LOOP",
     "ROLES",
     "SIGNAL_MEANINGS",

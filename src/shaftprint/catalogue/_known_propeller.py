@@ -9,7 +9,8 @@ from shaftprint.errors import StructureError
 from shaftprint.models import Combination, Parameter, Structure
 from shaftprint.propeller import OpenWaterCurve
 
-_OF_THE_SHIP = ("a", "b", "e", "tau_u")
+OF_THE_SHIP = ("a", "b", "e", "tau_u")
+"""Slopes of thrust, torque and resistance and the time of the ship, by their names in free-sailing structures."""
 HIGHEST_WAKE = 0.6
 """Upper bound of the wake fraction; full single-screw ships reach 0.45."""
 
@@ -84,7 +85,7 @@ class KnownPropeller:
 
 def sails_free(structure: Structure) -> bool:
     """Return whether a structure has slopes of the propeller and times of the ship, which a known propeller gives."""
-    return set(_OF_THE_SHIP) <= set(structure.names)
+    return set(OF_THE_SHIP) <= set(structure.names)
 
 
 def sailing_values(
@@ -105,7 +106,7 @@ def sailing_values(
     """
     if not sails_free(structure):
         return {}
-    a, b, e, tau_u = _OF_THE_SHIP
+    a, b, e, tau_u = OF_THE_SHIP
     values = {e: exponent, tau_u: time_s} | ({} if slopes is None else {a: slopes[0], b: slopes[1]})
     bounds = {p.name: (p.lower, p.upper) for p in structure.parameters}
     return {name: float(np.clip(value, *bounds[name])) for name, value in values.items()}
@@ -137,7 +138,7 @@ def with_known_propeller(
     PropellerError
         If the curves do not hold the pitch.
     """
-    missing = [name for name in _OF_THE_SHIP if name not in structure.names]
+    missing = [name for name in OF_THE_SHIP if name not in structure.names]
     if missing:
         raise StructureError(
             f"structure {structure.name}: expected a free-sailing structure, found no {', '.join(missing)}; use "

@@ -15,6 +15,7 @@ from shaftprint.design import (
     Knowledge,
     Limits,
     SetPointLine,
+    expect_motion,
     limits_from_vessel,
     limits_of_fingerprint,
     line_of_fingerprint,
@@ -24,7 +25,6 @@ from shaftprint.design import (
 )
 from shaftprint.fingerprint import Fingerprint
 from shaftprint.identify import (
-    STAN_TUG_NOISE_AT_SPEEDS,
     NoiseLevels,
     Prior,
     expected_from_vessel,
@@ -32,7 +32,15 @@ from shaftprint.identify import (
     priors_from_vessel,
 )
 from shaftprint.models import Structure
-from shaftprint.survey import load_trial, measure, noise_at_speeds, stated_working_point
+from shaftprint.survey import (
+    assumed_noise,
+    expected_of_ship,
+    load_trial,
+    measure,
+    noise_at_speeds,
+    of_vessel,
+    stated_working_point,
+)
 from shaftprint.units import rpm_from_rev_s
 from shaftprint.vessel import Vessel, load_vessel
 
@@ -77,7 +85,7 @@ def stated_ship(vessel_name: str, structure_name: TypedName | None, options: Kno
     else:
         structure = structure_to_use(structure_name, first_test)
     return Stated(
-        structure=structure.held_at(**dict(options.held)),
+        structure=of_vessel(structure, vessel).held_at(**dict(options.held)),
         vessel=vessel,
         vessel_name=vessel_name,
         first_test=first_test,
@@ -102,17 +110,11 @@ def knowledge_of(stated: Stated, *, steps: Steps) -> Knowledge:
         If the line from volts to speed is not known.
     """
     options = stated.options
+    expect_motion(stated.structure)
     recorded = None if options.noise_from is None else _recorded(stated, steps)
     line = _line(stated, recorded)
     limits = _limits(stated, line, recorded)
-    point_rpm, vessel_rpm = limits.engine_speed_rpm, stated.vessel.working_point.engine_speed_rpm
-    shares = options.speeds
-    # after a first test the working point is that of the test, at which its numbers are normalised
-    speeds = (
-        usual_speeds(limits, working_point_rpm=vessel_rpm)
-        if shares is None
-        else tuple(share * vessel_rpm / point_rpm for share in shares)
-    )
+    speeds, point_rpm = _speeds(stated, limits), limits.engine_speed_rpm
     outputs = stated.structure.outputs
     levels, source = _noise(stated, recorded)
     noise = {share: noise_at(levels, share * point_rpm) for share in speeds}
@@ -127,7 +129,41 @@ def knowledge_of(stated: Stated, *, steps: Steps) -> Knowledge:
         noise={share: level.of_outputs(*outputs) for share, level in noise.items()},
         noise_source=source,
         priors=priors,
+        remarks=_remarks(stated),
     )
+
+
+def _remarks(stated: Stated) -> tuple[str, ...]:
+    """Return what a plan of the speed's lines leaves alone."""
+    if stated.vessel.pitch is None:
+        return ()
+    return (
+        f"The pitch stands at P/D {stated.vessel.propeller.pitch_ratio:g} while the speed is moved: the plan is for "
+        f"{stated.structure.name}, and what the pitch does to the torque is not found; lines of both are a campaign by "
+        "hand, such as the shipped pitch, which shaftprint predict takes.",
+    )
+
+
+def _speeds(stated: Stated, limits: Limits) -> tuple[float, ...]:
+    """Return the speeds of the legs over that of the working point, which after a first test is that of the test.
+
+    Raises
+    ------
+    click.UsageError
+        If speeds are asked for underway.
+    """
+    shares, vessel_rpm = stated.options.speeds, stated.vessel.working_point.engine_speed_rpm
+    if stated.vessel.is_underway:
+        if shares not in (None, (1.0,)):
+            raise click.UsageError(
+                f"--speeds: expected none underway, where all legs are at the {vessel_rpm:g} rpm of the vessel file, "
+                f"found {', '.join(f'{share:g}' for share in shares)}; slopes of the propeller and the time of the "
+                "ship belong to one speed: write a vessel file for another."
+            )
+        return (1.0,)
+    if shares is None:
+        return usual_speeds(limits, working_point_rpm=vessel_rpm)
+    return tuple(share * vessel_rpm / limits.engine_speed_rpm for share in shares)
 
 
 def _known(options: KnownShipOptions, of_vessel: Mapping[str, Prior]) -> dict[str, Prior]:
@@ -172,8 +208,8 @@ def _noise(stated: Stated, recorded: _Recorded | None) -> tuple[Mapping[float, N
     if first_test is not None and first_test.noise:
         return first_test.noise_at_speeds, f"noise of the first test, {first_test.conditions.campaign}"
     point_rpm = stated.vessel.working_point.engine_speed_rpm
-    assumed = {share * point_rpm: level for share, level in STAN_TUG_NOISE_AT_SPEEDS.items()}
-    return assumed, f"noise of the Stan Tug 1205 assumed for {stated.vessel.name}"
+    assumed = assumed_noise(stated.vessel)
+    return {share * point_rpm: level for share, level in assumed.legs.items()}, assumed.words
 
 
 def _line(stated: Stated, recorded: _Recorded | None) -> SetPointLine:
@@ -209,4 +245,6 @@ def _limits(stated: Stated, line: SetPointLine, recorded: _Recorded | None) -> L
 def _ship(stated: Stated, expected: Mapping[str, Prior]) -> AssumedShip:
     if stated.first_test is not None:
         return ship_of_fingerprint(stated.first_test, stated.structure)
-    return ship_before_test(stated.structure, expected, dict(stated.options.values))
+    of_ship = expected_of_ship(stated.structure, stated.vessel)
+    unknown = {name: value for name, value in of_ship.items() if name not in expected}
+    return ship_before_test(stated.structure, expected, unknown | dict(stated.options.values))

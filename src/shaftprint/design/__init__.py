@@ -48,6 +48,7 @@ from shaftprint.design.inputs import (
     ship_of_fit,
     usual_speeds,
 )
+from shaftprint.design.motion import expect_motion
 from shaftprint.design.operation import (
     LimitUse,
     Operation,
@@ -118,6 +119,7 @@ __all__ = [
     "best_plan",
     "campaign_of",
     "design_campaign",
+    "expect_motion",
     "expected_operation",
     "length_curve",
     "limit_uses",

@@ -14,7 +14,7 @@ from shaftprint.recording import read_recording
 from shaftprint.rehearsal._simulated_ship import simulated_truth, tug_of_plan
 from shaftprint.signals import prepare_signals
 from shaftprint.survey import SILENT, Progress, leg_pairs, legs_of
-from shaftprint.tug import sail
+from shaftprint.tug import normalised_truth, sail
 
 if TYPE_CHECKING:
     from shaftprint.campaign import Campaign
@@ -57,7 +57,7 @@ def rehearse_on_tug(
         progress.advance(1.0)
         return result
 
-    truth = simulated_truth(test.plan)
+    truth = simulated_truth(test.plan, normalised_truth(tug, vessel))
     return rehearse(test.plan, sailing, truth=truth, seeds=range(first_seed, first_seed + count))
 
 

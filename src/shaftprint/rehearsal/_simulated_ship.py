@@ -1,15 +1,16 @@
 """The simulated tug that has the numbers which a plan assumes of its ship, and the limits that it was planned for."""
 
 import math
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from shaftprint.catalogue import CLOSED_LOOPS, ShipRole
+from shaftprint.catalogue import CLOSED_LOOPS, OF_THE_SHIP, ShipRole, sails_free
 from shaftprint.design import stated_limits
 from shaftprint.errors import DesignError
-from shaftprint.tug import Tug
+from shaftprint.tug import Tug, like_stan_tug_1205
 from shaftprint.units import rev_s_from_rpm
 
 if TYPE_CHECKING:
@@ -41,11 +42,14 @@ _IDEAL = {
     ShipRole.SET_POINT_SCALE: 1.0,
     ShipRole.TORQUE_LATENCY: 0.0,
     ShipRole.LOAD_SLOPE: _LOAD_SLOPE,
+    ShipRole.LOG_LATENCY: 0.0,
 }
 
 
 def tug_of_plan(test: "PlannedTest", vessel: "Vessel") -> Tug:
     """Return the simulated ship that a plan assumes, with its limits of demand and motoring.
+
+    Underway it sails free as the ship of the vessel file does, with its mass, resistance, wake and thrust deduction.
 
     Parameters
     ----------
@@ -77,13 +81,15 @@ def tug_of_plan(test: "PlannedTest", vessel: "Vessel") -> Tug:
     motoring_nm = float(np.interp(limits.engine_speed_rpm, *np.array(limits.motoring).T))
     tug = Tug(
         engine_speed_rpm=limits.engine_speed_rpm,
-        shaft_torque_nm=torque_nm,
+        # underway it follows from propeller and resistance
+        shaft_torque_nm=None if vessel.is_underway else torque_nm,
         set_point_slope_rpm_per_v=test.line.slope_rpm_per_v,
         set_point_intercept_rpm=limits.engine_speed_rpm - test.line.slope_rpm_per_v * test.line.offset_v,
         set_point_offset_v=0.0,
         demand_resolution_rpm=limits.demand_resolution_rpm,
         demand_cycle_s=limits.demand_cycle_s,
         demand_rate_limit_rpm_per_s=limits.demand_rate_limit_rpm_per_s,
+        sailing=like_stan_tug_1205(vessel, offset_v=test.line.offset_v).sailing,
     )
     # without a statement of the user's the curve of the vessel file holds, at all speeds
     if motoring_nm > 0.0 and limits.motoring != stated_limits(vessel).motoring:
@@ -95,17 +101,29 @@ def tug_of_plan(test: "PlannedTest", vessel: "Vessel") -> Tug:
     return replace(tug, **numbers)
 
 
-def simulated_truth(plan: "Plan") -> dict[str, float]:
+def simulated_truth(plan: "Plan", sailed: Mapping[str, float] | None = None) -> dict[str, float]:
     """Return what an identification of the simulated ship is to find: parameters and combinations by name.
 
     Sensors are ideal, the propeller takes the square of its speed, and what holds and quantises the demand adds to the
-    latency of the set point.
+    latency of the set point. Underway the scale of the set point is left out: the volts of one speed are made rpm by
+    slow lines, whose speed the ship bends, and what that errs by is what the fit finds.
+
+    Parameters
+    ----------
+    plan
+        What is sailed.
+    sailed
+        ``normalised_truth`` of the simulated ship, for slopes and times of one that sails free; those of the plan where
+        it is not given.
     """
     structure, values = plan.ship.structure, plan.ship.by_name
     for role, ideal in _IDEAL.items():
         name = structure.named_as(role)
         if name in values:
             values[name] = ideal
+    values |= {name: value for name, value in (sailed or {}).items() if name in OF_THE_SHIP and name in values}
+    if sails_free(structure):
+        values = {name: value for name, value in values.items() if name != structure.named_as(ShipRole.SET_POINT_SCALE)}
     latency = structure.named_as(ShipRole.SET_POINT_LATENCY)
     if latency in values:
         values[latency] += plan.limits.demand_delay_s

@@ -49,6 +49,7 @@ def planned_test_of(record: "PlanRecord", structure: Structure) -> PlannedTest:
         noise_source=record.noise_source,
         version=record.shaftprint_version,
         rehearsal=None if record.rehearsal is None else _rehearsal(record.rehearsal),
+        remarks=record.remarks,
         remedies=tuple(Remedy(name=one.name, worst=one.worst, ratios=one.ratios) for one in record.remedies),
         sailed=sailed,
     )

@@ -182,6 +182,8 @@ class PlanRecord(Record):
     """Legs in the order in which they are sailed."""
     rehearsal: RehearsalRecord | None = None
     """What came out of sailing it on simulated ships."""
+    remarks: tuple[Text, ...] = ()
+    """What the plan leaves alone, in sentences."""
     remedies: tuple[RemedyRecord, ...] = ()
     """What would help."""
     sailed: tuple[SailedRecord, ...] = ()

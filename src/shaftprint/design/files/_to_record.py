@@ -48,6 +48,7 @@ def record_of(test: "PlannedTest") -> PlanRecord:
         timetable=plan.timetable,
         legs=tuple(_leg(*one) for one in zip(plan.legs, plan.noise, plan.peaks, strict=True)),
         rehearsal=None if test.rehearsal is None else _rehearsal(test.rehearsal),
+        remarks=test.remarks,
         remedies=tuple(RemedyRecord(name=one.name, worst=one.worst, ratios=dict(one.ratios)) for one in test.remedies),
         sailed=tuple(map(_sailed, test.sailed)),
     )

@@ -31,3 +31,5 @@ class Knowledge(Shown):
     """Where it comes from, in words."""
     priors: "Mapping[str, Prior]"
     """What the fit will know besides, by parameter."""
+    remarks: tuple[str, ...] = ()
+    """What the plan leaves alone, in sentences."""

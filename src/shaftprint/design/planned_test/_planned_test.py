@@ -52,6 +52,8 @@ class PlannedTest(Shown):
     """What would help where wishes are not met, the best first."""
     sailed: tuple[SailedLeg, ...] = ()
     """Legs of earlier recordings that this test goes on from."""
+    remarks: tuple[str, ...] = ()
+    """What the plan leaves alone, in sentences."""
 
     def summary(self) -> Summary:
         """Return what is sailed, and whether it was rehearsed."""
@@ -66,7 +68,8 @@ class PlannedTest(Shown):
     @property
     def sentences(self) -> tuple[str, ...]:
         """What the test reaches, the answer first, and whether it was rehearsed."""
-        return plan_sentences(self.plan, self.remedies, self.rehearsal)
+        answer, *others = plan_sentences(self.plan, self.remedies, self.rehearsal)
+        return (answer, *self.remarks, *others)
 
     @property
     def campaign(self) -> Campaign:

@@ -131,14 +131,17 @@ def rehearse(
             f"{failures[0] if failures else 'Give at least one seed.'}"
         )
     every = [{number.name: number for number in sailing.numbers} for sailing in sailings]
-    names = tuple(name for name in truth if all(name in numbers for numbers in every))
+    shown = {one.name: one.std for one in (*plan.predicted.parameters, *plan.predicted.combinations)}
+    # what the plan does not show is no error of it
+    known = [name for name in truth if name in shown and math.isfinite(shown[name])]
+    names = tuple(name for name in known if all(name in numbers for numbers in every))
     if not names:
         raise DesignError(f"rehearsal: expected the truth of numbers that are identified, found {', '.join(truth)}.")
     return Rehearsal(
         names=names,
         errors=frozen_float([[numbers[name].value - truth[name] for name in names] for numbers in every]),
         stated=frozen_float([[numbers[name].std for name in names] for numbers in every]),
-        planned=frozen_float([plan.predicted.estimate(name).std for name in names]),
+        planned=frozen_float([shown[name] for name in names]),
         limited=frozen_float([sailing.limited_share for sailing in sailings]),
         failures=tuple(failures),
     )

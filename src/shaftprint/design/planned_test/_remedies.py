@@ -4,7 +4,7 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
-from shaftprint.catalogue import ShipRole
+from shaftprint.catalogue import ShipRole, sails_free
 from shaftprint.design.plan import Plan, predicted_accuracy
 from shaftprint.errors import DesignError
 from shaftprint.identify import Prior
@@ -48,11 +48,13 @@ def remedies(plan: Plan, design: Callable[[tuple[float, ...]], Plan] | None = No
     plan
         The plan.
     design
-        The plan at other speeds, for the effect of a second leg; not asked where the plan has two already.
+        The plan at other speeds, for the effect of a second leg; not asked where the plan has two already, nor of a
+        ship that sails free, whose numbers belong to one speed.
     """
     knowledge = _knowledge(plan)
     every = [_known_besides(plan, *known) for known in knowledge]
-    other = None if design is None or len(plan.legs) > 1 else _at_second_speed(plan, design)
+    is_bound = len(plan.legs) > 1 or sails_free(plan.ship.structure)
+    other = None if design is None or is_bound else _at_second_speed(plan, design)
     if other is not None:
         every.append(_remedy(f"half of the time at {other.legs[-1].level_rpm:.0f} rpm", other, other.predicted))
     if len(every) > 1 and knowledge:

@@ -86,6 +86,7 @@ def plan_test(
         line=knowledge.line,
         created=now,
         noise_source=knowledge.noise_source,
+        remarks=knowledge.remarks,
         remedies=remedies(plan, lambda speeds: design(within_s, speeds)) if help_needed else (),
     )
 
