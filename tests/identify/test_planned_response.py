@@ -224,3 +224,21 @@ def test_the_noise_of_a_leg_plans_the_same_leg_again():
     fast, _ = planned_legs(two_legs(), levels, rises=False)
     again = noise_levels(fast.response, two_legs(), set_point_per_v=0.2)
     assert again.density == pytest.approx(levels.density)
+
+
+def test_a_line_that_clocks_put_beside_the_last_one_of_a_recording_is_used():
+    """The recording has it at 0.6874997 Hz, the plan at 0.6875 Hz; one a hundredth faster is another line."""
+    density = np.eye(1, dtype=complex)[None] * 1e-6
+    noise = NoiseLevels(
+        frequency_hz=np.array([0.1, 0.6874997]),
+        density=np.repeat(density, 2, axis=0),
+        outputs=("n",),
+        set_point_per_v=0.2,
+    )
+    response = planned_lines([0.5, 0.6875, 0.695], noise=noise, amplitude=0.1, duration_s=100.0)
+    assert response.used.tolist() == [True, True, False]
+
+
+def test_lines_of_another_input_have_its_symbol():
+    response = planned_lines([0.5], noise=white(1e-5), amplitude=0.1, duration_s=100.0, excitation="theta_set")
+    assert response.inputs == ("theta_set",)
