@@ -4,6 +4,8 @@ import json
 
 import pytest
 
+from shaftprint.survey import run
+
 pytestmark = pytest.mark.slow
 FILES = ("--vessel", "nifs-research-vessel", "--campaign", "pitch")
 
@@ -41,3 +43,18 @@ def test_the_line_of_the_speed_alone_is_identified_from_the_same_recording(ident
     more = ("--structure", "GAUGE-CLOSED", "--no-report", "-o", identified / "closed")
     done = invoke("identify", identified / "test.nc", *FILES, *more)
     assert done.exit_code == 0, done.stderr
+
+
+def test_with_its_noise_and_its_numbers_what_the_recording_told_is_predicted(identified, invoke):
+    """Lines of both inputs, each with its noise: the deviations of the fit but for what its estimated covariance costs.
+
+    Those of the fingerprint hold the error of the mean torque besides.
+    """
+    fit = run(identified / "test.nc", FILES[1], FILES[3], judge=False).identification
+    values = [f"--value={one.name}={one.value}" for one in fit.parameters]
+    done = invoke("predict", *FILES, "--from", identified / "test.nc", *values, "--json")
+    assert done.exit_code == 0, done.stderr
+    told = json.loads(done.stdout)["result"]
+    stds = {one["name"]: one["std"] for one in (*told["parameters"], *told["combinations"])}
+    for one in (*fit.parameters, *fit.combinations):
+        assert one.std == pytest.approx(stds[one.name], rel=0.15), one.name

@@ -95,6 +95,14 @@ def test_a_pitch_that_stands_leaves_its_numbers_unknown(run):
     assert re.search(r"^ tau_th .*\(not known\)", result.output, re.MULTILINE)
 
 
+def test_what_is_not_in_the_limits_is_said(run):
+    sentence = "does to engine and gauge is not in these limits"
+    result = run("predict", "--vessel", "foss-carolyn-dorothy", "--campaign", "machine", "--no-progress")
+    assert f"What machine_torque {sentence}: keep room for it." in result.output
+    result = run("predict", "--vessel", "nifs-research-vessel", "--campaign", "pitch", "--no-progress")
+    assert sentence not in result.output
+
+
 def test_a_structure_that_is_named_is_taken(run):
     options = ("--vessel", "stan-tug-1205-underway", "--campaign", "dither")
     result = run("predict", *options, "--structure", "GAUGE-CLOSED", "--no-progress")

@@ -17,9 +17,10 @@ from shaftprint.cli._own_structure import DEFAULT_HELP, OWN_FILE_HELP, TypedName
 from shaftprint.cli._planned_pairs import planned_pairs
 from shaftprint.cli._prediction_tables import print_prediction
 from shaftprint.cli._ship_before_test import ShipBeforeTest, assumed_ship, recorded_ship
+from shaftprint.cli._terminal import say
 from shaftprint.cli._vessel_file import print_disagreements
 from shaftprint.cli.output import no_progress_option
-from shaftprint.design import expected_operation, limit_uses, ship_before_test, stated_limits
+from shaftprint.design import expected_operation, inputs_left_out, limit_uses, ship_before_test, stated_limits
 from shaftprint.errors import StructureError
 from shaftprint.identify import Prior, expected_from_vessel, identifiability
 from shaftprint.identify.prediction import predict_joint_accuracy, predict_joint_intervals
@@ -159,6 +160,8 @@ def _print_limits(
     assumed = _values_of(loop, vessel, priors, (), [one for one in values if one[0] in loop.names])
     operation = expected_operation(planned, vessel, assumed, slope_rpm_per_v=ship.slope_rpm_per_v)
     print_limit_uses(limit_uses(operation, stated_limits(vessel)), is_expected=True)
+    for name in inputs_left_out(planned, vessel):
+        say(f"What {name} does to engine and gauge is not in these limits: keep room for it.")
 
 
 def _expect_free(freed: tuple[str, ...], chosen: Structure) -> None:

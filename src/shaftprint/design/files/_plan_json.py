@@ -82,8 +82,9 @@ def _structure(record: PlanRecord, own: Structure | None) -> Structure:
         structure = own
     free = {p.name for p in structure.free}
     held = {name: record.ship.values[name] for name in record.ship.held if name in free}
-    # what the sensors of the ship leave open, which the shipped structure holds
-    opened = {p.name: (p.lower, p.upper) for p in structure.parameters if p.held and p.name not in record.ship.held}
+    # what the sensors of the ship leave open, which the shipped structure holds; old files name nothing that is held
+    still = record.ship.held or tuple(p.name for p in structure.parameters if p.held)
+    opened = {p.name: (p.lower, p.upper) for p in structure.parameters if p.held and p.name not in still}
     return structure.held_at(**held).free_between(**opened)
 
 

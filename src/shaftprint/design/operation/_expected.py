@@ -11,7 +11,7 @@ from shaftprint.catalogue import ShipRole, limited, pitched_with_rack, sailing_w
 from shaftprint.design.operation._operation import Operation
 from shaftprint.errors import DesignError
 from shaftprint.models import Structure
-from shaftprint.signals import moved_beside
+from shaftprint.signals import MovedBeside, moved_beside
 from shaftprint.simulation import simulate
 
 if TYPE_CHECKING:
@@ -85,6 +85,16 @@ def _vector(line: Structure, values: Mapping[str, float]) -> FloatArray:
     return line.vector({name: value for name, value in values.items() if name in line.names})
 
 
+def inputs_left_out(campaign: "Campaign", vessel: "Vessel") -> tuple[str, ...]:
+    """Return the inputs that a campaign moves and ``expected_operation`` does not, by the names of their sensors."""
+    return tuple(one.input for one in moved_beside(vessel, campaign) if not _is_known(one, vessel))
+
+
+def _is_known(moved: MovedBeside, vessel: "Vessel") -> bool:
+    """Return whether there is a structure of what an input does to engine and gauge: a pitch at the quay."""
+    return moved.symbol == _PITCH and not vessel.is_underway and vessel.motor is None
+
+
 def _with_pitch(
     outputs: Mapping[str, FloatArray],
     campaign: "Campaign",
@@ -93,8 +103,8 @@ def _with_pitch(
     time_s: FloatArray,
 ) -> Mapping[str, FloatArray]:
     """Return outputs with what the motion of a controllable pitch adds to them."""
-    moved = next((one for one in moved_beside(vessel, campaign) if one.symbol == _PITCH), None)
-    if moved is None or vessel.is_underway or vessel.motor is not None:
+    moved = next((one for one in moved_beside(vessel, campaign) if _is_known(one, vessel)), None)
+    if moved is None:
         return outputs
     line = pitched_with_rack()
     volts = setpoint(campaign, time_s, input=moved.input) - campaign.middle_v(moved.input)
