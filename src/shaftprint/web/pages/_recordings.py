@@ -23,6 +23,7 @@ VESSELS: Final = (
     "foss-carolyn-dorothy",
     "nifs-research-vessel",
     "pt-may",
+    "pt-may-underway",
     "stan-tug-1205",
     "stan-tug-1205-astern",
     "stan-tug-1205-ecu",
