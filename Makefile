@@ -49,7 +49,7 @@ lint: $(VENV)/lint ## Check style, types and the direction of imports
 	$(BIN)/lint-imports
 
 docs: $(VENV)/docs ## Build the pages into build/docs; a warning is an error
-	$(BIN)/python -m sphinx -W --keep-going -b html docs build/docs
+	$(BIN)/python -m sphinx -W --keep-going -j auto -b html docs build/docs
 
 bench: $(VENV)/benchmark ## Run shaftprint beside its peers and print the ratios
 	$(BIN)/python -m benchmarks

@@ -117,6 +117,11 @@ def test_a_propeller_in_a_nozzle_is_refused(run, here):
     assert "expected an open propeller, found Ka4-70 in nozzle 19A" in " ".join(result.output.split())
 
 
+def test_nothing_else_is_done_with_it(run, here):
+    result = run("structures", "crash-stop")
+    assert "which is simulated alone: shaftprint simulate --structure CRASH-STOP" in " ".join(result.output.split())
+
+
 def test_a_lever_moves_nothing_else(run, here):
     result = run("simulate", "--structure", "GAUGE-CLOSED", "--vessel", "stan-tug-1205", *MOVES, "-o", "y.csv")
     assert "--lever is for --structure CRASH-STOP" in " ".join(result.output.split())

@@ -7,6 +7,7 @@ machine beside the engine, ``HYBRID-QUADRATIC``, ``HYBRID-TORQUE-CLUTCH``.
 from collections.abc import Callable, Mapping
 from functools import cache
 
+from shaftprint.catalogue._crash_stop import CRASH_STOP
 from shaftprint.catalogue._drives import DRIVES
 from shaftprint.catalogue._hybrid_at_large import limited_hybrid
 from shaftprint.catalogue._limited import limited
@@ -31,6 +32,11 @@ def shipped_structure(name: str) -> Structure:
     StructureError
         If there is none of that name, or its limits do not go together.
     """
+    if name.upper() == CRASH_STOP:
+        raise StructureError(
+            f"{CRASH_STOP} is the structure of one ship, which is simulated alone: shaftprint simulate --structure "
+            f"{CRASH_STOP} --vessel SHIP."
+        )
     drive = DRIVES.get(name.upper())
     return drive() if drive is not None else _limited_structure(name) or structure(name)
 

@@ -242,9 +242,10 @@ def _answers(drive: Drive, prediction: Prediction, ship: StoppedShip) -> list[st
     idle = vessel.machine.lowest_governed_rpm
     sentences = [_standstill(drive, prediction, ship.speed_m_s)]
     if slowest < idle * (1.0 - SAME_WORKING_POINT):
+        goes_astern = float(drive.shown["gear"].min()) < 0.0
         sentences.append(
-            f"The engine is dragged down to {max(slowest, 0.0):.0f} rpm, below its {idle:g} rpm of idling: it may "
-            "stall. Close the clutch of astern later, or at more speed."
+            f"The engine falls to {max(slowest, 0.0):.0f} rpm, below its {idle:g} rpm of idling: it may stall."
+            + " Close the clutch of astern later, or at more speed." * goes_astern
         )
     return sentences
 
