@@ -53,7 +53,10 @@ class Sea:
 # 4 s, 0.9 m at 5 s.
 SEAS: Mapping[str, tuple[Sea, ...]] = {
     "stan-tug-1205-underway": (Sea("sea state 2", 0.008, 0.44, 0.03), Sea("sea state 3", 0.022, 0.32, 0.06)),
-    "pt-may-underway": (Sea("sea state 2", 0.027, 0.45, 0.03), Sea("sea state 3", 0.074, 0.33, 0.06)),
+    "pt-may-underway": (
+        Sea("open propellers in sea state 2", 0.027, 0.45, 0.03),
+        Sea("open propellers in sea state 3", 0.074, 0.33, 0.06),
+    ),
 }
 
 
