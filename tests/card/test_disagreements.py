@@ -72,6 +72,14 @@ def test_clutch_that_slips_at_full_load(changed):
     assert f"at least the highest torque of the engine, {highest:g} N m" in found.sentence("ship.toml")
 
 
+def test_ratio_astern_that_is_another_gearbox(changed):
+    line = "# astern_ratio = 3.9 "
+    assert disagreements(changed(line, "astern_ratio = 3.9 ")) == ()
+    found = only(changed(line, "astern_ratio = 39.0 "), "gearbox.astern_ratio")
+    assert found.is_contradiction
+    assert "expected a ratio within a factor of 2 of that ahead, 3.82, found 39" in found.sentence("ship.toml")
+
+
 def test_ratio_upside_down(changed):
     """1800 rpm over 1 / 3.82 are 114.6 rev/s: tips of 1.05 m at 378 m/s."""
     found = disagreements(changed("ratio = 3.82 ", "ratio = 0.2618 "))

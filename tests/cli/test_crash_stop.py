@@ -1,5 +1,6 @@
 """``shaftprint simulate --structure CRASH-STOP``: when and where a ship stands, and who may be stopped like this."""
 
+import json
 import re
 from importlib.resources import files
 
@@ -8,6 +9,7 @@ import pytest
 from tests.cli.test_simulate import columns
 
 from shaftprint.simulation import simulate, stopped_ship
+from shaftprint.tug import read_truth
 from shaftprint.vessel import load_vessel
 
 SHIP = "pt-may-underway"
@@ -72,7 +74,35 @@ def test_deviations_are_those_of_other_wakes_and_resistances(run, here):
 def test_a_ship_that_still_sails_is_said_to(run, here):
     result = run(*STOP, "--lever", "2:650:neutral", "--between", "0", "20")
     assert result.exit_code == 0, result.output
-    assert re.search(r"The ship still makes 3\.\d\d m/s at 20 s", " ".join(result.output.split()))
+    text = " ".join(result.output.split())
+    assert re.search(r"The ship still makes 3\.\d\d m/s at 20 s, and is not driven astern\.", text)
+    result = run(*STOP, *MOVES, "--between", "0", "16", "--force")
+    assert "at 16 s; a later end of --between shows when it stands." in " ".join(result.output.split())
+
+
+def test_rows_do_not_change_the_answer(run, here):
+    def said(*options):
+        result = run(*STOP, *MOVES, "--between", "0.3", "40", "--force", *options)
+        return [float(number) for number in re.findall(r"\d+\.?\d*", " ".join(result.output.splitlines()[:3]))[:6]]
+
+    few, many = said("--rate", "20"), said("--rate", "200")
+    assert few[:5] == pytest.approx(many[:5], rel=0.02)
+    # the deviation of the lowest speed changes fast where it is reached
+    assert few[5] == pytest.approx(many[5], rel=0.2)
+
+
+def test_a_vessel_file_that_contradicts_itself_is_said_to(run, here):
+    text = SHIPPED.read_text(encoding="utf-8")
+    (here / "ship.toml").write_text(text.replace("resistance_n = 24020.0", "resistance_n = 240200.0"), encoding="utf-8")
+    result = run("simulate", "--structure", "CRASH-STOP", "--vessel", "ship.toml", *MOVES, "-o", "stop.csv", "-q")
+    assert "The vessel file contradicts itself" in result.output
+
+
+def test_an_engine_that_is_turned_backwards_is_said_to(run, here):
+    result = run(
+        *STOP, "--lever", "5:650:neutral", "--lever", "5.5:650:astern", "--set", "tau_up=0.05", "--set", "w=-0.1"
+    )
+    assert "The engine is stopped and turned backwards" in " ".join(result.output.split())
 
 
 @pytest.mark.parametrize(
@@ -83,7 +113,18 @@ def test_a_ship_that_still_sails_is_said_to(run, here):
         (("--lever", "nan:650:astern"), "such as 5:650:neutral, found nan:650:astern"),
         ((), "expects --lever, one or more, each at a later time"),
         (("--lever", "5:650:neutral", "--lever", "5:650:astern"), "each at a later time than the one before"),
-        ((*MOVES, "--between", "0", "12"), "expected a stretch that holds all moves of the lever, 5 to 14 s"),
+        ((*MOVES, "--between", "0", "12"), "and ends after the last, at 14 s; found 0 to 12 s."),
+        ((*MOVES, "--between", "5", "60"), "begins before the first move of the lever, at 5 s, where the ship sails"),
+        (("--lever", "0:650:neutral"), "begins before the first move of the lever, at 0 s"),
+        (("--lever", "1e9:650:neutral"), "expected at most 3600 s, found 0 to 1e+09 s"),
+        ((*MOVES, "--between", "0", "1e12"), "expected at most 3600 s, found 0 to 1e+12 s"),
+        (("--lever", "5:5000:astern"), "expected engine speeds from 650 to 1800 rpm, found 5000 rpm at 5 s"),
+        (("--lever", "5:400:neutral"), "expected engine speeds from 650 to 1800 rpm, found 400 rpm at 5 s"),
+        ((*MOVES, "--rate", "1"), "expected at least 20 rows a second of CRASH-STOP, found 1"),
+        ((*MOVES, "--linear"), "without --campaign, --input, --rpm-per-volt, --linear or --hold"),
+        ((*MOVES, "--set", "w=0.9"), "w from --set: expected wake fraction from -0.2 to 0.6, found 0.9"),
+        ((*MOVES, "--set", "m_c=0"), "m_c from --set: expected torque at which a clutch slips"),
+        ((*MOVES, "--set", "i_r=0"), "i_r from --set: expected ratio of the train astern"),
         ((*MOVES, "--campaign", "thesis"), "is moved by --lever alone"),
         ((*MOVES, "--set", "w_c=1"), "--set w_c: expected a parameter of CRASH-STOP, one of"),
     ],
@@ -98,10 +139,10 @@ def test_wrong_arguments(run, here, arguments, message):
 @pytest.mark.parametrize(
     ("vessel", "message"),
     [
-        ("stan-tug-1205-underway", "a crash stop expects gearbox.astern_ratio; gearbox.clutch_torque_nm."),
-        ("e-ferry-ellen", "an [engine]; a motor reverses without clutches"),
-        ("nifs-research-vessel", "a fixed pitch; blades that turn stop a ship without clutches"),
-        ("pt-may", "working_point.ship_speed_m_s, the speed from which it stops; hull.wake_fraction"),
+        ("stan-tug-1205-underway", "a crash stop expects gearbox.astern_ratio, gearbox.clutch_torque_nm."),
+        ("e-ferry-ellen", "an [engine] (a motor reverses without clutches)"),
+        ("nifs-research-vessel", "a fixed pitch (blades that turn stop a ship without clutches)"),
+        ("pt-may", "working_point.ship_speed_m_s (the speed from which it stops), hull.wake_fraction"),
     ],
 )
 def test_ships_that_are_not_stopped_by_clutches(run, here, vessel, message):
@@ -110,11 +151,19 @@ def test_ships_that_are_not_stopped_by_clutches(run, here, vessel, message):
     assert message in " ".join(result.output.split())
 
 
-def test_a_propeller_in_a_nozzle_is_refused(run, here):
+@pytest.mark.parametrize(
+    ("series", "message"),
+    [
+        ('series = "Ka4-70 in nozzle 19A"', "expected an open propeller, found Ka4-70 in nozzle 19A"),
+        ('series = "Wageningen B4-40"', "expected a propeller Wageningen B4-70, the only one whose coefficients are"),
+        ("", "expected propeller.series in the vessel file, found none"),
+    ],
+)
+def test_a_propeller_without_curves_is_refused(run, here, series, message):
     text = SHIPPED.read_text(encoding="utf-8")
-    (here / "ship.toml").write_text(text.replace('"Wageningen B4-70"', '"Ka4-70 in nozzle 19A"'), encoding="utf-8")
+    (here / "ship.toml").write_text(text.replace('series = "Wageningen B4-70"', series), encoding="utf-8")
     result = run("simulate", "--structure", "CRASH-STOP", "--vessel", "ship.toml", *MOVES, "-o", "stop.csv")
-    assert "expected an open propeller, found Ka4-70 in nozzle 19A" in " ".join(result.output.split())
+    assert message in " ".join(result.output.split())
 
 
 def test_nothing_else_is_done_with_it(run, here):
@@ -127,7 +176,41 @@ def test_a_lever_moves_nothing_else(run, here):
     assert "--lever is for --structure CRASH-STOP" in " ".join(result.output.split())
 
 
-def test_a_fingerprint_of_another_working_point_is_refused(run, demo, here):
+def test_a_fingerprint_of_the_quay_is_refused(run, demo, here):
     result = run(*STOP, *MOVES, "--fingerprint", str(demo[0]))
     assert result.exit_code != 0
-    assert "expected a fingerprint from about 1600 rpm, the working point of PT May" in " ".join(result.output.split())
+    assert "expected a fingerprint of the ship underway, found one of GAUGE-CLOSED" in " ".join(result.output.split())
+
+
+@pytest.mark.slow
+def test_a_test_underway_tells_governor_and_engine(run, here):
+    """Half an hour of dither of a ship with open propellers: its truth is inside the intervals, and stops the ship."""
+    assert run("sail", SHIP, "dither", "-o", "u.nc", "--seed", "3", "--no-progress").exit_code == 0
+    common = ("--vessel", SHIP, "--campaign", "dither", "--no-report", "--no-progress")
+    assert run("identify", "u.nc", *common, "-o", "u").exit_code == 0
+    found = json.loads((here / "u" / "fingerprint.json").read_text(encoding="utf-8"))
+    truth = read_truth(here / "u.truth.json").normalised
+    numbers = {one["name"]: one for one in found["parameters"]}
+    for name in ("b", "K_p", "K_i", "omega_n", "tau_dn", "tau_up"):
+        assert abs(numbers[name]["value"] - truth[name]) < 3.0 * numbers[name]["std"], name
+    assert truth["b"] < -1.5
+    result = run(*STOP, *MOVES, "--between", "0", "60", "--fingerprint", "u", "--json")
+    assert result.exit_code == 0, result.output
+    (table, *_) = json.loads(result.stdout)["tables"]
+    origin = {row[0]: row[3] for row in table["rows"]}
+    assert {name: origin[name] for name in ("K_p", "tau_dn", "w", "tau_u")} == {
+        "K_p": "fingerprint",
+        "tau_dn": "fingerprint",
+        "w": "vessel file",
+        "tau_u": "vessel file",
+    }
+    with_governor = columns(here / "stop.csv")["engine speed std [rpm]"]
+    run(*STOP, *MOVES, "--between", "0", "60", "--force")
+    # the covariance of the governor is in the speed of the engine on its way to the new set point
+    at = np.searchsorted(columns(here / "stop.csv")["time [s]"], 15.5)
+    assert with_governor[at] > 2.0 * columns(here / "stop.csv")["engine speed std [rpm]"][at]
+    text = SHIPPED.read_text(encoding="utf-8").replace("shaft_torque_nm = 3422.0", "shaft_torque_nm = 4000.0")
+    (here / "other.toml").write_text(text, encoding="utf-8")
+    other = ("simulate", "--structure", "CRASH-STOP", "--vessel", "other.toml", "--fingerprint", "u", "-o", "x.csv")
+    result = run(*other, *MOVES)
+    assert "expected a fingerprint from about 4000 N m, the working point of PT May" in " ".join(result.output.split())

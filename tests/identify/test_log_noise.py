@@ -22,10 +22,18 @@ def test_the_log_of_the_tug_shows_what_it_did():
     assert shown(levels, 2.0) == pytest.approx(2.0 * 0.02**2 * 0.2 / 4.75**2, rel=0.3)
 
 
+@pytest.mark.parametrize("speed", [2.5, 9.0])
+def test_the_same_log_is_less_of_a_higher_speed(speed):
+    levels = with_log(STAN_TUG_NOISE_UNDERWAY, cycle_s=0.2, highest_hz=2.25, ship_speed_m_s=speed)
+    assert shown(levels, 2.0) == pytest.approx(2.0 * 0.02**2 * 0.2 / speed**2, rel=0.35)
+    # slowly it shows how the ship moves, of which each has its share
+    assert shown(levels, 0.01) == pytest.approx(shown(STAN_TUG_NOISE_UNDERWAY, 0.01), rel=0.2)
+
+
 def test_a_slower_log_has_more_noise_and_ends_earlier():
     levels = with_log(STAN_TUG_NOISE_UNDERWAY, cycle_s=1.0, highest_hz=0.45, ship_speed_m_s=9.5)
     more = shown(levels, 0.3) - shown(STAN_TUG_NOISE_UNDERWAY, 0.3)
-    assert more == pytest.approx(2.0 * 0.02**2 * 0.8 / 9.5**2, rel=0.05)
+    assert more == pytest.approx(2.0 * 0.02**2 * (1.0 / 9.5**2 - 0.2 / 4.75**2), rel=0.35)
     assert shown(levels, 0.5) == pytest.approx(NOT_MEASURED_STD**2)
     # speed and torque of the shaft are what they were
     alone = levels.of_outputs("n", "M_s").at([0.3, 2.0])

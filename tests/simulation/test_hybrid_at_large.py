@@ -32,7 +32,7 @@ def test_small_signals_without_a_clutch_are_those_of_the_linear_structure():
 
 def test_a_clutch_that_holds_changes_half_a_percent():
     rigid, closed = limited_hybrid("torque"), limited_hybrid("torque", "clutch")
-    values = LINE | TORQUE | {"m_c": 5.0, "k_c": 1e4, "c_c": 30.0, "tau_c": 0.1}
+    values = LINE | TORQUE | {"m_c": 5.0, "k_c": 1e4, "c_c": 30.0, "s_c": 0.1}
     time = np.arange(0.0, 10.0, 0.001)
     # a jump of the machine meets the clutch first: its spring takes some milliseconds
     inputs = {"n_set": np.where(time < 1.0, 0.0, 0.05), "M_m": -0.2 * np.clip(time - 5.0, 0.0, 1.0)}
@@ -45,7 +45,7 @@ def test_a_clutch_that_holds_changes_half_a_percent():
 def test_a_clutch_slips_at_what_it_holds_and_closes_again():
     model = limited_hybrid("torque", "clutch")
     # the diesel gives 0.65 of the torque; when the machine trips it would have to give all of it
-    values = LINE | TORQUE | {"c_m": 1.0, "s_m": 0.35, "m_c": 0.8, "tau_c": 0.1, "t_sp": 0.0}
+    values = LINE | TORQUE | {"c_m": 1.0, "s_m": 0.35, "m_c": 0.8, "s_c": 0.1, "t_sp": 0.0}
     time = np.arange(0.0, 60.0, 0.0025)
     trips = (time > 2.0) & (time < 20.0)
     inputs = {"n_set": np.zeros_like(time), "M_m": np.where(trips, -0.35, 0.0)}

@@ -130,6 +130,15 @@ def _full_load_curve(vessel: Vessel) -> Iterator[Disagreement]:
 
 
 def _clutch(vessel: Vessel) -> Iterator[Disagreement]:
+    ratio, astern = vessel.gearbox.ratio, vessel.gearbox.astern_ratio
+    if astern is not None and _apart(astern, ratio) > _CONTRADICTION:
+        yield Disagreement(
+            field="gearbox.astern_ratio",
+            expected=f"a ratio within a factor of {_CONTRADICTION:g} of that ahead, {ratio:g}",
+            found=f"{astern:g}",
+            advice="correct it, engine speed over propeller-shaft speed, above 0",
+            is_contradiction=True,
+        )
     held_nm, highest_nm = vessel.gearbox.clutch_torque_nm, max(vessel.machine.full_load[1])
     if held_nm is not None and held_nm < highest_nm:
         yield Disagreement(

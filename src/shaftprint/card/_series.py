@@ -74,6 +74,11 @@ def four_quadrant_curve(propeller: Propeller) -> FourQuadrantCurve:
     PropellerError
         If no such curves are known of the propeller, or of its pitch.
     """
+    if propeller.series is None:
+        raise PropellerError(
+            "four quadrants: expected propeller.series in the vessel file, found none; which curves a propeller has is "
+            'not told by its blades. Name it, such as series = "Wageningen B4-70".'
+        )
     if is_in_nozzle(propeller.series):
         raise PropellerError(
             f"four quadrants: expected an open propeller, found {propeller.series}; coefficients of no propeller in a "
@@ -82,6 +87,11 @@ def four_quadrant_curve(propeller: Propeller) -> FourQuadrantCurve:
     if propeller.area_ratio is None:
         raise PropellerError("four quadrants: expected propeller.area_ratio in the vessel file, found none; state it.")
     curve = four_quadrants(blades=propeller.blades, area_ratio=propeller.area_ratio)
+    if propeller.series.strip().lower() != curve.name.lower():
+        raise PropellerError(
+            f"four quadrants: expected a propeller {curve.name}, the only one whose coefficients are known here, found "
+            f"{propeller.series}."
+        )
     curve.of_pitch(propeller.pitch_ratio)
     return curve
 

@@ -2,7 +2,7 @@
 
 The machine sits behind the diesel's clutch, so that the diesel may be clutched out of a line that the machine drives.
 With ``n`` and ``n_l`` the speeds of diesel and line, ``M_c`` the torque of the clutch over that of the shaft, and
-``tau_c`` what of ``tau_up`` turns behind the clutch::
+``tau_c = s_c tau_up`` the inertia time behind the clutch::
 
     diesel  (tau_up - tau_c) dn/dt = (1 - c_m s_m) (1 + M_b) - M_c      M_b as in ``_limited``, with its limits
     clutch  M_c slips at m_c and at n - n_l
@@ -23,7 +23,7 @@ from shaftprint.catalogue._limited import DROOP, LimitedEngine, bollard_load, pa
 from shaftprint.models import Diagram, Flow, Formula, Parameter, Structure
 
 CLUTCHED = "clutch"
-TAU_C = Parameter("tau_c", "s", 0.0, 2.0, 0.1, "inertia time between clutch and torque gauge", held=True)
+BEHIND_CLUTCH = Parameter("s_c", "-", 0.0, 0.9, 0.1, "share of tau_up that turns behind the clutch", held=True)
 
 
 def limited_hybrid(
@@ -60,7 +60,7 @@ def limited_hybrid(
             *(*governor.values(), C_SET, T_SP, T_GAUGE, TAU_DN, TAU_UP, K_Q, *ENGINE.speed_slope),
             *(DROOP, SHARE, C_M),
             *parameters_of(of_engine),
-            *((*CLUTCH, TAU_C) if has_clutch else ()),
+            *((*CLUTCH, BEHIND_CLUTCH) if has_clutch else ()),
         ),
         further=("M_m",),
     )
@@ -91,8 +91,8 @@ class _HybridLine:
         load, _ = bollard_load(flow, line, p)
         if self._has_clutch:
             torque = clutch_torque(flow, engine - line, p.m_c, p)
-            flow.rate(engine, (given - torque) / (p.tau_up - p.tau_c))
-            acceleration = (torque + machine - 1.0 - load) / (p.tau_dn + p.tau_c)
+            flow.rate(engine, (given - torque) / ((1.0 - p.s_c) * p.tau_up))
+            acceleration = (torque + machine - 1.0 - load) / (p.tau_dn + p.s_c * p.tau_up)
         else:
             acceleration = (given + machine - 1.0 - load) / (p.tau_dn + p.tau_up)
             torque = given

@@ -50,7 +50,7 @@ def _limited_structure(name: str) -> Structure | None:
         limits = upper.removeprefix(prefix).split("-") if upper.startswith(prefix) else []
         if limits == [_NONE]:
             return build()
-        if limits and set(limits) <= set(known):
+        if limits and set(limits) <= set(known) and len(set(limits)) == len(limits):
             return build(*(limit.lower() for limit in limits))
     return None
 

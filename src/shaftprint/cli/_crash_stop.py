@@ -8,21 +8,24 @@ import click
 import numpy as np
 
 from shaftprint.arrays import FloatArray, frozen_float
-from shaftprint.catalogue import CRASH_STOP
+from shaftprint.catalogue import CRASH_STOP, CrashStopSymbol, sails_free
 from shaftprint.cli._own_structure import TypedName
 from shaftprint.cli._simulated_model import SimulatedModel
 from shaftprint.cli._simulated_set_point import SAME_WORKING_POINT, Drive, Place
 from shaftprint.cli._simulation_run import Prediction, Run
+from shaftprint.cli._vessel_file import print_disagreements
 from shaftprint.errors import FingerprintError, StructureError
-from shaftprint.fingerprint import Fingerprint
+from shaftprint.fingerprint import Fingerprint, named_structure
+from shaftprint.models import Structure
 from shaftprint.simulation import StoppedShip, stopped_ship
 from shaftprint.spelling import meant
 from shaftprint.tables import with_deviation
 from shaftprint.vessel import load_vessel
 
 GEARS: Mapping[str, float] = {"ahead": 1.0, "neutral": 0.0, "astern": -1.0}
-# What follows the last move, where no end is given; and the steps of the simulation, which a closed clutch needs.
-_AFTER_S, _STEP_S = 120.0, 2.5e-3
+# What follows the last move, where no end is given, and the longest stretch; steps that a closed clutch needs, and the
+# fewest rows a second by which the lowest speed of the engine is not overlooked.
+_AFTER_S, _LONGEST_S, _STEP_S, _FEWEST_HZ = 120.0, 3600.0, 2.5e-3, 20.0
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -106,40 +109,64 @@ def crash_stop_run(
     Raises
     ------
     click.UsageError
-        If no vessel or no move is given, or the moves do not follow each other within the span.
+        If no vessel or no move is given, the moves do not follow each other within the span, or ask for a speed that
+        the engine is not asked for.
     SettingsError, PropellerError
         If the vessel file does not describe a ship that can be stopped like this.
     StructureError
-        If there is no parameter of a name.
+        If there is no parameter of a name, or a value that no ship has.
     FingerprintError
-        If the fingerprint has another working point: its numbers are over the torque and speed of that.
+        If the fingerprint is not of a ship underway, or has another working point: its numbers are over that.
     """
     if vessel is None:
         raise click.UsageError(f"{CRASH_STOP} expects --vessel, the ship that is stopped.")
-    ship = stopped_ship(load_vessel(vessel))
+    known = load_vessel(vessel)
+    print_disagreements(known, vessel)
+    ship = stopped_ship(known)
     if fingerprint is not None:
-        _expect_same_point(fingerprint, ship)
+        _expect_of_ship(fingerprint, ship)
+    _expect_governed(moves, ship)
     place = _place(ship)
     drive = _lever_drive(moves, place, rate_hz=rate_hz, span=span)
     return Run(
         model=_model(ship, fingerprint, given),
         place=place,
         drive=drive,
-        answers=lambda prediction: _answers(drive, prediction, ship),
+        answers=lambda prediction: _answers(drive, prediction, ship, moves),
     )
 
 
-def _expect_same_point(fingerprint: Fingerprint, ship: StoppedShip) -> None:
+def _expect_of_ship(fingerprint: Fingerprint, ship: StoppedShip) -> None:
+    """Refuse a fingerprint whose numbers are over another torque and speed, or of a ship that did not sail."""
     conditions, point = fingerprint.conditions, ship.vessel.working_point
+    if not sails_free(named_structure(fingerprint)):
+        raise FingerprintError(
+            f"{CRASH_STOP}: expected a fingerprint of the ship underway, found one of {fingerprint.structure}; at the "
+            "quay the propeller takes another torque."
+        )
+    sailed = fingerprint.vessel_fields.get("working_point.ship_speed_m_s")
     pairs = {
         "rpm": (conditions.engine_speed.value, point.engine_speed_rpm),
         "N m": (conditions.shaft_torque.value, point.shaft_torque_nm),
+        "m/s": (float(sailed) if isinstance(sailed, float) else ship.speed_m_s, ship.speed_m_s),
     }
     for unit, (tested, stated) in pairs.items():
         if abs(tested / stated - 1.0) > SAME_WORKING_POINT:
             raise FingerprintError(
                 f"{CRASH_STOP}: expected a fingerprint from about {stated:g} {unit}, the working point of "
                 f"{ship.vessel.name}, found one from {tested:.5g} {unit}; its gains and times are over its own."
+            )
+
+
+def _expect_governed(moves: tuple[LeverMove, ...], ship: StoppedShip) -> None:
+    """Refuse a lever that asks for what no governor of this engine is asked for."""
+    machine = ship.vessel.machine
+    lowest, highest = machine.lowest_governed_rpm, max(machine.rated_speed_rpm, machine.full_load[0][-1])
+    for move in moves:
+        if not lowest <= move.speed_rpm <= highest:
+            raise click.UsageError(
+                f"--lever: expected engine speeds from {lowest:g} to {highest:g} rpm, found {move.speed_rpm:g} rpm at "
+                f"{move.time_s:g} s."
             )
 
 
@@ -171,16 +198,29 @@ def _model(ship: StoppedShip, fingerprint: Fingerprint | None, given: Mapping[st
         tested = {name: value for name, value in tested.items() if name in ship.of_the_line}
     origins = dict.fromkeys(names, "usual value") | dict.fromkeys(stated, "vessel file")
     origins |= dict.fromkeys(tested, "fingerprint") | dict.fromkeys(given, "--set")
+    values = structure.vector(stated | tested | dict(given))
+    _expect_within(structure, values, origins)
     uncertain, covariance = _covariance(ship, fingerprint, origins)
     std = {} if fingerprint is None else {q.name: q.std for q in fingerprint.parameters}
     return SimulatedModel(
         structure=structure,
-        values=frozen_float(structure.vector(stated | tested | dict(given))),
+        values=frozen_float(values),
         origins=tuple(origins[name] for name in names),
         uncertain=uncertain,
         covariance=covariance,
         not_known=tuple(n for n, s in std.items() if origins.get(n) == "fingerprint" and not np.isfinite(s)),
     )
+
+
+def _expect_within(structure: Structure, values: FloatArray, origins: Mapping[str, str]) -> None:
+    """Refuse values that no ship has, and a clutch that does not hold what the ship sails with."""
+    for parameter, value in zip(structure.parameters, values.tolist(), strict=True):
+        lowest = 1.0 if parameter.name == CrashStopSymbol.CLUTCH_TORQUE else parameter.lower
+        if not lowest <= value <= parameter.upper:
+            raise StructureError(
+                f"{CRASH_STOP}, {parameter.name} from {origins[parameter.name]}: expected {parameter.meaning} from "
+                f"{lowest:g} to {parameter.upper:g}, found {value:g}."
+            )
 
 
 def _covariance(
@@ -208,10 +248,19 @@ def _lever_drive(
     if not moves or any(later <= earlier for earlier, later in pairwise(times)):
         raise click.UsageError(f"{CRASH_STOP} expects --lever, one or more, each at a later time than the one before.")
     begin, end = span or (0.0, times[-1] + _AFTER_S)
-    if not begin <= times[0] or not times[-1] < end:
+    if not begin < times[0] or not times[-1] < end:
         raise click.UsageError(
-            f"--between: expected a stretch that holds all moves of the lever, {times[0]:g} to {times[-1]:g} s, found "
-            f"{begin:g} to {end:g} s."
+            f"--between: expected a stretch that begins before the first move of the lever, at {times[0]:g} s, where "
+            f"the ship sails ahead, and ends after the last, at {times[-1]:g} s; found {begin:g} to {end:g} s."
+        )
+    if end - begin > _LONGEST_S:
+        raise click.UsageError(
+            f"--between: expected at most {_LONGEST_S:g} s, found {begin:g} to {end:g} s; move the lever earlier."
+        )
+    if rate_hz < _FEWEST_HZ:
+        raise click.UsageError(
+            f"--rate: expected at least {_FEWEST_HZ:g} rows a second of {CRASH_STOP}, found {rate_hz:g}; a clutch "
+            "closes in less than two rows."
         )
     every = int(np.ceil(1.0 / (rate_hz * _STEP_S) - 1e-9))
     time = frozen_float(begin + np.arange(int(np.floor((end - begin) * rate_hz + 1e-9)) + 1) / rate_hz)
@@ -235,35 +284,40 @@ def _asked(moves: tuple[LeverMove, ...], place: Place, time_s: FloatArray) -> di
     return {"n_set": frozen_float(speeds[latest]), "gear": frozen_float(gears[latest])}
 
 
-def _answers(drive: Drive, prediction: Prediction, ship: StoppedShip) -> list[str]:
+def _answers(drive: Drive, prediction: Prediction, ship: StoppedShip, moves: tuple[LeverMove, ...]) -> list[str]:
     """Return when and where the ship stands, from the first move of the lever on, and whether the engine stalls."""
-    vessel = ship.vessel
-    slowest = (1.0 + float(prediction.outputs["n"].min())) * vessel.working_point.engine_speed_rpm
-    idle = vessel.machine.lowest_governed_rpm
-    sentences = [_standstill(drive, prediction, ship.speed_m_s)]
-    if slowest < idle * (1.0 - SAME_WORKING_POINT):
-        goes_astern = float(drive.shown["gear"].min()) < 0.0
+    sentences = [_standstill(drive, prediction, ship.speed_m_s, moves)]
+    speed_rpm, idle = ship.vessel.working_point.engine_speed_rpm, ship.vessel.machine.lowest_governed_rpm
+    at = int(np.argmin(prediction.outputs["n"]))
+    slowest = speed_rpm * (1.0 + float(prediction.outputs["n"][at]))
+    if slowest <= 0.0:
+        sentences.append("The engine is stopped and turned backwards: what follows that is not to be used.")
+    elif slowest < idle * (1.0 - SAME_WORKING_POINT):
+        std = 0.0 if prediction.std is None else speed_rpm * float(prediction.std["n"][at])
+        falls = with_deviation(slowest, std) if std else f"{slowest:.0f}"
         sentences.append(
-            f"The engine falls to {max(slowest, 0.0):.0f} rpm, below its {idle:g} rpm of idling: it may stall."
-            + " Close the clutch of astern later, or at more speed." * goes_astern
+            f"The engine falls to {falls} rpm, below its {idle:g} rpm of idling: it may stall."
+            + " Close the clutch of astern later, or at more speed." * any(move.gear < 0.0 for move in moves)
         )
     return sentences
 
 
-def _standstill(drive: Drive, prediction: Prediction, speed_m_s: float) -> str:
+def _standstill(drive: Drive, prediction: Prediction, speed_m_s: float, moves: tuple[LeverMove, ...]) -> str:
     time, sails = drive.time_s, 1.0 + prediction.outputs["v_s"]
     distance = speed_m_s * (time - time[0] + prediction.outputs["x_s"])
-    moved = int(np.searchsorted(time, _first_move_s(drive)))
+    begin = moves[0].time_s
     later = np.nonzero(sails <= 0.0)[0]
     if not later.size:
+        last = f"The ship still makes {speed_m_s * sails[-1]:.2f} m/s at {time[-1]:g} s"
+        slows = moves[-1].gear < 0.0 and sails[-1] < sails[-2]
         return (
-            f"The ship still makes {speed_m_s * sails[-1]:.2f} m/s at {time[-1]:g} s; a later end of --between shows "
-            "when it stands."
+            f"{last}; a later end of --between shows when it stands." if slows else f"{last}, and is not driven astern."
         )
     at = int(later[0])
     share = sails[at - 1] / (sails[at - 1] - sails[at])
-    seconds = float(time[at - 1] + share * (time[at] - time[at - 1]) - time[moved])
-    metres = float(distance[at - 1] + share * (distance[at] - distance[at - 1]) - distance[moved])
+    seconds = float(time[at - 1] + share * (time[at] - time[at - 1])) - begin
+    stood = float(distance[at - 1] + share * (distance[at] - distance[at - 1]))
+    metres = stood - float(np.interp(begin, time, distance))
     if prediction.std is None:
         return f"The ship stands {seconds:.1f} s and {metres:.1f} m after the first move of the lever."
     slope = (sails[at - 1] - sails[at]) / (time[at] - time[at - 1])
@@ -271,8 +325,3 @@ def _standstill(drive: Drive, prediction: Prediction, speed_m_s: float) -> str:
     of_seconds = with_deviation(seconds, float(prediction.std["v_s"][at] / slope))
     of_metres = with_deviation(metres, float(speed_m_s * prediction.std["x_s"][at]))
     return f"The ship stands {of_seconds} s and {of_metres} m after the first move of the lever."
-
-
-def _first_move_s(drive: Drive) -> float:
-    moves = np.any(np.diff([drive.shown[name] for name in ("n_set", "gear")]) != 0.0, axis=0)
-    return float(drive.time_s[np.argmax(moves) + 1])

@@ -1,6 +1,5 @@
 """A ship that goes from ahead to astern by its clutches, with what its vessel file states."""
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -86,10 +85,10 @@ def stopped_ship(vessel: Vessel) -> StoppedShip:
 def _expect_all(vessel: Vessel) -> None:
     hull = vessel.hull
     missing = {
-        "an [engine]; a motor reverses without clutches": vessel.engine is None,
-        "a fixed pitch; blades that turn stop a ship without clutches": vessel.pitch is not None,
+        "an [engine] (a motor reverses without clutches)": vessel.engine is None,
+        "a fixed pitch (blades that turn stop a ship without clutches)": vessel.pitch is not None,
         "no [shaft_machine]": vessel.shaft_machine is not None,
-        "working_point.ship_speed_m_s, the speed from which it stops": not vessel.is_underway,
+        "working_point.ship_speed_m_s (the speed from which it stops)": not vessel.is_underway,
         "hull.wake_fraction": hull is None or hull.wake_fraction is None,
         "gearbox.astern_ratio": vessel.gearbox.astern_ratio is None,
         "gearbox.clutch_torque_nm": vessel.gearbox.clutch_torque_nm is None,
@@ -97,11 +96,11 @@ def _expect_all(vessel: Vessel) -> None:
     }
     lacking = [words for words, lacks in missing.items() if lacks]
     if lacking:
-        raise SettingsError(f"vessel {vessel.name}: a crash stop expects {'; '.join(lacking)}.")
+        raise SettingsError(f"vessel {vessel.name}: a crash stop expects {', '.join(lacking)}.")
 
 
 def _line(vessel: Vessel, line: Normalisation) -> dict[str, StatedValue]:
-    """Return inertia times and clutches."""
+    """Return inertia times and clutches, over the torque that the vessel file states: no gauge comes in."""
     gearbox = vessel.gearbox
     assert gearbox.astern_ratio is not None and gearbox.clutch_torque_nm is not None  # noqa: S101, PT018 - expected
     inertias = {
@@ -135,11 +134,9 @@ def _limits(vessel: Vessel) -> dict[str, StatedValue]:
 def _ship(hull: Hull, speed_m_s: float) -> dict[str, StatedValue]:
     """Return wake, exponent of the resistance, and ``tau_u = m v / R``."""
     assert hull.wake_fraction is not None  # noqa: S101 - it was expected
-    time_s = hull.surging_mass_kg * speed_m_s / hull.resistance_at_n(speed_m_s)
-    of_mass = hull.surging_mass_std_kg / hull.surging_mass_kg
-    of_resistance = (hull.resistance_std_n or 0.0) / hull.resistance_n
+    time_s, time_std_s = hull.surge_time_s(speed_m_s)
     return {
         CrashStopSymbol.WAKE_FRACTION: StatedValue(value=hull.wake_fraction, std=hull.wake_fraction_std or 0.0),
         CrashStopSymbol.RESISTANCE_EXPONENT: StatedValue(value=hull.resistance_exponent),
-        CrashStopSymbol.SHIP_TIME: StatedValue(value=time_s, std=time_s * math.hypot(of_mass, of_resistance)),
+        CrashStopSymbol.SHIP_TIME: StatedValue(value=time_s, std=time_std_s),
     }

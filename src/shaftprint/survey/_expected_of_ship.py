@@ -33,7 +33,7 @@ def _sailing(structure: Structure, vessel: Vessel) -> dict[str, float]:
     hull, speed_m_s = vessel.hull, vessel.working_point.ship_speed_m_s
     if hull is None or speed_m_s is None:
         return {}
-    time_s = hull.surging_mass_kg * speed_m_s / hull.resistance_at_n(speed_m_s)
+    time_s, _ = hull.surge_time_s(speed_m_s)
     slopes = _slopes(vessel, speed_m_s)
     return sailing_values(structure, exponent=hull.resistance_exponent, time_s=time_s, slopes=slopes)
 

@@ -1,5 +1,6 @@
 """The ship around the shaft lines, as far as it answers their thrust."""
 
+import math
 from typing import Annotated
 
 from pydantic import Field
@@ -58,6 +59,12 @@ class Hull(Settings):
     def wash_std(self) -> float:
         """Standard deviation of the share of the wash, as stated or as usual."""
         return WASH_SHARE_STD if self.wash_share_std is None else self.wash_share_std
+
+    def surge_time_s(self, speed_m_s: float) -> tuple[float, float]:
+        """Return ``m v / R`` [s], in which the ship would lose a speed [m/s], and its standard deviation."""
+        time_s = self.surging_mass_kg * speed_m_s / self.resistance_at_n(speed_m_s)
+        of_mass = self.surging_mass_std_kg / self.surging_mass_kg
+        return time_s, time_s * math.hypot(of_mass, (self.resistance_std_n or 0.0) / self.resistance_n)
 
     def resistance_at_n(self, speed_m_s: float) -> float:
         """Return the resistance [N] at a speed [m/s], ``R = R_0 (v / v_0)^e``."""

@@ -128,7 +128,7 @@ def command(
     identified = None if fingerprint is None else fingerprint_at(fingerprint)
     values = dict(given)
     if is_crash_stop(structure):
-        _expect_only_a_lever(campaign, table, rpm_per_volt)
+        _expect_only_a_lever(campaign, table, rpm_per_volt, linear or None, hold or None)
         run = crash_stop_run(vessel, identified, values, moves, rate_hz=rate_hz, span=span)
     else:
         _expect_no_lever(moves)
@@ -177,7 +177,7 @@ def _drive(
 def _expect_only_a_lever(*others: object) -> None:
     if any(other is not None for other in others):
         raise click.UsageError(
-            f"{CRASH_STOP} is moved by --lever alone, without --campaign, --input or --rpm-per-volt."
+            f"{CRASH_STOP} is moved by --lever alone, without --campaign, --input, --rpm-per-volt, --linear or --hold."
         )
 
 

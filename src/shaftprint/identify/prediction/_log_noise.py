@@ -10,16 +10,16 @@ from shaftprint.spectra import NOT_MEASURED_STD
 
 SHIP_SPEED = "v_s"
 """Speed of the ship as its log shows it."""
-LOG_RMS_M_S, LOG_CYCLE_S = 0.02, 0.2
-"""Noise of one value of the log of the Stan Tug 1205 [m/s], and the time from one value to the next [s]."""
+LOG_CYCLE_S, LOG_SPEED_M_S = 0.2, 4.75
+"""Time between values of the log of the Stan Tug 1205 [s], and the speed that it shows [m/s]."""
 # So near to each other are the frequencies at which a log still shows something and no longer does.
 _EDGE = 1e-3
 
 
 def with_log(levels: NoiseLevels, *, cycle_s: float, highest_hz: float, ship_speed_m_s: float) -> NoiseLevels:
-    """Return noise levels of the Stan Tug 1205 as a ship with a log of another cycle has them.
+    """Return noise levels of the Stan Tug 1205 as a ship of another speed with a log of another cycle has them.
 
-    White noise of single values spreads over fewer frequencies where values are fewer.
+    White noise of single values spreads over fewer frequencies where values are fewer, and is less of a higher speed.
 
     Parameters
     ----------
@@ -46,7 +46,11 @@ def with_log(levels: NoiseLevels, *, cycle_s: float, highest_hz: float, ship_spe
     edges = [one for one in (highest_hz, (1.0 + _EDGE) * highest_hz) if stated[0] < one < stated[-1]]
     frequency = np.union1d(stated, edges)
     density = levels.at(frequency)
-    density[:, place, place] += 2.0 * LOG_RMS_M_S**2 * max(cycle_s - LOG_CYCLE_S, 0.0) / ship_speed_m_s**2
+    # a log of values closer together than the tug's has, as far as is known, no less noise
+    times = max(cycle_s, LOG_CYCLE_S) / LOG_CYCLE_S * (LOG_SPEED_M_S / ship_speed_m_s) ** 2
+    # where no ship moves any more there is the noise of single values alone; slowly it is the ship, by its own speed
+    white = float(levels.density[:, place, place].real.min())
+    density[:, place, place] += (times - 1.0) * white
     lost = frequency > (1.0 + 0.5 * _EDGE) * highest_hz
     density[lost, place, :] = density[lost, :, place] = 0.0
     density[lost, place, place] = NOT_MEASURED_STD**2
