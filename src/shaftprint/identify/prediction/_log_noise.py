@@ -8,10 +8,12 @@ from shaftprint.errors import IdentificationError
 from shaftprint.identify.prediction._noise_levels import NoiseLevels
 from shaftprint.spectra import NOT_MEASURED_STD
 
-SHIP_SPEED = "v_s"
-"""Speed of the ship as its log shows it."""
+SHIP_SPEED, TORQUE = "v_s", "M_s"
+"""Speed of the ship as its log shows it, and torque at the gauge."""
 LOG_CYCLE_S, LOG_SPEED_M_S = 0.2, 4.75
 """Time between values of the log of the Stan Tug 1205 [s], and the speed that it shows [m/s]."""
+# Faster than this no ship moves.
+_SHIP_STANDS_HZ = 0.5
 # So near to each other are the frequencies at which a log still shows something and no longer does.
 _EDGE = 1e-3
 
@@ -48,9 +50,11 @@ def with_log(levels: NoiseLevels, *, cycle_s: float, highest_hz: float, ship_spe
     density = levels.at(frequency)
     # a log of values closer together than the tug's has, as far as is known, no less noise
     times = max(cycle_s, LOG_CYCLE_S) / LOG_CYCLE_S * (LOG_SPEED_M_S / ship_speed_m_s) ** 2
-    # where no ship moves any more there is the noise of single values alone; slowly it is the ship, by its own speed
-    white = float(levels.density[:, place, place].real.min())
-    density[:, place, place] += (times - 1.0) * white
+    # what the torque has no part in is noise of single values, but slowly, where it is the ship that moves
+    torque = levels.outputs.index(TORQUE)
+    moved = np.abs(density[:, place, torque]) ** 2 / density[:, torque, torque].real
+    alone = density[:, place, place].real - moved
+    density[:, place, place] += (times - 1.0) * np.minimum(alone, alone[frequency > _SHIP_STANDS_HZ].max())
     lost = frequency > (1.0 + 0.5 * _EDGE) * highest_hz
     density[lost, place, :] = density[lost, :, place] = 0.0
     density[lost, place, place] = NOT_MEASURED_STD**2
