@@ -50,7 +50,7 @@ class LimitFit(Shown):
     gains: Mapping[Kind, float]
     """Fall of minus twice the log-likelihood that each limit brings to the others, the strongest evidence first."""
     governor: tuple[Estimate, ...]
-    """Governor and delays that go with them, with their standard deviations."""
+    """Governor and delays that go with them, with their standard deviations; infinite where none is known."""
     not_seen: Mapping[Kind, str]
     """For each limit that does not act: up to which level the data exclude it, in words."""
     identification: Identification

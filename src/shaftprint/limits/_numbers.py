@@ -1,6 +1,6 @@
 """Numbers of limits in the units of the ship, and whether they may be trusted."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -23,6 +23,8 @@ HARDLY_KNOWN = 0.6
 # Deviation of the set point's line at the working point, over its speed, up to which the search tells a line that rests
 # at its torque limit from one that does not: of five recordings beyond it the level of three was wrong.
 LARGEST_LINE_STD = 0.003
+# Torque limits below this share of the full-load curve are rather a lack of air than of fuel.
+LEAST_SHARE = 0.8
 # Of 17 simulated set points with a limited rate the rate came out 0.6 % high, 0.8 % in the root mean square, with
 # noise of 0.4 %: between two samples of 12.5 Hz a governor already answers what disturbs the speed.
 RAMP_STD = 7e-3
@@ -136,18 +138,43 @@ def numbers_of(
     return tuple(rows)
 
 
+def doubt_of_line(fit: Fitted) -> str:
+    """Return why numbers that hang on the line of the set point are not trusted; nothing where they are."""
+    line_std = fit.priors[GovernorSymbol.SET_POINT_OFFSET].std
+    if line_std > LARGEST_LINE_STD:
+        return (
+            "the speed fell behind the set point so often that their line is known to "
+            f"{100.0 * line_std:.2g} % only, and the likelihood may have a second optimum at another line: test again "
+            "with smaller sines"
+        )
+    offset = fit.values[GovernorSymbol.SET_POINT_OFFSET]
+    if abs(offset) > LARGEST_LINE_STD:
+        return (
+            f"the fit moves the line of the set point by {100.0 * offset:+.2g} % of the speed, as where the speed "
+            "falls behind it at a limit: test again with smaller sines"
+        )
+    return ""
+
+
+def _below_the_curve(kind: Kind, values: Mapping[str, float], units: Units) -> str:
+    """Return that a torque limit is far below the full-load curve; nothing where it is not."""
+    share = values[GovernorSymbol.TORQUE_LIMIT] / units.full
+    if kind is not Kind.TORQUE or share >= LEAST_SHARE:
+        return ""
+    return (
+        f"it is {100.0 * (1.0 - share):.0f} % below the full-load curve of the vessel file: a smoke limit that acts "
+        "for seconds looks alike, where the curve is right"
+    )
+
+
 def _printed(fit: Fitted, spread: LevelScatter, units: Units, kind: Kind, name: str) -> Iterator[LimitEstimate]:
     parameter = next(p for p in fit.term.structure.free if p.name == name)
     value = fit.values[name]
     at_bound = value in (parameter.lower, parameter.upper)
     interval = profile_interval(fit, spread, name)
     doubt = _doubt(value, interval, at_bound=at_bound)
-    line_std = fit.priors[GovernorSymbol.SET_POINT_OFFSET].std
-    if kind in (Kind.TORQUE, Kind.SMOKE) and line_std > LARGEST_LINE_STD:
-        doubt = doubt or (
-            f"the speed fell behind the set point so often that their line is known to {100.0 * line_std:.2g} % only, "
-            "and the likelihood may have a second optimum at another line: test again with smaller sines"
-        )
+    if kind in (Kind.TORQUE, Kind.SMOKE):
+        doubt = doubt or doubt_of_line(fit) or _below_the_curve(kind, fit.values, units)
     for scale in units.scales(name):
         more = NORMAL_95 * scale.share_std * abs(value)
         lower, upper = (_widened(value, end, more) for end in (interval.lower, interval.upper))
