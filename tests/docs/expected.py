@@ -50,8 +50,8 @@ def expect_settings(folder, printed, words):
     assert loaded.place if words[1] == "conditions" else loaded.name
 
 
-# What identify takes for tests of these ships, what such a test tells beside the parameters, and to how many per cent or
-# better it knows the inertia behind the gauge.
+# What identify takes for tests of these ships, what such a test tells beside the parameters, and to how many per cent
+# or better it knows the inertia behind the gauge.
 PREDICTED = {
     "stan-tug-1205-underway": ("FREE-LOG", {"(e - a) / tau_u", "b (2 - a) / tau_u"}, 5),
     "nifs-research-vessel": ("GAUGE-PITCH", {"t_d + t_sp", "q c_th"}, 1),
