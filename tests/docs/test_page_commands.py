@@ -25,6 +25,7 @@ RUN_ELSEWHERE = {
     "foss-carolyn-dorothy",
     "nifs-research-vessel",
     "pt-may",
+    "pt-may-underway",
     "stan-tug-1205-astern",
     "stan-tug-1205-underway",
     "--starboard",
@@ -35,8 +36,10 @@ BEGINS = {
     "identify": ("run", "identify_both_lines"),
     "inspect": ("read_recording",),
     "limits": ("identify_limits",),
+    "plan": ("plan_test",),
     "sail": ("sail_as", "sail_both_lines"),
     "sensitivity": ("sensitivity_chart",),
+    "simulate": ("predicted",),
 }
 
 
@@ -80,14 +83,15 @@ def is_run_elsewhere(line):
     """Say whether tests in ``tests/cli`` run a command to its end: those of other ships, and the longest."""
     name, *words = shlex.split(line)
     of_its_own = not RUN_ELSEWHERE.isdisjoint(words)
-    return name in ("limits", "sensitivity") or (name in ("identify", "inspect", "sail") and of_its_own)
+    longest = ("identify", "inspect", "plan", "sail", "simulate")
+    return name in ("limits", "sensitivity") or (name in longest and of_its_own)
 
 
 @pytest.mark.parametrize("line", [line for line in commands() if is_run_elsewhere(line)])
 def test_a_command_that_is_run_elsewhere_is_understood(line, ashore, without_zig, monkeypatch):
     words = shlex.split(line)
     folder = ashore(words)
-    if words[0] != "sail" and not (folder / words[1]).exists():
+    if not words[1].startswith("-") and words[0] != "sail" and not (folder / words[1]).exists():
         # what another line of the page sails
         berth(folder / "recording.nc", folder / words[1])
 
