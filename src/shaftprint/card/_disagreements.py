@@ -153,7 +153,7 @@ def _clutch(vessel: Vessel) -> Iterator[Disagreement]:
 def _engine_load(vessel: Vessel) -> Iterator[Disagreement]:
     """Hold the working torque against the full-load curve; where that has room, its power against the rated one."""
     point, machine = vessel.working_point, vessel.machine
-    brake_nm = vessel.engine_share * point.driving_torque_nm / (vessel.gearbox.ratio * vessel.gearbox.efficiency)
+    brake_nm = vessel.engine_share * point.driving_torque_nm / vessel.gearbox.shaft_over_brake
     power_kw = 2.0 * math.pi * rev_s_from_rpm(point.engine_speed_rpm) * brake_nm / 1000.0
     highest_nm = float(np.interp(point.engine_speed_rpm, *machine.full_load))
     if brake_nm > highest_nm:

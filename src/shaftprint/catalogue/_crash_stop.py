@@ -88,10 +88,11 @@ class FourQuadrantPropeller:
     ship_speed_m_s: float
     """Speed through the water [m/s]."""
 
-    def thrust(self, wake_fraction: float) -> float:
-        """Return ``C_T*`` at the working point."""
-        thrust, _ = self.curve.at(math.atan((1.0 - wake_fraction) * self.slope), self.pitch_ratio)
-        return float(thrust)
+    @property
+    def pulls(self) -> bool:
+        """Whether it pulls at the working point without wake, where it pulls least."""
+        thrust, _ = self.curve.at(math.atan(self.slope), self.pitch_ratio)
+        return float(thrust) > 0.0
 
     @property
     def slope(self) -> float:
@@ -120,7 +121,7 @@ def crash_stop(propeller: FourQuadrantPropeller, *, curve: tuple[tuple[float, fl
     PropellerError
         If the curves do not hold the pitch.
     """
-    if propeller.thrust(0.0) <= 0.0:
+    if not propeller.pulls:
         raise StructureError(
             f"{CRASH_STOP}: expected a propeller that pulls at its working point, found none of {propeller.curve.name} "
             f"at {propeller.shaft_speed_rev_s:g} rev/s and {propeller.ship_speed_m_s:g} m/s; check both speeds, and "
@@ -141,10 +142,7 @@ def crash_stop(propeller: FourQuadrantPropeller, *, curve: tuple[tuple[float, fl
         name=CRASH_STOP,
         title=f"line of a ship that is stopped by its clutches, {propeller.curve.name}",
         inputs=line.inputs,
-        outputs={
-            output: {source: line.port(output, "" if source == line.input else source) for source in line.inputs}
-            for output in line.outputs
-        },
+        outputs={output: line.paths(output) for output in line.outputs},
     )
 
 

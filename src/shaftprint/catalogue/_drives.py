@@ -147,10 +147,7 @@ def two_masses_on_a_shaft() -> Structure:
 
 def _structure(diagram: Diagram, title: str, combinations: tuple[Combination, ...]) -> Structure:
     """Return a structure of one diagram."""
-    outputs = {
-        output: {source: diagram.port(output, "" if source == diagram.input else source) for source in diagram.inputs}
-        for output in diagram.outputs
-    }
+    outputs = {output: diagram.paths(output) for output in diagram.outputs}
     return Structure(name=diagram.name, title=title, inputs=diagram.inputs, outputs=outputs, combinations=combinations)
 
 

@@ -67,8 +67,8 @@ def limited_hybrid(
     return Structure(
         name=name or f"HYBRID-{'-'.join(limits).upper() or 'QUADRATIC'}",
         title="closed loop with an electric machine on the gearbox, " + ", ".join(("quadratic propeller", *limits)),
-        inputs=("n_set", "M_m"),
-        outputs={output: {"n_set": line.port(output), "M_m": line.port(output, "M_m")} for output in line.outputs},
+        inputs=line.inputs,
+        outputs={output: line.paths(output) for output in line.outputs},
     )
 
 

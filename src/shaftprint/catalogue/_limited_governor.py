@@ -104,14 +104,11 @@ def limited_governor(*limits: str, period_s: float = 0.0, name: str = "") -> Str
         of=(C_SET, E_SET, GAUGE_K_P, GAUGE_K_I, V_ONE, T_D, GAUGE_OMEGA_N, GAUGE_ZETA, G, T_SP, DROOP, *extra),
         further=("n", "M_b", "c"),
     )
-    paths = {
-        source: diagram.port("y", "" if source == diagram.input else source) * Delay(T_SP) for source in diagram.inputs
-    }
     return Structure(
         name=name or f"GOVERNOR-{'-'.join(limits).upper() or 'UNLIMITED'}",
         title=f"governor and engine on the measured speed{''.join(f', {limit}' for limit in limits)}",
         inputs=diagram.inputs,
-        outputs={"y": paths},
+        outputs={"y": {source: port * Delay(T_SP) for source, port in diagram.paths("y").items()}},
     )
 
 

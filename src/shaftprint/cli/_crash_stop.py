@@ -10,7 +10,7 @@ import numpy as np
 from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.catalogue import CRASH_STOP, CrashStopSymbol, sails_free
 from shaftprint.cli._own_structure import TypedName
-from shaftprint.cli._simulated_model import SimulatedModel
+from shaftprint.cli._simulated_model import SimulatedModel, expect_parameters
 from shaftprint.cli._simulated_set_point import SAME_WORKING_POINT, Drive, Place
 from shaftprint.cli._simulation_run import Prediction, Run
 from shaftprint.cli._vessel_file import print_disagreements
@@ -18,7 +18,6 @@ from shaftprint.errors import FingerprintError, StructureError
 from shaftprint.fingerprint import Fingerprint, named_structure
 from shaftprint.models import Structure
 from shaftprint.simulation import StoppedShip, stopped_ship
-from shaftprint.spelling import meant
 from shaftprint.tables import with_deviation
 from shaftprint.vessel import load_vessel
 
@@ -47,16 +46,12 @@ class _LeverMoveType(click.ParamType):  # type: ignore[type-arg]
 
     def convert(self, value: object, param: click.Parameter | None, ctx: click.Context | None) -> LeverMove:
         """Return a move as it was typed."""
-        time, speed, gear = (*str(value).split(":"), "", "")[:3]
         try:
+            time, speed, gear = str(value).split(":")
             move = LeverMove(time_s=float(time), speed_rpm=float(speed), gear=GEARS[gear.strip().lower()])
         except (ValueError, KeyError):
             move = None
-        if (
-            move is None
-            or str(value).count(":") != 2
-            or not (0.0 <= move.time_s < np.inf and 0.0 < move.speed_rpm < np.inf)
-        ):
+        if move is None or not (0.0 <= move.time_s < np.inf and 0.0 < move.speed_rpm < np.inf):
             self.fail(
                 f"expected a time in s, an engine speed in rpm and one of {', '.join(GEARS)}, such as 5:650:neutral, "
                 f"found {value}.",
@@ -184,12 +179,7 @@ def _place(ship: StoppedShip) -> Place:
 
 def _model(ship: StoppedShip, fingerprint: Fingerprint | None, given: Mapping[str, float]) -> SimulatedModel:
     structure, names = ship.structure, ship.structure.names
-    unknown = [name for name in given if name not in names]
-    if unknown:
-        raise StructureError(
-            f"--set {', '.join(unknown)}: expected a parameter of {structure.name}, one of {', '.join(names)}."
-            f"{meant(unknown[0], names)}"
-        )
+    expect_parameters(structure, given)
     stated = {name: number.value for name, number in ship.stated.items()}
     tested: dict[str, float] = {}
     if fingerprint is not None:

@@ -86,12 +86,7 @@ def simulated_model(
         (chosen,) = chosen_structures([name])
     else:
         raise click.UsageError("expected a model: give --fingerprint, or --structure with --set.")
-    unknown = [parameter for parameter in given if parameter not in chosen.names]
-    if unknown:
-        raise StructureError(
-            f"--set {', '.join(unknown)}: expected a parameter of {chosen.name}, one of {', '.join(chosen.names)}."
-            f"{meant(unknown[0], chosen.names)}"
-        )
+    expect_parameters(chosen, given)
     if fingerprint is None:
         return _by_name(chosen, given)
     source = line or fingerprint
@@ -102,6 +97,22 @@ def simulated_model(
         covariance=np.array(source.covariance),
     )
     return _of_fingerprint(chosen, identified, given)
+
+
+def expect_parameters(chosen: Structure, given: Mapping[str, float]) -> None:
+    """Refuse values that a user states of what is no parameter of a structure.
+
+    Raises
+    ------
+    StructureError
+        If there is no parameter of a name.
+    """
+    unknown = [name for name in given if name not in chosen.names]
+    if unknown:
+        raise StructureError(
+            f"--set {', '.join(unknown)}: expected a parameter of {chosen.name}, one of {', '.join(chosen.names)}."
+            f"{meant(unknown[0], chosen.names)}"
+        )
 
 
 def _by_name(chosen: Structure, given: Mapping[str, float]) -> SimulatedModel:

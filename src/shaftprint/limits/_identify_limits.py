@@ -126,9 +126,9 @@ def identify_limits(
 
 def _governor(fit: Fitted, spread: LevelScatter, identification: Identification) -> tuple[Estimate, ...]:
     """Return governor and delays; none known where the line of the set point is not."""
-    known = np.inf if doubt_of_line(fit) else GOVERNOR_OFF
+    wider = np.inf if doubt_of_line(fit) else GOVERNOR_OFF
     return tuple(
-        replace(estimate, std=known * spread.std(estimate.name))
+        replace(estimate, std=wider * spread.std(estimate.name))
         for estimate in identification.parameters
         if estimate.name in GOVERNOR
     )

@@ -63,7 +63,7 @@ class Units:
     def of(cls, signals: Signals, vessel: Vessel) -> "Units":
         """Return the units of a test."""
         point = signals.working_point
-        brake = point.shaft_torque_nm / (vessel.gearbox.ratio * vessel.gearbox.efficiency)
+        brake = point.shaft_torque_nm / vessel.gearbox.shaft_over_brake
         speed = rpm_from_rev_s(point.engine_speed_rev_s)
         curve = vessel.machine.full_load
         return cls(

@@ -71,6 +71,10 @@ class Diagram:
             raise StructureError(f"diagram {self.name} has no output {output}; it has {', '.join(self.outputs)}.")
         return Port(self, output, source)
 
+    def paths(self, output: str) -> "dict[str, Port]":
+        """Return the blocks that go to one output, by the input that each comes from."""
+        return {source: self.port(output, "" if source == self.input else source) for source in self.inputs}
+
     def signals(self, flow: Flow, signal: Formula) -> Mapping[str, Formula]:
         """Return the outputs for a signal, adding the equations to a flow.
 

@@ -107,7 +107,7 @@ def _line(vessel: Vessel, line: Normalisation) -> dict[str, StatedValue]:
         CrashStopSymbol.INERTIA_UPSTREAM: (vessel.inertia_upstream_kg_m2, vessel.inertia_upstream_std_kg_m2),
         CrashStopSymbol.INERTIA_DOWNSTREAM: (vessel.inertia_downstream_kg_m2, vessel.inertia_downstream_std_kg_m2),
     }
-    held_nm = gearbox.clutch_torque_nm * gearbox.ratio * gearbox.efficiency
+    held_nm = gearbox.clutch_torque_nm * gearbox.shaft_over_brake
     return {
         **{
             name: StatedValue(value=float(line.inertia_time_s(value)), std=float(line.inertia_time_s(std)))
@@ -122,7 +122,7 @@ def _limits(vessel: Vessel) -> dict[str, StatedValue]:
     """Return highest and lowest torque of the engine over that of the working point."""
     point, gearbox = vessel.working_point, vessel.gearbox
     assert vessel.motoring is not None  # noqa: S101 - it was expected
-    brake_nm = point.shaft_torque_nm / (gearbox.ratio * gearbox.efficiency)
+    brake_nm = point.shaft_torque_nm / gearbox.shaft_over_brake
     highest = float(np.interp(point.engine_speed_rpm, *vessel.machine.full_load))
     drag = float(np.interp(point.engine_speed_rpm, *vessel.motoring))
     return {

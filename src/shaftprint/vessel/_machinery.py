@@ -222,6 +222,11 @@ class Gearbox(Settings):
     propeller_rated_rpm: PositiveNumber | None = None
     """Speed of the propeller shaft at rated engine speed as the papers state it [rpm]; the ratio is held against it."""
 
+    @property
+    def shaft_over_brake(self) -> float:
+        """Torque at the gauge over the torque at the engine flange."""
+        return self.ratio * self.efficiency
+
     def engine_over(self, shaft: Literal["engine", "propeller"]) -> float:
         """Return the speed of the engine over that of a shaft."""
         return self.ratio if shaft == "propeller" else 1.0

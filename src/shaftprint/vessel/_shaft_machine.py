@@ -94,7 +94,7 @@ def wrong_shaft_machine(
             f"expected shaft_machine.share within the machine's highest torque of {limit_nm:.4g} N m, found "
             f"{machine.share:g}, {machine_nm:.4g} N m at its shaft; correct the share, its ratio or its rated power."
         )
-    engine_nm = (1.0 - machine.share) * torque_nm / (gearbox.ratio * gearbox.efficiency)
+    engine_nm = (1.0 - machine.share) * torque_nm / gearbox.shaft_over_brake
     full_nm = _on_curve(point.engine_speed_rpm, *engine.full_load)
     if engine_nm > (1.0 + _ROUNDING) * full_nm:
         taken = "generator takes out and the propeller needs" if machine.share < 0.0 else "machine leaves"

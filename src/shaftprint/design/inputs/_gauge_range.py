@@ -81,5 +81,5 @@ def gauge_range_of(vessel: "Vessel") -> GaugeRange:
         vessel=vessel.name,
         lowest_nm=-sensor.full_scale_nm - sensor.zero_nm,
         highest_nm=sensor.full_scale_nm - sensor.zero_nm,
-        shaft_over_brake=gearbox.ratio * gearbox.efficiency,
+        shaft_over_brake=gearbox.shaft_over_brake,
     )

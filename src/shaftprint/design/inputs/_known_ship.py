@@ -98,7 +98,7 @@ def limits_of_fingerprint(limits: "Limits", fingerprint: "Fingerprint", vessel: 
     return replace(
         limits.with_ripple(fingerprint.torque_ripple),
         engine_speed_rpm=conditions.engine_speed.value,
-        brake_torque_nm=conditions.shaft_torque.value / (gearbox.ratio * gearbox.efficiency),
+        brake_torque_nm=conditions.shaft_torque.value / gearbox.shaft_over_brake,
     )
 
 

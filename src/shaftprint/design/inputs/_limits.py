@@ -137,7 +137,7 @@ def limits_from_vessel(vessel: "Vessel", *, set_point_rpm: float) -> Limits:
     low, high = limits.lowest_speed_rpm, limits.highest_speed_rpm
     return Limits(
         engine_speed_rpm=point.engine_speed_rpm,
-        brake_torque_nm=point.driving_torque_nm / (vessel.gearbox.ratio * vessel.gearbox.efficiency),
+        brake_torque_nm=point.driving_torque_nm / vessel.gearbox.shaft_over_brake,
         set_point_rpm=set_point_rpm,
         lowest_speed_rpm=machine.lowest_governed_rpm if low is None else low,
         highest_speed_rpm=machine.rated_speed_rpm if high is None else high,

@@ -69,7 +69,7 @@ def expected_operation(
             "other values, or another campaign."
         )
     brake, demand = _torques(line, vector, outputs, time_s)
-    brake_nm = point.driving_torque_nm / (vessel.gearbox.ratio * vessel.gearbox.efficiency)
+    brake_nm = point.driving_torque_nm / vessel.gearbox.shaft_over_brake
     return Operation(
         campaign=campaign,
         time_s=time_s,

@@ -49,7 +49,7 @@ def recorded_operation(signals: "Signals", campaign: "Campaign", vessel: "Vessel
         time_s=time_s[usable],
         set_point_rpm=rpm_from_rev_s(_averaged(signals.set_point_rev_s, count))[usable],
         speed_rpm=rpm_from_rev_s(speed_rev_s)[usable],
-        brake_torque_nm=(at_shaft_nm / (gearbox.ratio * gearbox.efficiency))[usable],
+        brake_torque_nm=(at_shaft_nm / gearbox.shaft_over_brake)[usable],
     )
 
 

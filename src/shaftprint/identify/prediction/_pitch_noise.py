@@ -6,7 +6,7 @@ with M_s, n with theta and M_s with theta: means over ten simulated recordings o
 its own, a slow wander most of all.
 """
 
-from shaftprint.identify.prediction._noise_levels import NoiseLevels, stated_noise
+from shaftprint.identify.prediction._noise_levels import NoiseLevels, tabulated_noise
 
 _LEVELS: tuple[tuple[float, float, float, float, complex, complex, complex], ...] = (
     (0.0625, 4.25e-06, 0.000162, 2.11e-06, 0.0870 - 0.3863j, -0.0344 - 0.0140j, -0.0135 + 0.0242j),
@@ -23,10 +23,8 @@ _LEVELS: tuple[tuple[float, float, float, float, complex, complex, complex], ...
     (2.562, 2.41e-06, 0.000188, 7.14e-09, 0.2223 - 0.9268j, -0.0810 - 0.0249j, 0.0223 - 0.0921j),
 )
 
-PITCH_NOISE: NoiseLevels = stated_noise(
-    frequency_hz=[row[0] for row in _LEVELS],
-    densities=[row[1:4] for row in _LEVELS],
-    coherences=[row[4:] for row in _LEVELS],
+PITCH_NOISE: NoiseLevels = tabulated_noise(
+    _LEVELS,
     set_point_per_v=0.175,
     orders_hz=(2.557, 4.999),
     outputs=("n", "M_s", "theta"),

@@ -6,7 +6,7 @@ ten simulated recordings of the research vessel, seeds 600 to 609, with weak lin
 gauge that the Stan Tug has, so that more of the torque near the resonance of its loop is not told by the speed.
 """
 
-from shaftprint.identify.prediction._noise_levels import NoiseLevels, stated_noise
+from shaftprint.identify.prediction._noise_levels import NoiseLevels, tabulated_noise
 
 _LEVELS: tuple[tuple[float, float, float, complex], ...] = (
     (0.02083, 5.32e-06, 0.00109, 0.1649 - 0.3986j),
@@ -35,10 +35,8 @@ _LEVELS: tuple[tuple[float, float, float, complex], ...] = (
     (3.521, 7.22e-07, 0.000104, 0.1684 - 0.9381j),
 )
 
-RESEARCH_VESSEL_NOISE: NoiseLevels = stated_noise(
-    frequency_hz=[row[0] for row in _LEVELS],
-    densities=[row[1:3] for row in _LEVELS],
-    coherences=[row[3] for row in _LEVELS],
+RESEARCH_VESSEL_NOISE: NoiseLevels = tabulated_noise(
+    _LEVELS,
     set_point_per_v=0.2120,
     orders_hz=(2.557, 4.999),
 )

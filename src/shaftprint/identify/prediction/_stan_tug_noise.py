@@ -1,6 +1,6 @@
 """Noise of the Stan Tug 1205 in the backward bollard push, for plans without a recording of the ship itself."""
 
-from shaftprint.identify.prediction._noise_levels import NoiseLevels, stated_noise
+from shaftprint.identify.prediction._noise_levels import NoiseLevels, tabulated_noise
 
 # Frequency [Hz], densities of n and M_s [1/Hz], their coherence: means over twelve simulated recordings of the thesis
 # campaign. The simulated tug's noise is set to the local signal-to-noise ratios of table 3.7 of the thesis, which these
@@ -28,10 +28,8 @@ SLOW_LEVELS = _LEVELS[:2]
 ORDERS_HZ = (5.165, 9.865)
 """First order of the shaft, and half an order of the engine, at 1183.8 rpm [Hz]."""
 
-STAN_TUG_NOISE: NoiseLevels = stated_noise(
-    frequency_hz=[row[0] for row in _LEVELS],
-    densities=[row[1:3] for row in _LEVELS],
-    coherences=[row[3] for row in _LEVELS],
+STAN_TUG_NOISE: NoiseLevels = tabulated_noise(
+    _LEVELS,
     set_point_per_v=0.2120,
     orders_hz=ORDERS_HZ,
 )

@@ -10,7 +10,7 @@ there decides how well inertia and load slope are known. Below 0.01 Hz the level
 from collections.abc import Mapping
 from types import MappingProxyType
 
-from shaftprint.identify.prediction._noise_levels import NoiseLevels, stated_noise
+from shaftprint.identify.prediction._noise_levels import NoiseLevels, tabulated_noise
 from shaftprint.identify.prediction._stan_tug_noise import ORDERS_HZ, SLOW_LEVELS, STAN_TUG_NOISE
 
 _LEVELS: dict[float, tuple[tuple[float, float, float, complex], ...]] = {
@@ -126,10 +126,8 @@ _LEVELS: dict[float, tuple[tuple[float, float, float, complex], ...]] = {
 
 STAN_TUG_NOISE_AT_SPEEDS: Mapping[float, NoiseLevels] = MappingProxyType(
     {
-        share: stated_noise(
-            frequency_hz=[row[0] for row in (*SLOW_LEVELS, *rows)],
-            densities=[row[1:3] for row in (*SLOW_LEVELS, *rows)],
-            coherences=[row[3] for row in (*SLOW_LEVELS, *rows)],
+        share: tabulated_noise(
+            (*SLOW_LEVELS, *rows),
             set_point_per_v=STAN_TUG_NOISE.set_point_per_v / share,
             orders_hz=[share * order for order in ORDERS_HZ],
         )

@@ -7,7 +7,7 @@ leg, in which the wander of the load is taken out. The log gives a value every 0
 2.2 Hz, where it shows no line, its level is that of its last band.
 """
 
-from shaftprint.identify.prediction._noise_levels import NoiseLevels, stated_noise
+from shaftprint.identify.prediction._noise_levels import NoiseLevels, tabulated_noise
 
 _LEVELS: tuple[tuple[float, float, float, float, complex, complex, complex], ...] = (
     (0.01, 4.25e-05, 0.0283, 0.00159, 0.1690 - 0.1427j, 0.2005 - 0.0869j, 0.9315 + 0.0991j),
@@ -41,10 +41,8 @@ _LEVELS: tuple[tuple[float, float, float, float, complex, complex, complex], ...
     (7.212, 2.9e-07, 4.66e-06, 8.87e-06, -0.0025 - 0.0113j, 0.0000 + 0.0000j, 0.0000 + 0.0000j),
 )
 
-STAN_TUG_NOISE_UNDERWAY: NoiseLevels = stated_noise(
-    frequency_hz=[row[0] for row in _LEVELS],
-    densities=[row[1:4] for row in _LEVELS],
-    coherences=[row[4:] for row in _LEVELS],
+STAN_TUG_NOISE_UNDERWAY: NoiseLevels = tabulated_noise(
+    _LEVELS,
     set_point_per_v=0.157,
     orders_hz=(6.98, 13.33),
     outputs=("n", "M_s", "v_s"),

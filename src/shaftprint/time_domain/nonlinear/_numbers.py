@@ -52,7 +52,7 @@ def limit_numbers(fit: Identification, working_point: WorkingPoint, vessel: Vess
 def _numbers(estimate: Estimate, point: WorkingPoint, vessel: Vessel) -> Iterator[LimitNumber]:
     doubt = point.shaft_torque_std_nm / point.shaft_torque_nm
     gauge = vessel.sensors.shaft_torque.scale_std
-    brake_nm = point.shaft_torque_nm / (vessel.gearbox.ratio * vessel.gearbox.efficiency)
+    brake_nm = point.shaft_torque_nm / vessel.gearbox.shaft_over_brake
     speed = point.engine_speed_rev_s
     curve = vessel.machine.full_load
     full_nm = float(np.interp(rpm_from_rev_s(speed), *curve))
