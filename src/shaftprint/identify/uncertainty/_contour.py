@@ -127,7 +127,7 @@ class _Climb:
             stopped, done = _judged(at, step)
             if done.any():
                 places = at.rows[done]
-                theta[places] = np.minimum(np.maximum(at.theta[done] + step.delta[done], lower), upper)
+                theta[places] = self._last_step(at.chosen(done), step.chosen(done))
                 is_open[places] = stopped[done]
                 at, step = at.chosen(~done), step.chosen(~done)
                 if at.rows.size == 0:
@@ -135,6 +135,17 @@ class _Climb:
             at.advance(numbers, np.minimum(np.maximum(at.theta + step.delta, lower), upper), step)
         theta[at.rows], is_open[at.rows] = at.theta, at.root < (1.0 - SHARP) * at.distance
         return Ends(theta=theta, value=numbers.values(theta), is_open=is_open)
+
+    def _last_step(self, at: "_Position", step: "_Step") -> FloatArray:
+        """Return the ends of rows that are done: a step further, but where that leaves the contour.
+
+        Along a valley of equal cost a step that hardly moves the number may be a long one.
+        """
+        objective = self.numbers.objective
+        trial = np.minimum(np.maximum(at.theta + step.delta, objective.lower), objective.upper)
+        residuals, _ = objective.residuals(trial)
+        stays = 0.5 * np.vecdot(residuals, residuals) <= np.maximum(at.cost, at.limit) + SHARP * at.distance**2
+        return np.where(stays[:, None], trial, at.theta)
 
     def allowing(self, theta: FloatArray) -> IntArray:
         """Return the rows whose rise of the cost allows a parameter set."""
