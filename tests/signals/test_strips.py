@@ -93,6 +93,18 @@ def test_even_strips_and_short_stretches_give_no_reason_to_recount():
     assert renumbered(close, 4)[1] == ()
 
 
+def test_even_strips_are_not_recounted_by_their_noise():
+    """Two hundred trains of even strips with the jitter of a pick-up; stretches between faults hold a few turns."""
+    for seed in range(200):
+        places = pulses_of(np.full(8, 0.125), turns=250, wave=0.02, jitter=0.1, seed=seed)
+        gone = 700 + np.array([0, 40 + seed, 80 + 2 * seed])
+        number = np.delete(np.arange(2000), gone)
+        train = number_pulses(np.delete(places, gone), channel="P")
+        mended, positions = renumbered(train, 8)
+        assert positions == (), seed
+        assert np.array_equal(mended, number), seed
+
+
 def test_too_few_revolutions():
     train = number_pulses(pulses_of(TABLE_3_4, turns=15), channel="PTM_4")
     with pytest.raises(

@@ -5,9 +5,10 @@ is to a full turn (thesis "Fingerprinting II", eqs 3.3-3.5). Here every steady r
 revolution is centred on the interval, so that a constant acceleration cancels.
 """
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
+from scipy.special import chdtri
 
 from shaftprint.arrays import BoolArray, FloatArray, IntArray, frozen_float
 from shaftprint.errors import SignalError
@@ -23,6 +24,9 @@ _CLIP = 4.0
 
 # A strip is told from its neighbours when its angle fits this many times better.
 _CLEARLY_BETTER = 4.0
+# The count of a stretch is doubted where its pattern has a smaller probability than this.
+_UNLIKELY = 1e-6
+_ROUNDING = 1e-9
 
 
 def find_strips(train: "PulseTrain", strips: int, *, channel: str) -> StripAngles:
@@ -85,7 +89,8 @@ def renumbered(train: "PulseTrain", strips: int) -> tuple[IntArray, tuple[float,
     """Return the pulse numbers, mended where the pattern of the strips shows a miscount.
 
     Over a gap the number of missing pulses is a rounded guess. The pattern of uneven strips behind it
-    tells the number exactly, up to whole revolutions.
+    tells the number exactly, up to whole revolutions. Strips that are even within what jitter leaves open of a stretch
+    tell nothing, and the guess stays.
 
     Returns
     -------
@@ -100,12 +105,14 @@ def renumbered(train: "PulseTrain", strips: int) -> tuple[IntArray, tuple[float,
     ends = np.concatenate([gaps, [number.size - 1]])
     starts = np.concatenate([[0], gaps + 1])
     longest = int(np.argmax(ends - starts))
-    reference = _pattern(share, steady, number, slice(starts[longest], ends[longest]), strips)
+    whole = slice(starts[longest], ends[longest])
+    reference = _pattern(share, steady, number, whole, strips)
+    noise = _noise(share, steady, number, whole, reference)
     mended = []
     # outwards from the longest stretch: each gap against the stretch nearer to it
     for stretch in (*range(longest + 1, starts.size), *range(longest - 1, -1, -1)):
         inside = slice(starts[stretch], ends[stretch])
-        shift = _shift(reference, _pattern(share, steady, number, inside, strips))
+        shift = _shift(reference, _pattern(share, steady, number, inside, strips), noise)
         if shift == 0:
             continue
         if stretch > longest:
@@ -143,7 +150,7 @@ def unplaced_stretches(train: "PulseTrain", strips: int, gaps: IntArray) -> list
         # behind, as seen from the longest stretch, at which the count begins
         stretch = behind if behind > longest else behind - 1
         inside = slice(starts[stretch], ends[stretch])
-        if not np.all(np.isfinite(_pattern(share, steady, train.number, inside, strips))):
+        if not np.all(np.isfinite(_pattern(share, steady, train.number, inside, strips).share)):
             stretches.append((float(train.position[starts[stretch]]), float(train.position[ends[stretch]])))
     return stretches
 
@@ -180,22 +187,42 @@ def _clipped_mean(values: FloatArray) -> tuple[float, float]:
     return float(values.mean()), float(values.std(ddof=1) / np.sqrt(values.size))
 
 
-def _pattern(share: FloatArray, steady: BoolArray, number: IntArray, inside: slice, strips: int) -> FloatArray:
-    """Return the mean share of each strip within a stretch, not a number where there is none."""
+class _Pattern(NamedTuple):
+    """The strips of a stretch as its intervals show them."""
+
+    share: FloatArray
+    """Mean share of each strip, not a number where there is none; shape (strips,)."""
+    turns: IntArray
+    """Number of turns that it is the mean of, shape (strips,)."""
+
+
+def _pattern(share: FloatArray, steady: BoolArray, number: IntArray, inside: slice, strips: int) -> _Pattern:
+    """Return the strips of the steady turns within a stretch."""
     kept = steady[inside]
     strip = number[:-1][inside][kept] % strips
     count = np.bincount(strip, minlength=strips)
     total = np.bincount(strip, weights=share[inside][kept], minlength=strips)
-    return np.where(count > 0, total / np.maximum(count, 1), np.nan)
+    return _Pattern(np.where(count > 0, total / np.maximum(count, 1), np.nan), count)
 
 
-def _shift(reference: FloatArray, found: FloatArray) -> int:
+def _noise(share: FloatArray, steady: BoolArray, number: IntArray, inside: slice, pattern: _Pattern) -> float:
+    """Return the standard deviation of one share about the mean of its strip, by the median; rounding at least."""
+    kept = steady[inside]
+    about = share[inside][kept] - pattern.share[number[:-1][inside][kept] % pattern.share.size]
+    return max(1.4826 * float(np.median(np.abs(about))), _ROUNDING) if about.size else _ROUNDING
+
+
+def _shift(reference: _Pattern, found: _Pattern, noise: float) -> int:
     """Return by how many strips a stretch is miscounted, between -strips/2 and strips/2."""
-    strips = reference.size
-    if not np.all(np.isfinite(reference)) or not np.all(np.isfinite(found)):
+    strips = reference.share.size
+    if not np.all(np.isfinite(reference.share)) or not np.all(np.isfinite(found.share)):
+        return 0
+    variance = noise**2 * (1.0 / reference.turns + 1.0 / found.turns)
+    as_counted = np.sum((found.share - reference.share) ** 2 / variance)
+    if as_counted < chdtri(strips, _UNLIKELY):
         return 0
     # a stretch counted one too low shows strip k where the reference has strip k + 1
-    errors = np.array([np.sum((np.roll(found, k) - reference) ** 2) for k in range(strips)])
+    errors = np.array([np.sum((np.roll(found.share, k) - reference.share) ** 2) for k in range(strips)])
     best = int(np.argmin(errors))
     if errors[best] * _CLEARLY_BETTER > errors[0]:
         return 0
