@@ -2,16 +2,18 @@
 
 Histories of twenty quarterly tests are drawn without repetition from raw recordings of an unchanged ship on other days
 (fingerprints that ``benchmarks/watching.py --outcomes FOLDER`` has kept), their numbers are changed by what happens to
-the ship, and they are looked at after every test until something is found. Ships share tests. Run
-``python benchmarks/histories.py FOLDER --ships 100``, half a second of one core a look; ``--write`` puts the table into
-docs/watching.md.
+the ship, and they are looked at after every test until something is found. Ships share tests. Ten ships more are
+sailed, a raw recording for each test (``sailed_histories.py``). Run ``python benchmarks/histories.py FOLDER --ships
+100``, half a second of one core a look; ``--write`` puts the tables into docs/watching.md.
 """
 
 import argparse
+import os
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
+from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, replace
-from datetime import UTC, datetime, timedelta
+from multiprocessing import get_context
 from pathlib import Path
 
 import numpy as np
@@ -20,17 +22,17 @@ ROOT = Path(__file__).resolve().parent.parent
 # Run as a file, the folder of the benchmarks is on the path, not the one above.
 sys.path.insert(0, str(ROOT))
 
+from benchmarks import sailed_histories  # noqa: E402
 from benchmarks.monte_carlo_tables import write_between_marks  # noqa: E402
+from benchmarks.sailed_histories import FIRST, QUARTER, SOUND, TESTS  # noqa: E402
 from shaftprint.drift import Event, WatchFinding, history_of, watch  # noqa: E402
 from shaftprint.fingerprint import Fingerprint, Quantity, read_fingerprint  # noqa: E402
 
 DOCUMENT = ROOT / "docs" / "watching.md"
 BEGIN, END = ("<!-- table of benchmarks/histories.py: begin -->", "<!-- table of benchmarks/histories.py: end -->")
 SEED = 17
-TESTS, QUARTER = 20, timedelta(days=91.3125)
-FIRST = datetime(2021, 1, 1, tzinfo=UTC)
 P_ACTION, I_ACTION = "governor proportional action", "governor integral action"
-DOCKED, SOUND = 10, 3
+DOCKED = 10
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -157,25 +159,38 @@ def main() -> None:
     parser.add_argument("folder", type=Path, help="fingerprints that benchmarks/watching.py has kept")
     parser.add_argument("--ships", type=int, default=100, help="ships of each kind to which something happens")
     parser.add_argument("--unchanged", type=int, default=100, help="ships to which nothing happens")
+    parser.add_argument("--sailed", type=int, default=10, help="ships of which every test is sailed; 0: leave out")
+    parser.add_argument("--processes", type=int, default=os.cpu_count(), help="processes; as many as there are cores")
     parser.add_argument("--write", action="store_true", help=f"put the table into {DOCUMENT.relative_to(ROOT)}")
     options = parser.parse_args()
     paths = sorted(options.folder.glob("short-*.json"), key=lambda path: int(path.stem.rpartition("-")[2]))
     unchanged = [path for path in paths if int(path.stem.rpartition("-")[2]) < 1000]
     kept = [one for one in map(read_fingerprint, unchanged) if one.verdict.trustworthy]
-    header = ("in five years", "found", "at which test, median", "nine of ten", "before it began", "right cause first")
-    lines = ["| " + " | ".join(header) + " |", "|" + "---|" * len(header)]
-    for life in LIVES:
-        ships = options.ships if life.cause else options.unchanged
-        lines.append("| " + " | ".join(row(kept, life, ships)) + " |")
-        print(lines[-1], file=sys.stderr, flush=True)
-    drawn = (
-        f"{options.unchanged} ships to which nothing happens and {options.ships} of each other kind, drawn from "
-        f"{len(kept)} tests.\n"
-    )
-    text = "\n".join([drawn, *lines]) + "\n"
+    text = _drawn(kept, options)
+    if options.sailed:
+        with ProcessPoolExecutor(options.processes, mp_context=get_context("spawn")) as pool:
+            text += "\n" + _table(sailed_histories.HEADER, sailed_histories.rows(options.folder, pool, options.sailed))
     print(text)
     if options.write:
         write_between_marks(DOCUMENT, text, BEGIN, END)
+
+
+def _drawn(kept: Sequence[Fingerprint], options: argparse.Namespace) -> str:
+    """Return the first table."""
+    header = ("in five years", "found", "at which test, median", "nine of ten", "before it began", "right cause first")
+    ships = {life: options.ships if life.cause else options.unchanged for life in LIVES}
+    return (
+        f"{options.unchanged} ships to which nothing happens and {options.ships} of each other kind, drawn from "
+        f"{len(kept)} tests.\n\n{_table(header, (row(kept, life, count) for life, count in ships.items()))}"
+    )
+
+
+def _table(header: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    lines = ["| " + " | ".join(header) + " |", "|" + "---|" * len(header)]
+    for cells in rows:
+        lines.append("| " + " | ".join(cells) + " |")
+        print(lines[-1], file=sys.stderr, flush=True)
+    return "\n".join(lines) + "\n"
 
 
 if __name__ == "__main__":

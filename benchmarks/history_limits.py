@@ -23,8 +23,9 @@ ROOT = Path(__file__).resolve().parent.parent
 # Run as a file, the folder of the benchmarks is on the path, not the one above.
 sys.path.insert(0, str(ROOT))
 
-from benchmarks.histories import DOCUMENT, SEED, SOUND, TESTS  # noqa: E402
+from benchmarks.histories import DOCUMENT, SEED  # noqa: E402
 from benchmarks.monte_carlo_tables import write_between_marks  # noqa: E402
+from benchmarks.sailed_histories import SOUND, TESTS  # noqa: E402
 from shaftprint.drift import LOAD_REPEATABILITY, pair_of, whitened  # noqa: E402
 from shaftprint.fingerprint import Fingerprint, read_fingerprint  # noqa: E402
 

@@ -10,7 +10,6 @@ they were built, each with its own gauge: eight of a pool, 3 s of a processor a 
 import argparse
 import os
 import sys
-import tempfile
 from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, fields, replace
@@ -26,17 +25,15 @@ ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT))
 
 from benchmarks.monte_carlo_tables import write_between_marks  # noqa: E402
-from shaftprint.catalogue import structure  # noqa: E402
+from benchmarks.sailed_fleet import VESSEL, tested  # noqa: E402
 from shaftprint.drift import CAUSES, Cause, DatedTest, Sister, judge_sisters  # noqa: E402
 from shaftprint.fingerprint import Fingerprint, Quantity, read_fingerprint, write_fingerprint  # noqa: E402
-from shaftprint.identify import Settings  # noqa: E402
-from shaftprint.survey import fingerprint_of, fit, load_trial, measure, priors_of  # noqa: E402
-from shaftprint.tug import ShipWork, SimulatedFleet, Tolerances, sail_test, simulated_fleet, with_works  # noqa: E402
+from shaftprint.tug import ShipWork, SimulatedFleet, Tolerances, simulated_fleet, with_works  # noqa: E402
 from shaftprint.vessel import load_vessel  # noqa: E402
 
 DOCUMENT = ROOT / "docs" / "watching.md"
 BEGIN, END = ("<!-- tables of benchmarks/sisters.py: begin -->", "<!-- tables of benchmarks/sisters.py: end -->")
-SEED, STRUCTURE = 73, "GAUGE-CLOSED"
+SEED = 73
 SHIPS, TESTS, HALF_YEAR = 8, 3, timedelta(days=182.625)
 FIRST = datetime(2021, 1, 1, tzinfo=UTC)
 P_ACTION, I_ACTION = "governor proportional action", "governor integral action"
@@ -226,9 +223,7 @@ def drawn_rows(kept: Sequence[Fingerprint], classes: int, *, quick: bool) -> Ite
 def pool_of_ships() -> SimulatedFleet:
     """Return the ships of the pool."""
     names = tuple(f"ship {at}" for at in range(ODD_SHIPS.stop))
-    fleet = simulated_fleet(
-        load_trial("stan-tug-1205", "short").vessel, names, launched=FIRST, rng=np.random.default_rng(SEED)
-    )
+    fleet = simulated_fleet(load_vessel(VESSEL), names, launched=FIRST, rng=np.random.default_rng(SEED))
     lower = ShipWork(kind="governor-changed", at=FIRST, proportional=0.95)
     ships = [with_works(ship, lower) if at in ODD_SHIPS else ship for at, ship in enumerate(fleet.ships)]
     return replace(fleet, ships=tuple(ships))
@@ -239,24 +234,10 @@ def sailed(folder: Path, place: tuple[int, int]) -> Path:
     ship, test = place
     path = folder / f"sister-{ship}-{test}.json"
     if not path.exists():
-        fleet, trial, chosen = pool_of_ships(), load_trial("stan-tug-1205", "short"), structure(STRUCTURE)
         rng = np.random.default_rng([SEED, ship, test])
-        with tempfile.TemporaryDirectory() as scratch:
-            done = sail_test(
-                fleet, f"ship {ship}", FIRST + test * HALF_YEAR, trial.campaign, Path(scratch) / "test.nc", rng=rng
-            )
-            trial = replace(trial, vessel=done.vessel, sources=tuple(_renamed(trial.sources, ship, test)))
-            measured = measure(done.recording, trial, mode="shaftprint")
-        settings = {STRUCTURE: Settings(priors=priors_of(chosen, trial.vessel, measured.signals))}
-        (found,) = fit([chosen], measured, settings=settings, rng=rng)
-        write_fingerprint(fingerprint_of(found, measured, trial), path)
+        at, key = FIRST + test * HALF_YEAR, 1000 * ship + test
+        write_fingerprint(tested(pool_of_ships(), f"ship {ship}", at, key=key, rng=rng), path)
     return path
-
-
-def _renamed(sources: Sequence, ship: int, test: int) -> Iterator:
-    """Yield the sources of a trial with a vessel file of its own."""
-    for one in sources:
-        yield one.model_copy(update={"sha256": f"{1000 * ship + test:064x}"}) if one.role == "vessel" else one
 
 
 def sailed_row(folder: Path, pool: ProcessPoolExecutor, classes: int) -> Iterator[tuple[str, ...]]:
