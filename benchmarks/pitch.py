@@ -20,7 +20,7 @@ import numpy as np
 
 from benchmarks.drawn_lines import command, counted, numbers_of, rejected_in, rows_of, seen_by_gauge, spent
 from benchmarks.monte_carlo_recordings import Ship, drawn_gauge
-from shaftprint.campaign import load_campaign
+from shaftprint.campaign import Campaign, load_campaign
 from shaftprint.catalogue import structure
 from shaftprint.cli._demo_truth import fingerprint_truth
 from shaftprint.errors import ShaftprintError
@@ -30,7 +30,7 @@ from shaftprint.signals import Signals
 from shaftprint.survey import run
 from shaftprint.tug import PitchActuation, Truth, Tug, like_stan_tug_1205, sail, steepened, torque_over_pitch
 from shaftprint.tug.plant import PitchActuator
-from shaftprint.vessel import load_vessel
+from shaftprint.vessel import Vessel, load_vessel
 
 VESSEL, CAMPAIGN = load_vessel("nifs-research-vessel"), load_campaign("pitch")
 PITCH, FIXED = "GAUGE-PITCH", "FIXED-PITCH"
@@ -46,10 +46,10 @@ def fixed_pitch() -> Structure:
     return replace(structure(PITCH).held_at(q=0.0), name=FIXED, title="the same with a fixed pitch")
 
 
-def drawn_pitch(rng: np.random.Generator) -> PitchActuation:
+def drawn_pitch(vessel: Vessel, rng: np.random.Generator) -> PitchActuation:
     """Return a pitch as hydraulics of ships have it."""
-    sensor = VESSEL.sensors.pitch
-    powers = steepened(torque_over_pitch(VESSEL), VESSEL.propeller.pitch_ratio, float(rng.normal(1.0, SLOPE_STD)))
+    sensor = vessel.sensors.pitch
+    powers = steepened(torque_over_pitch(vessel), vessel.propeller.pitch_ratio, float(rng.normal(1.0, SLOPE_STD)))
     return PitchActuation(
         lag_s=rng.uniform(0.4, 1.2),
         delay_s=rng.uniform(0.05, 0.4),
@@ -61,13 +61,13 @@ def drawn_pitch(rng: np.random.Generator) -> PitchActuation:
     )
 
 
-def ship(seed: int) -> Ship:
-    """Return the ship of a seed."""
-    rng = np.random.default_rng([SEED, seed])
-    gauge = drawn_gauge(VESSEL, rng)
+def ship(seed: int, vessel: Vessel = VESSEL, series: int = SEED) -> Ship:
+    """Return the ship of a seed of one series of them."""
+    rng = np.random.default_rng([series, seed])
+    gauge = drawn_gauge(vessel, rng)
     proportional = rng.uniform(3.0, 6.0)
     tug = replace(
-        like_stan_tug_1205(VESSEL),
+        like_stan_tug_1205(vessel),
         proportional_gain=proportional,
         integral_gain_per_s=proportional * rng.uniform(0.5, 0.9),
         governor_delay_s=rng.uniform(0.03, 0.1),
@@ -76,10 +76,10 @@ def ship(seed: int) -> Ship:
         g=float(rng.normal(PRIOR_OF_G.mean, PRIOR_OF_G.std)),
         set_point_latency_s=rng.uniform(0.03, 0.1),
         anti_windup_s=rng.uniform(0.3, 1.0),
-        inertia_upstream_kg_m2=rng.normal(VESSEL.inertia_upstream_kg_m2, VESSEL.inertia_upstream_std_kg_m2),
-        inertia_downstream_kg_m2=rng.normal(VESSEL.inertia_downstream_kg_m2, VESSEL.inertia_downstream_std_kg_m2),
+        inertia_upstream_kg_m2=rng.normal(vessel.inertia_upstream_kg_m2, vessel.inertia_upstream_std_kg_m2),
+        inertia_downstream_kg_m2=rng.normal(vessel.inertia_downstream_kg_m2, vessel.inertia_downstream_std_kg_m2),
         torque_zero_offset_nm=gauge.zero_nm,
-        pitch=drawn_pitch(rng),
+        pitch=drawn_pitch(vessel, rng),
     )
     return replace(gauge, tug=tug)
 
@@ -88,14 +88,14 @@ def true_values(truth: Truth, signals: Signals, of: Ship) -> dict[str, float]:
     """Return the truth as the measured working point normalises it."""
     model, shown_nm = structure(PITCH), signals.working_point.shaft_torque_nm
     named = fingerprint_truth(truth, model, signals)
-    late_s = blade_lateness_s(of.tug)
+    late_s = blade_lateness_s(of.tug, VESSEL, CAMPAIGN)
     return seen_by_gauge(named, model, of, shown_nm=shown_nm, slopes=("k_q", "q"), t_blade=late_s)
 
 
-def blade_lateness_s(tug: Tug) -> float:
+def blade_lateness_s(tug: Tug, vessel: Vessel, campaign: Campaign) -> float:
     """Return the time by which the blades follow the piston at the lines of the test, by least squares of the phase."""
-    leg = next(one for one in CAMPAIGN.multisines if one.input == INPUT)
-    actuator = PitchActuator(tug, VESSEL, CAMPAIGN, start_s=0.0, step_s=STEP_S)
+    leg = next(one for one in campaign.multisines if vessel.combinator is not None or one.input == INPUT)
+    actuator = PitchActuator(tug, vessel, campaign, start_s=0.0, step_s=STEP_S)
     motion = actuator.next(round(leg.stop_s / STEP_S))
     first, count = round(leg.settled_s / STEP_S), round(leg.length_of_period_s / STEP_S)
     piston, blades = (np.fft.rfft(one[::2][first : first + count]) for one in motion)

@@ -4,7 +4,8 @@ Every seed sails a leg, or a leg of the speed beside one of the pitch, with weak
 ``identify`` takes as the noise of a line is averaged over the seeds. Slow lines underway, where a leg has the wander of
 the load taken out, are those of the sines of ``dither``. Run
 ``python -m benchmarks.stored_noise_beside --of underway``, ``--of pitch`` or ``--of speed-beside-pitch``, what stands
-under the set point of the speed in the same recordings; a seed takes ten to twenty seconds of one core.
+under the set point of the speed in the same recordings, or ``--of combinator``; a seed takes ten to twenty seconds of
+one core.
 """
 
 import argparse
@@ -23,10 +24,11 @@ from shaftprint.tug import like_stan_tug_1205, sail
 from shaftprint.vessel import Vessel, load_vessel
 
 FIRST_SEED = 600
-UNDERWAY, PITCHED = "stan-tug-1205-underway", "nifs-research-vessel"
+UNDERWAY, PITCHED, COMBINED = "stan-tug-1205-underway", "nifs-research-vessel", "nifs-research-vessel-combinator"
 # Slower than this the sines tell [Hz]; faster than this no log shows a line, and its noise is that of its last band.
 SLOW_HZ, LAST_OF_LOG_HZ = 0.04, 2.2
 LINES, HIGHEST_HZ = 36, 7.2
+OF_TEN_MINUTES = {"period_s": 48.0, "periods": 12}
 
 
 def odd(highest: float, count: int, step: int = 1) -> tuple[int, ...]:
@@ -61,18 +63,17 @@ def leg_underway() -> Campaign:
 
 def legs_of_pitch() -> Campaign:
     """Return ten minutes in which speed and pitch move at once."""
-    size = {"period_s": 48.0, "periods": 12}
-    of_speed_alone = tuple(one for one in odd(3.5 * 48.0, 60) if one % 3)
-    speed = multisine("M1", of_speed_alone, level_v=-5.0, **size)
-    pitch = multisine("P1", odd(2.5 * 48.0, 18, step=3), level_v=4.0, input="pitch_set_point", **size)
-    return Campaign(
-        name="noise",
-        duration_s=620.0,
-        offset_v=-5.0,
-        further_offsets_v={"pitch_set_point": 4.0},
-        ramp_s=2.0,
-        multisines=(speed, pitch),
+    pitch = multisine("P1", odd(2.5 * 48.0, 18, step=3), level_v=4.0, input="pitch_set_point", **OF_TEN_MINUTES)
+    return leg_of_speed().model_copy(
+        update={"further_offsets_v": {"pitch_set_point": 4.0}, "multisines": (*leg_of_speed().multisines, pitch)}
     )
+
+
+def leg_of_speed() -> Campaign:
+    """Return ten minutes in which the set point of the speed moves, and with a combinator the pitch."""
+    of_speed_alone = tuple(one for one in odd(3.5 * 48.0, 60) if one % 3)
+    speed = multisine("M1", of_speed_alone, level_v=-5.0, **OF_TEN_MINUTES)
+    return Campaign(name="noise", duration_s=620.0, offset_v=-5.0, ramp_s=2.0, multisines=(speed,))
 
 
 Shown = Callable[[Measurement, Campaign], NoiseLevels]
@@ -129,14 +130,15 @@ def rows(levels: NoiseLevels, kept: FloatArray) -> list[str]:
 def main() -> None:
     """Sail, average and print the table."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument(
-        "--of", choices=["underway", "pitch", "speed-beside-pitch"], required=True, help="what the table is of"
-    )
+    of = ["underway", "pitch", "speed-beside-pitch", "combinator"]
+    parser.add_argument("--of", choices=of, required=True, help="what the table is of")
     parser.add_argument("--seeds", type=int, default=10, help="number of recordings")
     chosen = parser.parse_args()
     if chosen.of != "underway":
         shown = of_pitch if chosen.of == "pitch" else of_speed
-        levels = averaged(load_vessel(PITCHED), legs_of_pitch(), shown, chosen.seeds)
+        is_combined = chosen.of == "combinator"
+        vessel = load_vessel(COMBINED if is_combined else PITCHED)
+        levels = averaged(vessel, leg_of_speed() if is_combined else legs_of_pitch(), shown, chosen.seeds)
         print(levels.outputs, levels.set_point_per_v, levels.orders_hz)
         print("\n".join(rows(levels, np.ones(levels.frequency_hz.size, dtype=bool))))
         return

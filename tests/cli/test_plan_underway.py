@@ -77,7 +77,7 @@ def test_sailed_and_identified_it_gives_what_was_planned(planned, invoke, tmp_pa
 def test_other_speeds_are_refused_underway(invoke, tmp_path):
     done = invoke("plan", *SHIP, *LINE, "--within", "30min", "--speeds", "1.0,0.8", "-o", tmp_path / "plan")
     assert done.exit_code == 2
-    assert "--speeds: expected none underway, where all legs are at the 1600 rpm of the vessel file, found 1, 0.8" in (
+    assert "--speeds: expected none, so that all legs are at the 1600 rpm of the vessel file, found 1, 0.8" in (
         done.stderr
     )
     assert not (tmp_path / "plan").exists()

@@ -15,6 +15,7 @@ SHIPS = [
     ("stan-tug-1205-underway", "dither", "FREE-LOG"),
     ("nifs-research-vessel", "pitch", "GAUGE-PITCH"),
     ("nifs-research-vessel", "thesis", "GAUGE-CLOSED"),
+    ("nifs-research-vessel-combinator", "combinator", "GAUGE-COMBINATOR"),
     ("foss-carolyn-dorothy", "machine", "GAUGE-HYBRID"),
     ("e-ferry-ellen", "thesis", "GAUGE-MOTOR"),
 ]
@@ -51,6 +52,7 @@ def test_the_structure_is_that_of_identify(run, vessel, campaign, name):
 
 def test_a_plan_without_a_campaign_moves_the_speed_alone():
     assert default_structure(load_vessel("nifs-research-vessel")) == "GAUGE-CLOSED"
+    assert default_structure(load_vessel("nifs-research-vessel-combinator")) == "GAUGE-COMBINATOR"
     assert default_structure(load_vessel("stan-tug-1205-underway")) == "FREE-LOG"
 
 
@@ -115,8 +117,12 @@ def test_a_structure_that_is_named_is_taken(run):
     [
         (
             ("--vessel", "stan-tug-1205-underway", "--campaign", "two-speeds"),
-            "expected legs of one speed underway, where slopes of the propeller and time of the ship belong to one, "
-            "found 2 levels",
+            "expected legs of one speed, found 2 levels; underway slopes of the propeller and the time of the ship "
+            "belong to one speed, so test each by itself",
+        ),
+        (
+            ("--vessel", "nifs-research-vessel-combinator", "--campaign", "two-speeds"),
+            "found 2 levels; with a combinator each speed has a propeller of another pitch",
         ),
         (
             ("--vessel", "stan-tug-1205", "--campaign", "pitch", "--structure", "GAUGE-PITCH"),

@@ -180,7 +180,12 @@ def test_shipped_tests_keep_the_limits_of_the_shipped_tug(ship, truth, name):
 
 
 @pytest.mark.parametrize(
-    ("name", "campaign"), [("stan-tug-1205-underway", "dither"), ("nifs-research-vessel", "pitch")]
+    ("name", "campaign"),
+    [
+        ("stan-tug-1205-underway", "dither"),
+        ("nifs-research-vessel", "pitch"),
+        ("nifs-research-vessel-combinator", "combinator"),
+    ],
 )
 def test_underway_and_with_a_moved_pitch_it_is_what_the_simulated_ship_does(name, campaign):
     vessel, asked = load_vessel(name), load_campaign(campaign)

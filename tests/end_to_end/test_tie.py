@@ -144,6 +144,19 @@ def test_tie_would_notice_a_structure_without_inflow(vessel):
     assert np.abs(simulated / plain - 1.0).max() > 0.1
 
 
+def of_research_vessel(tug):
+    """The parameters of the research vessel and its pitch by the names of the structures, worked out by hand."""
+    seconds_per_kg_m2 = 2.0 * np.pi * 600.0 / 60.0 / 3.91 / 32990.0
+    return parameters_of(tug) | {
+        "tau_up": seconds_per_kg_m2 * (130.0 * 3.91**2 + 75.0),
+        "tau_dn": seconds_per_kg_m2 * 1077.0,
+        "q": wageningen_b(blades=4, area_ratio=0.60).at(0.0, 0.80).q,
+        "tau_th": tug.pitch.lag_s,
+        "t_th": tug.pitch.delay_s,
+        "c_pitch": tug.pitch.sensor_scale,
+    }
+
+
 @pytest.mark.parametrize(
     "given", [{}, {"lag_s": 1.4, "delay_s": 0.31, "set_point_scale": 1.05}, {"delay_s": 0.0, "sensor_scale": 0.97}]
 )
@@ -151,16 +164,7 @@ def test_linearised_ship_with_a_controllable_pitch_is_the_composed_structure(giv
     research = load_vessel("nifs-research-vessel")
     tug = like_stan_tug_1205(research)
     tug = replace(tug, g=-0.2, pitch=replace(tug.pitch, **given))
-    seconds_per_kg_m2 = 2.0 * np.pi * 600.0 / 60.0 / 3.91 / 32990.0
-    known = parameters_of(tug) | {
-        "tau_up": seconds_per_kg_m2 * (130.0 * 3.91**2 + 75.0),
-        "tau_dn": seconds_per_kg_m2 * 1077.0,
-        "q": wageningen_b(blades=4, area_ratio=0.60).at(0.0, 0.80).q,
-        "tau_th": tug.pitch.lag_s,
-        "t_th": tug.pitch.delay_s,
-        "c_th": tug.pitch.set_point_scale,
-        "c_pitch": tug.pitch.sensor_scale,
-    }
+    known = of_research_vessel(tug) | {"c_th": tug.pitch.set_point_scale}
     outputs, model = composed("GAUGE-PITCH", known)
     by_input = model.reshape(len(outputs), 2, -1)
     for place, name in enumerate(("n_set", "theta_set")):
@@ -176,6 +180,20 @@ def test_linearised_ship_with_a_controllable_pitch_is_the_composed_structure(giv
     assert {name: told[name] for name in ("q", "tau_th", "t_th", "c_th", "c_pitch")} == pytest.approx(
         {name: known[name] for name in ("q", "tau_th", "t_th", "c_th", "c_pitch")}
     )
+
+
+@pytest.mark.parametrize(
+    "given", [{}, {"lag_s": 1.4, "delay_s": 0.31, "set_point_scale": 1.05}, {"delay_s": 0.0, "sensor_scale": 0.97}]
+)
+def test_linearised_ship_with_a_combinator_is_the_composed_structure(given):
+    combined = load_vessel("nifs-research-vessel-combinator")
+    tug = like_stan_tug_1205(combined)
+    tug = replace(tug, g=0.1, pitch=replace(tug.pitch, **given))
+    known = of_research_vessel(tug) | {"c_comb": 0.75 * tug.pitch.set_point_scale}
+    outputs, model = composed("GAUGE-COMBINATOR", known)
+    ratio = linearised_response(tug, combined, OMEGA_RAD_S / (2.0 * np.pi), outputs=outputs)[:, 0] / model
+    assert np.abs(ratio) == pytest.approx(np.ones(ratio.shape), abs=1e-5)
+    assert np.degrees(np.angle(ratio)) == pytest.approx(np.zeros(ratio.shape), abs=1e-3)
 
 
 @pytest.mark.parametrize(

@@ -43,6 +43,7 @@ def same(one, two):
         "GOVERNOR",
         "FREE-PITCH",
         "GAUGE-PITCH",
+        "GAUGE-COMBINATOR",
     ],
 )
 def test_fmpy_finds_nothing_to_complain_about(exported, tmp_path, name, version):

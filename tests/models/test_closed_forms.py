@@ -199,6 +199,17 @@ def gauge_pitch(s, p):
     )
 
 
+def gauge_combinator(s, p):
+    """The same, with the demand of the governor and the pitch from one lever, pushed by both at once."""
+    engine = governor(s, p)
+    demand = p["c_set"] * mp.exp(-s * p["t_sp"])
+    theta = p["c_set"] * p["c_comb"] * mp.exp(-s * p["t_th"]) / (p["tau_th"] * s + 1)
+    matrix = mp.matrix([[1, -1, -p["tau_up"] * s], [0, 1, -p["k_q"] - p["tau_dn"] * s], [1, 0, engine - p["g"]]])
+    pushed = mp.matrix([0, p["q"] * mp.exp(-s * p["t_blade"]) * theta, engine * demand])
+    _, torque, speed = mp.lu_solve(matrix, pushed)
+    return pick_up(s, p) * speed, telemetry(s, p) * torque, p["c_pitch"] * theta
+
+
 def governor_alone(s, p):
     """The rack from the set point, which comes late, and from the speed, which does not; both seen ``t_rack`` late."""
     rack = (p["K_p"] + p["K_i"] / s) * mp.exp(-s * p["t_rack"])
@@ -274,6 +285,7 @@ FORMS = {
     "GAUGE-ECU": gauge_ecu,
     "GAUGE-MOTOR": gauge_motor,
     "GAUGE-PITCH": gauge_pitch,
+    "GAUGE-COMBINATOR": gauge_combinator,
     "GAUGE-HYBRID": gauge_hybrid,
     "GOVERNOR": governor_alone,
     "ENGINE": engine,
@@ -344,6 +356,7 @@ def test_a_coupling_without_end_of_stiffness_is_a_rigid_line():
 LONG = (
     "FREE-PITCH",
     "GAUGE-PITCH",
+    "GAUGE-COMBINATOR",
     "FREE-LOG",
     "FREE-CLOSED",
     "GAUGE-ECU",

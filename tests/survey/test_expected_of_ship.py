@@ -38,5 +38,11 @@ def test_a_pitch_has_its_lag_and_the_slope_of_its_series():
     assert expected_of_ship(structure("GAUGE-CLOSED"), vessel) == {}
 
 
+def test_a_combinator_has_its_slope():
+    vessel = load_vessel("nifs-research-vessel-combinator")
+    # 0.001 of P/D a revolution per minute, at 600 rpm and P/D 0.80
+    assert expected_of_ship(structure("GAUGE-COMBINATOR"), vessel)["c_comb"] == pytest.approx(0.75)
+
+
 def test_at_the_quay_with_a_fixed_pitch_nothing_is_expected():
     assert expected_of_ship(structure("FREE-LOG"), load_vessel("stan-tug-1205")) == {}

@@ -165,7 +165,40 @@ def test_pitch_that_stands_changes_nothing(ship, tug, ask, sine):
 
 
 def test_a_ship_that_cannot_move_its_pitch_says_so(ship, tug, moved):
-    with pytest.raises(SettingsError, match=r"a vessel with \[sensors.pitch_set_point\] and a table \[pitch\]"):
+    with pytest.raises(SettingsError, match=r"a vessel with a table \[pitch\].* found a tug of fixed pitch"):
         simulate_signals(ship, moved(0.2, 0.1), tug=replace(tug, pitch=None))
+    with pytest.raises(SettingsError, match=r"a vessel with \[sensors.pitch_set_point\] where the pitch is moved"):
+        simulate_signals(load_vessel("stan-tug-1205"), moved(0.2, 0.1), tug=tug)
     with pytest.raises(SettingsError, match=r"pitch.rate_per_s above 0, found 0"):
         simulate_signals(ship, moved(0.2, 0.1), tug=replace(tug, pitch=PitchActuation(rate_per_s=0.0)))
+
+
+@pytest.fixture(scope="module")
+def combined():
+    return load_vessel("nifs-research-vessel-combinator")
+
+
+def test_with_a_combinator_the_lever_moves_the_pitch_along_its_curve(combined, quiet, ask):
+    """From 600 to 760 rpm it asks for P/D 0.80 and then 0.936, past the corner of the curve at 700 rpm."""
+    tug = replace(like_stan_tug_1205(combined), noise=quiet)
+    volts = 160.0 / tug.set_point_slope_rpm_per_v
+    stairs = {"name": "St", "levels_v": [-5.0, -5.0 + volts], "dwell_s": 30.0, "start_s": 10.0}
+    motion, step_s = motion_of(combined, tug, ask(80.0, staircases=[stairs]), seconds=70.0)
+    piston = combined.propeller.pitch_ratio + motion.piston
+    assert piston[round(39.0 / step_s)] == pytest.approx(0.80, abs=1e-9)
+    # a lag of 0.6 s after a delay of 0.15 s, limited at 0.08 a second as long as it is further than 0.048 away
+    assert piston[round(40.5 / step_s)] == pytest.approx(0.80 + 0.08 * 0.35, abs=2e-4)
+    assert piston[round(69.0 / step_s)] == pytest.approx(0.936, abs=1e-6)
+
+
+def test_small_signals_of_a_lever_are_those_of_speed_and_pitch_together(ship, combined, quiet):
+    """At 600 rpm the combinator asks for 0.75 per cent of pitch with a per cent of speed."""
+    tug = replace(like_stan_tug_1205(combined), noise=quiet)
+    frequency = np.geomspace(0.1, 10.0, 40) / (2.0 * np.pi)
+    outputs = ("n", "M_s", "theta")
+    by_speed, by_pitch = (
+        linearised_response(tug, ship, frequency, outputs=outputs, input=name) for name in ("n_set", "theta_set")
+    )
+    by_lever = linearised_response(tug, combined, frequency, outputs=outputs)
+    np.testing.assert_allclose(by_lever, by_speed + 0.75 * by_pitch, rtol=1e-9)
+    assert normalised_truth(tug, combined)["c_comb"] == pytest.approx(0.75)

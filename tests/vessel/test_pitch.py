@@ -16,8 +16,8 @@ SHIPPED = files("shaftprint.vessel") / "shipped" / "nifs_research_vessel.toml"
 def changed(tmp_path):
     """Return the research vessel's file with something else in it, read."""
 
-    def read(old, new):
-        text = SHIPPED.read_text(encoding="utf-8")
+    def read(old, new, *, file=SHIPPED):
+        text = file.read_text(encoding="utf-8")
         assert old in text
         path = tmp_path / "ship.toml"
         path.write_text(text.replace(old, new), encoding="utf-8")
@@ -94,3 +94,59 @@ def test_a_pitch_outside_the_curve_of_its_series_is_a_contradiction():
 def test_without_a_series_the_slope_must_be_stated(changed):
     found = disagreements(changed('series = "Wageningen B4-60"\n', ""))
     assert [one.field for one in found if one.is_contradiction] == ["pitch.torque_slope"]
+
+
+COMBINED = files("shaftprint.vessel") / "shipped" / "nifs_research_vessel_combinator.toml"
+CURVE = """combinator_speed_rpm = [350.0, 500.0, 700.0, 900.0]
+combinator_ratio = [0.58, 0.70, 0.90, 1.02]
+"""
+PITCH_SENSOR = """[sensors.pitch]
+channel = "P_feedback"
+unit = "V"
+pitch_ratio_per_v = 0.12
+pitch_ratio_at_zero_v = 0.0
+latency_s = 0.005
+scale_std_fraction = 0.02
+"""
+
+
+def test_a_combinator_asks_for_a_pitch_with_each_speed():
+    pitch = load_vessel("nifs-research-vessel-combinator").combinator
+    assert pitch.combined_ratio([350.0, 600.0, 800.0]) == pytest.approx([0.58, 0.80, 0.96])
+    # 0.001 of P/D a revolution per minute, at 600 rpm and P/D 0.80
+    assert pitch.combinator_slope(600.0) == pytest.approx(0.75)
+    assert load_vessel("nifs-research-vessel").combinator is None
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("0.90, 1.02]", "0.90]", r"of equal length, at least 2, found 4 and 3"),
+        ("350.0, 500.0", "500.0, 350.0", r"expected ascending speeds in combinator_speed_rpm"),
+        ("0.58, 0.70", "0.40, 0.70", r"from lowest_ratio = 0\.5 to highest_ratio = 1\.2, found 0\.4 to 1\.02"),
+        ("0.70, 0.90", "0.60, 0.90", r"pitch_ratio = 0\.8 at the 600 rpm of the working point, found 0\.75"),
+        ("[350.0, 500.0, 700.0", "[350.0, 595.0, 605.0", r"within 2% of the working point.* found 595 rpm"),
+        (PITCH_SENSOR, "", r"expected sensors\.pitch beside pitch\.combinator_speed_rpm, found none"),
+        (PITCH_SENSOR, PITCH_SENSOR + SET_POINT, r"expected no sensors\.pitch_set_point beside pitch\.combinator"),
+    ],
+)
+def test_a_combinator_that_contradicts_itself_is_refused_in_a_sentence(changed, old, new, message):
+    with pytest.raises(SettingsError, match=message):
+        changed(old, new, file=COMBINED)
+
+
+def test_a_combinator_of_a_ship_underway_is_refused_in_a_sentence(tmp_path):
+    text = COMBINED.read_text(encoding="utf-8")
+    path = tmp_path / "ship.toml"
+    hull = """[hull]
+displacement_kg = 700000.0
+added_mass_fraction = 0.06
+shafts = 2
+resistance_n = 60000.0
+resistance_speed_m_s = 5.0
+resistance_exponent = 2.0
+"""
+    underway = text.replace("shaft_torque_nm = 32990.0\n", f"shaft_torque_nm = 32990.0\nship_speed_m_s = 5.0\n{hull}")
+    path.write_text(underway, encoding="utf-8")
+    with pytest.raises(SettingsError, match=r"expected an engine at the quay beside pitch\.combinator_speed_rpm"):
+        load_vessel(path)

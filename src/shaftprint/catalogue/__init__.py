@@ -28,7 +28,7 @@ from shaftprint.catalogue._sailing import sailing_with_rack
 from shaftprint.catalogue._sailing_at_large import pitch_actuator, sailing_at_large
 from shaftprint.catalogue._sailing_blocks import PitchSpeed, SailingShaft, SailingSpeed, SailingTorque
 from shaftprint.catalogue._shipped import expect_roles, shipped_structure
-from shaftprint.catalogue._thesis import CLOSED_LOOPS, PITCHED_LOOP, STRUCTURES, structure
+from shaftprint.catalogue._thesis import CLOSED_LOOPS, COMBINED_LOOP, PITCHED_LOOP, STRUCTURES, structure
 from shaftprint.catalogue._thesis_figures import Family, thesis_families
 from shaftprint.catalogue._thesis_values import THESIS_VALUES
 from shaftprint.catalogue._two_masses import two_mass_line
@@ -36,6 +36,7 @@ from shaftprint.catalogue._two_masses import two_mass_line
 __all__ = [
     "AHEAD_S",
     "CLOSED_LOOPS",
+    "COMBINED_LOOP",
     "CRASH_STOP",
     "DRIVES",
     "NOT_OF_THE_LINE",

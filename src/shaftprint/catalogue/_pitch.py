@@ -1,4 +1,6 @@
-"""The gauge-aware structure of a line with a controllable pitch at the quay: two inputs, three outputs.
+"""The gauge-aware structures of a line with a controllable pitch at the quay: speed, torque and pitch.
+
+GAUGE-PITCH has two inputs, the set points of speed and pitch. GAUGE-COMBINATOR has one, the lever that asks for both.
 
 The two free bodies of GAUGE-CLOSED, and a propeller that takes more torque at more pitch::
 
@@ -15,9 +17,12 @@ Between piston and blades is play. Blades that stay half a play ``h`` behind whi
 motion of many lines, late by ``t_blade = sqrt(2 / pi) h / sigma`` at all of them, ``sigma`` the rms of the rate of the
 piston (statistical linearisation: A. Gelb and W. E. Vander Velde, Multiple-input describing functions and nonlinear
 system design, 1968, chapter 7). A feedback whose latency is other than stated shows in it too.
+
+A combinator asks for a pitch with each speed, ``theta_set = c n_set`` of small changes; ``c_comb`` is ``c c_th``.
 """
 
 from dataclasses import replace
+from typing import NamedTuple
 
 from shaftprint.catalogue._gauge import (
     C_SET,
@@ -46,6 +51,7 @@ from shaftprint.models import (
     Combination,
     Constant,
     Delay,
+    Expression,
     FirstOrderLag,
     Gain,
     Parameter,
@@ -63,6 +69,17 @@ T_TH = Parameter(
 C_TH = Parameter(
     "c_th", "-", 0.5, 2.0, 1.0, "change of pitch that is reached over that asked for", role=ShipRole.PITCH_SCALE
 )
+C_COMB = Parameter(
+    "c_comb",
+    "-",
+    0.0,
+    4.0,
+    0.8,
+    "change of pitch that is reached over the change of speed that is asked for",
+    role=ShipRole.COMBINATOR_SLOPE,
+)
+# Slow lines, which else show the line of the set point, are disturbed by the pitch; the model finds its scale.
+_C_SET_WIDE = replace(C_SET, lower=0.7, upper=1.4)
 T_BLADE = Parameter(
     "t_blade",
     "s",
@@ -96,35 +113,23 @@ def gauge_pitch() -> Structure:
     that the blades take: ``n = -q theta_b / ((tau_up + tau_dn) s + k_q - g) / (1 + L)`` and
     ``M_s = (tau_dn s + k_q) n + q theta_b``, and what is shown of the pitch is ``c_pitch theta``.
     """
-    shaft, load = Shaft((TAU_DN, TAU_UP), K_Q, G), TorqueBalance(TAU_DN, K_Q)
-    drive = PIGovernor(GAUGE_K_P, GAUGE_K_I) * Gain(V_ONE) * Delay(T_D) * SecondOrderLag(GAUGE_OMEGA_N, GAUGE_ZETA)
-    loop = drive * shaft
-    left_of_error = Sensitivity(loop)
     pitch = Gain(C_TH) * Delay(T_TH) * FirstOrderLag(TAU_TH)
-    forced = Gain(Q) * pitch * Delay(T_BLADE)
-    by_set_point = loop * left_of_error * Delay(T_SP) * Gain(C_SET)
-    by_pitch = -(forced * shaft * left_of_error)
-    speed_sensor, torque_sensor = AveragingSensor(T_AVERAGE, T_HOLD, T_PICKUP), Delay(T_GAUGE) * FirstOrderLag(T_FILTER)
+    line = _line(pitch, C_SET)
     return Structure(
         name="GAUGE-PITCH",
         title="gauge-aware closed loop with a controllable pitch",
         inputs=("n_set", "theta_set"),
         outputs={
-            "n": {"n_set": by_set_point * speed_sensor, "theta_set": by_pitch * speed_sensor},
+            "n": {"n_set": line.speed_by_set_point * _SPEED_SENSOR, "theta_set": line.speed_by_pitch * _SPEED_SENSOR},
             "M_s": {
-                "n_set": by_set_point * load * torque_sensor,
-                "theta_set": (by_pitch * load + forced) * torque_sensor,
+                "n_set": line.speed_by_set_point * _LOAD * _TORQUE_SENSOR,
+                "theta_set": (line.speed_by_pitch * _LOAD + line.forced) * _TORQUE_SENSOR,
             },
             "theta": {"n_set": Constant(0.0), "theta_set": Gain(C_PITCH) * pitch},
         },
         combinations=(
             *gauge_combinations(),
-            Combination(
-                name="t_th + tau_th",
-                unit="s",
-                of=lambda p: p["t_th"] + p["tau_th"],
-                meaning="lag of the pitch behind its set point",
-            ),
+            _PITCH_LAG,
             Combination(
                 name="q c_th",
                 unit="-",
@@ -133,3 +138,70 @@ def gauge_pitch() -> Structure:
             ),
         ),
     )
+
+
+def gauge_combinator() -> Structure:
+    """Return the gauge-aware closed loop whose lever asks for speed and pitch: ``n``, ``M_s`` and ``theta`` from it.
+
+    The sum of what GAUGE-PITCH says of both its inputs, with ``c_comb`` in the place of ``c_th``.
+    """
+    # the pitch is asked for with the true set point
+    pitch = Gain(_C_SET_WIDE) * Gain(C_COMB) * Delay(T_TH) * FirstOrderLag(TAU_TH)
+    line = _line(pitch, _C_SET_WIDE)
+    speed = line.speed_by_set_point + line.speed_by_pitch
+    return Structure(
+        name="GAUGE-COMBINATOR",
+        title="gauge-aware closed loop with a combinator",
+        input="n_set",
+        outputs={
+            "n": speed * _SPEED_SENSOR,
+            "M_s": (speed * _LOAD + line.forced) * _TORQUE_SENSOR,
+            "theta": Gain(C_PITCH) * pitch,
+        },
+        combinations=(
+            *gauge_combinations(),
+            _PITCH_LAG,
+            Combination(
+                name="q c_comb",
+                unit="-",
+                of=lambda p: p["q"] * p["c_comb"],
+                meaning="change of torque by the pitch over the change of speed that is asked for",
+            ),
+        ),
+    )
+
+
+class _Line(NamedTuple):
+    """What set point and pitch do to a governed line, without its sensors."""
+
+    forced: Expression
+    """Torque of the propeller by the pitch alone."""
+    speed_by_set_point: Expression
+    """Speed over the set point of the governor."""
+    speed_by_pitch: Expression
+    """Speed over what asks for the pitch."""
+
+
+def _line(pitch: Expression, set_point_scale: Parameter) -> _Line:
+    """Return the line of a pitch over what asks for it."""
+    shaft = Shaft((TAU_DN, TAU_UP), K_Q, G)
+    drive = PIGovernor(GAUGE_K_P, GAUGE_K_I) * Gain(V_ONE) * Delay(T_D) * SecondOrderLag(GAUGE_OMEGA_N, GAUGE_ZETA)
+    loop = drive * shaft
+    left_of_error = Sensitivity(loop)
+    forced = Gain(Q) * pitch * Delay(T_BLADE)
+    return _Line(
+        forced=forced,
+        speed_by_set_point=loop * left_of_error * Delay(T_SP) * Gain(set_point_scale),
+        speed_by_pitch=-(forced * shaft * left_of_error),
+    )
+
+
+_LOAD = TorqueBalance(TAU_DN, K_Q)
+_SPEED_SENSOR = AveragingSensor(T_AVERAGE, T_HOLD, T_PICKUP)
+_TORQUE_SENSOR = Delay(T_GAUGE) * FirstOrderLag(T_FILTER)
+_PITCH_LAG = Combination(
+    name="t_th + tau_th",
+    unit="s",
+    of=lambda p: p["t_th"] + p["tau_th"],
+    meaning="lag of the pitch behind its set point",
+)

@@ -139,6 +139,8 @@ class ShipRole:
     """Time by which the blades of a controllable pitch follow what is shown of it."""
     PITCH_SCALE: Final = _line("pitch scale", "-", "load")
     """Change of pitch that is reached over that which is asked for."""
+    COMBINATOR_SLOPE: Final = _line("combinator slope", "-", "load")
+    """Change of pitch that is reached over the change of speed that a lever asks for together with it."""
     PITCH_SENSOR_SCALE: Final = Role(name="pitch sensor scale", unit="-", basis=frozenset(("load",)), of_sensor=True)
     """Change of pitch that is shown over that which is reached."""
     TORQUE: Final = _line("torque", "", "torque")

@@ -19,7 +19,7 @@ from shaftprint.catalogue._gauge import (
     governor,
 )
 from shaftprint.catalogue._hybrid import gauge_hybrid
-from shaftprint.catalogue._pitch import gauge_pitch
+from shaftprint.catalogue._pitch import gauge_combinator, gauge_pitch
 from shaftprint.catalogue._roles import ShipRole
 from shaftprint.catalogue._sailing import free_closed, free_core, free_log, free_pitch, free_ship
 from shaftprint.errors import StructureError
@@ -213,6 +213,7 @@ STRUCTURES: Mapping[str, Callable[[], Structure]] = {
     "GAUGE-MOTOR": gauge_motor,
     "GAUGE-HYBRID": gauge_hybrid,
     "GAUGE-PITCH": gauge_pitch,
+    "GAUGE-COMBINATOR": gauge_combinator,
     "GOVERNOR": governor,
     "ENGINE": engine,
     "FREE-CORE": free_core,
@@ -227,6 +228,8 @@ CLOSED_LOOPS: Mapping[str, str] = {"engine": "GAUGE-CLOSED", "motor": "GAUGE-MOT
 """Names of the closed loops of ships, by what drives the line."""
 PITCHED_LOOP = "GAUGE-PITCH"
 """Name of the closed loop of an engine and a propeller of controllable pitch, at the quay."""
+COMBINED_LOOP = "GAUGE-COMBINATOR"
+"""Name of the same with a lever that asks for speed and pitch together."""
 
 
 def structure(name: str) -> Structure:

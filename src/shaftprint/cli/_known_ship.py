@@ -135,7 +135,7 @@ def knowledge_of(stated: Stated, *, steps: Steps) -> Knowledge:
 
 def _remarks(stated: Stated) -> tuple[str, ...]:
     """Return what a plan of the speed's lines leaves alone."""
-    if stated.vessel.pitch is None:
+    if stated.vessel.pitch is None or stated.vessel.combinator is not None:
         return ()
     return (
         f"The pitch stands at P/D {stated.vessel.propeller.pitch_ratio:g} while the speed is moved: the plan is for "
@@ -150,15 +150,15 @@ def _speeds(stated: Stated, limits: Limits) -> tuple[float, ...]:
     Raises
     ------
     click.UsageError
-        If speeds are asked for underway.
+        If speeds are asked for where a ship has one.
     """
     shares, vessel_rpm = stated.options.speeds, stated.vessel.working_point.engine_speed_rpm
-    if stated.vessel.is_underway:
+    if stated.vessel.why_one_speed:
         if shares not in (None, (1.0,)):
             raise click.UsageError(
-                f"--speeds: expected none underway, where all legs are at the {vessel_rpm:g} rpm of the vessel file, "
-                f"found {', '.join(f'{share:g}' for share in shares)}; slopes of the propeller and the time of the "
-                "ship belong to one speed: write a vessel file for another."
+                f"--speeds: expected none, so that all legs are at the {vessel_rpm:g} rpm of the vessel file, found "
+                f"{', '.join(f'{share:g}' for share in shares)}; {stated.vessel.why_one_speed}: write a vessel file "
+                "for another."
             )
         return (1.0,)
     if shares is None:

@@ -12,7 +12,7 @@ from types import CodeType, ModuleType
 from typing import NewType
 
 from shaftprint.campaign import Campaign
-from shaftprint.catalogue import CLOSED_LOOPS, DRIVES, PITCHED_LOOP, STRUCTURES, shipped_structure
+from shaftprint.catalogue import CLOSED_LOOPS, COMBINED_LOOP, DRIVES, PITCHED_LOOP, STRUCTURES, shipped_structure
 from shaftprint.errors import ShaftprintError, StructureError
 from shaftprint.fingerprint import Fingerprint, named_structure
 from shaftprint.models import Structure, check_structure
@@ -27,7 +27,8 @@ TypedName = NewType("TypedName", str)
 
 DEFAULT_HELP = (
     f"{CLOSED_LOOPS['engine']}, {CLOSED_LOOPS['motor']} where a motor drives the line, {CLOSED_LOOPS['hybrid']} where "
-    f"one helps an engine, {PITCHED_LOOP} where the campaign moves a logged pitch, or FREE-LOG underway"
+    f"one helps an engine, {PITCHED_LOOP} where the campaign moves a logged pitch, {COMBINED_LOOP} with a "
+    "combinator, or FREE-LOG underway"
 )
 
 

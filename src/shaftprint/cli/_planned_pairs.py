@@ -10,7 +10,7 @@ from shaftprint.identify.prediction import PlannedLeg, planned_beside, planned_l
 from shaftprint.models import Structure
 from shaftprint.signals import EXCITATIONS, MovedBeside, moved_beside
 from shaftprint.spectra import SPEED, FrequencyResponse, open_loop
-from shaftprint.survey import of_vessel
+from shaftprint.survey import expect_one_speed, of_vessel
 
 Pair = tuple[Structure, FrequencyResponse]
 
@@ -26,7 +26,8 @@ def planned_pairs(chosen: Structure, campaign: Campaign, ship: ShipBeforeTest) -
     StructureError
         If the lines of a campaign do not give these.
     """
-    _expect_one_speed(campaign, ship)
+    if ship.vessel is not None:
+        expect_one_speed(campaign, ship.vessel)
     if chosen.inputs[0] != SPEED or len(chosen.inputs) == 1:
         return _pairs_of_speed(chosen, campaign, ship)
     further = _further(chosen, campaign, ship)
@@ -45,15 +46,6 @@ def planned_pairs(chosen: Structure, campaign: Campaign, ship: ShipBeforeTest) -
                 if one.input == moved.input
             ]
     return pairs
-
-
-def _expect_one_speed(campaign: Campaign, ship: ShipBeforeTest) -> None:
-    levels = {leg.level_v for leg in campaign.legs}
-    if ship.vessel is not None and ship.vessel.is_underway and len(levels) > 1:
-        raise StructureError(
-            f"campaign {campaign.name}: expected legs of one speed underway, where slopes of the propeller and time of "
-            f"the ship belong to one, found {len(levels)} levels; plan a test for each speed."
-        )
 
 
 def _further(chosen: Structure, campaign: Campaign, ship: ShipBeforeTest) -> list[MovedBeside]:

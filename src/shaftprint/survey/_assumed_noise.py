@@ -5,7 +5,13 @@ from dataclasses import dataclass, field, replace
 
 from shaftprint.campaign import Campaign
 from shaftprint.identify import STAN_TUG_NOISE, STAN_TUG_NOISE_AT_SPEEDS, NoiseLevels
-from shaftprint.identify.prediction import PITCH_NOISE, RESEARCH_VESSEL_NOISE, STAN_TUG_NOISE_UNDERWAY, with_log
+from shaftprint.identify.prediction import (
+    COMBINATOR_NOISE,
+    PITCH_NOISE,
+    RESEARCH_VESSEL_NOISE,
+    STAN_TUG_NOISE_UNDERWAY,
+    with_log,
+)
 from shaftprint.signals import HIGHEST_SHARE_OF_RATE, moved_beside
 from shaftprint.vessel import Vessel
 
@@ -31,7 +37,7 @@ def assumed_noise(vessel: Vessel | None = None, campaign: Campaign | None = None
 
     At the quay it is that of the simulated Stan Tug in bollard pull; underway that of the same tug at 9 knots, with a
     log where the vessel file has one: of its cycle, and of the noise of a value of the tug's. Where a pitch is moved
-    at the quay it is that of the simulated research vessel, with the feedback of the pitch.
+    at the quay, or a combinator moves it, it is that of the simulated research vessel, with the feedback of the pitch.
 
     Parameters
     ----------
@@ -45,8 +51,10 @@ def assumed_noise(vessel: Vessel | None = None, campaign: Campaign | None = None
     if vessel is not None and vessel.is_underway:
         levels, words = _underway(vessel), f"noise of the Stan Tug 1205 underway assumed{whose}"
         return AssumedNoise(sines=levels, legs={1.0: levels}, beside=beside, words=words)
-    if _PITCH in beside:
-        levels, words = RESEARCH_VESSEL_NOISE, f"noise of the simulated research vessel assumed{whose}"
+    combined = vessel is not None and vessel.combinator is not None
+    if combined or _PITCH in beside:
+        levels = COMBINATOR_NOISE if combined else RESEARCH_VESSEL_NOISE
+        words = f"noise of the simulated research vessel assumed{whose}"
         return AssumedNoise(sines=levels, legs={1.0: levels}, beside=beside, words=words)
     words = f"noise of the Stan Tug 1205 assumed{whose}"
     return AssumedNoise(sines=STAN_TUG_NOISE, legs=STAN_TUG_NOISE_AT_SPEEDS, beside=beside, words=words)

@@ -18,8 +18,8 @@ def expected_of_ship(structure: Structure, vessel: Vessel) -> dict[str, float]:
 
     Underway the exponent of the resistance, and the time of the ship by its mass, speed and resistance; slopes of
     thrust and torque by the curves of the propeller at the wake fraction, where the file states one and a series that
-    is known. At the quay with a controllable pitch its lag and delay, and the slope of the torque that its series has,
-    where the file does not state it.
+    is known. At the quay with a controllable pitch its lag and delay, the slope of its combinator, and the slope of the
+    torque that its series has, where the file does not state it.
 
     Raises
     ------
@@ -57,9 +57,15 @@ def _pitched(structure: Structure, vessel: Vessel) -> dict[str, float]:
         ShipRole.PITCH_LAG: pitch.lag_s,
         ShipRole.PITCH_DELAY: pitch.delay_s,
         ShipRole.PITCH_SLOPE: _torque_over_pitch(vessel),
+        ShipRole.COMBINATOR_SLOPE: _combinator_slope(vessel),
     }
     named = {structure.named_as(role): value for role, value in known.items()}
     return {name: value for name, value in named.items() if name is not None and value is not None}
+
+
+def _combinator_slope(vessel: Vessel) -> float | None:
+    combinator = vessel.combinator
+    return None if combinator is None else combinator.combinator_slope(vessel.working_point.engine_speed_rpm)
 
 
 def _torque_over_pitch(vessel: Vessel) -> float | None:

@@ -1,7 +1,10 @@
 """Which structure fits a ship, and how it is fitted for one: free is also what its sensors leave open."""
 
+from collections.abc import Sequence
+
 from shaftprint.campaign import Campaign
-from shaftprint.catalogue import CLOSED_LOOPS, PITCHED_LOOP, ShipRole
+from shaftprint.catalogue import CLOSED_LOOPS, COMBINED_LOOP, PITCHED_LOOP, ShipRole
+from shaftprint.errors import StructureError
 from shaftprint.models import Structure
 from shaftprint.normalisation import inertia_time_s
 from shaftprint.torsion import line_coupling
@@ -20,8 +23,8 @@ def default_structure(vessel: Vessel, campaign: Campaign | None = None) -> str:
     """Return the name of the closed loop that a test asks for: by what drives the line, where, and what is moved.
 
     At the quay it is GAUGE-CLOSED, GAUGE-MOTOR where a motor drives the line, GAUGE-HYBRID where an electric machine is
-    on the gearbox of an engine, or GAUGE-PITCH where the campaign moves a pitch that is logged; underway FREE-LOG, or
-    FREE-CLOSED where no log is in the recording.
+    on the gearbox of an engine, GAUGE-COMBINATOR where one lever asks for speed and pitch, or GAUGE-PITCH where the
+    campaign moves a pitch that is logged; underway FREE-LOG, or FREE-CLOSED where no log is in the recording.
 
     Parameters
     ----------
@@ -32,9 +35,34 @@ def default_structure(vessel: Vessel, campaign: Campaign | None = None) -> str:
     """
     if vessel.is_underway and vessel.motor is None:
         return _UNDERWAY if vessel.sensors.ship_speed is None else _UNDERWAY_WITH_LOG
+    if vessel.combinator is not None:
+        return COMBINED_LOOP
     if vessel.shows_pitch and vessel.motor is None and campaign is not None and _PITCH in campaign.inputs:
         return PITCHED_LOOP
     return CLOSED_LOOPS[vessel.drive]
+
+
+def expect_one_speed(campaign: Campaign, vessel: Vessel, legs: Sequence[str] = ()) -> None:
+    """Refuse a test at several speeds where its numbers belong to one.
+
+    Parameters
+    ----------
+    campaign, vessel
+        What is asked of the ship, and the installation.
+    legs
+        Names of the legs that are used; all when not given.
+
+    Raises
+    ------
+    StructureError
+        If legs of several levels are used on a ship underway or with a combinator.
+    """
+    levels = {leg.level_v for leg in campaign.legs if not legs or leg.name in legs}
+    if vessel.why_one_speed and len(levels) > 1:
+        raise StructureError(
+            f"campaign {campaign.name}: expected legs of one speed, found {len(levels)} levels; "
+            f"{vessel.why_one_speed}, so test each by itself."
+        )
 
 
 def of_vessel(structure: Structure, vessel: Vessel) -> Structure:

@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike
 
 from shaftprint.arrays import ComplexArray, FloatArray
 from shaftprint.errors import SettingsError
-from shaftprint.tug._pitch_actuation import pitch_torque
+from shaftprint.tug._pitch_actuation import PitchActuation, pitch_torque
 from shaftprint.tug._tug import Tug
 from shaftprint.tug.plant import (
     ANGLE,
@@ -28,6 +28,7 @@ from shaftprint.tug.plant import (
     working_point,
     working_point_rack,
 )
+from shaftprint.units import rpm_from_rev_s
 from shaftprint.vessel import Vessel
 
 # Places in the vector that is perturbed: nine states, the demand in the ECU, the rack given a delay ago, the pitch, the
@@ -94,42 +95,52 @@ def linearised_response(
         rack_given, gauge = slope[_GIVEN], slope[_GAUGE]
         inner = slope[states, _RACK_DELAYED] * delay
         system = value * np.eye(inner.size) - slope[np.ix_(states, states)] - np.outer(inner, rack_given[states])
-        moved, size, late = _excitation(tug, vessel, input, value, (speed, driving_nm))
-        right = slope[states, moved] + inner * rack_given[moved]
-        x = np.linalg.solve(system, right) * late
+        moved = _excitation(tug, vessel, input, value, (speed, driving_nm))
+        right = (slope[states] + np.outer(inner, rack_given)) @ moved
+        x = np.linalg.solve(system, right)
         responses = {
-            "n": plant.gear_ratio * x[SPEED] * size / speed,
-            "M_s": (gauge[states] @ x + gauge[moved] * late) * size / torque,
-            "X": (rack_given[states] @ x + rack_given[moved] * late) * size / rack,
+            "n": plant.gear_ratio * x[SPEED] / speed,
+            "M_s": (gauge[states] @ x + gauge @ moved) / torque,
+            "X": (rack_given[states] @ x + rack_given @ moved) / rack,
         }
         if tug.pitch is not None:
-            responses["theta"] = late * tug.pitch.sensor_scale if moved == _PITCH else 0.0
+            responses["theta"] = moved[_PITCH] * tug.pitch.sensor_scale / vessel.propeller.pitch_ratio
         if plant.sails:
-            responses["v_s"] = x[-1] * size / way
+            responses["v_s"] = x[-1] / way
         response[:, 0, line] = [responses[name] for name in outputs]
     return response
 
 
-def _excitation(tug: Tug, vessel: Vessel, name: str, s: complex, at: tuple[float, float]) -> tuple[int, float, complex]:
-    """Return place of what is moved, its working point, and what comes between its set point and the line.
+def _excitation(tug: Tug, vessel: Vessel, name: str, s: complex, at: tuple[float, float]) -> ComplexArray:
+    """Return what one unit of an input over its working point moves at the line, shape (14,).
 
     ``at`` are engine speed [rev/s] and driving torque at the shaft [N m] of the working point.
     """
-    if name == "n_set":
-        return _DEMAND, at[0], complex(np.exp(-s * tug.set_point_latency_s))
-    if name == "load":
-        return _LOAD, 1.0, 1.0 + 0.0j
-    if name == "M_m" and tug.shaft_machine is not None:
-        return _MACHINE, at[1] / tug.shaft_machine.shown, 1.0 + 0.0j
+    moved = np.zeros(_SIZE, dtype=np.complex128)
     actuation = actuation_of(tug)
-    if name != "theta_set" or actuation is None:
+    ratio = vessel.propeller.pitch_ratio if tug.sailing is None else tug.sailing.pitch_ratio
+    if name == "n_set":
+        moved[_DEMAND] = at[0] * np.exp(-s * tug.set_point_latency_s)
+        if vessel.combinator is not None and actuation is not None:
+            slope = vessel.combinator.combinator_slope(rpm_from_rev_s(at[0]))
+            moved[_PITCH] = slope * ratio * _followed(actuation, s)
+    elif name == "load":
+        moved[_LOAD] = 1.0
+    elif name == "M_m" and tug.shaft_machine is not None:
+        moved[_MACHINE] = at[1] / tug.shaft_machine.shown
+    elif name == "theta_set" and actuation is not None:
+        moved[_PITCH] = ratio * _followed(actuation, s)
+    else:
         raise SettingsError(
             "input: expected n_set or load, theta_set of a tug that sails or has a controllable pitch, or M_m where "
             f"an electric machine is on the gearbox, found {name}."
         )
-    ratio = vessel.propeller.pitch_ratio if tug.sailing is None else tug.sailing.pitch_ratio
-    follows = actuation.set_point_scale * np.exp(-s * actuation.delay_s) / (actuation.lag_s * s + 1.0)
-    return _PITCH, ratio, complex(follows)
+    return moved
+
+
+def _followed(actuation: PitchActuation, s: complex) -> complex:
+    """Return the change of pitch over that asked for."""
+    return complex(actuation.set_point_scale * np.exp(-s * actuation.delay_s) / (actuation.lag_s * s + 1.0))
 
 
 def _slopes(plant: Plant, engine_speed_rev_s: float, pitch_powers: tuple[float, ...]) -> FloatArray:

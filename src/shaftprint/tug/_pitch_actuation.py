@@ -67,11 +67,15 @@ def pitch_torque(actuation: PitchActuation, vessel: Vessel) -> tuple[float, ...]
 
 def pitch_truth(actuation: PitchActuation, vessel: Vessel) -> dict[str, float]:
     """Return what a test is to find of the pitch, by the names of the symbols."""
+    reached = {"c_th": actuation.set_point_scale}
+    if vessel.combinator is not None:
+        slope = vessel.combinator.combinator_slope(vessel.working_point.engine_speed_rpm)
+        reached = {"c_comb": slope * actuation.set_point_scale}
     return {
         "q": vessel.propeller.pitch_ratio * pitch_torque(actuation, vessel)[1],
         "tau_th": actuation.lag_s,
         "t_th": actuation.delay_s,
-        "c_th": actuation.set_point_scale,
+        **reached,
         "c_pitch": actuation.sensor_scale,
     }
 

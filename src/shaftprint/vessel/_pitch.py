@@ -1,11 +1,26 @@
-"""A controllable pitch: between which stops the blades turn, what they do to the torque, how fast they follow."""
+"""A controllable pitch: between which stops the blades turn, what they do to the torque, how fast they follow.
 
-from typing import Self
+A combinator is the curve by which one lever asks for speed and pitch together.
+"""
 
+from itertools import pairwise
+from typing import TYPE_CHECKING, Self
+
+import numpy as np
+from numpy.typing import ArrayLike
 from pydantic import model_validator
 
+from shaftprint.arrays import FloatArray
 from shaftprint.settings import NotNegativeNumber, PositiveNumber, Settings
 from shaftprint.vessel._usual import PITCH_SLOPE_STD
+
+if TYPE_CHECKING:
+    from shaftprint.vessel._vessel import Vessel
+
+# Pitch of the combinator over that of the working point: a file rounds both to three digits.
+_AGREES = 0.005
+# Speeds about the working point between which the combinator must be straight, as shares: amplitudes of a test.
+_STRAIGHT = 0.02
 
 
 class ControllablePitch(Settings):
@@ -31,6 +46,27 @@ class ControllablePitch(Settings):
     """Fastest change of the pitch over diameter [1/s]."""
     play: NotNegativeNumber = 0.0
     """Play between piston and blades, all of it, as pitch over diameter."""
+    combinator_speed_rpm: tuple[PositiveNumber, ...] = ()
+    """Speeds of the engine that a lever asks for together with a pitch [rpm], ascending, shape (points,); empty where
+    the pitch has a set point of its own."""
+    combinator_ratio: tuple[PositiveNumber, ...] = ()
+    """Pitch over diameter that it asks for at those speeds, straight between them, shape (points,)."""
+
+    @property
+    def has_combinator(self) -> bool:
+        """Whether one lever asks for speed and pitch."""
+        return bool(self.combinator_speed_rpm)
+
+    def combined_ratio(self, engine_speed_rpm: ArrayLike) -> FloatArray:
+        """Return the pitch over diameter that the lever asks for together with speeds of the engine, of any shape."""
+        speed = np.asarray(engine_speed_rpm, dtype=np.float64)
+        return np.asarray(np.interp(speed, self.combinator_speed_rpm, self.combinator_ratio))
+
+    def combinator_slope(self, engine_speed_rpm: float) -> float:
+        """Return ``d ln (P/D) / d ln n`` of what the lever asks for, at one speed of the engine."""
+        shares = np.array([1.0 - _STRAIGHT, 1.0, 1.0 + _STRAIGHT])
+        below, at, above = self.combined_ratio(shares * engine_speed_rpm)
+        return float((above - below) / (2.0 * _STRAIGHT * at))
 
     def usual_slope_std(self, slope: float) -> float:
         """Return the standard deviation that is usual of a slope, where none is stated."""
@@ -46,27 +82,72 @@ class ControllablePitch(Settings):
             raise ValueError("expected torque_slope beside torque_slope_std, found none.")
         return self
 
+    @model_validator(mode="after")
+    def _combinator_is_a_curve(self) -> Self:
+        speeds, ratios = self.combinator_speed_rpm, self.combinator_ratio
+        if len(speeds) != len(ratios) or len(speeds) == 1:
+            raise ValueError(
+                "expected combinator_speed_rpm and combinator_ratio of equal length, at least 2, found "
+                f"{len(speeds)} and {len(ratios)}."
+            )
+        if any(later <= earlier for earlier, later in pairwise(speeds)):
+            raise ValueError("expected ascending speeds in combinator_speed_rpm.")
+        if any(not self.lowest_ratio <= ratio <= self.highest_ratio for ratio in ratios):
+            raise ValueError(
+                f"expected combinator_ratio from lowest_ratio = {self.lowest_ratio:g} to highest_ratio = "
+                f"{self.highest_ratio:g}, found {min(ratios):g} to {max(ratios):g}."
+            )
+        return self
 
-def wrong_pitch(pitch: ControllablePitch | None, pitch_ratio: float, *, is_moved: bool, is_shown: bool) -> list[str]:
-    """Return what is wrong with a controllable pitch beside the rest of a vessel file, one sentence each.
 
-    Parameters
-    ----------
-    pitch
-        The table; None where the pitch is fixed.
-    pitch_ratio
-        Pitch over diameter of the propeller at the working point.
-    is_moved, is_shown
-        Whether there are a set point and a sensor of the pitch.
-    """
+def wrong_pitch(vessel: "Vessel") -> list[str]:
+    """Return what is wrong with the controllable pitch of a vessel file beside the rest of it, one sentence each."""
+    pitch, sensors, ratio = vessel.pitch, vessel.sensors, vessel.propeller.pitch_ratio
     if pitch is None:
-        return ["expected [pitch] beside sensors.pitch, the sensor of a pitch, found none."] if is_shown else []
+        none = "expected [pitch] beside sensors.pitch, the sensor of a pitch, found none."
+        return [none] if sensors.pitch is not None else []
     errors = []
-    if not pitch.lowest_ratio < pitch_ratio < pitch.highest_ratio:
+    if not pitch.lowest_ratio < ratio < pitch.highest_ratio:
         errors.append(
             f"expected propeller.pitch_ratio, the pitch of the working point, between pitch.lowest_ratio = "
-            f"{pitch.lowest_ratio:g} and pitch.highest_ratio = {pitch.highest_ratio:g}, found {pitch_ratio:g}."
+            f"{pitch.lowest_ratio:g} and pitch.highest_ratio = {pitch.highest_ratio:g}, found {ratio:g}."
         )
-    if is_shown and not is_moved:
+    if pitch.has_combinator:
+        return errors + _wrong_combinator(pitch, vessel)
+    if sensors.pitch is not None and sensors.pitch_set_point is None:
         errors.append("expected sensors.pitch_set_point beside sensors.pitch, which shows what follows it, found none.")
+    return errors
+
+
+def _wrong_combinator(pitch: ControllablePitch, vessel: "Vessel") -> list[str]:
+    """Return what is wrong with a combinator beside the rest of a vessel file, one sentence each."""
+    errors = []
+    speed, ratio = vessel.working_point.engine_speed_rpm, vessel.propeller.pitch_ratio
+    if vessel.sensors.pitch is None:
+        errors.append(
+            "expected sensors.pitch beside pitch.combinator_speed_rpm, found none; a pitch that moves with the lever "
+            "must be logged."
+        )
+    if vessel.sensors.pitch_set_point is not None:
+        errors.append(
+            "expected no sensors.pitch_set_point beside pitch.combinator_speed_rpm, found one; either the lever asks "
+            "for the pitch or a set point of its own does."
+        )
+    if vessel.motor is not None or vessel.is_underway:
+        errors.append(
+            "expected an engine at the quay beside pitch.combinator_speed_rpm, found "
+            f"{'a motor' if vessel.motor is not None else 'a ship_speed_m_s'}; there is no structure of it."
+        )
+    asked = float(pitch.combined_ratio(speed))
+    if abs(asked / ratio - 1.0) > _AGREES:
+        errors.append(
+            f"expected pitch.combinator_ratio to ask for propeller.pitch_ratio = {ratio:g} at the {speed:g} rpm of the "
+            f"working point, found {asked:.4g}."
+        )
+    inner = [one for one in pitch.combinator_speed_rpm if abs(one / speed - 1.0) < _STRAIGHT]
+    if inner:
+        errors.append(
+            f"expected pitch.combinator_speed_rpm without a point within {_STRAIGHT:.0%} of the working point, where "
+            f"the test needs a straight piece, found {inner[0]:g} rpm beside {speed:g} rpm."
+        )
     return errors

@@ -131,13 +131,7 @@ class Vessel(Shown, Settings):
         errors += wrong_links(self.links, self.inertia)
         if self.working_point.is_astern:
             errors += self._wrong_astern()
-        sensors = self.sensors
-        errors += wrong_pitch(
-            self.pitch,
-            self.propeller.pitch_ratio,
-            is_moved=sensors.pitch_set_point is not None,
-            is_shown=sensors.pitch is not None,
-        )
+        errors += wrong_pitch(self)
         errors += wrong_shaft_machine(
             self.shaft_machine,
             self.engine,
@@ -196,6 +190,18 @@ class Vessel(Shown, Settings):
     def shows_pitch(self) -> bool:
         """Whether a controllable pitch, its set point and what it reaches are logged."""
         return self.pitch is not None and self.sensors.pitch is not None
+
+    @property
+    def combinator(self) -> ControllablePitch | None:
+        """The pitch that a lever asks for together with the speed; None where no lever does."""
+        return self.pitch if self.pitch is not None and self.pitch.has_combinator else None
+
+    @property
+    def why_one_speed(self) -> str:
+        """Why the numbers of its line belong to one speed; empty where tests at several speeds share them."""
+        if self.is_underway:
+            return "underway slopes of the propeller and the time of the ship belong to one speed"
+        return "" if self.combinator is None else "with a combinator each speed has a propeller of another pitch"
 
     @property
     def machine(self) -> Engine | Motor:

@@ -61,7 +61,8 @@ def expected_operation(
     set_point_rpm = offset_rpm + slope_rpm_per_v * (setpoint(campaign, time_s) - campaign.offset_v)
     with np.errstate(over="ignore", invalid="ignore"):
         trace = simulate(line, vector, time_s, {"n_set": set_point_rpm / point.engine_speed_rpm - 1.0})
-    outputs = _with_pitch(trace.outputs, campaign, vessel, values, time_s)
+    asked = _pitch_asked(campaign, vessel, time_s, set_point_rpm)
+    outputs = _with_pitch(trace.outputs, values, time_s, asked)
     if not np.all(np.abs(outputs["n"]) < _FARTHEST):
         raise DesignError(
             f"campaign {campaign.name}: expected speeds between 0 and {1.0 + _FARTHEST:g} times the working point, "
@@ -95,20 +96,34 @@ def _is_known(moved: MovedBeside, vessel: "Vessel") -> bool:
     return moved.symbol == _PITCH and not vessel.is_underway and vessel.motor is None
 
 
-def _with_pitch(
-    outputs: Mapping[str, FloatArray],
-    campaign: "Campaign",
-    vessel: "Vessel",
-    values: Mapping[str, float],
-    time_s: FloatArray,
-) -> Mapping[str, FloatArray]:
-    """Return outputs with what the motion of a controllable pitch adds to them."""
+def _pitch_asked(
+    campaign: "Campaign", vessel: "Vessel", time_s: FloatArray, set_point_rpm: FloatArray
+) -> FloatArray | None:
+    """Return the change of pitch over the pitch that is asked for; None where nothing moves the pitch."""
+    combinator = vessel.combinator
+    if combinator is not None:
+        asked: FloatArray = combinator.combined_ratio(set_point_rpm) / vessel.propeller.pitch_ratio - 1.0
+        return asked
     moved = next((one for one in moved_beside(vessel, campaign) if _is_known(one, vessel)), None)
     if moved is None:
+        return None
+    return moved.share_per_v * (setpoint(campaign, time_s, input=moved.input) - campaign.middle_v(moved.input))
+
+
+def _with_pitch(
+    outputs: Mapping[str, FloatArray],
+    values: Mapping[str, float],
+    time_s: FloatArray,
+    asked: FloatArray | None,
+) -> Mapping[str, FloatArray]:
+    """Return outputs with what the motion of a controllable pitch adds to them."""
+    if asked is None:
         return outputs
     line = pitched_with_rack()
-    volts = setpoint(campaign, time_s, input=moved.input) - campaign.middle_v(moved.input)
-    trace = simulate(line, _vector(line, values), time_s, {_PITCH: moved.share_per_v * volts})
+    late = line.named_as(ShipRole.BLADE_LATENESS)
+    # an estimate of some milliseconds either way: no line moves before it is asked
+    causal = {name: max(value, 0.0) if name == late else value for name, value in values.items()}
+    trace = simulate(line, _vector(line, causal), time_s, {_PITCH: asked})
     return {name: alone + trace.outputs[name] for name, alone in outputs.items()}
 
 

@@ -1,6 +1,7 @@
 """What a test can find, before it is made: from the equations alone, or from its plan and the noise."""
 
 from shaftprint.identify.prediction._accuracy import Accuracy, predict_accuracy, predict_joint_accuracy
+from shaftprint.identify.prediction._combinator_noise import COMBINATOR_NOISE
 from shaftprint.identify.prediction._formulas import unit_of
 from shaftprint.identify.prediction._identifiability import Identifiability, identifiability
 from shaftprint.identify.prediction._inseparable_groups import Group
@@ -20,6 +21,7 @@ from shaftprint.identify.prediction._stan_tug_noise_at_speeds import STAN_TUG_NO
 from shaftprint.identify.prediction._stan_tug_noise_underway import STAN_TUG_NOISE_UNDERWAY
 
 __all__ = [
+    "COMBINATOR_NOISE",
     "PITCH_NOISE",
     "RESEARCH_VESSEL_NOISE",
     "STAN_TUG_NOISE",

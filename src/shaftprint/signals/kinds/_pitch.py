@@ -54,7 +54,10 @@ class PitchSetPoint(ChannelKind[PitchSetPointSensor]):
 
 
 class Pitch(ChannelKind[PitchSensor]):
-    """Pitch over diameter that the blades have [-], as the feedback of its actuator shows it; the speed leaves it."""
+    """Pitch over diameter that the blades have [-], as the feedback of its actuator shows it.
+
+    The set point of the speed leaves it, but for a lever that asks for both.
+    """
 
     sensor, name, use, role = "pitch", "theta", "pitch", ChannelRole.SIDE
 
@@ -85,7 +88,8 @@ class Pitch(ChannelKind[PitchSensor]):
             role=self.role,
             values=frozen_float(reading.values),
             reference=_mean_ahead(source.channel.name, reading.values, steady),
-            moved_by=PitchSetPoint.name,
+            # a lever that asks for speed and pitch moves both
+            moved_by=PitchSetPoint.name if source.vessel.combinator is None else "",
         )
 
 

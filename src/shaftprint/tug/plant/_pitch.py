@@ -1,4 +1,4 @@
-"""The pitch of a controllable-pitch propeller: from the voltage that asks for it to piston and blades.
+"""The pitch of a controllable-pitch propeller: from its set point, or a combinator's lever, to piston and blades.
 
 What is asked for acts a delay later. The piston follows in a lag of first order, ``tau dtheta/dt = theta_set - theta``
 beyond a deadband, and no faster than its pumps allow; the blades follow the piston within its play. Nothing of it
@@ -7,6 +7,7 @@ depends on the shaft, so that it is known ahead of the line::
     M_p = K n_s |n_s| K_Q(theta) / K_Q(theta_0)
 """
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -17,6 +18,8 @@ from shaftprint.errors import SettingsError
 from shaftprint.kernels import compiled
 from shaftprint.tug._pitch_actuation import PitchActuation, pitch_torque
 from shaftprint.tug._tug import Tug
+from shaftprint.tug.plant._demand import demanded_speed, helm_voltage
+from shaftprint.units import rpm_from_rev_s
 from shaftprint.vessel import Vessel
 
 INPUT = "pitch_set_point"
@@ -68,30 +71,29 @@ class PitchActuator:
     """
 
     def __init__(self, tug: Tug, vessel: Vessel, campaign: Campaign, *, start_s: float, step_s: float) -> None:
-        self._sensor = vessel.sensors.pitch_set_point
-        self._campaign = campaign
         self._start_s = start_s
         self._half_step_s = 0.5 * step_s
         self._count = 0
-        moves = INPUT in campaign.inputs
         truth = actuation_of(tug)
-        if moves and (self._sensor is None or truth is None):
+        asked = asked_pitch(tug, vessel, campaign, start_s)
+        if asked is not None and truth is None:
             raise SettingsError(
-                f"campaign {campaign.name}: expected a vessel with [sensors.{INPUT}] and a table [pitch], or a tug "
-                "that sails free, where the pitch is moved, found none; leave out the tests of the pitch."
+                f"campaign {campaign.name}: expected a vessel with a table [pitch], or a tug that sails free, where "
+                "the pitch is moved, found a tug of fixed pitch; leave out the tests of the pitch."
             )
-        self._moves, self._piston, self._blades, self._asked = moves, 0.0, 0.0, 0.0
+        self._piston = self._blades = self._before = 0.0
         self._torque = None if tug.pitch is None else pitch_torque(tug.pitch, vessel)
-        if not moves or truth is None:
+        self._moves = asked is not None
+        if asked is None or truth is None:
             return
-        self._rest = vessel.propeller.pitch_ratio if tug.sailing is None else tug.sailing.pitch_ratio
-        self._truth = truth
-        self._asked = float(self._deviation(np.array([start_s]))[0])
-        self._piston = self._blades = self._asked
+        self._asked, self._truth = asked, truth
+        self._before = float(self._deviation(np.array([start_s]))[0])
+        self._piston = self._blades = self._before
         if abs(self._piston) > _ROUNDING:
+            rest = vessel.propeller.pitch_ratio if tug.sailing is None else tug.sailing.pitch_ratio
             raise SettingsError(
-                f"campaign {campaign.name}: expected a pitch of {self._rest:g} at {start_s:g} s, that of the working "
-                f"point, found {self._rest + self._piston:.6g}; change further_offsets_v.{INPUT}."
+                f"campaign {campaign.name}: expected a pitch of {rest:g} at {start_s:g} s, that of the working "
+                f"point, found {rest + self._piston:.6g}; change further_offsets_v.{INPUT}."
             )
         ratio = self._half_step_s / truth.lag_s
         self._kept = float(np.exp(-ratio))
@@ -109,10 +111,10 @@ class PitchActuator:
         last, truth = float(asked[-1]), self._truth
         most, slack = truth.rate_per_s * self._half_step_s, 0.5 * truth.play
         of_servo = (self._kept, self._ramp, most, truth.deadband, slack)
-        _follow(asked, self._asked, self._piston, self._blades, *of_servo, blades[1:])
+        _follow(asked, self._before, self._piston, self._blades, *of_servo, blades[1:])
         piston[1:] = asked
         self._count += 2 * steps
-        self._piston, self._blades, self._asked = float(piston[-1]), float(blades[-1]), last
+        self._piston, self._blades, self._before = float(piston[-1]), float(blades[-1]), last
         return PitchMotion(piston=piston, blades=blades)
 
     def torque_share(self, blades: FloatArray, other: FloatArray) -> FloatArray:
@@ -134,11 +136,44 @@ class PitchActuator:
 
     def _deviation(self, time_s: FloatArray) -> FloatArray:
         """Return what is asked for at the actuator, after its delay."""
-        if self._sensor is None:
-            return np.zeros(time_s.size)
-        voltage = setpoint(self._campaign, time_s - self._truth.delay_s, input=INPUT)
-        pitch: FloatArray = self._sensor.pitch_ratio_at_zero_v + self._sensor.pitch_ratio_per_v * voltage - self._rest
-        return self._truth.set_point_scale * pitch
+        deviation: FloatArray = self._truth.set_point_scale * self._asked(time_s - self._truth.delay_s)
+        return deviation
+
+
+def asked_pitch(
+    tug: Tug, vessel: Vessel, campaign: Campaign, start_s: float
+) -> Callable[[FloatArray], FloatArray] | None:
+    """Return what the pitch is asked for over times [s], as deviation of ``P/D`` from that of the working point.
+
+    By its own set point where the campaign moves it, by the lever of the speed where there is a combinator; None where
+    nothing moves the pitch.
+
+    Raises
+    ------
+    SettingsError
+        If the campaign moves a pitch that the vessel has no set point of.
+    """
+    combinator = vessel.combinator
+    if combinator is not None:
+        rest = float(combinator.combined_ratio(_lever_rpm(tug, campaign, np.array([start_s])))[0])
+        return lambda time_s: combinator.combined_ratio(_lever_rpm(tug, campaign, time_s)) - rest
+    if INPUT not in campaign.inputs:
+        return None
+    sensor = vessel.sensors.pitch_set_point
+    if sensor is None:
+        raise SettingsError(
+            f"campaign {campaign.name}: expected a vessel with [sensors.{INPUT}] where the pitch is moved, found none; "
+            "leave out the tests of the pitch."
+        )
+    from_rest = sensor.pitch_ratio_at_zero_v - (
+        vessel.propeller.pitch_ratio if tug.sailing is None else tug.sailing.pitch_ratio
+    )
+    return lambda time_s: from_rest + sensor.pitch_ratio_per_v * setpoint(campaign, time_s, input=INPUT)
+
+
+def _lever_rpm(tug: Tug, campaign: Campaign, time_s: FloatArray) -> FloatArray:
+    """Return the speed of the engine that the lever asks for [rpm]."""
+    return rpm_from_rev_s(demanded_speed(tug, helm_voltage(tug, campaign, time_s)))
 
 
 def actuation_of(tug: Tug) -> PitchActuation | None:

@@ -22,6 +22,7 @@ VESSELS: Final = (
     "e-ferry-ellen",
     "foss-carolyn-dorothy",
     "nifs-research-vessel",
+    "nifs-research-vessel-combinator",
     "pt-may",
     "pt-may-underway",
     "stan-tug-1205",
@@ -30,7 +31,18 @@ VESSELS: Final = (
     "stan-tug-1205-starboard",
     "stan-tug-1205-underway",
 )
-CAMPAIGNS: Final = ("12min", "5min", "dither", "machine", "pitch", "short", "thesis", "transit", "two-speeds")
+CAMPAIGNS: Final = (
+    "12min",
+    "5min",
+    "combinator",
+    "dither",
+    "machine",
+    "pitch",
+    "short",
+    "thesis",
+    "transit",
+    "two-speeds",
+)
 STRUCTURES: Final = (
     "GAUGE-CLOSED",
     "GAUGE-CORE",
@@ -40,6 +52,7 @@ STRUCTURES: Final = (
     "GAUGE-ECU",
     "GAUGE-MOTOR",
     "GAUGE-PITCH",
+    "GAUGE-COMBINATOR",
     "GAUGE-HYBRID",
 )
 _LONGEST_WORD: Final = 100
