@@ -80,5 +80,5 @@ def test_with_its_noise_and_its_numbers_what_the_recording_told_is_predicted(ide
     told = json.loads(done.stdout)["result"]
     stds = {one["name"]: one["std"] for one in (*told["parameters"], *told["combinations"])}
     for one in (*fit.parameters, *fit.combinations):
-        # the slowest lines of the lever, which tell the scale of the set point, have the fewest bins of noise beside them
+        # the slowest lines of the lever tell the scale of the set point, and have the fewest bins of noise beside them
         assert one.std == pytest.approx(stds[one.name], rel=0.3 if one.name == "c_set" else 0.15), one.name

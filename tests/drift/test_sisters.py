@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from tests.drift.test_differ import PRIORS
-from tests.drift.test_watch import FIRST, I_ACTION, P_ACTION, QUARTER, made
+from tests.drift.test_watch import FIRST, I_ACTION, P_ACTION, QUARTER, doubted, made
 from tests.known_fits import TRUTH, fitted, taken
 
 from shaftprint.drift import (
@@ -94,6 +94,22 @@ def test_what_is_within_building_is_no_change(base):
     sizes = [one.size for one in injection.ships]
     assert sizes == pytest.approx(np.expm1(BUILT).tolist(), abs=2e-4)
     assert all(0.5 < one.shrunk / one.size < 1.0 for one in injection.ships)
+
+
+def test_a_test_that_its_verdict_doubts_leaves_its_class_as_it_is(base):
+    """The gauge of one ship was off in its second test; its first one stands for it, and all numbers are judged."""
+    ships = injected(base, BUILT)
+    sound = judge_sisters(ships)
+    wild = DatedTest(
+        name="off", at=FIRST + QUARTER, fingerprint=doubted(made(999, base, **{P_ACTION: 1.4, "K_Q": 0.8}))
+    )
+    ships[3] = replace(ships[3], tests=(*ships[3].tests, wild))
+    finding = judge_sisters(ships)
+    assert finding.odd == ()
+    assert finding.names == sound.names
+    assert list(finding.left_out) == ["off"]
+    sizes, without = ([one.size for one in spread(each, INJECTION).ships] for each in (finding, sound))
+    assert sizes == pytest.approx(without, abs=2e-4)
 
 
 def test_the_odd_ship_is_named_with_its_cause_and_size(base):

@@ -11,6 +11,7 @@ from tests.known_fits import TRUTH, fitted, taken
 from shaftprint.drift import CAUSES, Event, differ, history_of, limit_sentence, time_to_limit, watch, watch_sentences
 from shaftprint.errors import FingerprintError
 from shaftprint.identify import Settings
+from shaftprint.reasons import Reason
 
 FIRST = datetime(2024, 1, 1, tzinfo=UTC)
 QUARTER = timedelta(days=91.3125)
@@ -73,6 +74,41 @@ def test_a_ramp_is_found_with_its_slope_and_beginning(base):
     assert best.size == pytest.approx(np.expm1(0.03), rel=1e-6)
     assert "by 3.0" in watch_sentences(finding, history)[0]
     assert "a year since 2024-07-01" in watch_sentences(finding, history)[0]
+
+
+def doubted(test, kind="gauge steadiness"):
+    """Return a test whose verdict doubts all that depends on its torque gauge, and is trustworthy in the rest."""
+    reason = Reason(kind=kind, sentence="doubt")
+    return test.model_copy(update={"verdict": replace(test.verdict, reasons=(reason,))})
+
+
+def test_a_test_that_its_verdict_doubts_says_nothing_and_takes_nothing_from_the_others(base):
+    """The gauge of the second test was off: what the five others show of the gain is found as without it."""
+    tests = [made(place, base, **({P_ACTION: 0.95} if place >= 3 else {})) for place in range(6)]
+    # what it shows is of no ship
+    tests[1] = doubted(made(1, base, **{P_ACTION: 1.3, I_ACTION: 0.7}))
+    history, finding = looked_at(tests)
+    (drift,) = finding.drifts
+    assert (drift.best.cause.name, drift.best.shape, drift.best.since) == (
+        "proportional gain of the governor",
+        "step",
+        3,
+    )
+    without = looked_at([*tests[:1], *tests[2:]])[1].drifts[0].best
+    assert drift.best.size == pytest.approx(without.size, abs=2e-4)
+    assert drift.best.std == pytest.approx(without.std, rel=0.02)
+    assert P_ACTION in finding.names
+    assert finding.left_out == {
+        "t1": "all of its numbers: it depends on a torque gauge and a load that stay the same during the test"
+    }
+
+
+def test_numbers_that_half_of_the_tests_doubt_are_not_judged(base):
+    tests = [made(place, base) for place in range(6)]
+    _, finding = looked_at([doubted(test) if place % 2 else test for place, test in enumerate(tests)])
+    assert P_ACTION not in finding.names
+    assert P_ACTION in finding.left_out
+    assert not any(name.startswith("t") and name[1:].isdigit() for name in finding.left_out)
 
 
 def test_wear_is_seen_before_anything_else_as_slow(base):

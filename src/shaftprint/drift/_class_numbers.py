@@ -6,12 +6,13 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from shaftprint.arrays import FloatArray
+from shaftprint.arrays import BoolArray, FloatArray
 from shaftprint.catalogue import ShipRole
 from shaftprint.drift._causes import GAUGE_SCALE, Cause
 from shaftprint.drift._dated import DatedTest
+from shaftprint.drift._doubts import judged_in
 from shaftprint.drift._history import History
-from shaftprint.drift._pair import directions_of, doubts_of, judged_together, left_out_of, not_judged
+from shaftprint.drift._pair import directions_of, not_judged
 from shaftprint.drift._series import own_covariances, stated_errors
 from shaftprint.drift._shared_errors import is_common
 from shaftprint.drift._single_test import SingleTest, single_test
@@ -120,19 +121,20 @@ def class_numbers(
         they are known, and so are the usual ones of other causes.
     """
     tests = [test.fingerprint for ship in ships for test in ship.tests]
-    doubts = doubts_of(*tests)
-    names = judged_together(doubts)
+    judged = judged_in([test for ship in ships for test in ship.tests])
+    names = judged.names
     roles = {name: tests[0].quantity(name).role for name in names}
-    singles = straightened(tests, [single_test(one, names) for one in tests], names)
+    singles = straightened(tests, judged.told([single_test(one, names) for one in tests]), names)
     load = np.diag([(load_repeatability * (role == ShipRole.TORQUE)) ** 2 for role in roles.values()])
-    own = list(own_covariances(tests, singles, len(tests)))
+    covariances = own_covariances(tests, singles, judged.whole)
+    own = [one + np.diag(unknown) for one, unknown in zip(covariances, judged.unknown, strict=True)]
     weights = _weights(ships, own)
-    alone, common = _left_open(ships, singles, weights, [one + load for one in own])
+    alone, common = _left_open(ships, singles, weights, [one + load for one in own], judged.whole)
     causes, directions = directions_of(roles, singles[0].loadings.get(GAUGE_SCALE))
     stated = np.array([(tolerances or {}).get(cause, cause.tolerance) for cause in causes])
     return ClassNumbers(
         names=names,
-        left_out=left_out_of(doubts),
+        left_out=judged.left_out,
         values=weights @ np.array([one.values for one in singles]),
         own=alone,
         common=common,
@@ -141,7 +143,7 @@ def class_numbers(
         is_known=tolerances is not None,
         causes=causes,
         directions=directions,
-        not_judged=not_judged(causes, doubts, tests),
+        not_judged=not_judged(causes, judged.doubts, tests),
     )
 
 
@@ -155,7 +157,11 @@ def _weights(ships: Sequence[Sister], own: Sequence[FloatArray]) -> FloatArray:
 
 
 def _left_open(
-    ships: Sequence[Sister], singles: Sequence[SingleTest], weights: FloatArray, own: Sequence[FloatArray]
+    ships: Sequence[Sister],
+    singles: Sequence[SingleTest],
+    weights: FloatArray,
+    own: Sequence[FloatArray],
+    whole: BoolArray,
 ) -> tuple[FloatArray, FloatArray]:
     """Return what tests leave open of the mean of each ship alone, and what errors do that several ships share.
 
@@ -170,7 +176,7 @@ def _left_open(
         same = source not in BEHIND or of_ship[one] == of_ship[other]
         return same and is_common(source, tests[one], tests[other])
 
-    for moved in stated_errors(tests, singles, shared):
+    for moved in stated_errors(tests, singles, shared, whole):
         of_ships = weights @ moved
         concerned = np.flatnonzero(of_ships.any(axis=1))
         if concerned.size > 1:

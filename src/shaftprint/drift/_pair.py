@@ -14,23 +14,14 @@ import numpy as np
 from shaftprint.arrays import FloatArray
 from shaftprint.catalogue import ShipRole
 from shaftprint.drift._causes import CAUSES, GAUGE, GAUGE_SCALE, Cause, by_role, may_happen
+from shaftprint.drift._doubts import doubts_of, judged_together, left_out_of
 from shaftprint.drift._shared_errors import SharedErrors, shared_errors
-from shaftprint.drift._single_test import SingleTest, is_share, single_test
+from shaftprint.drift._single_test import SingleTest, single_test
 from shaftprint.drift._straight import straightened
-from shaftprint.identify.fit import Estimate
-from shaftprint.identify.judgement import AFFECTED, depends_on
 
 if TYPE_CHECKING:
-    from shaftprint.fingerprint import Fingerprint, Quantity
+    from shaftprint.fingerprint import Fingerprint
     from shaftprint.models import Role
-
-NOT_POSITIVE = "it is not larger than zero"
-HELD = "it was held"
-NOT_IN_ALL = "it is not in all fingerprints"
-OTHER_DIRECTION = "the shaft did not turn the same way, and the propeller takes another torque astern"
-OF_DIRECTION = (ShipRole.TORQUE, ShipRole.INERTIA_DOWNSTREAM)
-"""Roles of what propeller and water make, which are others astern."""
-DIRECTION = "working_point.direction"
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -117,48 +108,6 @@ def not_judged(
         and may_happen(cause, every)
         and any(role in alike for alike in cause.roles for role in roles)
     )
-
-
-def judged_together(doubts: Mapping[str, str]) -> tuple[str, ...]:
-    """Return the numbers that are judged together: those without a doubt."""
-    return tuple(name for name, doubt in doubts.items() if not doubt)
-
-
-def left_out_of(doubts: Mapping[str, str]) -> dict[str, str]:
-    """Return why the other numbers are not judged, by name."""
-    return {name: doubt for name, doubt in doubts.items() if doubt}
-
-
-def doubts_of(*fingerprints: "Fingerprint") -> dict[str, str]:
-    """Return why each number of several fingerprints is not judged; empty for those that are.
-
-    One that stopped at its bound is judged: it was pushed there along its column of the covariance, which in the metric
-    of that covariance is towards the truth, since the truth is inside the bounds.
-    """
-    joints = [fingerprint.joint for fingerprint in fingerprints if fingerprint.joint is not None]
-    every = dict.fromkeys(name for joint in joints for name in joint.names)
-    doubts = {name: next(filter(None, (_doubt(name, one) for one in fingerprints)), "") for name in every}
-    if len({one.vessel_fields.get(DIRECTION, "ahead") for one in fingerprints}) > 1:
-        role_of = {number.name: number.role for one in fingerprints for number in (*one.parameters, *one.physical)}
-        doubts |= {name: OTHER_DIRECTION for name in every if role_of.get(name) in OF_DIRECTION}
-    return doubts
-
-
-def _doubt(name: str, fingerprint: "Fingerprint") -> str:
-    """Return why a number of a fingerprint is not judged; empty where it is."""
-    if fingerprint.joint is None or name not in fingerprint.joint.names:
-        return NOT_IN_ALL
-    if fingerprint.joint.covariance_of((name,))[0, 0] <= 0.0:
-        return HELD
-    number = fingerprint.quantity(name)
-    kinds = (reason.kind for reason in fingerprint.verdict.reasons)
-    if doubt := next((AFFECTED[kind][1] for kind in kinds if depends_on(_estimate(number), kind)), ""):
-        return doubt
-    return NOT_POSITIVE if is_share(number.role) and number.value <= 0.0 else ""
-
-
-def _estimate(number: "Quantity") -> Estimate:
-    return Estimate(name=number.name, unit=number.unit, value=number.value, std=number.std, role=number.role)
 
 
 def alike(first: "Fingerprint", other: "Fingerprint") -> bool:

@@ -1,24 +1,18 @@
 """All tests of a history as one vector of numbers with its covariance: what ``watch`` looks for changes in."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shaftprint.arrays import FloatArray
+from shaftprint.arrays import BoolArray, FloatArray
 from shaftprint.catalogue import ShipRole
 from shaftprint.drift._causes import GAUGE_SCALE, Cause
 from shaftprint.drift._dated import EVENTS
+from shaftprint.drift._doubts import judged_in
 from shaftprint.drift._history import SECONDS_PER_YEAR, History
-from shaftprint.drift._pair import (
-    alike,
-    directions_of,
-    doubts_of,
-    judged_together,
-    left_out_of,
-    not_judged,
-)
+from shaftprint.drift._pair import alike, directions_of, not_judged
 from shaftprint.drift._shared_errors import is_common
 from shaftprint.drift._single_test import SingleTest, single_test
 from shaftprint.drift._straight import straightened
@@ -68,11 +62,11 @@ def series_of(history: History, *, made: int, load_repeatability: float, moved: 
         when not given. What events have done is seen here.
     """
     fingerprints = [test.fingerprint for test in history.tests]
-    doubts = doubts_of(*fingerprints)
-    names = judged_together(doubts)
+    judged = judged_in(history.tests[:made])
+    names = judged.names
     roles = {name: fingerprints[0].quantity(name).role for name in names}
     made_tests = fingerprints[:made]
-    raw = [single_test(one, names) for one in made_tests]
+    raw = judged.told([single_test(one, names) for one in made_tests])
     baseline = _baseline(history, roles)
     moved = _moved(np.array([one.values for one in raw]), baseline[: made * len(names)], moved)
     singles = list(straightened(made_tests, raw, names, moved))
@@ -84,15 +78,22 @@ def series_of(history: History, *, made: int, load_repeatability: float, moved: 
     causes, directions = directions_of(roles, singles[0].loadings.get(GAUGE_SCALE))
     return Series(
         names=names,
-        left_out=left_out_of(doubts),
+        left_out=judged.left_out,
         time_a=time_a,
         values=np.array([one.values for one in singles]),
-        covariance=_covariance(history, singles, load, made),
+        covariance=_covariance(history, singles, load, judged.whole) + np.diag(_padded(judged.unknown, len(singles))),
         baseline=baseline,
         causes=causes,
         directions=directions,
-        not_judged=not_judged(causes, doubts, fingerprints),
+        not_judged=not_judged(causes, judged.doubts, fingerprints),
     )
+
+
+def _padded(unknown: FloatArray, tests: int) -> FloatArray:
+    """Return variances of the tests that were made, with none for those to come, shape (tests * numbers,)."""
+    padded = np.zeros((tests, unknown.shape[1]))
+    padded[: len(unknown)] = unknown
+    return padded.reshape(-1)
 
 
 def _moved(values: FloatArray, baseline: FloatArray, moved: FloatArray | None) -> FloatArray:
@@ -104,37 +105,60 @@ def _moved(values: FloatArray, baseline: FloatArray, moved: FloatArray | None) -
     return by_all
 
 
-def _covariance(history: History, singles: list[SingleTest], load: FloatArray, made: int) -> FloatArray:
+def _covariance(history: History, singles: list[SingleTest], load: FloatArray, whole: BoolArray) -> FloatArray:
     size, count = len(load), len(singles)
     covariance = np.zeros((count * size, count * size))
     tests = [test.fingerprint for test in history.tests]
-    for at, own in enumerate(own_covariances(tests, singles, made)):
+    for at, own in enumerate(own_covariances(tests, singles, whole)):
         place = slice(at * size, (at + 1) * size)
         covariance[place, place] = own + load
-    for stated in stated_errors(tests, singles, lambda source, one, other: is_common(source, tests[one], tests[other])):
+
+    def shared(source: str, one: int, other: int) -> bool:
+        return is_common(source, tests[one], tests[other])
+
+    for stated in stated_errors(tests, singles, shared, whole):
         along = stated.reshape(-1)
         covariance += np.outer(along, along)
     return covariance
 
 
-def own_covariances(tests: "Sequence[Fingerprint]", singles: Sequence[SingleTest], made: int) -> Iterator[FloatArray]:
+def own_covariances(
+    tests: "Sequence[Fingerprint]", singles: Sequence[SingleTest], whole: BoolArray
+) -> Iterator[FloatArray]:
     """Yield what each test left open, of the mean shape of all tests with the same lines and structure.
 
     In its tightest directions a covariance holds at its own estimates alone: each test's turns a little as these move
     along the valley of delay and gains. Taken as they are, many of them would cut each other's ellipsoids to a point.
+
+    Parameters
+    ----------
+    tests, singles
+        The tests; those behind the last of ``whole`` are still to come and like the last one.
+    whole
+        Whether a test says something of every number, shape (made,): else its shape is that of the others.
     """
     variances = np.array([np.diag(one.own) for one in singles])
     for at in range(len(tests)):
-        one = min(at, made - 1)
-        kin = [other for other in range(made) if alike(tests[one], tests[other])]
-        # how noisy a test is beside its kin, as the geometric mean over its numbers
-        noisy = np.exp(np.log(variances[kin] / variances[kin].mean(axis=0)).mean(axis=1))
-        shape = np.mean([singles[other].own / scale for other, scale in zip(kin, noisy, strict=True)], axis=0)
-        yield noisy[kin.index(one)] * shape
+        one = min(at, len(whole) - 1)
+        kin = _kin(one, range(len(whole)), tests, whole)
+        # how noisy a test is beside its kin, as the geometric mean over its numbers; where none is judged none is noisy
+        logarithms = np.log(variances / variances[kin].mean(axis=0))
+        noisy = np.exp(logarithms.sum(axis=1) / max(logarithms.shape[1], 1))
+        shape = np.mean([singles[other].own / noisy[other] for other in kin], axis=0)
+        yield noisy[one] * shape
+
+
+def _kin(one: int, of: Iterable[int], tests: "Sequence[Fingerprint]", whole: BoolArray) -> list[int]:
+    """Return those tests of some with the same lines and structure that say something of every number."""
+    alike_to = [other for other in of if alike(tests[one], tests[other])]
+    return [other for other in alike_to if whole[min(other, len(whole) - 1)]] or alike_to
 
 
 def stated_errors(
-    tests: "Sequence[Fingerprint]", singles: Sequence[SingleTest], shared: Callable[[str, int, int], bool]
+    tests: "Sequence[Fingerprint]",
+    singles: Sequence[SingleTest],
+    shared: Callable[[str, int, int], bool],
+    whole: BoolArray,
 ) -> Iterator[FloatArray]:
     """Yield what each error that was stated beforehand does to the tests that share it, shape (tests, numbers)."""
     for source in dict.fromkeys(name for one in singles for name in one.loadings):
@@ -146,7 +170,7 @@ def stated_errors(
             moved = np.zeros((len(singles), len(singles[0].values)))
             for at in sharing:
                 # of tests alike it is the same: what it differs by is noise of the estimates, see ``pair_of``
-                kin = [other for other in sharing if alike(tests[at], tests[other])]
+                kin = _kin(at, sharing, tests, whole)
                 moved[at] = np.mean([singles[other].loadings[source] for other in kin], axis=0)
             yield moved
 
