@@ -87,7 +87,7 @@ def test_a_test_that_its_verdict_doubts_says_nothing_and_takes_nothing_from_the_
     tests = [made(place, base, **({P_ACTION: 0.95} if place >= 3 else {})) for place in range(6)]
     # what it shows is of no ship
     tests[1] = doubted(made(1, base, **{P_ACTION: 1.3, I_ACTION: 0.7}))
-    history, finding = looked_at(tests)
+    _, finding = looked_at(tests)
     (drift,) = finding.drifts
     assert (drift.best.cause.name, drift.best.shape, drift.best.since) == (
         "proportional gain of the governor",
