@@ -50,6 +50,8 @@ class Tolerances:
     """Torque of the propeller at the same speed, as pitch within class I of ISO 484 gives it."""
     inertia: float = 0.005
     """Behind the torque gauge."""
+    inertia_upstream: float = 0.005
+    """Ahead of it: engine, flywheel and gearbox, of which the vessel file states the drawing."""
     gauge_scale: float = 0.01
     """What the torque gauge shows; the vessel file of the Stan Tug states 2 %."""
 
@@ -136,7 +138,9 @@ def as_built(tug: Tug, vessel: Vessel, tolerances: Tolerances, rng: np.random.Ge
         damping_ratio=tug.damping_ratio * _factor(tolerances.damping_ratio, rng),
     )
     tug = with_load(tug, _factor(tolerances.propeller, rng), vessel)
-    return with_inertia(tug, _factor(tolerances.inertia, rng), vessel)
+    tug = with_inertia(tug, _factor(tolerances.inertia, rng), vessel)
+    upstream = vessel.inertia_upstream_kg_m2 if tug.inertia_upstream_kg_m2 is None else tug.inertia_upstream_kg_m2
+    return replace(tug, inertia_upstream_kg_m2=upstream * _factor(tolerances.inertia_upstream, rng))
 
 
 def _factor(tolerance: float, rng: np.random.Generator) -> float:
