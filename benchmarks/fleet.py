@@ -322,6 +322,11 @@ def measured(options: argparse.Namespace, folder: Path, scratch: Path) -> list[R
     sailed = recordings(folder / f"recordings-{options.campaign}", options.campaign, options.recordings)
     asked = all_arguments(sailed, options.campaign, options.jobs)
     rows = Rows()
+    # first, while this process is small: those that it starts are born with its size
+    if options.pairs:
+        rows += _beside(asked[: options.pairs], scratch)
+    if options.peers:
+        rows += peers(asked[: options.peers])
     url = options.store or str(scratch / "killed.db")
     with create_store(url) as store:
         requested = submit(store, asked, now=datetime.now(UTC))
@@ -331,12 +336,8 @@ def measured(options: argparse.Namespace, folder: Path, scratch: Path) -> list[R
     if options.kill_every:
         write_list(scratch / "list.csv", options.campaign, asked)
         rows += _after(disturbed(url, scratch / "list.csv", rng, every_s=options.kill_every), url, expected, asked)
-    if options.pairs:
-        rows += _beside(asked[: options.pairs], scratch)
     if options.dask:
         rows += _on_dask(asked[: options.dask], scratch, expected, rng, every_s=options.kill_every or 10.0)
-    if options.peers:
-        rows += peers(asked[: options.peers])
     return rows
 
 
@@ -400,7 +401,7 @@ def main() -> None:
     parser.add_argument("--kill-every", type=float, default=10.0, help="seconds of two cores between kills; 0: none")
     parser.add_argument("--pairs", type=int, default=40, help="jobs done by one process and by two; 0: leave out")
     parser.add_argument("--dask", type=int, default=40, help="jobs done on Dask; 0: leave out")
-    parser.add_argument("--peers", type=int, default=8, help="recordings for the peers; 0: leave out")
+    parser.add_argument("--peers", type=int, default=40, help="recordings for the peers; 0: leave out")
     parser.add_argument("--store", metavar="URL", help="an empty database for the disturbed run; a file by default")
     parser.add_argument("--folder", type=Path, help="where recordings and the serial run are kept")
     parser.add_argument("--seed", type=int, default=1, help="what is killed")
