@@ -4,8 +4,12 @@ Behind the gauge are inertia and load: ``M_s / n = (k + j w tau) exp(-j w t)`` w
 each delay ``t`` the load ``k`` and the inertia time ``tau`` that fit best are found by least squares. What the
 telemetry or a pick-up really is late by, a few milliseconds, the fit of a structure finds; here the coarse errors are
 named that no structure reaches: samples that were lost in one channel, a latency in the wrong unit.
+
+Where a lever moves a pitch with the speed, what is shown of the pitch is one more load: ``M_s / n = (k + j w tau + q
+theta / n) exp(-j w t)``.
 """
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -25,6 +29,7 @@ _LOADS, _LONGEST_S = (0.5, 4.0), 3.0
 _FEWEST_LINES = 4
 # Of a ratio of two numbers that are hardly more than their noise neither size nor phase is known, nor how well.
 _LARGEST_VARIANCE = 0.1
+_PITCH = "theta"
 
 
 def shift_reasons(response: "FrequencyResponse") -> tuple[Reason, ...]:
@@ -56,7 +61,11 @@ def shift_reasons(response: "FrequencyResponse") -> tuple[Reason, ...]:
         response.omega_rad_s[used][known],
         response.load[used][known],
     )
-    fall = _chi_squares(omega, ratio, np.abs(ratio) * np.sqrt(share / 2.0), load)
+    further: tuple[ComplexArray, ...] = ()
+    if _PITCH in response.outputs:
+        pitch = response.response[response.outputs.index(_PITCH), 0][used] / speed
+        further = (pitch[known],)
+    fall = _chi_squares(omega, ratio, np.abs(ratio) * np.sqrt(share / 2.0), load, further)
     best = int(np.argmin(fall))
     delay_s = float(_DELAYS_S[best])
     if abs(delay_s) < _LEAST_S or not fall[_DELAYS_S.size // 2] - fall[best] > _LEAST_FALL:
@@ -74,14 +83,24 @@ def shift_reasons(response: "FrequencyResponse") -> tuple[Reason, ...]:
     )
 
 
-def _chi_squares(omega_rad_s: FloatArray, ratio: ComplexArray, std: FloatArray, load: RealOrComplexArray) -> FloatArray:
-    """Return the lowest chi-square for each delay, shape (delays,); infinite where the best fit is impossible."""
+def _chi_squares(
+    omega_rad_s: FloatArray,
+    ratio: ComplexArray,
+    std: FloatArray,
+    load: RealOrComplexArray,
+    further: Sequence[ComplexArray],
+) -> FloatArray:
+    """Return the lowest chi-square for each delay, shape (delays,); infinite where the best fit is impossible.
+
+    ``further`` are loads over the speed that were measured, each with a real factor of its own.
+    """
     chi_square = np.full(_DELAYS_S.size, np.inf)
     for index, delay_s in enumerate(_DELAYS_S):
         seen = ratio * np.exp(1j * omega_rad_s * delay_s) / std
         # slope of the load and inertia, both real
-        rows = np.stack([load / std + 0j, 1j * omega_rad_s / std])
-        k, tau = np.linalg.solve((rows @ rows.conj().T).real, (rows.conj() @ seen).real).tolist()
+        rows = np.stack([load / std + 0j, 1j * omega_rad_s / std, *(one / std for one in further)])
+        factors = np.linalg.solve((rows @ rows.conj().T).real, (rows.conj() @ seen).real)
+        k, tau = factors[:2].tolist()
         if _LOADS[0] < k < _LOADS[1] and 0.0 <= tau < _LONGEST_S:
-            chi_square[index] = np.sum(np.abs(seen - [k, tau] @ rows) ** 2)
+            chi_square[index] = np.sum(np.abs(seen - factors @ rows) ** 2)
     return chi_square

@@ -1,0 +1,27 @@
+"""A torque that comes later than load and inertia let expect, also where a lever moves a pitch with the speed."""
+
+import pytest
+from tests.known_fits import exact_response
+
+from shaftprint.catalogue import structure
+from shaftprint.spectra._shift_check import shift_reasons
+
+PITCH = {"q": 1.9, "c_comb": 0.75, "tau_th": 0.6, "t_th": 0.15}
+LINES = [("GAUGE-CLOSED", {}), ("GAUGE-COMBINATOR", PITCH)]
+
+
+@pytest.mark.parametrize(("name", "given"), LINES)
+def test_a_late_gauge_is_named_with_its_size(name, given):
+    (reason,) = shift_reasons(exact_response(structure(name), given | {"t_gauge": 0.05}, 0.001))
+    assert reason.kind == "gauge latency"
+    assert "about +50 ms later" in reason.sentence
+
+
+def test_a_late_pick_up_is_a_gauge_that_comes_too_early():
+    (reason,) = shift_reasons(exact_response(structure("GAUGE-CLOSED"), {"t_pickup": 0.05}, 0.001))
+    assert "about -50 ms later" in reason.sentence
+
+
+@pytest.mark.parametrize(("name", "given"), LINES)
+def test_a_line_as_it_is_has_no_shift(name, given):
+    assert shift_reasons(exact_response(structure(name), given, 0.001)) == ()
