@@ -33,6 +33,8 @@ from shaftprint.vessel import load_vessel
 VESSEL, CAMPAIGN = load_vessel("e-ferry-ellen"), load_campaign("short")
 MOTOR, DIESEL = "GAUGE-MOTOR", "GAUGE-CLOSED"
 SEED = 18
+STRONG_BIC = 6.0
+"""Difference of BIC that is strong evidence (R. E. Kass and A. E. Raftery, Bayes factors, 1995, section 3.2)."""
 PAGE = Path(__file__).parents[1] / "docs" / "electric.md"
 
 
@@ -93,6 +95,7 @@ def outcome(seed: int) -> dict[str, object]:
         "numbers": numbers_of(fingerprint, true),
         "p": {fit.structure.name: fit.p_value for fit in survey.fits},
         "preferred": survey.comparisons[0].best.name,
+        "bic": {one.name: one.criteria.bic for one in survey.comparisons[0].candidates},
         "motor_on_a_diesel": motor_on_a_diesel(seed),
     }
 
@@ -101,12 +104,15 @@ def table(outcomes: Sequence[Mapping[str, Any]]) -> str:
     """Return a row for each number, and how often each structure was rejected, in Markdown."""
     fitted = [one for one in outcomes if "refused" not in one]
     preferred = sum(one["preferred"] == MOTOR for one in fitted)
+    gaps = sorted(one["bic"][DIESEL] - one["bic"][MOTOR] for one in fitted)
+    strong = sum(gap >= STRONG_BIC for gap in gaps)
     other_way = sum(one["motor_on_a_diesel"] < REJECTED_P for one in fitted)
     return "\n".join(
         [
             f"{counted(outcomes, fitted, length='14 minutes')}; {spent(fitted)}. {MOTOR} was rejected in "
             f"{rejected_in(fitted, MOTOR)}, {DIESEL} in {rejected_in(fitted, DIESEL)} of them; {MOTOR} had the lower "
-            f"BIC in {preferred}. On as many recordings of drawn diesels {MOTOR} was rejected in {other_way}.",
+            f"BIC in {preferred}, by {gaps[len(gaps) // 2]:.1f} in the median and by {STRONG_BIC:g} or more in {strong}. "
+            f"On as many recordings of drawn diesels {MOTOR} was rejected in {other_way}.",
             "",
             *rows_of(fitted),
         ]
