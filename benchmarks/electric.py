@@ -111,7 +111,7 @@ def table(outcomes: Sequence[Mapping[str, Any]]) -> str:
         [
             f"{counted(outcomes, fitted, length='14 minutes')}; {spent(fitted)}. {MOTOR} was rejected in "
             f"{rejected_in(fitted, MOTOR)}, {DIESEL} in {rejected_in(fitted, DIESEL)} of them; {MOTOR} had the lower "
-            f"BIC in {preferred}, by {gaps[len(gaps) // 2]:.1f} in the median and by {STRONG_BIC:g} or more in {strong}. "
+            f"BIC in {preferred}, by {gaps[len(gaps) // 2]:.1f} in the median, by {STRONG_BIC:g} or more in {strong}. "
             f"On as many recordings of drawn diesels {MOTOR} was rejected in {other_way}.",
             "",
             *rows_of(fitted),

@@ -55,6 +55,7 @@ def expect_settings(folder, printed, words):
 PREDICTED = {
     "stan-tug-1205-underway": ("FREE-LOG", {"(e - a) / tau_u", "b (2 - a) / tau_u"}, 5),
     "nifs-research-vessel": ("GAUGE-PITCH", {"t_d + t_sp", "q c_th"}, 1),
+    "nifs-research-vessel-combinator": ("GAUGE-COMBINATOR", {"t_d + t_sp", "q c_comb"}, 1),
 }
 
 

@@ -24,6 +24,7 @@ RUN_ELSEWHERE = {
     "e-ferry-ellen",
     "foss-carolyn-dorothy",
     "nifs-research-vessel",
+    "nifs-research-vessel-combinator",
     "pt-may",
     "pt-may-underway",
     "stan-tug-1205-astern",
