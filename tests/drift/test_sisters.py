@@ -152,6 +152,31 @@ def test_more_tests_of_a_ship_know_it_better(base):
     assert after / before == pytest.approx(0.5, abs=0.02)
 
 
+def wrong_by(share, prior):
+    """Return the prior of an inertia whose drawing is known that many times worse."""
+    sources = {name: part * (share if name == "TVC" else 1.0) for name, part in prior.sources.items()}
+    return replace(prior, std=float(np.linalg.norm(list(sources.values()))), sources=sources)
+
+
+def test_pieces_ahead_of_the_gauge_are_not_taken_for_a_governor(base):
+    """An inertia that is 1 % heavier than its sisters' is two deviations; what a test shows of it are lower gains."""
+    loading, prior = base.joint.loadings["TVC"], base.priors["tau_up"]
+    heavier = 0.01 / (prior.sources["TVC"] / prior.mean)
+    # estimates of the heavier line, less what the drawing pulls
+    shown = {
+        name: 1.0 - heavier * change / base.quantity(name).value
+        for name, change in zip(base.joint.names, loading, strict=True)
+        if name in (P_ACTION, I_ACTION)
+    }
+    assert all(abs(factor - 1.0) > 0.003 for factor in shown.values())
+    tolerances = dict.fromkeys(CAUSES, 0.0001)
+    ships = [ship(base, f"ship {number}", number, **(shown if number == 0 else {})) for number in range(8)]
+    assert judge_sisters(ships, tolerances=tolerances).odd == ()
+    twice = {name: 1.0 + 3.0 * (factor - 1.0) for name, factor in shown.items()}
+    ships = [ship(base, f"ship {number}", number, **(twice if number == 0 else {})) for number in range(8)]
+    assert judge_sisters(ships, tolerances=tolerances).odd
+
+
 def test_an_error_that_all_ships_share_moves_none_against_the_others(base):
     """The drawing of a class may be as wrong as it likes: all of its ships are off by the same."""
     drawn = [name for name in base.joint.loadings if name not in BEHIND]
@@ -160,7 +185,8 @@ def test_an_error_that_all_ships_share_moves_none_against_the_others(base):
     def stated(share):
         loadings = {name: [share * one for one in base.joint.loadings[name]] for name in drawn}
         joint = base.joint.model_copy(update={"loadings": base.joint.loadings | loadings})
-        finding = judge_sisters(injected(base.model_copy(update={"joint": joint}), BUILT))
+        priors = base.priors | {"tau_up": wrong_by(share, base.priors["tau_up"])}
+        finding = judge_sisters(injected(base.model_copy(update={"joint": joint, "priors": priors}), BUILT))
         return [(one.cause.name, each.size, each.std) for one in finding.causes for each in one.ships]
 
     for (name, *sizes), (_, *expected) in zip(stated(1e3), stated(1.0), strict=True):

@@ -17,7 +17,7 @@ from shaftprint.drift._series import own_covariances, stated_errors
 from shaftprint.drift._shared_errors import is_common
 from shaftprint.drift._single_test import SingleTest, single_test
 from shaftprint.drift._straight import straightened
-from shaftprint.fingerprint import BEHIND
+from shaftprint.fingerprint import BEHIND, TVC
 
 if TYPE_CHECKING:
     from shaftprint.models import Role
@@ -30,6 +30,8 @@ OTHER_TOLERANCES: Final[dict["Role", float]] = {
     ShipRole.INERTIA_UPSTREAM: 0.0,
 }
 """Standard deviations between sister ships of numbers that no cause moves alone."""
+PIECES_STD = 0.005
+"""Standard deviation between sisters of the inertia ahead of the gauge: engine, flywheel and gearbox by one drawing."""
 _USUAL_TOLERANCE = 0.01
 
 
@@ -138,7 +140,7 @@ def class_numbers(
         values=weights @ np.array([one.values for one in singles]),
         own=alone,
         common=common,
-        building=_building(roles, causes, directions * stated),
+        building=np.column_stack([_building(roles, causes, directions * stated), _pieces(roles, singles)]),
         tolerances=stated,
         is_known=tolerances is not None,
         causes=causes,
@@ -184,6 +186,21 @@ def _left_open(
         else:
             alone[concerned] += of_ships[concerned, :, None] * of_ships[concerned, None, :]
     return alone, np.array(common).reshape(-1, *alone.shape[:2]).transpose(1, 2, 0)
+
+
+def _pieces(roles: "dict[str, Role | None]", singles: Sequence[SingleTest]) -> FloatArray:
+    """Return what pieces ahead of the gauge that differ from their drawing do to the numbers, shape (numbers, 0 or 1).
+
+    A ship with heavier pieces is another one in truth: estimates are those of the heavier line, less what the drawing
+    pulls, so that its inertia stays that of the drawing and the gains move.
+    """
+    upstream = [at for at, role in enumerate(roles.values()) if role == ShipRole.INERTIA_UPSTREAM]
+    drawn = [one for one in singles if upstream and one.stated.get(TVC, np.zeros(len(roles)))[upstream[0]]]
+    if not drawn:
+        return np.zeros((len(roles), 0))
+    apart = [(one.stated[TVC] - one.loadings[TVC]) / one.stated[TVC][upstream[0]] for one in drawn]
+    column: FloatArray = PIECES_STD * np.mean(apart, axis=0)[:, np.newaxis]
+    return column
 
 
 def _building(roles: "dict[str, Role | None]", causes: Sequence[Cause], of_causes: FloatArray) -> FloatArray:

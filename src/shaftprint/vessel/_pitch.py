@@ -4,7 +4,7 @@ A combinator is the curve by which one lever asks for speed and pitch together.
 """
 
 from itertools import pairwise
-from typing import TYPE_CHECKING, Self
+from typing import Self
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -12,10 +12,9 @@ from pydantic import model_validator
 
 from shaftprint.arrays import FloatArray
 from shaftprint.settings import NotNegativeNumber, PositiveNumber, Settings
+from shaftprint.vessel._sensors import Sensors
 from shaftprint.vessel._usual import PITCH_SLOPE_STD
-
-if TYPE_CHECKING:
-    from shaftprint.vessel._vessel import Vessel
+from shaftprint.vessel._working_point import WorkingPoint
 
 # Pitch of the combinator over that of the working point: a file rounds both to three digits.
 _AGREES = 0.005
@@ -100,54 +99,76 @@ class ControllablePitch(Settings):
         return self
 
 
-def wrong_pitch(vessel: "Vessel") -> list[str]:
-    """Return what is wrong with the controllable pitch of a vessel file beside the rest of it, one sentence each."""
-    pitch, sensors, ratio = vessel.pitch, vessel.sensors, vessel.propeller.pitch_ratio
+def wrong_pitch(
+    pitch: ControllablePitch | None, sensors: Sensors, point: WorkingPoint, *, pitch_ratio: float, has_motor: bool
+) -> list[str]:
+    """Return what is wrong with a controllable pitch beside the rest of a vessel file, one sentence each.
+
+    Parameters
+    ----------
+    pitch
+        The table; None where the pitch is fixed.
+    sensors, point
+        Sensors and working point of the file.
+    pitch_ratio
+        Pitch over diameter of the propeller at the working point.
+    has_motor
+        Whether a motor drives the line.
+    """
     if pitch is None:
         none = "expected [pitch] beside sensors.pitch, the sensor of a pitch, found none."
         return [none] if sensors.pitch is not None else []
     errors = []
-    if not pitch.lowest_ratio < ratio < pitch.highest_ratio:
+    if not pitch.lowest_ratio < pitch_ratio < pitch.highest_ratio:
         errors.append(
             f"expected propeller.pitch_ratio, the pitch of the working point, between pitch.lowest_ratio = "
-            f"{pitch.lowest_ratio:g} and pitch.highest_ratio = {pitch.highest_ratio:g}, found {ratio:g}."
+            f"{pitch.lowest_ratio:g} and pitch.highest_ratio = {pitch.highest_ratio:g}, found {pitch_ratio:g}."
         )
     if pitch.has_combinator:
-        return errors + _wrong_combinator(pitch, vessel)
+        return (
+            errors
+            + _wrong_curve(pitch, point.engine_speed_rpm, pitch_ratio)
+            + _wrong_beside(sensors, point, has_motor=has_motor)
+        )
     if sensors.pitch is not None and sensors.pitch_set_point is None:
         errors.append("expected sensors.pitch_set_point beside sensors.pitch, which shows what follows it, found none.")
     return errors
 
 
-def _wrong_combinator(pitch: ControllablePitch, vessel: "Vessel") -> list[str]:
-    """Return what is wrong with a combinator beside the rest of a vessel file, one sentence each."""
+def _wrong_beside(sensors: Sensors, point: WorkingPoint, *, has_motor: bool) -> list[str]:
+    """Return what is wrong with the rest of a vessel file beside a combinator, one sentence each."""
     errors = []
-    speed, ratio = vessel.working_point.engine_speed_rpm, vessel.propeller.pitch_ratio
-    if vessel.sensors.pitch is None:
+    if sensors.pitch is None:
         errors.append(
             "expected sensors.pitch beside pitch.combinator_speed_rpm, found none; a pitch that moves with the lever "
             "must be logged."
         )
-    if vessel.sensors.pitch_set_point is not None:
+    if sensors.pitch_set_point is not None:
         errors.append(
             "expected no sensors.pitch_set_point beside pitch.combinator_speed_rpm, found one; either the lever asks "
             "for the pitch or a set point of its own does."
         )
-    if vessel.motor is not None or vessel.is_underway:
+    if has_motor or point.ship_speed_m_s is not None:
         errors.append(
             "expected an engine at the quay beside pitch.combinator_speed_rpm, found "
-            f"{'a motor' if vessel.motor is not None else 'a ship_speed_m_s'}; there is no structure of it."
+            f"{'a motor' if has_motor else 'a ship_speed_m_s'}; there is no structure of it."
         )
-    asked = float(pitch.combined_ratio(speed))
-    if abs(asked / ratio - 1.0) > _AGREES:
+    return errors
+
+
+def _wrong_curve(pitch: ControllablePitch, speed_rpm: float, pitch_ratio: float) -> list[str]:
+    """Return what is wrong with the curve of a combinator at the working point, one sentence each."""
+    errors = []
+    asked = float(pitch.combined_ratio(speed_rpm))
+    if abs(asked / pitch_ratio - 1.0) > _AGREES:
         errors.append(
-            f"expected pitch.combinator_ratio to ask for propeller.pitch_ratio = {ratio:g} at the {speed:g} rpm of the "
-            f"working point, found {asked:.4g}."
+            f"expected pitch.combinator_ratio to ask for propeller.pitch_ratio = {pitch_ratio:g} at the "
+            f"{speed_rpm:g} rpm of the working point, found {asked:.4g}."
         )
-    inner = [one for one in pitch.combinator_speed_rpm if abs(one / speed - 1.0) < _STRAIGHT]
+    inner = [one for one in pitch.combinator_speed_rpm if abs(one / speed_rpm - 1.0) < _STRAIGHT]
     if inner:
         errors.append(
             f"expected pitch.combinator_speed_rpm without a point within {_STRAIGHT:.0%} of the working point, where "
-            f"the test needs a straight piece, found {inner[0]:g} rpm beside {speed:g} rpm."
+            f"the test needs a straight piece, found {inner[0]:g} rpm beside {speed_rpm:g} rpm."
         )
     return errors

@@ -131,7 +131,13 @@ class Vessel(Shown, Settings):
         errors += wrong_links(self.links, self.inertia)
         if self.working_point.is_astern:
             errors += self._wrong_astern()
-        errors += wrong_pitch(self)
+        errors += wrong_pitch(
+            self.pitch,
+            self.sensors,
+            self.working_point,
+            pitch_ratio=self.propeller.pitch_ratio,
+            has_motor=self.motor is not None,
+        )
         errors += wrong_shaft_machine(
             self.shaft_machine,
             self.engine,
