@@ -87,7 +87,8 @@ def test_recording_of_another_format(run, recording, tmp_path):
         (
             ("--vessel", "tor"),
             1,
-            "one of the shipped names e-ferry-ellen, foss-carolyn-dorothy, nifs-research-vessel, pt-may, "
+            "one of the shipped names e-ferry-ellen, foss-carolyn-dorothy, nifs-research-vessel, "
+            "nifs-research-vessel-combinator, pt-may, "
             "pt-may-underway, stan-tug-1205",
         ),
     ],
