@@ -132,19 +132,14 @@ def _drawn_line(rng: np.random.Generator, vessel: Vessel) -> Tug:
 
 def drawn_noise(rng: np.random.Generator) -> Noise:
     """Return a wander of the load, a surge in half of the tests, and all other noise halved to doubled."""
-    usual, factor = Noise(), between(rng, *NOISE_FACTOR)
-    sizes = {
-        name: factor * getattr(usual, name)
-        for name in usual.__dataclass_fields__
-        if name.endswith(("_rms", "_order", "_rms_v", "_jitter_s")) and name not in KEPT_NOISE
-    }
+    factor = between(rng, *NOISE_FACTOR)
     surges = rng.random() < 0.5
+    noise = Noise().scaled(factor, but=KEPT_NOISE)
     return replace(
-        usual,
-        **sizes,
+        noise,
         inflow_rms=float(rng.uniform(*INFLOW_RMS)),
         inflow_corner_hz=1.0 / (2.0 * np.pi * between(rng, *INFLOW_TIME_S)),
-        surge_rms=factor * usual.surge_rms if surges else 0.0,
+        surge_rms=factor * noise.surge_rms if surges else 0.0,
         surge_hz=between(rng, *SURGE_HZ),
     )
 

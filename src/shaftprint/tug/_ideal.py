@@ -93,7 +93,7 @@ def simulate_signals(
     time = start_s + np.arange(samples) / rate_hz
     return IdealSignals(
         time_s=frozen_float(time),
-        set_point_rev_s=frozen_float(demanded_speed(tug, helm_voltage(tug, campaign, time))),
+        set_point_rev_s=frozen_float(demanded_speed(tug, vessel, helm_voltage(tug, campaign, time))),
         engine_speed_rev_s=frozen_float(speed),
         shaft_torque_nm=frozen_float(torque),
         brake_torque_nm=frozen_float(brake),

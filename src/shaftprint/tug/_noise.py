@@ -3,6 +3,9 @@
 from dataclasses import dataclass, replace
 from typing import Self
 
+# how the names of amplitudes end
+_SIZES = ("_rms", "_order", "_rms_v", "_jitter_s")
+
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Noise:
@@ -74,6 +77,11 @@ class Noise:
     """Longest dropout [s]; the shortest is a fortieth of it."""
     set_point_spike_interval_s: float = 450.0
     """Mean time between spikes of one sample in the set point [s]; 0 means never."""
+
+    def scaled(self, factor: float, *, but: tuple[str, ...] = ()) -> Self:
+        """Return the same noise with every amplitude times a factor, those that are named as they are."""
+        sizes = (name for name in self.__dataclass_fields__ if name.endswith(_SIZES) and name not in but)
+        return replace(self, **{name: factor * getattr(self, name) for name in sizes})
 
     def without(self, *, process: bool = False, measurement: bool = False, faults: bool = False) -> Self:
         """Return the same noise with the named kinds set to zero."""

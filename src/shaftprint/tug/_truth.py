@@ -184,8 +184,11 @@ def physical_truth(tug: Tug, vessel: Vessel) -> dict[str, float]:
 
 
 def _of_speed_and_generator(tug: Tug) -> dict[str, float]:
-    """Return how gains and delay go with the speed, and what the generator makes of the voltage, where they do."""
-    names = ("governor_gain_exponent", "governor_delay_exponent", "generator_step_v", "generator_cycle_s")
+    """Return how gains and delay go with the speed, what generator and lever make of the voltage, where they do."""
+    names = (
+        "governor_gain_exponent", "governor_delay_exponent", "generator_step_v", "generator_cycle_s",
+        "set_point_bend_per_v", "set_point_hysteresis_v",
+    )  # fmt: skip
     return {name: value for name in names if (value := getattr(tug, name))}
 
 

@@ -94,6 +94,13 @@ class Tug:
     """Intercept of that line [rpm]."""
     set_point_offset_v: float = -0.04947603299199
     """What the potentiometer adds to the voltage of the campaign [V]: at -5 V the default line gives ``n_0``."""
+    set_point_bend_per_v: float = 0.0
+    """Share by which that slope grows per volt, from the voltage of the working point on [1/V]; 0: a straight line.
+
+    Levers and their cards: up to 0.004.
+    """
+    set_point_hysteresis_v: float = 0.0
+    """Play between the voltage that is logged and that which the ECU follows [V], from one direction to the other."""
     generator_step_v: float | None = None
     """Step of the voltage that the generator can put out [V], 4.9 mV of +/- 10 V in 12 bits; ``None``: any voltage."""
     generator_cycle_s: float | None = None

@@ -37,9 +37,24 @@ def helm_voltage(tug: Tug, campaign: Campaign, time_s: FloatArray) -> FloatArray
     return voltage + tug.set_point_offset_v
 
 
-def demanded_speed(tug: Tug, voltage_v: FloatArray) -> FloatArray:
-    """Return the engine speed [rev/s] that a voltage asks for by the true line, shape of ``voltage_v``."""
-    return rev_s_from_rpm(tug.set_point_slope_rpm_per_v * voltage_v + tug.set_point_intercept_rpm)
+@compiled(nogil=True)
+def _play(voltage, followed, half_v) -> None:  # type: ignore[no-untyped-def]
+    for j in range(1, voltage.size):
+        followed[j] = min(max(followed[j - 1], voltage[j] - half_v), voltage[j] + half_v)
+
+
+def demanded_speed(tug: Tug, vessel: Vessel, voltage_v: FloatArray) -> FloatArray:
+    """Return the engine speed [rev/s] that a voltage asks for by the true line, shape of ``voltage_v``.
+
+    The line bends about the voltage that asks for the speed of the working point.
+    """
+    slope, intercept = tug.set_point_slope_rpm_per_v, tug.set_point_intercept_rpm
+    line = slope * voltage_v + intercept
+    if tug.set_point_bend_per_v:
+        speed_rev_s, _ = working_point(tug, vessel)
+        about_v = voltage_v - (rpm_from_rev_s(speed_rev_s) - intercept) / slope
+        line += 0.5 * tug.set_point_bend_per_v * slope * about_v**2
+    return rev_s_from_rpm(line)
 
 
 class DemandLimits(NamedTuple):
@@ -76,11 +91,16 @@ def _first(of_truth: float | None, of_vessel: float | None) -> float | None:
 
 
 class Demand:
-    """Stream of the speed demand in the ECU on half steps: late, held, quantised, not below idle, rate-limited."""
+    """Stream of the speed demand in the ECU on half steps.
+
+    It is late, held, has play, is quantised, not below idle and rate-limited.
+    """
 
     def __init__(self, tug: Tug, vessel: Vessel, campaign: Campaign, *, start_s: float, step_s: float) -> None:
         self._tug = tug
+        self._vessel = vessel
         self._campaign = campaign
+        self._followed_v: float | None = None
         self._limits = demand_limits(tug, vessel)
         self._working_point_rev_s, _ = working_point(tug, vessel)
         self._start_s = start_s
@@ -122,7 +142,12 @@ class Demand:
             # a billionth of a cycle, so that rounding does not delay a message that is due
             sent_s = cycle_s * np.floor(sent_s / cycle_s + 1e-9)
         voltage = helm_voltage(self._tug, self._campaign, sent_s)
-        demand = demanded_speed(self._tug, voltage)
+        if self._tug.set_point_hysteresis_v:
+            followed = np.full_like(voltage, voltage[0] if self._followed_v is None else self._followed_v)
+            _play(voltage, followed, 0.5 * self._tug.set_point_hysteresis_v)
+            self._followed_v = float(followed[-1])
+            voltage = followed
+        demand = demanded_speed(self._tug, self._vessel, voltage)
         if self._limits.resolution_rpm is not None:
             resolution = rev_s_from_rpm(self._limits.resolution_rpm)
             demand = resolution * np.round(demand / resolution)

@@ -155,8 +155,8 @@ def asked_pitch(
     """
     combinator = vessel.combinator
     if combinator is not None:
-        rest = float(combinator.combined_ratio(_lever_rpm(tug, campaign, np.array([start_s])))[0])
-        return lambda time_s: combinator.combined_ratio(_lever_rpm(tug, campaign, time_s)) - rest
+        rest = float(combinator.combined_ratio(_lever_rpm(tug, vessel, campaign, np.array([start_s])))[0])
+        return lambda time_s: combinator.combined_ratio(_lever_rpm(tug, vessel, campaign, time_s)) - rest
     if INPUT not in campaign.inputs:
         return None
     sensor = vessel.sensors.pitch_set_point
@@ -171,9 +171,9 @@ def asked_pitch(
     return lambda time_s: from_rest + sensor.pitch_ratio_per_v * setpoint(campaign, time_s, input=INPUT)
 
 
-def _lever_rpm(tug: Tug, campaign: Campaign, time_s: FloatArray) -> FloatArray:
+def _lever_rpm(tug: Tug, vessel: Vessel, campaign: Campaign, time_s: FloatArray) -> FloatArray:
     """Return the speed of the engine that the lever asks for [rpm]."""
-    return rpm_from_rev_s(demanded_speed(tug, helm_voltage(tug, campaign, time_s)))
+    return rpm_from_rev_s(demanded_speed(tug, vessel, helm_voltage(tug, campaign, time_s)))
 
 
 def actuation_of(tug: Tug) -> PitchActuation | None:
