@@ -34,6 +34,9 @@ class Campaign(Shown, Settings):
     """Set point outside of every excitation [V]."""
     offset_rpm: PositiveNumber | None = None
     """Engine speed for which that asks [rpm]; the working point's of the vessel file where it is not given."""
+    slope_rpm_per_v: Number | None = None
+    """Change of the engine speed for one volt [rpm/V], negative where a lower voltage asks for more speed; of the lever
+    for which the test was made. Where it is not given nothing is known of the lever before the test."""
     further_offsets_v: Mapping[Name, Number] = Field(default_factory=dict)
     """Middle of the sines and multisines that move something else than the set point of the speed [V], by the name of
     that input."""
@@ -130,6 +133,7 @@ class Campaign(Shown, Settings):
     def _can_be_sailed(self) -> Self:
         errors = [
             *self._without_offset(),
+            *self._without_slope(),
             *self._names_twice(),
             *self._overlaps(),
             *self._too_late(),
@@ -148,6 +152,11 @@ class Campaign(Shown, Settings):
         return [
             f"expected further_offsets_v.{name}, the middle of the tests that move it, found none." for name in missing
         ]
+
+    def _without_slope(self) -> list[str]:
+        if self.slope_rpm_per_v != 0.0:
+            return []
+        return ["expected slope_rpm_per_v, what one volt asks for, other than 0, found 0."]
 
     def _names_twice(self) -> list[str]:
         names = [excitation.name for excitation in self.excitations]

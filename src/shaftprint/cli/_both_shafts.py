@@ -12,7 +12,7 @@ from shaftprint.cli._vessel_file import print_disagreements
 from shaftprint.cli.output import progress
 from shaftprint.recording import NATIVE_ENDINGS
 from shaftprint.survey import load_trials_of_both
-from shaftprint.tug import like_stan_tug_1205, sail_both, truth_path
+from shaftprint.tug import like_stan_tug_1205, sail_both, truth_path, with_lever_of
 
 
 def starboard_option(command: Callable[..., Any]) -> Callable[..., Any]:
@@ -45,7 +45,8 @@ def sail_both_lines(
     for trial, name in zip(trials, (port, starboard), strict=True):
         print_disagreements(trial.vessel, name)
     vessels = trials[0].vessel, trials[1].vessel
-    tugs = tuple(like_stan_tug_1205(trial.vessel, offset_v=trial.campaign.offset_v) for trial in trials)
+    usual = (like_stan_tug_1205(trial.vessel, offset_v=trial.campaign.offset_v) for trial in trials)
+    tugs = tuple(with_lever_of(tug, trial.vessel, trial.campaign) for tug, trial in zip(usual, trials, strict=True))
     with progress(hidden=no_progress) as steps:
         steps.begin("Sailing", total=1.0)
         sail_both(vessels, asked, output, tugs=(tugs[0], tugs[1]), seed=seed, overwrite=force, progress=steps.reach)

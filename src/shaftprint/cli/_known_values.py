@@ -51,7 +51,8 @@ def rpm_per_volt_option(command: Callable[..., Any]) -> Callable[..., Any]:
         "--rpm-per-volt",
         type=float,
         callback=_slope,
-        help="Engine speed that one volt of set point asks for, with its sign; needs --vessel.",
+        help="Engine speed that one volt of set point asks for, with its sign, instead of slope_rpm_per_v of the "
+        "campaign; needs --vessel.",
     )(command)
 
 

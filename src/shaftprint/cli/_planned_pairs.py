@@ -65,7 +65,8 @@ def _further(chosen: Structure, campaign: Campaign, ship: ShipBeforeTest) -> lis
 
 
 def _legs(campaign: Campaign, ship: ShipBeforeTest) -> tuple[PlannedLeg, ...]:
-    return planned_legs(campaign, ship.noise_of_legs, rises=ship.slope_rpm_per_v > 0.0)
+    rises = ship.slope_rpm_per_v > 0.0
+    return planned_legs(campaign, ship.noise_of_legs, rises=rises, first_share=ship.first_share)
 
 
 def _pairs_of_speed(chosen: Structure, campaign: Campaign, ship: ShipBeforeTest) -> list[Pair]:

@@ -34,7 +34,9 @@ class ShipBeforeTest:
     noise: NoiseLevels
     """Noise under sines of the speed's set point."""
     noise_of_legs: Mapping[float, NoiseLevels]
-    """The same by the speed of a leg over that of the first."""
+    """The same by the speed of a leg over that of the working point at which the parameters are normalised."""
+    first_share: float = 1.0
+    """Speed of the leg nearest to the offset over that of that working point."""
     noise_beside: Mapping[str, NoiseLevels] = field(default_factory=dict)
     """Noise under what is moved beside the speed, by its symbol."""
     slope_rpm_per_v: float
@@ -99,7 +101,8 @@ def assumed_ship(
     vessel
         The installation, if any.
     rpm_per_volt
-        Change of the engine speed for one volt [rpm/V]; as on the Stan Tug where it is not given.
+        Change of the engine speed for one volt [rpm/V]; that of the campaign, or as on the Stan Tug, where it is not
+        given.
     chosen
         The structure whose test is predicted.
     planned
@@ -120,16 +123,20 @@ def assumed_ship(
         return ShipBeforeTest(
             priors={},
             noise=assumed.sines,
-            noise_of_legs=_of_legs(assumed.legs, planned, -assumed.sines.set_point_per_v),
+            noise_of_legs=_of_legs(assumed.legs, assumed.sines.set_point_per_v),
+            first_share=_first_share(planned, -assumed.sines.set_point_per_v, 1.0),
             slope_rpm_per_v=-1.0,
             words=assumed.words,
         )
     speed_rpm = vessel.working_point.engine_speed_rpm
-    slope = -assumed.sines.set_point_per_v * speed_rpm if rpm_per_volt is None else rpm_per_volt
+    stated = planned.slope_rpm_per_v if rpm_per_volt is None else rpm_per_volt
+    slope = -assumed.sines.set_point_per_v * speed_rpm if stated is None else stated
+    offset_share = 1.0 if planned.offset_rpm is None else planned.offset_rpm / speed_rpm
     return ShipBeforeTest(
         priors=priors_from_vessel(chosen, vessel, stated_working_point(vessel)),
         noise=replace(assumed.sines, set_point_per_v=abs(slope) / speed_rpm),
-        noise_of_legs=_of_legs(assumed.legs, planned, slope / speed_rpm),
+        noise_of_legs=_of_legs(assumed.legs, slope / speed_rpm),
+        first_share=_first_share(planned, slope / speed_rpm, offset_share),
         noise_beside=assumed.beside,
         slope_rpm_per_v=slope,
         words=assumed.words,
@@ -137,18 +144,31 @@ def assumed_ship(
     )
 
 
-def _of_legs(levels: Mapping[float, NoiseLevels], planned: Campaign, per_v: float) -> dict[float, NoiseLevels]:
-    """Return the noise by the speed of a leg over that of the first, the working point at the offset.
+def _first_share(planned: Campaign, per_v: float, offset_share: float) -> float:
+    """Return the speed of the leg nearest to the offset over that of the vessel file's working point.
+
+    Parameters
+    ----------
+    per_v
+        Change of the speed for one volt, over that of the working point [1/V].
+    offset_share
+        Speed for which the campaign's offset asks, over that of the working point.
 
     Raises
     ------
     StructureError
         If the first leg would stand still.
     """
-    first = 1.0 + per_v * (first_leg(planned).level_v - planned.offset_v) if planned.legs else 1.0
-    if not first > 0.0:
+    share = offset_share + (per_v * (first_leg(planned).level_v - planned.offset_v) if planned.legs else 0.0)
+    if not share > 0.0:
         raise StructureError(
             f"campaign {planned.name}: expected legs at which the engine turns, found a first leg at "
-            f"{first:.2g} of the working speed; check level_v and the line from volts to speed, --rpm-per-volt."
+            f"{share:.2g} of the working speed; check level_v and the line from volts to speed, slope_rpm_per_v of the "
+            "campaign or --rpm-per-volt."
         )
-    return {share / first: replace(level, set_point_per_v=abs(per_v) / share) for share, level in levels.items()}
+    return share
+
+
+def _of_legs(levels: Mapping[float, NoiseLevels], per_v: float) -> dict[float, NoiseLevels]:
+    """Return the noise by the speed over that of the working point; one volt is that of this lever."""
+    return {share: replace(level, set_point_per_v=abs(per_v) / share) for share, level in levels.items()}

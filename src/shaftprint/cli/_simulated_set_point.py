@@ -1,7 +1,7 @@
 """What drives a simulation: a campaign, or columns of a file, in the units of the structure."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import click
@@ -59,7 +59,8 @@ class Place:
         """
         if self.slope_rpm_per_v is None or (self.intercept_rpm is None and offset_v is None):
             raise click.UsageError(
-                "a set point in volt needs --fingerprint, or a campaign, --vessel and --rpm-per-volt."
+                "a set point in volt needs --fingerprint, or a campaign, --vessel and --rpm-per-volt, or "
+                "slope_rpm_per_v in the campaign file."
             )
         if offset_v is not None:
             return frozen_float(self.slope_rpm_per_v * (volts - offset_v) / self.engine_speed_rpm)
@@ -164,6 +165,7 @@ def campaign_drive(
     if place is None:
         raise click.UsageError("--campaign is in volt: give --fingerprint, or --vessel and --rpm-per-volt.")
     campaign = load_campaign(name)
+    place = _with_lever_of(campaign, place)
     begin, end = span or (0.0, campaign.duration_s)
     if end > campaign.duration_s:
         raise click.UsageError(f"--between: campaign {campaign.name} ends at {campaign.duration_s:g} s, not {end:g} s.")
@@ -184,6 +186,15 @@ def campaign_drive(
         hold=False,
         remark=_remark(campaign, place),
     )
+
+
+def _with_lever_of(campaign: Campaign, place: Place) -> Place:
+    """Return a working point with the line of the campaign's lever, where that is stated and nothing else is."""
+    slope = campaign.slope_rpm_per_v
+    if place.slope_rpm_per_v is not None or slope is None:
+        return place
+    at_offset_rpm = place.engine_speed_rpm if campaign.offset_rpm is None else campaign.offset_rpm
+    return replace(place, slope_rpm_per_v=slope, intercept_rpm=at_offset_rpm - slope * campaign.offset_v)
 
 
 def _asked(campaign: Campaign, place: Place, time_s: FloatArray) -> FloatArray:

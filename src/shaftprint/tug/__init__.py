@@ -32,7 +32,7 @@ from shaftprint.tug._changes import (
 )
 from shaftprint.tug._coupling import Coupling
 from shaftprint.tug._ideal import IdealSignals, simulate_signals
-from shaftprint.tug._like_stan_tug import like_stan_tug_1205
+from shaftprint.tug._like_stan_tug import like_stan_tug_1205, with_lever_of
 from shaftprint.tug._linearise import linearised_response
 from shaftprint.tug._linearise_both import linearised_both
 from shaftprint.tug._noise import Noise
@@ -101,6 +101,7 @@ __all__ = [
     "with_gains",
     "with_inertia",
     "with_injection",
+    "with_lever_of",
     "with_load",
     "with_works",
     "zero_taken",

@@ -1,6 +1,7 @@
 """The truth of the Stan Tug 1205 for another ship: its lever and its governor are set for that ship."""
 
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 from shaftprint.tug._coupling import stated_coupling
 from shaftprint.tug._pitch_actuation import PitchActuation, pitch_torque
@@ -10,6 +11,9 @@ from shaftprint.tug._shaft_machine import ShaftMachineTruth
 from shaftprint.tug._truth import normalised_truth
 from shaftprint.tug._tug import Tug
 from shaftprint.vessel import Vessel
+
+if TYPE_CHECKING:
+    from shaftprint.campaign import Campaign
 
 # At the quay the lever asks for the working speed at -5 V, as on the Stan Tug. Its line has this inertia time [s], less
 # half a per cent so that its governor is left as it is.
@@ -64,6 +68,32 @@ def like_stan_tug_1205(vessel: Vessel, *, offset_v: float = _AT_THE_QUAY_V) -> T
         set_point_intercept_rpm=speed * tug.set_point_intercept_rpm,
         proportional_gain=gain * tug.proportional_gain,
         integral_gain_per_s=gain * tug.integral_gain_per_s,
+    )
+
+
+def with_lever_of(tug: Tug, vessel: Vessel, campaign: "Campaign") -> Tug:
+    """Return a simulated ship with the lever for which a campaign was made; as it is where nothing is said of that.
+
+    At the offset of the campaign it asks for ``offset_rpm``, or for the working speed of the vessel file.
+
+    Parameters
+    ----------
+    tug
+        The simulated ship.
+    vessel
+        Its vessel file.
+    campaign
+        What is put out.
+    """
+    slope = campaign.slope_rpm_per_v
+    if slope is None:
+        return tug
+    at_offset_rpm = vessel.working_point.engine_speed_rpm if campaign.offset_rpm is None else campaign.offset_rpm
+    return replace(
+        tug,
+        set_point_slope_rpm_per_v=slope,
+        set_point_intercept_rpm=at_offset_rpm - slope * campaign.offset_v,
+        set_point_offset_v=0.0,
     )
 
 

@@ -10,7 +10,7 @@ from shaftprint.cli._vessel_file import print_disagreements
 from shaftprint.cli.output import no_progress_option, progress
 from shaftprint.recording import expect_known_ending
 from shaftprint.survey import load_trial
-from shaftprint.tug import like_stan_tug_1205, sail_as, truth_path
+from shaftprint.tug import like_stan_tug_1205, sail_as, truth_path, with_lever_of
 
 
 @click.command("sail")
@@ -35,7 +35,8 @@ def command(
     VESSEL and CAMPAIGN are files, or names of shipped ones such as stan-tug-1205 and thesis. Governor, delays and noise
     are those of the Stan Tug 1205, the gains as much smaller as the line has less inertia; at -5 V the lever asks for
     the working speed of the vessel file. With a ship speed in its working point the ship sails free, and the lever asks
-    for the working speed at the voltage of the campaign. What was put
+    for the working speed at the voltage of the campaign. A campaign that states slope_rpm_per_v is sailed with that
+    lever: at its offset it asks for offset_rpm, or for the working speed. What was put
     into the recording goes to a file of its own beside it, which nothing that identifies will open. With --starboard
     both lines of a ship are sailed in one recording; each propeller feels the wash of the other, and both the same sea.
     """
@@ -49,7 +50,8 @@ def command(
     print_disagreements(trial.vessel, vessel)
     with progress(hidden=no_progress) as steps:
         steps.begin("Sailing", total=1.0)
-        tug = like_stan_tug_1205(trial.vessel, offset_v=trial.campaign.offset_v)
+        usual = like_stan_tug_1205(trial.vessel, offset_v=trial.campaign.offset_v)
+        tug = with_lever_of(usual, trial.vessel, trial.campaign)
         sail_as(trial.vessel, trial.campaign, output, tug=tug, seed=seed, overwrite=force, progress=steps.reach)
     answer(f"{output}: the raw recording of {trial.campaign.duration_s:g} s.")
     answer(f"{truth_path(output)}: what was put into it.")

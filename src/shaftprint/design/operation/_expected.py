@@ -66,8 +66,9 @@ def expected_operation(
     if not np.all(np.abs(outputs["n"]) < _FARTHEST):
         raise DesignError(
             f"campaign {campaign.name}: expected speeds between 0 and {1.0 + _FARTHEST:g} times the working point, "
-            "found others: the loop is unstable with the assumed values, or the set point asks for too much; give "
-            "other values, or another campaign."
+            f"found others with a set point of {set_point_rpm.min():.0f} to {set_point_rpm.max():.0f} rpm: the loop is "
+            f"unstable with the assumed values, or {slope_rpm_per_v:g} rpm for one volt are not those of this lever; "
+            "give other values, or the lever's with --rpm-per-volt or slope_rpm_per_v in the campaign file."
         )
     brake, demand = _torques(line, vector, outputs, time_s)
     brake_nm = point.driving_torque_nm / vessel.gearbox.shaft_over_brake

@@ -43,6 +43,7 @@ def campaign_of(plan: Plan, *, name: str, offset_v: float, slope_rpm_per_v: floa
         duration_s=multisines[-1].stop_s + back_s + plan.timetable.lead_s,
         offset_v=multisines[0].level_v,
         offset_rpm=plan.legs[0].level_rpm,
+        slope_rpm_per_v=slope_rpm_per_v,
         ramp_v_per_s=plan.timetable.ramp_rpm_per_s / abs(slope_rpm_per_v),
         multisines=multisines,
     )

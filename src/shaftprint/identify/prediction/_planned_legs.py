@@ -21,15 +21,15 @@ class PlannedLeg:
     name: str
     """Name of the leg."""
     speed_share: float
-    """Its speed over that of the first working point."""
+    """Its speed over that of the working point at which the parameters are normalised."""
     response: FrequencyResponse
     """Its lines with the covariance that their length and the noise give them; the values are zero."""
 
-    def structure(self, at_first: Structure) -> Structure:
+    def structure(self, at_point: Structure) -> Structure:
         """Return a structure at this leg, its torque with the square of the speed as in bollard pull."""
         if self.speed_share == 1.0:
-            return at_first
-        return at_working_point(at_first, speed_share=self.speed_share)
+            return at_point
+        return at_working_point(at_point, speed_share=self.speed_share)
 
 
 def first_leg(campaign: "Campaign") -> "Leg":
@@ -38,7 +38,11 @@ def first_leg(campaign: "Campaign") -> "Leg":
 
 
 def planned_legs(
-    campaign: "Campaign", noise: NoiseLevels | Mapping[float, NoiseLevels], *, rises: bool
+    campaign: "Campaign",
+    noise: NoiseLevels | Mapping[float, NoiseLevels],
+    *,
+    rises: bool,
+    first_share: float = 1.0,
 ) -> tuple[PlannedLeg, ...]:
     """Return the lines that the legs of a campaign would give, the leg nearest to its offset first.
 
@@ -50,12 +54,15 @@ def planned_legs(
         The plan.
     noise
         Noise of the outputs over the values of each working point: the same at all speeds, or by the share of the
-        speed of the first.
+        speed of the working point at which the parameters are normalised.
     rises
         Whether more volts ask for more speed.
+    first_share
+        Speed of the leg nearest to the offset over that of the working point at which the parameters are normalised.
     """
     legs = sorted(campaign.legs, key=lambda leg: abs(leg.level_v - campaign.offset_v))
-    return tuple(_planned(leg, legs[0], noise, 1.0 if rises else -1.0) for leg in legs)
+    sign = 1.0 if rises else -1.0
+    return tuple(_planned(leg, legs[0], noise, sign, first_share) for leg in legs)
 
 
 def planned_beside(multisine: "Leg", noise: NoiseLevels, *, excitation: str) -> FrequencyResponse:
@@ -81,9 +88,11 @@ def planned_beside(multisine: "Leg", noise: NoiseLevels, *, excitation: str) -> 
     )
 
 
-def _planned(leg: "Leg", first: "Leg", noise: NoiseLevels | Mapping[float, NoiseLevels], sign: float) -> PlannedLeg:
-    at_first = noise_at(noise, 1.0)
-    ratio = 1.0 + sign * at_first.set_point_per_v * (leg.level_v - first.level_v)
+def _planned(
+    leg: "Leg", first: "Leg", noise: NoiseLevels | Mapping[float, NoiseLevels], sign: float, first_share: float
+) -> PlannedLeg:
+    at_point = noise_at(noise, 1.0)
+    ratio = first_share + sign * at_point.set_point_per_v * (leg.level_v - first.level_v)
     lines = leg.lines
     return PlannedLeg(
         name=leg.name,
@@ -91,7 +100,7 @@ def _planned(leg: "Leg", first: "Leg", noise: NoiseLevels | Mapping[float, Noise
         response=planned_lines(
             [harmonic / leg.length_of_period_s for harmonic in lines],
             noise=noise_at(noise, ratio),
-            amplitude=[at_first.set_point_per_v * amplitude_v / ratio for amplitude_v in lines.values()],
+            amplitude=[at_point.set_point_per_v * amplitude_v / ratio for amplitude_v in lines.values()],
             duration_s=leg.window_s,
             lines=[f"{leg.name}/{harmonic}" for harmonic in lines],
         ),

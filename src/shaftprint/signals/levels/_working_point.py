@@ -14,6 +14,7 @@ from shaftprint.vessel import ALIVE_MA
 if TYPE_CHECKING:
     from shaftprint.campaign import Campaign
     from shaftprint.signals._gaps import Coverage
+    from shaftprint.signals._signals import SetPointCalibration
     from shaftprint.signals.levels._steady import SteadyStretch
     from shaftprint.vessel import ShaftTorqueSensor, Vessel
 
@@ -23,6 +24,8 @@ _NEAR_V = 0.25
 _FAR = 1.5
 # A governor with droop runs this much slower than it is asked to.
 _ASKED = 0.1
+# Standard deviations of a measured slope that are no contradiction to the one that is stated.
+_SIGMAS = 4.0
 
 
 def deviation(values: FloatArray, reference: float) -> FloatArray:
@@ -178,6 +181,25 @@ def expect_asked_speed(point: WorkingPoint, vessel: "Vessel") -> tuple[str, ...]
     return (
         f"The set point in {sensor.channel} asks for {asked_rpm:.4g} rpm at the working point, where the engine "
         f"runs at {speed_rpm:.4g} rpm. Check {field} of sensors.set_point in the vessel file.",
+    )
+
+
+def expect_stated_slope(calibration: "SetPointCalibration", campaign: "Campaign") -> tuple[str, ...]:
+    """Return a finding where the recorded line of the set point is not that for which the campaign was made.
+
+    A tenth is left, which a droop makes of it, and four standard deviations, which one healthy recording in 16,000
+    passes.
+    """
+    stated, found = campaign.slope_rpm_per_v, rpm_from_rev_s(calibration.slope_rev_s_per_v)
+    if stated is None:
+        return ()
+    std = rpm_from_rev_s(float(calibration.covariance[0, 0]) ** 0.5)
+    if abs(found - stated) <= _ASKED * abs(stated) + _SIGMAS * std:
+        return ()
+    return (
+        f"The set point asks for {found:.4g} rpm for one volt as recorded, and for {stated:.4g} rpm by slope_rpm_per_v "
+        "of the campaign file, for which amplitudes and limits were planned. Check the lever, its channel in the "
+        "vessel file, and that field.",
     )
 
 

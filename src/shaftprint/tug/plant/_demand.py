@@ -111,7 +111,8 @@ class Demand:
         if not self.first > 0.0:
             raise SettingsError(
                 f"campaign {campaign.name}: expected a set point that asks for a positive speed at {start_s:g} s, "
-                f"found {rpm_from_rev_s(self.first):g} rpm by its line; change slope, intercept or offset of the tug."
+                f"found {rpm_from_rev_s(self.first):g} rpm by its line; change slope, intercept or offset of the "
+                "tug, or state slope_rpm_per_v and offset_rpm in the campaign file."
             )
         self._last = self.first
 
