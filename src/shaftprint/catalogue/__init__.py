@@ -3,6 +3,7 @@
 The language in which they are written, blocks and structures, is ``models``; symbols and signs are explained there.
 """
 
+from shaftprint.catalogue._bent_line import with_bend
 from shaftprint.catalogue._crash_stop import (
     CRASH_STOP,
     NOT_OF_THE_LINE,
@@ -74,5 +75,6 @@ __all__ = [
     "structure",
     "thesis_families",
     "two_mass_line",
+    "with_bend",
     "with_known_propeller",
 ]

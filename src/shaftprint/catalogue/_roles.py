@@ -115,6 +115,10 @@ class ShipRole:
     """Torque of an electric machine over that which its converter shows, as the torque gauge shows torques."""
     SET_POINT_SCALE: Final = _sensor("set-point scale", "-", "set point")
     """Scale error of the measured set point."""
+    SET_POINT_BEND: Final = Role(
+        name="set-point bend", unit="-", basis=frozenset(("set point",)), of_sensor=True, over_speed=True
+    )
+    """Share by which the slope of the set point's line is larger at twice the speed of the working point."""
     SET_POINT_OFFSET: Final = _sensor("set-point offset", "-", "set point")
     """Offset of the measured set point."""
     TORQUE_LATENCY: Final = _sensor("torque latency", "s", "latency")

@@ -4,9 +4,10 @@ The gauge-aware closed loop with limits is named by these: ``GAUGE-QUADRATIC``, 
 machine beside the engine, ``HYBRID-QUADRATIC``, ``HYBRID-TORQUE-CLUTCH``.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Container, Mapping
 from functools import cache
 
+from shaftprint.catalogue._bent_line import B_SET, with_bend
 from shaftprint.catalogue._crash_stop import CRASH_STOP
 from shaftprint.catalogue._drives import DRIVES
 from shaftprint.catalogue._hybrid_at_large import limited_hybrid
@@ -24,8 +25,16 @@ _AT_LARGE: Mapping[str, tuple[Callable[..., Structure], tuple[str, ...]]] = {
 }
 
 
-def shipped_structure(name: str) -> Structure:
+def shipped_structure(name: str, parameters: Container[str] = ()) -> Structure:
     """Return a structure of the package by its name, in capitals or not; the name is never a path.
+
+    Parameters
+    ----------
+    name
+        The name.
+    parameters
+        Names of its parameters in a file: with the bend of the set point's line among them it is that of several
+        speeds.
 
     Raises
     ------
@@ -38,7 +47,8 @@ def shipped_structure(name: str) -> Structure:
             f"{CRASH_STOP} --vessel SHIP."
         )
     drive = DRIVES.get(name.upper())
-    return drive() if drive is not None else _limited_structure(name) or structure(name)
+    found = drive() if drive is not None else _limited_structure(name) or structure(name)
+    return with_bend(found) if B_SET.name in parameters else found
 
 
 def _limited_structure(name: str) -> Structure | None:

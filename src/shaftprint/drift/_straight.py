@@ -103,7 +103,7 @@ def _model_of(tests: "Sequence[Fingerprint]") -> "tuple[Structure, list[tuple[St
     if len(alike) > 1 or len(counts) > 1 or counts == {0}:
         return None
     try:
-        structure = shipped_structure(tests[0].structure)
+        structure = shipped_structure(tests[0].structure, {one.name for one in tests[0].parameters})
     except StructureError:
         return None
     known = {one.name for one in tests[0].parameters} | set(tests[0].held)

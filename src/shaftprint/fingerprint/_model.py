@@ -94,7 +94,7 @@ def named_structure(fingerprint: Fingerprint) -> Structure:
         If it is none of the shipped ones.
     """
     try:
-        return shipped_structure(fingerprint.structure)
+        return shipped_structure(fingerprint.structure, {one.name for one in fingerprint.parameters})
     except StructureError:
         files = [printable(source.name) for source in fingerprint.sources if source.role == "structure"]
         file = files[0] if files else "my_ship.py"

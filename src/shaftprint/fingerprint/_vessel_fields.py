@@ -19,6 +19,7 @@ GAUGE = "sensors.shaft_torque"
 BEHIND = {
     "gauge scale": (f"{GAUGE}.unit", f"{GAUGE}.scale_nm_per_unit", f"{GAUGE}.scale_std_fraction"),
     "telemetry latency": (f"{GAUGE}.latency_s", f"{GAUGE}.latency_std_s"),
+    "set-point bend": ("sensors.set_point.bend_std",),
     "set-point latency": ("sensors.set_point.latency_s", "sensors.set_point.latency_std_s"),
     "demand latency": ("sensors.demand.latency_s", "sensors.demand.latency_std_s"),
     "rack latency": ("sensors.rack.latency_s", "sensors.rack.latency_std_s"),

@@ -47,6 +47,9 @@ class Role:
     working point, such as a zero of the gauge, and so moves with that; None where there is no such law."""
     loaded: bool = False
     """Whether it is a slope of the propeller torque, which grows with the load of a test line."""
+    over_speed: bool = False
+    """Whether it acts with the share by which the speed is above that of the working point of the parameters, and so
+    not at all there."""
     rack_power: int = 0
     """Power of the rack of the working point with which it goes, where the rack is logged."""
     of_sensor: bool = False

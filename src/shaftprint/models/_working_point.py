@@ -17,7 +17,7 @@ def at_working_point(
     A parameter whose role is ``over_torque`` is a physical value times the speed over the torque, so it goes with
     ``speed_share / torque_share`` (thesis eqs 2.14-2.25); delays and lags stay. What a parameter lacks to the ``law``
     of its role goes with one over the torque that is shown: a gauge whose zero is ``z`` shows ``M = Q n^2 + z``, and
-    the slope ``n / M dM/dn`` is ``2 (1 - z / M)``.
+    the slope ``n / M dM/dn`` is ``2 (1 - z / M)``. What is ``over_speed`` acts with the speed that is added.
 
     Parameters
     ----------
@@ -50,6 +50,7 @@ def at_working_point(
         for name, role in structure.roles.items()
         if role.over_torque or (role.rack_power and rack_share is not None)
     }
+    factors |= {name: speed_share - 1.0 for name, role in structure.roles.items() if role.over_speed}
     laws = {name: role.law for name, role in structure.roles.items() if role.law is not None}
     moved = structure.scaled(**factors, **dict.fromkeys(laws, 1.0 / shown))
     return moved.offset(**{name: law * (1.0 - 1.0 / shown) for name, law in laws.items()})

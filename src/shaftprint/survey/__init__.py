@@ -18,7 +18,7 @@ from shaftprint.survey._limits import with_limits
 from shaftprint.survey._line_with_limits import expect_limitable, line_with_limits
 from shaftprint.survey._measurement import Measurement, measure, of_legs, pairs_of, response_of, responses_of
 from shaftprint.survey._noise import noise_at_speeds, noise_of_further
-from shaftprint.survey._of_vessel import default_structure, expect_one_speed, of_vessel
+from shaftprint.survey._of_vessel import at_speeds, default_structure, expect_one_speed, of_vessel
 from shaftprint.survey._progress import SILENT, Progress, Silent
 from shaftprint.survey._ship_numbers import ship_numbers
 from shaftprint.survey._survey import SettingsOf, Survey, fingerprint_of, judged, run, settings_by_name, survey_of
@@ -48,6 +48,7 @@ __all__ = [
     "Wash",
     "apart_reasons",
     "assumed_noise",
+    "at_speeds",
     "comparisons_of",
     "contradiction",
     "default_structure",

@@ -1,9 +1,9 @@
 """Which structure fits a ship, and how it is fitted for one: free is also what its sensors leave open."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 from shaftprint.campaign import Campaign
-from shaftprint.catalogue import CLOSED_LOOPS, COMBINED_LOOP, PITCHED_LOOP, ShipRole
+from shaftprint.catalogue import CLOSED_LOOPS, COMBINED_LOOP, PITCHED_LOOP, ShipRole, with_bend
 from shaftprint.errors import StructureError
 from shaftprint.models import Structure
 from shaftprint.normalisation import inertia_time_s
@@ -17,6 +17,8 @@ _PITCH = "pitch_set_point"
 _UNDERWAY, _UNDERWAY_WITH_LOG = "FREE-CLOSED", "FREE-LOG"
 # What is known to some per cent is free up to this multiple.
 _WIDE = 2.0
+# Legs of one level have speeds that differ by what the load does to them.
+_SAME_SPEED = 1.02
 
 
 def default_structure(vessel: Vessel, campaign: Campaign | None = None) -> str:
@@ -82,6 +84,20 @@ def of_vessel(structure: Structure, vessel: Vessel) -> Structure:
             if p.held and roles.get(p.name) in _OF_SENSORS
         }
     return structure.free_between(**opened) if opened else structure
+
+
+def at_speeds(structure: Structure, speeds: Iterable[float]) -> Structure:
+    """Return a structure as a test at these speeds is fitted: at several the line of the set point may bend.
+
+    Parameters
+    ----------
+    structure
+        The structure.
+    speeds
+        Mean speeds of the test, or their shares of one of them.
+    """
+    lowest, highest = min(every := tuple(speeds)), max(every)
+    return with_bend(structure) if highest > _SAME_SPEED * lowest else structure
 
 
 def _driven(structure: Structure, vessel: Vessel) -> dict[str, tuple[float, float]]:

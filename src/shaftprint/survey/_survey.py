@@ -40,7 +40,7 @@ from shaftprint.survey._legs_apart import LegAlone, apart_reasons, legs_alone
 from shaftprint.survey._limit_hints import hints_of
 from shaftprint.survey._measurement import Measurement, measure, of_legs
 from shaftprint.survey._noise import noise_at_speeds
-from shaftprint.survey._of_vessel import default_structure, expect_one_speed, of_vessel
+from shaftprint.survey._of_vessel import at_speeds, default_structure, expect_one_speed, of_vessel
 from shaftprint.survey._progress import SILENT, Progress
 from shaftprint.survey._ship_numbers import ship_numbers
 from shaftprint.survey._trial import Trial, load_trial
@@ -187,6 +187,8 @@ def run(
     expect_one_speed(trial.campaign, trial.vessel, legs)
     measurement = of_legs(measure(recording, trial, mode=mode, progress=progress), legs)
     measurement = replace(measurement, began=_began(tested_at, measurement.began, trial))
+    speeds = [point.engine_speed_rev_s for point in measurement.working_points.values()]
+    chosen = tuple(at_speeds(one, speeds) for one in chosen)
     by_name = settings_by_name(chosen, measurement, trial, settings or _with_priors)
     fits = fit(chosen, measurement, settings=by_name, rng=rng, progress=progress)
     alone = legs_alone(fits[0], measurement, settings=by_name, rng=rng)

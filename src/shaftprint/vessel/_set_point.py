@@ -10,6 +10,7 @@ from pydantic import Field, model_validator
 from shaftprint.arrays import FloatArray
 from shaftprint.settings import Name, NotNegativeNumber, Number, PositiveNumber, Settings
 from shaftprint.vessel._plain_unit import PLAIN_UNIT
+from shaftprint.vessel._usual import BEND_OF_DEMAND_STD, BEND_STD
 
 # What a channel can show in a unit; in rpm, by how much more or less than the speed of the working point.
 _REACH = {"mA": (0.0, 22.0), "V": (-30.0, 30.0), "%": (-10.0, 110.0)}
@@ -44,6 +45,9 @@ class SetPointSensor(Settings):
     """Time from the voltage to the demanded speed that the engine's control unit has [s]; None where not measured."""
     latency_std_s: PositiveNumber | None = None
     """Standard deviation of that time [s]."""
+    bend_std: PositiveNumber | None = None
+    """Standard deviation of the share by which the line is steeper at twice the speed of the working point; see
+    ``line_bend_std`` where it is not stated."""
     message_latency_s: NotNegativeNumber = 0.0
     """Time by which messages are late behind what they show [s]; 0 for samples of a voltage."""
     is_obeyed: bool = False
@@ -74,6 +78,11 @@ class SetPointSensor(Settings):
     def slope_v(self) -> float:
         """Volts of the campaign for one unit of the channel [V per unit]."""
         return 1.0 if self.v_per_unit is None else self.v_per_unit
+
+    @property
+    def line_bend_std(self) -> float:
+        """Standard deviation of the share by which the line is steeper at twice the speed of the working point."""
+        return self.bend_std or (BEND_OF_DEMAND_STD if self.unit == "rpm" else BEND_STD)
 
     def volts(self, reading: ArrayLike) -> FloatArray:
         """Return the set point in volts of the campaign [V] for readings in the channel's unit, of any shape."""

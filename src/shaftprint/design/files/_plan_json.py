@@ -71,7 +71,7 @@ def _structure(record: PlanRecord, own: Structure | None) -> Structure:
     name = record.ship.structure
     if own is None:
         try:
-            structure = shipped_structure(name)
+            structure = shipped_structure(name, record.ship.values)
         except ShaftprintError:
             raise DesignError(
                 f"structure {name}: it is none of the shipped ones; name the file of your own with --structure."

@@ -17,6 +17,7 @@ from shaftprint.identify.likelihood._prior import Prior
 from shaftprint.models import Role, Structure
 from shaftprint.normalisation import Normalisation
 from shaftprint.torsion import LineCoupling, line_coupling
+from shaftprint.units import rev_s_from_rpm
 
 if TYPE_CHECKING:
     from shaftprint.signals import Mode, WorkingPoint
@@ -150,6 +151,13 @@ class _Test:
         set_point = self.vessel.sensors.set_point
         return self._latency("set-point latency", set_point.latency_s, set_point.latency_std_s)
 
+    def set_point_bend(self) -> Prior:
+        """Return how far the line of the set point may bend, over the speed of the measured working point."""
+        stated_rpm = self.vessel.working_point.engine_speed_rpm
+        share = self.point.engine_speed_rev_s / rev_s_from_rpm(stated_rpm)
+        std = share * self.vessel.sensors.set_point.line_bend_std
+        return Prior(mean=0.0, std=std, sources={"set-point bend": std})
+
     def rack_latency(self) -> Prior | None:
         """Return what is known of the rack's latency, over what was taken off already; None without a rack."""
         rack = self.vessel.sensors.rack
@@ -228,6 +236,7 @@ PRIORS: Mapping[Role, Callable[[_Test], Prior | None]] = {
     ShipRole.COUPLING_DAMPING: lambda test: test.over_torque(ShipRole.COUPLING_DAMPING, "coupling damping"),
     ShipRole.TORQUE_LATENCY: _Test.torque_latency,
     ShipRole.SET_POINT_LATENCY: _Test.set_point_latency,
+    ShipRole.SET_POINT_BEND: _Test.set_point_bend,
     ShipRole.RACK_LATENCY: _Test.rack_latency,
     ShipRole.LOG_LATENCY: _Test.log_latency,
     ShipRole.LOAD_SLOPE: _Test.load_slope,
