@@ -1,4 +1,4 @@
-"""Planned tests on ships that are less kind than the plan: is what the program trusts right?
+"""Planned tests on ships that are less kind than their plan: what is trusted, held against the truth.
 
 Every test has a truth of its own, drawn as in ``monte_carlo_short.py``, and beside it what that leaves out: the line of
 the lever bends by up to 0.3 % per volt, has play, and comes to the control unit in steps; the noise of the ship is 0.5
@@ -27,9 +27,10 @@ sys.path.insert(0, str(ROOT))
 
 from benchmarks import leg_outcomes, monte_carlo_recordings, monte_carlo_short  # noqa: E402
 from benchmarks.kept_outcomes import kept  # noqa: E402
-from benchmarks.monte_carlo_short import Row, Ship, between, drawn_ship, rows_of, summary  # noqa: E402
+from benchmarks.monte_carlo_short import Row, Ship, between, drawn_ship, summary  # noqa: E402
 from benchmarks.monte_carlo_tables import write_between_marks  # noqa: E402
 from benchmarks.planned_tests import VESSEL as TUG  # noqa: E402
+from shaftprint.campaign import Campaign  # noqa: E402
 from shaftprint.catalogue import structure  # noqa: E402
 from shaftprint.errors import ShaftprintError  # noqa: E402
 from shaftprint.fingerprint import Fingerprint  # noqa: E402
@@ -79,7 +80,20 @@ def unkind_ship(seed: int) -> Ship:
     return replace(ship, tug=tug)
 
 
-def true_values(truth: Truth, ship: Ship, signals: Signals) -> dict[str, float]:
+def play_delay_s(play_v: float, campaign: Campaign) -> float:
+    """Return by how much play makes a set point late that moves like noise, the mean over the legs [s].
+
+    Behind play of the width ``w`` it is ``U - w / 2 sign(dU/dt)``, of which ``sqrt(2 / pi) w / 2 (dU/dt) / rms(dU/dt)``
+    is alike (J. J. Bussgang, Crosscorrelation functions of amplitude-distorted Gaussian signals, 1952).
+    """
+    rms = [
+        np.sqrt(sum(0.5 * (2.0 * np.pi * k / leg.length_of_period_s * v) ** 2 for k, v in leg.lines.items()))
+        for leg in campaign.legs
+    ]
+    return float(np.mean([np.sqrt(2.0 / np.pi) * 0.5 * play_v / one for one in rms]))
+
+
+def true_values(truth: Truth, ship: Ship, signals: Signals, campaign: Campaign) -> dict[str, float]:
     """Return the truth of the numbers of the line at the working point of the first leg, as its gauge shows it."""
     zero_nm = truth.physical["torque_zero_offset_nm"]
     of_gauge = monte_carlo_recordings.Ship(
@@ -92,6 +106,8 @@ def true_values(truth: Truth, ship: Ship, signals: Signals) -> dict[str, float]:
     square = at_first**2 + 2.0 * bend * (speed_rpm - truth.engine_speed_rpm)
     known["c_set"] = -np.sqrt(square) / (60.0 * signals.calibration.slope_rev_s_per_v)
     known["b_set"] = bend * speed_rpm / square
+    known["t_sp"] += play_delay_s(tug.set_point_hysteresis_v, campaign)
+    known["t_d + t_sp"] = known["t_d"] + known["t_sp"]
     loop = margins(closed := structure("GAUGE-CLOSED"), closed.vector({p.name: known[p.name] for p in closed.free}))
     return (
         known
@@ -115,7 +131,7 @@ def tested(seed: int, trial: Trial) -> dict[str, Any]:
         except ShaftprintError as error:
             return {"seed": seed, "refused": str(error)}
     found = survey.fingerprint
-    rows = _rows(found, true_values(truth, ship, survey.signals))
+    rows = _rows(found, true_values(truth, ship, survey.signals, trial.campaign))
     return {
         "seed": seed,
         "trustworthy": found.verdict.trustworthy,
@@ -123,7 +139,9 @@ def tested(seed: int, trial: Trial) -> dict[str, Any]:
         "p": survey.identification.p_value,
         "bend": ship.tug.set_point_bend_per_v,
         "cpu_s": time.process_time() - began,
-        "rows": {name: {field: getattr(row, field) for field in Row.__dataclass_fields__} for name, row in rows.items()},
+        "rows": {
+            name: {field: getattr(row, field) for field in Row.__dataclass_fields__} for name, row in rows.items()
+        },
     }
 
 
@@ -131,7 +149,9 @@ def _rows(found: Fingerprint, true: Mapping[str, float]) -> dict[str, Row]:
     """Return the numbers of the line beside their truth: what the bent line is as a whole, a truth cannot say."""
     numbers = (*found.parameters, *found.combinations, *found.physical, *found.margins)
     trusted = set(found.verdict.trusted)
-    return {q.name: monte_carlo_short._row(q, true[q.name], trusted=q.name in trusted) for q in numbers if q.name in true}
+    return {
+        q.name: monte_carlo_short._row(q, true[q.name], trusted=q.name in trusted) for q in numbers if q.name in true
+    }
 
 
 def planned_from_card(minutes: int, folder: Path) -> Path:

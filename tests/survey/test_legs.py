@@ -5,12 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from shaftprint.catalogue import structure
-from shaftprint.identify import identify_jointly
+from shaftprint.catalogue import shipped_structure, structure
+from shaftprint.identify import identify_jointly, priors_from_vessel
 from shaftprint.identify.fit import part_tests
 from shaftprint.signals import WorkingPoint
 from shaftprint.spectra import FrequencyResponse
-from shaftprint.survey import structure_at
+from shaftprint.survey import at_speeds, structure_at
+from shaftprint.vessel import load_vessel
 
 OMEGA = np.geomspace(0.2, 15.0, 25)
 GAUGE = structure("GAUGE-CLOSED")
@@ -95,3 +96,65 @@ def test_a_fit_to_one_response_is_one_part():
     (test,) = part_tests(fit)
     assert test.p_value == pytest.approx(fit.p_value, abs=0.02)
     assert replace(test).degrees_of_freedom == fit.degrees_of_freedom
+
+
+def _fit_of_bent_lever(structure_of_fit, *, seed):
+    """Return a fit to a lever whose slope is 0.6 % less at 14 than at 20 rev/s: a bend of 0.02 at twice the speed."""
+    rng = np.random.default_rng(seed)
+    pairs = []
+    for point, scale in ((MAIN, 1.003), (OTHER, 0.997)):
+        true, fitted = (structure_at(one, point, main=MAIN) for one in (GAUGE, structure_of_fit))
+        pairs.append((fitted, _response({"c_set": scale}, true, rng=rng)))
+    return identify_jointly(pairs, rng=np.random.default_rng(1))
+
+
+def _away(fit, name, truth):
+    estimate = next(one for one in fit.parameters if one.name == name)
+    return (estimate.value - truth) / estimate.std
+
+
+def test_lever_that_bends_moves_no_gain():
+    # 1.003 (1 - 0.3 b) = 0.997
+    bend = 0.006 / 1.003 / 0.3
+    fit = _fit_of_bent_lever(at_speeds(GAUGE, (20.0, 14.0)), seed=0)
+    assert fit.p_value > 0.01
+    assert abs(_away(fit, "b_set", bend)) < 3.5
+    assert abs(_away(fit, "K_p", 5.0)) < 3.5
+    assert abs(_away(fit, "c_set", 1.003)) < 3.5
+    # one scale for both speeds: what the bend does is put into the line, or seen as a misfit
+    plain = _fit_of_bent_lever(GAUGE, seed=0)
+    assert plain.p_value < 1e-3 or abs(_away(plain, "K_p", 5.0)) > 3.5
+
+
+def test_bend_acts_at_other_speeds_alone_and_keeps_its_gradient():
+    bent = at_speeds(GAUGE, (20.0, 14.0))
+    values, s = {"b_set": 0.02}, 1j * OMEGA
+    at_main, at_other = structure_at(bent, MAIN, main=MAIN), structure_at(bent, OTHER, main=MAIN)
+    plain = structure_at(GAUGE, OTHER, main=MAIN)
+    assert at_main.response(bent.vector(values), s) == pytest.approx(GAUGE.response(GAUGE.vector({}), s))
+    # at 14 of 20 rev/s the slope is 1 - 0.3 * 0.02 of that at 20
+    assert at_other.response(bent.vector(values), s) == pytest.approx(0.994 * plain.response(GAUGE.vector({}), s))
+    _, slope = at_other.gradient(bent.vector(values), s, ["b_set"])
+    assert slope[0] == pytest.approx(-0.3 * plain.response(GAUGE.vector({}), s))
+
+
+def test_legs_of_one_speed_have_no_bend():
+    assert at_speeds(GAUGE, (20.0, 20.1)) is GAUGE
+    assert at_speeds(structure("ENGINE"), (20.0, 14.0)).names == structure("ENGINE").names
+
+
+def test_structure_of_a_file_with_a_bend_is_bent():
+    names = at_speeds(GAUGE, (20.0, 14.0)).names
+    assert shipped_structure("GAUGE-CLOSED", names).names == names
+    assert shipped_structure("GAUGE-CLOSED", GAUGE.names).names == GAUGE.names
+
+
+def test_vessel_file_says_how_far_a_lever_may_bend():
+    vessel = load_vessel("stan-tug-1205")
+    bent = at_speeds(GAUGE, (20.0, 14.0))
+    # 1.5 % at twice the 1183.8 rpm of the vessel file is 1.521 % at twice 1200 rpm
+    assert priors_from_vessel(bent, vessel, MAIN)["b_set"].std == pytest.approx(0.015 * 1200.0 / 1183.8)
+    sensor = vessel.sensors.set_point.model_copy(update={"bend_std": 0.002})
+    stated = vessel.model_copy(update={"sensors": vessel.sensors.model_copy(update={"set_point": sensor})})
+    assert priors_from_vessel(bent, stated, MAIN)["b_set"].std == pytest.approx(0.002 * 1200.0 / 1183.8)
+    assert "b_set" not in priors_from_vessel(GAUGE, vessel, MAIN)

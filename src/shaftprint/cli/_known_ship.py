@@ -34,6 +34,7 @@ from shaftprint.identify import (
 from shaftprint.models import Structure
 from shaftprint.survey import (
     assumed_noise,
+    at_speeds,
     expected_of_ship,
     load_trial,
     measure,
@@ -115,15 +116,16 @@ def knowledge_of(stated: Stated, *, steps: Steps) -> Knowledge:
     line = _line(stated, recorded)
     limits = _limits(stated, line, recorded)
     speeds, point_rpm = _speeds(stated, limits), limits.engine_speed_rpm
-    outputs = stated.structure.outputs
+    structure = at_speeds(stated.structure, speeds)
+    outputs = structure.outputs
     levels, source = _noise(stated, recorded)
     noise = {share: noise_at(levels, share * point_rpm) for share in speeds}
     point = stated_working_point(stated.vessel)
-    priors = _known(options, priors_from_vessel(stated.structure, stated.vessel, point))
-    expected = _known(options, expected_from_vessel(stated.structure, stated.vessel, point))
+    priors = _known(options, priors_from_vessel(structure, stated.vessel, point))
+    expected = _known(options, expected_from_vessel(structure, stated.vessel, point))
     return Knowledge(
         vessel=stated.vessel.name,
-        ship=_ship(stated, expected),
+        ship=_ship(stated, structure, expected),
         limits=limits,
         line=line,
         noise={share: level.of_outputs(*outputs) for share, level in noise.items()},
@@ -242,9 +244,9 @@ def _limits(stated: Stated, line: SetPointLine, recorded: _Recorded | None) -> L
     return limits_with(limits, stated.options.limits)
 
 
-def _ship(stated: Stated, expected: Mapping[str, Prior]) -> AssumedShip:
+def _ship(stated: Stated, structure: Structure, expected: Mapping[str, Prior]) -> AssumedShip:
     if stated.first_test is not None:
-        return ship_of_fingerprint(stated.first_test, stated.structure)
-    of_ship = expected_of_ship(stated.structure, stated.vessel)
+        return ship_of_fingerprint(stated.first_test, stated.structure).extended(structure)
+    of_ship = expected_of_ship(structure, stated.vessel)
     unknown = {name: value for name, value in of_ship.items() if name not in expected}
-    return ship_before_test(stated.structure, expected, unknown | dict(stated.options.values))
+    return ship_before_test(structure, expected, unknown | dict(stated.options.values))

@@ -40,6 +40,7 @@ _OPTIONAL = {
 _INERTIAS = ("inertia_upstream_kg_m2", "inertia_downstream_kg_m2")
 _IDEAL = {
     ShipRole.SET_POINT_SCALE: 1.0,
+    ShipRole.SET_POINT_BEND: 0.0,
     ShipRole.TORQUE_LATENCY: 0.0,
     ShipRole.LOAD_SLOPE: _LOAD_SLOPE,
     ShipRole.LOG_LATENCY: 0.0,

@@ -275,6 +275,7 @@ def _steady_state(
             set_point_v=n_set,
             speed_rev_s=speed,
             channel=channel,
+            bend_std=vessel.sensors.set_point.line_bend_std,
             **grid,
             step_v=_step_v(readings),
             coverage=coverage,

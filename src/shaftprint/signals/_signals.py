@@ -1,5 +1,6 @@
 """The noun of the room: what a prepared recording consists of."""
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any, Literal
@@ -60,6 +61,10 @@ class SetPointCalibration:
     """Mean engine speed of each steady level [rev/s], shape (levels,)."""
     level_std_rev_s: FloatArray
     """Standard deviation of each mean speed [rev/s], shape (levels,)."""
+    bend: float = 0.0
+    """Share by which the line is steeper at twice the speed of the working point, where slope and intercept belong."""
+    bend_std: float = math.inf
+    """Standard deviation of that share; infinite where nothing is said of it."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

@@ -17,7 +17,7 @@ from shaftprint.identify import (
 from shaftprint.identify.comparison import StructureComparison, compare_fits
 from shaftprint.identify.fit import fit_of
 from shaftprint.models import Structure
-from shaftprint.signals import Signals, WorkingPoint
+from shaftprint.signals import SetPointCalibration, Signals, WorkingPoint
 from shaftprint.survey._measurement import Measurement, pairs_of
 from shaftprint.survey._progress import SILENT, Progress
 from shaftprint.units import rev_s_from_rpm
@@ -29,7 +29,11 @@ def priors_of(
 ) -> dict[str, Prior]:
     """Return the priors of a structure: those of the vessel file, and what the user states instead or besides."""
     known = priors_from_vessel(structure, vessel, signals.working_point, mode=signals.mode)
-    measured = _from_demand(structure, vessel, signals) | _from_machine(structure, signals)
+    measured = (
+        _from_demand(structure, vessel, signals)
+        | _from_machine(structure, signals)
+        | _from_levels(structure, signals.calibration)
+    )
     return known | measured | dict(stated or {})
 
 
@@ -51,6 +55,14 @@ def _from_machine(structure: Structure, signals: Signals) -> dict[str, Prior]:
         return {}
     prior = Prior(mean=shown[0], std=SHARE_ROUNDING, sources={"machine share": SHARE_ROUNDING})
     return {one.name: prior for one in structure.free if one.role == ShipRole.MACHINE_SHARE}
+
+
+def _from_levels(structure: Structure, line: SetPointCalibration) -> dict[str, Prior]:
+    """Return the bend of the set point's line by its steady levels, in which the vessel file's is counted."""
+    if not np.isfinite(line.bend_std):
+        return {}
+    prior = Prior(mean=line.bend, std=line.bend_std, sources={"set-point bend": line.bend_std})
+    return {one.name: prior for one in structure.free if one.role == ShipRole.SET_POINT_BEND}
 
 
 def stated_working_point(vessel: Vessel) -> WorkingPoint:

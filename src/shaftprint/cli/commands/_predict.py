@@ -7,7 +7,7 @@ import click
 import numpy as np
 
 from shaftprint.campaign import Campaign, load_campaign
-from shaftprint.catalogue import shipped_structure
+from shaftprint.catalogue import shipped_structure, with_bend
 from shaftprint.cli._drive_judge import predict_on_the_bench
 from shaftprint.cli._drive_options import drive_option, expect_not_given
 from shaftprint.cli._known_values import hold_option, named_value, prior_option, rpm_per_volt_option
@@ -120,6 +120,9 @@ def command(
     planned = load_campaign(campaign)
     (chosen,) = chosen_structures([name or closed_loop_of(known, planned)])
     chosen = (chosen if known is None else of_vessel(chosen, known)).held_at(**dict(held))
+    alone = chosen
+    if len({leg.level_v for leg in planned.legs} | ({planned.offset_v} if planned.sines else set())) > 1:
+        chosen = with_bend(chosen)
     _expect_free(freed, chosen)
     if recording is not None:
         if known is None:
@@ -132,7 +135,7 @@ def command(
     }
     assumed = _values_of(chosen, ship.vessel, assumed_priors, freed, values)
     pairs = planned_pairs(chosen, planned, ship)
-    possible = identifiability(chosen, rng=np.random.default_rng(SEED))
+    possible = identifiability(alone, rng=np.random.default_rng(SEED))
     print_prediction(
         planned,
         [response for _, response in pairs],

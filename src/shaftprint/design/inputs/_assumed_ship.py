@@ -36,7 +36,11 @@ RELATIVE_SPREAD: Mapping[Role, float] = {
     ShipRole.INERTIA: 0.2,
 }
 """Standard deviation over the value, before any test, by role: governors differ more than masses do."""
-SPREAD: Mapping[Role, float] = {ShipRole.ENGINE_SPEED_SLOPE: 0.1, ShipRole.LOAD_SLOPE: 0.05}
+SPREAD: Mapping[Role, float] = {
+    ShipRole.ENGINE_SPEED_SLOPE: 0.1,
+    ShipRole.LOAD_SLOPE: 0.05,
+    ShipRole.SET_POINT_BEND: 0.015,
+}
 """Standard deviation in the parameter's unit, before any test, by role."""
 
 
@@ -60,6 +64,13 @@ class AssumedShip(Shown):
     def is_exact(self) -> bool:
         """Whether nothing is uncertain."""
         return not self.covariance.any()
+
+    def extended(self, structure: Structure) -> "AssumedShip":
+        """Return the ship with a structure that has further parameters behind these, with their usual spread."""
+        usual, known = assumed_ship(structure, self.by_name), slice(self.values.size)
+        covariance = usual.covariance.copy()
+        covariance[known, known] = self.covariance
+        return AssumedShip(structure=structure, values=usual.values, covariance=frozen_float(covariance))
 
     def draws(self, count: int, rng: np.random.Generator) -> FloatArray:
         """Return possible ships, with a stable loop and within the bounds, the assumed one first.

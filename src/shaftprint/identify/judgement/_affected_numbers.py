@@ -15,6 +15,9 @@ from shaftprint.reasons import Reason, ReasonKind
 
 ALL: frozenset[Basis] = frozenset(get_args(Basis))
 
+OF_WORKING_POINT: frozenset[Basis] = frozenset(("speed", "set point"))
+"""What a number of the working point is made of, and none of governor, inertia or load."""
+
 WHOLE = "the fit as a whole is not trustworthy"
 
 AFFECTED: Mapping[ReasonKind, tuple[frozenset[Basis], str]] = {

@@ -4,6 +4,8 @@ import math
 
 import numpy as np
 
+from shaftprint.catalogue import ShipRole
+from shaftprint.digits import stated
 from shaftprint.identify.judgement._evidence import Evidence, gain_reserve, loop_delay_s
 from shaftprint.identify.judgement._line_quality import crossings_rad_s
 from shaftprint.identify.judgement._phrases import listed, probability
@@ -11,6 +13,8 @@ from shaftprint.identify.judgement._search_words import wrong_basin_words
 
 # A fit that is better than this probability allows has less noise than its covariance says.
 TOO_GOOD = 0.999
+# So many standard deviations from what was expected are worth a sentence.
+SURPRISING = 3.5
 
 
 def cautions_of(evidence: Evidence) -> tuple[str, ...]:
@@ -19,6 +23,7 @@ def cautions_of(evidence: Evidence) -> tuple[str, ...]:
         *_small_margins(evidence),
         *_perhaps_unstable(evidence),
         *_beyond_the_lines(evidence),
+        *_scale_of_set_point(evidence),
         *_too_good(evidence),
         *_unweighted(evidence),
         *wrong_basin_words(evidence.search.optima),
@@ -63,6 +68,16 @@ def _beyond_the_lines(evidence: Evidence) -> list[str]:
     return [
         f"The margins are extrapolated: the loop gain passes 1 or -1 at {frequencies} rad/s, and the good lines reach "
         f"from {omega[0]:.2g} to {omega[-1]:.2g} rad/s."
+    ]
+
+
+def _scale_of_set_point(evidence: Evidence) -> list[str]:
+    """Return that the set point was recorded at another scale than its line has, which the fit counts."""
+    return [
+        f"The scale of the set point, {one.name} = {stated(one.value, one.std, one.unit)}, is not that of its line: "
+        "the lever bends, or its levels were others; it is counted in all numbers."
+        for one in evidence.identification.parameters
+        if one.role == ShipRole.SET_POINT_SCALE and abs(one.value - 1.0) > SURPRISING * one.std > 0.0
     ]
 
 

@@ -19,8 +19,9 @@ from shaftprint.reasons import Reason, ReasonKind
 PULLED = 3.5
 # A prior that the data hardly sharpen leaves nothing to divide by: the rest is rounding and curvature.
 LEAST_SHARE = 0.3
-# What a sensor is off by; without a prior it is expected at its nominal value, exactly.
-NOMINAL = {ShipRole.SET_POINT_SCALE: 1.0}
+# What a sensor is expected at without a prior, and how far its line may be off: that of the set point is drawn through
+# levels far from the lines, where a lever that bends by 0.3 % a volt has another slope.
+NOMINAL = {ShipRole.SET_POINT_SCALE: (1.0, 0.004)}
 KINDS: dict[Role | None, ReasonKind] = {
     ShipRole.TORQUE_LATENCY: "gauge latency",
     ShipRole.SET_POINT_SCALE: "set-point scale",
@@ -42,8 +43,9 @@ def _pulled(identification: Identification) -> Iterator[Reason]:
             assumed = f"the prior is {stated(prior.mean, prior.std, estimate.unit)}"
             distance = abs(estimate.value - prior.mean) / spread
         elif estimate.role in NOMINAL and estimate.std > 0.0:
-            assumed = f"the nominal value is {number(NOMINAL[estimate.role], estimate.unit)}"
-            distance = abs(estimate.value - NOMINAL[estimate.role]) / estimate.std
+            nominal, std = NOMINAL[estimate.role]
+            assumed = f"the nominal value is {number(nominal, estimate.unit)}"
+            distance = abs(estimate.value - nominal) / np.hypot(estimate.std, std)
         else:
             continue
         if distance > PULLED:

@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Literal
 from shaftprint.arguments import refusing_none
 from shaftprint.errors import IdentificationError
 from shaftprint.identify.fit import Estimate, Identification
-from shaftprint.identify.judgement._affected_numbers import by_weight, clause_of
+from shaftprint.identify.judgement._affected_numbers import OF_WORKING_POINT, basis_of, by_weight, clause_of
 from shaftprint.identify.judgement._cautions import cautions_of
 from shaftprint.identify.judgement._data_contradictions import contradicting_data
 from shaftprint.identify.judgement._evidence import Evidence
@@ -64,7 +64,7 @@ class Verdict(Shown):
     """Which numbers of a fit may be used, and why the others may not."""
 
     trustworthy: bool
-    """Whether the trusted numbers may be used; there is one at least."""
+    """Whether the trusted numbers may be used; one of them at least is of the line, not of its speed or set point."""
     reason: str
     """Why or why not, in one sentence."""
     sentences: tuple[str, ...]
@@ -146,7 +146,8 @@ def assess(
     doubts = {number.name: clause_of(number, every) or imprecise.get(number.name, "") for number in numbers}
     trusted = tuple(name for name, doubt in doubts.items() if not doubt)
     not_trusted = {name: doubt for name, doubt in doubts.items() if doubt}
-    usable = bool(trusted) and not of_fit
+    # a speed that may be used says nothing of governor, inertia or load
+    usable = not of_fit and any(not doubts[one.name] and basis_of(one) - OF_WORKING_POINT for one in numbers)
     cautions = cautions_of(evidence) if usable else ()
     headline = _headline(evidence, every, trusted=trusted, not_trusted=not_trusted, usable=usable)
     sentences = (
@@ -189,7 +190,7 @@ def _headline(
     """Return whether the numbers may be used, and why or why not."""
     if reasons and not usable:
         return reasons[0].sentence
-    if not trusted:
+    if not usable:
         return f"No number is known well enough: {_worded(not_trusted)}."
     if reasons:
         return f"Part of the numbers can be trusted. {reasons[0].sentence}"

@@ -3,7 +3,10 @@
 The demand wanders inside the engine's control unit, and the load moves the speed, both as slowly as a level is long:
 the line is fitted through a wander of which nothing is known beforehand (``_wander.py``). At the working voltage not
 only the levels count: over whole periods of a sine the mean speed is that of the mean voltage, since the governor
-integrates its error. The value of the line at the working voltage is the speed of the working point.
+integrates its error. The value of the line at the working voltage is the speed of the working point. A lever bends by
+some tenths of a per cent a volt: through levels that do not lie evenly about the working voltage a straight line has
+another slope than the lever has there. The bend is fitted where there are three levels, with what is known of it
+beforehand, and is in the deviation of the slope where there are two.
 """
 
 from itertools import pairwise
@@ -26,7 +29,7 @@ if TYPE_CHECKING:
 _SAME_LEVEL = 0.02
 _SAME_LEVEL_V = 0.05
 _LEAST_RELATIVE_STD = 1e-5
-_FEWEST_LEVELS = 2
+_FEWEST_LEVELS, _LEVELS_OF_BEND = 2, 3
 # Stretches and sines are cut into windows of this length [s], longer where there would be too many of them and shorter
 # where there would be too few.
 _WINDOWS_S = (10.0, 5.0, 2.5)
@@ -74,6 +77,7 @@ def calibrate_through_wander(
     rate_hz: float,
     start_s: float,
     channel: str,
+    bend_std: float,
     step_v: float = 0.0,
     coverage: Coverage = EVERYTHING,
 ) -> tuple[SetPointCalibration, float, float]:
@@ -95,6 +99,8 @@ def calibrate_through_wander(
         The grid.
     channel
         Name of the set-point channel, for messages.
+    bend_std
+        Standard deviation of the share by which the line may be steeper at twice the speed.
     step_v
         Step of the set point's values [V]: a level is somewhere within one.
     coverage
@@ -126,14 +132,15 @@ def calibrate_through_wander(
         np.array([values[first:stop].mean() for first, stop in windows]) for values in (set_point_v, speed_rev_s)
     )
     begins, ends = np.array(windows).T / rate_hz
+    bend = 0.0
     if by_sines is not None:
         at_voltage = fit_through_wander(speed - by_sines[0] * (volts - about_v), np.ones((volts.size, 1)), begins, ends)
         value = np.array([at_voltage.value[0], by_sines[0]])
         covariance = np.diag([at_voltage.std[0], by_sines[1]]) ** 2
     else:
-        columns = np.column_stack([np.ones(volts.size), volts - about_v])
-        line = fit_through_wander(speed, columns, begins, ends)
-        value, covariance = line.value, line.covariance
+        value, covariance = _bent_line(speed, volts - about_v, begins, ends, levels=level_v.size, bend_std=bend_std)
+        bend, bend_std = float(value[2]), float(np.sqrt(covariance[2, 2]))
+        value, covariance = value[:2], covariance[:2, :2]
     # from (speed at the working voltage, slope) to (slope, intercept)
     turn = np.array([[0.0, 1.0], [1.0, -about_v]])
     slope, intercept = turn @ value
@@ -146,8 +153,41 @@ def calibrate_through_wander(
         level_v=frozen_float(level_v),
         level_rev_s=frozen_float(level_rev_s),
         level_std_rev_s=frozen_float(level_std),
+        bend=bend,
+        bend_std=bend_std,
     )
     return calibration, float(value[0]), float(np.sqrt(covariance[0, 0]))
+
+
+def _bent_line(
+    speed: FloatArray, about_v: FloatArray, begins: FloatArray, ends: FloatArray, *, levels: int, bend_std: float
+) -> tuple[FloatArray, FloatArray]:
+    """Return speed and slope of the line at the working voltage and its bend, shape (3,), and their covariance.
+
+    Parameters
+    ----------
+    speed, about_v
+        Mean speed [rev/s] of each window, and its voltage from the working voltage [V], shape (windows,).
+    begins, ends
+        When the windows begin and end [s].
+    levels
+        Number of steady levels.
+    bend_std
+        Standard deviation of the bend about none, before the test.
+    """
+    line = np.column_stack([np.ones(speed.size), about_v])
+    (middle, slope), *_ = np.linalg.lstsq(line, speed, rcond=None)
+    # a slope s (1 + b (n / n_0 - 1)) with n - n_0 = s U
+    bent = 0.5 * slope**2 / middle * about_v**2
+    if levels >= _LEVELS_OF_BEND and speed.size >= _FEWEST_WINDOWS:
+        free = fit_through_wander(speed, np.column_stack([line, bent]), begins, ends)
+        share = free.covariance[:, 2] / (free.covariance[2, 2] + bend_std**2)
+        return free.value - share * free.value[2], free.covariance - np.outer(share, free.covariance[2])
+    straight = fit_through_wander(speed, line, begins, ends)
+    turned, *_ = np.linalg.lstsq(line, bent, rcond=None)
+    moves = np.append(-turned, 1.0)
+    covariance = np.pad(straight.covariance, (0, 1)) + bend_std**2 * np.outer(moves, moves)
+    return np.append(straight.value, 0.0), covariance
 
 
 def _slope_of_sines(
