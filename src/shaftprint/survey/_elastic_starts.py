@@ -15,6 +15,8 @@ from shaftprint.identify.search import GivenStarts
 from shaftprint.models import Structure
 
 _MODES, _LOWEST_HZ, _BEYOND = 16, 1.0, 1.5
+# Share of the line that either body has at least, and inertia time of the line [s].
+_LEAST_BODY, _LEAST_LINE_S = 0.01, 0.01
 # Of rubber couplings.
 _DAMPING_RATIO = 0.07
 # Optima of the rigid line that are taken along.
@@ -59,7 +61,11 @@ def _start(elastic: Structure, settings: Settings, optimum: dict[str, float], mo
             ShipRole.COUPLING_DAMPING,
         )
     )
-    pair = 1.0 / (values[upstream] - values[driven]) + 1.0 / (values[driven] + values[downstream])
+    # an optimum of the rigid line may have lost one of its bodies, and nothing swings against nothing
+    least = _LEAST_BODY * max(values[upstream] + values[downstream], _LEAST_LINE_S)
+    pair = sum(
+        1.0 / max(body, least) for body in (values[upstream] - values[driven], values[driven] + values[downstream])
+    )
     omega = 2.0 * np.pi * mode_hz
     values |= {stiffness: omega**2 / pair, damping: 2.0 * _DAMPING_RATIO * omega / pair}
     return np.array([values[p.name] for p in elastic.free])
