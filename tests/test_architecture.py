@@ -140,8 +140,9 @@ def test_every_file_is_described_and_short(path):
 
 # ---- tests ----
 
-# Tests that come in by the doors let the files behind them change: each private file that a test names is a debt.
-MOST_PRIVATE_NAMES = 39
+# Tests that come in by the doors let the files behind them change: each file of another room that a test names is a
+# debt. The tests of a room may look at its files.
+MOST_PRIVATE_NAMES = 10
 
 
 def private_files(path):
@@ -159,5 +160,11 @@ def private_files(path):
 
 
 def test_tests_come_in_by_the_doors():
-    found = [name for path in sorted((ROOT / "tests").rglob("*.py")) for name in private_files(path)]
+    tests = ROOT / "tests"
+    found = [
+        name
+        for path in sorted(tests.rglob("*.py"))
+        for name in private_files(path)
+        if f" shaftprint.{path.relative_to(tests).parts[0]}." not in name
+    ]
     assert len(found) <= MOST_PRIVATE_NAMES, "\n".join(found)
