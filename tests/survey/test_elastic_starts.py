@@ -31,7 +31,8 @@ def test_modes_of_two_bodies_on_their_coupling():
 
 def test_a_body_that_vanished_at_the_optimum_has_a_hundredth_of_the_line():
     starts = _starts(_rigid(tau_up=0.0, tau_dn=0.5))
-    assert np.all(np.isfinite(starts["k_c"])) and np.all(starts["k_c"] > 0.0)
+    assert np.all(np.isfinite(starts["k_c"]))
+    assert np.all(starts["k_c"] > 0.0)
     # bodies of 0.005 and 0.5 s: k (200 + 2)
     assert np.isclose(np.sqrt(202.0 * starts["k_c"][0]) / (2.0 * np.pi), 1.0)
     assert np.all(np.isfinite(_starts(_rigid(tau_up=0.0, tau_dn=0.0))["k_c"]))
