@@ -217,6 +217,21 @@ def test_a_standstill_ends_in_a_sentence(make_channel):
     assert reading.repairs == ()
 
 
+@pytest.mark.parametrize("edge", ["rising", "falling"])
+@pytest.mark.parametrize("rest_s", [1.2, 4.0])
+def test_an_engine_that_starts_behind_a_lone_edge_is_counted_once(rest_s, edge, make_channel):
+    """The level at which a logger begins looks like a pulse; then nothing, until the shaft turns."""
+    turning = Turning(speed_rev_s=15.0, swing=0.02, duration_s=4.0)
+    volts = np.full(round(10_000.0 * rest_s), 0.3)
+    volts[3:8] = 4.7
+    volts = np.append(volts, wheel_pulses(turning, "60-2").voltage(10_000.0, 4.0))
+    reading = reading_of(volts, "60-2", make_channel, rate_hz=10_000.0, edge=edge)
+    # 58 teeth a turn; first and last tooth stand anywhere within the turn of 0.07 s
+    assert reading.pulse_rate_hz == pytest.approx(58.0 * turning.mean_speed(0.0, 4.0), rel=0.002)
+    assert [gap.reason for gap in reading.gaps] == ["has no pulses"]
+    assert reading.gaps[0].stop_s == pytest.approx(rest_s, abs=0.1)
+
+
 def test_a_rate_that_is_too_slow_is_refused_with_the_rate_that_would_do(make_channel):
     turning = Turning(swing=0.0, ripple=0.0)
     volts = wheel_pulses(turning, "60-2").voltage(1000.0, 40.0)

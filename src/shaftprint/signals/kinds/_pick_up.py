@@ -9,7 +9,7 @@ import numpy as np
 from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.signals._channel_signals import SpeedSignal
 from shaftprint.signals._channels import Advance, blocks, find_channel, time_of
-from shaftprint.signals._gaps import Gap, bridge, clock_gaps
+from shaftprint.signals._gaps import Gap, bridge, clock_gaps, merged
 from shaftprint.signals._signals import Repair, StripAngles
 from shaftprint.signals.conditioning import Reading, pulse_period_speed
 from shaftprint.signals.kinds._encoder_speed import judge_encoder, read_encoder
@@ -241,7 +241,7 @@ def pulse_gaps(channel: "Channel", train: PulseTrain, strips: int) -> tuple[Gap,
 
     With several strips a stretch behind a gap that is too short to show at which strip it begins belongs to the gap.
     """
-    mean = (train.position[-1] - train.position[0]) / train.number[-1]
+    mean = (train.position[-1] - train.position[0]) / (train.number[-1] - train.number[0])
     ends = np.concatenate([[0.0], train.position, [float(channel.count)]])
     long = np.flatnonzero(np.diff(ends) > max(_LONGEST_GAP_S * channel.rate_hz, _LONGEST_GAP_PULSES * mean))
     stretches = [(float(ends[interval]), float(ends[interval + 1])) for interval in long]
@@ -253,7 +253,9 @@ def pulse_gaps(channel: "Channel", train: PulseTrain, strips: int) -> tuple[Gap,
             channel=channel.name,
             start_s=time_of(channel, one.first),
             stop_s=time_of(channel, one.last),
-            reason="has teeth in another order than before, as where a shaft stops or turns back,",
+            reason="has teeth that cannot be told from each other yet, as where a shaft starts,"
+            if one.first <= train.position[0]
+            else "has teeth in another order than before, as where a shaft stops or turns back,",
         )
         for one in train.lost
     ]
@@ -273,9 +275,11 @@ def pulse_gaps(channel: "Channel", train: PulseTrain, strips: int) -> tuple[Gap,
 
 def _counted(train: PulseTrain, time_s: FloatArray, gaps: Sequence[Gap]) -> tuple[float, float]:
     """Return the time outside of gaps [s] and the number of pulses in it."""
-    seconds, pulses = float(time_s[-1] - time_s[0]), float(train.number[-1])
-    for gap in gaps:
-        inside = np.flatnonzero((time_s >= gap.start_s) & (time_s <= gap.stop_s))
+    seconds, pulses = float(time_s[-1] - time_s[0]), float(train.number[-1] - train.number[0])
+    bare = [replace(gap, reach_s=0.0) for gap in gaps]
+    # gaps overlap: what two of them take out is missing once
+    for first_s, last_s in merged(bare, float(time_s[0]), float(time_s[-1])):
+        inside = np.flatnonzero((time_s >= first_s) & (time_s <= last_s))
         if inside.size > 1:
             seconds -= float(time_s[inside[-1]] - time_s[inside[0]])
             pulses -= float(train.number[inside[-1]] - train.number[inside[0]])

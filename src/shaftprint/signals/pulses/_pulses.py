@@ -26,6 +26,10 @@ _BOUNCE = 0.1
 _LARGEST_SHARE = 0.05
 _FEWEST_PULSES = 4 * _NEIGHBOURS
 
+# A pulse at an end of the recording with a silence of so many pitches beside it is counted with nothing: before a shaft
+# starts, the level at which a logger begins may look like one.
+_SILENT = 8
+
 # At the ends there are neighbours on one side only. A shaft that starts turns faster by more than this from one pulse
 # to the next; then nothing tells a long interval from a missing pulse.
 _STARTING = 1.05
@@ -162,8 +166,8 @@ def count_pitches(position: FloatArray, *, channel: str, spacings: Sequence[int]
     long = interval > _LONG * np.maximum(before, after)
     pitch[long] = np.rint(interval[long] / _usual(interval, np.flatnonzero(long))).astype(np.int64)
     # what comes before the first regular intervals of a shaft that starts cannot be counted, and so at the other end
-    first = _uncounted(interval, pitch)
-    last = kept.size - _uncounted(interval[::-1], pitch[::-1])
+    first = _uncounted(interval, pitch, longest=max(spacings))
+    last = kept.size - _uncounted(interval[::-1], pitch[::-1], longest=max(spacings))
     return Pitches(position=kept[first:last], pitch=pitch[first : last - 1], doubled=np.array(doubled))
 
 
@@ -187,9 +191,9 @@ def expect_few_faults(faults: Sequence[PulseFault], pulses: int, *, channel: str
         )
 
 
-def _uncounted(interval: FloatArray, pitch: IntArray) -> int:
+def _uncounted(interval: FloatArray, pitch: IntArray, *, longest: int) -> int:
     """Return how many pulses at the beginning stand alone because the shaft only starts to turn."""
-    first = 0
+    first = 1 if interval.size > _NEIGHBOURS and pitch[0] > _SILENT * longest else 0
     while first + _NEIGHBOURS < interval.size and pitch[first] != 1:
         following = interval[first + 1 : first + 3] / pitch[first + 1 : first + 3]
         if following[0] < _STARTING * following[1]:

@@ -145,7 +145,8 @@ def unplaced_stretches(train: "PulseTrain", strips: int, gaps: IntArray) -> list
     starts, ends = np.concatenate([[0], borders + 1]), np.concatenate([borders, [train.number.size - 1]])
     longest = int(np.argmax(ends - starts))
     stretches = []
-    for gap in gaps.tolist():
+    # across a silence without a jump of the number the count goes on, as of a shaft that starts
+    for gap in np.intersect1d(gaps, borders).tolist():
         behind = int(np.searchsorted(starts, gap, side="right"))
         # behind, as seen from the longest stretch, at which the count begins
         stretch = behind if behind > longest else behind - 1
