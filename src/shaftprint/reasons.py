@@ -11,6 +11,7 @@ ReasonKind: TypeAlias = Literal[
     "legs apart",
     "elastic coupling",
     "gauge scale",
+    "speed scale",
     "set-point shape",
     "set-point scale",
     "gauge latency",

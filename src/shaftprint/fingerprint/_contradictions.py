@@ -2,7 +2,8 @@
 
 A torque gauge that shows ``f`` times the torque makes the inertia behind it and the torque coefficient ``f`` times too
 large, both alike. A propeller that is fouled or bent changes the torque coefficient and not the inertia. So a torque
-coefficient that is off alone is a finding about the ship; off by the same factor as the inertia, it is the gauge.
+coefficient that is off alone is a finding about the ship; off by the same factor as the inertia, it is the gauge; off
+by the square of its factor, it is the speed (``scale_reasons`` of the room ``signals``).
 """
 
 import math
@@ -11,9 +12,12 @@ from typing import TYPE_CHECKING
 
 from shaftprint.fingerprint._quantity import Quantity
 from shaftprint.reasons import Reason
+from shaftprint.signals import ScaleEvidence, scale_reasons
+from shaftprint.units import rpm_from_rev_s
 
 if TYPE_CHECKING:
-    from shaftprint.signals import WorkingPoint
+    from shaftprint.campaign import Campaign
+    from shaftprint.signals import Signals
     from shaftprint.vessel import Vessel
 
 # So many standard deviations of all that is stated, the scale of the gauge included, are no chance.
@@ -33,7 +37,7 @@ class _Factor:
 
 
 def contradictions(
-    physical: tuple[Quantity, ...], working_point: "WorkingPoint", vessel: "Vessel"
+    physical: tuple[Quantity, ...], signals: "Signals", vessel: "Vessel", campaign: "Campaign"
 ) -> tuple[Reason, ...]:
     """Return what a test contradicts of the vessel file so that its numbers are in doubt.
 
@@ -41,18 +45,21 @@ def contradictions(
     ----------
     physical
         Physical values beside those of the vessel file.
-    working_point, vessel
-        Where the test was made, and what was tested.
+    signals, vessel, campaign
+        Where the test was made, what was tested, and what was asked of it.
     """
     named = {quantity.name: quantity for quantity in physical}
     coefficient, inertia = (_factor(named.get(name)) for name in ("K_Q", "I_dn"))
+    off_by_one_factor = _scales(coefficient, inertia, signals, vessel, campaign)
+    if off_by_one_factor:
+        return off_by_one_factor
     if coefficient is None or inertia is None or abs(coefficient.log) <= FAR * coefficient.std:
         return ()
     apart = abs(inertia.log - coefficient.log)
     nearer_to_it = apart < abs(inertia.log) and apart < ALIKE * math.hypot(inertia.std, coefficient.std)
     if not nearer_to_it:
         return ()
-    torque = working_point.shaft_torque_nm / vessel.working_point.driving_torque_nm
+    torque = signals.working_point.shaft_torque_nm / vessel.working_point.driving_torque_nm
     return (
         Reason(
             kind="gauge scale",
@@ -64,6 +71,27 @@ def contradictions(
                 "too, fouling K_Q alone."
             ),
         ),
+    )
+
+
+def _scales(
+    coefficient: _Factor | None, inertia: _Factor | None, signals: "Signals", vessel: "Vessel", campaign: "Campaign"
+) -> tuple[Reason, ...]:
+    """Return a reason where one factor of the speed, or the ratio of the gear in the torque, explains what is off."""
+    factors = {"I_dn": inertia, "K_Q": coefficient}
+    of_fit = (
+        {}
+        if inertia is None
+        else {"I_dn": ScaleEvidence(log=inertia.log, std=inertia.std, of_speed=-1.0, of_torque=1.0)}
+    )
+    points = [leg.working_point.engine_speed_rev_s for leg in signals.legs]
+    return scale_reasons(
+        signals.working_point,
+        vessel,
+        campaign,
+        levels_rpm=[rpm_from_rev_s(speed) for speed in (*signals.calibration.level_rev_s.tolist(), *points)],
+        of_fit=of_fit,
+        beside={name: math.exp(factor.log) for name, factor in factors.items() if factor is not None},
     )
 
 

@@ -1,5 +1,6 @@
 """What a reader of a fingerprint must know, in words."""
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -15,6 +16,7 @@ from shaftprint.identify.fit import Estimate
 from shaftprint.identify.judgement import doubts_of
 from shaftprint.identify.likelihood import PRIOR_OF
 from shaftprint.identify.uncertainty import Budget, Profile
+from shaftprint.reasons import Reason
 
 if TYPE_CHECKING:
     from shaftprint.vessel import Vessel
@@ -51,11 +53,13 @@ def findings_of(
     profile: Profile | None = None,
     *,
     vessel: "Vessel | None" = None,
+    reasons: Sequence[Reason] = (),
 ) -> tuple[str, ...]:
     """Return the findings of one identification, most important first.
 
     What is poorly determined is decided by the rule of the verdict, with the same profile likelihood. With a vessel
-    whose file states the torque coefficient of both directions, one that is that of the other is said to be.
+    whose file states the torque coefficient of both directions, one that is that of the other is said to be. What
+    reasons explain by a scale of the files is no fault of the ship.
     """
     return (
         *_stability(identification),
@@ -65,7 +69,7 @@ def findings_of(
         *_poorly_determined(identification, profile),
         *_resting_on_priors(identification, uncertainty),
         *_gauge_zero(physical),
-        *_against_expected(physical, vessel),
+        *_against_expected(physical, vessel, by_scale=bool(reasons)),
         *(f"Line {name} is left out: {reason}." for name, reason in left_out.items()),
     )
 
@@ -187,7 +191,7 @@ def _gauge_zero(physical: tuple[Quantity, ...]) -> list[str]:
     ]
 
 
-def _against_expected(physical: tuple[Quantity, ...], vessel: "Vessel | None") -> list[str]:
+def _against_expected(physical: tuple[Quantity, ...], vessel: "Vessel | None", *, by_scale: bool) -> list[str]:
     findings = []
     for quantity in physical:
         # the zero of the gauge, expected at zero, has its own sentence
@@ -199,7 +203,8 @@ def _against_expected(physical: tuple[Quantity, ...], vessel: "Vessel | None") -
             unit = _unit(quantity)
             findings.append(
                 f"{quantity.name} = {quantity.value:.4g}{unit} against {quantity.expected:.4g}{unit} of the vessel "
-                f"file: a factor {factor:.2f}.{_other_direction(quantity, vessel) or WHY.get(quantity.name, '')}"
+                f"file: a factor {factor:.2f}."
+                f"{'' if by_scale else _other_direction(quantity, vessel) or WHY.get(quantity.name, '')}"
             )
     return findings
 

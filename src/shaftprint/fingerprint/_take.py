@@ -112,11 +112,12 @@ def take_fingerprint(
     stated_conditions = conditions_stated(vessel, campaign, trial_conditions, tested_at)
     conditions = _conditions(identification, signals, vessel, left_out, stated_conditions)
     margin = margin_quantities(identification, profiled, stated)
+    off = contradictions(physical, signals, vessel, campaign)
     verdict = assess(
         identification,
         profile=profiled,
         signal_to_noise=signal_to_noise,
-        reasons=(*contradictions(physical, signals.working_point, vessel), *reasons),
+        reasons=(*off, *reasons),
         further=[_estimate(q) for q in (*physical, *margin, conditions.engine_speed, conditions.shaft_torque)],
         assumptions=assumptions_of(identification, vessel),
         explained_share=explained_share,
@@ -146,7 +147,7 @@ def take_fingerprint(
         calibration=calibration_quantities(signals, machine=vessel.machine.word),
         quality=_quality(identification, signals, signal_to_noise),
         verdict=verdict,
-        findings=findings_of(identification, physical, stated, left_out, profiled, vessel=vessel),
+        findings=findings_of(identification, physical, stated, left_out, profiled, vessel=vessel, reasons=off),
     )
 
 

@@ -34,12 +34,13 @@ from shaftprint.signals._inspect import ChannelReport, PulseReport, channel_repo
 from shaftprint.signals._moved_beside import EXCITATIONS, MovedBeside, moved_beside
 from shaftprint.signals._orders import TrackedOrder, tracked_orders
 from shaftprint.signals._prepare import find_tests, prepare_signals
+from shaftprint.signals._scale_reasons import scale_reasons
 from shaftprint.signals._signals import Repair, SetPointCalibration, SetPointDelay, Signals, StepDelay, StripAngles
 from shaftprint.signals._working_points import LegState, WorkingPoint
 from shaftprint.signals.description import Description
 from shaftprint.signals.excitation import FoundTest, common_shift_s, proposed_campaign
 from shaftprint.signals.kinds import KINDS, ChannelKind
-from shaftprint.signals.levels import deviation
+from shaftprint.signals.levels import ScaleEvidence, deviation
 
 __all__ = [
     "EXCITATIONS",
@@ -62,6 +63,7 @@ __all__ = [
     "MovedBeside",
     "PulseReport",
     "Repair",
+    "ScaleEvidence",
     "SetPointCalibration",
     "SetPointDelay",
     "Signals",
@@ -82,5 +84,6 @@ __all__ = [
     "prepare_signals",
     "proposed_campaign",
     "read_channels",
+    "scale_reasons",
     "tracked_orders",
 ]

@@ -23,6 +23,7 @@ WHOLE = "the fit as a whole is not trustworthy"
 AFFECTED: Mapping[ReasonKind, tuple[frozenset[Basis], str]] = {
     "recording clock": (ALL, "it depends on the clock of the recording"),
     "channel clock": (ALL, "it depends on the clocks of the channels running alike"),
+    "speed scale": (ALL, "it depends on a speed that is off by one factor"),
     "clipping": (ALL - {"speed"}, "it depends on a torque that is clipped"),
     "gauge steadiness": (
         ALL - {"speed", "set point", "delay"},

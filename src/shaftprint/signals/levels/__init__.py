@@ -13,6 +13,14 @@ from shaftprint.signals.levels._leg_periods import LegPeriods, leg_periods
 from shaftprint.signals.levels._leg_state import LegSamples, calibration_of_legs, leg_state, stretch_of
 from shaftprint.signals.levels._load import torque_of_mean_load
 from shaftprint.signals.levels._repeated_periods import repeated_periods
+from shaftprint.signals.levels._speed_scale import (
+    ScaleDoubt,
+    ScaleEvidence,
+    asked_speed,
+    load_over_expected,
+    scale_doubt,
+    scale_evidence,
+)
 from shaftprint.signals.levels._steadiness import expect_steady_gauge
 from shaftprint.signals.levels._steady import SteadyStretch, steady_stretches
 from shaftprint.signals.levels._wander import fit_through_wander
@@ -34,7 +42,10 @@ __all__ = [
     "LegPeriods",
     "LegSamples",
     "LowLines",
+    "ScaleDoubt",
+    "ScaleEvidence",
     "SteadyStretch",
+    "asked_speed",
     "calibrate",
     "calibrate_through_wander",
     "calibration_of_legs",
@@ -49,9 +60,12 @@ __all__ = [
     "fit_through_wander",
     "leg_periods",
     "leg_state",
+    "load_over_expected",
     "low_lines",
     "mean_of_stretches",
     "repeated_periods",
+    "scale_doubt",
+    "scale_evidence",
     "scale_of_sines",
     "steady_stretches",
     "stretch_of",

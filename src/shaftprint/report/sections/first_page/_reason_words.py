@@ -34,6 +34,10 @@ _WORDS: "Mapping[ReasonKind, tuple[str, str]]" = {
         "The scale of the torque gauge is in doubt.",
         "Calibrate the torque gauge or correct its scale in the vessel file, then identify once more.",
     ),
+    "speed scale": (
+        "The speed is off by one factor.",
+        "Check how many pulses the pick-up gives in a turn, correct the vessel file, then identify once more.",
+    ),
     "set-point shape": (
         "The speed set point was not recorded as it was sent.",
         "Log the set point where it enters the governor, without a filter, and repeat the test.",

@@ -1,0 +1,143 @@
+"""Why the scales of speed and torque are in doubt, with the field of the vessel file that would mend it."""
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
+
+from shaftprint.reasons import Reason
+from shaftprint.signals.levels import (
+    ScaleDoubt,
+    ScaleEvidence,
+    asked_speed,
+    load_over_expected,
+    scale_doubt,
+    scale_evidence,
+)
+from shaftprint.units import rpm_from_rev_s
+
+if TYPE_CHECKING:
+    from shaftprint.campaign import Campaign
+    from shaftprint.signals._working_points import WorkingPoint
+    from shaftprint.vessel import SpeedSensor, Vessel
+
+# A factor is that of the gear within so much: the efficiency of the gear, and a load of another day.
+_LIKE_GEAR = 0.15
+
+
+def scale_reasons(
+    point: "WorkingPoint",
+    vessel: "Vessel",
+    campaign: "Campaign | None" = None,
+    *,
+    levels_rpm: Sequence[float] = (),
+    of_fit: Mapping[str, ScaleEvidence] | None = None,
+    beside: Mapping[str, float] | None = None,
+) -> tuple[Reason, ...]:
+    """Return a reason where the speed is off by one factor, or the torque is that of another shaft.
+
+    Parameters
+    ----------
+    point
+        Mean speed and torque, and the set point at which they were.
+    vessel
+        The vessel file.
+    campaign
+        Says which speed was asked for; None where nobody says what was done in the recording.
+    levels_rpm
+        Mean engine speeds that were governed [rpm].
+    of_fit
+        What a fit tells of the scales besides, by its name.
+    beside
+        Found over expected of what follows from them, by name, to be told.
+    """
+    further = of_fit or {}
+    evidence = (*scale_evidence(point, vessel, campaign), *further.values())
+    doubt = scale_doubt(evidence, vessel, levels_rpm=levels_rpm)
+    if doubt is None:
+        return ()
+    told = beside or {}
+    if doubt.of == "torque":
+        return (_of_torque(doubt, point, vessel, told),)
+    expected_rpm, load = vessel.working_point.engine_speed_rpm, load_over_expected(point, vessel)
+    found_rpm = rpm_from_rev_s(point.engine_speed_rev_s)
+    asked_rpm = expected_rpm if campaign is None else asked_speed(point, vessel, campaign)[0]
+    by = "vessel file" if campaign is None or campaign.offset_rpm is None else "campaign"
+    torque = (
+        f"{point.shaft_torque_nm:.4g} N m belong to {found_rpm * load**0.5:.4g} rpm and the {by} has" if load > 0.0
+        else f"the {by} has"
+    )  # fmt: skip
+    followers = _told(told, " as one factor of the speed makes them")
+    return (
+        Reason(
+            kind="speed scale",
+            where=vessel.sensors.speed[0].channel,
+            sentence=(
+                f"The speed is in doubt: it seems to be {doubt.words} the true one, {found_rpm:.4g} rpm where {torque} "
+                f"{asked_rpm:.4g} rpm{followers}; {_what_to_check(doubt.factor, vessel)}."
+            ),
+        ),
+    )
+
+
+def _told(beside: Mapping[str, float], ending: str) -> str:
+    if not beside:
+        return ""
+    names, factors = " and ".join(beside), " and ".join(f"{factor:.2f}" for factor in beside.values())
+    return f", with {names} {factors} times what the vessel file expects,{ending}"
+
+
+def _what_to_check(factor: float, vessel: "Vessel") -> str:
+    """Return which field of the vessel file would make a speed right that is shown so many times too large."""
+    sensors, ratio = vessel.sensors.speed, vessel.gearbox.ratio
+    if len(sensors) > 1:
+        names = ", ".join(sensor.channel for sensor in sensors)
+        return (
+            f"all of {names} agree, so look for what divides or doubles their pulses on the way to the logger, and "
+            "check pulses_per_revolution, and the speeds of working_point and campaign"
+        )
+    sensor = sensors[0]
+    away = {"propeller": 1.0 / ratio, "engine": ratio}
+    other = "propeller" if sensor.shaft == "engine" else "engine"
+    if abs(factor / away[other] - 1.0) < _LIKE_GEAR and abs(ratio - 1.0) > _LIKE_GEAR:
+        return (
+            f'that is the gear ratio of {ratio:g}: write shaft = "{other}" for {sensor.channel} if it is on the '
+            f"{other}'s shaft{_or_count(factor, sensor)}"
+        )
+    return f"check {_counted(factor, sensor)}"
+
+
+def _or_count(factor: float, sensor: "SpeedSensor") -> str:
+    return f", or check {_counted(factor, sensor)}"
+
+
+def _counted(factor: float, sensor: "SpeedSensor") -> str:
+    """Return the field by which a sensor counts turns, with the value that would fit."""
+    if sensor.gives_angle:
+        return f"counts_per_revolution or the unit of {sensor.channel}"
+    if not sensor.gives_pulses and sensor.unit != "Hz":
+        return f"unit, scale and shaft of {sensor.channel}"
+    stated = sensor.pulses_per_revolution
+    fitting = stated * factor
+    if fitting > 0.75 and abs(round(fitting) / fitting - 1.0) < _LIKE_GEAR / 2.0:
+        return f"pulses_per_revolution of {sensor.channel}: {stated} is stated, {round(fitting)} would fit"
+    camshaft = ", as on the camshaft of a four-stroke engine" if 0.4 < fitting < 0.6 else ""
+    return f"pulses_per_revolution of {sensor.channel}: {stated} is stated, and {fitting:.3g} come in a turn{camshaft}"
+
+
+def _of_torque(doubt: ScaleDoubt, point: "WorkingPoint", vessel: "Vessel", beside: Mapping[str, float]) -> Reason:
+    sensor, ratio = vessel.sensors.shaft_torque, vessel.gearbox.ratio
+    load = load_over_expected(point, vessel)
+    what = (
+        "it seems to be that of the engine's shaft"
+        if doubt.factor < 1.0
+        else "the gear ratio seems to be in its scale a second time"
+    )
+    return Reason(
+        kind="gauge scale",
+        where=sensor.channel,
+        sentence=(
+            f"The scale of the torque gauge is in doubt: the torque over the square of the speed is {load:.3g} times "
+            f"what the vessel file expects{_told(beside, '')} near the gear ratio of {ratio:g}: {what}; check "
+            f"scale_nm_per_unit of {sensor.channel}, which counts on the propeller's shaft: "
+            f"{sensor.scale_nm_per_unit / doubt.factor:.4g} would fit."
+        ),
+    )
