@@ -33,7 +33,9 @@ TRUTH = {
 FREQUENCY_HZ = np.geomspace(0.005, 6.0, 14)
 LINES = tuple(f"S{number}" for number in range(1, 15))
 NOW = datetime(2026, 3, 14, 9, 30, tzinfo=UTC)
-CAMPAIGN = SimpleNamespace(name="Test around -5 V", place="Quay 12, Rotterdam")
+CAMPAIGN = SimpleNamespace(
+    name="Test around -5 V", place="Quay 12, Rotterdam", offset_v=-5.0, offset_rpm=None, slope_rpm_per_v=None
+)
 # loggers often state no time zone
 BEGAN = datetime(2026, 3, 13, 14, 5)  # noqa: DTZ001
 

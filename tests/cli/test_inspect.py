@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from shaftprint.campaign import load_campaign
-from shaftprint.cli.commands._inspect import verdict
+from shaftprint.cli._inspect_headline import headline
 from shaftprint.recording import RecordingWriter
 from shaftprint.spectra import FrequencyResponse, SignalToNoise, Spectra
 
@@ -140,19 +140,19 @@ def test_channel_that_the_vessel_file_names_is_missing(run, tmp_path):
     assert "PTM_e" in result.stderr
 
 
-def _spectra(frequency_hz, local_db, used):
+def _spectra(frequency_hz, local_db, used, torque_db=20.0):
     count = len(frequency_hz)
     lines = tuple(f"S{number}" for number in range(1, count + 1))
     response = FrequencyResponse(
         frequency_hz=np.array(frequency_hz),
         response=np.ones((2, 1, count), dtype=complex),
-        covariance=np.broadcast_to(np.eye(4), (count, 4, 4)),
+        covariance=np.broadcast_to(1e-4 * np.eye(4), (count, 4, 4)),
         inputs=("n_set",),
         outputs=("n", "M_s"),
         lines=lines,
         used=np.array(used),
     )
-    table = np.column_stack([np.full(count, 80.0), local_db, np.full(count, 20.0)])
+    table = np.column_stack([np.full(count, 80.0), local_db, np.broadcast_to(torque_db, count)])
     ratios = SignalToNoise(lines=lines, channels=("n_set", "n_e", "M_s"), local_db=table, overall=np.ones(3))
     return Spectra(
         response=response,
@@ -167,25 +167,44 @@ def _spectra(frequency_hz, local_db, used):
 SIX = [0.01, 0.05, 0.1, 0.3, 0.6, 4.0]
 
 
-def test_verdict_good():
-    sentence = verdict(_spectra(SIX, [20.0] * 6, [True] * 6))
+def test_headline_good():
+    sentence = headline([_spectra(SIX, [20.0] * 6, [True] * 6)])
     assert sentence == (
-        "Good enough: 6 of 6 lines are usable and above 0 dB, 2 of them between 1 and 12 rad/s, where the loop crosses "
-        "over."
+        "Good enough: 6 of 6 lines are good, 2 of them between 1 and 12 rad/s, where the loop crosses over."
     )
 
 
-def test_verdict_too_few_lines():
-    # one line drowns in noise and one is aliased: four are left
-    sentence = verdict(_spectra(SIX, [20.0, -0.1, 20.0, 20.0, 20.0, 20.0], [True] * 5 + [False]))
-    assert sentence.startswith("Not good enough: 4 of 6 lines are usable and above 0 dB")
-    assert "at least 5 are needed" in sentence
+def test_headline_counts_the_lines_of_all_legs_once():
+    leg = _spectra(SIX, [20.0] * 6, [True] * 6)
+    other = _spectra(SIX, [20.0] * 6, [True, True, True, False, False, True])
+    assert headline([leg, other], planned=12).startswith("Good enough: 10 of 12 lines are good, 2 of them between ")
 
 
-def test_verdict_nothing_at_the_crossover():
-    sentence = verdict(_spectra([0.01, 0.02, 0.05, 0.1, 0.12, 0.3], [20.0] * 6, [True] * 6))
+def test_headline_too_few_lines():
+    # of one line speed and torque drown in noise and one is aliased: four are left
+    drowned = [20.0, -0.1, 20.0, 20.0, 20.0, 20.0]
+    spectra = _spectra(SIX, drowned, [True] * 5 + [False], torque_db=drowned)
+    sentence = headline([spectra])
+    assert sentence.startswith("Not good enough: 4 of 6 lines are good, ")
+    assert "at least 5 are needed. Use a larger amplitude" in sentence
+    # of a test that was cut off no amplitude helps
+    cut = headline([spectra], planned=10, lost=("S7 and S8 are lost",))
+    assert cut.endswith("at least 5 are needed. Not all of the campaign is there: S7 and S8 are lost.")
+
+
+def test_headline_nothing_at_the_crossover():
+    sentence = headline([_spectra([0.01, 0.02, 0.05, 0.1, 0.12, 0.3], [20.0] * 6, [True] * 6)])
     assert sentence.startswith("Not good enough: 6 of 6")
     assert "at least 2 are needed there" in sentence
+
+
+def test_headline_is_never_good_above_what_is_wrong():
+    good = [_spectra(SIX, [20.0] * 6, [True] * 6)]
+    assert headline(good, worst="The speed is in doubt.").startswith("Not as it is. The speed is in doubt. ")
+    assert headline([], worst="channel P: found no pulses.") == "Not good enough. channel P: found no pulses."
+    partly = headline(good, planned=12, lost=("M2 is lost",))
+    assert partly.startswith("Good enough, as far as it goes: 6 of 12 lines ")
+    assert partly.endswith("Not all of the campaign is there: M2 is lost.")
 
 
 @pytest.mark.slow

@@ -15,7 +15,7 @@ def test_half_an_hour_in_service(run, tmp_path):
     sailed = run("sail", "stan-tug-1205-underway", "dither", "-o", recording, "--no-progress")
     assert sailed.exit_code == 0, sailed.output
     looked = run("inspect", recording, *TRIAL)
-    assert looked.output.startswith("Good enough: 11 of 11 lines are usable")
+    assert looked.output.startswith("Good enough: 11 of 11 lines are good")
     assert "speed of the ship" in looked.output
     found = run("identify", recording, *TRIAL, "--no-report", "-o", result)
     assert found.exit_code == 0, found.output

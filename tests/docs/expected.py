@@ -92,7 +92,7 @@ def expect_inspection(folder, printed, words):
     assert [float(cells[2]) for cells in mean] == pytest.approx([float(mean[0][2])] * 3, rel=1e-4)
     assert mean[0][3] == "0.000"
     # the answer comes first
-    assert printed.startswith("Good enough: 10 of 10 lines are usable and above 0 dB, 4 of them between 1 "
+    assert printed.startswith("Good enough: 10 of 10 lines are good, 4 of them between 1 "
                               "and 12 rad/s, where the loop crosses over.")  # fmt: skip
 
 

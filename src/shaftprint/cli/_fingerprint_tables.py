@@ -1,6 +1,7 @@
 """A fingerprint on the terminal: verdict, conditions, tables, findings."""
 
-from collections.abc import Mapping
+from collections import Counter
+from collections.abc import Mapping, Sequence
 
 from shaftprint.cli._terminal import print_findings, say
 from shaftprint.cli.output import give, print_tables
@@ -65,7 +66,7 @@ def _print_conditions(fingerprint: Fingerprint) -> None:
         value = stated(quantity.value, quantity.std, quantity.unit)
         say(f"{quantity.meaning}: {quantity.name} = {value}", indent="  ")
     say(f"speed sensor {conditions.speed_channel}; signals prepared in {conditions.mode} mode", indent="  ")
-    say(f"lines used: {', '.join(conditions.lines_used)}", indent="  ")
+    say(f"lines used: {_lines_in_words(conditions.lines_used)}", indent="  ")
     if conditions.lines_left_out:
         say(f"lines left out: {', '.join(conditions.lines_left_out)}", indent="  ")
     for source in fingerprint.sources:
@@ -73,6 +74,13 @@ def _print_conditions(fingerprint: Fingerprint) -> None:
     say(f"made {fingerprint.created:%Y-%m-%d %H:%M %Z} with shaftprint {fingerprint.shaftprint_version}", indent="  ")
     priors = {name: (prior.mean, prior.std) for name, prior in fingerprint.priors.items()}
     print_assumed(priors, fingerprint.held, {quantity.name: quantity.unit for quantity in fingerprint.parameters})
+
+
+def _lines_in_words(lines: Sequence[str]) -> str:
+    """Return the names of lines; of legs, which have many, how many each has."""
+    legs = Counter(line.split("/")[0] for line in lines if "/" in line)
+    single = [line for line in lines if "/" not in line]
+    return ", ".join([*single, *(f"{count} of {leg}" for leg, count in legs.items())])
 
 
 def print_assumed(

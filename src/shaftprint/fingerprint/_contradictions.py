@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING
 from shaftprint.fingerprint._quantity import Quantity
 from shaftprint.reasons import Reason
 from shaftprint.signals import ScaleEvidence, scale_reasons
-from shaftprint.units import rpm_from_rev_s
 
 if TYPE_CHECKING:
     from shaftprint.campaign import Campaign
@@ -84,12 +83,11 @@ def _scales(
         if inertia is None
         else {"I_dn": ScaleEvidence(log=inertia.log, std=inertia.std, of_speed=-1.0, of_torque=1.0)}
     )
-    points = [leg.working_point.engine_speed_rev_s for leg in signals.legs]
     return scale_reasons(
         signals.working_point,
         vessel,
         campaign,
-        levels_rpm=[rpm_from_rev_s(speed) for speed in (*signals.calibration.level_rev_s.tolist(), *points)],
+        levels_rpm=signals.levels_rpm,
         of_fit=of_fit,
         beside={name: math.exp(factor.log) for name, factor in factors.items() if factor is not None},
     )

@@ -181,11 +181,22 @@ def _rows(matrix: FloatArray) -> tuple[tuple[float, ...], ...]:
 
 
 def _left_out(identification: Identification) -> dict[str, str]:
-    response = identification.response
+    """Return why lines are fitted in no response, by name, those of all legs."""
     return {
-        name: response.remarks.get(name, "not chosen")
-        for name, fitted in zip(response.lines, identification.fitted, strict=True)
-        if not fitted
+        name: part.response.remarks.get(name, "not chosen")
+        for part in identification.experiments
+        for name in part.response.lines
+        if name not in _used(identification)
+    }
+
+
+def _used(identification: Identification) -> dict[str, None]:
+    """Return the lines that are fitted, those of all legs, in their order."""
+    return {
+        name: None
+        for part in identification.experiments
+        for name, fitted in zip(part.response.lines, part.fitted, strict=True)
+        if fitted
     }
 
 
@@ -204,7 +215,7 @@ def _conditions(
         set_point_v=signals.working_point.set_point_v,
         speed_channel=signals.engine_speed.name,
         mode=signals.mode,
-        lines_used=tuple(name for name in identification.response.lines if name not in left_out),
+        lines_used=tuple(_used(identification)),
         lines_left_out=left_out,
     )
 

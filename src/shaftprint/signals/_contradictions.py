@@ -7,10 +7,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shaftprint.signals._inspect import ChannelReport, PulseReport
+from shaftprint.signals._scale_reasons import scale_reasons
+from shaftprint.signals._working_points import WorkingPoint
 from shaftprint.signals.kinds import LARGEST_DIFFERENCE
 from shaftprint.signals.levels import direction_words
 
 if TYPE_CHECKING:
+    from shaftprint.campaign import Campaign
+    from shaftprint.signals._signals import Signals
     from shaftprint.vessel import SpeedSensor, Vessel
 
 # All orders of more are tried no longer.
@@ -21,11 +25,18 @@ _CLEARLY_NEGATIVE = -0.1
 _AROUND = (0.3, 3.0)
 
 
-def contradictions(reports: Sequence[ChannelReport], vessel: "Vessel") -> tuple[str, ...]:
+def contradictions(
+    reports: Sequence[ChannelReport],
+    vessel: "Vessel",
+    *,
+    signals: "Signals | None" = None,
+    campaign: "Campaign | None" = None,
+) -> tuple[str, ...]:
     """Return a sentence for each contradiction between channels and vessel file, with the swap that would end it.
 
-    No campaign is needed: on a rigid line all pick-ups give one engine speed, and a shaft that turns ahead has a
-    positive torque, one that turns astern a negative one.
+    No campaign is needed: on a rigid line all pick-ups give one engine speed, a shaft that turns ahead has a positive
+    torque, one that turns astern a negative one, and torque goes with the square of the speed. With the signals of a
+    test the speed that was asked for says more.
 
     Parameters
     ----------
@@ -33,8 +44,11 @@ def contradictions(reports: Sequence[ChannelReport], vessel: "Vessel") -> tuple[
         What each channel holds, from ``inspect_channels``.
     vessel
         Says which channel carries what.
+    signals, campaign
+        The prepared signals and what was asked of the ship, where both are there.
     """
-    return (*_of_speeds(reports, vessel), *_of_torque(reports, vessel))
+    of_channels = (*_of_speeds(reports, vessel), *_of_torque(reports, vessel))
+    return of_channels or _of_scales(reports, vessel, signals, campaign)
 
 
 def _of_speeds(reports: Sequence[ChannelReport], vessel: "Vessel") -> tuple[str, ...]:
@@ -112,4 +126,40 @@ def _of_torque(reports: Sequence[ChannelReport], vessel: "Vessel") -> tuple[str,
     sign = "the sign of sensors.shaft_torque.scale_nm_per_unit" if sensor.shaft is None else "reversed of its shaft"
     return (
         f"channel {torque.channel}: {sentence}; check that it is the torque, and {sign}; {direction_words(vessel)}.",
+    )
+
+
+def _of_scales(
+    reports: Sequence[ChannelReport], vessel: "Vessel", signals: "Signals | None", campaign: "Campaign | None"
+) -> tuple[str, ...]:
+    """Return how speed and torque are off by one factor, by the test, or without one by the means of all channels."""
+    if signals is not None and campaign is not None:
+        reasons = scale_reasons(signals.working_point, vessel, campaign, levels_rpm=signals.levels_rpm)
+    else:
+        point = _mean_point(reports, vessel)
+        reasons = () if point is None else scale_reasons(point, vessel)
+    return tuple(reason.sentence for reason in reasons)
+
+
+def _mean_point(reports: Sequence[ChannelReport], vessel: "Vessel") -> WorkingPoint | None:
+    """Return the means of speed and torque of a whole recording; None where there are none."""
+    by_channel = {report.channel: report for report in reports}
+    sensor = vessel.sensors.speed[0]
+    shown, torque = (by_channel.get(one.channel) for one in (sensor, vessel.sensors.shaft_torque))
+    if shown is None or torque is None or sensor.gives_angle or (sensor.gives_pulses and shown.pulses is None):
+        return None
+    if shown.pulses is not None:
+        speed = _engine_speed(sensor, shown.pulses, vessel)
+    else:
+        speed = abs(float(sensor.speed_rev_s(shown.mean))) * vessel.gearbox.engine_over(sensor.shaft)
+    torque_nm = float(vessel.driving_torque_nm(torque.mean))
+    if not speed > 0.0 or not np.isfinite(torque_nm):
+        return None
+    return WorkingPoint(
+        engine_speed_rev_s=speed,
+        shaft_torque_nm=torque_nm,
+        engine_speed_std_rev_s=0.0,
+        shaft_torque_std_nm=0.0,
+        set_point_v=0.0,
+        load_std=0.0,
     )

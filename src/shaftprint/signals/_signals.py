@@ -241,6 +241,12 @@ class Signals(Shown, Labelled):
         return replace(self, channels={**self.channels, name: replace(self.channels[name], **changes)})
 
     @property
+    def levels_rpm(self) -> tuple[float, ...]:
+        """Mean engine speed of every steady level and leg [rpm]."""
+        of_legs = (leg.working_point.engine_speed_rev_s for leg in self.legs)
+        return tuple(rpm_from_rev_s(speed) for speed in (*self.calibration.level_rev_s.tolist(), *of_legs))
+
+    @property
     def coverage(self) -> Coverage:
         """What the signals cover: ask it before a window of the recording is used."""
         return Coverage.of_grid(start_s=self.start_s, samples=self.samples, rate_hz=self.rate_hz, gaps=self.gaps)

@@ -5,10 +5,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import click
-import numpy as np
 
 from shaftprint.campaign import Campaign, load_campaign
 from shaftprint.cli._found_tests import print_found_tests
+from shaftprint.cli._inspect_headline import headline, lines_of, lost_parts
 from shaftprint.cli._limit_uses import print_limit_uses
 from shaftprint.cli._options import NAMES, hints_of, reading_options
 from shaftprint.cli._sensor_map import Seen, proposed_sensors
@@ -17,7 +17,7 @@ from shaftprint.cli._terminal import answer, echo, print_findings, say
 from shaftprint.cli._vessel_file import print_disagreements
 from shaftprint.cli.output import no_progress_option, print_table, print_tables, progress
 from shaftprint.clocks import LoggerClock, logger_clocks
-from shaftprint.design import limit_uses, recorded_operation, stated_limits
+from shaftprint.design import LimitUse, limit_uses, recorded_operation, stated_limits
 from shaftprint.errors import ShaftprintError, SignalError
 from shaftprint.fingerprint import clock_findings, clock_influences
 from shaftprint.limits import limit_hints
@@ -39,13 +39,6 @@ from shaftprint.survey import LegMeasurement, legs_of
 from shaftprint.tables import Table, clock_map_table, leg_table, numbers, texts
 from shaftprint.vessel import Vessel, load_vessel
 
-# Noise as strong as the response: a weaker line adds little.
-LOWEST_DB = 0.0
-# GAUGE-CLOSED has about ten free parameters and a line gives four numbers: twice what is needed at the least.
-FEWEST_LINES = 5
-# Where governed lines of this size cross over: there delay, lag and proportional gain show.
-CROSSOVER_RAD_S = (1.0, 12.0)
-FEWEST_AT_CROSSOVER = 2
 _MOST_GAPS = 20
 # More strips than this are teeth, of which the worst is named.
 _MOST_STRIPS = 12
@@ -78,14 +71,14 @@ def command(recording: Path, vessel: str | None, campaign: str | None, no_progre
         if ship is None or readings is None:
             _print_proposal(opened, _print_channels(opened, levels), clocks)
             return
-        test = None if planned is None else _tested(opened, ship, planned, readings, hidden=no_progress)
+        test = None if planned is None else _tested(opened, ship, planned, readings, clocks, hidden=no_progress)
         reports = channel_reports(readings, levels)
         _print_answer(test, reports, ship)
         _print_channels(opened, levels)
         print_tables([clock_map_table(clocks)])
         _print_sensors(reports)
-        if test is not None and ship is not None:
-            _print_test(test, clocks, ship)
+        if test is not None:
+            _print_test(test)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -100,13 +93,35 @@ class _Test:
     """The prepared signals; None where they are refused."""
     spectra: Spectra | None
     """The test lines; None where they are refused."""
-    legs: tuple[LegMeasurement, ...]
+    legs: tuple[LegMeasurement, ...] = ()
     """The legs; empty where there are none."""
-    refusal: ShaftprintError | None
-    """Why they are refused."""
+    uses: tuple[LimitUse, ...] = ()
+    """How far the test went to the limits of ship and engine."""
+    of_clocks: tuple[str, ...] = ()
+    """What is found of the clocks of merged loggers."""
+    hints: tuple[str, ...] = ()
+    """What hints at limits of governor and engine."""
+    refusal: ShaftprintError | None = None
+    """Why the test cannot be used, if it cannot."""
+
+    @property
+    def parts(self) -> tuple[Spectra, ...]:
+        """The spectra of the sines, or of every leg; empty where they are refused."""
+        if self.spectra is None:
+            return ()
+        return (*([self.spectra] if self.planned.sines else []), *(leg.spectra for leg in self.legs))
 
 
-def _tested(opened: Recording, ship: Vessel, asked: Campaign, readings: ChannelReadings, *, hidden: bool) -> _Test:
+def _tested(
+    opened: Recording,
+    ship: Vessel,
+    asked: Campaign,
+    readings: ChannelReadings,
+    clocks: Sequence[LoggerClock],
+    *,
+    hidden: bool,
+) -> _Test:
+    """Return all that is found of a test, before anything is printed: the headline is made of it."""
     tests: tuple[FoundTest, ...] = ()
     with progress(hidden=hidden) as steps:
         try:
@@ -116,10 +131,20 @@ def _tested(opened: Recording, ship: Vessel, asked: Campaign, readings: ChannelR
             steps.begin("Measuring the test lines")
             legs = legs_of(signals, asked)
             spectra = estimate_spectra(signals, asked) if asked.sines else legs[0].spectra
+            operation = recorded_operation(signals, asked, ship)
+            return _Test(
+                planned=asked,
+                tests=tests,
+                signals=signals,
+                spectra=spectra,
+                legs=legs,
+                uses=limit_uses(operation, stated_limits(ship)),
+                of_clocks=clock_findings(clock_influences(clocks, spectra=spectra, signals=signals)),
+                hints=limit_hints(spectra.harmonics) if asked.sines else (),
+            )
         except ShaftprintError as error:
-            # told below the tables, which show what the campaign should be
-            return _Test(planned=asked, tests=tests, signals=None, spectra=None, legs=(), refusal=error)
-    return _Test(planned=asked, tests=tests, signals=signals, spectra=spectra, legs=legs, refusal=None)
+            # told below the tables too, which show what the campaign should be
+            return _Test(planned=asked, tests=tests, signals=None, spectra=None, refusal=error)
 
 
 def _print_proposal(opened: Recording, seen: Sequence[Seen], clocks: Sequence[LoggerClock]) -> None:
@@ -132,11 +157,20 @@ def _print_proposal(opened: Recording, seen: Sequence[Seen], clocks: Sequence[Lo
 
 def _print_answer(test: _Test | None, reports: Sequence[ChannelReport], ship: Vessel) -> None:
     """Print whether the recording is good enough, and what is wrong with its sensors."""
-    if test is not None and test.spectra is not None:
-        answer(verdict(test.spectra))
+    signals, asked = (None, None) if test is None else (test.signals, test.planned)
+    wrong = contradictions(reports, ship, signals=signals, campaign=asked)
+    against = (
+        () if test is None else dict.fromkeys(reason.sentence for one in test.parts for reason in one.response.reasons)
+    )
+    problems = [*wrong, *against, *(report.problem for report in reports if report.problem is not None)]
+    if test is not None:
+        refusal = "" if test.refusal is None else str(test.refusal)
+        lost = () if test.signals is None else lost_parts(test.planned, test.signals, test.parts)
+        worst = next(iter((*wrong, *against)), "") or refusal
+        answer(headline(test.parts, planned=lines_of(test.planned), worst=worst, lost=lost))
         echo()
-    problems = [report.problem for report in reports if report.problem is not None]
-    print_findings("Problems", [*problems, *contradictions(reports, ship)], is_answer=True)
+        problems += [refusal] if refusal and refusal not in problems else []
+    print_findings("Problems", problems, is_answer=True)
 
 
 def _read(watch: LevelWatch, ship: Vessel, *, hidden: bool) -> ChannelReadings:
@@ -225,7 +259,7 @@ def _strips_in_words(pulses: PulseReport) -> str:
     return "" if len(angles) == 1 else ", ".join(f"{angle:.2f}" for angle in angles)
 
 
-def _print_test(test: _Test, clocks: Sequence[LoggerClock], ship: Vessel) -> None:
+def _print_test(test: _Test) -> None:
     if test.tests:
         print_found_tests(test.tests, test.planned)
     if test.signals is None or test.spectra is None:
@@ -240,30 +274,7 @@ def _print_test(test: _Test, clocks: Sequence[LoggerClock], ship: Vessel) -> Non
         if leg.spectra is not test.spectra:
             say(f"Leg {leg.name}")
             print_lines(leg.spectra)
-    operation = recorded_operation(test.signals, test.planned, ship)
-    print_limit_uses(limit_uses(operation, stated_limits(ship)), is_expected=False)
-    influences = clock_influences(clocks, spectra=test.spectra, signals=test.signals)
-    print_findings("Findings on the signals", [*test.signals.findings, *clock_findings(influences)])
+    print_limit_uses(test.uses, is_expected=False)
+    print_findings("Findings on the signals", [*test.signals.findings, *test.of_clocks])
     if test.planned.sines:
-        print_findings("Limits", limit_hints(test.spectra.harmonics))
-
-
-def verdict(spectra: Spectra) -> str:
-    """Return in one sentence whether the test lines are good enough to identify a propulsion line."""
-    ratios, response = spectra.signal_to_noise, spectra.response
-    columns = [ratios.channels.index(name) for name in (spectra.speed, "M_s")]
-    strong = np.all(ratios.local_db[:, columns] >= LOWEST_DB, axis=1)
-    named = dict(zip(ratios.lines, strong.tolist(), strict=True))
-    good = np.array([named[line] for line in response.lines]) & response.used
-    omega = response.omega_rad_s[good]
-    crossover = int(np.count_nonzero((omega >= CROSSOVER_RAD_S[0]) & (omega <= CROSSOVER_RAD_S[1])))
-    between = f"{crossover} of them between {CROSSOVER_RAD_S[0]:g} and {CROSSOVER_RAD_S[1]:g} rad/s"
-    counts = f"{omega.size} of {good.size} lines are usable and above {LOWEST_DB:g} dB, {between}"
-    if omega.size < FEWEST_LINES:
-        return f"Not good enough: {counts}; at least {FEWEST_LINES} are needed. Use a larger amplitude or more lines."
-    if crossover < FEWEST_AT_CROSSOVER:
-        return (
-            f"Not good enough: {counts}, where the loop crosses over; at least {FEWEST_AT_CROSSOVER} are needed there "
-            "to find delay, lag and gain."
-        )
-    return f"Good enough: {counts}, where the loop crosses over."
+        print_findings("Limits", test.hints)

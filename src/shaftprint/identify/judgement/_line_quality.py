@@ -1,16 +1,17 @@
 """Which lines of a response say something, and where a gap is between them."""
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shaftprint.arrays import BoolArray, FloatArray
+from shaftprint.arrays import BoolArray, ComplexArray, FloatArray
 from shaftprint.identify.fit import Identification
 from shaftprint.identify.judgement._requirements import Requirements
-from shaftprint.identify.likelihood import Experiment
+from shaftprint.identify.likelihood import Experiment, excess_freedom
 
 if TYPE_CHECKING:
-    from shaftprint.spectra import SignalToNoise
+    from shaftprint.spectra import FrequencyResponse, SignalToNoise
 
 
 def good_channels(
@@ -23,12 +24,48 @@ def good_channels(
     signal_to_noise
         Local signal-to-noise ratios of the recording; the lines are found by name.
     """
-    good = _relative_std(experiment) <= requirements.largest_line_std
+    good = _relative_std(experiment.noise_covariance, experiment.measured) <= requirements.largest_line_std
     if signal_to_noise is None:
         return good
     names = [name for name, fitted in zip(experiment.response.lines, experiment.fitted, strict=True) if fitted]
+    return _above_noise(good, names, experiment.response.inputs, signal_to_noise, requirements)
+
+
+def good_lines(
+    response: "FrequencyResponse", signal_to_noise: "SignalToNoise", requirements: Requirements | None = None
+) -> BoolArray:
+    """Return which lines of a response a fit would call good, before anything is fitted, shape (lines,).
+
+    Parameters
+    ----------
+    response
+        A response to one input.
+    signal_to_noise
+        Local signal-to-noise ratios of its recording.
+    requirements
+        What a good line is.
+    """
+    asked = requirements or Requirements()
+    size, freedom = response.covariance.shape[1], response.degrees_of_freedom
+    exact = np.isinf(freedom)
+    share = np.where(exact, 1.0, excess_freedom(freedom, size) / np.where(exact, 1.0, freedom))
+    measured = response.response.reshape(-1, len(response.lines))
+    good = _relative_std(share[:, None, None] * response.covariance, measured) <= asked.largest_line_std
+    good = _above_noise(good, response.lines, response.inputs, signal_to_noise, asked)
+    found: BoolArray = np.any(good, axis=0) & response.used
+    return found
+
+
+def _above_noise(
+    good: BoolArray,
+    names: Sequence[str],
+    moved: Sequence[str],
+    signal_to_noise: "SignalToNoise",
+    requirements: Requirements,
+) -> BoolArray:
+    """Return the good channels of lines without those of lines that drown in noise, shape (channels, lines)."""
     limit = requirements.lowest_line_snr_db
-    inputs = [i for i, channel in enumerate(signal_to_noise.channels) if channel in experiment.response.inputs]
+    inputs = [i for i, channel in enumerate(signal_to_noise.channels) if channel in moved]
     for line, name in enumerate(names):
         if name not in signal_to_noise.lines:
             continue
@@ -38,12 +75,12 @@ def good_channels(
     return good
 
 
-def _relative_std(experiment: Experiment) -> FloatArray:
+def _relative_std(covariance: FloatArray, measured: ComplexArray) -> FloatArray:
     """Return the standard deviation of each channel over its size, shape (channels, lines)."""
-    variance = np.diagonal(experiment.noise_covariance, axis1=1, axis2=2).T
+    variance = np.diagonal(covariance, axis1=1, axis2=2).T
     half = variance.shape[0] // 2
     with np.errstate(divide="ignore"):
-        return np.asarray(np.sqrt(variance[:half] + variance[half:]) / np.abs(experiment.measured))
+        return np.asarray(np.sqrt(variance[:half] + variance[half:]) / np.abs(measured))
 
 
 def crossings_rad_s(identification: Identification) -> tuple[float, ...]:

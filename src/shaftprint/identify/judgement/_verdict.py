@@ -215,7 +215,9 @@ def _data_words(evidence: Evidence) -> str:
     percents = [percent for part in records for percent in part.fit_percent.values()]
     words = []
     if evidence.good_lines or not records:
-        words.append(f"{evidence.good_lines} good lines")
+        fitted = sum(experiment.s.size for experiment in evidence.identification.objective.experiments)
+        of_fitted = f" of {fitted}" if fitted > evidence.good_lines else ""
+        words.append(f"{evidence.good_lines} good lines{of_fitted}")
     if records:
         count = "1 record" if len(records) == 1 else f"{len(records)} records"
         low, high = min(percents), max(percents)

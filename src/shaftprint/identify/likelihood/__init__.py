@@ -15,7 +15,7 @@ from shaftprint.identify.likelihood._line_test import LineTest
 from shaftprint.identify.likelihood._load_factors import load_factors, with_load
 from shaftprint.identify.likelihood._objective import Objective, Redrawn
 from shaftprint.identify.likelihood._prior import PRIOR_OF, Prior
-from shaftprint.identify.likelihood._tails import estimated_tails, student_tails
+from shaftprint.identify.likelihood._tails import estimated_tails, excess_freedom, student_tails
 from shaftprint.identify.likelihood._term import FittedTerm, Repeats, Term, TermTest, WhitenedTerm
 from shaftprint.identify.likelihood._term_check import CheckKind, TermCheck
 from shaftprint.identify.likelihood._weighting import MaximumLikelihood, StudentT, Unweighted, Weighting
@@ -50,6 +50,7 @@ __all__ = [
     "channels_of",
     "estimated_shapes",
     "estimated_tails",
+    "excess_freedom",
     "expected_from_vessel",
     "fit_ceiling",
     "fit_percent",

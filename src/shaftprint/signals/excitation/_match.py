@@ -12,6 +12,7 @@ from shaftprint.signals._gaps import EVERYTHING, Coverage, gap_findings
 from shaftprint.signals.excitation._found_test import FoundTest, common_shift_s
 from shaftprint.signals.excitation._found_tests import found_tests
 from shaftprint.signals.excitation._steps import step_window
+from shaftprint.signals.levels import leg_periods
 
 # Slow excitations only: a second of clock error must not look like another campaign.
 _SLOW_HZ = 0.2
@@ -19,14 +20,15 @@ _SLOW_HZ = 0.2
 _LEAST_MOVEMENT = 0.5
 _LEAST_EXPLAINED = 0.5
 _LOOKS_PER_S = 10.0
+# A level that is off by a power of ten within this share, and moves so, is one in another unit.
+_LEVEL, _MOVES = 0.2, 2.5
+_POWERS_OF_TEN = (1e-6, 1e-3, 1e-2, 1e-1, 10.0, 100.0, 1e3, 1e6)
 _OPPOSITE_DEG = 150.0
 
 
 def measured_windows(campaign: Campaign) -> tuple[tuple[str, float, float], ...]:
-    """Return name, begin and end [s] of everything that is measured, in order of time."""
+    """Return name, begin and end [s] of everything that is measured whole or not at all, in order of time."""
     windows = [(sine.name, sine.settled_s, sine.window_stop_s) for sine in campaign.sines]
-    # two periods of a leg are enough; how many the recording holds is told with its response
-    windows += [(leg.name, leg.settled_s, leg.settled_s + 2.0 * leg.length_of_period_s) for leg in campaign.legs]
     windows += [(chirp.name, chirp.start_s, chirp.stop_s) for chirp in campaign.chirps]
     for stairs in campaign.staircases:
         windows += [(f"step {k} of {stairs.name}", *step_window(stairs, k)) for k in range(1, len(stairs.levels_v))]
@@ -51,22 +53,41 @@ def left_out(campaign: Campaign, coverage: Coverage, *, name: str) -> tuple[str,
         If it holds nothing whole.
     """
     windows = measured_windows(campaign)
-    ends = replace(coverage, gaps=())
-    outside = [window for window in windows if ends.missing(*window[1:])]
-    if all(coverage.missing(*window[1:]) for window in windows):
+    begin_s = min([*(window[1] for window in windows), *(leg.settled_s for leg in campaign.legs)])
+    end_s = max([*(window[2] for window in windows), *(leg.stop_s for leg in campaign.legs)])
+    holds_leg = any(leg_periods(leg, coverage) is not None for leg in campaign.legs)
+    if not holds_leg and all(coverage.missing(*window[1:]) for window in windows):
         gaps = f" with {len(coverage.gaps)} gaps" if coverage.gaps else ""
         raise SignalError(
-            f'{name}: expected at least one whole test of the campaign "{campaign.name}" between {windows[0][1]:.1f} '
-            f"and {windows[-1][2]:.1f} s, found a recording from {coverage.start_s:.1f} to {coverage.stop_s:.1f} s"
+            f'{name}: expected at least one whole test of the campaign "{campaign.name}" between {begin_s:.1f} '
+            f"and {end_s:.1f} s, found a recording from {coverage.start_s:.1f} to {coverage.stop_s:.1f} s"
             f"{gaps}; use the whole recording, or the campaign file that belongs to it."
         )
+    ends = replace(coverage, gaps=())
+    outside = [window for window in windows if ends.missing(*window[1:])]
     inside = [window for window in windows if window not in outside]
+    outside += (short := _periods_lost(campaign, ends))
+    inside += [window for window in _periods_lost(campaign, coverage) if window not in short]
     findings = gap_findings(coverage.gaps, inside)
     if not outside:
         return findings
     span = f"the recording lasts from {coverage.start_s:.1f} to {coverage.stop_s:.1f} s"
-    names = ", ".join(window[0] for window in outside)
-    return (f"{span}, the campaign to {max(w[2] for w in windows):.1f} s; left out for that: {names}", *findings)
+    names = ", ".join(window[0] for window in sorted(outside, key=lambda window: window[1]))
+    return (f"{span}, the campaign to {end_s:.1f} s; left out for that: {names}", *findings)
+
+
+def _periods_lost(campaign: Campaign, coverage: Coverage) -> tuple[tuple[str, float, float], ...]:
+    """Return of every leg that is not held whole what is lost of it in words, with its begin and end [s]."""
+    held = ((leg, leg_periods(leg, coverage)) for leg in campaign.legs)
+    return tuple(
+        (
+            leg.name if kept is None else f"{leg.periods - kept.periods} of the {leg.periods} periods of {leg.name}",
+            leg.settled_s,
+            leg.stop_s,
+        )
+        for leg, kept in held
+        if kept is None or kept.periods < leg.periods
+    )
 
 
 def expect_campaign(
@@ -92,6 +113,7 @@ def expect_campaign(
     levels = [campaign.offset_v, *(level for item in inside for level in _extremes(item, campaign))]
     lowest, highest = float(np.min(set_point_v)), float(np.max(set_point_v))
     expected = max(levels) - min(levels)
+    _expect_unit(set_point_v, levels, campaign, channel)
     if highest - lowest < _LEAST_MOVEMENT * expected:
         raise SignalError(
             f"channel {channel}: expected a set point that moves by {expected:g} V, found it between "
@@ -123,6 +145,37 @@ def expect_campaign(
         for test in held_tests
         for difference in test.differences
     )
+
+
+def _expect_unit(set_point_v: FloatArray, levels_v: Sequence[float], campaign: Campaign, channel: str) -> None:
+    """Check that the set point is not one of a thousand times or a tenth of the volts, as in another unit.
+
+    Raises
+    ------
+    SignalError
+        If its middle and its movement are those of the campaign but for one power of ten.
+    """
+    middle_v, moves_v = campaign.offset_v, max(levels_v) - min(levels_v)
+    found_v = float(np.median(set_point_v))
+    spread_v = float(np.subtract(*np.quantile(set_point_v, (0.999, 0.001))))
+    nearest = min((min(levels_v), middle_v, max(levels_v)), key=lambda level: abs(level))
+    if nearest == 0.0 or not moves_v or min(levels_v) < 0.0 < max(levels_v):
+        return
+    for factor in _POWERS_OF_TEN:
+        shown_v = found_v / factor
+        is_level = min(levels_v) - _LEVEL * abs(middle_v) <= shown_v <= max(levels_v) + _LEVEL * abs(middle_v)
+        if is_level and 1.0 / _MOVES < spread_v / factor / moves_v < _MOVES:
+            unit = ": mV for V?" if factor in (1e-3, 1e3) else ""
+            raise SignalError(
+                f"channel {channel}: expected a set point around {middle_v:.4g} V that moves by {moves_v:.3g} V, found "
+                f"one around {found_v:.3g} V that moves by {spread_v:.3g} V, {_times(factor)} as much{unit}; correct "
+                f"the unit of the channel, or v_per_unit of sensors.set_point, which is {1.0 / factor:g} times what is "
+                "stated."
+            )
+
+
+def _times(factor: float) -> str:
+    return f"{factor:g} times" if factor > 1.0 else f"1/{1.0 / factor:g}"
 
 
 def _shift_words(shift_s: float) -> str:

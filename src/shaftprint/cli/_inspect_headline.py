@@ -1,0 +1,78 @@
+"""The headline of ``inspect``: what is worst of a recording, and how much of its test may be used.
+
+It is made when everything has been looked at, so that nothing that stands below it says otherwise.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from shaftprint.campaign import Campaign
+from shaftprint.identify.judgement import good_lines, listed
+from shaftprint.signals import Signals
+from shaftprint.spectra import Spectra
+
+# GAUGE-CLOSED has about ten free parameters and a line gives four numbers: twice what is needed at the least.
+FEWEST_LINES = 5
+# Where governed lines of this size cross over: there delay, lag and proportional gain show.
+CROSSOVER_RAD_S = (1.0, 12.0)
+FEWEST_AT_CROSSOVER = 2
+
+
+def headline(parts: Sequence[Spectra], *, planned: int = 0, worst: str = "", lost: Sequence[str] = ()) -> str:
+    """Return in a few sentences whether a test is good enough to identify a propulsion line.
+
+    Parameters
+    ----------
+    parts
+        Spectra of the sines, or of every leg; empty where they are refused.
+    planned
+        Number of lines of the campaign, those of all legs.
+    worst
+        What is worst of all that was found, in one sentence; empty where nothing speaks against the recording.
+    lost
+        What the recording does not hold of its campaign, from ``lost_parts``.
+    """
+    if not parts:
+        return f"Not good enough. {worst}"
+    counts, missing, advice = _counted(parts, planned)
+    of_lost = f" Not all of the campaign is there: {listed(lost)}." if lost else ""
+    if missing:
+        return f"Not good enough: {counts}{missing}.{of_lost or advice}{f' {worst}' if worst else ''}"
+    if worst:
+        return f"Not as it is. {worst} Else {counts}, where the loop crosses over.{of_lost}"
+    return f"Good enough{', as far as it goes' if lost else ''}: {counts}, where the loop crosses over.{of_lost}"
+
+
+def lost_parts(campaign: Campaign, signals: Signals, parts: Sequence[Spectra]) -> tuple[str, ...]:
+    """Return which sines and legs of a campaign are lost, and how much is left of those that are lost in part."""
+    measured = {line for one in parts for line, used in zip(one.response.lines, one.response.used, strict=True) if used}
+    sines = [sine.name for sine in campaign.of_input().sines if sine.name not in measured]
+    left = {state.name: state.periods for state in signals.legs}
+    words = [f"{listed(sines)} {'is' if len(sines) == 1 else 'are'} lost"] if sines else []
+    for leg in campaign.legs:
+        if leg.name not in left:
+            words.append(f"{leg.name} is lost")
+        elif left[leg.name] < leg.periods:
+            words.append(f"{leg.name} has {left[leg.name]} of its {leg.periods} periods")
+    return tuple(words)
+
+
+def lines_of(campaign: Campaign) -> int:
+    """Return how many lines a campaign asks for, those of all legs."""
+    return len(campaign.of_input().sines) + sum(len(leg.lines) for leg in campaign.legs)
+
+
+def _counted(parts: Sequence[Spectra], planned: int) -> tuple[str, str, str]:
+    """Return how many lines are good, those of all legs, what is missing and what to do; empty where nothing is."""
+    good = [good_lines(one.response, one.signal_to_noise) for one in parts]
+    omega = np.concatenate([one.response.omega_rad_s[which] for one, which in zip(parts, good, strict=True)])
+    crossover = int(np.count_nonzero((omega >= CROSSOVER_RAD_S[0]) & (omega <= CROSSOVER_RAD_S[1])))
+    between = f"{crossover} of them between {CROSSOVER_RAD_S[0]:g} and {CROSSOVER_RAD_S[1]:g} rad/s"
+    counts = f"{omega.size} of {max(planned, sum(which.size for which in good))} lines are good, {between}"
+    if omega.size < FEWEST_LINES:
+        return counts, f"; at least {FEWEST_LINES} are needed", " Use a larger amplitude or more lines."
+    if crossover < FEWEST_AT_CROSSOVER:
+        needed = f"at least {FEWEST_AT_CROSSOVER} are needed there to find delay, lag and gain"
+        return counts, f", where the loop crosses over; {needed}", ""
+    return counts, "", ""

@@ -1,0 +1,115 @@
+"""One factor of the speed, or the gear's ratio in the torque: named where it is certain, and never of a healthy ship.
+
+The truth is arithmetic: a propeller takes torque with the square of its speed, and a wrong count changes what is shown.
+"""
+
+import numpy as np
+import pytest
+
+from shaftprint.campaign import load_campaign
+from shaftprint.signals import ScaleEvidence, WorkingPoint, scale_reasons
+from shaftprint.vessel import load_vessel
+
+VESSEL = load_vessel("stan-tug-1205")
+RPM, TORQUE_NM, RATIO = 1183.8, 1725.0, 3.82
+# -5.707 V ask for 1361.37 rpm in one, -5 V for the working point in the other
+TESTS = {"12min": 1361.37, "short": RPM}
+CAMPAIGNS = {name: load_campaign(name) for name in TESTS}
+COUNTS = {0.5: "half", 2.0: "twice", 2 / 3: "two thirds of", 1.5: "one and a half times", 1 / 3: "a third of"}
+
+
+def one_pick_up(**fields):
+    speed = VESSEL.sensors.speed[0].model_copy(update=fields)
+    return VESSEL.model_copy(update={"sensors": VESSEL.sensors.model_copy(update={"speed": (speed,)})})
+
+
+def reasons_of(vessel, test, true_rpm, *, load=1.0, of_speed=1.0, of_torque=1.0, inertia_std=None):
+    """Reasons of a ship that runs at a true speed under a load, shown by factors too large."""
+    campaign = CAMPAIGNS[test]
+    shown = WorkingPoint(
+        engine_speed_rev_s=true_rpm / 60.0 * of_speed,
+        shaft_torque_nm=TORQUE_NM * load * (true_rpm / RPM) ** 2 * of_torque,
+        engine_speed_std_rev_s=0.01,
+        shaft_torque_std_nm=10.0,
+        set_point_v=campaign.offset_v,
+        load_std=0.01,
+    )
+    inertia = ScaleEvidence(log=np.log(of_torque / of_speed), std=inertia_std or 1.0, of_speed=-1.0, of_torque=1.0)
+    return scale_reasons(
+        shown, vessel, campaign, levels_rpm=[true_rpm * of_speed], of_fit={"I_dn": inertia} if inertia_std else {}
+    )
+
+
+@pytest.mark.parametrize("load", [0.8, 1.0, 1.2])
+@pytest.mark.parametrize("factor", COUNTS)
+@pytest.mark.parametrize("test", TESTS)
+def test_a_wrong_count_is_named_with_its_factor_and_field(test, factor, load):
+    # the load of another day, and an inertia that the vessel file knows to 10 %
+    (reason,) = reasons_of(one_pick_up(), test, TESTS[test], load=load, of_speed=factor, inertia_std=0.1)
+    assert reason.kind == "speed scale"
+    assert f"it seems to be {COUNTS[factor]} the true one" in reason.sentence
+    assert "pulses_per_revolution of PTM_e" in reason.sentence
+
+
+def test_the_count_that_would_fit_is_told():
+    (reason,) = reasons_of(one_pick_up(pulses_per_revolution=2), "12min", 1361.37, of_speed=0.5)
+    assert reason.sentence.endswith("pulses_per_revolution of PTM_e: 2 is stated, 1 would fit.")
+    (reason,) = reasons_of(one_pick_up(), "short", RPM, of_speed=0.5)
+    assert "as on the camshaft of a four-stroke engine" in reason.sentence
+
+
+def test_a_pick_up_of_the_other_shaft_is_named():
+    (reason,) = reasons_of(one_pick_up(), "12min", 1361.37, of_speed=1.0 / RATIO)
+    assert 'the gear ratio of 3.82: write shaft = "propeller" for PTM_e' in reason.sentence
+
+
+def test_pick_ups_that_agree_are_not_miscounted_one_by_one():
+    (reason,) = reasons_of(VESSEL, "12min", 1361.37, of_speed=0.5)
+    assert "all of PTM_e, PTM_1, PTM_4 agree" in reason.sentence
+
+
+@pytest.mark.parametrize(("factor", "fitting"), [(RATIO, "130.9"), (1.0 / RATIO, "1910")])
+def test_a_torque_of_the_other_side_of_the_gear_is_a_scale_of_the_gauge(factor, fitting):
+    # 500 N m for a volt on the propeller's shaft are 131 on the engine's, and the other way round 1910
+    (reason,) = reasons_of(one_pick_up(), "12min", 1361.37, of_torque=factor, inertia_std=0.1)
+    assert reason.kind == "gauge scale"
+    assert "near the gear ratio of 3.82" in reason.sentence
+    assert f": {fitting} would fit." in reason.sentence
+
+
+@pytest.mark.parametrize("factor", [0.5, 0.8, 1.25, 2.0])
+def test_a_gauge_that_is_off_by_another_factor_is_no_speed(factor):
+    assert reasons_of(one_pick_up(), "12min", 1361.37, of_torque=factor, inertia_std=0.1) == ()
+
+
+def test_a_ship_of_another_day_is_healthy():
+    """Load from 0.6 to 1.7, speed up to 30 % beside the expected, inertia within 2.5 of its standard deviations."""
+    rng = np.random.default_rng(7)
+    vessel, alarms = one_pick_up(), 0
+    for _ in range(3000):
+        load = float(np.clip(rng.lognormal(0.0, 0.2), 0.6, 1.7))
+        beside = float(np.clip(rng.lognormal(0.0, 0.15), 0.75, 1.3))
+        campaign = CAMPAIGNS["short"]
+        shown = WorkingPoint(
+            engine_speed_rev_s=RPM * beside / 60.0,
+            shaft_torque_nm=TORQUE_NM * load * beside**2,
+            engine_speed_std_rev_s=0.01,
+            shaft_torque_std_nm=10.0,
+            set_point_v=campaign.offset_v,
+            load_std=0.01,
+        )
+        off = 0.1 * float(np.clip(rng.standard_normal(), -2.5, 2.5))
+        inertia = ScaleEvidence(log=off, std=0.1, of_speed=-1.0, of_torque=1.0)
+        alarms += bool(scale_reasons(shown, vessel, campaign, levels_rpm=[RPM * beside], of_fit={"I_dn": inertia}))
+    # three of ten thousand: of 3000 more than four are less likely than 0.3 %
+    assert alarms <= 4
+
+
+@pytest.mark.parametrize("rpm", [700.0, 900.0, 1500.0, 1750.0])
+def test_a_test_at_another_speed_is_healthy(rpm):
+    assert reasons_of(one_pick_up(), "short", rpm) == ()
+
+
+def test_a_lever_that_asks_for_half_is_no_wrong_count():
+    """The campaign states twice the speed, and torque goes with the speed that is shown: the speed is right."""
+    assert reasons_of(one_pick_up(), "12min", 0.55 * 1361.37) == ()
