@@ -109,6 +109,53 @@ def test_values_in_float_are_as_good_as_counts(spoiled, vessel, campaign):
     assert len(floating.repairs) == len(counted.repairs)
 
 
+@pytest.mark.parametrize(("factor", "times"), [(1000.0, "1000 times as much: mV for V"), (0.001, "1/1000 as much: mV")])
+def test_a_set_point_in_another_unit_is_named(factor, times, spoiled, vessel, campaign):
+    refused(
+        spoiled(U_setpoint=lambda counts: factor * counts.astype(float)),
+        vessel,
+        campaign,
+        rf"a set point around -5 V that moves by 1\.5 V, found one around -.* V, {times}.*v_per_unit .* which is "
+        rf"{1.0 / factor:g} times",
+    )
+
+
+def test_a_gauge_that_turns_its_sign_is_named_with_its_time(spoiled, vessel, campaign):
+    # 2000 samples a second: from 180 s on
+    turned = spoiled(M_s=lambda counts: np.where(np.arange(counts.size) < 360_000, counts, -counts))
+    refused(turned, vessel, campaign, r"channel M_s: expected a torque of one sign .* turned round from 180 to 250 s")
+
+
+def test_pulses_that_fade_are_too_low_and_no_gear_ratio(spoiled, vessel, campaign):
+    """From 150 s on a third of their height: the other tests are measured, and the gap says why."""
+
+    def faded(counts):
+        low = int(np.percentile(counts, 5))
+        weak = (low + (counts.astype(float) - low) / 3.0).astype(np.int16)
+        return np.where(np.arange(counts.size) < 300_000, counts, weak)
+
+    found = prepare_signals(spoiled(PTM_e=faded), vessel, campaign)
+    (told,) = [finding for finding in found.findings if "PTM_e" in finding]
+    assert told.startswith("channel PTM_e has pulses too low to be counted, of 3")
+    assert told.endswith("left out for that: S1, S2, S3")
+    assert not [finding for finding in found.findings if "gear ratio" in finding]
+
+
+def test_pulses_of_too_few_samples_are_the_logger_s_fault(ship, vessel, campaign):
+    """A strip of 19.8 degrees passes in 2.8 ms at 1183.8 rpm: half a sample at 200 Hz, four of them at 1500."""
+    recording = ship.recording()
+    slow = recording.channels["PTM_e"]
+    counts = slow.read(0, slow.count)[::10].copy()
+    slow = replace(slow, source=lambda first, stop: counts[first:stop], count=counts.size, rate_hz=200.0)
+    refused(
+        replace(recording, channels={**recording.channels, "PTM_e": slow}),
+        vessel,
+        campaign,
+        r"channel PTM_e: .* the rate is too low for these pulses of about 2\.8 ms, 0\.56 samples each at 200 Hz; "
+        "log at 1500 Hz or more",
+    )
+
+
 def test_set_point_that_never_moves(spoiled, vessel, campaign):
     refused(
         spoiled(U_setpoint=lambda counts: np.full_like(counts, -16_000)),

@@ -262,10 +262,10 @@ def test_two_sensors_of_one_shaft_have_no_gear_ratio_to_blame():
     sensors = [SimpleNamespace(name=name, shaft="engine") for name in ("a", "b")]
     vessel = SimpleNamespace(sensors=SimpleNamespace(speed=sensors), gearbox=SimpleNamespace(ratio=3.82))
     speeds = tuple(
-        SimpleNamespace(name=name, channel=name.upper(), values=np.full(5, value))
+        SimpleNamespace(name=name, channel=name.upper(), values=np.full(5, value), gaps=())
         for name, value in (("a", 20.0), ("b", 20.04))
     )
-    (finding,) = compare_speeds(speeds, vessel)
+    (finding,) = compare_speeds(speeds, vessel, rate_hz=1.0, start_s=0.0)
     assert finding == "channels A and B: expected the same engine-side speed, found b / a = 1.0020"
 
 
@@ -274,9 +274,45 @@ def test_gear_ratio_the_other_way_round():
     sensors = [SimpleNamespace(name=name, shaft=shaft, unit="V") for name, shaft in shafts.items()]
     vessel = SimpleNamespace(sensors=SimpleNamespace(speed=sensors), gearbox=SimpleNamespace(ratio=4.0))
     speeds = tuple(
-        SimpleNamespace(name=name, channel=name, values=np.full(5, value))
+        SimpleNamespace(name=name, channel=name, values=np.full(5, value), gaps=())
         for name, value in (("shaft", 20.0), ("engine", 19.0))
     )
     # the shaft turns at 5 rev/s and the engine at 19: the ratio is 3.8
     with pytest.raises(SignalError, match=r"as with a gear ratio of 3\.8000 instead of 4"):
-        compare_speeds(speeds, vessel)
+        compare_speeds(speeds, vessel, rate_hz=1.0, start_s=0.0)
+
+
+@pytest.mark.parametrize(
+    ("ratio", "words"),
+    [
+        # slips for the second half, and more and more; a pick-up that counts half of the time twice
+        (lambda share: 1.0 + 0.02 * (share > 0.5), "check clutch, pick-ups and cables"),
+        (lambda share: 1.0 + 0.02 * share, "check clutch, pick-ups and cables"),
+        (lambda share: 1.0 + (share > 0.5), "between 1.0000 and 2.0000"),
+        (lambda share: 1.02 + 0.0 * share, "as with a gear ratio of 3.8964"),
+    ],
+)
+def test_what_changes_with_time_is_no_gear_ratio(ratio, words):
+    shafts = {"e": "engine", "s": "propeller"}
+    sensors = [SimpleNamespace(name=name, shaft=shaft, unit="V") for name, shaft in shafts.items()]
+    vessel = SimpleNamespace(sensors=SimpleNamespace(speed=sensors), gearbox=SimpleNamespace(ratio=3.82))
+    share = np.arange(1000) / 1000
+    values = {"e": np.full(1000, 20.0) * ratio(share), "s": np.full(1000, 20.0)}
+    # the propeller's count times the ratio is 20 rev/s all the time: shown as the engine's over the propeller's
+    speeds = tuple(SimpleNamespace(name=name, channel=name, values=values[name], gaps=()) for name in ("s", "e"))
+    with pytest.raises(SignalError, match=words.replace(".", r"\.")):
+        compare_speeds(speeds, vessel, rate_hz=2.0, start_s=0.0)
+
+
+def test_a_speed_is_compared_where_it_has_one():
+    """Through a gap a straight line goes on, whatever the shaft did meanwhile."""
+    sensors = [SimpleNamespace(name=name, shaft="engine") for name in ("a", "b")]
+    vessel = SimpleNamespace(sensors=SimpleNamespace(speed=sensors), gearbox=SimpleNamespace(ratio=3.82))
+    true, held = np.linspace(15.0, 25.0, 1000), np.linspace(15.0, 25.0, 1000)
+    held[300:] = held[300]
+    gap = SimpleNamespace(first_s=150.0, last_s=500.0)
+    speeds = (
+        SimpleNamespace(name="a", channel="A", values=true, gaps=()),
+        SimpleNamespace(name="b", channel="B", values=held, gaps=(gap,)),
+    )
+    assert compare_speeds(speeds, vessel, rate_hz=2.0, start_s=0.0) == ()

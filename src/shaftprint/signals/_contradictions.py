@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 
 # All orders of more are tried no longer.
 _MOST_SENSORS = 7
+# A channel without so large a share of its values has another mean than the others.
+_LOST = 0.01
 # A gauge that reads less than this share of the expected torque, below zero, may be one with a zero that has moved.
 _CLEARLY_NEGATIVE = -0.1
 # The torque of a test is around that of the working point, which the vessel file may know badly.
@@ -53,7 +55,9 @@ def contradictions(
 
 def _of_speeds(reports: Sequence[ChannelReport], vessel: "Vessel") -> tuple[str, ...]:
     pulses = {report.channel: report.pulses for report in reports if report.pulses is not None}
-    sensors = [sensor for sensor in vessel.sensors.speed if sensor.channel in pulses][:_MOST_SENSORS]
+    # means of other times are not alike: with gaps the test compares the speeds where both have one
+    cut = {report.channel for report in reports if _lost_share(report) > _LOST}
+    sensors = [one for one in vessel.sensors.speed if one.channel in pulses and one.channel not in cut][:_MOST_SENSORS]
     channels = [sensor.channel for sensor in sensors]
     if len(sensors) < 2 or _agree(sensors, channels, pulses, vessel):
         return ()
@@ -70,6 +74,11 @@ def _of_speeds(reports: Sequence[ChannelReport], vessel: "Vessel") -> tuple[str,
         f"channels {names} seem to be swapped: {contradiction}; with {right} all pick-ups agree. Correct the channels "
         "in the vessel file or the columns of the recording.",
     )
+
+
+def _lost_share(report: ChannelReport) -> float:
+    """Return the share of the time in which a channel says nothing."""
+    return sum(gap.stop_s - gap.start_s for gap in report.gaps) / report.duration_s
 
 
 def _agree(

@@ -36,6 +36,7 @@ from shaftprint.signals.kinds import (
     SteadyState,
     compare_speeds,
     expect_moving_torque,
+    expect_one_sign,
     read_set_point,
 )
 from shaftprint.signals.levels import (
@@ -126,7 +127,7 @@ def _prepared(recording: "Recording", vessel: "Vessel", campaign: Campaign, read
     sensor = vessel.sensors.demand
     late, asked = (None, ()) if sensor is None else delay_of_demand(recording, sensor, campaign, readings)
     _straightened_in_place(readings.set_point, vessel.sensors.set_point, campaign)
-    differences = compare_speeds(readings.pick_ups, vessel)
+    differences = compare_speeds(readings.pick_ups, vessel, rate_hz=clock.rate_hz, start_s=clock.start_s)
     legs = samples_of_legs(campaign, readings)
     stopped = stopped_generators(legs, readings)
     states: tuple[LegState, ...]
@@ -242,6 +243,7 @@ def _differences_from_campaign(
     mismatches = expect_campaign(
         readings.set_point, campaign.of_input(), **grid, channel=sensors.set_point.channel, coverage=coverage
     )
+    expect_one_sign(readings.torque_nm, sensors.shaft_torque, **grid)
     expect_moving_torque(readings.torque_nm, campaign.of_input(), sensors.shaft_torque, **grid, coverage=coverage)
     return lost, mismatches
 

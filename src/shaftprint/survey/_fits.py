@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from shaftprint.catalogue import ShipRole
+from shaftprint.errors import IdentificationError
 from shaftprint.identify import (
     SHARE_ROUNDING,
     Identification,
@@ -16,6 +17,7 @@ from shaftprint.identify import (
 )
 from shaftprint.identify.comparison import StructureComparison, compare_fits
 from shaftprint.identify.fit import fit_of
+from shaftprint.identify.judgement import by_weight
 from shaftprint.models import Structure
 from shaftprint.signals import SetPointCalibration, Signals, WorkingPoint
 from shaftprint.survey._measurement import Measurement, pairs_of
@@ -109,7 +111,13 @@ def fit(
     fits = []
     for structure in structures:
         pairs, how = pairs_of(structure, measurement), settings[structure.name]
-        fits.append(fit_of(pairs, rng=copy.deepcopy(rng), settings=how))
+        try:
+            fits.append(fit_of(pairs, rng=copy.deepcopy(rng), settings=how))
+        except IdentificationError as error:
+            against = by_weight([reason for _, response in pairs for reason in response.reasons])
+            if not against:
+                raise
+            raise IdentificationError(f"{against[0].sentence} So the fit failed: {error}") from error
         progress.advance(1.0)
     return tuple(fits)
 

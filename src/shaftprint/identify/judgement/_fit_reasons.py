@@ -20,7 +20,15 @@ def too_few_good_data(evidence: Evidence) -> str:
     if fit.objective.others and evidence.good_data >= wanted:
         return ""
     if fit.data_count < wanted:
-        return f"There are too few lines: {lines} lines give {fit.data_count} numbers, {need}; measure more lines."
+        why = next(
+            (
+                f" {line} is left out: {why.removeprefix('left out: ')}."
+                for part in fit.experiments
+                for line, why in part.response.remarks.items()
+            ),
+            "",
+        )
+        return f"There are too few lines: {lines} lines give {fit.data_count} numbers, {need}; measure more lines.{why}"
     if evidence.good_data >= wanted:
         return ""
     return (

@@ -10,7 +10,7 @@ from shaftprint.signals.kinds._rack import rack_signal, read_rack
 from shaftprint.signals.kinds._set_point import SetPointMessages, read_set_point
 from shaftprint.signals.kinds._ship_speed import read_ship_speed, ship_speed_signal
 from shaftprint.signals.kinds._speed_reading import SpeedReading
-from shaftprint.signals.kinds._torque import expect_moving_torque
+from shaftprint.signals.kinds._torque import expect_moving_torque, expect_one_sign
 
 __all__ = [
     "KINDS",
@@ -24,6 +24,7 @@ __all__ = [
     "SteadyState",
     "compare_speeds",
     "expect_moving_torque",
+    "expect_one_sign",
     "find_sources",
     "rack_signal",
     "read_messages",

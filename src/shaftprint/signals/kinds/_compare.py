@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from shaftprint.arrays import FloatArray
 from shaftprint.errors import SignalError
 from shaftprint.signals.kinds._speed_reading import SpeedReading
 
@@ -15,10 +16,26 @@ LARGEST_DIFFERENCE = 1e-2
 """Share by which two pick-ups of one line may differ without an error in the vessel file."""
 
 _FINDING = 1e-3
+# Means of so long tell a slip of a thousandth from the swing of the line between two pick-ups [s].
+_BLOCK_S = 5.0
+# A wrong ratio is the same all the time: what goes from one tenth of the time to the other by more than this share of
+# the difference is none.
+_STEADY = 0.3
 
 
-def compare_speeds(speeds: Sequence[SpeedReading], vessel: "Vessel") -> tuple[str, ...]:
-    """Compare the mean of every speed with that of the first.
+def compare_speeds(
+    speeds: Sequence[SpeedReading], vessel: "Vessel", *, rate_hz: float, start_s: float
+) -> tuple[str, ...]:
+    """Compare the mean of every speed with that of the first, where both have one.
+
+    Parameters
+    ----------
+    speeds
+        The speed channels, in the order of the vessel file.
+    vessel
+        Says which shaft carries which.
+    rate_hz, start_s
+        Their grid.
 
     Returns
     -------
@@ -28,13 +45,27 @@ def compare_speeds(speeds: Sequence[SpeedReading], vessel: "Vessel") -> tuple[st
     Raises
     ------
     SignalError
-        If one is off by more than 1 %: a gear ratio or a number of strips in the vessel file is wrong.
+        If one is off by more than 1 %: all the time, as with a wrong gear ratio or number of strips in the vessel file,
+        or more at one time than at another, as with a clutch that slips or a pick-up that loses pulses.
     """
     shafts = {sensor.name: sensor.shaft for sensor in vessel.sensors.speed}
     first = speeds[0]
     findings = []
     for other in speeds[1:]:
-        ratio = float(np.mean(other.values) / np.mean(first.values))
+        ratios = _ratios(first, other, rate_hz=rate_hz, start_s=start_s)
+        if not ratios.size:
+            continue
+        ratio = float(np.median(ratios))
+        lowest, highest = (float(np.quantile(ratios, share)) for share in (0.1, 0.9))
+        farthest = max(abs(lowest - 1.0), abs(highest - 1.0), abs(ratio - 1.0))
+        if farthest > LARGEST_DIFFERENCE and highest - lowest > _STEADY * farthest:
+            where = "clutch, " if shafts[first.name] != shafts[other.name] else ""
+            raise SignalError(
+                f"channels {first.channel} and {other.channel}: expected the same engine-side speed, found "
+                f"{other.name} / {first.name} between {lowest:.4f} and {highest:.4f}; a wrong gear ratio or count "
+                f"would be the same all the time: check {where}pick-ups and cables for slip and for pulses that are "
+                "lost."
+            )
         if abs(ratio - 1.0) <= _FINDING:
             continue
         message = (
@@ -52,6 +83,20 @@ def compare_speeds(speeds: Sequence[SpeedReading], vessel: "Vessel") -> tuple[st
             raise SignalError(f"{message}; check gearbox.ratio{_counted(vessel)} in the vessel file.")
         findings.append(message)
     return tuple(findings)
+
+
+def _ratios(first: SpeedReading, other: SpeedReading, *, rate_hz: float, start_s: float) -> FloatArray:
+    """Return the ratios of two speeds in blocks in which neither has a gap, shape (blocks,)."""
+    length = max(round(_BLOCK_S * rate_hz), 1)
+    blocks = max(first.values.size // length, 1)
+    cut = slice(0, min(blocks * length, first.values.size))
+    means = [one.values[cut].reshape(blocks, -1).mean(axis=1) for one in (first, other)]
+    begin_s = start_s + np.arange(blocks) * length / rate_hz
+    kept = means[0] > 0.0
+    for gap in (*first.gaps, *other.gaps):
+        kept &= (begin_s + length / rate_hz <= gap.first_s) | (begin_s >= gap.last_s)
+    found: FloatArray = means[1][kept] / means[0][kept]
+    return found
 
 
 def _counted(vessel: "Vessel") -> str:

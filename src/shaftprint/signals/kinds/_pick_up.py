@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from shaftprint.arrays import FloatArray, frozen_float
+from shaftprint.errors import SignalError
 from shaftprint.signals._channel_signals import SpeedSignal
 from shaftprint.signals._channels import Advance, blocks, find_channel, time_of
 from shaftprint.signals._gaps import Gap, bridge, clock_gaps, merged
@@ -16,7 +17,7 @@ from shaftprint.signals.kinds._encoder_speed import judge_encoder, read_encoder
 from shaftprint.signals.kinds._grid_speed import speed_on_grid
 from shaftprint.signals.kinds._instrument_speed import read_instrument
 from shaftprint.signals.kinds._kind import ChannelKind, Source, SteadyState
-from shaftprint.signals.kinds._samples_a_tooth import expect_samples, fastest_turns_hz
+from shaftprint.signals.kinds._samples_a_tooth import expect_samples, fastest_turns_hz, too_slow_for_pulses
 from shaftprint.signals.kinds._speed_reading import SpeedReading
 from shaftprint.signals.pulses import (
     PulseLevels,
@@ -45,6 +46,12 @@ _LONGEST_GAP_S, _LONGEST_GAP_PULSES = 1.0, 8
 _UPSIDE_DOWN = 0.6
 # The end of a spline is felt so many pulses further on: by half a per cent.
 _REACH_PULSES = 4
+# Where there are none it is looked so long [s] for pulses that are too low: of this share of the height at least, and
+# so many times the noise.
+_NO_PULSES = "has no pulses"
+_LOOK_S, _LEAST_PULSE, _WHOLE_PULSE, _CLEAR_OF_NOISE = 5.0, 0.1, 0.9, 8.0
+# Its ends hold the pulses beside it.
+_INNER = 0.8
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -101,6 +108,7 @@ class Speed(ChannelKind[SpeedSensor]):
             count=clock.count,
             block_samples=clock.block_samples(source.channel),
             advance=clock.advance,
+            turns_hz=rev_s_from_rpm(vessel.working_point.engine_speed_rpm) / ratio,
         )
 
     def judge(self, source: Source[SpeedSensor], reading: Reading) -> tuple[str, ...]:
@@ -136,6 +144,7 @@ def read_pick_up(
     count: int,
     block_samples: int,
     advance: Advance | None = None,
+    turns_hz: float | None = None,
 ) -> PulseReading:
     """Return the engine-side speed of one pick-up on the grid.
 
@@ -153,18 +162,30 @@ def read_pick_up(
         Samples that are read at a time; the result does not depend on it.
     advance
         Is told the number of samples after each block.
+    turns_hz
+        Turns of its shaft a second that are expected, for messages.
 
     Raises
     ------
     SignalError
-        If there are no pulses, too few or too many faults.
+        If there are no pulses, too few or too many faults, or the rate is too low for them.
     """
     wheel = sensor.toothed
-    levels = pulse_levels(channel, edge=sensor.edge, uneven_share=wheel.uneven_share)
-    edges = find_edges(blocks(channel, block_samples, advance), levels)
-    train, strips = numbered_strips(edges, sensor)
+    levels: PulseLevels | None = None
+    try:
+        levels = pulse_levels(channel, edge=sensor.edge, uneven_share=wheel.uneven_share)
+        edges = find_edges(blocks(channel, block_samples, advance), levels)
+        train, strips = numbered_strips(edges, sensor)
+    except SignalError as error:
+        duty = None if levels is None else levels.duty
+        slow = "" if turns_hz is None else too_slow_for_pulses(channel, sensor, turns_hz, duty)
+        if not slow:
+            raise
+        raise SignalError(
+            f"channel {channel.name}: expected pulses, found none that can be counted: {slow}."
+        ) from error
     expect_samples(channel, wheel, fastest_turns_hz(channel, train, wheel))
-    gaps = pulse_gaps(channel, train, sensor.pulses_per_revolution)
+    gaps = tuple(_named(gap, channel, levels) for gap in pulse_gaps(channel, train, sensor.pulses_per_revolution))
     time_s = time_of_edges(channel, train.position)
     seconds, pulses = _counted(train, time_s, gaps)
     turn_s = seconds / (pulses / sensor.pulses_per_revolution)
@@ -264,13 +285,27 @@ def pulse_gaps(channel: "Channel", train: PulseTrain, strips: int) -> tuple[Gap,
             channel=channel.name,
             start_s=time_of(channel, first),
             stop_s=time_of(channel, last),
-            reason="has no pulses" if (first, last) in stretches[: long.size] else "has too few pulses between gaps",
+            reason=_NO_PULSES if (first, last) in stretches[: long.size] else "has too few pulses between gaps",
         )
         for first, last in sorted(stretches)
     ]
     reach_s = _REACH_PULSES * float(mean) / channel.rate_hz
     widened = [replace(gap, reach_s=reach_s) for gap in (*silent, *lost, *clock_gaps(channel))]
     return tuple(sorted(widened, key=lambda gap: gap.start_s))
+
+
+def _named(gap: Gap, channel: "Channel", levels: PulseLevels) -> Gap:
+    """Return a gap without pulses, one whose pulses are there but too low to be counted said to be so."""
+    if gap.reason != _NO_PULSES:
+        return gap
+    middle = round((0.5 * (gap.start_s + gap.stop_s) - channel.start_s) * channel.rate_hz)
+    half = round(0.5 * min(_LOOK_S, _INNER * (gap.stop_s - gap.start_s)) * channel.rate_hz)
+    counts = np.asarray(channel.read(max(middle - half, 0), min(middle + half, channel.count)), dtype=np.float64)
+    reach = levels.high - levels.low
+    share = float(np.max((counts - levels.low) / reach, initial=0.0, where=np.isfinite(counts)))
+    if share * abs(reach) <= _CLEAR_OF_NOISE * levels.noise or not _LEAST_PULSE < share < _WHOLE_PULSE:
+        return gap
+    return replace(gap, reason=f"has pulses too low to be counted, of {share:.0%} of their usual height,")
 
 
 def _counted(train: PulseTrain, time_s: FloatArray, gaps: Sequence[Gap]) -> tuple[float, float]:

@@ -1,5 +1,6 @@
 """Whether a logger is fast enough for a wheel."""
 
+import math
 from typing import TYPE_CHECKING
 
 from shaftprint.errors import SignalError
@@ -8,7 +9,14 @@ from shaftprint.vessel import SAMPLES_A_TOOTH
 if TYPE_CHECKING:
     from shaftprint.recording import Channel
     from shaftprint.signals.pulses import PulseTrain
-    from shaftprint.vessel import Wheel
+    from shaftprint.vessel import SpeedSensor, Wheel
+
+# Of a strip or a tooth with fewer samples levels and edges are not sure to be found. Teeth are as wide as the
+# spaces between them, and what a pick-up makes of them is round.
+_SAMPLES_A_STRIP, _SAMPLES_A_WIDTH = 4.0, 6.0
+# Teeth of a wheel, not strips.
+_TEETH = 12
+_DIGITS = 2
 
 
 def fastest_turns_hz(channel: "Channel", train: "PulseTrain", wheel: "Wheel") -> float:
@@ -35,4 +43,36 @@ def expect_samples(channel: "Channel", wheel: "Wheel", turns_hz: float) -> None:
         f"{channel.rate_hz / teeth_hz:.2g} at {turns_hz:.3g} turns a second of the wheel {wheel} and "
         f"{channel.rate_hz:g} Hz; log at {wheel.least_rate_hz(turns_hz):g} Hz or more, or take a wheel with fewer "
         "teeth or that of a slower shaft."
+    )
+
+
+def too_slow_for_pulses(channel: "Channel", sensor: "SpeedSensor", turns_hz: float, duty: float | None) -> str:
+    """Return that a channel whose pulses cannot be used is sampled too seldom for them; empty where it is not.
+
+    Parameters
+    ----------
+    channel, sensor
+        The channel and what the vessel file says about it.
+    turns_hz
+        Turns of its shaft a second at the working point.
+    duty
+        Share of the time in a pulse, where levels were found.
+    """
+    closest_hz = sensor.toothed.closest * turns_hz
+    are_teeth = sensor.pulses_per_revolution >= _TEETH
+    needed = _SAMPLES_A_WIDTH if are_teeth else _SAMPLES_A_STRIP
+    if sensor.pulse_width_deg is not None:
+        width_s = sensor.pulse_width_deg / 360.0 / turns_hz
+    elif are_teeth or duty is None:
+        width_s = 0.5 / closest_hz
+    else:
+        width_s = duty / closest_hz
+    samples = width_s * channel.rate_hz
+    if samples >= needed:
+        return ""
+    least_hz = needed / width_s
+    step_hz = 10.0 ** (math.floor(math.log10(least_hz)) + 1 - _DIGITS)
+    return (
+        f"the rate is too low for these pulses of about {1000.0 * width_s:.2g} ms, {samples:.2g} samples each at "
+        f"{channel.rate_hz:g} Hz; log at {math.ceil(least_hz / step_hz) * step_hz:g} Hz or more"
     )

@@ -31,6 +31,9 @@ _LARGEST_SATURATED_SHARE = 1e-3
 # recording may idle for most of its time.
 _SMALL_PART, _MULTIPLE = 0.1, 2.5
 
+# Seconds whose torque is beyond this share of the usual one, on both sides of nothing in this share of the time.
+_CLEAR, _BOTH_SIGNS = 0.3, 0.05
+
 # Torque follows slow excitations; faster ones say nothing about the gauge.
 _SLOW_HZ = 1.0
 _LEAST_MOVEMENT = 1e-3
@@ -102,7 +105,8 @@ def expect_unit(channel: "Channel", vessel: "Vessel") -> None:
     sensor, expected = vessel.sensors.shaft_torque, vessel.working_point.shaft_torque_nm
     torque = float(sensor.torque_nm(middle_of(channel)))
     unit = sensor.unit_that_fits(torque, expected)
-    if unit is not None and not _SMALL_PART < torque / expected < _MULTIPLE:
+    # a torque of the other sign is no other unit: that it has the other sign is said with the working point
+    if unit is not None and torque / expected > 0.0 and not _SMALL_PART < torque / expected < _MULTIPLE:
         raise SignalError(
             f"channel {channel.name}: expected a torque around {expected:.4g} N m, found {torque:.4g} N m; {unit} in "
             "sensors.shaft_torque would fit."
@@ -163,3 +167,28 @@ def expect_moving_torque(
                 f"found it dead near {float(torque_nm[first]):.0f} N m from "
                 f"{excitation.start_s:.1f} s on; check the gauge and its telemetry."
             )
+
+
+def expect_one_sign(torque_nm: FloatArray, sensor: ShaftTorqueSensor, *, rate_hz: float, start_s: float) -> None:
+    """Check that the torque does not turn its sign for a part of the recording: a shaft that turns on does not do so.
+
+    Raises
+    ------
+    SignalError
+        If it does; the message says when.
+    """
+    length = max(round(rate_hz), 1)
+    seconds = torque_nm[: torque_nm.size - torque_nm.size % length].reshape(-1, length).mean(axis=1)
+    if not seconds.size:
+        return
+    clear = _CLEAR * float(np.median(np.abs(seconds)))
+    below, above = seconds < -clear, seconds > clear
+    if min(below.mean(), above.mean()) < _BOTH_SIGNS:
+        return
+    fewer = below if below.sum() < above.sum() else above
+    where = np.flatnonzero(fewer)
+    raise SignalError(
+        f"channel {sensor.channel}: expected a torque of one sign while the shaft turns on, found it turned round "
+        f"from {start_s + where[0] * length / rate_hz:.0f} to {start_s + (where[-1] + 1) * length / rate_hz:.0f} s; "
+        "check the gauge, its wiring and its amplifier for a sign that was changed during the test."
+    )

@@ -58,10 +58,17 @@ def stretches_at_working_point(
     if not near:
         levels = ", ".join(f"{stretch.set_point_v:.2f} V" for stretch in stretches) or "none"
         shown = [stretch.set_point_v for stretch in stretches]
+        planned = [level for stairs in campaign.staircases for level in stairs.levels_v]
+        # levels that are the campaign's own are in its volts: then the offset is not what is wrong
+        of_campaign = all(any(abs(level - one) < _NEAR_V for one in planned) for level in shown)
+        advice = (
+            "look for noise and for the signal of another channel on it, which keep it from standing still"
+            if of_campaign
+            else f"check offset_v in the campaign file{_loop_words(shown, campaign.offset_v)}"
+        )
         raise SignalError(
             f"channel {channel}: expected a quiet stretch of at least 15 s near the working voltage "
-            f"of {campaign.offset_v:g} V, found steady levels at {levels}; check offset_v in the "
-            f"campaign file{_loop_words(shown, campaign.offset_v)}."
+            f"of {campaign.offset_v:g} V, found steady levels at {levels}; {advice}."
         )
     return tuple(stretch for stretch in near if _between_tests(stretch, campaign)) or tuple(near)
 
@@ -160,7 +167,7 @@ def expect_plausible(point: WorkingPoint, vessel: "Vessel") -> tuple[str, ...]:
         raise SignalError(
             f"channel {sensor.channel}: expected a {_sign_words(vessel)} mean torque at the working point, found "
             f"{torque:.4g} N m; {sensor.sign_words} in the vessel file, or correct zero_nm there, or "
-            f"{direction_words(vessel)}{_unit_words(sensor, torque, expected)}."
+            f"{direction_words(vessel)}."
         )
     if max(torque / expected, expected / torque) < _FAR:
         return ()
