@@ -23,6 +23,8 @@ HUBER = 1.345
 ITERATIONS = 50
 # A stretch is strange where the contents are less alike than this share of the best; so many must not be.
 STRANGE, ALIKE = 0.3, 0.8
+# With fewer degrees of freedom Student's t has no variance.
+_LEAST_FREEDOM = 3
 # Share of the stretches that must lie on one line, and how near [s].
 AGREEING, NEAR_S = 0.5, 0.05
 
@@ -70,7 +72,7 @@ def align(
     _expect_alike(every, names)
     _expect_line(delays, line, names)
     scatter = _scatter(delays, line)
-    line = _widened(line, scatter)
+    line = _widened(line, scatter, len(delays))
     clock_map = line if is_slower else line.inverse()
     covariance = clock_map.covariance + np.array([[latency_std_s**2, 0.0], [0.0, 0.0]])
     clock_map = ClockMap(
@@ -129,13 +131,18 @@ def _scatter(delays: Sequence[WindowDelay], line: ClockMap) -> float:
     return float(np.sqrt(np.sum(kept**2) / max(kept.size - 2, 1) / trimmed))
 
 
-def _widened(line: ClockMap, scatter: float) -> ClockMap:
-    """Return the line with a covariance as large as the scatter around it says."""
+def _widened(line: ClockMap, scatter: float, stretches: int) -> ClockMap:
+    """Return the line with a covariance as large as the scatter around it says, and few stretches allow.
+
+    The stretches are weighted by deviations that each finds from its own minute: of a line through ``n`` of them the
+    variance is that of Student's t with ``n - 2`` degrees of freedom.
+    """
+    freedom = max(stretches - 2, _LEAST_FREEDOM)
     return ClockMap(
         offset_s=line.offset_s,
         drift=line.drift,
         middle_s=line.middle_s,
-        covariance=line.covariance * max(scatter, 1.0) ** 2,
+        covariance=line.covariance * max(scatter, 1.0) ** 2 * freedom / (freedom - 2),
     )
 
 

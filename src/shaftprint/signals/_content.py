@@ -61,12 +61,19 @@ def content_of(channel: "Channel", sensor: "SpeedSensor | None" = None, *, rate_
     if sensor is not None and sensor.gives_angle:
         channel, sensor = speed_channel(channel, sensor), None
     pulses = sensor if sensor is not None and sensor.gives_pulses else None
-    if pulses is None and (channel.is_uneven or channel.rate_hz <= rate_hz):
+    if pulses is None and (channel.stamps is not None or channel.rate_hz <= rate_hz):
         counts = np.concatenate(list(blocks(channel, DEFAULT_BLOCK_SAMPLES))).astype(np.float64)
-        values, rate_hz = joined(counts) * channel.scale + channel.offset, min(channel.rate_hz, rate_hz)
-        if channel.is_uneven:
+        rate_hz = min(channel.rate_hz, rate_hz)
+        if channel.stamps is None:
+            values = joined(counts) * channel.scale + channel.offset
+        else:
+            # each at its own stamp: on a clock that begins with the first of them all would err by its jitter
+            there = ~np.isnan(counts)
+            if not there.any():
+                raise SignalError(f"channel {channel.name}: expected samples, found none that is a number.")
             even_s = channel.start_s + np.arange(int(channel.duration_s * rate_hz)) / rate_hz
-            values = np.interp(even_s, channel.time_s(0, channel.count), values)
+            values = np.interp(even_s, channel.stamps_s(0, channel.count)[there], counts[there])
+            values = values * channel.scale + channel.offset
     elif pulses is None:
         step = channel.rate_hz / rate_hz
         grid = SampleGrid(first=0.0, step=step, count=int((channel.count - 1) / step) + 1)

@@ -19,7 +19,8 @@ _LEAST, _MOST = 2e-6, 1e-2
 def expect_one_rate(recording: "Recording", channels: "Sequence[Channel]") -> tuple[Reason, ...]:
     """Return a reason for the channel whose rate is nearly, but not quite, that of the others.
 
-    Where recordings were merged, the clocks are known and rates may differ.
+    Where recordings were merged, the clocks are known and rates may differ. Messages have the times of the logger: that
+    of their sender, whose rate is found from them, says nothing.
 
     Parameters
     ----------
@@ -30,8 +31,11 @@ def expect_one_rate(recording: "Recording", channels: "Sequence[Channel]") -> tu
     """
     if CLOCK_MAPS in recording.attributes:
         return ()
-    usual = float(np.median([channel.rate_hz for channel in channels]))
-    apart = [channel for channel in channels if _LEAST < abs(channel.rate_hz / usual - 1.0) < _MOST]
+    sampled = [channel for channel in channels if channel.stamps is None]
+    if not sampled:
+        return ()
+    usual = float(np.median([channel.rate_hz for channel in sampled]))
+    apart = [channel for channel in sampled if _LEAST < abs(channel.rate_hz / usual - 1.0) < _MOST]
     return tuple(
         Reason(
             kind="channel clock",

@@ -114,7 +114,7 @@ def clock_map_table(clocks: "Sequence[LoggerClock]") -> Table:
         title="Clock maps of the other loggers",
         columns=(
             *texts("logger", "channels"),
-            *numbers("offset [ms]", "at [s]", "drift [ppm]", "correlation"),
+            *numbers("offset [ms]", "at [s]", "drift [ppm]", "correlation of both"),
             *numbers("largest std [ms]", "minutes", "scatter"),
         ),
         rows=tuple(rows),
