@@ -27,6 +27,10 @@ _DEVIATIONS = 5.0
 # Deviation of a frequency in bins: the Cramer-Rao bound sqrt(6) / (2 pi) for white noise, with half as much again for a
 # Hann window and noise that is not white; and what harmonics and drift leave of it.
 _BINS, _LEAST_BINS = 0.6, 0.003
+# Of a line under more noise the highest of 25 points of the transform may be a peak of the noise, anywhere.
+_FAINT = 0.15
+# A line whose deviation is below this share of an offset would show it.
+_TELLS = 1.0 / 3.0
 _AGREE = 2.0 / 3.0
 _SAMPLES_A_PERIOD = 20.0
 _PERCENT = 100.0
@@ -102,24 +106,35 @@ def _common_ratio(ratio: FloatArray) -> float | None:
 
 
 def _weighted(offset: FloatArray, std: FloatArray) -> float | None:
-    """Return the mean offset where it stands out of its deviation; None where it does not."""
+    """Return the mean offset where it stands out of its deviation; None where it does not.
+
+    A clock moves all lines alike: most of those that would show the mean must be at it, and there must be some.
+    """
     finite = np.isfinite(offset) & np.isfinite(std)
     if np.count_nonzero(finite) < _FEWEST_LINES:
         return None
     weight = std[finite] ** -2.0
     mean = float(weight @ offset[finite] / weight.sum())
+    telling = std[finite] < _TELLS * abs(mean)
     agree = np.abs(offset[finite] - mean) < np.maximum(_DEVIATIONS * std[finite], 0.5 * abs(mean))
-    return mean if abs(mean) > _DEVIATIONS * weight.sum() ** -0.5 and agree.mean() >= _AGREE else None
+    at_mean = np.abs(offset[finite] - mean)[telling] < 0.5 * abs(mean)
+    if np.count_nonzero(telling) < _FEWEST_LINES or min(agree.mean(), at_mean.mean()) < _AGREE:
+        return None
+    return mean if abs(mean) > _DEVIATIONS * weight.sum() ** -0.5 else None
 
 
 def _frequencies(cut: "WindowSamples", line: "LineMeasurement", names: Sequence[str]) -> FloatArray:
-    """Return frequency [Hz] and its relative deviation of a line in some channels, shape (2, channels)."""
+    """Return frequency [Hz] and its relative deviation of a line in some channels, shape (2, channels).
+
+    The deviation of a line that noise may hide is not a number.
+    """
     frequencies = np.empty((2, len(names)))
     noise = line.noise.covariance.diagonal().real
     for row, name in enumerate(names):
         frequencies[0, row] = sine_frequency_hz(cut.of(name), cut.rate_hz, cut.window.frequency_hz)
         share = np.sqrt(line.of(noise, name)) / max(abs(line.of(line.amplitude, name)), np.finfo(np.float64).tiny)
-        frequencies[1, row] = np.hypot(_BINS * share, _LEAST_BINS) / cut.window.periods
+        bins = np.hypot(_BINS * share, _LEAST_BINS) if share < _FAINT else np.nan
+        frequencies[1, row] = bins / cut.window.periods
     return frequencies
 
 
