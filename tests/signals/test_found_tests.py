@@ -174,6 +174,16 @@ def test_a_sine_that_was_not_made_is_not_proposed():
     assert sine.name not in {test.name for test in proposed_campaign(found, SHORT).excitations}
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize(("ratio", "words"), [(1.005, "0.50 % slow"), (0.9925, "0.75 % fast")])
+def test_legs_on_another_clock_name_the_clock(ratio, words):
+    campaign = load_campaign("12min")
+    # a logger that counts too few seconds is ahead in the campaign
+    volts = setpoint(campaign, ratio * grid(740.0))
+    with pytest.raises(SignalError, match=f"on a clock that runs {words}: check the sample rate"):
+        findings_of(volts, campaign)
+
+
 def test_no_test_at_all():
     with pytest.raises(SignalError, match=r"expected the tests of campaign .* in the set point, found none of them"):
         proposed_campaign(found_of(np.full(180_000, -5.0)), SHORT)

@@ -24,6 +24,9 @@ _LOOKS_PER_S = 10.0
 _LEVEL, _MOVES = 0.2, 2.5
 _POWERS_OF_TEN = (1e-6, 1e-3, 1e-2, 1e-1, 10.0, 100.0, 1e3, 1e6)
 _OPPOSITE_DEG = 150.0
+# Clocks that are looked for, as a share of the time, and how alike the courses must then be.
+_WIDEST_CLOCK, _CLOCK_STEP, _SAME_COURSE = 0.02, 2.5e-4, 0.95
+_PERCENT = 100.0
 
 
 def measured_windows(campaign: Campaign) -> tuple[tuple[str, float, float], ...]:
@@ -128,7 +131,12 @@ def expect_campaign(
     tests = found_tests(set_point_v, campaign, rate_hz=rate_hz, start_s=start_s)
     shift_s = common_shift_s(tests)
     if foreign and len(foreign) == len(slow):
-        instead = _shift_words(shift_s) or _upside_down(tests) or "check the campaign file and its start times"
+        instead = (
+            _shift_words(shift_s)
+            or _upside_down(tests)
+            or _clock_words(set_point_v, slow, campaign, rate_hz=rate_hz, start_s=start_s)
+            or "check the campaign file and its start times"
+        )
         raise SignalError(
             f'channel {channel}: expected the set point of the campaign "{campaign.name}", found '
             f"another course in every slow test ({', '.join(foreign)}): {instead}; `shaftprint inspect` with --vessel "
@@ -183,6 +191,30 @@ def _shift_words(shift_s: float) -> str:
         return ""
     late, how = ("later", "earlier") if shift_s < 0.0 else ("earlier", "later")
     return f"the recording starts {abs(shift_s):.2f} s {late} than the campaign says: all tests are found so much {how}"
+
+
+def _clock_words(
+    set_point_v: FloatArray, tests: Sequence[Excitation], campaign: Campaign, *, rate_hz: float, start_s: float
+) -> str:
+    """Return that the recording is the campaign on a faster or slower clock, where one explains all of its tests."""
+    first = max(round((min(item.start_s for item in tests) - start_s) * rate_hz), 0)
+    stop = min(round((max(item.stop_s for item in tests) - start_s) * rate_hz), set_point_v.size)
+    places = np.arange(first, stop, max(int(rate_hz / _LOOKS_PER_S), 1))
+    measured, time_s = set_point_v[places], start_s + places / rate_hz
+    if np.ptp(measured) == 0.0:
+        return ""
+    share = 0.0
+    for reach, step in ((_WIDEST_CLOCK, _CLOCK_STEP), (_CLOCK_STEP, 0.1 * _CLOCK_STEP)):
+        shares = share + np.arange(-reach, reach + step, step)
+        alike = [np.corrcoef(setpoint(campaign, (1.0 + one) * time_s), measured)[0, 1] for one in shares]
+        share = float(shares[np.argmax(alike)])
+    if max(alike) < _SAME_COURSE or abs(share) < _CLOCK_STEP:
+        return ""
+    return (
+        f"its tests follow it on a clock that runs {_PERCENT * abs(share):.2f} % "
+        f"{'slow' if share > 0.0 else 'fast'}: check the sample rate that the file declares, the clock of the "
+        "recording, or that of the generator"
+    )
 
 
 def _upside_down(found: Sequence[FoundTest]) -> str:
