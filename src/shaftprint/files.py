@@ -2,15 +2,18 @@
 
 import contextlib
 import errno
+import importlib
 import json
 import os
 import secrets
 from collections.abc import Iterator
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
 # Names may have 255 bytes, a letter up to four: so many letters of the stem and of the ending.
 _LONGEST = 24
+_PRIVATE = 0o600
 _FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 
 
@@ -48,7 +51,7 @@ def written_whole(path: Path, *, overwrite: bool = False) -> Iterator[Path]:
             part.unlink(missing_ok=True)
 
 
-def write_bytes(path: Path, content: bytes, *, noun: str, error: type[Exception]) -> None:
+def write_bytes(path: Path, content: bytes, *, noun: str, error: type[Exception], is_private: bool = False) -> None:
     """Write a file whole or not at all; an existing one is replaced.
 
     Parameters
@@ -57,9 +60,13 @@ def write_bytes(path: Path, content: bytes, *, noun: str, error: type[Exception]
         What the file holds, for the message, such as ``fingerprint``.
     error
         What is raised where the file cannot be written.
+    is_private
+        Whether only its owner may read it.
     """
     try:
         with written_whole(path, overwrite=True) as part:
+            if is_private:
+                private_file(part)
             part.write_bytes(content)
     except OSError as refusal:
         raise error(f"{path}: the {noun} cannot be written: {reason(refusal)}.") from None
@@ -98,6 +105,24 @@ def naming(path: Path, *, instead_of: Path | None = None) -> Iterator[None]:
         if is_full or (error.filename is not None and error.filename in _spellings(instead_of)):
             error.filename = str(path)
         raise
+
+
+def limit_file_size(most_bytes: int) -> None:
+    """Let this process write no file that is larger; 0 for none, and where the system has no such limit.
+
+    A write beyond it is refused as one on a full disk is.
+    """
+    if most_bytes and find_spec("resource") is not None:
+        resource = importlib.import_module("resource")
+        resource.setrlimit(resource.RLIMIT_FSIZE, (most_bytes, most_bytes))
+
+
+def private_file(path: Path) -> Path:
+    """Return a file that only its owner reads, made empty where it is not there: so from its first byte on."""
+    os.close(os.open(path, os.O_WRONLY | os.O_CREAT, _PRIVATE))
+    if path.stat().st_mode & ~_PRIVATE & 0o777:
+        path.chmod(_PRIVATE)
+    return path
 
 
 def reason(error: OSError) -> str:

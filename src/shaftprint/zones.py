@@ -5,7 +5,14 @@ A clock without a stated zone tells no instant: nothing here takes the zone of t
 
 import re
 from datetime import UTC, datetime, timedelta, timezone, tzinfo
+from typing import Final
 from zoneinfo import ZoneInfo
+
+EARLIEST: Final = datetime(1950, 1, 1, tzinfo=UTC)
+"""Nothing that is kept was recorded or done before."""
+AHEAD: Final = timedelta(days=1)
+"""So far beyond the present time a stated one may lie: clocks differ, and a time without an offset is up to 14 hours
+off."""
 
 _OFFSET = re.compile(r"([+-])(\d{2}):?([0-5]\d)")
 _MOST_HOURS = 14
@@ -50,8 +57,42 @@ def in_zone(shown: datetime, zone: tzinfo) -> datetime:
     return shown.replace(tzinfo=timezone(first))
 
 
+def possible(moment: datetime, *, now: datetime | None = None) -> datetime:
+    """Return a time at which something can have been recorded or done: since 1950, and not after tomorrow.
+
+    Every time that a user states goes through here, so that what is kept can be shown in every zone.
+
+    Parameters
+    ----------
+    moment
+        The time; without an offset it is taken for one in UTC.
+    now
+        A present time that is later than the clock of this computer shows, such as that of a simulated fleet.
+
+    Raises
+    ------
+    ValueError
+        If it lies outside.
+    """
+    present = max(datetime.now(UTC), now or EARLIEST)
+    since = _since_earliest(moment)
+    # as spans: an instant near the ends of the calendar cannot be moved to another zone
+    if not timedelta() <= since <= _since_earliest(present) + AHEAD:
+        latest = f"{present + AHEAD:%Y-%m-%d}"
+        raise ValueError(f"expected a time from {EARLIEST:%Y-%m-%d} to {latest}, found {moment.isoformat(sep=' ')}")
+    return moment
+
+
+def _since_earliest(moment: datetime) -> timedelta:
+    return moment.replace(tzinfo=None) - EARLIEST.replace(tzinfo=None) - (moment.utcoffset() or timedelta())
+
+
 def utc_text(moment: datetime, zone: tzinfo = UTC) -> str:
     """Return an instant as it is printed, to the minute and with its offset: ``2026-03-13 14:05 +00:00``."""
-    shown = moment.astimezone(zone)
+    try:
+        shown = moment.astimezone(zone)
+    except OverflowError:
+        # the first and the last day of the calendar, which an earlier version took, are shown as they are kept
+        shown = moment
     offset = shown.strftime("%z")
     return f"{shown:%Y-%m-%d %H:%M} {offset[:3]}:{offset[3:5]}"

@@ -39,7 +39,7 @@ def fleet(tmp_path, put):
         put(store, recording=None, k_q=0.05)
         put(store, recording=None, k_q=0.06)
         renamed = {"name": "Rhine \x1b[1m", "imo_number": IMO_NUMBER, "line": "port"}
-        put(store, recording="bb" * 32, ship=renamed, tested_at="2027-01-01T00:00:00Z", place="Quay\n12")
+        put(store, recording="bb" * 32, ship=renamed, tested_at="2026-10-01T00:00:00Z", place="Quay\n12")
         stated = Stated(ship="ship 9", line="starboard", tested_at=datetime(2026, 1, 1, tzinfo=UTC))
         put(store, recording="cc" * 32, ship=None, tested_at=None, stated=stated)
         at = datetime(2026, 5, 1, tzinfo=UTC)

@@ -9,7 +9,7 @@ from pydantic import AfterValidator, Field, model_validator
 from shaftprint.arguments import refusing_none
 from shaftprint.errors import SettingsError
 from shaftprint.settings import Name, NotNegativeNumber, Settings, read_settings
-from shaftprint.zones import in_zone, time_zone
+from shaftprint.zones import in_zone, possible, time_zone
 
 
 def _zone_name(name: str) -> str:
@@ -45,6 +45,8 @@ class TrialConditions(Settings):
 
     @model_validator(mode="after")
     def _is_an_instant(self) -> Self:
+        if self.tested_at is not None:
+            possible(self.tested_at)
         self.began(None)
         return self
 

@@ -1,12 +1,12 @@
 """How a time is typed in an option, and the zone in which it is meant or shown."""
 
 from collections.abc import Callable
-from datetime import tzinfo
+from datetime import datetime, tzinfo
 from typing import Any
 
 import click
 
-from shaftprint.zones import time_zone
+from shaftprint.zones import possible, time_zone
 
 DATE_FORMATS = [
     "%Y-%m-%d",
@@ -16,6 +16,21 @@ DATE_FORMATS = [
     "%Y-%m-%dT%H:%M%z",
     "%Y-%m-%dT%H:%M:%S%z",
 ]
+
+
+class Moment(click.DateTime):
+    """A time at which something can have been recorded or done."""
+
+    def __init__(self) -> None:
+        super().__init__(DATE_FORMATS)
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> datetime:
+        """Return the time that was typed."""
+        shown: datetime = super().convert(value, param, ctx)
+        try:
+            return possible(shown)
+        except ValueError as error:
+            self.fail(f"{error}.", param, ctx)
 
 
 def _zone(context: click.Context, parameter: click.Parameter, name: str | None) -> tzinfo | None:

@@ -10,7 +10,7 @@ from typing import Any
 import click
 
 from shaftprint.campaign import TrialConditions, load_trial_conditions
-from shaftprint.cli._dates import DATE_FORMATS
+from shaftprint.cli._dates import Moment
 from shaftprint.cli.output import fingerprint_at
 from shaftprint.fingerprint import Fingerprint
 from shaftprint.report import expect_reportlab
@@ -47,7 +47,7 @@ def report_options(command: Callable[..., Any]) -> Callable[..., Any]:
 
     tested_option = click.option(
         "--tested-at",
-        type=click.DateTime(DATE_FORMATS),
+        type=Moment(),
         metavar="DATE",
         help="When the recording began, such as 2026-03-31T09:30+02:00; by default as its file says.",
     )

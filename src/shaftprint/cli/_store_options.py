@@ -1,12 +1,15 @@
 """What the actions of ``shaftprint store`` have in common: which store, and times in a zone."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from datetime import UTC, datetime, tzinfo
 from typing import Any
 
 import click
 
-from shaftprint.cli._dates import DATE_FORMATS, zone_option
+from shaftprint.cli._dates import DATE_FORMATS, Moment, zone_option
+from shaftprint.cli._terminal import echo
+from shaftprint.store import Store, open_store
 from shaftprint.zones import in_zone
 
 DEFAULT_STORE = "shaftprint.db"
@@ -24,16 +27,25 @@ def store_option(command: Callable[..., Any]) -> Callable[..., Any]:
     )(command)
 
 
+@contextmanager
+def opened_store(url: str) -> Iterator[Store]:
+    """Open a store, and say it where it can only be read."""
+    with open_store(url) as store:
+        if store.is_read_only:
+            echo(f"{store.name} is read only here: it is read as it is, and nothing can be put in.", err=True)
+        yield store
+
+
 def shown_zone_option(command: Callable[..., Any]) -> Callable[..., Any]:
     """Add the option ``--time-zone`` of a command that shows times."""
     return zone_option("Zone in which times are shown, such as Europe/Amsterdam; UTC by default.")(command)
 
 
 def moment_option(
-    name: str, words: str, *, required: bool = False
+    name: str, words: str, *, required: bool = False, any_time: bool = False
 ) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
-    """Return a decorator that adds an option with a time."""
-    kind = click.DateTime(DATE_FORMATS)
+    """Return a decorator that adds an option with a time; of any time at all, where what is done with it judges it."""
+    kind = click.DateTime(DATE_FORMATS) if any_time else Moment()
     return click.option(name, type=kind, metavar="DATE", required=required, help=words)
 
 

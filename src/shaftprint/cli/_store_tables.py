@@ -96,10 +96,15 @@ def number_table(entries: Sequence[HistoryEntry], zone: tzinfo, name: str) -> Ta
 def event_table(events: Sequence[Event], zone: tzinfo) -> Table:
     """Return what was done to the lines of a ship."""
     rows = tuple(
-        (utc_text(one.at, zone), one.line.position, one.kind, ", ".join(one.numbers) or "–", one.note or "–")
+        (utc_text(one.at, zone), one.line.position, one.kind, ", ".join(one.numbers) or "–", _note(one))
         for one in events
     )
     return Table(title="What was done", columns=_columns(("when", "line", "what", "numbers", "note")), rows=rows)
+
+
+def _note(event: Event) -> str:
+    withdrawn = [] if event.withdrawn is None else [f"withdrawn: {event.withdrawn}"]
+    return "; ".join(filter(None, (event.note, *withdrawn))) or "–"
 
 
 def _columns(headings: Sequence[str], *, numbers: Sequence[str] = ()) -> tuple[Column, ...]:

@@ -9,11 +9,22 @@ from pydantic import Field, ValidationError, field_validator
 from shaftprint.campaign import TrialConditions
 from shaftprint.errors import SettingsError, StoreError
 from shaftprint.settings import Name, PositiveInteger, Settings
-from shaftprint.store import Stated
+from shaftprint.store import Line, Ship, Stated
 from shaftprint.vessel import ImoNumber, ShortName
 
 OF_CONDITIONS: Final = tuple(TrialConditions.model_fields)
 """Facts of a test that no recording shows; they go into the fingerprint."""
+
+
+class OnlyLine(Settings):
+    """The line that a job may write to, and no other: whoever asked for it has a right to this one."""
+
+    ship: ShortName
+    """Name of the ship; what tells it from all others where it has no IMO number."""
+    imo: ImoNumber | None = None
+    """Its IMO number."""
+    line: ShortName
+    """Which of its lines."""
 
 
 class JobArguments(Settings):
@@ -41,6 +52,8 @@ class JobArguments(Settings):
     """Its IMO number, where the vessel file does not say it."""
     line: ShortName | None = None
     """Its shaft line, where the vessel file does not say it."""
+    only: OnlyLine | None = None
+    """The only line to which the result may be put; None where fingerprint and statements say which."""
     conditions: TrialConditions = TrialConditions()
     """When, where and in what water the test was made."""
     sha256: dict[str, str] = Field(default_factory=dict)
@@ -56,9 +69,16 @@ class JobArguments(Settings):
         """What is stated of the ship beside its fingerprint."""
         return Stated(ship=self.ship, imo_number=self.imo, line=self.line)
 
+    @property
+    def only_line(self) -> Line | None:
+        """The only line to which the result may be put."""
+        only = self.only
+        return None if only is None else Line(ship=Ship(name=only.ship, imo_number=only.imo), position=only.line)
+
     def settings(self) -> dict[str, Any]:
         """Return what the result depends on besides the content of the files, as JSON has it."""
-        return self.model_dump(mode="json", exclude={"recording", "vessel", "campaign", "sha256"})
+        elsewhere = {"recording", "vessel", "campaign", "sha256"} | ({"only"} if self.only is None else set())
+        return self.model_dump(mode="json", exclude=elsewhere)
 
 
 def arguments_of(content: Any, *, named: str) -> JobArguments:

@@ -4,6 +4,7 @@ import json
 import os
 import subprocess
 import sys
+import tempfile
 import threading
 from collections.abc import Callable, Mapping
 from contextlib import suppress
@@ -28,12 +29,24 @@ class Outcome:
         return self.document is None and self.sentence is None
 
 
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Limits:
+    """What one recording may take."""
+
+    longest_s: float
+    """Time [s]."""
+    most_file: int | None = None
+    """Bytes of the largest file that is written for it; None for as many as the disk has."""
+
+
 class Computer:
     """A process that identifies one recording after the other; another one takes its place when it dies."""
 
-    def __init__(self, *, limit_s: float) -> None:
-        self._limit_s = limit_s
+    def __init__(self, limits: Limits) -> None:
+        self._limits = limits
         self._process: subprocess.Popen[str] | None = None
+        # what it unpacks goes with it, however it ends
+        self._scratch: tempfile.TemporaryDirectory[str] | None = None
 
     def compute(self, arguments: Mapping[str, Any], tell: Callable[[str], None]) -> Outcome:
         """Identify a recording.
@@ -52,7 +65,7 @@ class Computer:
             late.set()
             process.kill()
 
-        timer = threading.Timer(self._limit_s, end)
+        timer = threading.Timer(self._limits.longest_s, end)
         timer.daemon = True
         timer.start()
         try:
@@ -62,7 +75,7 @@ class Computer:
         if not outcome.died:
             return outcome
         self.end()
-        return Outcome(sentence=_too_long(self._limit_s)) if late.is_set() else outcome
+        return Outcome(sentence=_too_long(self._limits.longest_s)) if late.is_set() else outcome
 
     def end(self) -> None:
         """End the process, whatever it is at."""
@@ -75,6 +88,8 @@ class Computer:
                 with suppress(OSError):
                     pipe.close()
         process.wait()
+        if self._scratch is not None:
+            self._scratch.cleanup()
 
     def kill(self) -> None:
         """Let the process die; whoever waits for its answer notices."""
@@ -86,14 +101,17 @@ class Computer:
         if self._process is None or self._process.poll() is not None:
             self.end()
             # a new interpreter on every system: nothing of this process, its threads and its connections, goes along
+            self._scratch = tempfile.TemporaryDirectory(prefix="shaftprint-", ignore_cleanup_errors=True)
             self._process = subprocess.Popen(  # noqa: S603
-                [sys.executable, "-P", "-m", _PROGRAM],
+                [sys.executable, "-P", "-m", _PROGRAM, str(self._limits.most_file or 0)],
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
                 stderr=subprocess.DEVNULL,
                 encoding="utf-8",
                 # one thread each, so that a number does not depend on how many cores a computer has
-                env=os.environ | {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"},
+                env=os.environ
+                | {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
+                | dict.fromkeys(("TMPDIR", "TEMP", "TMP"), self._scratch.name),
             )
         return self._process
 

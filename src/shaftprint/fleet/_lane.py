@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from typing import Final, Literal, TypeVar
 
 from shaftprint import __version__
-from shaftprint.errors import DatabaseError, StoreError
+from shaftprint.errors import DatabaseError, ShaftprintError, StoreError
 from shaftprint.fleet._arguments import arguments_of
-from shaftprint.fleet._computer import Computer, Outcome
+from shaftprint.fleet._computer import Computer, Limits, Outcome
 from shaftprint.store import Job, Store, claim, finish, give_back, has_open_jobs, refuse, renew
 
 POLL_S: Final = 2.0
@@ -18,6 +18,11 @@ POLL_S: Final = 2.0
 RENEW_S: Final = 15.0
 """How often a lease is renewed [s]; three times may fail before another worker takes the job."""
 _PATIENCE_S: Final = 300.0
+_MOST_ALONE: Final = 3
+_FAILED: Final = (
+    "the program failed: {kind}; this is a fault of shaftprint, not of the recording: please report it; its log says "
+    "more."
+)
 _T = TypeVar("_T")
 
 
@@ -45,10 +50,12 @@ class Lane:
         wait: bool,
         stop: threading.Event,
         report: Callable[[Event], None],
-        limit_s: float,
+        forbidden: Callable[[Job], str | None],
+        limits: Limits,
     ) -> None:
         self.store, self.owner, self.wait, self.stop, self.report = store, owner, wait, stop, report
-        self.computer = Computer(limit_s=limit_s)
+        self.forbidden = forbidden
+        self.computer = Computer(limits)
         self.job: Job | None = None
         self.step: str | None = None
         self._renewed_s, self._noted = 0.0, ""
@@ -83,8 +90,15 @@ class Lane:
         self.job = job
         self.report(Event(job=job, what="begun"))
         try:
-            outcome = self.computer.compute(job.args, self._note)
+            sentence = self.forbidden(job)
+            outcome = self.computer.compute(job.args, self._note) if sentence is None else Outcome(sentence=sentence)
             self.report(self._settled(job, outcome))
+        except ShaftprintError:
+            raise
+        except Exception as error:
+            # whatever is wrong with this job, those behind it have their turn
+            logging.getLogger(__name__).exception("job %d", job.id)
+            self.report(self._refused(job, _FAILED.format(kind=type(error).__name__)))
         finally:
             self.job = None
 
@@ -103,9 +117,14 @@ class Lane:
         return Event(job=job, what="died" if has_it else "lost")
 
     def _finished(self, job: Job, document: bytes) -> Event:
-        arguments = arguments_of(job.args, named=f"job {job.id}")
         try:
-            added = self._patiently(lambda: finish(self.store, job, document, stated=arguments.stated))
+            arguments = arguments_of(job.args, named=f"job {job.id}")
+            # who was allowed to ask for it may not be any more
+            sentence = self.forbidden(job)
+            if sentence is not None:
+                return self._refused(job, sentence)
+            stated, only = arguments.stated, arguments.only_line
+            added = self._patiently(lambda: finish(self.store, job, document, stated=stated, only=only), job=job)
         except DatabaseError:
             raise
         except StoreError as error:
@@ -116,9 +135,17 @@ class Lane:
         has_it = self._patiently(lambda: refuse(self.store, job, sentence))
         return Event(job=job, what="refused" if has_it else "lost", sentence=sentence)
 
-    def _patiently(self, verb: Callable[[], _T]) -> _T:
-        """Call a verb of the store, again where the database cannot do it now."""
-        begin, pause_s = time.monotonic(), 0.5
+    def _patiently(self, verb: Callable[[], _T], *, job: Job | None = None) -> _T:
+        """Call a verb of the store, again where the database cannot do it now.
+
+        Raises
+        ------
+        DatabaseError
+            If it cannot for minutes.
+        StoreError
+            If it takes other things, and again and again not what this job has given: then it is the job.
+        """
+        begin, pause_s, alone = time.monotonic(), 0.5, 0
         while True:
             try:
                 return verb()
@@ -126,5 +153,15 @@ class Lane:
                 if self.stop.is_set() or time.monotonic() - begin > _PATIENCE_S:
                     raise
                 logging.getLogger(__name__).warning("%s", error)
+                alone = alone + 1 if job is not None and self._takes_others(job) else 0
+                if alone == _MOST_ALONE:
+                    raise StoreError(f"the store takes other records, but not this one: {error}") from None
             self.stop.wait(pause_s)
             pause_s = min(2.0 * pause_s, 10.0)
+
+    def _takes_others(self, job: Job) -> bool:
+        """Return whether a database takes what has nothing to do with a result."""
+        try:
+            return renew(self.store, job, progress=self.step)
+        except DatabaseError:
+            return False

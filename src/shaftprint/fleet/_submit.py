@@ -12,11 +12,12 @@ from shaftprint import __version__
 from shaftprint.arguments import refusing_none
 from shaftprint.campaign import load_campaign
 from shaftprint.catalogue import shipped_structure
-from shaftprint.errors import StoreError
+from shaftprint.errors import SettingsError, StoreError
 from shaftprint.fleet._arguments import JobArguments
 from shaftprint.settings import settings_content
 from shaftprint.store import Job, JobRequest, Store, enqueue, file_hashes
 from shaftprint.vessel import load_vessel
+from shaftprint.zones import possible
 
 KIND = "identify"
 
@@ -43,6 +44,8 @@ def submit(store: Store, recordings: Sequence[JobArguments], *, now: datetime) -
     RecordingError
         If a recording cannot be read; likewise.
     """
+    for one in recordings:
+        _expect_possible(one, now)
     for name in {one.structure for one in recordings if one.structure is not None}:
         shipped_structure(name)
     vessels = {name: _vessel_sha256(name) for name in {one.vessel for one in recordings}}
@@ -55,6 +58,16 @@ def submit(store: Store, recordings: Sequence[JobArguments], *, now: datetime) -
         for one, sha256 in zip(recordings, hashes, strict=True)
     ]
     return enqueue(store, [request_of(one) for one in with_hashes])
+
+
+def _expect_possible(arguments: JobArguments, now: datetime) -> None:
+    """Refuse a time here that the store would refuse when all is calculated."""
+    stated = arguments.conditions.tested_at
+    try:
+        if stated is not None:
+            possible(stated, now=now)
+    except ValueError as error:
+        raise SettingsError(f"{arguments.recording}: tested_at: {error}.") from None
 
 
 def request_of(arguments: JobArguments) -> JobRequest:

@@ -10,8 +10,9 @@ from typing import Final
 
 from shaftprint.arguments import refusing_none
 from shaftprint.errors import DatabaseError, ShaftprintError, StoreError
+from shaftprint.fleet._computer import Limits
 from shaftprint.fleet._lane import Event, Lane
-from shaftprint.store import Store
+from shaftprint.store import Job, Store
 
 # Each beat may write the step of every job that has gone on.
 _BEAT_S: Final = 5.0
@@ -42,6 +43,8 @@ def work(
     report: Callable[[Event], None] | None = None,
     stop: threading.Event | None = None,
     limit_s: float = LIMIT_S,
+    most_file: int | None = None,
+    forbidden: Callable[[Job], str | None] | None = None,
 ) -> Worked:
     """Do the jobs of a store until none is left, each in one of some processes.
 
@@ -62,6 +65,10 @@ def work(
         Ends the work when it is set.
     limit_s
         How long one recording may take [s].
+    most_file
+        Bytes of the largest file that may be written for one recording; None for as many as the disk has.
+    forbidden
+        Says why a job must not be done, or None; asked when it is begun and again before its result is kept.
 
     Raises
     ------
@@ -87,7 +94,15 @@ def work(
 
     name = f"{socket.gethostname()}:{os.getpid()}:{secrets.token_hex(4)}"
     lanes = [
-        Lane(store, owner=f"{name}:{place}", wait=wait, stop=stop, report=count, limit_s=limit_s)
+        Lane(
+            store,
+            owner=f"{name}:{place}",
+            wait=wait,
+            stop=stop,
+            report=count,
+            forbidden=forbidden or _nothing,
+            limits=Limits(longest_s=limit_s, most_file=most_file),
+        )
         for place in range(processes)
     ]
     threads = [threading.Thread(target=run, args=(lane,), daemon=True) for lane in lanes]
@@ -95,6 +110,10 @@ def work(
     if failures:
         raise failures[0]
     return Worked(**{what: number for what, number in counts.items() if what != "begun"})
+
+
+def _nothing(job: Job) -> None:
+    """Forbid nothing."""
 
 
 def _run_with_heartbeat(lanes: list[Lane], threads: list[threading.Thread], stop: threading.Event) -> None:

@@ -18,7 +18,7 @@ from shaftprint.store._add import add, add_document
 from shaftprint.store._check import check
 from shaftprint.store._class_histories import class_histories
 from shaftprint.store._document import MOST_BYTES, document_sha256, inflated
-from shaftprint.store._event import record_event
+from shaftprint.store._event import record_event, withdraw_event
 from shaftprint.store._export import export_store
 from shaftprint.store._hashes import file_hashes
 from shaftprint.store._history import document, history, newest
@@ -123,4 +123,5 @@ __all__ = [
     "store_state",
     "stored_fingerprint",
     "upgrade_store",
+    "withdraw_event",
 ]

@@ -75,7 +75,7 @@ def add_document(
     named
         What it is called in an error.
     """
-    record = record_of(document, stated, zone=zone, named=named)
+    record = record_of(document, stated, zone=zone, named=named, now=now)
     ship = Ship(name=record.ship.name, imo_number=record.ship.imo_number, class_name=record.ship.class_name)
     with store.database.writing() as connection:
         (added,) = store.database.writer(connection).put([(record, ship, now)], newest_names=True)

@@ -41,7 +41,4 @@ def class_histories(
         positions = ", ".join(sorted({one.position for one in of_class}))
         raise StoreError(f"{class_name}: expected one of its lines, {positions}, found {line!r}.")
     wanted.sort(key=lambda one: (one.ship.name, one.position))
-    return tuple(
-        line_history(store, str(one.ship.imo_number or one.ship.name), line=one.position, newest=newest)
-        for one in wanted
-    )
+    return tuple(line_history(store, one.ship, line=one.position, newest=newest) for one in wanted)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from shaftprint.errors import StoreError
 from shaftprint.spelling import meant
-from shaftprint.store._nouns import Line
+from shaftprint.store._nouns import Line, Ship
 
 if TYPE_CHECKING:
     from shaftprint.store.database import Reader, ShipRow
@@ -14,14 +14,23 @@ if TYPE_CHECKING:
 _MOST_NAMED = 12
 
 
-def ship_called(reader: "Reader", name: str) -> "ShipRow":
+def ship_called(reader: "Reader", name: str | Ship) -> "ShipRow":
     """Return the ship of a name or an IMO number.
+
+    Parameters
+    ----------
+    reader
+        A connection that reads.
+    name
+        What a user calls it; or the ship itself, found by its number, and by its name among those without one only.
 
     Raises
     ------
     StoreError
         If there is none, or several ships have the name.
     """
+    if isinstance(name, Ship):
+        return _same_ship(reader, name)
     number = re.fullmatch(r"(?:IMO ?)?([0-9]{7})", name)
     found = [] if number is None else reader.ships(imo_number=int(number[1]))
     # PostgreSQL takes no NUL, and no ship has one
@@ -36,6 +45,17 @@ def ship_called(reader: "Reader", name: str) -> "ShipRow":
         f" It has {_listed(names)}." if names else " It has none yet: shaftprint store add."
     )
     raise StoreError(f"{name}: expected the name or IMO number of a ship in the store, found none.{advice}")
+
+
+def _same_ship(reader: "Reader", ship: Ship) -> "ShipRow":
+    if ship.imo_number is not None:
+        found = reader.ships(imo_number=ship.imo_number)
+    else:
+        found = [one for one in reader.ships(name=ship.name) if one.ship.imo_number is None]
+    if not found:
+        # who asks may not know of the others: none of them is named
+        raise StoreError(f"{ship.name}: expected it in the store as it was a moment ago, found it changed; try again.")
+    return found[0]
 
 
 def lines_called(reader: "Reader", ship: "ShipRow", names: Sequence[str]) -> dict[int, Line]:

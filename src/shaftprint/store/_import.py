@@ -17,7 +17,7 @@ from shaftprint.store._late_rooms import vessel_room
 from shaftprint.store._lines import HEADER, LONGEST_LINE, record_of_line
 from shaftprint.store._nouns import KINDS, Event, Line, Ship
 from shaftprint.store._record import Record, record_of
-from shaftprint.store._stated import Stated
+from shaftprint.store._stated import Stated, possible_time
 from shaftprint.store._store import Store, part_with_database
 from shaftprint.store._text import LONGEST_TEXT
 
@@ -42,7 +42,7 @@ class Imported:
 
 
 @refusing_none(StoreError)
-def import_store(store: Store, path: str | Path) -> Imported:
+def import_store(store: Store, path: str | Path, *, now: datetime | None = None) -> Imported:
     """Put all records of an export into a store, or none.
 
     Parameters
@@ -51,6 +51,8 @@ def import_store(store: Store, path: str | Path) -> Imported:
         The store.
     path
         The file.
+    now
+        The present time; by the clock of this computer where it is not given.
 
     Raises
     ------
@@ -60,12 +62,12 @@ def import_store(store: Store, path: str | Path) -> Imported:
     file = Path(path)
     try:
         with store.database.writing() as connection:
-            return _put(store.database.writer(connection), store.database.ledger(connection), file)
+            return _put(store.database.writer(connection), store.database.ledger(connection), file, now)
     except OSError as refusal:
         raise StoreError(f"{file}: expected an export of a store, but it cannot be read: {reason(refusal)}.") from None
 
 
-def _put(writer: "Writer", ledger: "Ledger", file: Path) -> Imported:
+def _put(writer: "Writer", ledger: "Ledger", file: Path, now: datetime | None) -> Imported:
     put_jobs = part_with_database().put_jobs
     waiting: list[tuple[Record, Ship, datetime]] = []
     asked: list[Job] = []
@@ -88,16 +90,24 @@ def _put(writer: "Writer", ledger: "Ledger", file: Path) -> Imported:
                     ship_id = writer.fleet.ship_id(_ship(record["ship"]), named=named)
                     writer.fleet.line_id(ship_id, short_text(record["position"], "shaft line"))
                 case "event":
-                    counts["events"] += _put_event(writer, record, named)
+                    counts["events"] += _put_event(writer, record, named, now)
                 case "fingerprint":
-                    waiting.append(_fingerprint(record, named))
+                    waiting.append(_fingerprint(record, named, now))
                 case "job":
                     asked.append(job_of_content(record))
                 case kind:
                     raise StoreError(f"expected a ship, line, event, fingerprint or job, found {kind[:40]!r}")
             if len(waiting) + len(asked) == _AT_A_TIME:
                 settle()
-        except (KeyError, TypeError, ValueError, AttributeError, StoreError, FingerprintError) as fault:
+        except (
+            KeyError,
+            TypeError,
+            ValueError,
+            OverflowError,
+            AttributeError,
+            StoreError,
+            FingerprintError,
+        ) as fault:
             raise StoreError(_sentence(named, fault)) from None
     settle()
     return Imported(fingerprints=counts["added"], known=counts["known"], events=counts["events"], jobs=counts["jobs"])
@@ -141,7 +151,7 @@ def _ship(content: Mapping[str, Any], class_name: object = None) -> Ship:
     return Ship(name=short_text(content["name"], "name of a ship"), imo_number=number, class_name=of_class)
 
 
-def _put_event(writer: "Writer", record: Mapping[str, Any], named: str) -> bool:
+def _put_event(writer: "Writer", record: Mapping[str, Any], named: str, now: datetime | None) -> bool:
     ship = _ship(record["ship"])
     line_id = writer.fleet.line_id(writer.fleet.ship_id(ship, named=named), short_text(record["line"], "shaft line"))
     if record["what"] not in KINDS:
@@ -153,14 +163,21 @@ def _put_event(writer: "Writer", record: Mapping[str, Any], named: str) -> bool:
         numbers=tuple(short_text(name, "name of a number") for name in record["numbers"]),
         note=short_text(record["note"], "note", longest=LONGEST_TEXT),
     )
-    return writer.event(event, line_id)
+    is_withdrawn = writer.is_withdrawn(event, line_id)
+    if record.get("withdrawn") is None:
+        possible_time(event.at, now=now, named=f"{named}: {event.kind}; withdraw it in the store that it comes from")
+        # withdrawn is withdrawn, whatever an older export says
+        return not is_withdrawn and writer.event(event, line_id)
+    is_new = not is_withdrawn and writer.event(event, line_id)
+    writer.withdraw(event, line_id, why=short_text(record["withdrawn"], "reason", longest=LONGEST_TEXT))
+    return is_new
 
 
-def _fingerprint(content: Mapping[str, Any], named: str) -> tuple[Record, Ship, datetime]:
+def _fingerprint(content: Mapping[str, Any], named: str, now: datetime | None) -> tuple[Record, Ship, datetime]:
     said = dict(content["stated"])
     if "tested_at" in said:
         said["tested_at"] = moment_of(said["tested_at"])
-    record = record_of(content["document"].encode(), Stated(**said), named=named)
+    record = record_of(content["document"].encode(), Stated(**said), named=named, now=now)
     if record.sha256 != content["sha256"]:
         raise StoreError(f"{named}: its document is not as it was written; export it once more.")
     ship = _ship(content["ship"])

@@ -11,7 +11,7 @@ from shaftprint.arguments import refusing_none
 from shaftprint.errors import StoreError
 from shaftprint.store._add import NOTHING_STATED
 from shaftprint.store._job import JOB_STATES, LEASE_S, Job, JobCounts, JobRequest
-from shaftprint.store._nouns import Added, Ship
+from shaftprint.store._nouns import Added, Line, Ship
 from shaftprint.store._record import record_of
 from shaftprint.store._stated import Stated
 from shaftprint.store._store import Store
@@ -86,6 +86,7 @@ def finish(
     now: datetime | None = None,
     stated: Stated = NOTHING_STATED,
     zone: tzinfo | None = None,
+    only: Line | None = None,
 ) -> Added | None:
     """Put the fingerprint of a job into the store and end the job, both or neither.
 
@@ -101,6 +102,8 @@ def finish(
         The present time; by the clock that all workers share where it is not given.
     stated, zone
         As for ``add``.
+    only
+        The line for which the job was asked, and no other; None where the fingerprint says it by itself.
 
     Returns
     -------
@@ -114,14 +117,15 @@ def finish(
     StoreError
         If the fingerprint cannot be kept, whoever tries: a reason to refuse the job.
     """
-    record = record_of(document, stated, zone=zone, named=str(job.args.get("recording", f"job {job.id}")))
+    named = str(job.args.get("recording", f"job {job.id}"))
+    record = record_of(document, stated, zone=zone, named=named, now=now)
     ship = Ship(name=record.ship.name, imo_number=record.ship.imo_number, class_name=record.ship.class_name)
     with store.database.writing() as connection:
         ledger = store.database.ledger(connection)
         when = now or ledger.instant()
         if ledger.held(job.id, owner=_owner(job)) is None:
             return None
-        (added,) = store.database.writer(connection).put([(record, ship, when)], newest_names=True)
+        (added,) = store.database.writer(connection).put([(record, ship, when)], newest_names=True, only=only)
         ledger.end(job.id, owner=_owner(job), now=when, result=added.sha256)
     return added
 

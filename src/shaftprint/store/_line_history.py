@@ -11,7 +11,7 @@ from shaftprint.store._find import lines_called, ship_called
 from shaftprint.store._history import SHOWN_HASH, document
 from shaftprint.store._late_rooms import drift_room, fingerprint_room
 from shaftprint.store._nouns import Event as StoredEvent
-from shaftprint.store._nouns import Line, StoredFingerprint
+from shaftprint.store._nouns import Line, Ship, StoredFingerprint
 from shaftprint.store._store import Store
 
 if TYPE_CHECKING:
@@ -33,7 +33,7 @@ class LineHistory:
 
 
 @refusing_none(StoreError)
-def line_history(store: Store, ship: str, *, line: str | None = None, newest: int | None = None) -> LineHistory:
+def line_history(store: Store, ship: str | Ship, *, line: str | None = None, newest: int | None = None) -> LineHistory:
     """Return the fingerprints of one line in the order of time, with the times that the store knows of them.
 
     Parameters
@@ -41,7 +41,7 @@ def line_history(store: Store, ship: str, *, line: str | None = None, newest: in
     store
         The store.
     ship
-        Name or IMO number of the ship.
+        Name or IMO number of the ship, or the ship itself.
     line
         Which of its lines; a ship with one line needs none.
     newest
@@ -58,7 +58,7 @@ def line_history(store: Store, ship: str, *, line: str | None = None, newest: in
     events = tuple(
         event_of(kind=event.kind, at=event.at, numbers=event.numbers, note=event.note)
         for event in stated
-        if event.line.position == tested.position
+        if event.line.position == tested.position and event.withdrawn is None
     )
     names, recordings = _names(kept), list(_of_each_version(kept).values())
     read: dict[str, Fingerprint] = {}
@@ -76,7 +76,9 @@ def line_history(store: Store, ship: str, *, line: str | None = None, newest: in
         count *= 2
 
 
-def _records(store: Store, ship: str, line: str | None) -> "tuple[Line, list[StoredFingerprint], list[StoredEvent]]":
+def _records(
+    store: Store, ship: str | Ship, line: str | None
+) -> "tuple[Line, list[StoredFingerprint], list[StoredEvent]]":
     """Return a line, what is kept of its fingerprints in the order of time, and what was done to its ship."""
     with store.database.reading() as connection:
         reader = store.database.reader(connection)
@@ -86,7 +88,7 @@ def _records(store: Store, ship: str, line: str | None) -> "tuple[Line, list[Sto
     lines = list(dict.fromkeys(one.line.position for one in kept))
     if len(lines) != 1:
         raise StoreError(
-            f"{ship}: expected one shaft line, found {', '.join(lines) if lines else 'no test'}; "
+            f"{ship.name if isinstance(ship, Ship) else ship}: expected one shaft line, found {', '.join(lines) if lines else 'no test'}; "
             f"{'name it with --line' if lines else 'add its fingerprints with shaftprint store add'}."
         )
     return kept[0].line, kept, events

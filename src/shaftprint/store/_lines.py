@@ -48,8 +48,9 @@ def ship_content(ship: Ship) -> dict[str, Any]:
 
 
 def event_content(event: Event) -> dict[str, Any]:
-    """Return an event as a record."""
-    return {
+    """Return an event as a record; why it was withdrawn stands in that of one that was."""
+    withdrawn = {} if event.withdrawn is None else {"withdrawn": event.withdrawn}
+    return withdrawn | {
         "kind": "event",
         "ship": ship_content(event.line.ship),
         "line": event.line.position,

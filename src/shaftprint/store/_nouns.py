@@ -54,6 +54,8 @@ class Event:
     """Names of the numbers that it affects; empty where nobody said which."""
     note: str = ""
     """What else is to be said."""
+    withdrawn: str | None = None
+    """Why it does not count any more; None for one that does. It stays in the record."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

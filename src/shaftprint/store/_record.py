@@ -4,18 +4,21 @@ import hashlib
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from datetime import datetime, tzinfo
+from datetime import UTC, datetime, tzinfo
 from typing import TYPE_CHECKING, Any
 
 from shaftprint.errors import StoreError
 from shaftprint.store._document import document_sha256, expect_length
 from shaftprint.store._late_rooms import fingerprint_room
 from shaftprint.store._nouns import StoredNumber, Trial
-from shaftprint.store._stated import Stated, ship_of, tested_when
+from shaftprint.store._stated import Stated, possible_time, ship_of, tested_when
 from shaftprint.store._text import LONGEST_TEXT, expect_short
 
 if TYPE_CHECKING:
     from shaftprint.fingerprint import Fingerprint, Quantity, ShipIdentity, SourceFile
+
+
+_LATEST = datetime(9000, 1, 1, tzinfo=UTC)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -46,7 +49,9 @@ class Record:
     """What was stated by hand, for JSON."""
 
 
-def record_of(document: bytes, stated: Stated, *, zone: tzinfo | None = None, named: str) -> Record:
+def record_of(
+    document: bytes, stated: Stated, *, zone: tzinfo | None = None, named: str, now: datetime | None = None
+) -> Record:
     """Return the record of a document.
 
     Parameters
@@ -59,6 +64,8 @@ def record_of(document: bytes, stated: Stated, *, zone: tzinfo | None = None, na
         Zone of times that have no offset; None where none was stated.
     named
         What the document is called in an error.
+    now
+        The present time, by which times are judged; by the clock of this computer where it is not given.
 
     Raises
     ------
@@ -71,7 +78,7 @@ def record_of(document: bytes, stated: Stated, *, zone: tzinfo | None = None, na
     room = fingerprint_room()
     fingerprint: Fingerprint = room.parse_fingerprint(document, named=named)
     conditions = fingerprint.conditions
-    tested_at = tested_when(conditions, stated.tested_at, zone, named=named)
+    tested_at = tested_when(conditions, stated.tested_at, zone, named=named, now=now)
     needs_time = conditions.tested_at is None or conditions.tested_at.tzinfo is None
     kept = replace(stated, tested_at=tested_at if needs_time else None)
     expect_short(conditions.place or None, "place", named=named, longest=LONGEST_TEXT)
@@ -87,7 +94,8 @@ def record_of(document: bytes, stated: Stated, *, zone: tzinfo | None = None, na
         ),
         document=document,
         sha256=document_sha256(document),
-        made_at=fingerprint.created,
+        # by the clock of whichever computer made it, right or wrong: any that can be shown
+        made_at=possible_time(fingerprint.created, now=_LATEST, named=f"{named}: created"),
         structure=fingerprint.structure,
         version=fingerprint.shaftprint_version,
         vessel_sha256=next((_hash(one, named) for one in fingerprint.sources if one.role == "vessel"), None),

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from shaftprint.errors import StoreError
 from shaftprint.store._late_rooms import fingerprint_room, vessel_room
 from shaftprint.store._text import expect_short
-from shaftprint.zones import in_zone, utc_text
+from shaftprint.zones import in_zone, possible, utc_text
 
 if TYPE_CHECKING:
     from shaftprint.fingerprint import Conditions, ShipIdentity
@@ -38,14 +38,34 @@ def utc_iso(moment: datetime) -> str:
     return moment.astimezone(UTC).isoformat(timespec="microseconds").replace("+00:00", "Z")
 
 
-def tested_when(conditions: "Conditions", stated: datetime | None, zone: tzinfo | None, *, named: str) -> datetime:
+def tested_when(
+    conditions: "Conditions", stated: datetime | None, zone: tzinfo | None, *, named: str, now: datetime | None = None
+) -> datetime:
     """Return when a test was made: as its document says, else as stated; nothing is guessed.
 
     Raises
     ------
     StoreError
-        If neither says an instant, or they differ.
+        If neither says an instant, they differ, or nothing can have been tested then.
     """
+    return possible_time(_tested_when(conditions, stated, zone, named=named), now=now, named=named)
+
+
+def possible_time(moment: datetime, *, now: datetime | None, named: str) -> datetime:
+    """Return a time that is kept.
+
+    Raises
+    ------
+    StoreError
+        If nothing can have been recorded or done then.
+    """
+    try:
+        return possible(moment, now=now)
+    except ValueError as error:
+        raise StoreError(f"{named}: {error}; correct it.") from None
+
+
+def _tested_when(conditions: "Conditions", stated: datetime | None, zone: tzinfo | None, *, named: str) -> datetime:
     shown = conditions.tested_at
     if stated is not None:
         instant = _instant(stated, zone, named=named)

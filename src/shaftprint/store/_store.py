@@ -24,6 +24,11 @@ class Store:
     database: "Database" = field(repr=False)
     """The database that holds it."""
 
+    @property
+    def is_read_only(self) -> bool:
+        """Whether it lies where nothing can be written, such as on a read-only disk: it is read as it is."""
+        return self.database.is_read_only
+
     def close(self) -> None:
         """Close its connections."""
         self.database.close()

@@ -7,9 +7,9 @@ import click
 import numpy as np
 
 from shaftprint.cli._cause_size import CauseSize
-from shaftprint.cli._dates import DATE_FORMATS, zone_option
+from shaftprint.cli._dates import Moment, zone_option
 from shaftprint.cli._load_option import load_repeatability_option
-from shaftprint.cli._store_options import instant, store_option
+from shaftprint.cli._store_options import instant, opened_store, store_option
 from shaftprint.cli._terminal import answer, echo, say
 from shaftprint.cli.output import REPORT, fingerprint_at, force_option, give, output_folder, print_tables
 from shaftprint.drift import (
@@ -25,7 +25,7 @@ from shaftprint.drift import (
 )
 from shaftprint.fingerprint import Fingerprint
 from shaftprint.report import course_table, history_table, render_history, sizes_of_tests
-from shaftprint.store import line_history, open_store
+from shaftprint.store import line_history
 
 FEWEST = 2
 PERCENT = 100.0
@@ -42,7 +42,7 @@ class EventAt(click.ParamType):  # type: ignore[type-arg]
         kind, _, moment = str(value).partition("=")
         if kind not in EVENTS:
             self.fail(f"expected KIND=DATE with one of {', '.join(EVENTS)}, such as docking=2026-05-01.", param, ctx)
-        at: datetime = click.DateTime(DATE_FORMATS).convert(moment, param, ctx)
+        at: datetime = Moment().convert(moment, param, ctx)
         return kind, at
 
 
@@ -136,7 +136,7 @@ def _of_files(tests: tuple[str, ...]) -> tuple[str, dict[str, Fingerprint], tupl
 
 def _of_ship(ship: str, url: str, line: str | None) -> tuple[str, dict[str, Fingerprint], tuple[Event, ...]]:
     """Return what a line of the store is called, its fingerprints by the day of their test, and what was done to it."""
-    with open_store(url) as store:
+    with opened_store(url) as store:
         found = line_history(store, ship, line=line)
     return f"{found.line.ship.name}, {found.line.position}", found.fingerprints, found.events
 

@@ -7,12 +7,12 @@ import click
 
 from shaftprint.cli._cause_size import CauseSize
 from shaftprint.cli._load_option import load_repeatability_option
-from shaftprint.cli._store_options import store_option
+from shaftprint.cli._store_options import opened_store, store_option
 from shaftprint.cli._terminal import answer, echo, say
 from shaftprint.cli.output import REPORT, force_option, give, output_folder, print_tables
 from shaftprint.drift import NEWEST_TESTS, Cause, judge_sisters, sister_sentences
 from shaftprint.report import cause_spread_table, number_spread_table, render_class, sister_table
-from shaftprint.store import class_histories, open_store, sisters_of
+from shaftprint.store import class_histories, sisters_of
 
 PERCENT = 100.0
 
@@ -53,7 +53,7 @@ def command(
     Takes the CLASS that ships of the store have in common. Each ship is held against what the others tell, along the
     causes of drift, with how much sisters differ as they are built.
     """
-    with open_store(url) as store:
+    with opened_store(url) as store:
         lines = class_histories(store, class_name, line=line, newest=newest)
     ships, left_out = sisters_of(lines, newest=newest)
     for name in left_out:

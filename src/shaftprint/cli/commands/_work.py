@@ -3,9 +3,8 @@
 import click
 
 from shaftprint.cli._fleet_options import say_what_was_done, work_here, work_options
-from shaftprint.cli._store_options import store_option
+from shaftprint.cli._store_options import opened_store, store_option
 from shaftprint.cli.output import no_progress_option
-from shaftprint.store import open_store
 
 
 @click.command("work")
@@ -19,6 +18,6 @@ def command(url: str, *, processes: int, minutes: float, wait: bool, no_progress
     It works until none is left, and as many computers as reach the store may do so at one time; each must see the
     recordings under the same paths. A worker that is killed loses nothing: others take its jobs after a minute.
     """
-    with open_store(url) as store:
+    with opened_store(url) as store:
         worked = work_here(store, processes=max(processes, 1), wait=wait, minutes=minutes, hidden=no_progress)
         say_what_was_done(store, worked)

@@ -6,11 +6,13 @@ It knows no database. So what crashes it, or takes all of the memory, leaves the
 import json
 import os
 import signal
+import sys
 from contextlib import suppress
 from pathlib import Path
 from typing import Any, TextIO
 
 from shaftprint.errors import ShaftprintError
+from shaftprint.files import limit_file_size
 from shaftprint.fingerprint import fingerprint_document
 from shaftprint.fleet._arguments import arguments_of
 from shaftprint.fleet.computing._asked_lines import asked_lines
@@ -24,6 +26,7 @@ def main() -> None:
     """Identify what is asked for until nobody asks any more."""
     # the worker decides what an interruption means
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    limit_file_size(int(sys.argv[1]))
     with suppress(OSError):
         _OOM.write_text("500", encoding="ascii")
     answers = _answers()

@@ -1,9 +1,11 @@
 """The connection to a store: how SQLite and PostgreSQL are asked to keep what they have acknowledged."""
 
 import contextlib
+import os
 import sqlite3
 from collections.abc import Iterator
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any, Final
 
 import sqlalchemy as sa
@@ -32,6 +34,8 @@ class Database:
     """Its connections."""
     busy_s: float
     """How long another writer is waited for [s]."""
+    is_read_only: bool = False
+    """Whether it is a file that nobody can write here."""
 
     @property
     def is_file(self) -> bool:
@@ -134,13 +138,41 @@ def connect(location: Location, *, create: bool = False, busy_s: float = 30.0, m
         raise StoreError(
             f"{location.shown}: expected a store, found nothing there; make one with shaftprint store init."
         )
-    return Database(location=location, engine=_file(location, create=create, busy_s=busy_s), busy_s=busy_s)
+    is_read_only = not create and not _can_be_written(location.path)
+    mode = _reading(location, location.path) if is_read_only else f"mode={'rwc' if create else 'rw'}"
+    engine = _file(location.path, mode, busy_s=busy_s)
+    return Database(location=location, engine=engine, busy_s=busy_s, is_read_only=is_read_only)
 
 
-def _file(location: Location, *, create: bool, busy_s: float) -> sa.Engine:
-    if location.path is None:
-        raise StoreError("expected a file, found none.")
-    name = f"{location.path.resolve().as_uri()}?mode={'rwc' if create else 'rw'}"
+def _can_be_written(path: Path) -> bool:
+    """Return whether SQLite can write a file, and its log beside it."""
+    return os.access(path, os.W_OK) and os.access(path.resolve().parent, os.W_OK)
+
+
+def _reading(location: Location, path: Path) -> str:
+    """Return how a file is opened that cannot be written.
+
+    Its log cannot be made either, so that SQLite is told that the file does not change. Where a log lies beside it,
+    somebody else writes, or the file was copied from a store in use: then SQLite must read that too.
+
+    Raises
+    ------
+    StoreError
+        If it has records that are in a log that cannot be read here.
+    """
+    beside = [path.with_name(f"{path.name}-{end}") for end in ("wal", "shm")]
+    if not beside[0].exists() or not beside[0].stat().st_size:
+        return "mode=ro&immutable=1"
+    if not beside[1].exists():
+        raise StoreError(
+            f"{location.shown}: it can only be read here, and its newest records are in {beside[0].name} beside it; "
+            "copy both into a folder that can be written, and open the copy."
+        )
+    return "mode=ro"
+
+
+def _file(path: Path, mode: str, *, busy_s: float) -> sa.Engine:
+    name = f"{path.resolve().as_uri()}?{mode}"
 
     def opened() -> sqlite3.Connection:
         # transactions are begun below, not by the driver

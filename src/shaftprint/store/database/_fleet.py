@@ -1,7 +1,7 @@
 """Ships and their lines in a store that is written: found by IMO number or name, put in where they are new."""
 
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, Final
 
 import sqlalchemy as sa
 
@@ -10,6 +10,12 @@ from shaftprint.store._nouns import Line, Ship
 from shaftprint.store.database._rows import ship_of_row
 from shaftprint.store.database._seal import sealed
 from shaftprint.store.database._tables import LINE, SHIP
+
+
+OTHER_SHIP: Final = (
+    "its ship is not in the store as it was when this was asked for; ask for it again from the page of its line"
+)
+"""Said where a name has become that of another ship: of that one nothing is told."""
 
 
 class Fleet:
@@ -32,21 +38,34 @@ class Fleet:
         ship_id, position = self._places[line_id]
         return Line(ship=self._ship(ship_id), position=position)
 
-    def ship_id(self, ship: Ship, *, named: str) -> int:
+    def ship_id(self, ship: Ship, *, named: str, exactly: bool = False) -> int:
         """Return the number of a ship: by its IMO number, else by its name; a new one is put in.
 
         A ship that had no IMO number gets it when it is first stated.
 
+        Parameters
+        ----------
+        ship
+            The ship.
+        named
+            What states it, for errors.
+        exactly
+            Whether a name counts among ships without an IMO number only, and gives none a number: who may write to a
+            ship that has a name has no right to another one of that name.
+
         Raises
         ------
         StoreError
-            If several ships have the name and no IMO number says which.
+            If several ships have the name and no IMO number says which; or exactly that ship is not there, and another
+            one is called so.
         """
         if ship.imo_number is not None:
             same = self._with_number(ship.imo_number)
             if same is not None:
                 return same
         alike = self._with_name(ship.name)
+        if exactly:
+            return self._same_ship(ship, alike, named=named)
         if ship.imo_number is None:
             if len(alike) > 1:
                 numbers = ", ".join(sorted(f"IMO {self._ships[key].imo_number or 'unknown'}" for key in alike))
@@ -56,6 +75,14 @@ class Fleet:
         if without:
             self.change_ship(without[0], ship)
             return without[0]
+        return self._new_ship(ship)
+
+    def _same_ship(self, ship: Ship, alike: set[int], *, named: str) -> int:
+        without = [key for key in alike if self._ships[key].imo_number is None]
+        if ship.imo_number is None and without:
+            return without[0]
+        if without if ship.imo_number is not None else alike:
+            raise StoreError(f"{named}: {OTHER_SHIP}.")
         return self._new_ship(ship)
 
     def line_id(self, ship_id: int, position: str) -> int:

@@ -10,6 +10,7 @@ from shaftprint.errors import StoreError
 from shaftprint.store._nouns import Event, HistoryEntry, Line, LineSummary, Ship, StoredFingerprint, StoredNumber
 from shaftprint.store.database._rows import (
     TRIAL_COLUMNS,
+    WITHDRAWN,
     event_of_row,
     fingerprint_of_row,
     number_of_row,
@@ -130,9 +131,19 @@ class Reader:
         return [HistoryEntry(fingerprint=one, numbers=tuple(numbers[key])) for key, one in found.items()]
 
     def events(self, lines: Mapping[int, Line]) -> list[Event]:
-        """Return what was done to lines, in the order of time."""
+        """Return what was done to lines, in the order of time; what was withdrawn too, with the reason."""
         query = sa.select(EVENT).where(EVENT.c.line_id.in_(list(lines))).order_by(EVENT.c.at, EVENT.c.kind)
-        return [event_of_row(row, lines[row.line_id]) for row in self.connection.execute(query)]
+        rows = self.connection.execute(query).all()
+        why = {
+            (row.line_id, row.at, row.kind.removeprefix(WITHDRAWN)): row.note
+            for row in rows
+            if str(row.kind).startswith(WITHDRAWN)
+        }
+        return [
+            event_of_row(row, lines[row.line_id], withdrawn=why.get((row.line_id, row.at, row.kind)))
+            for row in rows
+            if not str(row.kind).startswith(WITHDRAWN)
+        ]
 
     def summaries(self, *, number: str | None = None) -> list[LineSummary]:
         """Return every line with its newest test, and a number of that test by its name."""

@@ -7,7 +7,7 @@ from typing import Final
 
 import sqlalchemy as sa
 
-from shaftprint.errors import DatabaseError
+from shaftprint.errors import DatabaseError, StoreError
 from shaftprint.store.database._location import Location
 
 _DAMAGED: Final = "it is damaged; put a backup in its place, and see with shaftprint store check what is wrong"
@@ -41,6 +41,12 @@ def refusals_in_words(location: Location, *, busy_s: float) -> Iterator[None]:
         yield
     except (sa.exc.SQLAlchemyError, sqlite3.Error, OverflowError, UnicodeError) as error:
         original = getattr(error, "orig", None) or error
+        if isinstance(original, OverflowError | UnicodeEncodeError):
+            # of what was to be written, not of what is there: neither another try nor a backup would help
+            raise StoreError(
+                f"{location.shown}: expected times, numbers and letters that a database keeps, found others "
+                f"({original}); correct the record; the store is as it was."
+            ) from None
         raise DatabaseError(f"{location.shown}: {_in_words(original, location, busy_s)}.") from None
 
 
@@ -49,6 +55,6 @@ def _in_words(error: BaseException, location: Location, busy_s: float) -> str:
     for sign, words in _SAID.items():
         if sign in said.lower():
             return words.format(busy_s=busy_s)
-    if isinstance(error, OverflowError | UnicodeError):
+    if isinstance(error, UnicodeError):
         return _DAMAGED
     return f"the database refuses: {location.redacted(said)[:_LONGEST].rstrip('.')}"

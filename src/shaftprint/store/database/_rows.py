@@ -81,13 +81,19 @@ def quantity_of_row(row: Any) -> tuple[str, str, str]:
     return _text(row.kind), _text(row.name), _text(row.unit)
 
 
-def event_of_row(row: Any, line: Line) -> Event:
-    """Return the event of a row."""
+WITHDRAWN = "withdrawn "
+"""Begins the kind of the row that withdraws an event: of the same time, with the reason as its note.
+
+Rows are added and never changed, so that the record shows both."""
+
+
+def event_of_row(row: Any, line: Line, *, withdrawn: str | None = None) -> Event:
+    """Return the event of a row, with why it was withdrawn."""
     try:
         numbers = tuple(str(name) for name in json.loads(row.numbers_affected))
     except (TypeError, ValueError):
         raise _damaged("names of numbers", row.numbers_affected) from None
-    return Event(line=line, at=row.at, kind=_text(row.kind), numbers=numbers, note=_text(row.note))
+    return Event(line=line, at=row.at, kind=_text(row.kind), numbers=numbers, note=_text(row.note), withdrawn=withdrawn)
 
 
 def _text(value: Any) -> str:

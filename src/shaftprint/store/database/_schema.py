@@ -137,7 +137,7 @@ def _expect_room(database: Database, connection: sa.Connection) -> None:
 
 def _keep_a_log(database: Database) -> None:
     """Let a file be read while it is written (WAL); it says so itself from then on."""
-    if not database.is_file:
+    if not database.is_file or database.is_read_only:
         return
     with database.unlocked() as raw:
         mode = raw.execute("PRAGMA journal_mode=WAL").fetchone()[0]

@@ -9,10 +9,11 @@ import sqlalchemy as sa
 
 from shaftprint.errors import StoreError
 from shaftprint.store._document import deflated
-from shaftprint.store._nouns import Added, Event, Ship, StoredNumber
+from shaftprint.store._nouns import Added, Event, Line, Ship, StoredNumber
 from shaftprint.store._record import Record
 from shaftprint.store.database._chains import Chains, Link
-from shaftprint.store.database._fleet import Fleet
+from shaftprint.store.database._fleet import OTHER_SHIP, Fleet
+from shaftprint.store.database._rows import WITHDRAWN
 from shaftprint.store.database._seal import sealed
 from shaftprint.store.database._tables import DOCUMENT, EVENT, FINGERPRINT, LINE, QUANTITY, TRIAL, VALUE
 
@@ -54,7 +55,35 @@ class Writer:
             self._insert(EVENT, [{"id": self._number(EVENT)} | row])
         return found is None
 
-    def put(self, records: Sequence[tuple[Record, Ship, datetime]], *, newest_names: bool) -> list[Added]:
+    def withdraw(self, event: Event, line_id: int, *, why: str) -> bool:
+        """Let an event count no more; return whether it did until now.
+
+        Raises
+        ------
+        StoreError
+            If there is none of that time and kind.
+        """
+        same = sa.and_(EVENT.c.line_id == line_id, EVENT.c.at == event.at, EVENT.c.kind == event.kind)
+        if self.connection.execute(sa.select(EVENT.c.id).where(same)).first() is None:
+            raise StoreError(
+                f"expected a {event.kind} of {event.line.ship.name!r}, {event.line.position}, at that time, found "
+                "none; shaftprint store history shows what was done and when."
+            )
+        if self.is_withdrawn(event, line_id):
+            return False
+        row = {"line_id": line_id, "at": event.at, "kind": f"{WITHDRAWN}{event.kind}", "note": why}
+        self._insert(EVENT, [{"id": self._number(EVENT), "numbers_affected": "[]"} | row])
+        return True
+
+    def is_withdrawn(self, event: Event, line_id: int) -> bool:
+        """Return whether an event of that time and kind was withdrawn."""
+        kind = f"{WITHDRAWN}{event.kind}"
+        same = sa.and_(EVENT.c.line_id == line_id, EVENT.c.at == event.at, EVENT.c.kind == kind)
+        return self.connection.execute(sa.select(EVENT.c.id).where(same)).first() is not None
+
+    def put(
+        self, records: Sequence[tuple[Record, Ship, datetime]], *, newest_names: bool, only: Line | None = None
+    ) -> list[Added]:
         """Put in fingerprints, and say of each what became of it.
 
         Parameters
@@ -63,12 +92,19 @@ class Writer:
             The fingerprints, with the ship of each and when each was added.
         newest_names
             Whether a ship takes name and class of its newest test.
+        only
+            The line to which they belong; None where each says it by itself.
+
+        Raises
+        ------
+        StoreError
+            If one belongs to another line than that.
         """
         chains = Chains.of(self.connection, [record for record, _, _ in records])
         added_at: dict[str, datetime] = {}
         outcomes = []
         for record, ship, when in records:
-            outcomes.append(self._added(chains, record, ship, newest_names=newest_names))
+            outcomes.append(self._added(chains, record, ship, newest_names=newest_names, only=only))
             added_at.setdefault(record.sha256, when)
         new = [(one, one.record) for one in chains.new if one.record is not None]
         rows = (_row(one, record, chains.trial_of[one.id], added_at[one.sha256]) for one, record in new)
@@ -81,11 +117,17 @@ class Writer:
         self._keep_values([value for one, record in new for value in self._values(one.id, record.numbers)])
         return outcomes
 
-    def _added(self, chains: Chains, record: Record, ship: Ship, *, newest_names: bool) -> Added:
+    def _added(self, chains: Chains, record: Record, ship: Ship, *, newest_names: bool, only: Line | None) -> Added:
+        named = f"fingerprint {record.sha256[:12]}"
+        if only is not None:
+            _expect_line(only, ship, record.ship.line, named=named)
         known = chains.known.get(record.sha256)
         if known is not None:
-            return Added(line=self.fleet.line(known), sha256=record.sha256, outcome="known")
-        ship_id = self.fleet.ship_id(ship, named=record.sha256[:12])
+            there = self.fleet.line(known)
+            if only is not None:
+                _expect_line(only, there.ship, there.position, named=named)
+            return Added(line=there, sha256=record.sha256, outcome="known")
+        ship_id = self.fleet.ship_id(ship, named=named, exactly=only is not None)
         if newest_names and self._is_newest(ship_id, record.trial.tested_at):
             self.fleet.change_ship(ship_id, ship)
         line_id = self.fleet.line_id(ship_id, record.ship.line)
@@ -153,6 +195,14 @@ class Writer:
 
     def _update(self, table: sa.Table, row: Mapping[str, Any]) -> None:
         self.connection.execute(table.update().where(table.c.id == row["id"]).values(**sealed(table, row)))
+
+
+def _expect_line(only: Line, ship: Ship, position: str, *, named: str) -> None:
+    """Refuse what belongs to another line than the one that it was asked for."""
+    number = only.ship.imo_number
+    is_same = ship.imo_number == number and (number is not None or ship.name == only.ship.name)
+    if not is_same or position != only.position:
+        raise StoreError(f"{named}: {OTHER_SHIP}.")
 
 
 _NUMBERED = (EVENT, TRIAL, FINGERPRINT, QUANTITY)

@@ -108,9 +108,8 @@ def with_user(path: Path, person: Person) -> None:
         )
     users = (read_users(path) if path.exists() else {}) | {person.name: person}
     text = "\n".join(_text(one) for one in users.values())
-    write_bytes(path, text.encode(), noun="file of users", error=ServerError)
     # hashes of passwords are for the server alone
-    path.chmod(0o600)
+    write_bytes(path, text.encode(), noun="file of users", error=ServerError, is_private=True)
 
 
 def _text(person: Person) -> str:

@@ -6,14 +6,14 @@ import click
 import numpy as np
 
 from shaftprint.cli._results import print_paths, write_results
-from shaftprint.cli._store_options import store_option
+from shaftprint.cli._store_options import opened_store, store_option
 from shaftprint.cli._terminal import say
 from shaftprint.cli.output import force_option, no_progress_option, output_folder, progress
 from shaftprint.errors import StoreError
 from shaftprint.fingerprint import fingerprint_sha256, parse_fingerprint
 from shaftprint.fleet import arguments_of
 from shaftprint.fleet.computing import survey_of_job
-from shaftprint.store import Job, Store, document, job, open_store
+from shaftprint.store import Job, Store, document, job
 from shaftprint.survey import judged
 
 
@@ -28,7 +28,7 @@ def command(number: int, url: str, output: Path, *, force: bool, no_progress: bo
 
     The recording is identified once more, and what comes out is held against the fingerprint in the store.
     """
-    with open_store(url) as store:
+    with opened_store(url) as store:
         done = job(store, number)
         kept = _document(store, done)
     made_at = parse_fingerprint(kept, named=f"job {number}").created

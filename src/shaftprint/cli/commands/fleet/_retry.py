@@ -2,9 +2,9 @@
 
 import click
 
-from shaftprint.cli._store_options import store_option
+from shaftprint.cli._store_options import opened_store, store_option
 from shaftprint.cli._terminal import answer
-from shaftprint.store import job, open_store, retry
+from shaftprint.store import job, retry
 
 
 @click.command("retry")
@@ -15,7 +15,7 @@ def command(numbers: tuple[int, ...], url: str) -> None:
 
     A file that was changed makes another job: `shaftprint fleet run` asks for that.
     """
-    with open_store(url) as store:
+    with opened_store(url) as store:
         chosen = [job(store, number) for number in numbers] or None
         count = retry(store, chosen)
     answer(f"Jobs that wait again: {count}; shaftprint work does them.")

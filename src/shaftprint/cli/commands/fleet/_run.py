@@ -8,11 +8,11 @@ import click
 
 from shaftprint.cli._command_group import NOT_REACHED
 from shaftprint.cli._fleet_options import say_refusals, say_what_was_done, work_here, work_options
-from shaftprint.cli._store_options import store_option
+from shaftprint.cli._store_options import opened_store, store_option
 from shaftprint.cli._terminal import answer
 from shaftprint.cli.output import give, no_progress_option
 from shaftprint.fleet import Worked, recordings_in, recordings_of_list, submit, work_on_dask
-from shaftprint.store import Job, Store, jobs, open_store
+from shaftprint.store import Job, Store, jobs
 
 
 @click.command("run")
@@ -48,7 +48,7 @@ def command(
     not done again, so the same command goes on with a run that was ended. --processes 0 leaves the work to others.
     """
     found = recordings_in(recordings, **facts) if recordings.is_dir() else recordings_of_list(recordings, **facts)
-    with open_store(url) as store:
+    with opened_store(url) as store:
         asked = submit(store, found, now=datetime.now(UTC))
         ids = {one.id for one in asked}
         is_open = [one for one in asked if one.state in ("waiting", "running")]

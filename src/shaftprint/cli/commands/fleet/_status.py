@@ -4,10 +4,10 @@ import click
 
 from shaftprint import __version__
 from shaftprint.cli._fleet_options import recording_of, refused_jobs, say_counts, say_refusals
-from shaftprint.cli._store_options import store_option
+from shaftprint.cli._store_options import opened_store, store_option
 from shaftprint.cli._terminal import say
 from shaftprint.cli.output import give, print_tables
-from shaftprint.store import Job, job_counts, jobs, open_store
+from shaftprint.store import Job, job_counts, jobs
 from shaftprint.tables import Column, Table
 from shaftprint.zones import utc_text
 
@@ -16,7 +16,7 @@ from shaftprint.zones import utc_text
 @store_option
 def command(url: str) -> None:
     """Show how many jobs wait, run, are done or were refused, and why."""
-    with open_store(url) as store:
+    with opened_store(url) as store:
         counts, own = job_counts(store), job_counts(store, version=__version__)
         running = jobs(store, states=("running",))
         say_counts(store, counts)

@@ -6,10 +6,10 @@ from pathlib import Path
 import click
 
 from shaftprint.cli._dates import zone_option
-from shaftprint.cli._store_options import moment_option, store_option
+from shaftprint.cli._store_options import moment_option, opened_store, store_option
 from shaftprint.cli._terminal import answer
 from shaftprint.cli.output import fingerprint_at, fingerprint_file, give
-from shaftprint.store import Added, Stated, add, open_store
+from shaftprint.store import Added, Stated, add
 
 SHOWN_HASH = 12
 
@@ -44,7 +44,7 @@ def command(
         raise click.UsageError(f"--tested-at: expected one RESULT, found {len(results)}; each test has its own time.")
     stated = Stated(ship=ship, imo_number=imo, line=line, tested_at=tested_at)
     outcomes = []
-    with open_store(url) as store:
+    with opened_store(url) as store:
         for place in results:
             if place.is_dir():
                 # a folder whose page shows another fingerprint is refused

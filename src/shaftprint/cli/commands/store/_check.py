@@ -2,10 +2,10 @@
 
 import click
 
-from shaftprint.cli._store_options import store_option
+from shaftprint.cli._store_options import opened_store, store_option
 from shaftprint.cli._terminal import answer, print_document, print_findings
 from shaftprint.cli.output import give, no_progress_option, progress
-from shaftprint.store import check, open_store
+from shaftprint.store import check
 
 DAMAGED = 1
 
@@ -20,7 +20,7 @@ def command(context: click.Context, url: str, *, no_progress: bool) -> None:
     Documents are held against their SHA-256, numbers against their documents, and every row against its seal. A record
     that is not as it was written is named, and the command ends with 1.
     """
-    with open_store(url) as store, progress(hidden=no_progress) as steps:
+    with opened_store(url) as store, progress(hidden=no_progress) as steps:
         steps.begin("Checking the records")
         faults = check(store, report=steps.reach)
         name = store.name

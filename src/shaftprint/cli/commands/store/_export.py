@@ -4,10 +4,10 @@ from pathlib import Path
 
 import click
 
-from shaftprint.cli._store_options import store_option
+from shaftprint.cli._store_options import opened_store, store_option
 from shaftprint.cli._terminal import answer
 from shaftprint.cli.output import expect_free
-from shaftprint.store import export_store, open_store
+from shaftprint.store import export_store
 
 
 @click.command("export")
@@ -20,7 +20,7 @@ def command(file: Path, url: str, *, force: bool) -> None:
     FILE is written whole or not at all, as JSON lines. Others may add records meanwhile: it holds what was there when
     it was begun.
     """
-    with open_store(url) as store:
+    with opened_store(url) as store:
         if file.exists() and Path(store.name).exists() and file.samefile(store.name):
             raise click.ClickException(f"{file}: expected another file than the store itself; choose another name.")
         expect_free(file, force=force)

@@ -4,11 +4,11 @@ from datetime import UTC, tzinfo
 
 import click
 
-from shaftprint.cli._store_options import shown_zone_option, store_option
+from shaftprint.cli._store_options import opened_store, shown_zone_option, store_option
 from shaftprint.cli._store_tables import event_table, number_table, physical_history_table, test_table
 from shaftprint.cli._terminal import answer
 from shaftprint.cli.output import give, print_tables
-from shaftprint.store import history, open_store
+from shaftprint.store import history
 
 
 @click.command("history")
@@ -26,7 +26,7 @@ def command(
     SHIP is its name or its IMO number. Of a recording that was identified several times
     the newest fingerprint is shown.
     """
-    with open_store(url) as store:
+    with opened_store(url) as store:
         found = history(store, ship, number=number, lines=lines, superseded=superseded)
     answer(f"{found.ship.name}. Fingerprints: {len(found.entries)}; events: {len(found.events)}.")
     give("history", found)

@@ -4,10 +4,10 @@ from pathlib import Path
 
 import click
 
-from shaftprint.cli._store_options import store_option
+from shaftprint.cli._store_options import opened_store, store_option
 from shaftprint.cli._terminal import answer
 from shaftprint.cli.output import give
-from shaftprint.store import import_store, open_store
+from shaftprint.store import import_store
 
 
 @click.command("import")
@@ -18,7 +18,7 @@ def command(file: Path, url: str) -> None:
 
     All of FILE is put in or nothing; what is in the store already is not kept twice.
     """
-    with open_store(url) as store:
+    with opened_store(url) as store:
         imported = import_store(store, file)
         answer(
             f"{store.name}. New fingerprints: {imported.fingerprints}; new events: {imported.events}; new jobs: "

@@ -4,11 +4,11 @@ from datetime import UTC, tzinfo
 
 import click
 
-from shaftprint.cli._store_options import shown_zone_option, store_option
+from shaftprint.cli._store_options import opened_store, shown_zone_option, store_option
 from shaftprint.cli._store_tables import line_table
 from shaftprint.cli._terminal import answer
 from shaftprint.cli.output import give, print_tables
-from shaftprint.store import newest, open_store
+from shaftprint.store import newest
 
 
 @click.command("list")
@@ -17,7 +17,7 @@ from shaftprint.store import newest, open_store
 @shown_zone_option
 def command(url: str, *, number: str | None, zone: tzinfo | None) -> None:
     """List the shaft lines with their newest test."""
-    with open_store(url) as store:
+    with opened_store(url) as store:
         lines = newest(store, number=number)
     ships = {(one.line.ship.imo_number, one.line.ship.name) for one in lines}
     answer(f"Ships: {len(ships)}; shaft lines: {len(lines)}; tests: {sum(one.tests for one in lines)}.")
