@@ -61,7 +61,7 @@ def test_what_was_set_on_purpose_leaves_earlier_tests_out(run, yard):
 
 @pytest.mark.slow
 def test_the_page_of_the_server_says_the_same(run, yard):
-    question = {"kind": "class", "lines": [[name, "port"] for name in NAMES]}
+    question = {"kind": "class", "lines": [[{"name": name}, "port"] for name in NAMES]}
     asked = subprocess.Popen(
         [sys.executable, "-m", "shaftprint.web.calculator", str(2**32)],
         stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True,

@@ -21,10 +21,10 @@ def judged_for(site, name):
 
 def test_only_ships_that_a_person_sees_are_held_against_each_other(site):
     lines, page = judged_for(site, "reader-ada")
-    assert lines == [[str(ADA), "port"]]
+    assert lines == [[{"name": "Ada", "imo_number": ADA}, "port"]]
     assert "Hidden" not in page
     lines, page = judged_for(site, "reader-all")
-    assert sorted(lines) == sorted([[str(ADA), "port"], [str(HIDDEN), "port"]])
+    assert {ship["imo_number"] for ship, _ in lines} == {ADA, HIDDEN}
     assert "Hidden" in page
     assert "No ship is other than its sisters" in page
 

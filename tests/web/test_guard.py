@@ -8,6 +8,7 @@ from tests.web.conftest import ADA, PASSWORD
 
 from shaftprint.errors import ServerError
 from shaftprint.web import Listen, Role, Serving, listen_at, routes_of
+from shaftprint.web.access import network_of
 
 
 @pytest.mark.parametrize("host", ["evil.example", "evil.example:8080", "127.0.0.1.evil.example", "", "127.0.0.1@evil"])
@@ -91,10 +92,42 @@ def test_wrong_passwords_make_one_wait(site):
     waiting = browser.post("/sign-in", {"name": "reader-ada", "password": PASSWORD})
     assert waiting.status == 429
     assert int(waiting.heads["retry-after"]) >= 1
-    # from elsewhere the same name waits too, another name does not
+    # from there another name waits too; elsewhere nobody does: nobody locks out another by his name
+    assert browser.post("/sign-in", {"name": "tester-ada", "password": PASSWORD}).status == 429
     elsewhere = site.browser(address="198.51.100.9")
-    assert elsewhere.post("/sign-in", {"name": "reader-ada", "password": PASSWORD}).status == 429
-    assert elsewhere.post("/sign-in", {"name": "tester-ada", "password": PASSWORD}).status == 303
+    assert elsewhere.post("/sign-in", {"name": "reader-ada", "password": PASSWORD}).status == 303
+
+
+def test_a_browser_that_is_known_does_not_wait_for_others_of_its_network(site):
+    known = site.person("reader-ada")
+    known.post("/sign-out")
+    stranger = site.browser()
+    for _ in range(6):
+        stranger.post("/sign-in", {"name": "reader-ada", "password": "no"})
+    assert stranger.post("/sign-in", {"name": "reader-ada", "password": PASSWORD}).status == 429
+    # it is known for its own name only, and counts for itself
+    assert known.post("/sign-in", {"name": "tester-ada", "password": PASSWORD}).status == 429
+    assert known.post("/sign-in", {"name": "reader-ada", "password": PASSWORD}).status == 303
+
+
+def test_own_sign_ins_between_take_back_no_wrong_password_of_others(site):
+    for name in ("reader-all", "tester-all", "owner-all", "owner-ada", "reader-hidden"):
+        site.browser().post("/sign-in", {"name": name, "password": "no"})
+        status = site.browser().post("/sign-in", {"name": "tester-hidden", "password": PASSWORD}).status
+    assert status == 429
+
+
+@pytest.mark.parametrize(
+    ("address", "network"),
+    [
+        ("192.0.2.7", "192.0.2.7"),
+        ("2001:db8:1:2:3::4", "2001:db8:1:2::/64"),
+        ("::ffff:192.0.2.7", "192.0.2.7"),
+        ("", ""),
+    ],
+)
+def test_an_address_counts_by_its_network(address, network):
+    assert network_of(address) == network
 
 
 @pytest.mark.parametrize("path", ["//evil.example", "https://evil.example", "/\\evil.example", "javascript:x"])

@@ -29,14 +29,24 @@ def test_fingerprints_that_another_has_taken_the_place_of_are_no_tests(tmp_path)
                 content["created"] = f"2026-0{version[2]}-01T00:00:00Z"
                 add_document(store, json.dumps(content).encode(), named="one.json", now=FIRST)
 
+    (tmp_path / "day.nc").write_bytes(b"no recording")
+    job = {"kind": "submit", "recording": str(tmp_path / "day.nc"), "vessel": "stan-tug-1205", "campaign": "short"}
+    job |= {"structure": None, "ship": "Ada", "imo": 9074729, "line": "port", "facts": {}}
+
     async def asked():
-        calculator = Calculator(store=str(tmp_path / "fleet.db"), most_memory=MEMORY)
+        calculator = Calculator(store=str(tmp_path / "fleet.db"), most_memory=MEMORY, scratch=tmp_path / "scratch")
         try:
-            return await calculator.ask({"kind": "line", "ship": "9074729", "line": "port"}, longest_s=300.0)
+            line = {"kind": "line", "ship": {"name": "Ada", "imo_number": 9074729}, "line": "port"}
+            found = await calculator.ask(line, longest_s=300.0)
+            # what a process leaves when it is killed lies there
+            (tmp_path / "scratch" / "left").write_bytes(b"x")
+            return found, await calculator.ask(job, longest_s=300.0)
         finally:
             await calculator.close()
 
-    found = asyncio.run(asked())
+    found, asked_for = asyncio.run(asked())
+    assert asked_for["args"]["only"] == {"ship": "Ada", "imo": 9074729, "line": "port"}
+    assert not (tmp_path / "scratch").exists()
     assert found["earlier"] == 2
     # none has a joint covariance; those that were superseded are told of too
     assert len(found["left_out"]) == 50

@@ -53,7 +53,16 @@ from shaftprint.store._nouns import (
     StoredNumber,
     Trial,
 )
-from shaftprint.store._overview import LineNow, LineRecords, line_records, lines_now, store_state, stored_fingerprint
+from shaftprint.store._overview import (
+    LineNow,
+    LineRecords,
+    give_imo_number,
+    line_records,
+    lines_now,
+    namesakes,
+    store_state,
+    stored_fingerprint,
+)
 from shaftprint.store._record import Record, record_of
 from shaftprint.store._sisters import sisters_of
 from shaftprint.store._stated import Stated
@@ -101,6 +110,7 @@ __all__ = [
     "file_hashes",
     "finish",
     "give_back",
+    "give_imo_number",
     "has_open_jobs",
     "history",
     "import_store",
@@ -111,6 +121,7 @@ __all__ = [
     "line_history",
     "line_records",
     "lines_now",
+    "namesakes",
     "network_file_system",
     "newest",
     "open_store",

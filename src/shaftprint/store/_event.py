@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from shaftprint.arguments import refusing_none
 from shaftprint.errors import StoreError
 from shaftprint.spelling import meant
-from shaftprint.store._find import lines_called, ship_called
+from shaftprint.store._find import lines_called, name_of, ship_called
 from shaftprint.store._nouns import KINDS, Event, Line, Ship
 from shaftprint.store._stated import possible_time
 from shaftprint.store._store import Store
@@ -126,9 +126,10 @@ def _expect_kind(kind: str) -> None:
 def _lines_of(reader: "Reader", ship: str | Ship, lines: Sequence[str]) -> dict[int, Line]:
     found = lines_called(reader, ship_called(reader, ship), lines)
     if len(found) > 1 and not lines:
-        name = ship.name if isinstance(ship, Ship) else ship
         names = ", ".join(line.position for line in found.values())
-        raise StoreError(f"{name}: expected which of its lines, {names}, found none; state --line, also several times.")
+        raise StoreError(
+            f"{name_of(ship)}: expected which of its lines, {names}, found none; state --line, also several times."
+        )
     return found
 
 

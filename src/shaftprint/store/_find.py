@@ -47,6 +47,11 @@ def ship_called(reader: "Reader", name: str | Ship) -> "ShipRow":
     raise StoreError(f"{name}: expected the name or IMO number of a ship in the store, found none.{advice}")
 
 
+def name_of(ship: str | Ship) -> str:
+    """Return what a ship is called in an error."""
+    return ship.name if isinstance(ship, Ship) else ship
+
+
 def _same_ship(reader: "Reader", ship: Ship) -> "ShipRow":
     if ship.imo_number is not None:
         found = reader.ships(imo_number=ship.imo_number)

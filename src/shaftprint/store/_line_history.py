@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from shaftprint.arguments import refusing_none
 from shaftprint.errors import StoreError
-from shaftprint.store._find import lines_called, ship_called
+from shaftprint.store._find import lines_called, name_of, ship_called
 from shaftprint.store._history import SHOWN_HASH, document
 from shaftprint.store._late_rooms import drift_room, fingerprint_room
 from shaftprint.store._nouns import Event as StoredEvent
@@ -88,7 +88,7 @@ def _records(
     lines = list(dict.fromkeys(one.line.position for one in kept))
     if len(lines) != 1:
         raise StoreError(
-            f"{ship.name if isinstance(ship, Ship) else ship}: expected one shaft line, found {', '.join(lines) if lines else 'no test'}; "
+            f"{name_of(ship)}: expected one shaft line, found {', '.join(lines) if lines else 'no test'}; "
             f"{'name it with --line' if lines else 'add its fingerprints with shaftprint store add'}."
         )
     return kept[0].line, kept, events

@@ -1,11 +1,12 @@
 """What a page shows of a store: its lines as they stand, all that is kept of one line, and one fingerprint."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import datetime
 
 from shaftprint.arguments import refusing_none
 from shaftprint.errors import StoreError
-from shaftprint.store._nouns import Event, HistoryEntry, Line, StoredFingerprint, StoredNumber
+from shaftprint.store._find import ship_called
+from shaftprint.store._nouns import Event, HistoryEntry, Line, Ship, StoredFingerprint, StoredNumber
 from shaftprint.store._store import Store, part_with_database
 
 
@@ -117,6 +118,37 @@ def line_records(store: Store, *, position: str, imo_number: int | None = None, 
             events=tuple(reader.events(lines)),
             state=states.get(key, ""),
         )
+
+
+@refusing_none(StoreError)
+def namesakes(store: Store, name: str, *, imo_number: int | None = None) -> tuple[Ship, ...]:
+    """Return the ships that have a name now, and the one that has an IMO number."""
+    with store.database.reading() as connection:
+        reader = store.database.reader(connection)
+        found = [] if "\0" in name else reader.ships(name=name)
+        found += [] if imo_number is None else reader.ships(imo_number=imo_number)
+    return tuple(dict.fromkeys(one.ship for one in found))
+
+
+@refusing_none(StoreError)
+def give_imo_number(store: Store, ship: Ship, imo_number: int) -> Ship:
+    """Give a ship without an IMO number its number, and return it with that.
+
+    Raises
+    ------
+    StoreError
+        If there is no such ship, or another one has that number.
+    """
+    numbered = replace(ship, imo_number=imo_number)
+    with store.database.writing() as connection:
+        reader = store.database.reader(connection)
+        found = ship_called(reader, replace(ship, imo_number=None))
+        if reader.ships(imo_number=imo_number):
+            raise StoreError(
+                f"IMO {imo_number}: expected a number that no ship in the store has, found one that has it."
+            )
+        store.database.writer(connection).fleet.change_ship(found.id, numbered)
+    return numbered
 
 
 @refusing_none(StoreError)

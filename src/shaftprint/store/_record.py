@@ -11,7 +11,7 @@ from shaftprint.errors import StoreError
 from shaftprint.store._document import document_sha256, expect_length
 from shaftprint.store._late_rooms import fingerprint_room
 from shaftprint.store._nouns import StoredNumber, Trial
-from shaftprint.store._stated import Stated, possible_time, ship_of, tested_when
+from shaftprint.store._stated import Stated, possible_time, ship_of, time_of_test
 from shaftprint.store._text import LONGEST_TEXT, expect_short
 
 if TYPE_CHECKING:
@@ -78,7 +78,7 @@ def record_of(
     room = fingerprint_room()
     fingerprint: Fingerprint = room.parse_fingerprint(document, named=named)
     conditions = fingerprint.conditions
-    tested_at = tested_when(conditions, stated.tested_at, zone, named=named, now=now)
+    tested_at = time_of_test(conditions, stated.tested_at, zone, named=named, now=now)
     needs_time = conditions.tested_at is None or conditions.tested_at.tzinfo is None
     kept = replace(stated, tested_at=tested_at if needs_time else None)
     expect_short(conditions.place or None, "place", named=named, longest=LONGEST_TEXT)

@@ -38,7 +38,7 @@ def utc_iso(moment: datetime) -> str:
     return moment.astimezone(UTC).isoformat(timespec="microseconds").replace("+00:00", "Z")
 
 
-def tested_when(
+def time_of_test(
     conditions: "Conditions", stated: datetime | None, zone: tzinfo | None, *, named: str, now: datetime | None = None
 ) -> datetime:
     """Return when a test was made: as its document says, else as stated; nothing is guessed.
@@ -48,7 +48,7 @@ def tested_when(
     StoreError
         If neither says an instant, they differ, or nothing can have been tested then.
     """
-    return possible_time(_tested_when(conditions, stated, zone, named=named), now=now, named=named)
+    return possible_time(_time_of_test(conditions, stated, zone, named=named), now=now, named=named)
 
 
 def possible_time(moment: datetime, *, now: datetime | None, named: str) -> datetime:
@@ -65,7 +65,7 @@ def possible_time(moment: datetime, *, now: datetime | None, named: str) -> date
         raise StoreError(f"{named}: {error}; correct it.") from None
 
 
-def _tested_when(conditions: "Conditions", stated: datetime | None, zone: tzinfo | None, *, named: str) -> datetime:
+def _time_of_test(conditions: "Conditions", stated: datetime | None, zone: tzinfo | None, *, named: str) -> datetime:
     shown = conditions.tested_at
     if stated is not None:
         instant = _instant(stated, zone, named=named)

@@ -5,6 +5,7 @@ limits of memory and time; what somebody does not see is not there for him.
 """
 
 from shaftprint.web._kept import KeptJob, Upload
+from shaftprint.web._rights import forbidden_by
 from shaftprint.web._routes import ADDRESSES, routes_of
 from shaftprint.web._server import guarded, serve
 from shaftprint.web._service import Service
@@ -28,6 +29,7 @@ __all__ = [
     "Standing",
     "TimeAxis",
     "Upload",
+    "forbidden_by",
     "guarded",
     "hashed",
     "listen_at",

@@ -144,6 +144,10 @@ class Asked:
             deed, person=self.person.name, address=self.address, now=self.service.now(), **ship, **about
         )
 
+    def refused(self, deed: str, **about: Any) -> None:
+        """Count what somebody was refused: anybody can do it as often as he likes."""
+        self.service.audit.refused(deed, address=self.address, now=self.service.now(), **about)
+
 
 async def body_of(request: Request, *, most: int) -> bytes:
     """Return the body of a request.
@@ -170,6 +174,11 @@ def ship_word(ship: Ship, ship_id: int) -> str:
 def line_address(line: Line, ship_id: int) -> str:
     """Return the address of a line's page."""
     return f"/ships/{ship_word(line.ship, ship_id)}/{quote(line.position, safe='')}"
+
+
+def ship_content(ship: Ship) -> dict[str, str | int | None]:
+    """Return what tells a ship from all others, as processes beside the server are told it."""
+    return {"name": ship.name, "imo_number": ship.imo_number}
 
 
 def line_key(ship: Ship, position: str) -> str:

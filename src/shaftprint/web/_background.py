@@ -11,7 +11,7 @@ from starlette.concurrency import run_in_threadpool
 
 from shaftprint.errors import ShaftprintError
 from shaftprint.store import LineNow
-from shaftprint.web._asked import line_key
+from shaftprint.web._asked import line_key, ship_content
 from shaftprint.web._kept import Making
 from shaftprint.web._waking import Waking
 from shaftprint.web.calculator import Calculator
@@ -56,11 +56,11 @@ async def _judge_new(service: "Service") -> None:
     # the line that was tested last first: somebody waits for it
     for one in sorted(new, key=lambda line: line.tested_at or service.now(), reverse=True):
         ship = one.line.ship
-        question = {"kind": "line", "ship": str(ship.imo_number or ship.name), "line": one.line.position}
+        question = {"kind": "line", "ship": ship_content(ship), "line": one.line.position}
         try:
             found = await service.bench.ask(question, longest_s=service.serving.longest_s)
         except ShaftprintError as refused:
-            found = _nothing(str(refused) if ship.imo_number is not None else "its records cannot be judged")
+            found = _nothing(str(refused))
         summary = {name: found[name] for name in _SUMMARY}
         service.kept.put_finding(_key(one), one.state, summary, found)
 
@@ -90,7 +90,13 @@ async def _make_all(service: "Service") -> None:
 
 async def _made(service: "Service", one: Making) -> Making:
     """Return where something stands once it was made, in a process of its own that ends with it."""
-    calculator = Calculator(store=service.serving.store, most_memory=service.serving.most_memory)
+    serving = service.serving
+    calculator = Calculator(
+        store=serving.store,
+        most_memory=serving.most_memory,
+        scratch=service.scratch / "made",
+        most_file=serving.most_file,
+    )
     try:
         answer = await calculator.ask({"kind": one.kind, **one.args}, longest_s=service.serving.longest_s)
     except ShaftprintError as refused:

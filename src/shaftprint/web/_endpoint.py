@@ -12,9 +12,10 @@ from starlette.responses import RedirectResponse, Response
 
 from shaftprint.errors import DatabaseError, ShaftprintError
 from shaftprint.web._asked import API, Asked, Moved, Shown
+from shaftprint.web._door import STREAMS
 from shaftprint.web._service import Service
 from shaftprint.web._setting import answer_of, refusal
-from shaftprint.web.access import COOKIE, LONGEST_S, NOBODY, Role
+from shaftprint.web.access import COOKIE, KNOWN_S, NOBODY, Role
 
 Answer: TypeAlias = Callable[[Asked], Awaitable[Shown | Moved | Response]]
 TOKEN_HEAD: Final = "x-csrf-token"  # noqa: S105 - the name of a head
@@ -47,7 +48,8 @@ def endpoint(address: Address, service: Service) -> Callable[[Request], Awaitabl
     async def handle(request: Request) -> Response:
         session, cookie = service.sessions.read(request.cookies.get(COOKIE)), None
         if session is None:
-            session, cookie = service.sessions.begin()
+            known = service.sessions.known(request.cookies.get(COOKIE))
+            session, cookie = service.sessions.begin(known=known)
         if session.person is None and address.least is not None:
             response = _sign_in_first(request)
         else:
@@ -68,7 +70,10 @@ async def _answered(address: Address, asked: Asked) -> Response:
             _expect_own_page(asked.request)
             if not address.streams:
                 await asked.expect_token()
-            elif TOKEN_HEAD in asked.request.headers:
+            else:
+                # who may upload has more time than a few seconds
+                asked.request.scope[STREAMS] = True
+            if address.streams and TOKEN_HEAD in asked.request.headers:
                 asked.check_token(asked.request.headers[TOKEN_HEAD])
         return answer_of(asked, await address.answer(asked))
     except HTTPException as refused:
@@ -91,7 +96,8 @@ def keep(response: Response, cookie: str, service: Service) -> None:
     response.set_cookie(
         COOKIE,
         cookie,
-        max_age=LONGEST_S,
+        # longer than somebody stays signed in: a browser that he used before is let through where others have to wait
+        max_age=KNOWN_S,
         path="/",
         secure=service.serving.is_secure,
         httponly=True,

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any, Final, Literal, Self, TypeAlias
 
 from shaftprint.errors import ServerError
+from shaftprint.files import private_file
 
 MakingState: TypeAlias = Literal["waiting", "done", "refused"]
 MOST_CLASSES: Final = 500
@@ -28,6 +29,7 @@ create table if not exists job(id integer primary key, imo integer, ship text no
   name text not null, person text not null, at text not null, args text not null);
 create table if not exists ended(session text primary key, at text not null);
 """  # noqa: E501
+_JOBS: Final = "select id, imo, ship, line, name, person, at, args from job"
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -111,10 +113,13 @@ class Kept:
             If it cannot be used.
         """
         try:
-            connection = sqlite3.connect(path, check_same_thread=False, isolation_level=None, timeout=30.0)
+            # sessions that were ended stand in it; what lies beside it is as private as it is
+            connection = sqlite3.connect(
+                private_file(path), check_same_thread=False, isolation_level=None, timeout=30.0
+            )
             connection.execute("pragma journal_mode=wal")
             connection.executescript(_TABLES)
-        except sqlite3.Error as fault:
+        except (sqlite3.Error, OSError) as fault:
             raise ServerError(f"{path}: the server's own file cannot be used: {fault}; move it away.") from None
         return cls(path=path, _connection=connection)
 
@@ -177,16 +182,23 @@ class Kept:
 
     def jobs(self) -> dict[int, KeptJob]:
         """Return what is known of the jobs that were asked for here, by their numbers."""
-        with self._rows("select id, imo, ship, line, name, person, at, args from job") as rows:
-            return {
-                row[0]: KeptJob(**dict(zip(KeptJob.__slots__, (*row[:-1], json.loads(row[-1])), strict=True)))
-                for row in rows
-            }
+        with self._rows(_JOBS) as rows:
+            return {row[0]: _job(row) for row in rows}
+
+    def job(self, number: int) -> KeptJob | None:
+        """Return what is known of a job; None where it was not asked for here."""
+        with self._rows(f"{_JOBS} where id = ?", number) as rows:
+            return _job(rows[0]) if rows else None
 
     def put_job(self, one: KeptJob) -> None:
-        """Keep for which line a job was asked."""
+        """Keep for which line a job was asked, and who asked for it last."""
         row = [one.id, one.imo, one.ship, one.line, one.name, one.person, one.at, json.dumps(one.args)]
-        self._write("insert or ignore into job values(?, ?, ?, ?, ?, ?, ?, ?)", *row)
+        self._write("insert or replace into job values(?, ?, ?, ?, ?, ?, ?, ?)", *row)
+
+    def give_number(self, ship: str, imo: int) -> None:
+        """Let uploads and jobs of a ship that had no IMO number be of the ship that has one now."""
+        for table in ("upload", "job"):
+            self._write(f"update {table} set imo = ? where imo is null and ship = ?", imo, ship)  # noqa: S608
 
     def makings(self, state: MakingState) -> tuple[Making, ...]:
         """Return what is in a state, in the order in which it was asked for."""
@@ -212,6 +224,10 @@ class Kept:
         """Keep that a session was ended; those that are too old by themselves are forgotten."""
         self._write("insert or replace into ended values(?, ?)", session, at)
         self._write("delete from ended where at < ?", forget_before)
+
+
+def _job(row: Any) -> KeptJob:
+    return KeptJob(**dict(zip(KeptJob.__slots__, (*row[:-1], json.loads(row[-1])), strict=True)))
 
 
 def _making(row: Any) -> Making:

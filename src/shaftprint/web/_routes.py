@@ -19,6 +19,8 @@ ADDRESSES: Final = (
     Address(path="/", answer=pages.ships),
     Address(path="/ships/{ship}/{line}", answer=pages.line),
     Address(path="/ships/{ship}/{line}/events", answer=pages.new_event, method="POST", least=Role.TESTER),
+    Address(path="/ships/{ship}/{line}/events/withdrawn", answer=pages.withdraw, method="POST", least=Role.OWNER),
+    Address(path="/ships/{ship}/{line}/number", answer=pages.give_number, method="POST", least=Role.OWNER),
     Address(path="/trials/{sha256}", answer=pages.trial),
     Address(path="/trials/{sha256}/report", answer=pages.make_report, method="POST", least=Role.TESTER),
     Address(path="/trials/{sha256}/report/{path:path}", answer=pages.report_file, twin=False),

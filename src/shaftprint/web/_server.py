@@ -2,6 +2,7 @@
 
 import asyncio
 import contextlib
+import os
 from collections.abc import AsyncIterator, Callable, Iterator
 from datetime import datetime
 from typing import Final
@@ -10,6 +11,7 @@ import anyio.to_thread
 import uvicorn
 
 from shaftprint.web._background import keep_judging, keep_making
+from shaftprint.web._door import Door, patient_protocol
 from shaftprint.web._guard import Guard
 from shaftprint.web._routes import application
 from shaftprint.web._service import Service, utc_now
@@ -45,6 +47,8 @@ def serve(serving: Serving, *, begun: Callable[[str], None], now: Callable[[], d
     ShaftprintError
         If the store, the users or the server's own folder cannot be used.
     """
+    # what it and the processes beside it make is for nobody else to read, from the first byte on
+    os.umask(0o077)
     service = Service.begun(serving, now=now)
     asyncio.run(_serve(service, begun))
 
@@ -69,7 +73,7 @@ async def _serve(service: Service, begun: Callable[[str], None]) -> None:
         forwarded_allow_ips="127.0.0.1",
         lifespan="off",
         ws="none",
-        http="h11",
+        http=patient_protocol(Door(behind_proxy=serving.behind_tls)),
         h11_max_incomplete_event_size=_MOST_HEAD,
         limit_concurrency=_MOST_CONNECTIONS,
         timeout_keep_alive=_IDLE_S,

@@ -1,7 +1,9 @@
 """What a running server has: the store, its own files, who may sign in, and the processes beside it."""
 
+import contextlib
 import os
 import secrets
+import shutil
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
@@ -87,8 +89,8 @@ class Service:
             throttle=Throttle(),
             lines=Lines(store=store),
             audit=Audit(path=serving.state / "audit.jsonl"),
-            desk=Calculator(store=serving.store, most_memory=serving.most_memory),
-            bench=Calculator(store=serving.store, most_memory=serving.most_memory),
+            desk=Calculator(store=serving.store, most_memory=serving.most_memory, scratch=_scratch(serving) / "desk"),
+            bench=Calculator(store=serving.store, most_memory=serving.most_memory, scratch=_scratch(serving) / "bench"),
             now=now,
         )
 
@@ -102,12 +104,21 @@ class Service:
         """Folder of reports."""
         return self.serving.state / "reports"
 
+    @property
+    def scratch(self) -> Path:
+        """Folder of the temporary files of the processes beside it."""
+        return _scratch(self.serving)
+
     async def close(self) -> None:
         """Close its files, and end the processes beside it."""
         await self.desk.close()
         await self.bench.close()
         self.kept.close()
         self.store.close()
+
+
+def _scratch(serving: Serving) -> Path:
+    return serving.state / "scratch"
 
 
 def _expect_there(serving: Serving) -> None:
@@ -119,15 +130,24 @@ def _expect_there(serving: Serving) -> None:
             raise ServerError(f"--certificate and --key: expected a file, found none at {file}.")
 
 
+def _take_away_leftovers(state: Path) -> None:
+    """Take away what a server that was killed has left: half uploads with their folders, and temporary files."""
+    for left in (state / "recordings").glob("*/*.part"):
+        left.unlink(missing_ok=True)
+    for home in (state / "recordings").iterdir():
+        # one in which a file lies is no folder that goes
+        with contextlib.suppress(OSError):
+            home.rmdir()
+    shutil.rmtree(state / "scratch", ignore_errors=True)
+
+
 def _prepared(state: Path) -> bytes:
     """Make the server's own folder for nobody else, and return its secret."""
     try:
         state.mkdir(mode=0o700, parents=True, exist_ok=True)
         for name in ("recordings", "reports", "made"):
             (state / name).mkdir(mode=0o700, exist_ok=True)
-        # what was being uploaded when a server ended
-        for left in (state / "recordings").glob("*/*.part"):
-            left.unlink(missing_ok=True)
+        _take_away_leftovers(state)
         secret = state / "secret"
         if not secret.exists():
             part = state / "secret.part"

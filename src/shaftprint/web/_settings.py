@@ -66,6 +66,11 @@ class Serving:
     longest_s: float = 600.0
     """How long such a process may take for one file [s]."""
 
+    @property
+    def most_file(self) -> int:
+        """Bytes of the largest file that may be written for one recording: unpacked it is longer."""
+        return 4 * self.most_upload
+
     def __post_init__(self) -> None:
         """Refuse what would let strangers in.
 

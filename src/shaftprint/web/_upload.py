@@ -1,5 +1,6 @@
 """A file that comes in: written as it comes, counted and hashed on the way, and named when all of it is there."""
 
+import asyncio
 import hashlib
 import os
 import re
@@ -19,6 +20,7 @@ SETTINGS: Final = ".toml"
 MOST_SETTINGS: Final = 2**20
 """Bytes of the largest vessel or campaign file."""
 _LONGEST_NAME: Final = 100
+_LONGEST_STILL_S: Final = 60.0
 _LEFT_FREE: Final = 2**30
 _PROGRAMS: Final = frozenset({".py", ".pyc", ".pyw", ".pickle", ".pkl", ".zip", ".exe", ".dll", ".so", ".sh", ".bat"})
 _NUMBER: Final = re.compile(r"[0-9a-f]{16}")
@@ -90,7 +92,7 @@ async def take(parts: AsyncIterator[bytes], folder: Path, name: str, *, most: in
     try:
         # unbuffered: what comes in pieces of a network goes on as it is
         with part.open("xb", buffering=0) as file:
-            async for piece in parts:
+            async for piece in _in_time(parts, name):
                 size += len(piece)
                 if size > most:
                     raise HTTPException(413, f"{name}: expected at most {most} bytes, found more.")
@@ -106,6 +108,18 @@ async def take(parts: AsyncIterator[bytes], folder: Path, name: str, *, most: in
         shutil.rmtree(home, ignore_errors=True)
         raise
     return Taken(id=number, size=size, sha256=digest.hexdigest())
+
+
+async def _in_time(parts: AsyncIterator[bytes], name: str) -> AsyncIterator[bytes]:
+    """Give the pieces of a file, and refuse one that stands still."""
+    while True:
+        try:
+            piece = await asyncio.wait_for(anext(parts, None), _LONGEST_STILL_S)
+        except TimeoutError:
+            raise HTTPException(408, f"{name}: nothing came for {_LONGEST_STILL_S:g} s; send it again.") from None
+        if piece is None:
+            return
+        yield piece
 
 
 def _put(file: object, digest: object, piece: bytes) -> None:

@@ -7,6 +7,8 @@ import os
 import sys
 from typing import TYPE_CHECKING, Final
 
+from shaftprint.web.calculator import scratch_environment
+
 if TYPE_CHECKING:
     from shaftprint.web._service import Service
 
@@ -18,7 +20,7 @@ _LOG = logging.getLogger("shaftprint.web")
 
 async def keep_workers(service: "Service") -> None:
     """Keep a process that does the jobs of the store, as long as the server runs."""
-    if not service.serving.workers:
+    if not service.serving.workers or service.store.is_read_only:
         return
     pause_s = _PAUSE_S
     while True:
@@ -43,9 +45,12 @@ async def _begun(service: "Service") -> asyncio.subprocess.Process:
         str(serving.workers),
         str(serving.most_memory),
         str(serving.longest_s),
+        str(serving.most_file),
+        str(serving.state.absolute()),
+        "" if serving.users is None else str(serving.users.absolute()),
         # it ends when this pipe does, however the server ends
         stdin=asyncio.subprocess.PIPE,
-        env=os.environ | {"SHAFTPRINT_STORE": serving.store},
+        env=os.environ | {"SHAFTPRINT_STORE": serving.store} | scratch_environment(service.scratch / "worker"),
     )
 
 

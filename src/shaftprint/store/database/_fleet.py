@@ -11,7 +11,6 @@ from shaftprint.store.database._rows import ship_of_row
 from shaftprint.store.database._seal import sealed
 from shaftprint.store.database._tables import LINE, SHIP
 
-
 OTHER_SHIP: Final = (
     "its ship is not in the store as it was when this was asked for; ask for it again from the page of its line"
 )

@@ -37,16 +37,25 @@ class Person:
     def sees(self, ship: Ship) -> bool:
         """Return whether a ship was given to him.
 
-        A name counts for a ship without IMO number only: names change, and may be taken from another ship.
+        A name counts for a ship without IMO number only: names change, and may be taken from another ship. A name
+        that could be a number is none that is given.
         """
         if self.sees_all:
             return True
-        return (ship.name if ship.imo_number is None else str(ship.imo_number)) in self.ships
+        if ship.imo_number is None:
+            return ship.name in self.ships and not is_like_a_number(ship.name)
+        return str(ship.imo_number) in self.ships
 
     @property
     def sees_all(self) -> bool:
         """Whether he sees every ship."""
         return ALL in self.ships
+
+
+def is_like_a_number(name: str) -> bool:
+    """Return whether a name could be taken for an IMO number."""
+    digits = name.upper().removeprefix("IMO").strip()
+    return digits.isascii() and digits.isdecimal()
 
 
 LOCAL: Final = Person(name="this computer", role=Role.OWNER, ships=(ALL,))

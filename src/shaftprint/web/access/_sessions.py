@@ -15,6 +15,8 @@ COOKIE: Final = "shaftprint"
 """Name of the cookie."""
 LONGEST_S: Final = 12 * 3600
 """How long somebody stays signed in [s]."""
+KNOWN_S: Final = 180 * 24 * 3600
+"""How long a browser is known from which somebody signed in [s]."""
 _MOST_LETTERS: Final = 2000
 _MOST_ENDED: Final = 10_000
 
@@ -29,6 +31,8 @@ class Session:
     """Who signed in; None for nobody."""
     token: str
     """What every form of this browser carries."""
+    known: Person | None = None
+    """Who signed in from this browser before, and has the same password since."""
 
     def has(self, token: str) -> bool:
         """Return whether a token is that of this browser."""
@@ -47,27 +51,38 @@ class Sessions:
 
     def read(self, cookie: str | None) -> Session | None:
         """Return the session of a cookie; None where there is none, it is forged, or too old."""
-        if not cookie or len(cookie) > _MOST_LETTERS:
+        content = self._content(cookie, longest_s=LONGEST_S)
+        if content is None or content[0] in self._ended:
             return None
-        try:
-            content = self._signer().loads(cookie, max_age=LONGEST_S)
-        except BadData:
-            return None
-        if not isinstance(content, list) or len(content) != 3 or not all(isinstance(one, str) for one in content):
-            return None
-        number, name, stamp = content
-        if number in self._ended:
-            return None
-        return Session(number=number, person=self._person(name, stamp), token=self._token(number))
+        number, name, stamp, known, known_stamp = content
+        return Session(
+            number=number,
+            person=self._person(name, stamp),
+            token=self._token(number),
+            known=self._known(known, known_stamp),
+        )
 
-    def begin(self, person: Person | None = None) -> tuple[Session, str]:
-        """Return a new session and its cookie."""
+    def known(self, cookie: str | None) -> Person | None:
+        """Return who signed in from a browser before, however long ago his session ended; None for nobody."""
+        content = self._content(cookie, longest_s=KNOWN_S)
+        return None if content is None else self._known(*content[3:])
+
+    def begin(self, person: Person | None = None, *, known: Person | None = None) -> tuple[Session, str]:
+        """Return a new session and its cookie.
+
+        Parameters
+        ----------
+        person
+            Who signs in; None for nobody.
+        known
+            Who signed in from this browser before.
+        """
         number = secrets.token_urlsafe(16)
         if person is None and self.users is None:
             person = LOCAL
-        signed_in = person is not None and person.password
-        content = [number, person.name, _stamp(person)] if person is not None and signed_in else [number, "", ""]
-        session = Session(number=number, person=person, token=self._token(number))
+        known = person or known
+        content = [number, *(_named(person) or ("", "")), *(_named(known) or ("", ""))]
+        session = Session(number=number, person=person, token=self._token(number), known=known)
         return session, str(self._signer().dumps(content))
 
     def end(self, session: Session) -> None:
@@ -83,11 +98,28 @@ class Sessions:
         # another password ends all sessions that the old one began
         return person if person is not None and hmac.compare_digest(_stamp(person), stamp) else None
 
+    def _known(self, name: str, stamp: str) -> Person | None:
+        return self._person(name, stamp) if self.users is not None else None
+
+    def _content(self, cookie: str | None, *, longest_s: int) -> list[str] | None:
+        if not cookie or len(cookie) > _MOST_LETTERS:
+            return None
+        try:
+            content = self._signer().loads(cookie, max_age=longest_s)
+        except BadData:
+            return None
+        is_whole = isinstance(content, list) and len(content) == 5 and all(isinstance(one, str) for one in content)
+        return content if is_whole else None
+
     def _signer(self) -> URLSafeTimedSerializer:
         return URLSafeTimedSerializer(self.key, salt="session")
 
     def _token(self, number: str) -> str:
         return hmac.new(self.key, f"token {number}".encode(), hashlib.sha256).hexdigest()
+
+
+def _named(person: Person | None) -> tuple[str, str] | None:
+    return (person.name, _stamp(person)) if person is not None and person.password else None
 
 
 def _stamp(person: Person) -> str:

@@ -1,6 +1,11 @@
-"""How often somebody may try to sign in: after a few wrong passwords he waits, longer each time."""
+"""How often somebody may try to sign in: after a few wrong passwords he waits, longer each time.
+
+They are counted by where they come from, and by name and where they come from: by name alone anybody could lock out
+whom he likes. A browser from which somebody signed in before counts for itself.
+"""
 
 from dataclasses import dataclass, field
+from ipaddress import IPv6Address, ip_address, ip_network
 from typing import Final
 
 FREE: Final = 5
@@ -13,7 +18,7 @@ _MOST: Final = 10_000
 
 @dataclass(slots=True)
 class Throttle:
-    """Wrong passwords of each name and of each address."""
+    """Wrong passwords, by what they are counted by."""
 
     _tries: dict[str, tuple[int, float]] = field(default_factory=dict)
 
@@ -29,13 +34,26 @@ class Throttle:
         while len(self._tries) > _MOST:
             self._tries.pop(next(iter(self._tries)))
 
-    def succeeded(self, *keys: str) -> None:
-        """Forget the wrong passwords of these."""
+    def succeeded(self, *keys: str, now: float) -> None:
+        """Take back the last wrong password of these: others of the same address stay, whoever signs in between."""
         for key in keys:
-            self._tries.pop(key, None)
+            count, _ = self._tries.pop(key, (0, now))
+            if count > 1:
+                self._tries[key] = (count - 1, now)
 
     def _wait(self, key: str, now: float) -> float:
         count, last = self._tries.get(key, (0, now))
         if count < FREE:
             return 0.0
         return max(0.0, last + min(LONGEST_S, 2.0 ** (count - FREE)) - now)
+
+
+def network_of(address: str) -> str:
+    """Return what an address is counted by: itself, or for IPv6 the network that one customer gets."""
+    try:
+        known = ip_address(address)
+    except ValueError:
+        return address
+    if not isinstance(known, IPv6Address):
+        return address
+    return str(known.ipv4_mapped or ip_network((known, 64), strict=False))

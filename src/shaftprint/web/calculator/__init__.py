@@ -4,7 +4,7 @@ It is asked by a line of JSON on its standard input and answers by one on its st
 nothing that calculates, and opens no file of a user.
 """
 
-from shaftprint.web.calculator._client import Calculator
+from shaftprint.web.calculator._client import Calculator, scratch_environment
 from shaftprint.web.calculator._limits import limit_memory
 
-__all__ = ["Calculator", "limit_memory"]
+__all__ = ["Calculator", "limit_memory", "scratch_environment"]

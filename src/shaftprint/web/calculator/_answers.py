@@ -8,6 +8,7 @@ from collections.abc import Callable, Mapping
 from typing import Any, Final
 
 from shaftprint.errors import ShaftprintError
+from shaftprint.files import limit_file_size
 from shaftprint.fleet.computing import asked_lines
 from shaftprint.web.calculator._class import judged_class
 from shaftprint.web.calculator._compared import compared
@@ -31,6 +32,7 @@ _NICE: Final = 5
 def answer_all() -> None:
     """Answer every question of the standard input, until it ends."""
     limit_memory(int(sys.argv[1]))
+    limit_file_size(int(sys.argv[2]))
     if hasattr(os, "nice"):
         # pages come before what is calculated beside them
         os.nice(_NICE)

@@ -5,20 +5,20 @@ from typing import Any
 
 from shaftprint.drift import NEWEST_TESTS, judge_sisters, sister_sentences
 from shaftprint.report import cause_spread_table, sister_table
-from shaftprint.store import line_history, open_store, sisters_of
+from shaftprint.store import Ship, line_history, open_store, sisters_of
 from shaftprint.web.calculator._tables import table_contents
 
 
-def judged_class(lines: list[list[str]]) -> dict[str, Any]:
+def judged_class(lines: list[tuple[dict[str, Any], str]]) -> dict[str, Any]:
     """Return which lines are not as the others are, for JSON.
 
     Parameters
     ----------
     lines
-        Ship, by IMO number or name, and position of each line that may be seen.
+        Ship, by what tells it from all others, and position of each line that may be seen.
     """
     with open_store(os.environ["SHAFTPRINT_STORE"]) as store:
-        known = tuple(line_history(store, ship, line=position, newest=NEWEST_TESTS) for ship, position in lines)
+        known = tuple(line_history(store, Ship(**ship), line=position, newest=NEWEST_TESTS) for ship, position in lines)
     sisters, left_out = sisters_of(known)
     finding = judge_sisters(sisters)
     return {

@@ -4,9 +4,11 @@ import asyncio
 import contextlib
 import json
 import os
+import shutil
 import sys
 import time
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any, Final
 
 from shaftprint.errors import ServerError
@@ -24,6 +26,10 @@ class Calculator:
     """Path or URL of the store."""
     most_memory: int
     """Memory that the process may take [bytes]."""
+    scratch: Path | None = None
+    """Folder for its temporary files, emptied whenever it has ended; None for that of the system."""
+    most_file: int = 0
+    """Bytes of the largest file that it may write; 0 for as many as the disk has."""
     _process: asyncio.subprocess.Process | None = None
     _lock: asyncio.Lock = field(default_factory=asyncio.Lock)
     _used: float = 0.0
@@ -85,10 +91,13 @@ class Calculator:
     async def _running(self) -> asyncio.subprocess.Process:
         if self._process is None or self._process.returncode is not None:
             environment = os.environ | {"SHAFTPRINT_STORE": self.store, "OPENBLAS_NUM_THREADS": "1"}
+            if self.scratch is not None:
+                environment |= scratch_environment(self.scratch)
             self._process = await asyncio.create_subprocess_exec(
                 sys.executable,
                 *_PROGRAM,
                 str(self.most_memory),
+                str(self.most_file),
                 stdin=asyncio.subprocess.PIPE,
                 stdout=asyncio.subprocess.PIPE,
                 env=environment,
@@ -104,3 +113,12 @@ class Calculator:
         with contextlib.suppress(ProcessLookupError):
             process.kill()
         await process.wait()
+        if self.scratch is not None:
+            await asyncio.to_thread(shutil.rmtree, self.scratch, ignore_errors=True)
+
+
+def scratch_environment(folder: Path) -> dict[str, str]:
+    """Make a folder for temporary files of a process, emptied of what an earlier one left, and say where it is."""
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+    return dict.fromkeys(("TMPDIR", "TEMP", "TMP"), str(folder.absolute()))

@@ -8,7 +8,7 @@ import numpy as np
 from shaftprint.distributions import NORMAL_95
 from shaftprint.drift import LOAD_REPEATABILITY, history_of, watch, watch_sentences
 from shaftprint.report import course_table, sizes_of_tests
-from shaftprint.store import line_history, open_store
+from shaftprint.store import Ship, line_history, open_store
 from shaftprint.web.calculator._tables import table_content
 
 if TYPE_CHECKING:
@@ -20,18 +20,18 @@ MOST_TESTS: Final = 40
 """Tests that are judged together; of a longer history the newest. Time grows with the cube of their number."""
 
 
-def judged_line(ship: str, line: str) -> dict[str, Any]:
+def judged_line(ship: dict[str, Any], line: str) -> dict[str, Any]:
     """Return what a history says, for JSON.
 
     Parameters
     ----------
     ship
-        IMO number of the ship, or its name where it has none.
+        What tells the ship from all others: its IMO number, or its name where it has none.
     line
         Which of its lines.
     """
     with open_store(os.environ["SHAFTPRINT_STORE"]) as store:
-        known = line_history(store, ship, line=line)
+        known = line_history(store, Ship(**ship), line=line)
     newest, earlier = _newest(known.fingerprints)
     history = history_of(newest, known.events)
     finding = watch(history, rng=np.random.default_rng(SEED))

@@ -44,7 +44,8 @@ def submitted(
     stated = _stated(vessel, ship, imo, line)
     # a path begins a file, a name one of those that come with the program
     files = [Path(one) if "/" in one or os.sep in one else one for one in (vessel, campaign)]
-    arguments = job_arguments(recording, files[0], files[1], named="the form", structure=structure, **stated, **facts)
+    facts = stated | facts | {"only": {"ship": ship, "imo": imo, "line": line}}
+    arguments = job_arguments(recording, files[0], files[1], named="the form", structure=structure, **facts)
     with open_store(os.environ["SHAFTPRINT_STORE"]) as store:
         (job,) = submit(store, [arguments], now=datetime.now(UTC))
     return {"job": job.id, "args": dict(job.args)}

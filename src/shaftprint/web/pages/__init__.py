@@ -5,7 +5,8 @@ from shaftprint.web.pages._classes import sister_class
 from shaftprint.web.pages._compare import compare
 from shaftprint.web.pages._folders import folder
 from shaftprint.web.pages._jobs import job, job_events, jobs, new_job, retry_job
-from shaftprint.web.pages._line import line, new_event
+from shaftprint.web.pages._line import line, new_event, withdraw
+from shaftprint.web.pages._number import give_number
 from shaftprint.web.pages._recordings import (
     CAMPAIGNS,
     STRUCTURES,
@@ -31,6 +32,7 @@ __all__ = [
     "compare",
     "fingerprint_document",
     "folder",
+    "give_number",
     "is_imo_number",
     "job",
     "job_events",
@@ -54,4 +56,5 @@ __all__ = [
     "trial",
     "upload",
     "upload_form",
+    "withdraw",
 ]

@@ -1,4 +1,4 @@
-"""Who did what: for owners, as far as it is about their ships."""
+"""Who did what: for owners, as far as it is about their ships, of one kind where that is asked for."""
 
 from typing import Any, Final
 
@@ -6,20 +6,37 @@ from shaftprint.store import Ship
 from shaftprint.web._asked import Asked, Shown
 
 MOST: Final = 200
+REFUSED: Final = "refused sign-ins"
+KINDS: Final = (
+    "signed in",
+    "signed out",
+    "uploaded",
+    "asked for a job",
+    "tried a job again",
+    "asked for a report",
+    "noted an event",
+    "withdrew an event",
+    "gave an IMO number",
+    REFUSED,
+)
+"""Kinds of deeds that may be asked for; without one all are shown but what was refused."""
+_MOST_LOOKED_AT: Final = 100_000
 
 
 async def audit(asked: Asked) -> Shown:
     """Return the newest deeds."""
-    deeds = await asked.read(_deeds, asked)
-    return Shown(template="audit.html.j2", title="Who did what", data={"deeds": deeds})
+    kind = asked.query("kind") if asked.query("kind") in KINDS else ""
+    deeds = await asked.read(_deeds, asked, kind)
+    data = {"deeds": deeds, "kind": kind}
+    return Shown(template="audit.html.j2", title="Who did what", data=data, drawn={"kinds": KINDS})
 
 
-def _deeds(asked: Asked) -> list[dict[str, Any]]:
+def _deeds(asked: Asked, kind: str) -> list[dict[str, Any]]:
     found: list[dict[str, Any]] = []
-    for one in asked.service.audit.newest():
-        if len(found) == MOST:
+    for place, one in enumerate(asked.service.audit.newest(refusals=kind == REFUSED)):
+        if len(found) == MOST or place == _MOST_LOOKED_AT:
             break
-        if _may_see(asked, one):
+        if kind in ("", REFUSED, one.get("deed")) and _may_see(asked, one):
             found.append(one)
     return found
 

@@ -11,7 +11,7 @@ from shaftprint import __version__
 from shaftprint.digits import interval, unit_text, with_deviation
 from shaftprint.errors import ServerError
 from shaftprint.store import LineNow
-from shaftprint.web._asked import Asked, NotThere, Shown, line_address
+from shaftprint.web._asked import Asked, NotThere, Shown, line_address, ship_content
 
 NUMBERS: Final = ("K_Q", "I_dn", "governor proportional action", "governor integral action")
 
@@ -38,8 +38,7 @@ async def _judged(asked: Asked, lines: Sequence[LineNow]) -> dict[str, Any]:
     because = {"word": "cannot be told", "left_out": [], "tables": []}
     if len(lines) > MOST_LINES:
         return because | {"sentences": [f"This page judges up to {MOST_LINES} lines together; shaftprint sisters any."]}
-    ships = [one.line.ship for one in lines]
-    called = [[str(ship.imo_number or ship.name), one.line.position] for ship, one in zip(ships, lines, strict=True)]
+    called = [[ship_content(one.line.ship), one.line.position] for one in lines]
     # another version of the program may find another answer
     key, state = json.dumps(called), json.dumps([__version__, *(one.state for one in lines)])
     kept = asked.service.kept

@@ -78,7 +78,7 @@ def _folder(asked: Asked) -> Shown:
         return _file(place)
     entries = []
     for one in sorted(place.path.iterdir(), key=lambda path: path.name)[:MOST]:
-        if one.name.startswith(".") or not one.name.isprintable():
+        if not _is_listed(one):
             continue
         try:
             there = place_of(asked, str(place.number), str(place.inside / one.name))
@@ -101,12 +101,17 @@ def _folder(asked: Asked) -> Shown:
     )
 
 
+def _is_listed(path: Path) -> bool:
+    """Return whether a page names a file: hidden ones are none that a job takes."""
+    return not path.name.startswith(".") and path.name.isprintable()
+
+
 def _file(place: Place) -> Shown:
     beside = sorted(place.path.parent.glob(f"*{SETTINGS}"))[:MOST]
     settings = [
         {"value": f"folder:{place.number}:{place.inside.parent / one.name}", "words": one.name}
         for one in beside
-        if one.is_file() and not one.is_symlink()
+        if one.is_file() and not one.is_symlink() and _is_listed(one)
     ]
     source = f"folder:{place.number}:{place.inside}"
     return Shown(

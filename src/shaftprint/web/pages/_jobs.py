@@ -5,6 +5,7 @@ import hashlib
 import json
 from collections.abc import AsyncIterator
 from dataclasses import replace
+from datetime import datetime
 from typing import Any, Final
 
 from starlette.exceptions import HTTPException
@@ -17,7 +18,15 @@ from shaftprint.store import jobs as stored_jobs
 from shaftprint.web._asked import Asked, Moved, NotThere, Shown
 from shaftprint.web._kept import KeptJob
 from shaftprint.web.pages._folders import place_of
-from shaftprint.web.pages._recordings import CAMPAIGNS, STRUCTURES, VESSELS, line_of, moment_of, upload_called
+from shaftprint.web.pages._recordings import (
+    CAMPAIGNS,
+    STRUCTURES,
+    VESSELS,
+    expect_own,
+    line_of,
+    moment_of,
+    upload_called,
+)
 
 MOST: Final = 100
 """Jobs on one page."""
@@ -120,7 +129,7 @@ def _found(asked: Asked) -> tuple[Job, KeptJob | None]:
         one = job_called(asked.service.store, int(number))
     except StoreError:
         raise NotThere from None
-    kept = asked.service.kept.jobs().get(one.id)
+    kept = asked.service.kept.job(one.id)
     if not _sees(asked, one, kept):
         raise NotThere
     return one, kept
@@ -188,7 +197,7 @@ async def new_job(asked: Asked) -> Moved:
         "ship": line.ship.name,
         "imo": line.ship.imo_number,
         "line": line.position,
-        "facts": _facts(fields),
+        "facts": _facts(fields, asked.service.now()),
     }
     answer = await asked.service.desk.ask(question, longest_s=LONGEST_S)
     kept = KeptJob(
@@ -212,6 +221,8 @@ def _source(asked: Asked, fields: dict[str, str]) -> tuple[str, Line]:
     if kind == "upload":
         one = upload_called(asked, rest)
         line = Line(ship=Ship(name=one.ship, imo_number=one.imo), position=one.line)
+        # what it was called when it was uploaded may be another ship's name by now
+        expect_own(asked, line.ship)
         return str((asked.service.recordings / one.id / one.name).absolute()), line
     if kind == "folder":
         number, _, inside = rest.partition(":")
@@ -233,15 +244,15 @@ def _settings(asked: Asked, chosen: str, shipped: tuple[str, ...]) -> str:
     return str((asked.service.recordings / one.id / one.name).absolute())
 
 
-def _facts(fields: dict[str, str]) -> dict[str, Any]:
+def _facts(fields: dict[str, str], now: datetime) -> dict[str, Any]:
     """Return what a form says of a test.
 
     Raises
     ------
     HTTPException
-        If a number is none.
+        If a number is none, or nothing can have been tested then.
     """
-    facts: dict[str, Any] = {"tested_at": moment_of(fields.get("tested_at", ""))}
+    facts: dict[str, Any] = {"tested_at": moment_of(fields.get("tested_at", ""), now=now)}
     facts |= {name: fields[name].strip() for name in ("place", "time_zone") if fields.get(name, "").strip()}
     for name in _FACTS:
         text = fields.get(name, "").strip()
@@ -258,7 +269,12 @@ async def retry_job(asked: Asked) -> Moved:
     one, kept = await asked.read(_found, asked)
     if one.state != "refused":
         raise HTTPException(409, "Only a refused job can be tried again.")
-    await asked.read(retry, asked.service.store, [replace(one)])
-    line = None if kept is None else Line(ship=Ship(name=kept.ship, imo_number=kept.imo), position=kept.line)
+    line = None
+    if kept is not None:
+        line = Line(ship=Ship(name=kept.ship, imo_number=kept.imo), position=kept.line)
+        await asked.read(expect_own, asked, line.ship)
+        # whose rights count when it ends
+        await asked.read(asked.service.kept.put_job, replace(kept, person=asked.person.name))
+    await asked.read(retry, asked.service.store, [one])
     asked.note("tried a job again", line, job=one.id)
     return Moved(to=f"/jobs/{one.id}", data={"job": one.id}, status=202)

@@ -15,6 +15,7 @@ from shaftprint.store import (
     StoredNumber,
     line_records,
     record_event,
+    withdraw_event,
 )
 from shaftprint.web._asked import Asked, Moved, NotThere, Shown, line_address, line_key
 from shaftprint.web._standing import Standing, standing_of
@@ -86,7 +87,8 @@ def _line(asked: Asked) -> Shown:
         template="line.html.j2",
         title=f"{ship.name}, {position}",
         data=data,
-        drawn=_drawn(records, found, kept is None or kept[0] != records.state),
+        drawn={"counted": [one for one in events if one["withdrawn"] is None]}
+        | _drawn(records, found, kept is None or kept[0] != records.state),
     )
 
 
@@ -126,6 +128,7 @@ def _event(event: Event, number: int) -> dict[str, Any]:
         "kind": event.kind,
         "numbers": list(event.numbers),
         "note": event.note,
+        "withdrawn": event.withdrawn,
     }
 
 
@@ -154,9 +157,10 @@ def _number(number: StoredNumber) -> dict[str, Any]:
 
 
 def _drawn(records: LineRecords, found: dict[str, Any] | None, stale: bool) -> dict[str, Any]:
-    moments = [one.fingerprint.trial.tested_at for one in records.entries] + [one.at for one in records.events]
+    counted = [(place, one) for place, one in enumerate(records.events, start=1) if one.withdrawn is None]
+    moments = [one.fingerprint.trial.tested_at for one in records.entries] + [one.at for _, one in counted]
     axis = TimeAxis.over(moments)
-    events = [{"at": one.at, "number": place} for place, one in enumerate(records.events, start=1)]
+    events = [{"at": one.at, "number": place} for place, one in counted]
     seen = {} if found is None else {one["name"]: one["words"] for one in found["causes"]}
     causes, numbers = [], []
     if axis is not None and found is not None:
@@ -230,17 +234,17 @@ async def new_event(asked: Asked) -> Moved:
     at = _moment(asked.fields.get("at", ""), asked.fields.get("zone", ""))
     numbers = [one.strip() for one in asked.fields.get("numbers", "").split(",") if one.strip()]
     ship = records.line.ship
-    await asked.read(_expect_own_name, asked, records)
     kind = asked.fields.get("what", "")
     ((_, is_new),) = await asked.read(
         record_event,
         asked.service.store,
-        str(ship.imo_number or ship.name),
+        ship,
         kind,
         at=at,
         lines=(records.line.position,),
         numbers=numbers,
         note=asked.fields.get("note", "").strip(),
+        now=asked.service.now(),
     )
     asked.note("noted an event", records.line, kind=kind, when=at.isoformat())
     asked.service.judging.wake()
@@ -248,19 +252,17 @@ async def new_event(asked: Asked) -> Moved:
     return Moved(to=f"{to}#events", data={"kind": kind, "at": at.isoformat(), "new": is_new}, status=201)
 
 
-def _expect_own_name(asked: Asked, records: LineRecords) -> None:
-    """Refuse a ship that can only be called by a name that another one has too: nobody is told of that other one.
-
-    Raises
-    ------
-    HTTPException
-        If it is so.
-    """
-    ship = records.line.ship
-    if ship.imo_number is None:
-        others = (one.line.ship for one in asked.service.lines.now() if one.ship_id != records.ship_id)
-        if any(other.name == ship.name for other in others):
-            raise HTTPException(409, "The name of this ship does not tell it from all others; it needs an IMO number.")
+async def withdraw(asked: Asked) -> Moved:
+    """Let what was noted of a line count no more; it stays in the record."""
+    asked.expect(Role.OWNER)
+    records = await asked.read(records_of, asked)
+    kind, at = asked.fields.get("what", ""), _moment(asked.fields.get("at", ""), asked.fields.get("zone", ""))
+    ship, why = records.line.ship, asked.fields.get("why", "").strip()
+    await asked.read(withdraw_event, asked.service.store, ship, kind, at=at, lines=(records.line.position,), why=why)
+    asked.note("withdrew an event", records.line, kind=kind, when=at.isoformat())
+    asked.service.judging.wake()
+    to = line_address(records.line, records.ship_id)
+    return Moved(to=f"{to}#events", data={"kind": kind, "at": at.isoformat(), "withdrawn": why})
 
 
 def _moment(text: str, zone: str) -> datetime:
@@ -274,6 +276,6 @@ def _moment(text: str, zone: str) -> datetime:
     try:
         shown = datetime.fromisoformat(text)
         return in_zone(shown, time_zone(zone or "UTC"))
-    except ValueError as fault:
+    except (ValueError, OverflowError) as fault:
         what = f"Expected a date, such as 2026-05-01 or 2026-05-01T08:00, and a zone: {fault}."
         raise HTTPException(400, what) from None

@@ -8,14 +8,15 @@ from typing import Any, Final
 from starlette.exceptions import HTTPException
 from starlette.responses import Response
 
-from shaftprint.store import Line, Ship
+from shaftprint.store import Line, Ship, namesakes
 from shaftprint.web._asked import Asked, Moved, NotThere, Shown, ship_word
 from shaftprint.web._kept import Making, Upload
 from shaftprint.web._multipart import form_with_file
 from shaftprint.web._setting import answer_of
 from shaftprint.web._upload import SETTINGS, Taken, checked_name, expect_room, is_number, take
-from shaftprint.web.access import Role
+from shaftprint.web.access import Role, is_like_a_number
 from shaftprint.web.pages._line import records_called
+from shaftprint.zones import possible
 
 # as their rooms have them, which would load far more; a test holds both together
 VESSELS: Final = (
@@ -137,10 +138,57 @@ def line_of(asked: Asked, fields: dict[str, str]) -> Line:
         raise HTTPException(
             400, f"Expected an IMO number, seven digits of which the last checks the others, found {number[:20]!r}."
         )
-    ship = Ship(name=name, imo_number=int(number) if number else None)
+    if is_like_a_number(name):
+        raise HTTPException(
+            400, f"Expected the name of a ship, found a number, {name[:20]!r}: state it as its IMO number."
+        )
+    return Line(ship=_ship_stated(asked, name, int(number) if number else None), position=chosen)
+
+
+def _ship_stated(asked: Asked, name: str, number: int | None) -> Ship:
+    """Return the ship that was typed: one that somebody sees, or a new one; a name leads to none that he does not see.
+
+    Raises
+    ------
+    HTTPException
+        If several ships that he sees have the name.
+    NotThere
+        If the ship was not given to him.
+    """
+    alike = namesakes(asked.service.store, name) if number is None else ()
+    seen = [one for one in alike if asked.person.sees(one)]
+    if len(seen) > 1:
+        raise HTTPException(400, "Several ships have that name: state the IMO number, or take the line from the list.")
+    ship = seen[0] if seen else Ship(name=name, imo_number=number)
     if not asked.person.sees(ship):
         raise NotThere
-    return Line(ship=ship, position=chosen)
+    expect_own(asked, ship)
+    return ship
+
+
+def expect_own(asked: Asked, ship: Ship) -> None:
+    """Refuse a ship that the store would not tell from another one of its name.
+
+    Raises
+    ------
+    HTTPException
+        If it is so, and somebody sees the other one too.
+    NotThere
+        If he does not.
+    """
+    alike = namesakes(asked.service.store, ship.name, imo_number=ship.imo_number)
+    if any(one.imo_number == ship.imo_number for one in alike):
+        return
+    others = [one for one in alike if ship.imo_number is None or one.imo_number is None]
+    if not all(map(asked.person.sees, others)):
+        raise NotThere
+    if others:
+        raise HTTPException(
+            409,
+            f"{ship.name} is in the store without an IMO number: an owner gives it its number on its page first."
+            if ship.imo_number is not None
+            else f"{ship.name} has an IMO number by now: take its line from the list.",
+        )
 
 
 def is_imo_number(text: str) -> bool:
@@ -250,17 +298,21 @@ async def look(asked: Asked) -> Moved | Response:
     return answer_of(asked, Moved(to=f"/recordings/{one.id}", data={"inspection": "waiting"}, status=202))
 
 
-def moment_of(text: str) -> str | None:
+def moment_of(text: str, *, now: datetime) -> str | None:
     """Return a time of a form as a job takes it; None where none was typed.
 
     Raises
     ------
     HTTPException
-        If it is none.
+        If it is none, or nothing can have been tested then.
     """
     if not text.strip():
         return None
     try:
-        return datetime.fromisoformat(text.strip()).isoformat()
+        shown = datetime.fromisoformat(text.strip())
     except ValueError:
         raise HTTPException(400, f"Expected a time such as 2026-03-31T09:30+02:00, found {text[:40]!r}.") from None
+    try:
+        return possible(shown, now=now).isoformat()
+    except ValueError as error:
+        raise HTTPException(400, f"tested_at: {error}.") from None

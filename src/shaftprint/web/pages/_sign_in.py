@@ -8,7 +8,7 @@ from starlette.responses import Response
 from shaftprint.web._asked import Asked, Moved, Shown
 from shaftprint.web._endpoint import keep
 from shaftprint.web._setting import answer_of
-from shaftprint.web.access import LONGEST, Person, is_right
+from shaftprint.web.access import LONGEST, Person, is_right, network_of
 
 _WRONG = "Name or password is wrong."
 _FORGOTTEN = timedelta(days=1)
@@ -36,10 +36,12 @@ async def sign_in(asked: Asked) -> Response:
     if users is None:
         raise HTTPException(404)
     name, password = asked.fields.get("name", "")[:LONGEST], asked.fields.get("password", "")
-    keys = (f"name {name}", f"address {asked.address}")
+    known, network = asked.session.known, network_of(asked.address)
+    is_known = known is not None and known.name == name
+    keys = (f"known {name}",) if is_known else (f"name {name} from {network}", f"address {network}")
     wait_s = throttle.wait_s(*keys, now=now)
     if wait_s > 0.0:
-        asked.note("had to wait before signing in", name=name)
+        asked.refused("had to wait before signing in", name=name)
         raise HTTPException(
             429,
             f"Too many wrong passwords; wait {wait_s:.0f} s and try again.",
@@ -50,13 +52,13 @@ async def sign_in(asked: Asked) -> Response:
     throttle.failed(*keys, now=now)
     right = await asked.read(is_right, password, None if person is None else person.password)
     if not right or person is None:
-        asked.note("gave a wrong password", name=name)
+        asked.refused("gave a wrong password", name=name)
         if asked.is_api:
             raise HTTPException(401, _WRONG)
         return answer_of(
             asked, _form(asked, after=_own_path(asked.fields.get("next", "/")), sentence=_WRONG, status=401)
         )
-    throttle.succeeded(*keys)
+    throttle.succeeded(*keys, now=now)
     return _signed_in(asked, person)
 
 
@@ -76,7 +78,7 @@ async def sign_out(asked: Asked) -> Response:
     asked.service.kept.put_ended(asked.session.number, at.isoformat(), forget_before=(at - _FORGOTTEN).isoformat())
     asked.note("signed out")
     response = answer_of(asked, Moved(to="/sign-in" if asked.service.sessions.users else "/", data={}))
-    _, cookie = asked.service.sessions.begin()
+    _, cookie = asked.service.sessions.begin(known=asked.session.known)
     keep(response, cookie, asked.service)
     return response
 
