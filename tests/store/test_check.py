@@ -7,7 +7,7 @@ import struct
 import pytest
 
 from shaftprint.errors import StoreError
-from shaftprint.store import check, create_store, export_store, open_store, record_event
+from shaftprint.store import check, create_store, export_store, history, import_store, open_store, record_event
 
 PLACES = {
     "document": [("document", "content")],
@@ -161,3 +161,42 @@ def test_a_changed_row_of_the_server_is_found(server, put):
                 connection.execute(sa.text(change))
                 transaction.commit()
             assert len(check(store)) == changes.index(change) + 1 - (changes.index(change) > 1), change
+
+
+@pytest.mark.parametrize(
+    ("table", "column", "words"),
+    [
+        ("value", "value", "is not that of its document"),
+        ("value", "low", "is not that of its document"),
+        ("document", "content", "its document"),
+        ("trial", "draught_m", "it is not as it was written"),
+        ("event", "note", "it is not as it was written"),
+    ],
+)
+def test_history_and_export_say_it_too(path, tmp_path, table, column, words):
+    with sqlite3.connect(path) as connection:
+        query = f"select rowid, {column} from {table} where {column} is not null"  # noqa: S608
+        if table == "value":
+            query = query.replace("rowid", "fingerprint_id, quantity_id")
+        *key, value = connection.execute(query).fetchone()
+        where = "rowid = ?" if table != "value" else "fingerprint_id = ? and quantity_id = ?"
+        changed = flipped(value, random.Random(3))  # noqa: S311
+        connection.execute(f"update {table} set {column} = ? where {where}", (changed, *key))  # noqa: S608
+    told = []
+    with open_store(str(path)) as store:
+        faults = history(store, "Meander").faults
+        assert len(faults) == 1
+        assert words in faults[0].found
+        if table == "document":
+            with pytest.raises(StoreError, match="document"):
+                export_store(store, tmp_path / "x.jsonl", report=told.append)
+            return
+        with pytest.raises(StoreError, match=words):
+            export_store(store, tmp_path / "x.jsonl")
+        export_store(store, tmp_path / "x.jsonl", report=told.append)
+    assert tuple(told) == faults
+    if table != "event":
+        # numbers and tests follow from the documents, which are whole
+        with create_store(str(tmp_path / "new.db")) as new:
+            import_store(new, tmp_path / "x.jsonl")
+            assert (check(new), history(new, "Meander").faults) == ((), ())

@@ -4,12 +4,15 @@ import math
 from collections.abc import Sequence
 from datetime import tzinfo
 
+from shaftprint.cli._terminal import print_document, print_findings
 from shaftprint.digits import interval, with_deviation
-from shaftprint.store import Event, HistoryEntry, LineSummary, StoredNumber
+from shaftprint.store import Event, Fault, HistoryEntry, LineSummary, StoredNumber
 from shaftprint.tables import Column, Symbol, Table
 from shaftprint.zones import utc_text
 
 SHOWN_HASH = 12
+DAMAGED = 1
+"""How a command ends that has found records which are not as they were written."""
 PHYSICAL = "physical value"
 NOT_TRUSTED = "* The verdict of its test does not let this number be used."
 
@@ -105,6 +108,13 @@ def event_table(events: Sequence[Event], zone: tzinfo) -> Table:
 def _note(event: Event) -> str:
     withdrawn = [] if event.withdrawn is None else [f"withdrawn: {event.withdrawn}"]
     return "; ".join(filter(None, (event.note, *withdrawn))) or "–"
+
+
+def print_damage(faults: Sequence[Fault]) -> None:
+    """Say which records are not as they were written."""
+    title = "Not as it was written; put a backup in its place, and see with shaftprint store check what else is"
+    print_findings(title, [f"{fault.record}: {fault.found}" for fault in faults], is_answer=True)
+    print_document()
 
 
 def _columns(headings: Sequence[str], *, numbers: Sequence[str] = ()) -> tuple[Column, ...]:

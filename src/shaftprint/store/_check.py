@@ -1,17 +1,19 @@
 """Whether every record of a store is as it was written."""
 
 import json
-from collections.abc import Callable, Iterator
-from typing import Any
+from collections.abc import Callable, Collection, Iterator, Mapping
+from typing import TYPE_CHECKING, Any
 
 from shaftprint.arguments import refusing_none
 from shaftprint.errors import FingerprintError, StoreError
-from shaftprint.store._document import document_sha256, inflated
-from shaftprint.store._history import SHOWN_HASH
+from shaftprint.store._document import SHOWN_HASH, document_sha256, inflated
 from shaftprint.store._late_rooms import fingerprint_room
 from shaftprint.store._nouns import Fault, StoredFingerprint, StoredNumber
 from shaftprint.store._record import numbers_of
 from shaftprint.store._store import Store, part_with_database
+
+if TYPE_CHECKING:
+    from shaftprint.store.database import Reader
 
 
 @refusing_none(StoreError)
@@ -47,15 +49,30 @@ def _documents(store: Store, report: Callable[[int], None]) -> Iterator[Fault]:
         found = reader.fingerprints(lines, superseded=True)
         if (there := reader.count()) != len(found):
             yield Fault(record="fingerprints", found=f"{there - len(found)} of {there} belong to no line")
-        keys = list(found)
-        numbers = reader.numbers(keys)
-        for count, (key, kept) in enumerate(reader.documents(keys)):
-            report(count + 1)
-            fault = _fault(found[key], kept, next(numbers))
-            if fault is not None:
-                line = found[key].line
-                name = f"{line.ship.name}, {line.position}, fingerprint {found[key].sha256[:SHOWN_HASH]}"
-                yield Fault(record=name, found=fault)
+        yield from document_faults(reader, found, report)
+
+
+def document_faults(
+    reader: "Reader", found: Mapping[int, StoredFingerprint], report: Callable[[int], None]
+) -> Iterator[Fault]:
+    """Give which of some fingerprints, by their number in the database, are not as they were written."""
+    keys = list(found)
+    numbers = reader.numbers(keys)
+    for count, (key, kept) in enumerate(reader.documents(keys)):
+        report(count + 1)
+        fault = _fault(found[key], kept, next(numbers))
+        if fault is not None:
+            yield Fault(record=_name(found[key]), found=fault)
+
+
+def line_faults(reader: "Reader", lines: Collection[int], found: Mapping[int, StoredFingerprint]) -> tuple[Fault, ...]:
+    """Return what of some lines, and of their fingerprints, is not as it was written."""
+    rows = part_with_database().line_faults(reader.connection, lines)
+    return (*rows, *document_faults(reader, found, _nobody))
+
+
+def _name(one: StoredFingerprint) -> str:
+    return f"{one.line.ship.name}, {one.line.position}, fingerprint {one.sha256[:SHOWN_HASH]}"
 
 
 def _fault(one: StoredFingerprint, kept: Any, numbers: list[StoredNumber] | None) -> str | None:

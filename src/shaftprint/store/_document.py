@@ -8,6 +8,8 @@ from shaftprint.errors import StoreError
 
 MOST_BYTES: Final = 16 * 2**20
 """Length of the longest document that is kept; a fingerprint of today has some 50 kB."""
+SHOWN_HASH: Final = 12
+"""Letters of a SHA-256 that are shown."""
 # Level 6 saves a sixth of the space and takes three times as long.
 _LEVEL = 1
 

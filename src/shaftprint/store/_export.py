@@ -2,19 +2,19 @@
 
 import hashlib
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from shaftprint.arguments import refusing_none
 from shaftprint.errors import StoreError
 from shaftprint.files import reason, written_whole
-from shaftprint.store._document import document_sha256, inflated
-from shaftprint.store._history import SHOWN_HASH
+from shaftprint.store._check import line_faults
+from shaftprint.store._document import SHOWN_HASH, document_sha256, inflated
 from shaftprint.store._job import JOB_STATES, Job
 from shaftprint.store._job_lines import job_content
 from shaftprint.store._lines import HEADER, event_content, line_of, ship_content
-from shaftprint.store._nouns import Line
+from shaftprint.store._nouns import Fault, Line
 from shaftprint.store._stated import utc_iso
 from shaftprint.store._store import Store
 
@@ -25,7 +25,9 @@ _AT_A_TIME = 500
 
 
 @refusing_none(StoreError)
-def export_store(store: Store, path: str | Path, *, overwrite: bool = False) -> int:
+def export_store(
+    store: Store, path: str | Path, *, overwrite: bool = False, report: Callable[[Fault], None] | None = None
+) -> int:
     """Write all records of a store as JSON lines, whole or not at all, and return how many.
 
     Others may write into the store meanwhile: the file holds what was there when it was begun.
@@ -38,6 +40,9 @@ def export_store(store: Store, path: str | Path, *, overwrite: bool = False) -> 
         File to write.
     overwrite
         Whether an existing file may be replaced.
+    report
+        Is told of each record that is not as it was written and whose document is whole: the file holds documents, and
+        the numbers follow from them. Without it such a record is refused.
 
     Raises
     ------
@@ -47,7 +52,7 @@ def export_store(store: Store, path: str | Path, *, overwrite: bool = False) -> 
     file, digest, count = Path(path), hashlib.sha256(), 0
     try:
         with written_whole(file, overwrite=overwrite) as part, part.open("wb") as opened:
-            for line in _lines(store):
+            for line in _lines(store, report or _refuse):
                 opened.write(line)
                 digest.update(line)
                 count += 1
@@ -61,7 +66,11 @@ def export_store(store: Store, path: str | Path, *, overwrite: bool = False) -> 
     return count
 
 
-def _lines(store: Store) -> Iterator[bytes]:
+def _refuse(fault: Fault) -> None:
+    raise StoreError(f"{fault.record}: {fault.found}; shaftprint store check says what else is.")
+
+
+def _lines(store: Store, report: Callable[[Fault], None]) -> Iterator[bytes]:
     yield line_of(HEADER)
     with store.database.reading() as connection:
         reader = store.database.reader(connection)
@@ -75,7 +84,7 @@ def _lines(store: Store) -> Iterator[bytes]:
             events = sorted(reader.events({key: line}), key=lambda event: (event.at, event.kind))
             yield from (line_of(event_content(event)) for event in events)
         for key, line in lines.items():
-            yield from _fingerprints(reader, {key: line})
+            yield from _fingerprints(reader, {key: line}, report)
         # after what they have given
         yield from (line_of(job_content(job)) for job in _jobs(store.database.ledger(connection)))
 
@@ -88,7 +97,7 @@ def _jobs(ledger: "Ledger") -> Iterator[Job]:
         last = some[-1].id
 
 
-def _fingerprints(reader: "Reader", line: Mapping[int, Line]) -> Iterator[bytes]:
+def _fingerprints(reader: "Reader", line: Mapping[int, Line], report: Callable[[Fault], None]) -> Iterator[bytes]:
     """Give the fingerprints of a line by time; those of one recording in the order of their chain."""
     found = reader.fingerprints(line, superseded=True)
     # here, for databases put letters and missing ones in different orders
@@ -119,3 +128,6 @@ def _fingerprints(reader: "Reader", line: Mapping[int, Line]) -> Iterator[bytes]
                 "document": content.decode(),
             }
         )
+    # after the documents: one of them that is damaged is refused by itself
+    for fault in line_faults(reader, list(line), found):
+        report(fault)

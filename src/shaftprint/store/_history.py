@@ -4,19 +4,17 @@ import re
 
 from shaftprint.arguments import refusing_none
 from shaftprint.errors import StoreError
-from shaftprint.store._document import document_sha256, inflated
-from shaftprint.store._find import lines_called, ship_called
-from shaftprint.store._nouns import History, LineSummary
+from shaftprint.store._check import line_faults
+from shaftprint.store._document import SHOWN_HASH, document_sha256, inflated
+from shaftprint.store._find import lines_called, name_of, ship_called
+from shaftprint.store._nouns import History, LineSummary, Ship
 from shaftprint.store._store import Store
-
-SHOWN_HASH = 12
-"""Letters of a SHA-256 that are shown."""
 
 
 @refusing_none(StoreError)
 def history(
     store: Store,
-    ship: str,
+    ship: str | Ship,
     *,
     number: str | None = None,
     lines: tuple[str, ...] = (),
@@ -24,12 +22,14 @@ def history(
 ) -> History:
     """Return the tests of a ship in the order of time, with their numbers, and what was done to it.
 
+    Each is held against its document and its seal: what is not as it was written is said.
+
     Parameters
     ----------
     store
         The store.
     ship
-        Name or IMO number of the ship.
+        Name or IMO number of the ship, or the ship itself.
     number
         Name of the number that is wanted, such as ``K_Q``; None for all.
     lines
@@ -47,11 +47,13 @@ def history(
         found = ship_called(reader, ship)
         wanted = lines_called(reader, found, lines)
         entries = reader.entries(wanted, number=number, superseded=superseded)
+        faults = line_faults(reader, list(wanted), reader.fingerprints(wanted, superseded=superseded))
         if number is not None and entries and not any(entry.numbers for entry in entries):
             raise StoreError(
-                f"{ship}: expected the name of a number, such as K_Q, found {number!r} in none of its tests."
+                f"{name_of(ship)}: expected the name of a number, such as K_Q, found {number!r} in none of its tests."
             )
-        return History(ship=found.ship, entries=tuple(entries), events=tuple(reader.events(wanted)))
+        events = tuple(reader.events(wanted))
+        return History(ship=found.ship, entries=tuple(entries), events=events, faults=faults)
 
 
 @refusing_none(StoreError)

@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING
 
 from shaftprint.arguments import refusing_none
 from shaftprint.errors import StoreError
+from shaftprint.store._document import SHOWN_HASH
 from shaftprint.store._find import lines_called, name_of, ship_called
-from shaftprint.store._history import SHOWN_HASH, document
+from shaftprint.store._history import document
 from shaftprint.store._late_rooms import drift_room, fingerprint_room
 from shaftprint.store._nouns import Event as StoredEvent
 from shaftprint.store._nouns import Line, Ship, StoredFingerprint

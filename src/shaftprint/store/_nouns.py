@@ -150,7 +150,9 @@ class History:
     entries: tuple[HistoryEntry, ...]
     """Its tests."""
     events: tuple[Event, ...]
-    """What was done to it."""
+    """What was done to it; what was withdrawn too, with the reason."""
+    faults: "tuple[Fault, ...]" = ()
+    """What of it is not as it was written."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

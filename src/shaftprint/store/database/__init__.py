@@ -3,7 +3,7 @@
 It needs SQLAlchemy; the room asks for it when a store is opened, and not before.
 """
 
-from shaftprint.store.database._damage import database_faults
+from shaftprint.store.database._damage import database_faults, line_faults
 from shaftprint.store.database._database import Database, connect
 from shaftprint.store.database._hashes import Hashes
 from shaftprint.store.database._ledger import Ledger
@@ -31,6 +31,7 @@ __all__ = [
     "database_faults",
     "expect_current",
     "fingerprint_called",
+    "line_faults",
     "line_states",
     "location_of",
     "put_jobs",

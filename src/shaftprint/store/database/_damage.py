@@ -1,6 +1,6 @@
 """What is wrong with the rows of a store: SQLite's own check, references, and the seal of every row."""
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from typing import Any
 
 import sqlalchemy as sa
@@ -45,6 +45,27 @@ def _seal_faults(database: Database, table: sa.Table) -> Iterator[Fault]:
             fault = _fault(table, dict(row._mapping))
             if fault is not None:
                 yield Fault(record=f"{table.name} {row.id}", found=fault)
+
+
+def line_faults(connection: sa.Connection, lines: Collection[int]) -> tuple[Fault, ...]:
+    """Return which rows of some lines are not as they were written."""
+    wanted = list(lines)
+    ships = sa.select(LINE.c.ship_id).where(LINE.c.id.in_(wanted))
+    trials = sa.select(TRIAL.c.id).where(TRIAL.c.line_id.in_(wanted))
+    of_lines = {
+        SHIP: SHIP.c.id.in_(ships),
+        LINE: LINE.c.id.in_(wanted),
+        EVENT: EVENT.c.line_id.in_(wanted),
+        TRIAL: TRIAL.c.line_id.in_(wanted),
+        FINGERPRINT: FINGERPRINT.c.trial_id.in_(trials),
+    }
+    found = []
+    for table, condition in of_lines.items():
+        for row in connection.execute(sa.select(table).where(condition)):
+            fault = _fault(table, dict(row._mapping))
+            if fault is not None:
+                found.append(Fault(record=f"{table.name} {row.id}", found=fault))
+    return tuple(found)
 
 
 def _fault(table: sa.Table, row: dict[str, Any]) -> str | None:

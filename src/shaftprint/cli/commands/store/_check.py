@@ -3,11 +3,10 @@
 import click
 
 from shaftprint.cli._store_options import opened_store, store_option
+from shaftprint.cli._store_tables import DAMAGED
 from shaftprint.cli._terminal import answer, print_document, print_findings
 from shaftprint.cli.output import give, no_progress_option, progress
 from shaftprint.store import check
-
-DAMAGED = 1
 
 
 @click.command("check")

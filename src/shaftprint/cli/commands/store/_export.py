@@ -5,16 +5,18 @@ from pathlib import Path
 import click
 
 from shaftprint.cli._store_options import opened_store, store_option
+from shaftprint.cli._store_tables import DAMAGED, print_damage
 from shaftprint.cli._terminal import answer
 from shaftprint.cli.output import expect_free
-from shaftprint.store import export_store
+from shaftprint.store import Fault, export_store
 
 
 @click.command("export")
 @click.argument("file", type=click.Path(path_type=Path))
 @store_option
 @click.option("--force", is_flag=True, help="Replace an earlier export.")
-def command(file: Path, url: str, *, force: bool) -> None:
+@click.pass_context
+def command(context: click.Context, file: Path, url: str, *, force: bool) -> None:
     """Write all records into one file: a backup, or the way to another database.
 
     FILE is written whole or not at all, as JSON lines. Others may add records meanwhile: it holds what was there when
@@ -24,5 +26,10 @@ def command(file: Path, url: str, *, force: bool) -> None:
         if file.exists() and Path(store.name).exists() and file.samefile(store.name):
             raise click.ClickException(f"{file}: expected another file than the store itself; choose another name.")
         expect_free(file, force=force)
-        count = export_store(store, file, overwrite=force)
+        faults: list[Fault] = []
+        count = export_store(store, file, overwrite=force, report=faults.append)
     answer(f"{file} holds all records; their number is {count}.")
+    if faults:
+        answer("Its documents are whole: imported into an empty store they give the numbers as they were.")
+        print_damage(faults)
+        context.exit(DAMAGED)

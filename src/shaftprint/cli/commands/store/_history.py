@@ -5,7 +5,14 @@ from datetime import UTC, tzinfo
 import click
 
 from shaftprint.cli._store_options import opened_store, shown_zone_option, store_option
-from shaftprint.cli._store_tables import event_table, number_table, physical_history_table, test_table
+from shaftprint.cli._store_tables import (
+    DAMAGED,
+    event_table,
+    number_table,
+    physical_history_table,
+    print_damage,
+    test_table,
+)
 from shaftprint.cli._terminal import answer
 from shaftprint.cli.output import give, print_tables
 from shaftprint.store import history
@@ -18,8 +25,16 @@ from shaftprint.store import history
 @click.option("--line", "lines", multiple=True, metavar="NAME", help="Shaft line, such as port; may be repeated.")
 @click.option("--all", "superseded", is_flag=True, help="Show fingerprints that were superseded too.")
 @shown_zone_option
+@click.pass_context
 def command(
-    ship: str, url: str, *, number: str | None, lines: tuple[str, ...], superseded: bool, zone: tzinfo | None
+    context: click.Context,
+    ship: str,
+    url: str,
+    *,
+    number: str | None,
+    lines: tuple[str, ...],
+    superseded: bool,
+    zone: tzinfo | None,
 ) -> None:
     """Show the tests of a ship in the order of time.
 
@@ -35,3 +50,6 @@ def command(
     if number is not None:
         numbers = number_table(found.entries, shown_in, number)
     print_tables([test_table(found.entries, shown_in), numbers, event_table(found.events, shown_in)])
+    if found.faults:
+        print_damage(found.faults)
+        context.exit(DAMAGED)
