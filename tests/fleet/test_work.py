@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 
 from shaftprint import __version__
+from shaftprint.errors import SettingsError
 from shaftprint.fingerprint import fingerprint_document
 from shaftprint.fleet import job_arguments, submit, work
 from shaftprint.store import JobRequest, claim, document, enqueue, job, job_counts, jobs
@@ -129,3 +130,38 @@ def test_what_stands_in_the_ledger_is_not_trusted(store):
     assert sentences[0].startswith("job: ")
     assert sentences[1].startswith("there is no structure 'mine.py:line'")
     assert claim(store, owner="a", version=__version__) is None
+
+
+@pytest.mark.slow
+def test_a_poisoned_job_does_not_hold_those_behind_it(store, tmp_path):
+    (tmp_path / "a.nc").write_bytes(b"no recording")
+    good = {"recording": str(tmp_path / "a.nc"), "vessel": "stan-tug-1205", "campaign": "short"}
+    poisoned = [{"nonsense": 1}, good | {"conditions": {"tested_at": "0001-01-01T00:00:00+14:00"}}, good | {"seed": 1}]
+    keys = [f"{place:064x}" for place in range(4)]
+    enqueue(
+        store,
+        [
+            JobRequest(key=key, args=args, version=__version__)
+            for key, args in zip(keys, [*poisoned, good], strict=True)
+        ],
+    )
+
+    def forbidden(one):
+        if one.id == 3:
+            raise OverflowError("date value out of range")
+        return "not any more" if one.id == 4 else None
+
+    worked = work(store, forbidden=forbidden)
+    assert (worked.refused, worked.died) == (4, 0)
+    sentences = [one.sentence for one in jobs(store)]
+    assert "expected what shaftprint fleet run puts in" in sentences[0]
+    assert "expected a time from 1950-01-01" in sentences[1]
+    assert "the program failed: OverflowError" in sentences[2]
+    assert sentences[3] == "not any more"
+
+
+@pytest.mark.parametrize("text", ["0001-01-01T00:00+14:00", "9999-12-31T23:59-14:00", "2999-01-01T00:00+00:00"])
+def test_a_time_that_cannot_be_is_refused_before_anything_is_asked_for(store, tmp_path, text):
+    (tmp_path / "a.nc").write_bytes(b"no recording")
+    with pytest.raises(SettingsError, match="expected a time from 1950-01-01"):
+        job_arguments(tmp_path / "a.nc", "stan-tug-1205", "short", named="test", tested_at=text)

@@ -208,7 +208,7 @@ def test_a_file_that_may_grow_no_longer_loses_nothing(tmp_path):
 
 @pytest.mark.slow
 @pytest.mark.skipif(os.name != "posix", reason="permissions of folders are those of POSIX")
-def test_a_folder_that_may_be_read_only_is_one_sentence(tmp_path):
+def test_a_folder_that_may_be_read_only_is_read_and_nothing_is_made_in_it(tmp_path):
     path = tmp_path / "fleet.db"
     create_store(str(path)).close()
     for folder in (path, tmp_path):
@@ -220,12 +220,12 @@ def test_a_folder_that_may_be_read_only_is_one_sentence(tmp_path):
         "from shaftprint.store import create_store, open_store\nfrom shaftprint.errors import StoreError\n"
         "if os.getuid() == 0:\n    os.setgroups([])\n    os.setgid(65534)\n    os.setuid(65534)\n"
         "for verb, name in ((open_store, sys.argv[1]), (create_store, sys.argv[1] + '2')):\n"
-        "    try:\n        verb(name)\n    except StoreError as error:\n        print(error)\n"
+        "    try:\n        print(verb(name).is_read_only)\n    except StoreError as error:\n        print(error)\n"
     )
     done = subprocess.run([sys.executable, "-c", code, str(path)], capture_output=True, text=True, check=True)
     first, second = done.stdout.splitlines()
     tmp_path.chmod(0o755)
-    assert "check the permissions of the file and of its folder" in first
+    assert first == "True"
     assert "it cannot be opened" in second
 
 
@@ -263,3 +263,30 @@ def test_what_a_damaged_file_says_moves_no_cursor(tmp_path, put, run):
         assert "\x1b" not in result.output
         assert result.exit_code == 1
     assert not (tmp_path / "x.jsonl").exists()
+
+
+def test_a_store_that_the_system_says_is_read_only_is_read(tmp_path, run, put, monkeypatch):
+    path = tmp_path / "fleet.db"
+    with create_store(str(path)) as store:
+        put(store)
+    monkeypatch.setattr(os, "access", lambda *_: False)
+    _expect_read_only(path, run)
+    assert not list(tmp_path.glob("fleet.db-*"))
+    # records that are in a log beside it would not be seen
+    path.with_name("fleet.db-wal").write_bytes(b"x")
+    with pytest.raises(StoreError, match=r"its newest records are in fleet\.db-wal beside it; copy both"):
+        open_store(str(path))
+
+
+def _expect_read_only(path, run):
+    shown = run("store", "list", "--store", str(path))
+    assert shown.exit_code == 0
+    assert "is read only here" in shown.output
+    assert "Meander" in shown.output
+    refused = run("store", "event", "Meander", "docking", "--at", "2026-05-01T00:00+00:00", "--store", str(path))
+    assert refused.exit_code == 1
+    assert "read only" in refused.output
+    with open_store(str(path)) as store:
+        assert store.is_read_only
+        assert check(store) == ()
+        assert len(history(store, "Meander").entries) == 1

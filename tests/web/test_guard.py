@@ -1,14 +1,17 @@
 """What stands before every page: names of the server, tokens of forms, cookies, limits, heads."""
 
+import os
 import re
+from datetime import UTC, datetime, timedelta
+from pathlib import Path
 
 import pytest
 from tests.web.client import form_of
 from tests.web.conftest import ADA, PASSWORD
 
 from shaftprint.errors import ServerError
-from shaftprint.web import Listen, Role, Serving, listen_at, routes_of
-from shaftprint.web.access import network_of
+from shaftprint.web import Door, Listen, Person, Role, Service, Serving, listen_at, routes_of, with_user
+from shaftprint.web.access import Audit, network_of
 
 
 @pytest.mark.parametrize("host", ["evil.example", "evil.example:8080", "127.0.0.1.evil.example", "", "127.0.0.1@evil"])
@@ -194,3 +197,140 @@ def test_deeds_are_written_down_and_shown_to_owners_of_the_ship(site):
 
 def test_roles_go_up():
     assert Role.READER < Role.TESTER < Role.OWNER
+
+
+def test_refusals_are_counted_and_push_out_no_deeds(site):
+    owner = site.person("owner-all")
+    stranger = site.browser(address="198.51.100.9")
+    for place in range(60):
+        stranger.post("/sign-in", {"name": f"x{place}", "password": "no"}, token=stranger.token or stranger.known())
+    folder = site.service.serving.state
+    # one line of those that were wrong, one of those that had to wait
+    assert len((folder / "refused.jsonl").read_text().splitlines()) == 2
+    deeds = owner.get("/api/v1/audit").json["deeds"]
+    assert {one["deed"] for one in deeds} == {"signed in"}
+    refused = owner.get("/api/v1/audit?kind=refused%20sign-ins").json["deeds"]
+    assert {one["deed"] for one in refused} == {"gave a wrong password", "had to wait before signing in"}
+    assert site.person("owner-ada").get("/api/v1/audit?kind=refused%20sign-ins").json["deeds"] == []
+
+
+def test_refusals_of_a_minute_are_one_line_with_their_number(tmp_path):
+    audit = Audit(path=tmp_path / "audit.jsonl")
+    begin = datetime(2026, 11, 24, 12, tzinfo=UTC)
+    for second in (0, 1, 59, 61):
+        audit.refused("gave a wrong password", address="192.0.2.7", now=begin + timedelta(seconds=second))
+    newest = list(audit.newest(refusals=True))
+    assert [one.get("times") for one in newest] == [None, 2, None]
+
+
+def test_deeds_go_through_files_that_are_put_aside(tmp_path, monkeypatch):
+    audit = Audit(path=tmp_path / "audit.jsonl")
+    note = "x" * 290
+    monkeypatch.setattr(os, "fsync", lambda _: None)
+    at = datetime(2026, 11, 24, 12, tzinfo=UTC)
+    count = 60_000
+    for place in range(count):
+        audit.note("noted an event", person="anna", address="", now=at, place=place, note=note)
+    files = sorted(tmp_path.iterdir())
+    assert [one.name for one in files] == ["audit.1.jsonl", "audit.2.jsonl", "audit.jsonl"]
+    assert all(one.stat().st_size <= 8 * 2**20 + 1000 for one in files)
+    assert all(one.stat().st_mode & 0o077 == 0 for one in files)
+    assert [one["place"] for one in audit.newest()] == list(reversed(range(count)))
+
+
+def test_files_of_passwords_and_sessions_are_private_from_their_first_byte(site, tmp_path, password_hash, monkeypatch):
+    seen = []
+    write = Path.write_bytes
+
+    def spied(path, content):
+        seen.append(path.stat().st_mode & 0o777)
+        return write(path, content)
+
+    monkeypatch.setattr(Path, "write_bytes", spied)
+    old = os.umask(0)
+    try:
+        with_user(tmp_path / "new.toml", Person(name="x", role=Role.READER, ships=("all",), password=password_hash))
+    finally:
+        os.umask(old)
+    assert seen == [0o600]
+    assert (tmp_path / "new.toml").stat().st_mode & 0o777 == 0o600
+    site.person("reader-ada")
+    state = site.service.serving.state
+    for name in ("server.db", "server.db-wal", "audit.jsonl", "secret"):
+        assert (state / name).stat().st_mode & 0o777 == 0o600, name
+
+
+def test_what_a_killed_server_left_is_taken_away(made):
+    site = made()
+    state, serving = site.service.serving.state, site.service.serving
+    for name in ("half", "empty"):
+        (state / "recordings" / name).mkdir()
+    (state / "recordings" / "half" / "a.nc.part").write_bytes(b"x")
+    (state / "scratch" / "desk" / "shaftprint-x").mkdir(parents=True)
+    kept = {one.name for one in (state / "recordings").iterdir()} - {"half", "empty"}
+    again = Service.begun(serving)
+    again.kept.close()
+    again.store.close()
+    assert {one.name for one in (state / "recordings").iterdir()} == kept
+    assert not (state / "scratch").exists()
+
+
+class Visitor:
+    """A connection at the door."""
+
+    is_uploading = False
+
+    def __init__(self, door, address):
+        self.door, self.address = door, address
+        self.transport, self.closed = self, False
+
+    def close(self):
+        self.closed = True
+        self.door.leave(self, self.address)
+
+
+def test_whoever_says_nothing_takes_nobody_s_place():
+    door = Door(behind_proxy=False)
+    silent = [Visitor(door, "192.0.2.7") for _ in range(230)]
+    for one in silent:
+        door.enter(one, one.address)
+    # the newest hundred still may say something
+    assert [one.closed for one in silent] == 130 * [True] + 100 * [False]
+    others = [Visitor(door, "198.51.100.9") for _ in range(20)]
+    assert all(door.enter(one, one.address) for one in others)
+    assert not any(one.closed for one in others)
+    assert sum(one.closed for one in silent) == 150
+
+
+def test_an_address_has_so_many_connections_and_no_more():
+    door = Door(behind_proxy=False)
+    busy = [Visitor(door, "192.0.2.7") for _ in range(120)]
+    for one in busy:
+        assert door.enter(one, one.address)
+        door.has_said(one)
+    assert not door.enter(Visitor(door, "192.0.2.7"), "192.0.2.7")
+    assert door.enter(Visitor(door, "198.51.100.9"), "198.51.100.9")
+    behind = Door(behind_proxy=True)
+    for one in [Visitor(behind, "127.0.0.1") for _ in range(150)]:
+        assert behind.enter(one, one.address)
+        behind.has_said(one)
+
+
+@pytest.mark.parametrize("at", ["0001-01-01T00:00+14:00", "9999-12-31T23:59-14:00", "9999-12-31T23:59", "2099-01-01"])
+def test_a_time_that_cannot_be_is_refused_in_every_form(site, at):
+    tester = site.person("tester-ada")
+    fields = {"what": "docking", "at": at, "zone": "Pacific/Kiritimati"}
+    assert tester.post(f"/api/v1/ships/{ADA}/port/events", fields).status == 400
+    job = {"source": f"upload:{site.uploads[ADA]}", "vessel": "stan-tug-1205", "campaign": "short", "tested_at": at}
+    answer = tester.post("/api/v1/jobs", job)
+    assert (answer.status, "expected a time from 1950-01-01" in answer.text) == (400, True)
+
+
+def test_an_owner_withdraws_what_was_noted_and_the_page_shows_both(site):
+    owner, path = site.person("owner-ada"), f"/ships/{ADA}/port"
+    fields = {"what": "docking", "at": "2025-09-01T00:00+00:00", "why": "another ship"}
+    assert site.person("tester-ada").post(f"{path}/events/withdrawn", fields).status == 403
+    assert owner.post(f"{path}/events/withdrawn", fields).status == 303
+    (event,) = owner.get(f"/api/v1{path}").json["events"]
+    assert (event["note"], event["withdrawn"]) == ("dock of Ada", "another ship")
+    assert "(withdrawn: another ship)" in owner.get(path).text

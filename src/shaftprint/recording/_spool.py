@@ -125,7 +125,7 @@ class Spool:
             end = column.begins[piece + 1] if piece + 1 < len(column.begins) else column.count
             count = min(end - start - done, values.size - done)
             self._file.seek(column.offsets[piece] + _BYTES * (start + done - begin))
-            self._file.readinto(values[done : done + count].data)  # type: ignore[attr-defined]
+            self._file.readinto(values[done : done + count].data)
             done, piece = done + count, piece + 1
 
     def close(self) -> None:

@@ -2,6 +2,7 @@
 
 from datetime import UTC, datetime
 
+from shaftprint.errors import StoreError
 from shaftprint.store._text import expect_short
 
 
@@ -29,7 +30,7 @@ def moment_of(text: object) -> datetime:
 
     Raises
     ------
-    TypeError, ValueError
+    TypeError, ValueError, StoreError
         If it is none.
     """
     if not isinstance(text, str):
@@ -37,4 +38,7 @@ def moment_of(text: object) -> datetime:
     moment = datetime.fromisoformat(text)
     if moment.tzinfo is None:
         raise ValueError("time")
-    return moment.astimezone(UTC)
+    try:
+        return moment.astimezone(UTC)
+    except OverflowError:
+        raise StoreError(f"expected a time of the calendar in UTC, found {text[:40]}") from None

@@ -4,6 +4,7 @@ It loads nothing that calculates. What is calculated from a user's file is calcu
 limits of memory and time; what somebody does not see is not there for him.
 """
 
+from shaftprint.web._door import Door
 from shaftprint.web._kept import KeptJob, Upload
 from shaftprint.web._rights import forbidden_by
 from shaftprint.web._routes import ADDRESSES, routes_of
@@ -20,6 +21,7 @@ __all__ = [
     "LONGEST",
     "ROLES",
     "SHORTEST",
+    "Door",
     "KeptJob",
     "Listen",
     "Person",
