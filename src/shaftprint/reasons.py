@@ -6,6 +6,8 @@ from typing import Literal, TypeAlias
 ReasonKind: TypeAlias = Literal[
     "recording clock",
     "channel clock",
+    "held samples",
+    "set-point band",
     "clipping",
     "gauge steadiness",
     "legs apart",

@@ -2,14 +2,15 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 from shaftprint.errors import SignalError
 from shaftprint.memory import give_back_memory
 from shaftprint.signals._channel_signals import ChannelRole
 from shaftprint.signals._clock import Clock, Mode, common_clock
-from shaftprint.signals.conditioning import Reading
+from shaftprint.signals._held_samples import HeldSamples, held_samples
+from shaftprint.signals.conditioning import Reading, RunTally
 from shaftprint.signals.kinds import find_sources
 
 if TYPE_CHECKING:
@@ -33,6 +34,8 @@ class ChannelReadings:
     """What each gave, without those that failed."""
     problems: Mapping[str, SignalError]
     """Why the others gave nothing."""
+    held: Mapping[str, HeldSamples] = field(default_factory=dict)
+    """Which of them keep their last value, and how."""
 
 
 def read_channels(
@@ -58,11 +61,13 @@ def read_channels(
     """
     sources = find_sources(recording, vessel)
     clock = common_clock(logger_channels(sources), mode=mode, rate_hz=rate_hz, chunk_s=chunk_s, progress=progress)
+    stated_s = {source.name: source.kind.stated_hold_s(source) for source in sources}
+    tallies = {source.name: RunTally(source.channel) for source in sources if stated_s[source.name] is not None}
     by_name: dict[str, Reading] = {}
     problems: dict[str, SignalError] = {}
     pool = ThreadPoolExecutor(max_workers=_THREADS)
     try:
-        jobs = {source.name: pool.submit(source.kind.read, source, clock) for source in sources}
+        jobs = {source.name: pool.submit(source.kind.read, _watched(source, tallies), clock) for source in sources}
         for name, job in jobs.items():
             try:
                 by_name[name] = job.result()
@@ -72,7 +77,15 @@ def read_channels(
         pool.shutdown(cancel_futures=True)
     # edges of pulses are gone, the speed is there
     give_back_memory()
-    return ChannelReadings(clock=clock, sources=sources, by_name=by_name, problems=problems)
+    kept = {name: held_samples(tally.runs(), stated_s=stated_s[name] or 0.0) for name, tally in tallies.items()}
+    held = {name: one for name, one in kept.items() if one is not None}
+    return ChannelReadings(clock=clock, sources=sources, by_name=by_name, problems=problems, held=held)
+
+
+def _watched(source: "Source[Any]", tallies: "Mapping[str, RunTally]") -> "Source[Any]":
+    """Return a source whose runs of equal samples are counted as it is read."""
+    tally = tallies.get(source.name)
+    return source if tally is None else replace(source, channel=tally.watched)
 
 
 def logger_channels(sources: "Sequence[Source[Any]]") -> "list[Channel]":

@@ -50,6 +50,8 @@ class ChannelReport:
     """Stretches in which it says nothing, in order of time."""
     problem: str | None
     """Why the channel cannot be used, in one sentence; nothing if it can."""
+    held: str | None = None
+    """That it keeps its last value, how often and how long, in one sentence; nothing if it does not."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -107,7 +109,7 @@ def channel_reports(readings: ChannelReadings, levels: Mapping[str, Levels]) -> 
 
 def _report(source: "Source[Any]", readings: ChannelReadings, levels: Levels) -> ChannelReport:
     channel, reading = source.channel, readings.by_name.get(source.name)
-    problem = readings.problems.get(source.name)
+    problem, held = readings.problems.get(source.name), readings.held.get(source.name)
     if reading is not None:
         try:
             source.kind.judge(source, reading)
@@ -127,6 +129,7 @@ def _report(source: "Source[Any]", readings: ChannelReadings, levels: Levels) ->
         faults=() if reading is None else tuple(reading.repairs),
         gaps=() if reading is None else tuple(sorted(reading.gaps, key=lambda gap: gap.start_s)),
         problem=None if problem is None else str(problem),
+        held=None if held is None else held.sentence,
     )
 
 

@@ -121,7 +121,11 @@ def prepare_signals(
 def _prepared(recording: "Recording", vessel: "Vessel", campaign: Campaign, readings: Readings) -> Signals:
     """Return the signals of what was read; its set point becomes a speed in place."""
     clock = readings.clock
-    reasons = [*expect_one_rate(recording, logger_channels(readings.sources)), *_cut_crests(readings.sources)]
+    reasons = [
+        *expect_one_rate(recording, logger_channels(readings.sources)),
+        *readings.reasons,
+        *_cut_crests(readings.sources),
+    ]
     lost, mismatches = _differences_from_campaign(recording, vessel, campaign, readings)
     _without_steps_in_place(readings, campaign)
     sensor = vessel.sensors.demand

@@ -5,8 +5,10 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from shaftprint.errors import SignalError
+from shaftprint.reasons import Reason
 from shaftprint.signals._channel_readings import ChannelReadings
 from shaftprint.signals._gaps import Coverage, Gap, within
+from shaftprint.signals._held_samples import held_reasons
 from shaftprint.signals._signals import Repair
 from shaftprint.signals.conditioning import Reading
 from shaftprint.signals.kinds import SpeedReading
@@ -31,6 +33,8 @@ class Readings:
     """Where a channel of the grid says nothing, in order of time."""
     findings: tuple[str, ...]
     """What the reader should know of the channels."""
+    reasons: tuple[Reason, ...] = ()
+    """What speaks against numbers that are made of them."""
 
     @property
     def pick_ups(self) -> tuple[SpeedReading, ...]:
@@ -85,12 +89,15 @@ def usable_readings(channels: ChannelReadings) -> Readings:
     readings = {source.name: by_name[source.name] for source in used}
     pick_ups = [reading for reading in readings.values() if isinstance(reading, SpeedReading)]
     others = [reading for reading in readings.values() if not isinstance(reading, SpeedReading)]
+    needed = [source.name for source in used if not source.spare]
+    spare = [source.name for source in used if source.spare and source.name in channels.held]
     return Readings(
         clock=clock,
         sources=used,
         by_name=readings,
         gaps=tuple(sorted((gap for gap in gaps if gap.last_s > clock.start_s), key=lambda gap: gap.start_s)),
-        findings=(*_findings(others), *failed, *_findings(pick_ups)),
+        findings=(*_findings(others), *failed, *_findings(pick_ups), *(channels.held[name].sentence for name in spare)),
+        reasons=tuple(held_reasons({name: one for name, one in channels.held.items() if name in needed})),
     )
 
 

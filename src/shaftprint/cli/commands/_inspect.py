@@ -162,7 +162,8 @@ def _print_answer(test: _Test | None, reports: Sequence[ChannelReport], ship: Ve
     against = (
         () if test is None else dict.fromkeys(reason.sentence for one in test.parts for reason in one.response.reasons)
     )
-    problems = [*wrong, *against, *(report.problem for report in reports if report.problem is not None)]
+    held = [report.held for report in reports if report.held is not None and report.held not in against]
+    problems = [*wrong, *against, *held, *(report.problem for report in reports if report.problem is not None)]
     if test is not None:
         refusal = "" if test.refusal is None else str(test.refusal)
         lost = () if test.signals is None else lost_parts(test.planned, test.signals, test.parts)

@@ -24,6 +24,8 @@ AFFECTED: Mapping[ReasonKind, tuple[frozenset[Basis], str]] = {
     "recording clock": (ALL, "it depends on the clock of the recording"),
     "channel clock": (ALL, "it depends on the clocks of the channels running alike"),
     "speed scale": (ALL, "it depends on a speed that is off by one factor"),
+    "held samples": (ALL - {"speed"}, "it depends on a channel that keeps its last value"),
+    "set-point band": (frozenset(("delay", "governor")), "it depends on a set point that its channel shows late"),
     "clipping": (ALL - {"speed"}, "it depends on a torque that is clipped"),
     "gauge steadiness": (
         ALL - {"speed", "set point", "delay"},

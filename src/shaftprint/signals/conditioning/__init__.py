@@ -16,6 +16,7 @@ from shaftprint.signals.conditioning._outliers import (
     sample_codes,
 )
 from shaftprint.signals.conditioning._patch import Patcher
+from shaftprint.signals.conditioning._runs import Runs, RunTally
 from shaftprint.signals.conditioning._thesis import previous_neighbours, pulse_period_speed
 
 __all__ = [
@@ -27,6 +28,8 @@ __all__ = [
     "FaultLimits",
     "Patcher",
     "Reading",
+    "RunTally",
+    "Runs",
     "SampleGrid",
     "conditioned",
     "decimated",

@@ -43,6 +43,8 @@ _HOLD_SAMPLES = 10
 _HOLD_OVER_USUAL = 3
 # A channel that often repeats its value for longer has no noise that a hold could be told from.
 _STANDS_STILL = 16
+# A change by more steps than this is none to the next step.
+_ONE_STEP = 1.5
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -86,7 +88,7 @@ def fault_limits(channel: "Channel", *, holds: bool, lowest: float = -np.inf, hi
         distances.append(_distances(values))
         change = np.abs(np.diff(values))
         step = min(step, float(np.min(change[change > 0.0], initial=np.inf)))
-        longest.append(_usual_run(values))
+        longest.append(_usual_run(values, step))
     usual = float(np.quantile(np.concatenate(distances), _QUANTILE))
     least = _LEAST_STEPS * step if np.isfinite(step) else 0.0
     # of most spots: a gauge that died half way still has noise before
@@ -202,7 +204,16 @@ def _distances(values: FloatArray) -> FloatArray:
     return np.abs(values[_HALF_WINDOW:-_HALF_WINDOW] - medians)
 
 
-def _usual_run(values: FloatArray) -> int:
-    """Return the length of a run of equal values that only one in a thousand exceeds."""
-    borders = np.flatnonzero(np.diff(values) != 0.0)
-    return int(np.quantile(np.diff(borders), 0.999)) if borders.size > 1 else _STANDS_STILL + 1
+def _usual_run(values: FloatArray, step: float) -> int:
+    """Return the length of a run of equal values that only one in a thousand exceeds.
+
+    A run that ends in a jump of several steps is none of a channel that stands still by nature: it is what is looked
+    for, however often it comes.
+    """
+    change = np.abs(np.diff(values))
+    borders = np.flatnonzero(change)
+    if borders.size < 2:
+        return _STANDS_STILL + 1
+    lengths, jumps = np.diff(borders), change[borders[1:]] > _ONE_STEP * step
+    usual = lengths[(lengths < _HOLD_SAMPLES) | ~jumps]
+    return int(np.quantile(usual, 0.999)) if 2 * usual.size > lengths.size else _STANDS_STILL + 1

@@ -128,6 +128,13 @@ class ChannelKind(ABC, Generic[SensorT]):
         """Return what counts as a fault where samples follow the quantity; nothing for pulses and messages."""
         return None
 
+    def stated_hold_s(self, source: Source[SensorT]) -> float | None:
+        """Return for how long the vessel file says that each value is held [s]; None where equal samples say nothing.
+
+        They do not in messages at times of their own, of which a sender may have no newer one.
+        """
+        return None if source.channel.is_uneven else 0.0
+
     @abstractmethod
     def read(self, source: Source[SensorT], clock: "Clock") -> Reading:
         """Return the values of a channel in the unit of the quantity, with what was repaired and what is missing.

@@ -87,6 +87,10 @@ class Speed(ChannelKind[SpeedSensor]):
             for sensor in vessel.sensors.speed
         )
 
+    def stated_hold_s(self, source: Source[SpeedSensor]) -> float | None:
+        """Return that an instrument holds nothing; levels of pulses and angles of a shaft at rest say nothing."""
+        return None if source.sensor.counts_turns or source.channel.is_uneven else 0.0
+
     def read(self, source: Source[SpeedSensor], clock: "Clock") -> SpeedReading:
         """Return the engine-side speed on the grid."""
         vessel, wheel = source.vessel, source.sensor.toothed

@@ -44,6 +44,10 @@ class Rack(ChannelKind[RackSensor]):
     sensor, name, use, role, own_clock = "rack", "X", "fuel rack", ChannelRole.SIDE, True
     takes_messages = True
 
+    def stated_hold_s(self, source: Source[RackSensor]) -> float | None:
+        """Return the cycle of its message."""
+        return None if source.channel.is_uneven else source.sensor.cycle_s
+
     def read(self, source: Source[RackSensor], clock: "Clock") -> Reading:
         """Return the rack at the times of its messages."""
         return read_rack(source.channel, source.sensor, block_samples=clock.block_samples(source.channel))

@@ -40,6 +40,10 @@ class ShipSpeed(ChannelKind[ShipSpeedSensor]):
     takes_messages = True
     absence = "the ship had no way on"
 
+    def stated_hold_s(self, source: Source[ShipSpeedSensor]) -> None:
+        """Return that equal samples say nothing: a log gives a value once in a while, as its cycle says."""
+        return
+
     def read(self, source: Source[ShipSpeedSensor], clock: "Clock") -> Reading:
         """Return the speed on the grid."""
         latency_s = clock.latency_s(source.sensor.latency_s)
