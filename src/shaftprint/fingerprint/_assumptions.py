@@ -5,12 +5,16 @@ from typing import TYPE_CHECKING
 
 from shaftprint.catalogue import ShipRole
 from shaftprint.digits import stated
+from shaftprint.identify.judgement import listed, unseen_drift
+from shaftprint.units import MILLI
 
 if TYPE_CHECKING:
     from shaftprint.identify import Identification
     from shaftprint.vessel import Vessel
 
 PERCENT = 100.0
+# So much is in the intervals already, as the resolution of a delay.
+LEAST_S = 0.0005
 
 
 def assumptions_of(identification: "Identification", vessel: "Vessel") -> tuple[str, ...]:
@@ -24,9 +28,11 @@ def _assumptions(identification: "Identification", vessel: "Vessel") -> Iterator
     if latency := by_role.get(ShipRole.SET_POINT_LATENCY):
         totals = [c.name for c in identification.structure.combinations if c.role == ShipRole.TOTAL_DELAY]
         resting = f"{' and '.join((latency, *totals))} {'rest' if totals else 'rests'}"
+        channel = sensors.set_point.channel
         yield (
-            f"{resting} on the clock of the set point: a constant shift of {sensors.set_point.channel} against the "
-            "other channels shows in nothing else."
+            f"{resting} on the clock of the set point, and on no filter and no hold between the voltage that the "
+            f"governor sees and {channel}: {_widths(identification)}a constant shift of {channel} against the other "
+            "channels shows in nothing else."
         )
     if by_role.get(ShipRole.INERTIA_UPSTREAM) in identification.settings.priors:
         yield (
@@ -48,3 +54,15 @@ def _assumptions(identification: "Identification", vessel: "Vessel") -> Iterator
         yield (
             f"The vessel file does not state, and as usual is taken: {'; '.join(vessel.taken_as_usual)}. State them."
         )
+
+
+def _widths(identification: "Identification") -> str:
+    """Return what to count beside the intervals for what the recording cannot exclude."""
+    response = identification.response
+    clock_s = unseen_drift(identification) * float(response.middle_s[identification.fitted].max())
+    widths = [
+        (response.input_late_s or 0.0, "a filter or hold that its sines would not show"),
+        (clock_s, "a clock of its own"),
+    ]
+    parts = [f"{MILLI * late_s:.2g} ms for {what}" for late_s, what in widths if late_s > LEAST_S]
+    return f"count {listed(parts)} beside their intervals; " if parts else ""

@@ -199,14 +199,18 @@ def _against_expected(physical: tuple[Quantity, ...], vessel: "Vessel | None", *
             continue
         spread = np.hypot(quantity.std, quantity.expected_std or 0.0)
         if abs(quantity.value - quantity.expected) > SURPRISING * spread:
-            factor = max(quantity.expected / quantity.value, quantity.value / quantity.expected)
             unit = _unit(quantity)
+            why = "" if by_scale else _other_direction(quantity, vessel) or WHY.get(quantity.name, "")
             findings.append(
                 f"{quantity.name} = {quantity.value:.4g}{unit} against {quantity.expected:.4g}{unit} of the vessel "
-                f"file: a factor {factor:.2f}."
-                f"{'' if by_scale else _other_direction(quantity, vessel) or WHY.get(quantity.name, '')}"
+                f"file{_factor(quantity.value / quantity.expected)}.{why}"
             )
     return findings
+
+
+def _factor(ratio: float) -> str:
+    """Return by which factor two numbers differ; nothing where one is zero, as at a bound, or of the other sign."""
+    return f": a factor {max(ratio, 1.0 / ratio):.2f}" if ratio > 0.0 else ""
 
 
 def _other_direction(quantity: Quantity, vessel: "Vessel | None") -> str:

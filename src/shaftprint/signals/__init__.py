@@ -30,6 +30,7 @@ from shaftprint.signals._content import Content, content_of
 from shaftprint.signals._contradictions import contradictions
 from shaftprint.signals._describe_recording import describe_set_point
 from shaftprint.signals._gaps import Coverage, Gap
+from shaftprint.signals._held_samples import HeldSamples, held_samples
 from shaftprint.signals._inspect import ChannelReport, PulseReport, channel_reports, inspect_channels
 from shaftprint.signals._moved_beside import EXCITATIONS, MovedBeside, moved_beside
 from shaftprint.signals._orders import TrackedOrder, tracked_orders
@@ -57,6 +58,7 @@ __all__ = [
     "ExcitationSignal",
     "FoundTest",
     "Gap",
+    "HeldSamples",
     "LegState",
     "MessageSignal",
     "Mode",
@@ -79,6 +81,7 @@ __all__ = [
     "describe_set_point",
     "deviation",
     "find_tests",
+    "held_samples",
     "inspect_channels",
     "moved_beside",
     "prepare_signals",

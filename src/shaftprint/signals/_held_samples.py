@@ -61,7 +61,7 @@ class HeldSamples:
     @property
     def sentence(self) -> str:
         """What was found, what it does and what to do."""
-        late = f"its samples come {MILLI * self.late_s:.2g} ms late on average"
+        late = f"its samples come {_duration(self.late_s)} late on average"
         if self.is_steady:
             return (
                 f"Channel {self.channel} holds each value for {self.samples:.4g} samples ({_duration(self.hold_s)}), "
@@ -151,4 +151,4 @@ def _shortest_of_no_chance(runs: Runs) -> float:
 
 
 def _duration(seconds: float) -> str:
-    return f"{seconds:.2g} s" if seconds >= _LONG_S else f"{MILLI * seconds:.3g} ms"
+    return f"{seconds:.2g} s" if seconds >= _LONG_S else f"{MILLI * seconds:.2g} ms"

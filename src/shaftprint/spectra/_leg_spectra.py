@@ -11,7 +11,7 @@ from shaftprint.spectra._line_responses import response_of_lines
 from shaftprint.spectra._shift_check import shift_reasons
 from shaftprint.spectra._spectra import Spectra
 from shaftprint.spectra.legs import check_leg, cut_leg, leg_clock_reasons, leg_shape_reasons, measure_leg
-from shaftprint.spectra.lines import LoadDrift, collect_harmonics, signal_to_noise
+from shaftprint.spectra.lines import LoadDrift, band_of_lines, band_reasons, collect_harmonics, signal_to_noise
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -105,6 +105,7 @@ def _leg(signals: "Signals", leg: "Leg", state: "LegState", moved: "ExcitationSi
     measured = _measured(signals, leg, replace(state, name=leg.name), sensor, moved.name, lines_of)
     expected = np.array([leg.lines[harmonic] for harmonic in measured.harmonics]) * abs(moved.per_volt)
     finding = check_leg(measured, expected=expected / moved.reference, moved=moved)
+    band = band_of_lines(measured.lines, expected / moved.reference, moved)
     kept = [place for place, line in enumerate(measured.lines) if line.window.line not in finding.silent]
     lines = [measured.lines[place] for place in kept]
     if not lines:
@@ -128,9 +129,15 @@ def _leg(signals: "Signals", leg: "Leg", state: "LegState", moved: "ExcitationSi
         pick_up_delay_s=sensor.delay_s,
     )
     of_response = shift_reasons(response) if moved.from_engine else ()
-    against = (*leg_clock_reasons(measured), *leg_shape_reasons(measured), *of_response)
+    of_band = band_reasons(band, channel=moved.channel, symbol=moved.name)
+    against = (*leg_clock_reasons(measured), *leg_shape_reasons(measured), *of_response, *of_band)
     return Spectra(
-        response=replace(response, reasons=(*signals.reasons, *against)),
+        response=replace(
+            response,
+            reasons=(*signals.reasons, *against),
+            input_late_s=None if band is None else band.widest_s,
+            input_drift=measured.window.clock_ratio,
+        ),
         windows=tuple(line.window for line in lines),
         signal_to_noise=signal_to_noise(
             [line.variances_with(*signals.messages) for line in lines],

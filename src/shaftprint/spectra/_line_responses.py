@@ -108,6 +108,7 @@ def response_of_lines(
         lines=tuple(line.window.line for line in measurements),
         degrees_of_freedom=np.array([2.0 * line.noise.complex_samples for line in measurements]),
         common={excitation.scale_error: common},
+        middle_s=np.array([0.5 * (line.window.start_s + line.window.stop_s) for line in measurements]),
     )
 
 

@@ -23,12 +23,15 @@ from shaftprint.spectra.lines import (
     Window,
     WindowSamples,
     amplitude_remark,
+    band_of_lines,
+    band_reasons,
     check_frequency_unit,
     check_set_point,
     clock_reasons,
     collect_harmonics,
     cut_messages,
     cut_window,
+    drift_of_input,
     left_in_remark,
     load_drift,
     measure_line,
@@ -160,8 +163,16 @@ def estimate_spectra(
         pick_up_delay_s=sensor.delay_s,
     )
     against = () if thesis else _against(_cuts(signals, windows, names), measurements, sensor, moved, response)
+    expected = np.array([_expected_amplitude(moved, campaign, line) for line in measurements])
+    band = None if thesis else band_of_lines(measurements, expected, moved)
+    of_band = band_reasons(band, channel=moved.channel, symbol=moved.name)
     return Spectra(
-        response=replace(response, reasons=(*signals.reasons, *against)),
+        response=replace(
+            response,
+            reasons=(*signals.reasons, *against, *of_band),
+            input_late_s=None if band is None else band.widest_s,
+            input_drift=None if thesis else drift_of_input(measurements, campaign.sines, moved),
+        ),
         windows=tuple(line.window for line in measurements),
         signal_to_noise=ratios,
         harmonics=collect_harmonics(measurements, speed=sensor.name),

@@ -1,6 +1,7 @@
 """May the numbers of a fit be used, which of them, and why not: the verdict and the sentences that give its reasons."""
 
 from shaftprint.identify.judgement._affected_numbers import AFFECTED, by_weight, depends_on
+from shaftprint.identify.judgement._clock_drift import unseen_drift
 from shaftprint.identify.judgement._line_quality import good_lines
 from shaftprint.identify.judgement._misfit import explained, misfit_words, worst_lines
 from shaftprint.identify.judgement._number_precision import doubts_of
@@ -29,5 +30,6 @@ __all__ = [
     "report_search",
     "spans",
     "suspects_of",
+    "unseen_drift",
     "worst_lines",
 ]

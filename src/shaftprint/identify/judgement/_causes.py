@@ -1,9 +1,10 @@
 """Physics that a structure may lack, as what a little of each would do to its response.
 
 To first order a missing effect of size ``x`` adds ``x d`` to the response ``f``: a sensor that is late ``-s f``, one
-with a wrong scale ``f``. Where a loop of set point and speed ``n`` is closed, a relative change ``h`` of the loop gain
-adds ``h (1 - n) f`` to speed and torque. More torque ``h n`` at the propeller adds it to the torque at the gauge, and
-lowers the loop gain by ``h / (tau s + 2)``.
+with a wrong scale ``f``, one whose clock loses ``x`` of its time ``-s t f``, where ``t`` is when the line was tested.
+Where a loop of set point and speed ``n`` is closed, a relative change ``h`` of the loop gain adds ``h (1 - n) f`` to
+speed and torque. More torque ``h n`` at the propeller adds it to the torque at the gauge, and lowers the loop gain by
+``h / (tau s + 2)``.
 """
 
 from collections.abc import Iterator
@@ -35,6 +36,8 @@ class Cause:
     """Change of the response for a size of 1, shape (channels, lines)."""
     one_sided: bool = False
     """Whether only a positive size makes sense: a sensor is late, not early."""
+    clock: str = ""
+    """Channel whose clock it is that runs apart; empty where it is no clock."""
 
 
 def causes_of(experiment: Experiment, values: FloatArray) -> tuple[Cause, ...]:
@@ -50,6 +53,7 @@ def causes_of(experiment: Experiment, values: FloatArray) -> tuple[Cause, ...]:
     return (
         *_held_parameters(experiment, values),
         *_sensors(structure, model, s),
+        *_clocks(experiment, model),
         *_physics(structure, model, s),
     )
 
@@ -80,6 +84,26 @@ def _sensors(structure: Structure, model: ComplexArray, s: ComplexArray) -> Iter
             wrong = WRONG_SCALE.get(name, f"{sensor} has a wrong scale")
             yield Cause(words=wrong, unit="-", effect=affected)
             yield Cause(words=f"{sensor} smooths fast changes", unit="s2", effect=s * s * affected, one_sided=True)
+
+
+def _clocks(experiment: Experiment, model: ComplexArray) -> Iterator[Cause]:
+    """Yield that the clock of one channel runs apart from the others, which makes it ever later or earlier."""
+    middle_s, structure = experiment.response.middle_s[experiment.fitted], experiment.structure
+    if len(structure.inputs) > 1:
+        return
+    late = -experiment.s * middle_s * model
+    for name in (*structure.inputs, *structure.outputs):
+        is_input = name in structure.inputs
+        if not is_input and len(structure.outputs) == 1:
+            # one output for one input: either clock looks like the other
+            continue
+        belongs = np.array([is_input or output == name for output, _ in structure.channels])[:, None]
+        yield Cause(
+            words=f"the clock of {SENSORS.get(name, name)} runs apart from that of the others",
+            unit="-",
+            effect=np.where(belongs, -late if is_input else late, 0.0),
+            clock=name,
+        )
 
 
 def _physics(structure: Structure, model: ComplexArray, s: ComplexArray) -> Iterator[Cause]:

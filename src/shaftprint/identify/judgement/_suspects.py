@@ -66,9 +66,9 @@ def suspects_of(identification: Identification, *, rejected: float = REJECTED) -
     """
     if explained(identification, rejected=rejected) or identification.objective.others:
         return ()
-    misfit, basis = _misfit(identification)
+    misfit, basis = misfit_of(identification)
     spare = misfit.size - basis.shape[1]
-    causes = _gathered(identification)
+    causes = gathered_causes(identification)
     beyond = float(misfit @ misfit) - spare
     suspects: list[Suspect] = []
     while len(suspects) < MOST and causes:
@@ -107,7 +107,7 @@ def _changes(identification: Identification, cause: Cause, size: float) -> float
     return float(np.max(np.abs(size * cause.effect) / np.abs(model)))
 
 
-def _misfit(identification: Identification) -> tuple[FloatArray, FloatArray]:
+def misfit_of(identification: Identification) -> tuple[FloatArray, FloatArray]:
     """Return what is left of the residuals beside the free parameters, and an orthonormal basis of theirs."""
     objective = identification.objective
     parts, slopes = [], []
@@ -130,7 +130,7 @@ def _misfit(identification: Identification) -> tuple[FloatArray, FloatArray]:
     return residuals - basis @ (basis.T @ residuals), basis
 
 
-def _gathered(identification: Identification) -> list[tuple[Cause, FloatArray]]:
+def gathered_causes(identification: Identification) -> list[tuple[Cause, FloatArray]]:
     """Return the causes of all experiments, those of one wording as one, each with its whitened direction."""
     objective = identification.objective
     sizes = [part.whitened.size for part in identification.experiments]

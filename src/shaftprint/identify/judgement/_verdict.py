@@ -22,6 +22,7 @@ from shaftprint.errors import IdentificationError
 from shaftprint.identify.fit import Estimate, Identification
 from shaftprint.identify.judgement._affected_numbers import OF_WORKING_POINT, basis_of, by_weight, clause_of
 from shaftprint.identify.judgement._cautions import cautions_of
+from shaftprint.identify.judgement._clock_drift import drift_reasons
 from shaftprint.identify.judgement._data_contradictions import contradicting_data
 from shaftprint.identify.judgement._evidence import Evidence
 from shaftprint.identify.judgement._fit_reasons import (
@@ -140,7 +141,8 @@ def assess(
     suspects = tuple(suspect for suspect in suspects if suspect.share > explained_share)
     hints = tuple(Reason(kind="suspect", sentence=suspect.sentence) for suspect in suspects)
     of_data = (reason for part in identification.experiments for reason in part.response.reasons)
-    every = by_weight((*of_data, *reasons, *contradicted_priors(identification), *of_fit, *hints))
+    drifts = drift_reasons(identification)
+    every = by_weight((*of_data, *reasons, *drifts, *contradicted_priors(identification), *of_fit, *hints))
     numbers = (*identification.parameters, *identification.combinations, *further)
     imprecise = doubts_of(identification, numbers, evidence.profile, evidence.requirements)
     doubts = {number.name: clause_of(number, every) or imprecise.get(number.name, "") for number in numbers}

@@ -4,6 +4,8 @@ from shaftprint.spectra.lines._bin_selection import ExactBin, HighestPeak
 from shaftprint.spectra.lines._clock_check import clock_reasons
 from shaftprint.spectra.lines._cross_term import without_cross_term
 from shaftprint.spectra.lines._harmonics import Harmonics, collect_harmonics
+from shaftprint.spectra.lines._input_band import InputBand, band_of_lines, band_reasons, input_band
+from shaftprint.spectra.lines._input_clock import drift_of_input, drift_of_phases
 from shaftprint.spectra.lines._line_fit import LineFit, SineMethod, WindowSamples, cut_window, window_slice
 from shaftprint.spectra.lines._line_measurement import LineMeasurement, measure_line, strongest_frequency_hz
 from shaftprint.spectra.lines._load_drift import LoadDrift, load_drift
@@ -34,6 +36,7 @@ __all__ = [
     "ExactBin",
     "Harmonics",
     "HighestPeak",
+    "InputBand",
     "LineFit",
     "LineMeasurement",
     "LineNoise",
@@ -48,13 +51,18 @@ __all__ = [
     "Window",
     "WindowSamples",
     "amplitude_remark",
+    "band_of_lines",
+    "band_reasons",
     "check_frequency_unit",
     "check_set_point",
     "clock_reasons",
     "collect_harmonics",
     "cut_messages",
     "cut_window",
+    "drift_of_input",
+    "drift_of_phases",
     "equivalent_samples",
+    "input_band",
     "left_in_remark",
     "levelled",
     "load_drift",
