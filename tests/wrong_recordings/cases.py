@@ -44,7 +44,7 @@ CLOCK = "clock|sample rate|rate_hz|rate of"
 CAMPAIGN = "campaign|set point"
 PULSES = "pulse|strip|pick-up|PTM_e"
 NOTHING = "no cause: the numbers must be right"
-SET_POINT_CLOCK = "clock of the set point|U_setpoint"
+SET_POINT_CLOCK = "constant shift of U_setpoint"
 
 GAUGE = (
     Case(name="vessel file: gauge scale times 2", cause=SCALE, fast=True,
@@ -228,5 +228,32 @@ FILES = (
          truth={"K_Q": 1.025}),
 )  # fmt: skip
 
-CASES = (*GAUGE, *PICK_UPS, *SET_POINTS, *CLOCKS, *GAPS, *FILES)
+STILL, HOLDS, FILTER = "stands still for", "holds each value|low-pass|clock", "low-pass|holds each value"
+
+SAMPLES = (
+    Case(name="torque keeps its last value 30 % of the time, 0.1 s each", cause=STILL, fast=True,
+         change=m.held_in_bursts(0.3, 0.1, TORQUE)),
+    Case(name="torque keeps its last value 50 % of the time, 0.05 s each", cause=STILL,
+         change=m.held_in_bursts(0.5, 0.05, TORQUE)),
+    Case(name="torque keeps its last value 10 % of the time, 0.2 s each", cause=STILL,
+         change=m.held_in_bursts(0.1, 0.2, TORQUE)),
+    Case(name="torque held at 3 Hz", cause=HOLDS, change=m.held_at(3.0, TORQUE)),
+    Case(name="torque held at 10 Hz", cause=HOLDS, change=m.held_at(10.0, TORQUE)),
+    Case(name="torque held at 25 Hz", cause=HOLDS, change=m.held_at(25.0, TORQUE)),
+    Case(name="set point keeps its last value 30 % of the time, 0.1 s each", cause=STILL,
+         change=m.held_in_bursts(0.3, 0.1, SET_POINT)),
+    Case(name="set point held at 3 Hz", cause=HOLDS, change=m.held_at(3.0, SET_POINT)),
+    Case(name="set point held at 10 Hz", cause=HOLDS, change=m.held_at(10.0, SET_POINT)),
+    Case(name="set point held at 25 Hz", cause=HOLDS, change=m.held_at(25.0, SET_POINT)),
+    Case(name="set point through a low-pass of 2 Hz", cause=FILTER, change=m.low_pass(SET_POINT, 2.0)),
+    Case(name="set point through a low-pass of 5 Hz", cause=FILTER, change=m.low_pass(SET_POINT, 5.0)),
+    Case(name="set point through a low-pass of 10 Hz", cause=FILTER, change=m.low_pass(SET_POINT, 10.0)),
+    Case(name="set point as the mean of the last 0.1 s", cause=FILTER, change=m.mean_of(0.1, SET_POINT)),
+    Case(name="set point sampled 50 ppm too fast", cause=CLOCK, change=m.sampled_at(1.00005, SET_POINT)),
+    Case(name="set point sampled 50 ppm too slowly", cause=CLOCK, change=m.sampled_at(0.99995, SET_POINT)),
+    Case(name="set point sampled 20 ppm too fast", cause=CLOCK, assumption="clock of its own",
+         change=m.sampled_at(1.00002, SET_POINT)),
+)  # fmt: skip
+
+CASES = (*GAUGE, *PICK_UPS, *SET_POINTS, *CLOCKS, *GAPS, *FILES, *SAMPLES)
 FAST = tuple(case for case in CASES if case.fast)

@@ -224,6 +224,41 @@ def held(first_s: float, last_s: float, *channels: str) -> Change:
     return lambda trial: both(*(changed(name, applied) for name in channels or tuple(trial.recording.channels)))(trial)
 
 
+def held_in_bursts(share: float, burst_s: float, channel: str) -> Change:
+    """Let a channel keep its last value for a share of the time, in bursts at times of chance."""
+
+    def applied(time: Values, values: Values) -> Values:
+        rng, length = np.random.default_rng(7), round(burst_s / (time[1] - time[0]))
+        found, first = values.copy(), 1
+        while first + length < values.size:
+            found[first : first + length] = found[first - 1]
+            first += length + 1 + int(rng.exponential(length * (1.0 - share) / share))
+        return found
+
+    return changed(channel, applied)
+
+
+def held_at(rate_hz: float, channel: str) -> Change:
+    """Let a channel hold each value until the next of a lower rate."""
+
+    def applied(time: Values, values: Values) -> Values:
+        step_s = time[1] - time[0]
+        return values[np.floor(np.floor((time - time[0]) * rate_hz + 1e-6) / rate_hz / step_s + 0.5).astype(int)]
+
+    return changed(channel, applied)
+
+
+def mean_of(seconds: float, channel: str) -> Change:
+    """Show the mean of what was last."""
+
+    def applied(time: Values, values: Values) -> Values:
+        length = round(seconds / (time[1] - time[0]))
+        total = np.cumsum(np.concatenate([np.full(length, values[0]), values]))
+        return (total[length:] - total[:-length]) / length
+
+    return changed(channel, applied)
+
+
 def clock_jump(jump_s: float, at_s: float) -> Change:
     """Let the clock of all channels jump, as a reader says it."""
 
