@@ -59,6 +59,11 @@ QUESTIONS: tuple[tuple[ReasonKind, Callable[[Evidence], str]], ...] = (
     ("unstable", unstable),
 )
 
+# Found in the samples and lines: beside these a drift of a clock is no cause of its own.
+LATE: frozenset[ReasonKind] = frozenset(
+    ("recording clock", "channel clock", "held samples", "set-point band", "gauge latency")
+)
+
 
 @dataclass(frozen=True, kw_only=True, slots=True, repr=False)
 class Verdict(Shown):
@@ -140,8 +145,10 @@ def assess(
     suspects = suspects_of(identification, rejected=evidence.requirements.lowest_p_value) if rejected else ()
     suspects = tuple(suspect for suspect in suspects if suspect.share > explained_share)
     hints = tuple(Reason(kind="suspect", sentence=suspect.sentence) for suspect in suspects)
-    of_data = (reason for part in identification.experiments for reason in part.response.reasons)
-    drifts = drift_reasons(identification)
+    of_data = tuple(reason for part in identification.experiments for reason in part.response.reasons)
+    # what makes a channel late makes it so by a little more at some lines than at others
+    late = any(reason.kind in LATE for reason in of_data)
+    drifts = () if late else drift_reasons(identification)
     every = by_weight((*of_data, *reasons, *drifts, *contradicted_priors(identification), *of_fit, *hints))
     numbers = (*identification.parameters, *identification.combinations, *further)
     imprecise = doubts_of(identification, numbers, evidence.profile, evidence.requirements)
