@@ -59,7 +59,7 @@ def _assumptions(identification: "Identification", vessel: "Vessel") -> Iterator
 def _widths(identification: "Identification") -> str:
     """Return what to count beside the intervals for what the recording cannot exclude."""
     response = identification.response
-    clock_s = unseen_drift(identification) * float(response.middle_s[identification.fitted].max())
+    clock_s = unseen_drift(identification) * float(response.middle_s.max(initial=0.0))
     widths = [
         (response.input_late_s or 0.0, "a filter or hold that its sines would not show"),
         (clock_s, "a clock of its own"),

@@ -69,7 +69,7 @@ class FrequencyResponse(Shown, Labelled):
     reasons: tuple[Reason, ...] = ()
     """What speaks against the response: what was found on the signals and lines that it was made of."""
     middle_s: FloatArray = field(default_factory=lambda: np.empty(0))
-    """Middle of the window of each line, in seconds of the recording, shape (lines,); 0 when not given."""
+    """Middle of the window of each line, in seconds of the recording, shape (lines,); empty when not given."""
     input_late_s: float | None = None
     """By how much a filter or hold in the channel of the input may make it late that the sizes of its sines do not
     contradict [s]; None where they were not held against what was asked for."""
@@ -151,14 +151,13 @@ class FrequencyResponse(Shown, Labelled):
         dof = self.degrees_of_freedom if np.size(self.degrees_of_freedom) else np.full(count, np.inf)
         used = self.used if np.size(self.used) else np.ones(count, dtype=np.bool_)
         load = self.load if np.size(self.load) else np.ones(count)
-        middle_s = self.middle_s if np.size(self.middle_s) else np.zeros(count)
         for name, array, shape in (
             ("frequency_hz", frozen_float(self.frequency_hz), one_a_line),
             ("response", frozen_complex(self.response), (len(self.outputs), len(self.inputs), count)),
             ("covariance", frozen_float(self.covariance), (count, 2 * channels, 2 * channels)),
             ("degrees_of_freedom", frozen_float(dof), one_a_line),
             ("used", frozen_bool(used), one_a_line),
-            ("middle_s", frozen_float(middle_s), one_a_line),
+            ("middle_s", frozen_float(self.middle_s), one_a_line if np.size(self.middle_s) else (0,)),
             ("load", frozen_complex(load) if np.iscomplexobj(load) else frozen_float(load), one_a_line),
         ):
             _expect_shape(name, array, shape)
@@ -280,7 +279,7 @@ class FrequencyResponse(Shown, Labelled):
             used=self.used[places],
             remarks={name: remark for name, remark in self.remarks.items() if name in names},
             load=self.load[places],
-            middle_s=self.middle_s[places],
+            middle_s=self.middle_s[places] if self.middle_s.size else self.middle_s,
             common={name: part[:, :, places] for name, part in self.common.items()},
         )
 

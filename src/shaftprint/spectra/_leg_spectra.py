@@ -135,7 +135,7 @@ def _leg(signals: "Signals", leg: "Leg", state: "LegState", moved: "ExcitationSi
         response=replace(
             response,
             reasons=(*signals.reasons, *against),
-            input_late_s=None if band is None else band.widest_s,
+            input_late_s=None if band is None or band.late_s else band.widest_s,
             input_drift=measured.window.clock_ratio,
         ),
         windows=tuple(line.window for line in lines),

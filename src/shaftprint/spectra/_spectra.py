@@ -170,7 +170,7 @@ def estimate_spectra(
         response=replace(
             response,
             reasons=(*signals.reasons, *against, *of_band),
-            input_late_s=None if band is None else band.widest_s,
+            input_late_s=None if band is None or band.late_s else band.widest_s,
             input_drift=None if thesis else drift_of_input(measurements, campaign.sines, moved),
         ),
         windows=tuple(line.window for line in measurements),

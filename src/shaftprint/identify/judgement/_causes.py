@@ -88,10 +88,10 @@ def _sensors(structure: Structure, model: ComplexArray, s: ComplexArray) -> Iter
 
 def _clocks(experiment: Experiment, model: ComplexArray) -> Iterator[Cause]:
     """Yield that the clock of one channel runs apart from the others, which makes it ever later or earlier."""
-    middle_s, structure = experiment.response.middle_s[experiment.fitted], experiment.structure
-    if len(structure.inputs) > 1:
+    response, structure = experiment.response, experiment.structure
+    if len(structure.inputs) > 1 or not response.middle_s.size:
         return
-    late = -experiment.s * middle_s * model
+    late = -experiment.s * response.middle_s[experiment.fitted] * model
     for name in (*structure.inputs, *structure.outputs):
         is_input = name in structure.inputs
         if not is_input and len(structure.outputs) == 1:
