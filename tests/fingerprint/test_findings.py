@@ -210,6 +210,9 @@ def test_inertia_off_the_torsional_vibration_calculation(sharp, put_by_hand, jud
     light = judged(put_by_hand(sharp, values={"tau_dn": 0.16}))
     assert one(light, "I_dn").endswith("a factor 2.00.")
     assert none(judged(put_by_hand(sharp, values={"tau_dn": 0.36})), "I_dn")
+    # at its bound of nothing there is no factor
+    nothing = judged(put_by_hand(sharp, values={"tau_dn": 0.0}))
+    assert one(nothing, "I_dn = 0 ") == "I_dn = 0 kg m2 against 17 kg m2 of the vessel file."
 
 
 def test_inertia_of_the_thesis_is_explained(fit, judged):

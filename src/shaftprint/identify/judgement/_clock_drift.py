@@ -117,7 +117,8 @@ def _gain(drift: ClockDrift, share: float) -> float:
 
 
 def _reason(drift: ClockDrift, identification: Identification) -> Reason:
-    middle_s = [part.response.middle_s[part.fitted] for part in identification.experiments]
+    timed = [part for part in identification.experiments if part.response.middle_s.size]
+    middle_s = [part.response.middle_s[part.fitted] for part in timed]
     span_s = float(np.ptp(np.concatenate(middle_s)))
     return Reason(
         kind="channel clock",
