@@ -210,9 +210,13 @@ def test_inertia_off_the_torsional_vibration_calculation(sharp, put_by_hand, jud
     light = judged(put_by_hand(sharp, values={"tau_dn": 0.16}))
     assert one(light, "I_dn").endswith("a factor 2.00.")
     assert none(judged(put_by_hand(sharp, values={"tau_dn": 0.36})), "I_dn")
-    # at its bound of nothing there is no factor
-    nothing = judged(put_by_hand(sharp, values={"tau_dn": 0.0}))
-    assert one(nothing, "I_dn = 0 ") == "I_dn = 0 kg m2 against 17 kg m2 of the vessel file."
+
+
+def test_a_value_of_nothing_has_no_factor(sharp, working_point, vessel):
+    """An inertia at its bound of zero, with the standard deviation of its fit."""
+    values = physical_quantities(sharp, working_point, vessel)
+    nothing = [replace(value, value=0.0) if value.name == "I_dn" else value for value in values]
+    assert one(found(sharp, tuple(nothing)), "I_dn") == "I_dn = 0 kg m2 against 17 kg m2 of the vessel file."
 
 
 def test_inertia_of_the_thesis_is_explained(fit, judged):
