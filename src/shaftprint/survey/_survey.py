@@ -27,6 +27,7 @@ from shaftprint.fingerprint import (
 )
 from shaftprint.identify import Identification, Settings
 from shaftprint.identify.comparison import StructureComparison
+from shaftprint.identify.judgement import explained
 from shaftprint.limits import LimitFit
 from shaftprint.models import Structure
 from shaftprint.notebook import Shown, Summary, shortened
@@ -43,6 +44,7 @@ from shaftprint.survey._noise import noise_at_speeds
 from shaftprint.survey._of_vessel import at_speeds, default_structure, expect_one_speed, of_vessel
 from shaftprint.survey._progress import SILENT, Progress
 from shaftprint.survey._ship_numbers import ship_numbers
+from shaftprint.survey._stray_line import without_stray_line
 from shaftprint.survey._trial import Trial, load_trial
 from shaftprint.survey._validation_apart import with_validation
 from shaftprint.survey._validations import failed_steps, validations_of, validations_with_limits
@@ -191,6 +193,11 @@ def run(
     chosen = tuple(at_speeds(one, speeds) for one in chosen)
     by_name = settings_by_name(chosen, measurement, trial, settings or _with_priors)
     fits = fit(chosen, measurement, settings=by_name, rng=rng, progress=progress)
+    rest = without_stray_line(fits[0], measurement)
+    if rest is not None:
+        again = fit(chosen, rest, settings=by_name, rng=rng, progress=progress)
+        if explained(again[0]):
+            fits, measurement = again, rest
     alone = legs_alone(fits[0], measurement, settings=by_name, rng=rng)
     offer = _offer(fits, measurement, trial, settings or _with_priors, rng=rng, progress=progress)
     survey = _of_fits(fits, measurement, trial, now=now, progress=progress, alone=alone, offer=offer)

@@ -4,7 +4,7 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.identify.fit import Identification
-from shaftprint.identify.judgement._phrases import spans
+from shaftprint.identify.judgement._phrases import probability, spans
 from shaftprint.identify.likelihood import FittedResponse, channel_names, channels_of, load_factors
 
 # Below this probability a fit is rejected, and a line where it is that of the worst of all lines (Bonferroni).
@@ -58,7 +58,10 @@ def misfit_words(identification: Identification) -> str:
     band = f"{omega[0]:.2g} rad/s" if len(worst) == 1 else f"{omega[0]:.2g} to {omega[-1]:.2g} rad/s"
     channel = _standing_out(identification, places)
     where = f"in {channel} " if channel else ""
-    return f"the misfit is largest {where}at {spans(worst, response.lines)} ({band})"
+    # the whole may look well: then the reader must see what does not
+    chance = next(line.p_value for line in identification.line_tests if line.name == worst[0])
+    alone = f", {probability(chance)} by itself" if len(worst) == 1 else ""
+    return f"the misfit is largest {where}at {spans(worst, response.lines)} ({band}){alone}"
 
 
 def _standing_out(identification: Identification, places: list[int]) -> str:
