@@ -1,28 +1,36 @@
-"""Monte Carlo of limits: recordings of a quarter of an hour with one limit each, named and measured by the program.
+"""Monte Carlo of limits: recordings of a quarter of an hour with one limit or none, named and measured by the program.
 
 Every ship is drawn: governor, delays, actuation, and what a vessel file states with a standard deviation. It has one
 limit, of a level at which the limit acts for at least two seconds of the test; all others are far away.
 
-``python -m benchmarks.limits sail --folder DIR --count 100`` writes the recordings, 12 CPU seconds each;
-``python -m benchmarks.limits run --folder DIR`` finds the limits of all that are there and prints the table.
+The ships of ``unkind`` are 100 with one limit, half of them a smoke limit with the lag of a boost and an engine that
+the working point loads by up to 65 %, and 50 with none. Their line of the set point bends by up to 0.3 % per volt, and
+the ship disturbs itself by 0.5 to 2 times as much.
+
+``python -m benchmarks.limits --folder DIR`` sails them, finds the limits and prints the table, a CPU minute each; what
+has an outcome in the folder is not sailed again. ``--first`` and ``--count`` choose ships.
 """
 
 import argparse
 import json
+import tempfile
 import time
-from collections.abc import Callable, Sequence
-from dataclasses import asdict, dataclass, replace
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
+from benchmarks.kept_outcomes import kept
 from benchmarks.nonlinear_fit import with_wide_gauge
 from benchmarks.validation import MOTORING_NM, STRONGER
 from shaftprint.campaign import Campaign, load_campaign, setpoint
 from shaftprint.limits import identify_limits
 from shaftprint.recording import read_recording
 from shaftprint.signals import prepare_signals
-from shaftprint.tug import Truth, Tug, sail, simulate_signals
+from shaftprint.tug import Noise, Truth, Tug, sail, simulate_signals
 from shaftprint.vessel import Vessel, load_vessel
 
 VESSEL = with_wide_gauge(load_vessel("stan-tug-1205"))
@@ -48,10 +56,18 @@ class Drawn:
     tug: Tug
     """The line."""
     vessel: Vessel
-    """What sails: the vessel file is ``VESSEL``."""
+    """What sails."""
+    file: Vessel = VESSEL
+    """What the vessel file says of it."""
 
 
 KINDS = ("torque", "smoke", "rate", "ramp", "deadband", "held")
+NONE = "none"
+OTHERS = tuple(kind for kind in KINDS if kind != "smoke")
+BEND_PER_V = 0.003
+"""The slope of the set point's line changes by up to this share per volt."""
+NOISIER = 2.0
+"""The ship disturbs itself by up to so many times as much, or as little."""
 
 
 def drawn(seed: int) -> Drawn:
@@ -63,6 +79,27 @@ def drawn(seed: int) -> Drawn:
         one = _LIMITED[kind](rng, tug)
         if LEAST_S <= one.acts_s <= MOST_S or np.isinf(one.acts_s):
             return one
+
+
+def unkind(seed: int) -> Drawn:
+    """Return a ship of which two of three have one limit, with a set-point line that bends and noise of its own."""
+    rng = np.random.default_rng([SEED, 98, seed])
+    limited = 2 * (seed // 3) + seed % 3
+    kind = NONE if seed % 3 == 2 else "smoke" if limited % 2 == 0 else OTHERS[limited // 2 % len(OTHERS)]
+    factor = float(np.exp(rng.uniform(-np.log(NOISIER), np.log(NOISIER))))
+    louder = {name: factor * getattr(Noise(), name) for name in PROCESS}
+    bend = float(rng.uniform(-BEND_PER_V, BEND_PER_V))
+    tug = replace(line_of(rng), set_point_bend_per_v=bend, noise=Noise(**louder))
+    if kind == NONE:
+        return Drawn(kind=NONE, levels={}, acts_s=0.0, tug=tug, vessel=_with_torque(STRONGER))
+    while True:
+        one = _boosted(rng, tug) if kind == "smoke" else _LIMITED[kind](rng, tug)
+        if LEAST_S <= one.acts_s <= MOST_S or np.isinf(one.acts_s):
+            return one
+
+
+PROCESS = ("inflow_rms", "surge_rms", "combustion_rms", "hunting_rms", "demand_rms")
+"""What disturbs the ship itself."""
 
 
 def line_of(rng: np.random.Generator) -> Tug:
@@ -103,6 +140,16 @@ def _smoke(rng: np.random.Generator, tug: Tug) -> Drawn:
     smoking, vessel = replace(tug, unboosted_torque_share=air, turbocharger_lag_s=lag), _with_torque(1.0)
     levels = {"a_0": air, "tau_tc": lag}
     return Drawn(kind="smoke", levels=levels, acts_s=_limited_s(smoking, vessel), tug=smoking, vessel=vessel)
+
+
+def _boosted(rng: np.random.Generator, tug: Tug) -> Drawn:
+    """Return a turbocharged engine that the vessel file knows, loaded by up to 65 % at the working point."""
+    air, lag, vessel = float(rng.uniform(0.42, 0.6)), float(rng.uniform(0.5, 2.0)), _with_torque(rng.uniform(0.55, 1.0))
+    smoking = replace(tug, unboosted_torque_share=air, turbocharger_lag_s=lag)
+    acts_s = _limited_s(smoking, vessel)
+    return Drawn(
+        kind="smoke", levels={"a_0": air, "tau_tc": lag}, acts_s=acts_s, tug=smoking, vessel=vessel, file=vessel
+    )
 
 
 def _rate(rng: np.random.Generator, tug: Tug) -> Drawn:
@@ -158,80 +205,54 @@ def true_levels(one: Drawn, truth: Truth) -> dict[str, float]:
     return one.levels
 
 
-def write(folder: Path, seeds: Sequence[int]) -> None:
-    """Sail the ships of some seeds that are not there yet."""
-    folder.mkdir(parents=True, exist_ok=True)
-    for seed in seeds:
-        path = folder / f"{seed:03d}.nc"
-        if path.exists():
-            continue
-        one = drawn(seed)
+def outcome(seed: int) -> dict[str, Any]:
+    """Sail one ship, find its limits, and hold them against the truth."""
+    one = unkind(seed)
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "limits.nc"
         truth = sail(one.vessel, CAMPAIGN, path, tug=one.tug, seed=seed)
-        about = {"kind": one.kind, "levels": true_levels(one, truth), "acts_s": min(one.acts_s, CAMPAIGN.duration_s)}
-        path.with_suffix(".limit.json").write_text(json.dumps(about), encoding="utf-8")
-        print(seed, about, flush=True)
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Result:
-    """What the program says of one recording."""
-
-    seed: int
-    """Number of the recording."""
-    kind: str
-    """The limit that it has."""
-    named: bool
-    """Whether it is among those that were named."""
-    also: tuple[str, ...]
-    """What was named besides."""
-    inside: dict[str, bool]
-    """Whether each true number is in its interval."""
-    error: dict[str, float]
-    """Estimate less truth, in standard deviations."""
-    width: dict[str, float]
-    """Length of the interval over the truth."""
-    seconds: float
-    """CPU time of ``identify_limits``."""
-
-
-def run(folder: Path, seed: int) -> Result:
-    """Find the limits of one recording and hold them against the truth."""
-    path = folder / f"{seed:03d}.nc"
-    about = json.loads(path.with_suffix(".limit.json").read_text(encoding="utf-8"))
-    with read_recording(path) as recording:
-        signals = prepare_signals(recording, VESSEL, CAMPAIGN)
+        with read_recording(path) as recording:
+            signals = prepare_signals(recording, one.file, CAMPAIGN)
     begin = time.process_time()
-    found = identify_limits(signals, CAMPAIGN, VESSEL)
-    kinds = {kind.name.lower() for kind in found.kinds}
-    numbers = {number.name: number for number in found.numbers}
-    levels = {name: value for name, value in about["levels"].items() if name in numbers}
-    return Result(
-        seed=seed,
-        kind=about["kind"],
-        named=about["kind"] in kinds,
-        also=tuple(sorted(kinds - {about["kind"]})),
-        inside={name: numbers[name].lower <= value <= numbers[name].upper for name, value in levels.items()},
-        error={name: (numbers[name].value - value) / numbers[name].std for name, value in levels.items()},
-        width={name: (numbers[name].upper - numbers[name].lower) / value for name, value in levels.items()},
-        seconds=time.process_time() - begin,
-    )
+    found = identify_limits(signals, CAMPAIGN, one.file)
+    seconds = time.process_time() - begin
+    named, true = {kind.name.lower() for kind in found.kinds}, true_levels(one, truth)
+    return {
+        "seed": seed,
+        "kind": one.kind,
+        "acts_s": min(one.acts_s, CAMPAIGN.duration_s),
+        "named": one.kind in named,
+        "also": sorted(named - {one.kind}),
+        "also_trusted": sorted({n.kind.name.lower() for n in found.numbers if n.trusted} - {one.kind}),
+        "gains": {kind.name.lower(): gain for kind, gain in found.gains.items()},
+        "at_bounds": [estimate.name for estimate in found.governor if estimate.at_bound],
+        "numbers": {
+            n.name: {
+                "value": n.value, "std": n.std, "interval": (n.lower, n.upper),
+                "true": true.get(n.name), "doubt": n.doubt,
+            }
+            for n in found.numbers
+        },
+        "cpu_s": seconds,
+    }  # fmt: skip
 
 
-def table(results: Sequence[Result]) -> str:
+def table(outcomes: Sequence[Mapping[str, Any]]) -> str:
     """Return one row a kind, in Markdown."""
-    lines = ["| limit | recordings | named | level inside | interval / level | also named | CPU s |"]
-    lines.append("|---|---|---|---|---|---|---|")
-    for kind in (*KINDS, "all"):
-        own = [one for one in results if kind in (one.kind, "all")]
-        named = [one for one in own if one.named]
-        level = {LEVEL[one.kind] for one in own}
-        inside = [one.inside[name] for one in named for name in level if name in one.inside]
-        width = [one.width[name] for one in named for name in level if name in one.width]
-        also = sum(bool(one.also) for one in own)
-        seconds = np.median([one.seconds for one in own]) if own else np.nan
+    lines = ["| limit | recordings | named | of it trusted | level inside | interval / level | also named | CPU s |"]
+    lines.append("|---|---|---|---|---|---|---|---|")
+    for kind in (*KINDS, NONE, "all"):
+        own = [one for one in outcomes if kind in (one["kind"], "all")]
+        levels = [one["numbers"].get(LEVEL[one["kind"]]) for one in own if one["named"]]
+        known = [one for one in levels if one is not None and not one["doubt"]]
+        inside = [one["interval"][0] <= one["true"] <= one["interval"][1] for one in known]
+        width = [(one["interval"][1] - one["interval"][0]) / one["true"] for one in known]
+        also, trusted = (sum(bool(one[name]) for one in own) for name in ("also", "also_trusted"))
+        limited = sum(one["kind"] != NONE for one in own)
         lines.append(
-            f"| {kind} | {len(own)} | {len(named)} | {sum(inside)} of {len(inside)} | "
-            f"{100.0 * np.median(width) if width else np.nan:.1f} % | {also} | {seconds:.0f} |"
+            f"| {kind} | {len(own)} | {len(levels)} of {limited} | {len(known)} | {sum(inside)} of {len(inside)} | "
+            f"{f'{100.0 * np.median(width):.1f} %' if width else ''} | {also}, trusted {trusted} | "
+            f"{np.median([one['cpu_s'] for one in own]) if own else np.nan:.0f} |"
         )
     return "\n".join(lines)
 
@@ -241,23 +262,17 @@ LEVEL = {"torque": "share", "smoke": "a_0", "rate": "r_x", "ramp": "r_s_rpm", "d
 
 
 def main() -> None:
-    """Sail or run."""
+    """Sail, find and print."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("what", choices=("sail", "run"))
-    parser.add_argument("--folder", type=Path, required=True, help="where the recordings are")
-    parser.add_argument("--count", type=int, default=100, help="number of recordings")
-    parser.add_argument("--first", type=int, default=0, help="number of the first recording to run")
+    parser.add_argument("--folder", type=Path, required=True, help="where the outcomes are")
+    parser.add_argument("--first", type=int, default=0, help="number of the first ship")
+    parser.add_argument("--count", type=int, default=150, help="number of ships")
     options = parser.parse_args()
-    if options.what == "sail":
-        write(options.folder, range(options.count))
-        return
-    results = []
-    for seed in range(options.first, options.count):
-        if not (options.folder / f"{seed:03d}.limit.json").exists():
-            continue
-        results.append(run(options.folder, seed))
-        print(json.dumps(asdict(results[-1])), flush=True)
-    print(table(results))
+    options.folder.mkdir(parents=True, exist_ok=True)
+    for seed in range(options.first, options.first + options.count):
+        one = kept(options.folder / f"{seed:03d}.json", partial(outcome, seed))
+        print({name: one[name] for name in ("seed", "kind", "named", "also", "also_trusted", "at_bounds")}, flush=True)
+    print(table([json.loads(path.read_text(encoding="utf-8")) for path in sorted(options.folder.glob("*.json"))]))
 
 
 if __name__ == "__main__":

@@ -7,10 +7,11 @@ import numpy as np
 import pytest
 
 from shaftprint.campaign import Campaign
-from shaftprint.limits import limit_hints
+from shaftprint.catalogue import limited_governor
+from shaftprint.limits import Kind, LimitEstimate, LimitFit, limit_hints
 from shaftprint.limits._identify_limits import LEAST_OFFSET_STD, _offset_std
 from shaftprint.limits._level_profile import LevelInterval
-from shaftprint.limits._numbers import _doubt
+from shaftprint.limits._numbers import _doubt, doubt_of_governor
 from shaftprint.limits.prediction import ORDER, innovations
 from shaftprint.spectra import Harmonics
 from shaftprint.time_domain import jumps_in, with_jumps
@@ -101,6 +102,71 @@ def test_steps_that_a_model_of_sines_fails_point_to_limits():
     assert "shaftprint limits" in where
     (quiet,) = limit_hints(harmonics(5e-4), [])
     assert "shaftprint limits" not in quiet
+
+
+def test_a_limit_that_a_search_has_named_is_not_passed_over():
+    (only,) = limit_hints(harmonics(5e-4), [], named=["rate limit of the set point, not trusted"])
+    assert "Nothing hints" not in only
+    assert "rate limit of the set point, not trusted" in only
+    _, last = limit_hints(harmonics(8e-3), [], named=["smoke limit"])
+    assert last == "The search for limits has found: smoke limit."
+
+
+@pytest.mark.parametrize(
+    ("moved", "said"),
+    [
+        ({}, ""),
+        ({"omega_n": 40.0}, "omega_n"),
+        ({"c_set": 0.95002, "e_set": -0.05}, "c_set, e_set"),
+        ({"t_sp": 0.0}, "t_sp"),
+    ],
+)
+def test_nothing_is_trusted_beside_a_governor_at_the_ends_of_its_range(moved, said):
+    structure = limited_governor("torque").free_between(omega_n=(3.0, 40.0), t_sp=(0.0, 0.3))
+    values = {
+        "K_p": 5.4,
+        "K_i": 4.3,
+        "t_d": 0.07,
+        "omega_n": 10.3,
+        "zeta": 0.47,
+        "t_sp": 0.05,
+        "c_set": 1.0,
+        "e_set": 0.0,
+    }
+    # a level at the end of its range says nothing of the governor
+    fit = SimpleNamespace(term=SimpleNamespace(structure=structure), values=values | {"m_max": 6.0} | moved)
+    fit.values |= {p.name: p.value for p in structure.free if p.name not in fit.values}
+    doubt = doubt_of_governor(fit)
+    assert (doubt == "") if not said else (f"({said})" in doubt)
+
+
+def limit_fit(*numbers):
+    """What is found, of numbers given as kind, symbol and doubt."""
+    estimates = tuple(
+        LimitEstimate(kind=kind, name=name, unit="-", value=1.0, std=0.1, lower=0.8, upper=1.2, meaning="", doubt=doubt)
+        for kind, name, doubt in numbers
+    )
+    gains = dict.fromkeys([kind for kind, _, _ in numbers], 100.0)
+    return LimitFit(
+        numbers=estimates, gains=gains, governor=(), not_seen={}, identification=None, reached="It went far."
+    )
+
+
+def test_a_limit_counts_by_its_level_and_a_smoke_limit_by_the_torque_limit_too():
+    found = limit_fit(
+        (Kind.TORQUE, "share", "at its bound"), (Kind.TORQUE, "T_aw", ""), (Kind.SMOKE, "a_0", ""),
+        (Kind.MOTORING, "m_min", ""), (Kind.MOTORING, "M_min", "hardly known"),
+    )  # fmt: skip
+    assert found.trusted_kinds == (Kind.MOTORING,)
+    assert found.doubts[Kind.TORQUE] == "at its bound"
+    assert "torque limit" in found.doubts[Kind.SMOKE]
+    assert limit_fit((Kind.SMOKE, "a_0", ""), (Kind.SMOKE, "tau_tc", "hardly known")).trusted_kinds == (Kind.SMOKE,)
+
+
+def test_none_found_says_how_far_the_test_went():
+    sentence = limit_fit().sentence
+    assert "It went far." in sentence
+    assert "No limit acts" not in sentence
 
 
 def test_a_held_demand_comes_late_by_half_a_message(vessel):

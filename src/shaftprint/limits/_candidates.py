@@ -94,6 +94,10 @@ CANDIDATES: tuple[LimitCandidate, ...] = (
 LAGS_S = (0.6, 1.6)
 """Lags of the turbocharger that are tried with each torque without boost [s]."""
 
+LARGEST_UNBOOSTED = 0.95
+FULL_SHARES = (0.5, 0.65, 0.8, 0.9, 1.1, 1.25)
+"""Full-load torques over that of the vessel file that are tried beside a smoke limit."""
+
 
 def starts_of(
     candidate: LimitCandidate, values: Mapping[str, float], torque: FloatArray, full: float
@@ -110,6 +114,16 @@ def starts_of(
         Full-load torque of the vessel file over the brake torque of the working point.
     """
     match candidate.kind:
+        case Kind.TORQUE if values[GovernorSymbol.UNBOOSTED_TORQUE] < IDLE[GovernorSymbol.UNBOOSTED_TORQUE]:
+            # a smoke limit is a share of the torque limit: what there is without boost stays
+            unboosted = values[GovernorSymbol.UNBOOSTED_TORQUE]
+            return [
+                {
+                    GovernorSymbol.TORQUE_LIMIT: share * full,
+                    GovernorSymbol.UNBOOSTED_TORQUE: min(unboosted / share, LARGEST_UNBOOSTED),
+                }
+                for share in FULL_SHARES
+            ]
         case Kind.TORQUE:
             # below the torque of steady running there is no line that could be tested
             highest = float(np.max(torque))

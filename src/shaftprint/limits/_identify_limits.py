@@ -22,6 +22,7 @@ from shaftprint.limits._numbers import (
     numbers_of,
     quantum_exclusion,
     quantum_number,
+    reached,
 )
 from shaftprint.limits._search import Scanned, Search, with_messages
 from shaftprint.limits._set_point_quantum import quantum_of
@@ -106,13 +107,13 @@ def identify_limits(
     )
     best, identification = identified(rough)
     spread = spread_of(best, test, signals, vessel)
-    numbers = numbers_of(best, spread, units, say=partial(say, "Finding the intervals"))
+    numbers = numbers_of(best, spread, units, search.reach, say=partial(say, "Finding the intervals"))
     say("Comparing the limits", "")
     gains = _gains(search, here)
     not_seen = _not_seen(here, scanned, search.messages(here), units)
     quantum = quantum_of(best, test, campaign)
     if quantum is not None and quantum.acts:
-        numbers, gains = (*numbers, quantum_number(quantum, units)), {**gains, Kind.QUANTUM: quantum.gain}
+        numbers, gains = (*numbers, quantum_number(quantum, units, best)), {**gains, Kind.QUANTUM: quantum.gain}
     else:
         not_seen = {**not_seen, Kind.QUANTUM: quantum_exclusion(quantum, units)}
     return LimitFit(
@@ -121,6 +122,7 @@ def identify_limits(
         governor=_governor(best, spread, identification),
         not_seen=not_seen,
         identification=identification,
+        reached=reached(search.reach, units),
     )
 
 
@@ -158,10 +160,8 @@ def whole_governor() -> Structure:
 
 
 def _gains(search: Search, here: Fitted) -> Mapping[Kind, float]:
-    """Return what each limit brings to the others; a single one needs no further fit."""
-    if len(here.kinds) == 1:
-        return {here.kinds[0]: schwarz(search.linear()) - schwarz(here)}
-    gains = {kind: schwarz(search.without(here, [kind])) - schwarz(here) for kind in here.kinds}
+    """Return what each limit brings to the others."""
+    gains = {kind: schwarz(search.without(here, kind)) - schwarz(here) for kind in here.kinds}
     return dict(sorted(gains.items(), key=lambda pair: -pair[1]))
 
 

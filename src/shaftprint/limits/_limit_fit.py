@@ -55,6 +55,8 @@ class LimitFit(Shown):
     """For each limit that does not act: up to which level the data exclude it, in words."""
     identification: Identification
     """The fit."""
+    reached: str
+    """What the test reached, in words: of limits beyond it says nothing."""
 
     def summary(self) -> Summary:
         """Return the limits with their intervals."""
@@ -74,6 +76,24 @@ class LimitFit(Shown):
         return tuple(number for number in self.numbers if number.trusted)
 
     @property
+    def trusted_kinds(self) -> tuple[Kind, ...]:
+        """The limits whose level may be used; a smoke limit is a share of the torque limit, where there is one."""
+        first = {number.kind: number.trusted for number in reversed(self.numbers)}
+        return tuple(
+            kind for kind in self.kinds if first[kind] and (kind is not Kind.SMOKE or first.get(Kind.TORQUE, True))
+        )
+
+    @property
+    def doubts(self) -> Mapping[Kind, str]:
+        """Why the level of a limit is not to be used, for those of which it is not."""
+        first = {number.kind: number for number in reversed(self.numbers)}
+        return {
+            kind: first[kind].doubt or "it is a share of a torque limit that is not trusted"
+            for kind in self.kinds
+            if kind not in self.trusted_kinds
+        }
+
+    @property
     def predicted(self) -> PredictedTorque:
         """The data with the torque over the load as governor and limits predict it."""
         (part,) = self.identification.parts
@@ -83,20 +103,23 @@ class LimitFit(Shown):
 
     @property
     def structure_limits(self) -> tuple[str, ...]:
-        """The limits that act, by the names of ``time_domain.structure_for``, for a fit of the whole line with them."""
-        return tuple(dict.fromkeys(name for kind in self.kinds for name in STRUCTURE_LIMITS.get(kind, ())))
+        """The trusted limits by the names of ``time_domain.structure_for``, for a fit of the whole line with them."""
+        return tuple(dict.fromkeys(name for kind in self.trusted_kinds for name in STRUCTURE_LIMITS.get(kind, ())))
 
     @property
     def start(self) -> Mapping[str, float]:
-        """Values of the limits' parameters, from which such a fit may start."""
-        names = parameters_of(self.kinds)
+        """Values of the trusted limits' parameters, from which such a fit may start."""
+        names = parameters_of(self.trusted_kinds)
         return {one.name: one.value for one in self.identification.parameters if one.name in names}
 
     @property
     def sentence(self) -> str:
         """All limits in a sentence."""
         if not self.kinds:
-            return "No limit acts in this test: governor and engine are linear beyond what its noise hides."
+            return (
+                "No limit was found: governor and engine are linear in this test, beyond what its noise hides. "
+                f"{self.reached} What lies beyond was not asked for."
+            )
         named = [f"a {kind.value}" for kind in self.kinds]
         listed = named[0] if len(named) == 1 else f"{', '.join(named[:-1])} and {named[-1]}"
         return f"Governor and engine show {listed}: a linear model does not hold where they act."

@@ -16,7 +16,9 @@ LEAST_POWER, LEAST_SHARE = 14.0, 0.02
 THIRD = 3
 
 
-def limit_hints(harmonics: Harmonics, failed_steps: Sequence[str] | None = None) -> tuple[str, ...]:
+def limit_hints(
+    harmonics: Harmonics, failed_steps: Sequence[str] | None = None, *, named: Sequence[str] = ()
+) -> tuple[str, ...]:
     """Return whether sines and steps of a test hint at a limit, in words; levels are not looked for.
 
     Parameters
@@ -25,6 +27,8 @@ def limit_hints(harmonics: Harmonics, failed_steps: Sequence[str] | None = None)
         Those of the test lines, from ``estimate_spectra``.
     failed_steps
         Steps that a model identified from the sines does not predict; None where no model was held against them.
+    named
+        The limits that a search for them has found already, in words.
     """
     if failed_steps is None and not np.isfinite(harmonics.amplitude).any():
         return (
@@ -43,10 +47,16 @@ def limit_hints(harmonics: Harmonics, failed_steps: Sequence[str] | None = None)
             f"The model of the sines does not predict larger moves ({', '.join(failed_steps)}): a limit may act there."
         )
     if hints:
-        return (*hints, "shaftprint limits names what acts and finds its level.")
+        return (*hints, _found(named) if named else "shaftprint limits names what acts and finds its level.")
     if failed_steps is None:
         return ("No sine has a third harmonic above the noise: if a limit acts, then in the steps alone.",)
+    if named:
+        return (f"No sine has a third harmonic above the noise, and no step fails the model. {_found(named)}",)
     return ("Nothing hints at a limit: no sine has a third harmonic above the noise, and no step fails the model.",)
+
+
+def _found(named: Sequence[str]) -> str:
+    return f"The search for limits has found: {', '.join(named)}."
 
 
 def _third_harmonics(harmonics: Harmonics) -> list[str]:

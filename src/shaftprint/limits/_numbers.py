@@ -1,19 +1,20 @@
 """Numbers of limits in the units of the ship, and whether they may be trusted."""
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from shaftprint.catalogue import GovernorSymbol
 from shaftprint.distributions import NORMAL_95
 from shaftprint.limits._candidates import CANDIDATES, Kind, LimitCandidate
-from shaftprint.limits._governor_fit import Fitted
+from shaftprint.limits._governor_fit import GOVERNOR, Fitted
 from shaftprint.limits._level_profile import LevelInterval, profile_interval
 from shaftprint.limits._limit_fit import LimitEstimate
 from shaftprint.limits._set_point_quantum import Quantum
 from shaftprint.limits._uncertainty import LevelScatter
-from shaftprint.limits.prediction import Messages
+from shaftprint.limits.prediction import Messages, Reach
+from shaftprint.models import Parameter
 from shaftprint.signals import Signals
 from shaftprint.units import rpm_from_rev_s
 from shaftprint.vessel import Vessel
@@ -23,6 +24,8 @@ HARDLY_KNOWN = 0.6
 # Deviation of the set point's line at the working point, over its speed, up to which the search tells a line that rests
 # at its torque limit from one that does not: of five recordings beyond it the level of three was wrong.
 LARGEST_LINE_STD = 0.003
+# Share of its range by which a parameter of the governor may come near an end of it.
+AT_END = 1e-3
 # Torque limits below this share of the full-load curve are rather a lack of air than of fuel.
 LEAST_SHARE = 0.8
 # Of 17 simulated set points with a limited rate the rate came out 0.6 % high, 0.8 % in the root mean square, with
@@ -120,22 +123,29 @@ class Units:
 
 
 def numbers_of(
-    fit: Fitted, spread: LevelScatter, units: Units, *, say: Callable[[str], None]
+    fit: Fitted, spread: LevelScatter, units: Units, reach: Reach, *, say: Callable[[str], None]
 ) -> tuple[LimitEstimate, ...]:
     """Return the numbers of all limits, with profile intervals; ``say`` is told which."""
+    of_governor = doubt_of_governor(fit)
     by_kind = {candidate.kind: candidate for candidate in CANDIDATES}
     done = set[str]()
     rows: list[LimitEstimate] = []
     for kind in fit.kinds:
         if kind is Kind.HELD and fit.messages is not None:
-            rows.append(_cycle(fit.messages))
+            rows.append(_doubted(_cycle(fit.messages), of_governor))
             continue
+        passed = doubt_of_passed(kind, fit, reach)
         for name in (by_kind[kind].level, *by_kind[kind].companions):
             if name not in done:
                 done.add(name)
                 say(f"{kind.value}, {name}")
-                rows += _printed(fit, spread, units, kind, name)
+                rows += [_doubted(one, of_governor or passed) for one in _printed(fit, spread, units, kind, name)]
     return tuple(rows)
+
+
+def _doubted(number: LimitEstimate, doubt: str) -> LimitEstimate:
+    """Return a number with a doubt that goes before its own; as it is where there is none."""
+    return replace(number, doubt=doubt) if doubt else number
 
 
 def doubt_of_line(fit: Fitted) -> str:
@@ -154,6 +164,30 @@ def doubt_of_line(fit: Fitted) -> str:
             "falls behind it at a limit: test again with smaller sines"
         )
     return ""
+
+
+def doubt_of_governor(fit: Fitted) -> str:
+    """Return why no number beside a governor is trusted; nothing where they may be."""
+    at_bounds = [p.name for p in fit.term.structure.free if p.name in GOVERNOR and _is_at_bound(p, fit.values[p.name])]
+    if not at_bounds:
+        return ""
+    return (
+        f"the governor beside it stands at the end of its range ({', '.join(at_bounds)}): it makes up for a limit of "
+        "another kind"
+    )
+
+
+def _is_at_bound(parameter: Parameter, value: float) -> bool:
+    """Return whether a parameter is within a thousandth of its range of an end of it."""
+    near = AT_END * (parameter.upper - parameter.lower)
+    return value <= parameter.lower + near or value >= parameter.upper - near
+
+
+def doubt_of_passed(kind: Kind, fit: Fitted, reach: Reach) -> str:
+    """Return that a test itself passed a limit; nothing where it did not."""
+    if not reach.passes(kind, fit.values):
+        return ""
+    return "the test itself passed it: what was measured there contradicts the level"
 
 
 def _below_the_curve(kind: Kind, values: Mapping[str, float], units: Units) -> str:
@@ -201,11 +235,11 @@ def _cycle(messages: Messages) -> LimitEstimate:
     )
 
 
-def quantum_number(quantum: Quantum, units: Units) -> LimitEstimate:
-    """Return the step of a quantised set point."""
+def quantum_number(quantum: Quantum, units: Units, fit: Fitted) -> LimitEstimate:
+    """Return the step of a quantised set point, beside a governor."""
     value, std = units.speed_rpm * quantum.step, units.speed_rpm * quantum.std
     ends = (value - NORMAL_95 * std, value, value + NORMAL_95 * std)
-    doubt = "" if quantum.is_only_one else "another step explains the test nearly as well"
+    doubt = doubt_of_governor(fit) or ("" if quantum.is_only_one else "another step explains the test nearly as well")
     return _of_set_point(Kind.QUANTUM, Scale("q_rpm", "rpm", "step of the set point"), ends, std, doubt=doubt)
 
 
@@ -260,6 +294,15 @@ def exclusion(candidate: LimitCandidate, level: float | None, units: Units) -> s
     }[candidate.kind]
     unit = "" if scale.unit == "-" else f" {scale.unit}"
     return f"{candidate.kind.value}: not seen, {side} {scale.name} = {scale.factor * level:.3g}{unit}"
+
+
+def reached(reach: Reach, units: Units) -> str:
+    """Return what a test reached, in words."""
+    return (
+        f"It took the engine to {100.0 * reach.highest / units.full:.0f} % of the full-load curve and down to a torque "
+        f"of {100.0 * reach.lowest:.0f} % of the working point's, half a second each, and the speed followed a set "
+        f"point of at least {units.speed_rpm * reach.set_point_rate_per_s:.0f} rpm/s."
+    )
 
 
 def messages_exclusion(cycle_s: float | None) -> str:

@@ -42,8 +42,8 @@ hundred other ships are as far off as stated (benchmarks/one_fit.py)."""
 def with_everything(survey: Survey, *, rng: np.random.Generator, progress: Progress = SILENT) -> Survey:
     """Return a survey whose fingerprint has the line with its limits, found from all of the test in one fit.
 
-    Where steps and sweeps contradict the sines the line is that of the sines, as ``with_limits`` gives it, and the
-    survey's remarks say so.
+    Where steps and sweeps contradict the sines, or a limit is named whose level is not trusted, the line is that of the
+    sines, as ``with_limits`` gives it, and the survey's remarks say so.
 
     Parameters
     ----------
@@ -65,6 +65,9 @@ def with_everything(survey: Survey, *, rng: np.random.Generator, progress: Progr
     expect_limitable(survey.fingerprint)
     signals, campaign, vessel = survey.signals, survey.campaign, survey.vessel
     limits = identify_limits(signals, campaign, vessel, progress=progress.tell)
+    if limits.doubts:
+        # steps that meet a limit whose level nobody knows would bend all of the fit
+        return with_levels_beside(survey, limits, survey.fingerprint, progress=progress)
     progress.tell("Fitting everything at once", "")
     model = _model(survey, limits)
     joint = identify_nonlinear(

@@ -9,7 +9,9 @@ from shaftprint.survey._measurement import Measurement
 from shaftprint.survey._trial import Trial
 
 
-def hints_of(measurement: Measurement, trial: Trial, failed_steps: Sequence[str] | None) -> tuple[str, ...]:
+def hints_of(
+    measurement: Measurement, trial: Trial, failed_steps: Sequence[str] | None, *, named: Sequence[str] = ()
+) -> tuple[str, ...]:
     """Return whether a limit may have acted, in words.
 
     The lines of a leg have no harmonics of their own, so that what it reaches is held against the vessel file.
@@ -18,13 +20,15 @@ def hints_of(measurement: Measurement, trial: Trial, failed_steps: Sequence[str]
     ----------
     failed_steps
         Steps that a model does not predict; None where no model was held against them.
+    named
+        The limits that a search for them has found already, in words.
     """
     if not measurement.legs:
-        return limit_hints(measurement.spectra.harmonics, failed_steps)
+        return limit_hints(measurement.spectra.harmonics, failed_steps, named=named)
     operation = recorded_operation(measurement.signals, trial.campaign, trial.vessel)
     names = {leg.name for leg in measurement.legs}
     uses = [use for use in limit_uses(operation, stated_limits(trial.vessel)) if use.excitation in names]
-    of_sines = limit_hints(measurement.spectra.harmonics, failed_steps) if trial.campaign.sines else ()
+    of_sines = limit_hints(measurement.spectra.harmonics, failed_steps, named=named) if trial.campaign.sines else ()
     return (*_of_legs(uses), *of_sines)
 
 

@@ -37,7 +37,7 @@ def with_levels_beside(
     Parameters
     ----------
     limits
-        Which limits act.
+        Which limits act; the line gets those whose level is trusted.
     line_fit
         The fingerprint whose governor and inertias the line has; the levels are fitted beside them.
     found_by
@@ -49,7 +49,7 @@ def with_levels_beside(
         survey.signals,
         survey.campaign,
         survey.vessel,
-        kinds=limits.kinds,
+        kinds=limits.trusted_kinds,
         start=limits.start,
     )
     line = line_with_limits(
@@ -58,7 +58,20 @@ def with_levels_beside(
         vessel=survey.vessel,
         working_point=survey.signals.working_point,
         found_by=found_by,
-        numbers=[limit_number(one) for one in limits.numbers],
+        numbers=[limit_number(one) for one in limits.numbers if one.kind in limits.trusted_kinds],
         not_seen=list(limits.not_seen.values()),
     )
-    return replace(survey, limit_fit=limits, fingerprint=survey.fingerprint.model_copy(update={"with_limits": line}))
+    return replace(
+        survey,
+        limit_fit=limits,
+        remarks=(*survey.remarks, *untrusted(limits)),
+        fingerprint=survey.fingerprint.model_copy(update={"with_limits": line}),
+    )
+
+
+def untrusted(limits: LimitFit) -> list[str]:
+    """Return which limits a line does not get because their level is not trusted, in words."""
+    return [
+        f"A {kind.value} was named, but is not in the line with its limits: {doubt}."
+        for kind, doubt in limits.doubts.items()
+    ]

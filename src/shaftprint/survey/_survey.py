@@ -122,7 +122,10 @@ class Survey(Shown):
     @cached_property
     def limit_hints(self) -> tuple[str, ...]:
         """Whether sines, steps or legs hint at a limit, in words."""
-        return hints_of(self.measurement, self.trial, failed_steps(self.validations))
+        limits = self.limit_fit
+        doubts = {} if limits is None else limits.doubts
+        named = [f"{kind.value}{', not trusted' * (kind in doubts)}" for kind in limits.kinds] if limits else []
+        return hints_of(self.measurement, self.trial, failed_steps(self.validations), named=named)
 
 
 @refusing_none(SettingsError)

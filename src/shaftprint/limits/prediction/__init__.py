@@ -4,6 +4,7 @@ from shaftprint.limits.prediction._governor_test import GovernorTest, governor_t
 from shaftprint.limits.prediction._held_set_point import Messages, explained, messages_of
 from shaftprint.limits.prediction._noise_colour import ORDER, Innovations, innovations
 from shaftprint.limits.prediction._prediction_error import OUTPUT, PredictedTorque, PredictionError
+from shaftprint.limits.prediction._reach import Reach
 from shaftprint.limits.prediction._set_point import GovernorRecord, rate_limited
 
 __all__ = [
@@ -15,6 +16,7 @@ __all__ = [
     "Messages",
     "PredictedTorque",
     "PredictionError",
+    "Reach",
     "explained",
     "governor_test",
     "innovations",

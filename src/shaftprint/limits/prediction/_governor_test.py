@@ -28,6 +28,8 @@ LEAST_SPEED = 0.1
 SLOW, BESIDE_S = -0.45, 1.0
 # After a stretch that is not known the integrator of the governor is not either, until the observer leads it back [s].
 SETTLED_S = 25.0
+# Means over this time [s] show the offset of the set point where it moves by no more than this deviation [-].
+BLOCK_S, STILL = 2.0, 0.02
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -69,6 +71,21 @@ class GovernorTest:
     def engine_torque(self) -> FloatArray:
         """Return ``M_b = M_s + tau_up dn/dt`` [-], shape (samples,)."""
         return self.shaft_torque + self.upstream_s * np.gradient(self.speed, self.time_s)
+
+    def settled_offset(self) -> float:
+        """Return by how much the speed lies above the set point where that hardly moves [-].
+
+        The median of short means: of a line that reaches a limit in steps and fast sines alone it is the offset of the
+        set point, while the mean of all is pulled down by them.
+        """
+        count = round(BLOCK_S / self.step_s)
+        set_point = self.without_jumps + sum_of_jumps(self.time_s, self.jumps, self.late_s)
+        known = ~self.lost & (self.time_s >= self.begin_s) & (self.time_s <= self.end_s)
+        blocks = [one[: one.size // count * count].reshape(-1, count) for one in (set_point, self.speed, known)]
+        still = blocks[2].all(axis=1) & (blocks[0].std(axis=1) < STILL)
+        if not still.any():
+            return 0.0
+        return float(np.median((blocks[1] - blocks[0])[still].mean(axis=1)))
 
     def with_inertia(self, factor: float) -> "GovernorTest":
         """Return the test as if the inertia upstream of the gauge were larger by a factor."""
