@@ -239,19 +239,19 @@ def outcome(seed: int) -> dict[str, Any]:
 
 def table(outcomes: Sequence[Mapping[str, Any]]) -> str:
     """Return one row a kind, in Markdown."""
-    lines = ["| limit | recordings | named | of it trusted | level inside | interval / level | also named | CPU s |"]
+    lines = ["| limit | recordings | named | level inside | trusted, of it inside | interval / level | also | CPU s |"]
     lines.append("|---|---|---|---|---|---|---|---|")
     for kind in (*KINDS, NONE, "all"):
         own = [one for one in outcomes if kind in (one["kind"], "all")]
-        levels = [one["numbers"].get(LEVEL[one["kind"]]) for one in own if one["named"]]
-        known = [one for one in levels if one is not None and not one["doubt"]]
-        inside = [one["interval"][0] <= one["true"] <= one["interval"][1] for one in known]
-        width = [(one["interval"][1] - one["interval"][0]) / one["true"] for one in known]
-        also, trusted = (sum(bool(one[name]) for one in own) for name in ("also", "also_trusted"))
+        levels = [one["numbers"][LEVEL[one["kind"]]] for one in own if one["named"]]
+        inside = [one["interval"][0] <= one["true"] <= one["interval"][1] for one in levels]
+        trusted = [held for held, one in zip(inside, levels, strict=True) if not one["doubt"]]
+        width = [(one["interval"][1] - one["interval"][0]) / one["true"] for one in levels if not one["doubt"]]
         limited = sum(one["kind"] != NONE for one in own)
         lines.append(
-            f"| {kind} | {len(own)} | {len(levels)} of {limited} | {len(known)} | {sum(inside)} of {len(inside)} | "
-            f"{f'{100.0 * np.median(width):.1f} %' if width else ''} | {also}, trusted {trusted} | "
+            f"| {kind} | {len(own)} | {len(levels)} of {limited} | {sum(inside)} of {len(inside)} | "
+            f"{len(trusted)}, {sum(trusted)} | {f'{100.0 * np.median(width):.1f} %' if width else ''} | "
+            f"{sum(bool(one['also']) for one in own)}, trusted {sum(bool(one['also_trusted']) for one in own)} | "
             f"{np.median([one['cpu_s'] for one in own]) if own else np.nan:.0f} |"
         )
     return "\n".join(lines)

@@ -10,7 +10,7 @@ from benchmarks.one_fit import ship
 from shaftprint.limits import Kind, identify_limits
 from shaftprint.recording import read_recording
 from shaftprint.signals import prepare_signals
-from shaftprint.tug import sail
+from shaftprint.tug import Tug, sail
 
 pytestmark = pytest.mark.slow
 
@@ -100,3 +100,25 @@ def test_two_limits_that_hold_each_other_in_place_of_the_true_ones(both_torque_l
     assert set(found.kinds) == {Kind.TORQUE, Kind.MOTORING}
     assert number(found, "share").lower <= share <= number(found, "share").upper
     assert number(found, "M_min").lower <= lowest_nm <= number(found, "M_min").upper
+
+
+@pytest.mark.long
+def test_a_loaded_engine_without_air_gets_no_slow_set_point(tmp_path):
+    """Half loaded, 0.455 of full load without boost, 1.2 s of lag: a free search ends at 0.37, or at 49 rpm/s."""
+    share = 0.5
+    torques = tuple(share * torque for torque in VESSEL.engine.full_load_torque_nm)
+    vessel = VESSEL.model_copy(update={"engine": VESSEL.engine.model_copy(update={"full_load_torque_nm": torques})})
+    tug = Tug(
+        proportional_gain=5.4, unboosted_torque_share=0.455, turbocharger_lag_s=1.2, set_point_bend_per_v=0.002
+    )  # fmt: skip
+    path = tmp_path / "loaded.nc"
+    sail(vessel, CAMPAIGN, path, tug=tug, seed=1)
+    with read_recording(path) as recording:
+        signals = prepare_signals(recording, vessel, CAMPAIGN)
+    found = identify_limits(signals, CAMPAIGN, vessel)
+    assert set(found.kinds) == {Kind.SMOKE, Kind.MOTORING}
+    air = number(found, "a_0")
+    assert air.lower <= 0.455 <= air.upper
+    assert air.upper - air.lower < 0.1
+    assert min(found.gains.values()) > 25.0
+    assert not any(estimate.at_bound for estimate in found.governor)

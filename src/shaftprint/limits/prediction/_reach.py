@@ -147,7 +147,7 @@ def _rate(values: FloatArray, lost: BoolArray, window_s: float, step_s: float) -
     losses = np.concatenate([[0], np.cumsum(lost)])
     rise = rise[losses[count + 1 :] == losses[: -count - 1]]
     noise = np.sqrt(2.0) * _noise(means, lost, count)
-    return max(float(np.max(rise, initial=0.0)) - CERTAIN * noise, 0.0) / (window_s * SWING)
+    return float(max(np.max(rise, initial=0.0) - CERTAIN * noise, 0.0) / (window_s * SWING))
 
 
 def _late(values: FloatArray, per_lag: float) -> FloatArray:
