@@ -155,6 +155,15 @@ def starts_of(
             return [{candidate.level: level} for level in candidate.levels]
 
 
+def idle_values(gone: Kind, kept: Sequence[Kind], full: float) -> dict[str, float]:
+    """Return values of a limit's parameters at which it does nothing beside others that are kept.
+
+    A smoke limit is a share of the torque limit: without one, of the full-load torque of the vessel file, ``full``.
+    """
+    idle = {name: IDLE[name] for name in set(parameters_of([gone])) - set(parameters_of(kept))}
+    return idle | ({GovernorSymbol.TORQUE_LIMIT: full} if gone is Kind.TORQUE and Kind.SMOKE in kept else {})
+
+
 def parameters_of(kinds: Sequence[Kind]) -> tuple[str, ...]:
     """Return the free parameters of some limits."""
     present = [candidate for candidate in CANDIDATES if candidate.kind in kinds]

@@ -15,7 +15,7 @@ from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.campaign import Campaign
 from shaftprint.catalogue import GovernorSymbol
 from shaftprint.errors import IdentificationError
-from shaftprint.limits._candidates import IDLE, STRUCTURE_LIMITS, Kind, parameters_of
+from shaftprint.limits._candidates import IDLE, STRUCTURE_LIMITS, Kind, idle_values, parameters_of
 from shaftprint.limits._governor_fit import (
     GOVERNOR,
     NEGLIGIBLE_FALL,
@@ -114,7 +114,7 @@ def levels_beside(
         # a smoke limit is a share of the full-load torque, here that of the vessel file
         known[GovernorSymbol.TORQUE_LIMIT] = Units.of(signals, vessel).full
     here = best({**known, **{name: value for name, value in start.items() if name in parameters_of(wanted)}}, wanted)
-    here = _without_idle(here, best)
+    here = _without_idle(here, best, Units.of(signals, vessel).full)
     there, identification = identified(here)
     spread = spread_of(there, test, signals, vessel)
     names = parameters_of(there.kinds)
@@ -131,12 +131,11 @@ def levels_beside(
     )
 
 
-def _without_idle(here: Fitted, best: Callable[..., Fitted]) -> Fitted:
+def _without_idle(here: Fitted, best: Callable[..., Fitted], full: float) -> Fitted:
     """Return a governor without the limits that chance explains as well."""
     for kind in here.kinds:
         others = tuple(other for other in here.kinds if other is not kind)
-        gone = {name: IDLE[name] for name in set(parameters_of([kind])) - set(parameters_of(others))}
-        less = best({**here.values, **gone}, others, FAR_FALL)
+        less = best({**here.values, **idle_values(kind, others, full)}, others, FAR_FALL)
         if schwarz(less) - schwarz(here) > LEAST_GAIN + FAR:
             continue
         less = best(less.values, others)

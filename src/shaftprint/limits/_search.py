@@ -1,18 +1,18 @@
 """Which limits act: one after the other they join the governor, as long as chance does not explain the gain."""
 
 from collections.abc import Callable, Collection, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 
-from shaftprint.arrays import BoolArray, frozen_bool
 from shaftprint.campaign import Campaign
 from shaftprint.catalogue import GovernorSymbol
 from shaftprint.errors import IdentificationError
 from shaftprint.identify import Prior
-from shaftprint.limits._candidates import CANDIDATES, IDLE, Kind, LimitCandidate, parameters_of, starts_of
+from shaftprint.limits._candidates import CANDIDATES, Kind, LimitCandidate, idle_values, starts_of
 from shaftprint.limits._governor_fit import GOVERNOR, NEGLIGIBLE_FALL, Fitted, fitted, schwarz, values_without_limits
-from shaftprint.limits.prediction import OUTPUT, GovernorRecord, GovernorTest, Messages, Reach, messages_of
+from shaftprint.limits._moves import LARGEST_OFFSET, SAME_OFFSET, calm_part, delay_moves, rest_moves
+from shaftprint.limits.prediction import GovernorRecord, GovernorTest, Messages, Reach, messages_of
 from shaftprint.models import Structure
 
 # Gain of twice the log-likelihood over what Schwarz' criterion asks that a limit must bring to be named.
@@ -33,21 +33,14 @@ POLISHED, POLISHED_CALM, PUSHED = 2, 5, 3
 # Most iterations of a fit that is compared with others, and the fall of minus twice the log-likelihood that is not
 # worth one: limits are told apart by falls of tens.
 ROUGH, ROUGH_FALL = 12, 0.2
-# Share of the tests, the calmest first, whose torque changes so little that no limit is near.
-CALM = 0.5
 # Most pushed fits come back to where they were: they end sooner, and go on only where they came lower.
-PUSH_S, LEAST_FALL, PUSH_FALL = 0.03, 0.5, 1.0
-# The push of the set point's offset, over its deviation, and of the level of a torque limit with it.
-REST_PUSH, LEVEL_SHARES = 1.0, (0.8, 0.9, 1.0, 1.1, 1.2, 1.35)
-# A torque limit above this, over the torque of the working point, is none that the line rests near.
-NEAR_REST = 2.0
-# Offsets of the set point that are nearer to each other are one. A line whose calibration leaves more is first fitted
-# with the offset of its slow parts, known to this: between that and another one the likelihood has a fold, which a
-# search that is free passes by chance (2 log L 420 worse, torque without boost 0.37 for 0.455).
-SAME_OFFSET, AT_REST_STD = 1.5e-3, 1e-4
+LEAST_FALL, PUSH_FALL = 0.5, 1.0
+# A line whose calibration does not tell offsets apart is first fitted with that of its slow parts, known to this:
+# between it and another one the likelihood has a fold, which a search that is free passes by chance (2 log L 420 worse,
+# torque without boost 0.37 for 0.455).
+AT_REST_STD = 1e-4
 # Gain of held messages, to first order, from which on they are fitted; rounds in which delays and governor follow.
 PROMISING, ROUNDS = 10.0, 3
-LARGEST_OFFSET = 0.045
 LEAST_SPEED = 0.1
 SMALLEST = 1e-12
 
@@ -62,22 +55,6 @@ class Scanned:
     """Every parameter, with its level."""
     gain: float
     """Fall of minus twice the log-likelihood; negative where the level contradicts the data."""
-
-
-def calm_part(record: GovernorRecord, campaign: Campaign) -> GovernorRecord:
-    """Return the record with only the sines in use in which the torque changes least: no limit is near in them."""
-    rate = np.abs(np.gradient(record.outputs[OUTPUT], 1.0 / record.rate_hz))
-    inside = {sine.name: _inside(record, sine.settled_s, sine.stop_s) for sine in campaign.sines}
-    inside = {name: where for name, where in inside.items() if where.any()}
-    if len(inside) < 2:
-        return record
-    order = sorted(inside, key=lambda name: float(np.mean(rate[inside[name]])))
-    kept = np.any([inside[name] for name in order[: max(round(CALM * len(order)), 2)]], axis=0)
-    return replace(record, used=frozen_bool(kept))
-
-
-def _inside(record: GovernorRecord, begin_s: float, end_s: float) -> BoolArray:
-    return np.asarray(record.used & (record.time_s >= begin_s) & (record.time_s < end_s))
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -109,8 +86,8 @@ class Search:
     """Offset of the set point where it hardly moves: beside limits the likelihood has several optima over it."""
     optima: dict[frozenset[Kind], Fitted] = field(default_factory=dict, repr=False)
     """The best governor that was found with each choice of limits."""
-    lesser: dict[tuple[frozenset[Kind], Kind], tuple[float, Fitted]] = field(default_factory=dict, repr=False)
-    """For limits of which one is taken away, the criterion with it and the best governor without."""
+    lesser: dict[tuple[frozenset[Kind], Kind], float] = field(default_factory=dict, repr=False)
+    """For limits of which one was taken away, the criterion of the governor that still had it."""
 
     @classmethod
     def of(
@@ -155,7 +132,7 @@ class Search:
     def linear(self) -> Fitted:
         """Return the best governor without limits."""
         here = self.fit({**values_without_limits(self.whole), **self.calm}, (), at_rest=True)
-        return self._pushed(here, _delay_moves(here))
+        return self._pushed(here, delay_moves(here))
 
     def run(self) -> tuple[Fitted, list[Scanned]]:
         """Let limits join the governor until chance explains what the next one would gain.
@@ -240,7 +217,7 @@ class Search:
             return None
         if Kind.SMOKE in best.kinds and Kind.SMOKE not in here.kinds:
             best = self._torque_limit_or(best, scanned)
-        return self._pushed(best, _delay_moves(best))
+        return self._pushed(best, delay_moves(best))
 
     def _torque_limit_or(self, smoke: Fitted, scanned: Sequence[Scanned]) -> Fitted:
         """Return a torque limit alone where a smoke limit gains hardly more than chance over it.
@@ -272,18 +249,12 @@ class Search:
 
     def without(self, here: Fitted, gone: Kind) -> Fitted:
         """Return the best governor without one of its limits, of a fit from it on and of those found before."""
-        before, less = self.lesser.get((frozenset(here.kinds), gone), (np.inf, here))
-        if schwarz(here) > before - LEAST_FALL:
-            return less
-        kinds = tuple(kind for kind in here.kinds if kind is not gone)
-        idle = {name: IDLE[name] for name in set(parameters_of([gone])) - set(parameters_of(kinds))}
-        if gone is Kind.TORQUE and Kind.SMOKE in kinds:
-            # a smoke limit is a share of the full-load torque, then that of the vessel file
-            idle[GovernorSymbol.TORQUE_LIMIT] = self.full
-        self._tried({**here.values, **idle}, kinds, here.messages if Kind.HELD in kinds else None)
-        less = self.optima.get(frozenset(kinds), self.optima[frozenset()])
-        self.lesser[frozenset(here.kinds), gone] = schwarz(here), less
-        return less
+        kinds, tried = tuple(kind for kind in here.kinds if kind is not gone), (frozenset(here.kinds), gone)
+        if schwarz(here) < self.lesser.get(tried, np.inf) - LEAST_FALL:
+            self.lesser[tried] = schwarz(here)
+            idle = idle_values(gone, kinds, self.full)
+            self._tried({**here.values, **idle}, kinds, here.messages if Kind.HELD in kinds else None)
+        return self.optima.get(frozenset(kinds), self.optima[frozenset()])
 
     def _without_idle(self, here: Fitted) -> Fitted:
         """Return the governor without those of its limits that the others have made idle."""
@@ -335,36 +306,8 @@ class Search:
                 best = self.fit(moved.values, moved.kinds, moved.messages)
         return best
 
-    def _rests(self) -> list[dict[str, float]]:
-        """Return offsets of the set point at which the line may rest, that of its slow parts first."""
-        scale, offset = self.priors[GovernorSymbol.SET_POINT_SCALE].mean, self.priors[GovernorSymbol.SET_POINT_OFFSET]
-        known: list[float] = []
-        beside = (offset.mean + side * REST_PUSH * offset.std for side in (-1.0, 1.0))
-        for one in (self.offset, *beside):
-            if all(abs(one - other) > SAME_OFFSET for other in known):
-                known.append(float(np.clip(one, -LARGEST_OFFSET, LARGEST_OFFSET)))
-        return [{GovernorSymbol.SET_POINT_SCALE: scale, GovernorSymbol.SET_POINT_OFFSET: one} for one in known]
-
     def _rest_moves(self, here: Fitted) -> list[dict[str, float]]:
-        """Return offsets of the set point at which the line may rest, beside a limit of the torque with other levels.
-
-        A line that rests near its torque limit has an optimum with the limit acting at rest, a lower level, a lower set
-        point and a slower governor, and one without.
-        """
-        levels: list[dict[str, float]] = [{}]
-        gains = {name: self.calm[name] for name in (GovernorSymbol.PROPORTIONAL_GAIN, GovernorSymbol.INTEGRAL_GAIN)}
-        if Kind.SMOKE in here.kinds:
-            levels = [gains]
-        elif Kind.TORQUE in here.kinds and here.values[GovernorSymbol.TORQUE_LIMIT] < NEAR_REST:
-            levels = [
-                {GovernorSymbol.TORQUE_LIMIT: share * here.values[GovernorSymbol.TORQUE_LIMIT], **gains}
-                for share in LEVEL_SHARES
-            ]
-        rests = self._rests()
-        if Kind.SMOKE in here.kinds:
-            at = here.values[GovernorSymbol.SET_POINT_OFFSET]
-            rests += [{GovernorSymbol.SET_POINT_OFFSET: at + side * SAME_OFFSET} for side in (-1.0, 1.0)]
-        return [{**rest, **level} for rest in rests for level in levels]
+        return rest_moves(here, calm=self.calm, offset=self.offset, priors=self.priors)
 
     def _tried(
         self,
@@ -436,18 +379,6 @@ class Search:
 def with_messages(test: GovernorTest, messages: Messages | None) -> GovernorTest:
     """Return a test with the set point held between messages, if there are any."""
     return test if messages is None else test.held(messages.best_cycle_s, messages.late_s)
-
-
-def _delay_moves(here: Fitted) -> list[dict[str, float]]:
-    """Return the delays inside the loop and before it, moved from one to the other: they trade along a valley."""
-    late, before = here.values[GovernorSymbol.LOOP_DELAY], here.values[GovernorSymbol.SET_POINT_LATENCY]
-    return [
-        {
-            GovernorSymbol.LOOP_DELAY: max(late + by_s, 0.005),
-            GovernorSymbol.SET_POINT_LATENCY: max(before - by_s, 0.005),
-        }
-        for by_s in (-PUSH_S, PUSH_S)
-    ]
 
 
 def _strongest(scanned: Sequence[Scanned], count: int) -> list[Scanned]:
