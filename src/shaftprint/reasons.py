@@ -18,6 +18,7 @@ ReasonKind: TypeAlias = Literal[
     "set-point scale",
     "gauge latency",
     "prior",
+    "record",
     "gear ratio",
     "misfit",
     "contradicting data",

@@ -47,7 +47,7 @@ def test_what_a_file_says(written):
         ("omega", "speed", "rpm"),
     ]
     assert (drive.known[0].value, drive.known[0].std) == (0.8, 0.01)
-    assert (drive.fit.start, drive.fit.offset, drive.fit.inputs_hold) == ("steady", "constant", False)
+    assert (drive.fit.start, drive.fit.offset, drive.fit.inputs_hold) == ("steady", "constant", None)
     assert "speed [rpm]" in repr(drive)
 
 

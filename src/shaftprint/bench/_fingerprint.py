@@ -11,7 +11,7 @@ from shaftprint.arrays import frozen_float
 from shaftprint.bench._equipped import EquippedDrive
 from shaftprint.bench._fit import DriveFit
 from shaftprint.errors import FingerprintError
-from shaftprint.fingerprint import DriveFingerprint, DriveRecord, IdentifiedModel, Quantity, SourceFile
+from shaftprint.fingerprint import DriveFingerprint, DriveRecord, IdentifiedModel, NoiseOfRecord, Quantity, SourceFile
 from shaftprint.identify.fit import Estimate
 from shaftprint.models import Structure
 from shaftprint.time_domain import RecordFit
@@ -45,11 +45,12 @@ def drive_fingerprint(fit: DriveFit, *, sources: Sequence[SourceFile], now: date
         priors=dict(identification.settings.priors),
         covariance=tuple(tuple(row) for row in identification.covariance.tolist()),
         combinations=tuple(_quantity(fit, estimate, meanings) for estimate in identification.combinations),
-        records=tuple(_record(part) for part in identification.parts if isinstance(part, RecordFit)),
+        records=_records(fit, sources),
         p_value=identification.p_value,
         starts=identification.settings.starts,
         starts_at_optimum=identification.reached,
         verdict=fit.verdict,
+        inputs_hold=fit.inputs_hold,
     )
 
 
@@ -67,8 +68,17 @@ def _quantity(fit: DriveFit, estimate: Estimate, meanings: dict[str, str]) -> Qu
     )
 
 
-def _record(part: RecordFit) -> DriveRecord:
-    power = np.diag(part.noise.power)
+def _records(fit: DriveFit, sources: Sequence[SourceFile]) -> tuple[DriveRecord, ...]:
+    parts = [part for part in fit.identification.parts if isinstance(part, RecordFit)]
+    files = [source.sha256 for source in sources if source.role == "recording"]
+    # each file gives as many records, in the order of the files
+    each = max(len(fit.equipped.drive.records), 1)
+    of = [file for file in files for _ in range(each)] if len(files) * each == len(parts) else [""] * len(parts)
+    return tuple(_record(part, recording) for part, recording in zip(parts, of, strict=True))
+
+
+def _record(part: RecordFit, recording: str) -> DriveRecord:
+    power, times = np.diag(part.noise.power), part.record.time_s
     return DriveRecord(
         name=part.record.name,
         seconds=part.seconds,
@@ -76,6 +86,12 @@ def _record(part: RecordFit) -> DriveRecord:
         fit_percent=dict(part.fit_percent),
         fit_ceiling=dict(part.fit_ceiling),
         noise_std={name: float(np.sqrt(power[i])) for i, name in enumerate(part.structure.outputs)},
+        noise=NoiseOfRecord(coefficients=part.noise.coefficients.tolist(), covariance=part.noise.covariance.tolist()),
+        offset={offset.name: offset.value for offset in part.offsets},
+        offset_std={offset.name: offset.std for offset in part.offsets},
+        recording=recording,
+        from_s=float(times[0]),
+        to_s=float(times[-1]),
     )
 
 

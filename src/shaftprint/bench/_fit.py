@@ -8,6 +8,8 @@ import numpy as np
 from shaftprint.arguments import refusing_none
 from shaftprint.arrays import FloatArray
 from shaftprint.bench._equipped import EquippedDrive
+from shaftprint.bench._hold import input_way
+from shaftprint.bench._record_reasons import REQUIREMENTS, held_outputs, large_offsets, starts_in_motion
 from shaftprint.errors import IdentificationError, SettingsError, StructureError
 from shaftprint.identify import Identification, LatinHypercube, Prior, Settings, Verdict, assess, profile
 from shaftprint.identify.search import Draw, GivenStarts
@@ -41,6 +43,8 @@ class DriveFit(Shown):
     """95 % intervals by the profile likelihood."""
     verdict: Verdict
     """Which numbers may be used."""
+    inputs_hold: bool
+    """Whether inputs hold from sample to sample; else they go straight."""
 
     def summary(self) -> Summary:
         """Return the verdict, and which numbers may be used."""
@@ -80,15 +84,14 @@ def identify_drive(
         If the start is known of a state that the equations do not have.
     """
     settings = drive_settings(one.structure, {**one.priors, **(priors or {})}, starts)
-    fit = identify_in_time(
-        [(one.structure, record) for record in records],
-        rng=rng,
-        settings=settings,
-        time=drive_time_settings(one, records),
-    )
-    profiled = profile(fit)
+    time = drive_time_settings(one, records)
+    fit = identify_in_time([(one.structure, record) for record in records], rng=rng, settings=settings, time=time)
+    way = input_way(one, fit, records, settings=settings, time=time)
+    profiled = profile(way.fit)
+    reasons = (*held_outputs(one, records), *way.reasons, *starts_in_motion(one, way.fit), *large_offsets(one, way.fit))
+    verdict = assess(way.fit, profile=profiled, requirements=REQUIREMENTS, reasons=reasons, assumptions=way.assumptions)
     return DriveFit(
-        equipped=one, identification=fit, intervals=profiled.intervals, verdict=assess(fit, profile=profiled)
+        equipped=one, identification=way.fit, intervals=profiled.intervals, verdict=verdict, inputs_hold=way.hold
     )
 
 

@@ -1,5 +1,6 @@
 """What records that are only planned would tell of a drive: standard deviations to first order."""
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
@@ -10,8 +11,12 @@ from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.bench._equipped import EquippedDrive
 from shaftprint.bench._fit import drive_time_settings
 from shaftprint.errors import IdentificationError
+from shaftprint.fingerprint import DriveFingerprint, DriveRecord
 from shaftprint.identify import Prior
 from shaftprint.time_domain import NoiseModel, Record, Whitening, output_error
+
+# Rates of a plan and of a record are one but for rounding.
+SAME_RATE = 1e-6
 
 
 @refusing_none(IdentificationError)
@@ -20,6 +25,7 @@ def predict_drive(
     records: Sequence[Record],
     *,
     noise_std: Mapping[str, float],
+    kept: DriveFingerprint | None = None,
     values: Mapping[str, float] | None = None,
     priors: Mapping[str, Prior] | None = None,
 ) -> dict[str, float]:
@@ -32,7 +38,9 @@ def predict_drive(
     records
         Planned inputs; what stands as outputs is replaced by those of the model.
     noise_std
-        Standard deviation of the noise of a sample of each output, white, in its unit.
+        Standard deviation of the noise of a sample of each output, in its unit.
+    kept
+        A fingerprint whose noise it has the colour of, where records have the rate of those; it is white elsewhere.
     values
         Values of parameters at which to predict; usual ones where not given.
     priors
@@ -51,14 +59,11 @@ def predict_drive(
         )
     at = structure.vector({**{name: p.mean for name, p in one.priors.items()}, **(values or {})})
     settings = drive_time_settings(one, records)
-    noise = NoiseModel(
-        coefficients=frozen_float(np.zeros((0, len(structure.outputs), len(structure.outputs)))),
-        covariance=frozen_float(np.diag([noise_std[name] ** 2 for name in structure.outputs])),
-    )
     names = [parameter.name for parameter in structure.free]
     information = np.zeros((len(names), len(names)))
     for record in records:
         term = output_error(structure, _as_noise(record, noise_std), settings=settings)
+        noise = planned_noise(kept, tuple(structure.outputs), noise_std=noise_std, rate_hz=record.rate_hz)
         term = term.with_noise(Whitening(noise=noise))
         rows = term.rows(at)
         if rows is None:
@@ -69,6 +74,41 @@ def predict_drive(
     for name, prior in {**one.priors, **(priors or {})}.items():
         information[names.index(name), names.index(name)] += 1.0 / prior.std**2
     return dict(zip(names, _deviations(information).tolist(), strict=True))
+
+
+def coloured_record(kept: DriveFingerprint | None, rate_hz: float) -> DriveRecord | None:
+    """Return the record of a fingerprint with the most noise of those at a rate whose colour is kept, if any."""
+    alike = [
+        record
+        for record in (() if kept is None else kept.records)
+        if record.noise is not None and abs(record.rate_hz / rate_hz - 1.0) < SAME_RATE
+    ]
+    return max(alike, key=lambda record: sum(map(math.log, record.noise_std.values())), default=None)
+
+
+def planned_noise(
+    kept: DriveFingerprint | None, outputs: Sequence[str], *, noise_std: Mapping[str, float], rate_hz: float
+) -> NoiseModel:
+    """Return noise of the colour that a fingerprint keeps, white without, with the stated standard deviations.
+
+    Parameters
+    ----------
+    outputs
+        Names of the outputs, in the order of the structure.
+    """
+    sizes, coloured = np.array([noise_std[name] for name in outputs]), coloured_record(kept, rate_hz)
+    if kept is None or coloured is None or coloured.noise is None:
+        white = np.zeros((0, len(outputs), len(outputs)))
+        return NoiseModel(coefficients=frozen_float(white), covariance=frozen_float(np.diag(sizes**2)))
+    order = [list(kept.outputs).index(name) for name in outputs]
+    scale = sizes / np.array([coloured.noise_std[name] for name in outputs])
+    by = scale[:, None] / scale
+    past = np.array(coloured.noise.coefficients).reshape(-1, len(kept.outputs), len(kept.outputs))
+    anew = np.array(coloured.noise.covariance)[np.ix_(order, order)]
+    return NoiseModel(
+        coefficients=frozen_float(past[:, order][:, :, order] * by),
+        covariance=frozen_float(anew * np.outer(scale, scale)),
+    )
 
 
 def _as_noise(record: Record, noise_std: Mapping[str, float]) -> Record:

@@ -18,7 +18,7 @@ FEWEST = 20
 
 
 def read_records(
-    paths: Sequence[Path], one: EquippedDrive, *, planned: bool = False, **hints: Any
+    paths: Sequence[Path], one: EquippedDrive, *, planned: bool = False, hold: bool = False, **hints: Any
 ) -> tuple[Record, ...]:
     """Return the records of a drive: each file one, or the stretches that the drive file names in each.
 
@@ -30,6 +30,8 @@ def read_records(
         The drive, whose signals name the channels.
     planned
         Whether the files hold inputs only; the outputs of the records are then zero.
+    hold
+        Whether inputs hold from sample to sample where the drive file does not say.
     hints
         What the files do not say, as for ``read_recording``.
 
@@ -47,7 +49,7 @@ def read_records(
                 for signal in (one.drive.inputs if planned else one.drive.signals)
             }
             _expect_one_clock(channels, path)
-            records += [_record(path, channels, one, stretch) for stretch in one.drive.records or (None,)]
+            records += [_record(path, channels, one, stretch, hold) for stretch in one.drive.records or (None,)]
     names = [record.name for record in records]
     twice = next((name for name in names if names.count(name) > 1), None)
     if twice is not None:
@@ -83,7 +85,9 @@ def _expect_one_clock(channels: dict[str, Channel], path: Path) -> None:
             )
 
 
-def _record(path: Path, channels: dict[str, Channel], one: EquippedDrive, stretch: Stretch | None) -> Record:
+def _record(
+    path: Path, channels: dict[str, Channel], one: EquippedDrive, stretch: Stretch | None, hold: bool
+) -> Record:
     clock = next(iter(channels.values()))
     first, last = 0, clock.count
     name = path.stem
@@ -105,7 +109,7 @@ def _record(path: Path, channels: dict[str, Channel], one: EquippedDrive, stretc
         {signal.name: values.get(signal.name, nothing) for signal in drive.outputs},
         rate_hz=clock.rate_hz,
         start_s=clock.start_s + first / clock.rate_hz,
-        hold=drive.fit.inputs_hold,
+        hold=hold if drive.fit.inputs_hold is None else drive.fit.inputs_hold,
     )
 
 

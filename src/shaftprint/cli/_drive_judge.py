@@ -8,6 +8,7 @@ import numpy as np
 
 from shaftprint.bench import (
     STARTS,
+    coloured_record,
     compare_in_time,
     drive_differences,
     predict_drive,
@@ -28,6 +29,7 @@ from shaftprint.tables import (
     time_comparison_table,
     validated_drive_table,
 )
+from shaftprint.time_domain import Record
 
 
 def compare_on_the_bench(named: Mapping[str, DriveFingerprint]) -> None:
@@ -55,7 +57,7 @@ def validate_on_the_bench(
     one = kept_one(kept, drive_file, name)
     with progress(hidden=no_progress) as steps:
         steps.begin("Simulating the records")
-        records = read_records(recordings, one)
+        records = read_records(recordings, one, hold=kept.inputs_hold)
         validated = validate_drive(kept, one, records)
     failed = [record.fit.record.name for record in validated if record.outcome == "fails"]
     headline = (
@@ -65,10 +67,25 @@ def validate_on_the_bench(
     )
     answer(headline)
     give("missed", {record.fit.record.name: dict(record.missed) for record in validated})
-    seen = {source.sha256 for source in kept.sources if source.role == "recording"}
-    if any(file_sha256(path) in seen for path in recordings):
-        say("A record was identified from too: what it shows is no validation.")
+    seen = _identified_from(kept, recordings, records)
+    if seen:
+        say(f"A record was identified from too, {', '.join(seen)}: what it shows is no validation.")
     print_table(validated_drive_table(validated))
+
+
+def _identified_from(kept: DriveFingerprint, recordings: Sequence[Path], records: Sequence[Record]) -> list[str]:
+    """Return the names of the records that share time with those of a fingerprint, each file giving as many."""
+    each = len(records) // len(recordings)
+    files = [sha256 for path in recordings for sha256 in [file_sha256(path)] * each]
+    earlier = {source.sha256 for source in kept.sources if source.role == "recording"}
+    if any(record.recording for record in kept.records):
+        return [
+            record.name
+            for file, record in zip(files, records, strict=True)
+            if any(one.overlaps(file, float(record.time_s[0]), float(record.time_s[-1])) for one in kept.records)
+        ]
+    # a fingerprint of an earlier version knows files only
+    return [record.name for file, record in zip(files, records, strict=True) if file in earlier]
 
 
 def predict_on_the_bench(
@@ -90,14 +107,24 @@ def predict_on_the_bench(
     at = {name: value for name, value in (kept.values if kept else {}).items() if name in one.structure.names}
     at |= dict(values)
     stds = _noise(kept) | dict(noise)
-    records = read_records(inputs, one, planned=True)
-    deviations = predict_drive(one, records, noise_std=stds, values=at, priors=priors)
+    records = read_records(inputs, one, planned=True, hold=kept is not None and kept.inputs_hold)
+    deviations = predict_drive(one, records, noise_std=stds, kept=kept, values=at, priors=priors)
     complete = {name: p.mean for name, p in one.priors.items()} | at
     usual = dict(zip(one.structure.names, one.structure.vector(complete).tolist(), strict=True))
     give("deviations", deviations)
     lost = [name for name, std in deviations.items() if not np.isfinite(std)]
     answer("The records would tell every parameter." if not lost else f"Not told: {', '.join(lost)}.")
+    say(_noise_words(kept, records))
     print_table(drive_prediction_table(one.structure, usual, deviations))
+
+
+def _noise_words(kept: DriveFingerprint | None, records: Sequence[Record]) -> str:
+    """Return of what colour the noise is taken to be."""
+    coloured = [record for record in (coloured_record(kept, one.rate_hz) for one in records) if record is not None]
+    if len(coloured) < len(records):
+        rates = "" if kept is None else " at a rate that no record of the fingerprint has"
+        return f"Noise is taken to be white{rates}; noise with a memory tells less."
+    return f"Noise has the colour of {', '.join(dict.fromkeys(record.name for record in coloured))}."
 
 
 def _noise(kept: DriveFingerprint | None) -> dict[str, float]:

@@ -21,8 +21,9 @@ class FitWay(Settings):
     """How a record begins: in steady running at its first inputs, in states that are found, in those of ``start``."""
     offset: Literal["none", "constant", "drift"] = "constant"
     """What the sensors of the outputs may add: nothing, a constant that is found, or a line in time."""
-    inputs_hold: Annotated[bool, Field(strict=True)] = False
-    """Whether inputs hold from sample to sample, as those of a computer, instead of going straight."""
+    inputs_hold: Annotated[bool, Field(strict=True)] | None = None
+    """Whether inputs hold from sample to sample, as those of a computer, instead of going straight. If not given, the
+    records of an identification tell it, where an input jumps; elsewhere inputs go straight."""
     longest_step_s: PositiveNumber | None = None
     """Longest step of the simulation [s]; a quarter of the time between samples where not given."""
 

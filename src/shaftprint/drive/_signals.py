@@ -4,7 +4,7 @@ from typing import Annotated, Self
 
 from pydantic import Field, model_validator
 
-from shaftprint.settings import Name, NotNegativeNumber, Number, Settings
+from shaftprint.settings import Name, NotNegativeNumber, Number, PositiveNumber, Settings
 
 Text = Annotated[str, Field(strict=True)]
 
@@ -20,6 +20,9 @@ class Signal(Settings):
     """Unit of the channel."""
     meaning: Text = ""
     """What it is, in words."""
+    zero_std: PositiveNumber | None = None
+    """Of an output: standard deviation of the sensor's zero, in the unit. If not given, a tenth of the level is the
+    most of what has a zero at rest, and the zero of an angle, a way or a temperature is anywhere."""
 
 
 class KnownParameter(Settings):

@@ -23,6 +23,14 @@ _QUANTITIES: tuple[Mapping[str, float], ...] = tuple(
 """Size of each unit in the first of its quantity."""
 
 
+_ANYWHERE = ("rad", "m", "degC", "K")
+
+
+def zero_is_anywhere(unit: str) -> bool:
+    """Return whether a sensor of a unit has its zero where it was put, as an encoder or a thermometer has."""
+    return any(unit_factor(unit, one) is not None for one in _ANYWHERE)
+
+
 def unit_factor(given: str, wanted: str) -> float | None:
     """Return what a number in one unit is multiplied by to be in another; None where they are of other quantities."""
     one, other = plain_unit(given), plain_unit(wanted)

@@ -18,6 +18,7 @@ from shaftprint.fingerprint._conditions import WATER, Conditions, ShipIdentity
 from shaftprint.fingerprint._drive_fingerprint import (
     DriveFingerprint,
     DriveRecord,
+    NoiseOfRecord,
     drive_fingerprint_content,
     is_of_a_drive,
     read_drive_fingerprint,
@@ -62,6 +63,7 @@ __all__ = [
     "LegRecord",
     "LimitNumber",
     "LineWithLimits",
+    "NoiseOfRecord",
     "NoiseSpectrum",
     "Quality",
     "Quantity",

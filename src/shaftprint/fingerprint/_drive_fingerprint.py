@@ -1,11 +1,12 @@
 """The fingerprint of a drive that is no ship's: parameters with covariance, verdict and records, as a JSON record."""
 
+import math
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Final, Literal, Self
 
 import numpy as np
-from pydantic import AwareDatetime, ValidationError, model_validator
+from pydantic import AwareDatetime, Field, ValidationError, model_validator
 
 from shaftprint.arguments import refusing_none
 from shaftprint.arrays import FloatArray
@@ -13,13 +14,22 @@ from shaftprint.errors import FingerprintError, ShaftprintError
 from shaftprint.files import read_json, write_bytes
 from shaftprint.fingerprint._covariance_check import covariance_fault
 from shaftprint.fingerprint._fingerprint import SourceFile
-from shaftprint.fingerprint._quantity import FrozenRecord, Quantity
+from shaftprint.fingerprint._quantity import Deviation, FrozenRecord, Quantity
 from shaftprint.identify import Prior, Verdict
 from shaftprint.notebook import Shown, Summary, shortened
 from shaftprint.publication import complete
 
-DRIVE_SCHEMA: Final = "drive 1.0"
+DRIVE_SCHEMA: Final = "drive 1.1"
 """Version of the layout of a drive's fingerprint."""
+
+
+class NoiseOfRecord(FrozenRecord):
+    """The colour of the noise of a record: a vector autoregression, outputs in the order of the fingerprint."""
+
+    coefficients: tuple[tuple[tuple[float, ...], ...], ...]
+    """What the noise keeps of each sample before, the latest first, shape (order, outputs, outputs)."""
+    covariance: tuple[tuple[float, ...], ...]
+    """Covariance of what comes anew with each sample, shape (outputs, outputs)."""
 
 
 class DriveRecord(FrozenRecord):
@@ -37,6 +47,22 @@ class DriveRecord(FrozenRecord):
     """FitPercent that the noise allows."""
     noise_std: dict[str, float]
     """Standard deviation of the noise of each output, in its unit."""
+    noise: NoiseOfRecord | None = None
+    """Its colour; None in files of earlier versions."""
+    offset: dict[str, float] = Field(default_factory=dict)
+    """What was added to the model of each output on average, in its unit; empty where no offset was found."""
+    offset_std: dict[str, Deviation] = Field(default_factory=dict)
+    """Standard deviation of that; infinite where the record does not tell it."""
+    recording: str = ""
+    """SHA-256 of the file that it is from; empty in files of earlier versions."""
+    from_s: float = -math.inf
+    """Time of its first sample [s]."""
+    to_s: float = math.inf
+    """Time of its last sample [s]."""
+
+    def overlaps(self, recording: str, from_s: float, to_s: float) -> bool:
+        """Return whether it is from a file, named by its SHA-256, and shares time with a stretch of that [s]."""
+        return self.recording == recording and self.from_s < to_s and from_s < self.to_s
 
 
 class DriveFingerprint(Shown, FrozenRecord):
@@ -44,7 +70,7 @@ class DriveFingerprint(Shown, FrozenRecord):
 
     kind: Literal["drive"] = "drive"
     """Tells it from the fingerprint of a ship."""
-    schema_version: Literal["drive 1.0"] = DRIVE_SCHEMA
+    schema_version: Literal["drive 1.0", "drive 1.1"] = DRIVE_SCHEMA
     """Version of this record's layout."""
     shaftprint_version: str
     """Version of shaftprint that made it."""
@@ -80,6 +106,8 @@ class DriveFingerprint(Shown, FrozenRecord):
     """How many of them reached the result."""
     verdict: Verdict
     """Whether the numbers may be used, and which of them."""
+    inputs_hold: bool = False
+    """Whether inputs held from sample to sample; else they went straight."""
 
     def summary(self) -> Summary:
         """Return of what it is, the verdict, and which numbers may be used."""

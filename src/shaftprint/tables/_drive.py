@@ -14,7 +14,10 @@ if TYPE_CHECKING:
 
 PERCENT = 100.0
 
-NOTE = "FitPercent is 100 % where nothing is left; its ceiling is what a perfect model would have beside this noise."
+NOTE = (
+    "FitPercent is 100 % where nothing is left; its ceiling is what a perfect model would have beside this noise. The "
+    "offset is what the model needs beside the sensor on average."
+)
 
 
 def drive_record_table(fingerprint: "DriveFingerprint") -> Table:
@@ -28,6 +31,7 @@ def drive_record_table(fingerprint: "DriveFingerprint") -> Table:
             f"{percent:.2f}",
             f"{record.fit_ceiling[output]:.2f}",
             rounded(record.noise_std[output], 2),
+            with_deviation(record.offset[output], record.offset_std[output]) if output in record.offset else "-",
             unit_text(fingerprint.outputs[output]),
         )
         for record in fingerprint.records
@@ -35,7 +39,7 @@ def drive_record_table(fingerprint: "DriveFingerprint") -> Table:
     ]
     columns = (
         *texts("record", "output"),
-        *numbers("length [s]", "rate [Hz]", "FitPercent", "ceiling", "noise"),
+        *numbers("length [s]", "rate [Hz]", "FitPercent", "ceiling", "noise", "offset ± std"),
         *texts("unit"),
     )
     title = f"Records; together p = {'-' if fingerprint.p_value is None else p_value_text(fingerprint.p_value)}"

@@ -45,6 +45,8 @@ EXACT = 1e-9
 class _Difference:
     """What directions explain of what a structure leaves."""
 
+    excess: float
+    """Its mean square along them over that of the noise: 1 on average if the structure holds."""
     size: FloatArray
     """Root mean square over that of the motion, without what noise gives on average, shape (outputs,)."""
     p_value: float
@@ -103,8 +105,12 @@ class FlexibleModel:
             "halves": self.slopes * half[:, None],
             "flexible": self._directions,
         }
-        checks = [self._check(kind, directions, self._fitted) for kind, directions in groups.items()]
+        checks = [self.along(kind, directions) for kind, directions in groups.items()]
         return (*checks, self._check("other data", self.slopes, self.nuisance))
+
+    def along(self, kind: CheckKind, directions: FloatArray) -> TermCheck:
+        """Return how much of what the structure leaves lies along directions, (directions, samples, outputs)."""
+        return self._check(kind, directions, self._fitted)
 
     @cached_property
     def _unexplained(self) -> FloatArray:
@@ -173,6 +179,7 @@ class FlexibleModel:
             output=self.names[largest],
             share=float(difference.size[largest]),
             noise=float(level[largest]),
+            excess=difference.excess,
             p_value=difference.p_value,
         )
 
@@ -189,9 +196,11 @@ class FlexibleModel:
         spare = unexplained.size - len(basis) - span.rank - self._noise.coefficients.size
         beyond = max(float(unexplained @ unexplained) - explained, 0.0) / max(spare, 1)
         enough = spare > 0 and span.rank > 0 and beyond > 0.0
+        excess = explained / span.rank / beyond if enough else 1.0
         return _Difference(
+            excess=excess,
             size=self._sizes(directions, np.sqrt(beyond) * span.turn, shares, fitted),
-            p_value=f_tail(explained / span.rank / beyond, span.rank, spare) if enough else 1.0,
+            p_value=f_tail(excess, span.rank, spare) if enough else 1.0,
         )
 
     def _sizes(self, directions: FloatArray, turn: FloatArray, shares: FloatArray, fitted: FloatArray) -> FloatArray:

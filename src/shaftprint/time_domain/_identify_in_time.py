@@ -198,12 +198,15 @@ def _expect_known_slope(parts: Sequence[Part]) -> None:
 
 
 def _with_states(fit: Identification) -> Identification:
-    """Return a fit whose initial states have deviations that hold those of the parameters too."""
+    """Return a fit whose initial states and offsets have deviations that hold those of the parameters too."""
     parts = []
     for term, part in zip(fit.objective.terms, fit.parts, strict=True):
-        if isinstance(term, OutputError) and term.initial_states and isinstance(part, RecordFit):
+        if isinstance(term, OutputError) and isinstance(part, RecordFit):
             covariance = fit.covariance[np.ix_(term.columns, term.columns)]
-            part = replace(part, initial_states=term.started_from(term.structure_values(fit.values), covariance))
+            values = term.structure_values(fit.values)
+            stopped = np.array([fit.parameters[column].at_bound for column in term.columns])
+            states, offsets = term.beside(values, covariance, stopped=stopped)
+            part = replace(part, initial_states=states, offsets=offsets)
         parts.append(part)
     return replace(fit, parts=tuple(parts))
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from shaftprint.arrays import FloatArray
+from shaftprint.arrays import BoolArray, FloatArray
 from shaftprint.identify.fit import Estimate, PseudoInverse
 from shaftprint.models import Structure
 from shaftprint.simulation import state_names
@@ -70,17 +70,64 @@ def best_states(
     """
     states, effects = first, np.zeros(0)
     for _ in range(STATE_STEPS):
-        steps = STATE_CHANGE * np.eye(states.size)
-        moved = [simulated(states + step) for step in (np.zeros(states.size), *steps)]
-        if any(run is None for run in moved):
+        runs = effects_of(simulated, states)
+        if runs is None:
             return None
-        runs = np.concatenate([run for run in moved if run is not None])
-        effects = (runs[1:] - runs[0]) / STATE_CHANGE
-        change, *_ = np.linalg.lstsq(whitened(effects).T, data - whitened(runs[:1])[0], rcond=1e-9)
+        run, effects = runs
+        change, *_ = np.linalg.lstsq(whitened(effects).T, data - whitened(run[None])[0], rcond=1e-9)
         states = states + change
         if np.abs(change).max(initial=0.0) <= SMALL_STEP * np.abs(states).max(initial=0.0):
             break
     return states, effects
+
+
+def effects_of(
+    simulated: Callable[[FloatArray], FloatArray | None], states: FloatArray
+) -> tuple[FloatArray, FloatArray] | None:
+    """Return the outputs from some states, and what one unit of each state adds; None where a simulation runs away.
+
+    Returns
+    -------
+        Outputs of shape (samples, outputs), and effects of shape (states, samples, outputs).
+    """
+    steps = STATE_CHANGE * np.eye(states.size)
+    moved = [simulated(states + step) for step in (np.zeros(states.size), *steps)]
+    if any(run is None for run in moved):
+        return None
+    runs = np.concatenate([run for run in moved if run is not None])
+    return runs[0], (runs[1:] - runs[0]) / STATE_CHANGE
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Spread:
+    """How well the weights are known of what is found with each record."""
+
+    covariance: FloatArray
+    """Covariance of the weights, shape (weights, weights)."""
+    inverse: PseudoInverse
+    """That of their information, and the directions that the record says nothing of."""
+    unknown: BoolArray
+    """Which of them depend on parameters of infinite variance, shape (weights,)."""
+
+    def std(self, share: FloatArray) -> float:
+        """Return the standard deviation of a weighted sum, shape (weights,); infinite where the record is silent.
+
+        Parameters of infinite variance, such as those at a bound, are taken to be known.
+        """
+        silent = np.any(share) and not self.inverse.knows(share)
+        return np.inf if silent else float(np.sqrt(share @ self.covariance @ share))
+
+
+def spread_of(effects: FloatArray, *, slopes: FloatArray | None, covariance: FloatArray | None) -> Spread:
+    """Return how well the weights of whitened effects are known, shape (weights, length); see ``state_estimates``."""
+    inverse = PseudoInverse.of(effects)
+    total, unknown = inverse.inverse.copy(), np.zeros(len(effects), dtype=np.bool_)
+    if slopes is not None and covariance is not None:
+        change = inverse.inverse @ effects @ slopes.T
+        finite = np.isfinite(np.diag(covariance))
+        total += change[:, finite] @ covariance[np.ix_(finite, finite)] @ change[:, finite].T
+        unknown = np.any(change[:, ~finite] != 0.0, axis=1)
+    return Spread(covariance=total, inverse=inverse, unknown=unknown)
 
 
 def state_estimates(
@@ -106,15 +153,9 @@ def state_estimates(
         free); the parameters are taken to be known where they are not given. One of infinite variance leaves the states
         that depend on it unknown.
     """
-    without_drifts = without(effects, drifts)
-    inverse = PseudoInverse.of(without_drifts)
-    variance = np.diag(inverse.inverse).copy()
-    if slopes is not None and covariance is not None:
-        change = inverse.inverse @ without_drifts @ slopes.T
-        finite = np.isfinite(np.diag(covariance))
-        variance += np.einsum("si,ij,sj->s", change[:, finite], covariance[np.ix_(finite, finite)], change[:, finite])
-        variance[np.any(change[:, ~finite] != 0.0, axis=1)] = np.inf
-    variance[inverse.lost] = np.inf
+    spread = spread_of(without(effects, drifts), slopes=slopes, covariance=covariance)
+    variance = np.diag(spread.covariance).copy()
+    variance[spread.inverse.lost | spread.unknown] = np.inf
     return tuple(
         Estimate(name=name, unit="", value=float(value), std=float(np.sqrt(spread)))
         for name, value, spread in zip(start.names, start.values, variance, strict=True)

@@ -16,7 +16,13 @@ from shaftprint.errors import IdentificationError
 from shaftprint.identify.fit import Estimate
 from shaftprint.identify.likelihood import LineTest, Repeats, TermTest, WhitenedTerm
 from shaftprint.time_domain._flexible_model import FlexibleModel
-from shaftprint.time_domain._initial_states import InitialStates, best_states, state_estimates
+from shaftprint.time_domain._initial_states import (
+    InitialStates,
+    best_states,
+    effects_of,
+    spread_of,
+    state_estimates,
+)
 from shaftprint.time_domain._input_response import excited
 from shaftprint.time_domain._moving_load import load_columns, with_quadratic_torque, without_quadratic_torque
 from shaftprint.time_domain._noise_model import LONGEST_S
@@ -138,6 +144,7 @@ class OutputError(WhitenedTerm):
             model=self._completed(simulated[0], start),
             whitened=rows[0].reshape(-1, len(self._names)),
             initial_states=() if start is None else state_estimates(start, self._white(start.effects), self.drifts),
+            offsets=self._offsets(start, simulated[0]),
             flexible=self._flexible(simulated, start),
         )
         test = self._tested(rows, basis)
@@ -148,8 +155,10 @@ class OutputError(WhitenedTerm):
             chi_square=test[0], count=test[1], mean=float(test[1]), variance=2.0 * test[1], lines=(line,)
         )
 
-    def started_from(self, values: FloatArray, covariance: FloatArray) -> tuple[Estimate, ...]:
-        """Return the states at the start with their standard deviations; none where they are not estimated.
+    def beside(
+        self, values: FloatArray, covariance: FloatArray, *, stopped: BoolArray
+    ) -> tuple[tuple[Estimate, ...], tuple[Estimate, ...]]:
+        """Return states at the start and offsets with their standard deviations; none of what is not estimated.
 
         Parameters
         ----------
@@ -157,12 +166,27 @@ class OutputError(WhitenedTerm):
             All parameters of the structure, shape (parameters,).
         covariance
             Covariance of the free ones, shape (free, free).
+        stopped
+            Which of these stand at a bound, shape (free,): offsets are those beside them there.
         """
         start, simulated = self._evaluated(values)
-        if start is None:
-            return ()
         slopes = self._white(simulated[1:])
-        return state_estimates(start, self._white(start.effects), self.drifts, slopes=slopes, covariance=covariance)
+        states: tuple[Estimate, ...] = ()
+        if start is not None:
+            effects = self._white(start.effects)
+            states = state_estimates(start, effects, self.drifts, slopes=slopes, covariance=covariance)
+        within = np.where(stopped[:, None] | stopped, 0.0, covariance)
+        return states, self._offsets(start, simulated[0], slopes=slopes, covariance=within)
+
+    def start_effects(self, values: FloatArray) -> FloatArray:
+        """Return what a small change of each state at the start does, shape (states, samples, outputs).
+
+        None of them where a simulation runs away.
+        """
+        first = self.simulator.rest(self.structure, values, self.record)
+        effects = effects_of(lambda states: self._simulated(values, (), states), first)
+        size = (0, self.record.samples, len(self._names))
+        return np.zeros(size) if effects is None else effects[1]
 
     def redrawn(self, values: FloatArray, count: int, rng: np.random.Generator) -> RecordRepeats:
         """Return repeats with noise of the same colour."""
@@ -258,23 +282,49 @@ class OutputError(WhitenedTerm):
 
     def _completed(self, simulated: FloatArray, start: InitialStates | None) -> FloatArray:
         """Return a simulation with its best offset and drift as the record shows it, shape (samples, outputs)."""
-        columns, completed = self._columns(), simulated
-        if columns.size:
-            gap = self.measured - self._white(simulated[None])[0]
-            if start is not None:
-                # the last step towards the states was small, but drifts and states may have moved against each other
-                columns = np.concatenate([columns, start.effects])
-            shares, *_ = np.linalg.lstsq(self._white(columns).T, gap, rcond=1e-9)
-            completed = completed + np.tensordot(shares, columns, axes=1)
+        completed = simulated
+        if self._columns().size:
+            # the last step towards the states was small, but drifts and states may have moved against each other
+            completed = completed + np.tensordot(self._shares(simulated, start), self._linear(start), axes=1)
         return (
             with_quadratic_torque(completed, self._names, self.record.load)
             if self.moving_load
             else np.asarray(completed)
         )
 
+    def _shares(self, simulated: FloatArray, start: InitialStates | None) -> FloatArray:
+        """Return the best weights of offsets, drifts and moving load, and of the states at the start behind them."""
+        gap = self.measured - self._white(simulated[None])[0]
+        shares, *_ = np.linalg.lstsq(self._white(self._linear(start)).T, gap, rcond=1e-9)
+        return np.asarray(shares)
+
+    def _linear(self, start: InitialStates | None) -> FloatArray:
+        """Return what is found beside the model: offsets, drifts, moving load, effects of states at the start."""
+        return self._columns() if start is None else np.concatenate([self._columns(), start.effects])
+
+    def _offsets(
+        self,
+        start: InitialStates | None,
+        simulated: FloatArray,
+        *,
+        slopes: FloatArray | None = None,
+        covariance: FloatArray | None = None,
+    ) -> tuple[Estimate, ...]:
+        """Return what offset and drift add to each output on average; the parameters are known without covariance."""
+        drifts = self._drift_columns()
+        if not len(drifts):
+            return ()
+        columns, shares = self._linear(start), self._shares(simulated, start)
+        spread = spread_of(self._white(columns), slopes=slopes, covariance=covariance)
+        means = np.zeros((len(columns), len(self._names)))
+        means[: len(drifts)] = drifts[:, self.record.used].mean(axis=1)
+        return tuple(
+            Estimate(name=name, unit="", value=float(mean @ shares), std=spread.std(mean))
+            for name, mean in zip(self._names, means.T, strict=True)
+        )
+
     def _flexible(self, simulated: FloatArray, start: InitialStates | None) -> FlexibleModel:
         """Return what is more flexible than the structure, to judge it by."""
-        fitted = self._columns() if start is None else np.concatenate([self._columns(), start.effects])
         measured = self._outputs()
         return FlexibleModel(
             record=self.record,
@@ -283,7 +333,7 @@ class OutputError(WhitenedTerm):
             residuals=self._compared(measured) - self._compared(self._completed(simulated[0], start)),
             simulated=simulated[0],
             slopes=simulated[1:],
-            nuisance=fitted,
+            nuisance=self._linear(start),
             longest_memory_s=self.longest_memory_s,
         )
 
@@ -301,8 +351,12 @@ class OutputError(WhitenedTerm):
 
     def _columns(self) -> FloatArray:
         """Return offsets, drifts and moving load, shape (columns, samples, outputs)."""
-        drifts = drift_columns(self.record, len(self._names), self.drift_degree, anew_after_s=self.anew_after_s)
+        drifts = self._drift_columns()
         return np.concatenate([drifts, load_columns(self.record, self._names)]) if self.moving_load else drifts
+
+    def _drift_columns(self) -> FloatArray:
+        """Return offsets and drifts, shape (columns, samples, outputs)."""
+        return drift_columns(self.record, len(self._names), self.drift_degree, anew_after_s=self.anew_after_s)
 
     @property
     def _names(self) -> tuple[str, ...]:

@@ -34,6 +34,8 @@ class RecordFit(FittedTerm):
     with a standard deviation of 1 where structure and noise model hold."""
     initial_states: tuple[Estimate, ...]
     """States at the first sample, by the names of the structure's equations, where they were estimated; else none."""
+    offsets: tuple[Estimate, ...]
+    """What offset and drift add to each output on average, by its name; none where neither was found."""
     flexible: FlexibleModel = field(repr=False)
     """What is more flexible than the structure, by which it is judged."""
 
@@ -70,6 +72,7 @@ def record_fit(
     model: FloatArray,
     whitened: FloatArray,
     initial_states: tuple[Estimate, ...],
+    offsets: tuple[Estimate, ...],
     flexible: FlexibleModel,
 ) -> RecordFit:
     """Return how well a record is explained.
@@ -94,6 +97,7 @@ def record_fit(
         },
         whitened=frozen_float(whitened),
         initial_states=initial_states,
+        offsets=offsets,
         flexible=flexible,
     )
 

@@ -2,6 +2,7 @@
 
 from shaftprint.identify.judgement._affected_numbers import AFFECTED, by_weight, depends_on
 from shaftprint.identify.judgement._clock_drift import unseen_drift
+from shaftprint.identify.judgement._data_contradictions import fails
 from shaftprint.identify.judgement._line_quality import good_lines
 from shaftprint.identify.judgement._misfit import explained, misfit_words, worst_lines
 from shaftprint.identify.judgement._number_precision import doubts_of
@@ -22,6 +23,7 @@ __all__ = [
     "depends_on",
     "doubts_of",
     "explained",
+    "fails",
     "good_lines",
     "listed",
     "misfit_words",

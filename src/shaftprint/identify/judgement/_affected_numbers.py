@@ -38,6 +38,7 @@ AFFECTED: Mapping[ReasonKind, tuple[frozenset[Basis], str]] = {
     "set-point scale": (ALL - {"speed"}, "it depends on the scale of the set point"),
     "gauge latency": (ALL - {"speed", "set point"}, "it depends on the latency of the torque gauge"),
     "prior": (ALL - {"speed", "set point"}, "it depends on a prior that the data contradict"),
+    "record": (ALL, "it depends on how its records were taken"),
     "gear ratio": (frozenset(("torque", "governor")), "it depends on the gear ratio"),
     "too few data": (ALL, WHOLE),
     "gap": (ALL, WHOLE),

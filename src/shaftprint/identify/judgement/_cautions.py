@@ -85,6 +85,10 @@ def _too_good(evidence: Evidence) -> list[str]:
     p_value = evidence.identification.p_value
     if p_value is None or p_value <= TOO_GOOD or math.isinf(evidence.identification.chi_square):
         return []
+    if evidence.identification.objective.others:
+        # the noise of records is found from what the structure leaves of them, and may hold more than noise: it is no
+        # covariance that was known before, and says nothing against standard deviations
+        return []
     return [
         f"The fit is better than the noise allows ({probability(p_value)}): the covariance of the data is too "
         "large, and so are the standard deviations."

@@ -4,6 +4,7 @@ from collections.abc import Iterator, Mapping
 
 from shaftprint.identify.judgement._evidence import Evidence
 from shaftprint.identify.judgement._phrases import probability
+from shaftprint.identify.judgement._requirements import Requirements
 from shaftprint.identify.likelihood import CheckKind, FittedTerm, TermCheck
 
 WORDS: Mapping[CheckKind, tuple[str, str]] = {
@@ -24,8 +25,14 @@ WORDS: Mapping[CheckKind, tuple[str, str]] = {
         "a flexible model from the inputs follows it better",
         "look for what the structure lacks, such as a mode or a limit",
     ),
+    "start": ("it begins in other states", "let the states at its start be found"),
 }
 """For each kind of check what a failure says of a record, and what to do."""
+WEIGHED = (
+    "under the noise that a flexible model leaves it wants other numbers",
+    "its noise holds what the structure lacks, such as friction that is not the same everywhere",
+)
+"""The same where there are no other data: the record against itself under another noise."""
 
 
 def contradicting_data(evidence: Evidence) -> str:
@@ -33,23 +40,38 @@ def contradicting_data(evidence: Evidence) -> str:
     failures = list(_failures(evidence))
     if not failures:
         return ""
-    # a flexible model holds all that the others do, but says less of the cause
-    part, check = max(failures, key=lambda failure: (failure[1].kind != "flexible", failure[1].share))
-    what, cure = WORDS[check.kind]
+    alone = len(evidence.identification.parts) == 1
+    # these hold all that the others do, but say less of the cause
+    last = ("flexible", "other data") if alone else ("flexible",)
+    part, check = max(failures, key=lambda failure: (failure[1].kind not in last, failure[1].share))
+    what, cure = WEIGHED if check.kind == "other data" and alone else WORDS[check.kind]
     return (
         f"The structure {evidence.identification.objective.name} does not hold in {part.name}: {what}, which is "
-        f"{100.0 * check.share:.0f} % of the motion of {check.output} where the noise is {100.0 * check.noise:.0f} % "
+        f"{100.0 * check.share:.2g} % of the motion of {check.output} where the noise is {100.0 * check.noise:.2g} % "
         f"({probability(check.p_value)}); {cure}."
     )
 
 
 def _failures(evidence: Evidence) -> Iterator[tuple[FittedTerm, TermCheck]]:
-    """Yield the checks that a record fails: a difference that is no chance, is visible, and moves numbers."""
+    """Yield the checks that a record fails."""
     parts, needs = evidence.identification.parts, evidence.requirements
     checks = [(part, check) for part in parts for check in part.checks]
     for part, check in checks:
-        if check.kind == "other data" and len(parts) == 1:
-            continue
-        large = max(needs.largest_contradiction, needs.visible_share * check.noise)
-        if check.share > large and check.p_value * len(checks) < needs.lowest_p_value:
+        # at its own optimum a record wants no other numbers: what moves these is the noise alone, whatever its size
+        alone = check.kind == "other data" and len(parts) == 1
+        if fails(check, needs, among=len(checks), by_size=not alone):
             yield part, check
+
+
+def fails(check: TermCheck, needs: Requirements, *, among: int, by_size: bool = True) -> bool:
+    """Return whether a difference is no chance, and large: by its size, or beside the noise along its directions.
+
+    Parameters
+    ----------
+    among
+        Number of the checks of which this is one.
+    by_size
+        Whether its size alone may decide.
+    """
+    large = by_size and check.share > max(needs.largest_contradiction, needs.visible_share * check.noise)
+    return (large or check.excess > needs.largest_excess) and check.p_value * among < needs.lowest_p_value

@@ -1,5 +1,6 @@
 """What a fit must satisfy before its numbers may be used."""
 
+import math
 from dataclasses import dataclass, fields
 
 from shaftprint.errors import IdentificationError
@@ -27,6 +28,10 @@ class Requirements:
     visible_share: float = 0.25
     """Least size of such a difference over that of the noise: noise that is no autoregression, such as a shaft order,
     gives differences of a tenth of it that look significant."""
+    largest_excess: float = math.inf
+    """Largest mean square over that of the noise, in the directions of such a difference, that is no contradiction
+    whatever its size: where it is 4, standard deviations that know of noise alone are half of what they should be. A
+    linear structure of a ship leaves the second harmonic of the propeller law, and is judged by the size alone."""
     gain_margin: float = 2.0
     """Least gain margin of a well-tuned loop: 2 to 5 (Astrom and Murray, Feedback systems, section 9.3)."""
     phase_margin_deg: float = 30.0

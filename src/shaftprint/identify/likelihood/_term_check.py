@@ -3,9 +3,9 @@
 from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
-CheckKind: TypeAlias = Literal["small and large", "up and down", "halves", "other data", "flexible"]
+CheckKind: TypeAlias = Literal["small and large", "up and down", "halves", "other data", "flexible", "start"]
 """What is compared: small motions with large ones, motions up with motions down, the first half of the data with the
-second, these data with the others, the structure with a flexible model."""
+second, these data with the others, the structure with a flexible model, its start with other states."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -20,5 +20,8 @@ class TermCheck:
     """Root mean square of the difference over that of the output's motion [-]."""
     noise: float
     """Root mean square of the noise of that output over that of its motion [-]."""
+    excess: float
+    """Mean square of the residuals along the directions in which such a difference lies, over that of the noise: 1 on
+    average if the structure holds."""
     p_value: float
     """Probability of a difference that large or larger if the structure holds."""

@@ -54,6 +54,10 @@ _WORDS: "Mapping[ReasonKind, tuple[str, str]]" = {
         "The measurement contradicts what was assumed of the ship.",
         "Check inertia, gear ratio and gauge in the vessel file, then identify once more.",
     ),
+    "record": (
+        "A record was not taken as it is said to be.",
+        "Correct the file that describes it, then identify once more.",
+    ),
     "gear ratio": (
         "The two speed pick-ups do not agree with the gear ratio.",
         "Check gear ratio and pulses per revolution in the vessel file, then identify once more.",
