@@ -88,8 +88,11 @@ def identify_drive(
     fit = identify_in_time([(one.structure, record) for record in records], rng=rng, settings=settings, time=time)
     way = input_way(one, fit, records, settings=settings, time=time)
     profiled = profile(way.fit)
+    remarks = [remark for record in records for remark in record.remarks]
     reasons = (*held_outputs(one, records), *way.reasons, *starts_in_motion(one, way.fit), *large_offsets(one, way.fit))
-    verdict = assess(way.fit, profile=profiled, requirements=REQUIREMENTS, reasons=reasons, assumptions=way.assumptions)
+    verdict = assess(
+        way.fit, profile=profiled, requirements=REQUIREMENTS, reasons=reasons, assumptions=(*remarks, *way.assumptions)
+    )
     return DriveFit(
         equipped=one, identification=way.fit, intervals=profiled.intervals, verdict=verdict, inputs_hold=way.hold
     )

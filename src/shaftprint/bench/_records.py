@@ -1,6 +1,7 @@
 """Records of a drive from logger files of any format that is read."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -8,6 +9,7 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.bench._equipped import EquippedDrive
+from shaftprint.bench._wrapped import turn_of, unwrapped
 from shaftprint.drive import Signal, Stretch, unit_factor
 from shaftprint.errors import RecordingError
 from shaftprint.recording import Channel, Recording, read_recording
@@ -101,9 +103,21 @@ def _record(
             )
     if last - first < FEWEST:
         raise RecordingError(f"{path}: expected {FEWEST} samples or more in a record, found {last - first}.")
-    values = {key: one.factors[key] * channel.values(first, last) for key, channel in channels.items()}
     drive, nothing = one.drive, np.zeros(last - first)
-    return record_from_arrays(
+    read, remarks = {}, []
+    for signal in drive.signals:
+        if signal.name not in channels:
+            continue
+        raw, turn = channels[signal.name].values(first, last), turn_of(signal.unit)
+        whole = None if turn is None else unwrapped(raw, turn)
+        if turn is not None and whole is not None:
+            remarks.append(
+                f"in record {name} {signal.name} is an angle that begins again after {turn:g} {signal.unit}, and goes "
+                "on from turn to turn here."
+            )
+        read[signal.name] = raw if whole is None else whole
+    values = {key: one.factors[key] * read[key] for key in channels}
+    record = record_from_arrays(
         name,
         {key: _finite(values[key], channels[key], first, path) for key in one.structure.inputs},
         {signal.name: values.get(signal.name, nothing) for signal in drive.outputs},
@@ -111,6 +125,7 @@ def _record(
         start_s=clock.start_s + first / clock.rate_hz,
         hold=hold if drive.fit.inputs_hold is None else drive.fit.inputs_hold,
     )
+    return replace(record, remarks=tuple(remarks))
 
 
 def _finite(values: FloatArray, channel: Channel, first: int, path: Path) -> FloatArray:

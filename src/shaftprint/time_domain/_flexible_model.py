@@ -28,7 +28,7 @@ from shaftprint.distributions import f_tail
 from shaftprint.identify.likelihood import CheckKind, TermCheck
 from shaftprint.time_domain._flexible_directions import impulse_responses, small_and_large, through_poles, up_and_down
 from shaftprint.time_domain._noise_model import NoiseModel, estimate_noise
-from shaftprint.time_domain._nuisance import orthonormal, without
+from shaftprint.time_domain._nuisance import left_of, orthonormal, without
 from shaftprint.time_domain._record import Record
 from shaftprint.time_domain._span import Span
 from shaftprint.time_domain._whitening import Whitening
@@ -191,7 +191,7 @@ class FlexibleModel:
         )
         basis = orthonormal(basis)
         unexplained = without(target[0], basis)
-        span = Span.of(without(rows, basis))
+        span = Span.of(left_of(rows, basis))
         shares, explained = span.shares(unexplained), span.explained(unexplained)
         spare = unexplained.size - len(basis) - span.rank - self._noise.coefficients.size
         beyond = max(float(unexplained @ unexplained) - explained, 0.0) / max(spare, 1)

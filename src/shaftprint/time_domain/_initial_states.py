@@ -16,7 +16,7 @@ from shaftprint.arrays import BoolArray, FloatArray
 from shaftprint.identify.fit import Estimate, PseudoInverse
 from shaftprint.models import Structure
 from shaftprint.simulation import state_names
-from shaftprint.time_domain._nuisance import without
+from shaftprint.time_domain._nuisance import left_of
 from shaftprint.time_domain._record import Record
 
 # Most steps towards initial states, and the share of their size below which one is the last: the first is exact where
@@ -153,7 +153,7 @@ def state_estimates(
         free); the parameters are taken to be known where they are not given. One of infinite variance leaves the states
         that depend on it unknown.
     """
-    spread = spread_of(without(effects, drifts), slopes=slopes, covariance=covariance)
+    spread = spread_of(left_of(effects, drifts), slopes=slopes, covariance=covariance)
     variance = np.diag(spread.covariance).copy()
     variance[spread.inverse.lost | spread.unknown] = np.inf
     return tuple(

@@ -26,7 +26,7 @@ from shaftprint.time_domain._initial_states import (
 from shaftprint.time_domain._input_response import excited
 from shaftprint.time_domain._moving_load import load_columns, with_quadratic_torque, without_quadratic_torque
 from shaftprint.time_domain._noise_model import LONGEST_S
-from shaftprint.time_domain._nuisance import drift_columns, orthonormal, without
+from shaftprint.time_domain._nuisance import drift_columns, left_of, orthonormal, without
 from shaftprint.time_domain._record import Record
 from shaftprint.time_domain._record_fit import RecordFit, record_fit
 from shaftprint.time_domain._simulator import Simulator, in_parallel, on_record
@@ -235,7 +235,7 @@ class OutputError(WhitenedTerm):
         """Return whitened residuals of a simulation with derivatives beside offsets, drifts and initial states."""
         basis = self.drifts
         if start is not None:
-            effects = without(self._white(start.effects), self.drifts)
+            effects = left_of(self._white(start.effects), self.drifts)
             basis = orthonormal(np.concatenate([self.drifts, effects]))
         rows = self._white(simulated)
         rows[0] = data - rows[0]
@@ -379,5 +379,5 @@ class OutputError(WhitenedTerm):
         for output in range(size):
             directions[output, :, :, output] = moves
         table = self._white(directions.reshape(-1, self.record.samples, size))
-        span = Span.of(without(np.concatenate([rows[1:], table]), basis))
+        span = Span.of(left_of(np.concatenate([rows[1:], table]), basis))
         return span.explained(rows[0]), span.rank

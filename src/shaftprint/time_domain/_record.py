@@ -51,6 +51,8 @@ class Record(Shown):
     """Engine speed of the working point [rev/s]; None where only deviations are known."""
     shaft_torque_nm: float | None = None
     """Shaft torque of the working point [N m]; None where only deviations are known."""
+    remarks: tuple[str, ...] = ()
+    """What was taken for granted where its channels were read, in sentences."""
     decimator: Decimator = field(init=False, repr=False)
     """The filter between the drive's grid and the record's."""
 

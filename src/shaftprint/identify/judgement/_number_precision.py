@@ -64,7 +64,10 @@ def _doubt(
     if not math.isfinite(estimate.value):
         return "it has no value at the estimate"
     if interval is not None and (interval.lower_open or interval.upper_open):
-        return f"the data set no {_open_ends(interval)} end to it"
+        return f"the data set no {_sides(interval.lower_open, interval.upper_open)} end to it"
+    if interval is not None and (interval.lower_failed or interval.upper_failed):
+        sides = _sides(interval.lower_failed, interval.upper_failed)
+        return f"the search for the {sides} end of its interval came to none"
     std = _deviation(estimate, interval)
     if not math.isfinite(std):
         return "the data say nothing about it"
@@ -78,10 +81,10 @@ def _doubt(
     return ""
 
 
-def _open_ends(interval: Interval) -> str:
-    if interval.lower_open and interval.upper_open:
+def _sides(lower: bool, upper: bool) -> str:
+    if lower and upper:
         return "lower and upper"
-    return "lower" if interval.lower_open else "upper"
+    return "lower" if lower else "upper"
 
 
 def _deviation(estimate: Estimate, interval: Interval | None) -> float:

@@ -55,6 +55,8 @@ class Ends:
     """The number there, shape (rows,)."""
     is_open: BoolArray
     """Whether bounds of the search stopped the number before the cost had risen far enough, shape (rows,)."""
+    failed: BoolArray
+    """Whether the search came to no end, and no bound stands there: the data may have set one, shape (rows,)."""
 
 
 def furthest(
@@ -133,8 +135,10 @@ class _Climb:
                 if at.rows.size == 0:
                     break
             at.advance(numbers, np.minimum(np.maximum(at.theta + step.delta, lower), upper), step)
-        theta[at.rows], is_open[at.rows] = at.theta, at.root < (1.0 - SHARP) * at.distance
-        return Ends(theta=theta, value=numbers.values(theta), is_open=is_open)
+        short, failed = at.root < (1.0 - SHARP) * at.distance, np.zeros_like(is_open)
+        stopped = np.any((at.theta <= lower) | (at.theta >= upper), axis=1)
+        theta[at.rows], is_open[at.rows], failed[at.rows] = at.theta, short & stopped, short & ~stopped
+        return Ends(theta=theta, value=numbers.values(theta), is_open=is_open, failed=failed)
 
     def _last_step(self, at: "_Position", step: "_Step") -> FloatArray:
         """Return the ends of rows that are done: a step further, but where that leaves the contour.
@@ -179,12 +183,13 @@ class _Climb:
             return ends
         rows = rows[usable]
         again = self.ends_from(rows, starts[usable])
-        points, value, is_open = ends.theta.copy(), ends.value.copy(), ends.is_open.copy()
+        points, value = ends.theta.copy(), ends.value.copy()
+        is_open, failed = ends.is_open.copy(), ends.failed.copy()
         further = self.side[rows] * (again.value - value[rows]) > 0.0
         places = rows[further]
         points[places], value[places] = again.theta[further], again.value[further]
-        is_open[places] = again.is_open[further]
-        return Ends(theta=points, value=value, is_open=is_open)
+        is_open[places], failed[places] = again.is_open[further], again.failed[further]
+        return Ends(theta=points, value=value, is_open=is_open, failed=failed)
 
     def _allows(self, ends: Ends) -> BoolArray:
         """Return whether the rise of the cost of each row allows the end of each, shape (rows, rows)."""

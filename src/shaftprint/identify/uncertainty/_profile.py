@@ -40,6 +40,10 @@ class Interval:
     """Whether the data set no lower end: a bound of the search stands there."""
     upper_open: bool
     """Whether the data set no upper end: a bound of the search stands there."""
+    lower_failed: bool = False
+    """Whether the search for the lower end came to none: that of the standard deviation stands there."""
+    upper_failed: bool = False
+    """Whether the search for the upper end came to none: that of the standard deviation stands there."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
@@ -119,13 +123,20 @@ def profile(identification: Identification, numbers: Sequence[Combination] = ())
     intervals = {
         name: Interval(name=name, lower=-np.inf, upper=np.inf, lower_open=True, upper_open=True) for name in names
     }
+    stds = {one.name: one.std for one in (*identification.parameters, *identification.combinations)}
     for i, column in enumerate(finite):
-        intervals[names[column]] = Interval(
-            name=names[column],
-            lower=float(ends.value[2 * i]),
-            upper=float(ends.value[2 * i + 1]),
-            lower_open=bool(ends.is_open[2 * i]),
-            upper_open=bool(ends.is_open[2 * i + 1]),
+        name = names[column]
+        reach = NORMAL_95 * stds.get(name, np.inf)
+        (lower, upper), (no_lower, no_upper) = ends.value[2 * i : 2 * i + 2], ends.failed[2 * i : 2 * i + 2]
+        centre = float(every.chosen(np.array([column])).values(best[None])[0])
+        intervals[name] = Interval(
+            name=name,
+            lower=min(float(lower), centre - reach) if no_lower else float(lower),
+            upper=max(float(upper), centre + reach) if no_upper else float(upper),
+            lower_open=bool(ends.is_open[2 * i]) or (bool(no_lower) and not np.isfinite(reach)),
+            upper_open=bool(ends.is_open[2 * i + 1]) or (bool(no_upper) and not np.isfinite(reach)),
+            lower_failed=bool(no_lower),
+            upper_failed=bool(no_upper),
         )
     return Profile(intervals=intervals, points=frozen_float(objective.complete(ends.theta)))
 

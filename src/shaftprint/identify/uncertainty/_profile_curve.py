@@ -82,7 +82,8 @@ def profile_curve(identification: Identification, number: str | Combination, *, 
     best = identification.values[list(objective.free)]
     ends = furthest(numbers_of_points, best, side, np.tile(steps, 2), optima=other_optima(identification))
     # Of the points that a bound stopped only the first of each side is one: the others are the same.
-    repeated = ends.is_open & np.roll(ends.is_open, 1) & (np.roll(side, 1) == side)
+    stopped = ends.is_open | ends.failed
+    repeated = stopped & np.roll(stopped, 1) & (np.roll(side, 1) == side)
     theta = np.concatenate([best[None, :], ends.theta[~repeated]])
     residuals, _ = objective.residuals(theta)
     cost = 0.5 * np.vecdot(residuals, residuals)
