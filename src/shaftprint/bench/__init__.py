@@ -15,7 +15,7 @@ from shaftprint.bench._equipped import EquippedDrive, equipped
 from shaftprint.bench._fingerprint import drive_fingerprint, identified_drive
 from shaftprint.bench._fit import STARTS, DriveFit, drive_settings, drive_time_settings, identify_drive
 from shaftprint.bench._kept import kept_drive
-from shaftprint.bench._predict import coloured_record, predict_drive
+from shaftprint.bench._predict import coloured_record, planned_noise, predict_drive
 from shaftprint.bench._records import read_records
 from shaftprint.bench._structures import TimeCandidate, TimeComparison, TimeRatio, compare_in_time, without
 from shaftprint.bench._validate import ValidatedRecord, validate_drive
@@ -40,6 +40,7 @@ __all__ = [
     "identified_drive",
     "identify_drive",
     "kept_drive",
+    "planned_noise",
     "predict_drive",
     "read_records",
     "validate_drive",
