@@ -15,10 +15,10 @@ from shaftprint.bench._equipped import EquippedDrive, equipped
 from shaftprint.bench._fingerprint import drive_fingerprint, identified_drive
 from shaftprint.bench._fit import STARTS, DriveFit, drive_settings, drive_time_settings, identify_drive
 from shaftprint.bench._kept import kept_drive
-from shaftprint.bench._predict import coloured_record, planned_noise, predict_drive
+from shaftprint.bench._predict import noise_words, planned_noise, predict_drive
 from shaftprint.bench._records import read_records
 from shaftprint.bench._structures import TimeCandidate, TimeComparison, TimeRatio, compare_in_time, without
-from shaftprint.bench._validate import ValidatedRecord, validate_drive
+from shaftprint.bench._validate import ValidatedRecord, identified_from, validate_drive
 
 __all__ = [
     "STARTS",
@@ -29,7 +29,6 @@ __all__ = [
     "TimeComparison",
     "TimeRatio",
     "ValidatedRecord",
-    "coloured_record",
     "compare_in_time",
     "composed",
     "drive_differences",
@@ -38,8 +37,10 @@ __all__ = [
     "drive_time_settings",
     "equipped",
     "identified_drive",
+    "identified_from",
     "identify_drive",
     "kept_drive",
+    "noise_words",
     "planned_noise",
     "predict_drive",
     "read_records",

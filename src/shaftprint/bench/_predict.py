@@ -86,6 +86,15 @@ def coloured_record(kept: DriveFingerprint | None, rate_hz: float) -> DriveRecor
     return max(alike, key=lambda record: sum(map(math.log, record.noise_std.values())), default=None)
 
 
+def noise_words(kept: DriveFingerprint | None, records: Sequence[Record]) -> str:
+    """Return of what colour the noise of planned records is taken to be."""
+    coloured = [record for record in (coloured_record(kept, one.rate_hz) for one in records) if record is not None]
+    if len(coloured) < len(records):
+        rates = "" if kept is None else ", at a rate whose colour the fingerprint does not keep"
+        return f"Noise is taken to be white{rates}; records tell less under noise with a memory."
+    return f"Noise has the colour of {', '.join(dict.fromkeys(record.name for record in coloured))}."
+
+
 def planned_noise(
     kept: DriveFingerprint | None, outputs: Sequence[str], *, noise_std: Mapping[str, float], rate_hz: float
 ) -> NoiseModel:

@@ -29,6 +29,27 @@ class ValidatedRecord:
     """Whether it misses no more than a contradiction may be: see ``Requirements.largest_contradiction``."""
 
 
+def identified_from(kept: DriveFingerprint, files: Sequence[str], records: Sequence[Record]) -> tuple[str, ...]:
+    """Return the names of records that share time with those that a fingerprint was identified from.
+
+    Parameters
+    ----------
+    files
+        SHA-256 of each file; every one gave as many of the records, in their order.
+    """
+    each = len(records) // len(files)
+    of = [file for file in files for _ in range(each)]
+    if any(record.recording for record in kept.records):
+        return tuple(
+            record.name
+            for file, record in zip(of, records, strict=True)
+            if any(one.overlaps(file, float(record.time_s[0]), float(record.time_s[-1])) for one in kept.records)
+        )
+    # a fingerprint of an earlier version knows files only
+    earlier = {source.sha256 for source in kept.sources if source.role == "recording"}
+    return tuple(record.name for file, record in zip(of, records, strict=True) if file in earlier)
+
+
 @refusing_none(IdentificationError)
 def validate_drive(
     fingerprint: DriveFingerprint, one: EquippedDrive, records: Sequence[Record]

@@ -8,9 +8,10 @@ import numpy as np
 
 from shaftprint.bench import (
     STARTS,
-    coloured_record,
     compare_in_time,
     drive_differences,
+    identified_from,
+    noise_words,
     predict_drive,
     read_records,
     validate_drive,
@@ -29,7 +30,6 @@ from shaftprint.tables import (
     time_comparison_table,
     validated_drive_table,
 )
-from shaftprint.time_domain import Record
 
 
 def compare_on_the_bench(named: Mapping[str, DriveFingerprint]) -> None:
@@ -67,25 +67,10 @@ def validate_on_the_bench(
     )
     answer(headline)
     give("missed", {record.fit.record.name: dict(record.missed) for record in validated})
-    seen = _identified_from(kept, recordings, records)
+    seen = identified_from(kept, [file_sha256(path) for path in recordings], records)
     if seen:
         say(f"A record was identified from too, {', '.join(seen)}: what it shows is no validation.")
     print_table(validated_drive_table(validated))
-
-
-def _identified_from(kept: DriveFingerprint, recordings: Sequence[Path], records: Sequence[Record]) -> list[str]:
-    """Return the names of the records that share time with those of a fingerprint, each file giving as many."""
-    each = len(records) // len(recordings)
-    files = [sha256 for path in recordings for sha256 in [file_sha256(path)] * each]
-    earlier = {source.sha256 for source in kept.sources if source.role == "recording"}
-    if any(record.recording for record in kept.records):
-        return [
-            record.name
-            for file, record in zip(files, records, strict=True)
-            if any(one.overlaps(file, float(record.time_s[0]), float(record.time_s[-1])) for one in kept.records)
-        ]
-    # a fingerprint of an earlier version knows files only
-    return [record.name for file, record in zip(files, records, strict=True) if file in earlier]
 
 
 def predict_on_the_bench(
@@ -114,17 +99,8 @@ def predict_on_the_bench(
     give("deviations", deviations)
     lost = [name for name, std in deviations.items() if not np.isfinite(std)]
     answer("The records would tell every parameter." if not lost else f"Not told: {', '.join(lost)}.")
-    say(_noise_words(kept, records))
+    say(noise_words(kept, records))
     print_table(drive_prediction_table(one.structure, usual, deviations))
-
-
-def _noise_words(kept: DriveFingerprint | None, records: Sequence[Record]) -> str:
-    """Return of what colour the noise is taken to be."""
-    coloured = [record for record in (coloured_record(kept, one.rate_hz) for one in records) if record is not None]
-    if len(coloured) < len(records):
-        rates = "" if kept is None else " at a rate that no record of the fingerprint has"
-        return f"Noise is taken to be white{rates}; noise with a memory tells less."
-    return f"Noise has the colour of {', '.join(dict.fromkeys(record.name for record in coloured))}."
 
 
 def _noise(kept: DriveFingerprint | None) -> dict[str, float]:
