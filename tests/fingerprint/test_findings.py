@@ -215,7 +215,7 @@ def test_inertia_off_the_torsional_vibration_calculation(sharp, put_by_hand, jud
 def test_a_value_of_nothing_has_no_factor(sharp, working_point, vessel):
     """An inertia at its bound of zero, with the standard deviation of its fit."""
     values = physical_quantities(sharp, working_point, vessel)
-    nothing = [replace(value, value=0.0) if value.name == "I_dn" else value for value in values]
+    nothing = [value.model_copy(update={"value": 0.0}) if value.name == "I_dn" else value for value in values]
     assert one(found(sharp, tuple(nothing)), "I_dn") == "I_dn = 0 kg m2 against 17 kg m2 of the vessel file."
 
 
