@@ -47,7 +47,7 @@ PORT_LINE = "Open http://127.0.0.1:"
 UPLOAD_MB = 135
 AT_A_TIME = 250
 PATIENCE_S = 0.1
-# The store is full until May 2027; what makes a class of some ships is newer.
+# The store is full until May 2026; what makes a class of some ships is newer.
 CLASS, SISTERS, NOW = "Sixty sisters", 60, datetime(2030, 1, 1, tzinfo=UTC)
 JOB = {"vessel": "stan-tug-1205", "campaign": "short", "tested_at": "2026-11-01T10:00+01:00"}
 

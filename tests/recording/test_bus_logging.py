@@ -111,3 +111,12 @@ def test_a_log_without_raw_frames_needs_no_dbc_file(tmp_path, log, dbc):
         write_recording(tmp_path / "log.nc", recording.channels.values())
     with pytest.raises(RecordingError, match="expected no hints for this format, found the hint dbc"):
         read_recording(tmp_path / "log.nc", dbc=dbc)
+
+
+def test_a_line_that_cannot_be_read_is_left_out_and_the_library_prints_nothing(log, dbc, capsys):
+    text = dbc.read_text(encoding="utf-8")
+    broken = text.replace("BO_ ", ' SG_ Two Words : 24|16@1+ (1,0) [0|1] "" ECU\nBO_ ', 2).split("\n", 1)
+    dbc.write_text("\n".join(broken), encoding="utf-8")
+    with read_recording(log, dbc=dbc) as recording:
+        assert any("engine.dbc, line" in name for name in recording.left_out)
+    assert capsys.readouterr() == ("", "")

@@ -1,7 +1,9 @@
 """Raw messages of a CAN bus in an MDF file, taken apart as a DBC file says what they hold."""
 
+import contextlib
+import io
 import re
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -11,6 +13,8 @@ from shaftprint.recording.readers._extra import library
 
 # ASAM MDF 4.1, block CG: the records are events of a bus.
 _BUS_EVENT = 2
+# what the library prints where it leaves a line out
+_LINE = re.compile(r"error with line no: (\d+)")
 _MESSAGE = re.compile(r"(?P<bus>CAN\d*) ID=\S+ (?P<message>\S+)(?: PGN=\S+ SA=(?P<sender>\S+))?")
 
 
@@ -42,8 +46,8 @@ def message_of(group: Any) -> str:
     return found["message"] if sender is None else f"{found['message']} of {sender}"
 
 
-def bus_signals(dbc: Path) -> Mapping[str, BusSignal]:
-    """Return what a DBC file says of its signals, by message and name: ``"EEC1.EngineSpeed"``.
+def bus_signals(dbc: Path) -> tuple[Mapping[str, BusSignal], dict[str, str]]:
+    """Return what a DBC file says of its signals, by message and name: ``"EEC1.EngineSpeed"``; and what is left out.
 
     Raises
     ------
@@ -55,7 +59,8 @@ def bus_signals(dbc: Path) -> Mapping[str, BusSignal]:
     canmatrix = library(dbc, "canmatrix", "DBC")
     library(dbc, "canmatrix.formats", "DBC")
     try:
-        matrices = canmatrix.formats.loadp(str(dbc), import_type="dbc")
+        with in_silence() as said:
+            matrices = canmatrix.formats.loadp(str(dbc), import_type="dbc")
         signals = {
             f"{frame.name}.{signal.name}": _signal(signal)
             for matrix in matrices.values()
@@ -67,7 +72,15 @@ def bus_signals(dbc: Path) -> Mapping[str, BusSignal]:
         raise RecordingError(f"{dbc}: expected a DBC file, found one that cannot be read ({reason}).") from None
     if not signals:
         raise RecordingError(f"{dbc}: expected a DBC file with messages and signals, found none in it.")
-    return signals
+    lines = _LINE.findall(said.getvalue())
+    return signals, {f"{dbc.name}, line {number}": "the line cannot be read" for number in lines}
+
+
+@contextlib.contextmanager
+def in_silence() -> Iterator[io.StringIO]:
+    """Give what a library prints, which would stand in the answer of a command: letters of a file as they are."""
+    with contextlib.redirect_stdout(io.StringIO()) as said, contextlib.redirect_stderr(said):
+        yield said
 
 
 def taken_apart(path: Path, file: Any, dbc: Path) -> Any:
@@ -89,7 +102,8 @@ def taken_apart(path: Path, file: Any, dbc: Path) -> Any:
         raise RecordingError(
             f"{path}: expected raw messages of a bus for {dbc.name}, found none; leave the DBC file out."
         )
-    apart = file.extract_bus_logging(database_files={"CAN": [(str(dbc), 0)]}, ignore_value2text_conversion=True)
+    with in_silence():
+        apart = file.extract_bus_logging(database_files={"CAN": [(str(dbc), 0)]}, ignore_value2text_conversion=True)
     if not apart.groups:
         apart.close()
         raise RecordingError(

@@ -63,7 +63,7 @@ def read(path: Path, **hints: object) -> Recording:
     """
     rate = rate_hint(path, hints, {"dbc": (str, Path)})
     dbc = None if hints.get("dbc") is None else Path(str(hints["dbc"]))
-    signals = {} if dbc is None else bus_signals(dbc)
+    signals, unread = ({}, {}) if dbc is None else bus_signals(dbc)
     asammdf = library(path, "asammdf", NAME)
     _close_in_silence(asammdf)
     _expect_version(path)
@@ -81,6 +81,7 @@ def read(path: Path, **hints: object) -> Recording:
             if dbc is not None:
                 files.append(taken_apart(path, file, dbc))
             gathered = _gather(path, files, opened, rate, signals)
+            gathered.left_out.update(unread)
             began = file.start_time
             is_dated = isinstance(began, datetime) and began.year > 1970
             return gathered.recording(f"{NAME} {file.version}", opened.close, began if is_dated else None)
