@@ -109,7 +109,9 @@ def test_values_in_float_are_as_good_as_counts(spoiled, vessel, campaign):
     assert len(floating.repairs) == len(counted.repairs)
 
 
-@pytest.mark.parametrize(("factor", "times"), [(1000.0, "1000 times as much: mV for V"), (0.001, "1/1000 as much: mV")])
+@pytest.mark.parametrize(
+    ("factor", "times"), [(1000.0, "1000 times as much, as with mV for V"), (0.001, "1/1000 as much, as with mV")]
+)
 def test_a_set_point_in_another_unit_is_named(factor, times, spoiled, vessel, campaign):
     refused(
         spoiled(U_setpoint=lambda counts: factor * counts.astype(float)),

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 from scipy.signal import butter, sosfilt
@@ -319,6 +320,45 @@ def pick_up(place: int, **fields: object) -> Change:
         return replace(trial, vessel=trial.vessel.model_copy(update={"sensors": sensors}))
 
     return applied
+
+
+def alone(place: int, **fields: object) -> Change:
+    """Leave one pick-up in the vessel file, and change what is said of it."""
+
+    def applied(trial: Trial) -> Trial:
+        speed = trial.vessel.sensors.speed[place].model_copy(update=fields)
+        sensors = trial.vessel.sensors.model_copy(update={"speed": (speed,)})
+        return replace(trial, vessel=trial.vessel.model_copy(update={"sensors": sensors}))
+
+    return applied
+
+
+def divided(*channels: str) -> Change:
+    """Let a flip-flop halve the pulses of channels: high from one to the next, low to the one after."""
+
+    def applied(time: Values, values: Values) -> Values:
+        high = values > 2.5
+        begins = np.concatenate([[False], high[1:] & ~high[:-1]])
+        return np.where(np.cumsum(begins) % 2, 4.6, 0.3)
+
+    return both(*(changed(channel, applied) for channel in channels))
+
+
+def slower(hz: float) -> Change:
+    """Let the logger take fewer samples of every channel, without a filter."""
+
+    def applied(trial: Trial) -> Trial:
+        for name, one in trial.recording.channels.items():
+            counts = one.read(0, one.count)[:: round(one.rate_hz / hz)].copy()
+            source = partial(_part, counts)
+            trial = trial.with_channel(name, source=source, count=counts.size, rate_hz=hz)
+        return trial
+
+    return applied
+
+
+def _part(counts: Values, first: int, stop: int) -> Values:
+    return counts[first:stop]
 
 
 def vessel(part: str, **fields: object) -> Change:

@@ -64,13 +64,19 @@ def contradictions(
             kind="gauge scale",
             where=vessel.sensors.shaft_torque.channel,
             sentence=(
-                f"The scale of the torque gauge is in doubt: mean torque, K_Q and I_dn are {torque:.2f}, "
-                f"{math.exp(coefficient.log):.2f} and {math.exp(inertia.log):.2f} times what the vessel file expects; "
+                f"The scale of the torque gauge is in doubt: mean torque, K_Q and I_dn are {_written(torque)}, "
+                f"{_written(math.exp(coefficient.log))} and {_written(math.exp(inertia.log))} times what the vessel "
+                "file expects; "
                 f"check scale_nm_per_unit of {vessel.sensors.shaft_torque.channel}. Another propeller changes both "
                 "too, fouling K_Q alone."
             ),
         ),
     )
+
+
+def _written(factor: float) -> str:
+    """Return a factor with two decimals, of a thousandth with its digits."""
+    return f"{factor:.2f}" if factor > 0.1 else f"{factor:.2g}"
 
 
 def _scales(

@@ -173,7 +173,7 @@ def _expect_unit(set_point_v: FloatArray, levels_v: Sequence[float], campaign: C
         shown_v = found_v / factor
         is_level = min(levels_v) - _LEVEL * abs(middle_v) <= shown_v <= max(levels_v) + _LEVEL * abs(middle_v)
         if is_level and 1.0 / _MOVES < spread_v / factor / moves_v < _MOVES:
-            unit = ": mV for V?" if factor in (1e-3, 1e3) else ""
+            unit = ", as with mV for V" if factor in (1e-3, 1e3) else ""
             raise SignalError(
                 f"channel {channel}: expected a set point around {middle_v:.4g} V that moves by {moves_v:.3g} V, found "
                 f"one around {found_v:.3g} V that moves by {spread_v:.3g} V, {_times(factor)} as much{unit}; correct "
