@@ -5,10 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from shaftprint.campaign import Campaign
+from shaftprint.campaign import Campaign, load_campaign
 from shaftprint.recording import ClockJump
 from shaftprint.signals import Coverage, Gap, prepare_signals
 from shaftprint.signals._gaps import bridge, gap_findings, joined, merged, runs_of
+from shaftprint.signals.excitation import left_out
 
 RATE_HZ = 2000.0
 
@@ -257,3 +258,25 @@ def test_campaign_of_sines_only_is_judged_by_those_that_are_there(spoiled, vesse
     other = Campaign.model_validate({**campaign.model_dump(), "sines": sines})
     found = prepare_signals(spoiled(M_s=without(120.0, 150.0)), vessel, other)
     assert any("S1" in finding and "left out" in finding for finding in found.findings)
+
+
+@pytest.mark.parametrize(
+    ("gaps", "stop_s", "lost"),
+    [
+        # M2 has ten periods of 33.77 s from 378.5 s on: 3.6 before the gap and 5.5 behind it
+        (
+            (Gap(channel="M_s", start_s=500.0, stop_s=530.0, reason="has no values"),),
+            741.0,
+            "5 of the 10 periods of M2",
+        ),
+        # 6.3 of them are there
+        ((), 592.7, "4 of the 10 periods of M2"),
+        ((), 430.0, "M2"),
+        # between the legs
+        ((Gap(channel="M_s", start_s=360.0, stop_s=365.0, reason="has no values"),), 741.0, "no test is touched"),
+    ],
+)
+def test_what_a_gap_costs_of_a_leg_is_told_in_periods(gaps, stop_s, lost):
+    coverage = Coverage(start_s=0.0, stop_s=stop_s, step_s=0.005, gaps=gaps)
+    (told,) = left_out(load_campaign("12min"), coverage, name="log.nc")
+    assert told.endswith(f"; {lost}" if lost.startswith("no") else f"; left out for that: {lost}")
