@@ -4,6 +4,8 @@ import numpy as np
 import pytest
 from tests.bench.drawn_lags import GAIN, LAG_TOML, TIME_S, identified, lag, levels, written
 
+pytestmark = pytest.mark.slow
+
 INTERVAL = 0.02
 TRUTH = {"K": GAIN, "T": TIME_S}
 # Standard deviations within which each number lies: 1 of 10,000 is further.

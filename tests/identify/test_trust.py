@@ -1,5 +1,7 @@
 """Which numbers may be trusted: each reason for doubt, on a fit of which the right answer is known."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -40,6 +42,15 @@ def test_a_number_that_is_hardly_known_is_not(make_response, profiled):
     share = few.parameters[0].std / few.value("K_p")
     assert doubts["K_p"] == f"it is known to {100 * share:.0f} % only" or profiled
     assert trusted(few, largest_std=10.0)[1] == {}
+
+
+def test_a_search_without_an_end_is_not_told_as_an_end_that_the_data_did_not_set(make_response):
+    fit = fitted(make_response("OL2", noise=0.002, rng=np.random.default_rng(3)), structure("OL2"))
+    found = profile(fit)
+    ends = found.intervals | {"K_p": replace(found.intervals["K_p"], upper_failed=True)}
+    assert doubts_of(fit, fit.parameters, replace(found, intervals=ends)) == {
+        "K_p": "the search for the upper end of its interval came to none"
+    }
 
 
 def test_a_number_at_its_bound_is_not(make_response):

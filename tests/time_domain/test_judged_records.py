@@ -9,7 +9,9 @@ import pytest
 from benchmarks.monte_carlo_friction import LINEAR, RATE_HZ, RIGHT, Rotor, drawn_record, fitted, speed_of, steps
 from scipy.signal import TransferFunction, lsim
 
-from shaftprint.identify import Settings, assess
+from shaftprint.identify import Requirements, Settings, assess
+from shaftprint.identify.judgement import fails
+from shaftprint.identify.likelihood import TermCheck
 from shaftprint.time_domain import TimeSettings, identify_in_time, output_error, record_from_arrays
 
 SINGLE = Settings(starts=1)
@@ -129,3 +131,20 @@ def test_steps_keep_their_levels_and_other_records_lose_their_drift():
     }
     assert degrees == {"steps": 0, "sine": 1, "chirp": 1}
     assert output_error(LINEAR, made(torque, speed, "R"), settings=TimeSettings(drift_degree=1)).drift_degree == 1
+
+
+@pytest.mark.parametrize(
+    ("share", "excess", "p_value", "by_size", "by_noise"),
+    [
+        (0.06, 3.0, 1e-3, True, True),
+        (0.004, 20.0, 1e-30, False, True),
+        (0.004, 3.0, 1e-30, False, False),
+        (0.004, 6.0, 1e-4, False, False),
+        (0.06, 3.0, 1e-2, False, False),
+    ],
+)
+def test_a_difference_fails_by_its_size_or_beside_its_noise(share, excess, p_value, by_size, by_noise):
+    """Noise is 1 % of the motion: 0.4 % of it is a contradiction where that is 20 times the noise along it."""
+    check = TermCheck(kind="halves", output="w", share=share, noise=0.01, excess=excess, p_value=p_value)
+    assert fails(check, Requirements(), among=5) is by_size
+    assert fails(check, Requirements(largest_excess=4.0), among=5) is by_noise

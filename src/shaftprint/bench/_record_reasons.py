@@ -94,7 +94,7 @@ def large_offsets(one: EquippedDrive, fit: Identification) -> Iterator[Reason]:
         one_way = bool(values.min() >= -LARGEST_OFFSET * level or values.max() <= LARGEST_OFFSET * level)
         unit = one.units[output.name]
         more = (
-            f"the motion of {part.record.name} goes one way, in which dry friction is a constant too: "
+            f"the motion of {part.record.name} goes one way, in which dry friction is a constant too; "
             if one_way
             else ""
         )
