@@ -127,3 +127,12 @@ def test_a_structure_that_is_refitted_without_the_lines_that_it_misses_is_not_tr
     assert f"from {2 * np.pi * LINES_HZ[0]:.2g} to {2 * np.pi * LINES_HZ[len(names) - 1]:.2g} rad/s" in (verdict.reason)
     right = identify(structure("CL4"), response, rng=np.random.default_rng(1), lines=names)
     assert all(reason.kind != "lines left out" for reason in assess(right).reasons)
+
+
+def test_a_prior_that_the_data_pull_by_three_deviations_is_a_word_and_no_reason(gauge):
+    """The data know the latency of the gauge to 0.1 ms beside 2 ms: it is as far from its prior as that is moved."""
+    fitted, _ = gauge
+    verdict = assess(fitted(t_gauge=Prior(-0.006, 0.002)))
+    about = "what is assumed of t_gauge"
+    assert not any(about in reason.sentence for reason in verdict.reasons)
+    assert sum(about in caution for caution in verdict.cautions) == 1

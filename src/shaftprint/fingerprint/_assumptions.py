@@ -1,28 +1,55 @@
 """What the numbers of a fingerprint rest on and no recording can show: it is stated with them."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from shaftprint.catalogue import ShipRole
 from shaftprint.digits import stated
+from shaftprint.fingerprint._resting import resting_on
 from shaftprint.identify.judgement import listed, unseen_drift
+from shaftprint.models import Combination
 from shaftprint.units import MILLI
 
 if TYPE_CHECKING:
     from shaftprint.identify import Identification
+    from shaftprint.identify.uncertainty import Interval
     from shaftprint.vessel import Vessel
 
 PERCENT = 100.0
+# How far what the vessel file states may be off beside its deviation: rows that were forgotten, a torque that falls
+# with the speed as in the maps of some engines.
+OTHER_INERTIAS, STEEPEST_ENGINE = (0.8, 1.2), -0.5
 # So much is in the intervals already, as the resolution of a delay.
 LEAST_S = 0.0005
 
 
-def assumptions_of(identification: "Identification", vessel: "Vessel") -> tuple[str, ...]:
-    """Return the assumptions behind the numbers of one fit, in sentences."""
-    return tuple(_assumptions(identification, vessel))
+def assumptions_of(
+    identification: "Identification",
+    vessel: "Vessel",
+    margins: Sequence[Combination] = (),
+    intervals: "Mapping[str, Interval] | None" = None,
+) -> tuple[str, ...]:
+    """Return the assumptions behind the numbers of one fit, in sentences.
+
+    Parameters
+    ----------
+    identification
+        The fit.
+    vessel
+        What was tested.
+    margins, intervals
+        Margins as numbers, and the profile-likelihood intervals by name; without them it is not said which numbers
+        rest on the inertia upstream of the gauge.
+    """
+    return tuple(_assumptions(identification, vessel, margins, intervals or {}))
 
 
-def _assumptions(identification: "Identification", vessel: "Vessel") -> Iterator[str]:
+def _assumptions(
+    identification: "Identification",
+    vessel: "Vessel",
+    margins: Sequence[Combination],
+    intervals: "Mapping[str, Interval]",
+) -> Iterator[str]:
     by_role = {parameter.role: parameter.name for parameter in identification.structure.free}
     sensors, propeller = vessel.sensors, vessel.propeller
     if latency := by_role.get(ShipRole.SET_POINT_LATENCY):
@@ -35,15 +62,7 @@ def _assumptions(identification: "Identification", vessel: "Vessel") -> Iterator
             "channels shows in nothing else."
         )
     if by_role.get(ShipRole.INERTIA_UPSTREAM) in identification.settings.priors:
-        yield (
-            "Gains, margins and the parts of the delay rest on the inertia upstream of the gauge, "
-            f"{stated(vessel.inertia_upstream_kg_m2, vessel.inertia_upstream_std_kg_m2, 'kg m2')}, and on "
-            + (
-                "an engine torque that hardly changes with speed (g)."
-                if vessel.motor is None
-                else "a motor torque that does not change with speed."
-            )
-        )
+        yield from _of_engine_side(identification, vessel, margins, intervals)
     scale = sensors.shaft_torque.scale_std
     yield (
         f"What is in N m or kg m2 rests on the scale of the torque gauge, known to {PERCENT * scale:.2g} %; K_Q "
@@ -53,6 +72,41 @@ def _assumptions(identification: "Identification", vessel: "Vessel") -> Iterator
     if vessel.taken_as_usual:
         yield (
             f"The vessel file does not state, and as usual is taken: {'; '.join(vessel.taken_as_usual)}. State them."
+        )
+
+
+def _of_engine_side(
+    identification: "Identification",
+    vessel: "Vessel",
+    margins: Sequence[Combination],
+    intervals: "Mapping[str, Interval]",
+) -> Iterator[str]:
+    """Return what rests on the inertia upstream of the gauge and on the slope of the engine, as far as they may err."""
+    names = {p.role: p.name for p in identification.structure.free}
+    inertia, slope = names[ShipRole.INERTIA_UPSTREAM], names.get(ShipRole.ENGINE_SPEED_SLOPE)
+    priors = identification.settings.priors
+    if not intervals or inertia not in intervals:
+        return
+    elsewhere = {inertia: [share * priors[inertia].mean for share in OTHER_INERTIAS]}
+    said = f"an inertia {PERCENT * (OTHER_INERTIAS[1] - 1.0):.0f} % smaller or larger"
+    if slope in priors and slope in intervals:
+        elsewhere[slope] = [STEEPEST_ENGINE]
+        said += f", or g = {STEEPEST_ENGINE:g} as of some engines"
+    resting = dict.fromkeys(
+        number
+        for name, at in elsewhere.items()
+        for number in resting_on(identification, margins, intervals, name=name, at=at)
+    )
+    if resting:
+        yield (
+            f"{listed(list(resting))} {'rests' if len(resting) == 1 else 'rest'} on the inertia upstream of the gauge, "
+            f"{stated(vessel.inertia_upstream_kg_m2, vessel.inertia_upstream_std_kg_m2, 'kg m2')}, and on "
+            + (
+                "an engine torque that hardly changes with speed (g)"
+                if vessel.motor is None
+                else "a motor torque that does not change with speed"
+            )
+            + f": with {said} they would leave their intervals."
         )
 
 

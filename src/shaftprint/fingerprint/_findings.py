@@ -28,7 +28,7 @@ UNLIKELY = 0.01
 # A search that fewer of its starts agree on than this share may have missed the optimum.
 FEW_STARTS = 0.1
 # So many standard deviations from what was expected are worth a sentence.
-SURPRISING = 3.0
+SURPRISING = 2.5
 # So many standard deviations of the gauge's zero from none are.
 OFF_ZERO = 2.0
 # A number rests on priors when more than this share of its variance is from there.

@@ -119,7 +119,7 @@ def take_fingerprint(
         signal_to_noise=signal_to_noise,
         reasons=(*off, *reasons),
         further=[_estimate(q) for q in (*physical, *margin, conditions.engine_speed, conditions.shaft_torque)],
-        assumptions=assumptions_of(identification, vessel),
+        assumptions=assumptions_of(identification, vessel, margins, {} if profiled is None else profiled.intervals),
         explained_share=explained_share,
     )
     return Fingerprint(

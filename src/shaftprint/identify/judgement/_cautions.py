@@ -9,6 +9,7 @@ from shaftprint.digits import stated
 from shaftprint.identify.judgement._evidence import Evidence, gain_reserve, loop_delay_s
 from shaftprint.identify.judgement._line_quality import crossings_rad_s
 from shaftprint.identify.judgement._phrases import listed, probability
+from shaftprint.identify.judgement._prior_contradictions import strange_priors
 from shaftprint.identify.judgement._search_words import wrong_basin_words
 
 # A fit that is better than this probability allows has less noise than its covariance says.
@@ -24,6 +25,7 @@ def cautions_of(evidence: Evidence) -> tuple[str, ...]:
         *_perhaps_unstable(evidence),
         *_beyond_the_lines(evidence),
         *_scale_of_set_point(evidence),
+        *strange_priors(evidence.identification),
         *_too_good(evidence),
         *_unweighted(evidence),
         *wrong_basin_words(evidence.search.optima),

@@ -15,8 +15,9 @@ from shaftprint.identify.judgement._phrases import number
 from shaftprint.models import Role
 from shaftprint.reasons import Reason, ReasonKind
 
-# So many standard deviations from what was known are no chance: once in 2000 tests.
-PULLED = 3.5
+# So many standard deviations from what was known are no chance: once in 2000 tests. From the first of them, once in 80,
+# they are worth a word.
+STRANGE, PULLED = 2.5, 3.5
 # A prior that the data hardly sharpen leaves nothing to divide by: the rest is rounding and curvature.
 LEAST_SHARE = 0.3
 # What a sensor is expected at without a prior, and how far its line may be off: that of the set point is drawn through
@@ -30,10 +31,24 @@ KINDS: dict[Role | None, ReasonKind] = {
 
 def contradicted_priors(identification: Identification) -> tuple[Reason, ...]:
     """Return a reason for each parameter that the data pull from what was assumed of it by more than 3.5 deviations."""
-    return tuple(_pulled(identification))
+    return tuple(
+        Reason(kind=KINDS.get(one.role, "prior"), where=one.name, sentence=_sentence("The data contradict", *said))
+        for one, distance, *said in _distances(identification)
+        if distance > PULLED
+    )
 
 
-def _pulled(identification: Identification) -> Iterator[Reason]:
+def strange_priors(identification: Identification) -> tuple[str, ...]:
+    """Return a sentence for each parameter that the data pull by 2.5 to 3.5 deviations."""
+    return tuple(
+        _sentence("The data hardly agree with", *said)
+        for one, distance, *said in _distances(identification)
+        if STRANGE < distance <= PULLED and one.role not in NOMINAL
+    )
+
+
+def _distances(identification: Identification) -> Iterator[tuple[Estimate, float, str, str, str]]:
+    """Return each parameter of which something is assumed, how many deviations it is away, and that in words."""
     priors = identification.settings.priors
     meanings = {parameter.name: parameter.meaning for parameter in identification.objective.free_parameters}
     for estimate in identification.parameters:
@@ -48,17 +63,13 @@ def _pulled(identification: Identification) -> Iterator[Reason]:
             distance = abs(estimate.value - nominal) / np.hypot(estimate.std, std)
         else:
             continue
-        if distance > PULLED:
-            yield _reason(estimate, meanings[estimate.name], assumed, float(distance))
+        what = f"{estimate.name} ({meanings[estimate.name]})"
+        found = f"{stated(estimate.value, estimate.std, estimate.unit)}, {distance:.1f} standard deviations away"
+        yield estimate, float(distance), what, assumed, found
 
 
-def _reason(estimate: Estimate, meaning: str, assumed: str, distance: float) -> Reason:
-    return Reason(
-        kind=KINDS.get(estimate.role, "prior"),
-        where=estimate.name,
-        sentence=(
-            f"The data contradict what is assumed of {estimate.name} ({meaning}): {assumed}, the estimate is "
-            f"{stated(estimate.value, estimate.std, estimate.unit)}, "
-            f"{distance:.1f} standard deviations away; check the vessel file, and what else moves the estimate."
-        ),
+def _sentence(begin: str, what: str, assumed: str, found: str) -> str:
+    return (
+        f"{begin} what is assumed of {what}: {assumed}, the estimate is {found}; check the vessel file, and what else "
+        "moves the estimate."
     )
