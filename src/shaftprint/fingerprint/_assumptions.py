@@ -89,7 +89,7 @@ def _of_engine_side(
         return
     elsewhere = {inertia: [share * priors[inertia].mean for share in OTHER_INERTIAS]}
     said = f"an inertia {PERCENT * (OTHER_INERTIAS[1] - 1.0):.0f} % smaller or larger"
-    if slope in priors and slope in intervals:
+    if slope is not None and slope in priors and slope in intervals:
         elsewhere[slope] = [STEEPEST_ENGINE]
         said += f", or g = {STEEPEST_ENGINE:g} as of some engines"
     resting = dict.fromkeys(
