@@ -122,3 +122,13 @@ def test_new_lines_need_a_number_that_checks_itself(site):
     assert tester.put(f"{put}9074728", b"x").status == 400
     assert tester.put("/api/v1/recordings/a.nc?line=port&ship=New", b"x").status == 201
     assert tester.put("/api/v1/recordings/a.nc?line=port", b"x").status == 400
+
+
+def test_settings_that_a_job_does_not_take_are_not_offered(made, tmp_path):
+    folder = tmp_path / "lies-here"
+    folder.mkdir()
+    for name in ("day.nc", "vessel.toml", ".hidden.toml"):
+        (folder / name).write_bytes(b"x")
+    page = made(folders=(folder,)).person("tester-all").get("/folders/0/day.nc").text
+    assert "folder:0:vessel.toml" in page
+    assert ".hidden.toml" not in page
