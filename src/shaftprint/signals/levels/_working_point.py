@@ -59,11 +59,11 @@ def stretches_at_working_point(
         levels = ", ".join(f"{stretch.set_point_v:.2f} V" for stretch in stretches) or "none"
         shown = [stretch.set_point_v for stretch in stretches]
         planned = [level for stairs in campaign.staircases for level in stairs.levels_v]
-        # levels that are the campaign's own are in its volts: then the offset is not what is wrong
-        of_campaign = all(any(abs(level - one) < _NEAR_V for one in planned) for level in shown)
+        # a staircase that stands at the offset, and is not seen to, is kept from it; else the offset is another
+        restless = not shown or any(abs(level - campaign.offset_v) < _NEAR_V for level in planned)
         advice = (
             "look for noise and for the signal of another channel on it, which keep it from standing still"
-            if of_campaign
+            if restless
             else f"check offset_v in the campaign file{_loop_words(shown, campaign.offset_v)}"
         )
         raise SignalError(
