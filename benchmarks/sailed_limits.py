@@ -4,9 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from shaftprint.campaign import Campaign, setpoint
+from shaftprint.campaign import Campaign
 from shaftprint.tug import Tug
-from shaftprint.tug.plant import Disturbance, voyage
+from shaftprint.tug.plant import Disturbance, demanded_speed, helm_voltage, voyage
 from shaftprint.units import rpm_from_rev_s
 from shaftprint.vessel import Vessel
 
@@ -69,8 +69,12 @@ def sailed_limits(tug: Tug, vessel: Vessel, campaign: Campaign, *, seed: int, ra
     motoring_nm = np.interp(speed_rpm, vessel.limits.motoring_speed_rpm, vessel.limits.motoring_torque_nm)
     windows = [(time_s >= leg.settled_s) & (time_s < leg.stop_s) for leg in campaign.legs]
     inside = np.any(windows, axis=0)
+    # by the line of this ship, which may bend
     asked = [
-        tug.set_point_slope_rpm_per_v * (setpoint(campaign, time_s[one]) - leg.level_v)
+        rpm_from_rev_s(
+            demanded_speed(tug, vessel, helm_voltage(tug, campaign, time_s[one]))
+            - demanded_speed(tug, vessel, np.array([leg.level_v + tug.set_point_offset_v]))
+        )
         for one, leg in zip(windows, campaign.multisines, strict=True)
     ]
     return SailedLimits(
