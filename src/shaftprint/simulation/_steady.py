@@ -13,6 +13,8 @@ LARGEST_STEPS = 80
 HALVINGS = 30
 # In how many steps inputs are led from rest to where they are, until one number is enough.
 LEADING_STEPS = (8, 64)
+# The steps in which motion from rest settles, where Newton's method does not find its end.
+SETTLING_STEPS_S = np.geomspace(1e-5, 1e4, 120)
 # How far small signals may move in a step: those that swing by this angle [rad], any by this times their rate.
 MOST_ANGLE = 0.3
 MOST_DECAY = 1.0
@@ -95,6 +97,8 @@ class SteadyEquations:
         unknowns = self._newton(values, inputs, at, rows, kept_states)
         if unknowns is None and states is None:
             unknowns = self._led(values, inputs)
+        if unknowns is None and states is None:
+            unknowns = self._settled(values, inputs)
         if unknowns is None:
             raise StructureError(
                 f"structure {self.program.name}: no steady running was found at these inputs and parameters; is what "
@@ -146,6 +150,21 @@ class SteadyEquations:
             if at is not None:
                 return at
         return None
+
+    def _settled(self, values: FloatArray, inputs: FloatArray) -> FloatArray | None:
+        """Return steady running reached as the motion reaches it from rest, in ever longer implicit steps; None if not.
+
+        Dry friction jumps where motion begins: there Newton's steps point back and forth, and motion goes on (Kelley
+        and Keyes, Convergence analysis of pseudo-transient continuation, 1998).
+        """
+        kept_states, at = np.zeros(len(self.program.states)), np.zeros(len(self._unknown))
+        for step_s in SETTLING_STEPS_S:
+            residual = self._at(self._left, values, inputs, at, kept_states)
+            matrix = self._at(self._matrix, values, inputs, at, kept_states).reshape(at.size, at.size).T
+            if not (np.all(np.isfinite(matrix)) and np.all(np.isfinite(residual))):
+                return None
+            at = at + np.linalg.lstsq(np.eye(at.size) / step_s - matrix, residual, rcond=None)[0]
+        return self._newton(values, inputs, at, slice(None), kept_states)
 
     @staticmethod
     def _call(

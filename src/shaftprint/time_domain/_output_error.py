@@ -35,6 +35,9 @@ from shaftprint.time_domain._whitening import Whitening
 
 # Cost of a simulation that runs away, over that of no model at all.
 AWAY = 1e12
+# What offsets leave of a slope below this share of it is rounding: the parameter is one with the offset, and a search
+# that followed such a slope would go anywhere.
+ROUNDING = 1e-10
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -240,7 +243,10 @@ class OutputError(WhitenedTerm):
         rows = self._white(simulated)
         rows[0] = data - rows[0]
         rows[1:] *= -1.0
-        return without(rows, basis), basis
+        left = without(rows, basis)
+        taken = np.linalg.norm(left[1:], axis=1) <= ROUNDING * np.linalg.norm(rows[1:], axis=1)
+        left[1:][taken] = 0.0
+        return left, basis
 
     def _evaluated(self, values: FloatArray) -> tuple[InitialStates | None, FloatArray]:
         """Return initial states and the simulation from them with its derivatives, for the data of the record.

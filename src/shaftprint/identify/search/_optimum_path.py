@@ -36,7 +36,7 @@ def highest_between(objective: Objective, one: FloatArray, others: FloatArray) -
     start = one + share[:, None] * np.repeat(others - one, STATIONS, axis=0)
     _, slopes = objective.residuals(start)
     along = np.linalg.norm(np.einsum("sr,srn->sn", np.repeat(others - one, STATIONS, axis=0), slopes), axis=1)
-    stray = np.minimum(1.0 / np.sqrt(STIFFNESS * np.maximum(along, 1e-300) ** 2), LARGEST_STRAY)
+    stray = np.minimum(1.0 / (np.sqrt(STIFFNESS) * np.maximum(along, 1e-300)), LARGEST_STRAY)
 
     def residuals(theta: FloatArray, rows: IntArray) -> tuple[FloatArray, FloatArray]:
         r, jacobian = objective.residuals(theta)
