@@ -184,6 +184,7 @@ def test_a_border_is_looked_for_only_where_there_is_feedback(make_response):
         iterations=np.ones(1, dtype=int),
         converged=np.ones(1, dtype=bool),
         refused=np.ones(1, dtype=bool),
+        information=np.ones((1, theta.size, theta.size)),
     )
     found = border_minimum(fit.objective, stopped, DURING, stable_models(fit.objective))
     assert found.cost.tolist() == [np.inf]
@@ -199,6 +200,7 @@ def test_a_border_without_a_stable_side_gives_nothing(make_response):
         iterations=np.ones(1, dtype=int),
         converged=np.ones(1, dtype=bool),
         refused=np.ones(1, dtype=bool),
+        information=np.ones((1, 4, 4)),
     )
     nowhere = border_minimum(fit.objective, stopped, DURING, lambda theta: np.zeros(len(theta), dtype=bool))
     assert nowhere.cost.tolist() == [np.inf]

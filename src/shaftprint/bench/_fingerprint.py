@@ -48,7 +48,7 @@ def drive_fingerprint(fit: DriveFit, *, sources: Sequence[SourceFile], now: date
         records=_records(fit, sources),
         p_value=identification.p_value,
         starts=identification.settings.starts,
-        starts_at_optimum=identification.reached,
+        starts_at_optimum=fit.agreeing,
         verdict=fit.verdict,
         inputs_hold=fit.inputs_hold,
     )

@@ -1,7 +1,7 @@
 """The verb of the room: a drive's records to parameters and a verdict."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -10,15 +10,17 @@ from shaftprint.arrays import FloatArray
 from shaftprint.bench._equipped import EquippedDrive
 from shaftprint.bench._hold import input_way
 from shaftprint.bench._record_reasons import REQUIREMENTS, held_outputs, large_offsets, starts_in_motion
+from shaftprint.bench._search import AGREE, search_drive
 from shaftprint.errors import IdentificationError, SettingsError, StructureError
 from shaftprint.identify import Identification, LatinHypercube, Prior, Settings, Verdict, assess, profile
 from shaftprint.identify.search import Draw, GivenStarts
 from shaftprint.identify.uncertainty import Interval
 from shaftprint.models import Structure
 from shaftprint.notebook import Shown, Summary, shortened
+from shaftprint.reasons import Reason
 from shaftprint.simulation import Trace, equilibrium, state_names
 from shaftprint.spelling import meant
-from shaftprint.time_domain import ExactDelays, Record, Simulator, TimeSettings, identify_in_time
+from shaftprint.time_domain import ExactDelays, Record, Simulator, TimeSettings
 
 STARTS = 4
 """Starts of the search: a start in time costs a simulation of all records at each step."""
@@ -45,10 +47,16 @@ class DriveFit(Shown):
     """Which numbers may be used."""
     inputs_hold: bool
     """Whether inputs hold from sample to sample; else they go straight."""
+    agreeing: int
+    """How many starts of the search ended at the optimum."""
 
     def summary(self) -> Summary:
         """Return the verdict, and which numbers may be used."""
-        facts = {"verdict": self.verdict.reason, "trusted": shortened(self.verdict.trusted)}
+        facts = {
+            "verdict": self.verdict.reason,
+            "trusted": shortened(self.verdict.trusted),
+            "search": f"{self.agreeing} of {self.identification.settings.starts} starts reached it",
+        }
         return Summary(title=f"Fit of the drive {self.equipped.drive.name}", facts=facts)
 
 
@@ -74,7 +82,7 @@ def identify_drive(
     priors
         What is known beside the drive file, by parameter; it replaces what that says.
     starts
-        Starts of the search.
+        Starts of the search that are drawn at first; more follow until several agree.
 
     Raises
     ------
@@ -85,16 +93,47 @@ def identify_drive(
     """
     settings = drive_settings(one.structure, {**one.priors, **(priors or {})}, starts)
     time = drive_time_settings(one, records)
-    fit = identify_in_time([(one.structure, record) for record in records], rng=rng, settings=settings, time=time)
-    way = input_way(one, fit, records, settings=settings, time=time)
-    profiled = profile(way.fit)
+    searched = search_drive(one, records, settings, time, rng=rng)
+    way = input_way(one, searched.fit, records, settings=settings, time=time)
+    if way.hold != records[0].hold:
+        turned = [replace(record, hold=way.hold) for record in records]
+        searched = search_drive(one, turned, settings, time, rng=rng)
+    fit, agreeing = searched.fit, searched.agreeing
+    profiled = profile(fit)
     remarks = [remark for record in records for remark in record.remarks]
-    reasons = (*held_outputs(one, records), *way.reasons, *starts_in_motion(one, way.fit), *large_offsets(one, way.fit))
+    reasons = (
+        *_alone(agreeing, fit.settings.starts),
+        *held_outputs(one, records),
+        *way.reasons,
+        *starts_in_motion(one, fit),
+        *large_offsets(one, fit),
+    )
     verdict = assess(
-        way.fit, profile=profiled, requirements=REQUIREMENTS, reasons=reasons, assumptions=(*remarks, *way.assumptions)
+        fit, profile=profiled, requirements=REQUIREMENTS, reasons=reasons, assumptions=(*remarks, *way.assumptions)
     )
     return DriveFit(
-        equipped=one, identification=way.fit, intervals=profiled.intervals, verdict=verdict, inputs_hold=way.hold
+        equipped=one,
+        identification=fit,
+        intervals=profiled.intervals,
+        verdict=verdict,
+        inputs_hold=way.hold,
+        agreeing=agreeing,
+    )
+
+
+def _alone(agreeing: int, starts: int) -> tuple[Reason, ...]:
+    """Return that nobody knows whether an optimum is the only one, where too few starts ended there."""
+    if agreeing >= AGREE:
+        return ()
+    return (
+        Reason(
+            kind="not unique",
+            sentence=(
+                f"Whether the optimum is the only one was not examined: of {starts} starts {agreeing or 'none'} ended "
+                f"there, and {AGREE} are wanted; narrow the bounds, state what is known of parameters, or search from "
+                "more starts with --starts."
+            ),
+        ),
     )
 
 

@@ -4,22 +4,27 @@ A fit in time finds the colour of its own noise, and what a wrong structure leav
 say nothing beside each other. So the noise of the structure that leaves least stands for all, every structure is fitted
 again with it, and twice the difference of the costs is a likelihood ratio (Ljung, System Identification: Theory for the
 User, second edition, section 16.4).
+
+A structure that holds another one starts from the optimum of that too: the larger one leaves no more.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from shaftprint.arguments import refusing_none
+from shaftprint.arrays import FloatArray
 from shaftprint.bench._equipped import EquippedDrive
 from shaftprint.bench._fit import STARTS, drive_settings, drive_time_settings
+from shaftprint.bench._search import search_drive
 from shaftprint.distributions import chi_square_tail
 from shaftprint.errors import IdentificationError
 from shaftprint.identify import Identification, identify_jointly
 from shaftprint.identify.comparison import expect_comparable
 from shaftprint.identify.search import GivenStarts
-from shaftprint.time_domain import OutputError, Record, identify_in_time, output_error
+from shaftprint.models import Structure
+from shaftprint.time_domain import OutputError, Record, output_error
 
 # A ratio less likely than this by chance speaks for the larger structure.
 UNLIKELY = 0.01
@@ -49,8 +54,8 @@ class TimeRatio:
     """Name of the larger structure."""
     statistic: float
     """Twice the gain of the log-likelihood."""
-    extra: int
-    """How many parameters more the larger one has."""
+    names: tuple[str, ...]
+    """The parameters that the larger one has more."""
     p_value: float
     """At most this is the probability of such a gain where the smaller structure holds."""
 
@@ -104,27 +109,58 @@ def compare_in_time(
         If structures differ in inputs or outputs or share a name, or one cannot be fitted.
     """
     expect_comparable([one.structure for one in drives])
-    own = [_own(one, records, generator, starts) for one, generator in zip(drives, rng.spawn(len(drives)), strict=True)]
+    # the smaller ones first: what holds them starts from their optima
+    ordered = sorted(drives, key=lambda one: len(one.structure.free))
+    own: list[Identification] = []
+    for one, generator in zip(ordered, rng.spawn(len(drives)), strict=True):
+        own.append(_own(one, records, own, generator, starts))
     best = min(own, key=_left)
-    fits = [_common(one, records, fit, best, rng) for one, fit in zip(drives, own, strict=True)]
+    fits: list[Identification] = []
+    for one, alone in zip(ordered, own, strict=True):
+        fits.append(_common(one, records, alone, fits, best, rng))
     candidates = sorted(
         (
             TimeCandidate(name=one.structure.name, fit=fit, own=alone, bic=_bic(fit))
-            for one, fit, alone in zip(drives, fits, own, strict=True)
+            for one, fit, alone in zip(ordered, fits, own, strict=True)
         ),
         key=lambda candidate: candidate.bic,
     )
     ratios = tuple(ratio for small in candidates for large in candidates if (ratio := _ratio(small, large)) is not None)
-    return TimeComparison(candidates=tuple(candidates), ratios=ratios, sentences=tuple(_words(candidates, ratios)))
+    hidden = {one.structure.name: _hidden(one, records, fit) for one, fit in zip(ordered, fits, strict=True)}
+    words = _words(candidates, ratios, hidden)
+    return TimeComparison(candidates=tuple(candidates), ratios=ratios, sentences=tuple(words))
 
 
-def _own(one: EquippedDrive, records: Sequence[Record], rng: np.random.Generator, starts: int) -> Identification:
-    return identify_in_time(
-        [(one.structure, record) for record in records],
-        rng=rng,
-        settings=drive_settings(one.structure, one.priors, starts),
-        time=drive_time_settings(one, records),
-    )
+def _own(
+    one: EquippedDrive,
+    records: Sequence[Record],
+    smaller: Sequence[Identification],
+    rng: np.random.Generator,
+    starts: int,
+) -> Identification:
+    settings = drive_settings(one.structure, one.priors, starts)
+    held = _held_in(one.structure, smaller)
+    return search_drive(one, records, settings, drive_time_settings(one, records), rng=rng, further=held).fit
+
+
+def _held_in(structure: Structure, smaller: Sequence[Identification]) -> list[FloatArray]:
+    """Return the optima of the structures that one holds as its own free parameters."""
+    values = []
+    for fit in smaller:
+        if _extra(fit.structure, structure):
+            named = fit.objective.named(fit.values)
+            values.append(np.array([float(named[parameter.name]) for parameter in structure.free]))
+    return values
+
+
+def _extra(small: Structure, large: Structure) -> list[str]:
+    """Return the parameters that are held in one structure and free in another that holds it; none if it does not."""
+    free = {p.name: p for p in large.free}
+    fixed = {p.name: p.value for p in small.parameters if p.held}
+    extra = [name for name in fixed if name in free]
+    others = all(p.name in free for p in small.free) and len(large.free) == len(small.free) + len(extra)
+    inside = all(free[name].lower <= fixed[name] <= free[name].upper for name in extra)
+    return extra if small.names == large.names and others and inside else []
 
 
 def _left(fit: Identification) -> float:
@@ -139,17 +175,41 @@ def _left(fit: Identification) -> float:
 
 
 def _common(
-    one: EquippedDrive, records: Sequence[Record], own: Identification, best: Identification, rng: np.random.Generator
+    one: EquippedDrive,
+    records: Sequence[Record],
+    own: Identification,
+    smaller: Sequence[Identification],
+    best: Identification,
+    rng: np.random.Generator,
 ) -> Identification:
-    """Return the fit of a structure with the noise of the best one, from its own optimum."""
+    """Return the fit of a structure with the noise of the best one, from its own optimum and those that it holds."""
     noises = [term.whitening for term in best.objective.terms if isinstance(term, OutputError)]
     time = drive_time_settings(one, records)
     terms = [
         output_error(one.structure, record, settings=time).with_noise(noise)
         for record, noise in zip(records, noises, strict=True)
     ]
-    values = np.array([[parameter.value for parameter in own.parameters]])
-    return identify_jointly(terms, rng=rng, settings=replace(own.settings, starts=1, draw=GivenStarts(values)))
+    values = np.array([[parameter.value for parameter in own.parameters], *_held_in(one.structure, smaller)])
+    return identify_jointly(
+        terms, rng=rng, settings=replace(own.settings, starts=len(values), draw=GivenStarts(values))
+    )
+
+
+def _hidden(one: EquippedDrive, records: Sequence[Record], fit: Identification) -> tuple[str, ...]:
+    """Return the parameters that offsets take from the records, which would tell them without."""
+    lost = [parameter.name for parameter in fit.parameters if np.isinf(parameter.std)]
+    if not lost or one.drive.fit.offset == "none":
+        return ()
+    time = replace(drive_time_settings(one, records), drift_degree=-1)
+    terms = [
+        output_error(one.structure, record, settings=time).with_noise(term.whitening)
+        for record, term in zip(records, fit.objective.terms, strict=True)
+        if isinstance(term, OutputError)
+    ]
+    values = np.array([[parameter.value for parameter in fit.parameters]])
+    _, slopes = replace(fit.objective, terms=tuple(terms)).residuals(values)
+    seen = {p.name for p, row in zip(fit.parameters, slopes[0], strict=True) if np.any(row)}
+    return tuple(name for name in lost if name in seen)
 
 
 def _bic(fit: Identification) -> float:
@@ -158,11 +218,8 @@ def _bic(fit: Identification) -> float:
 
 def _ratio(small: TimeCandidate, large: TimeCandidate) -> TimeRatio | None:
     """Return the test of a structure that another holds with some parameters held; None where it does not."""
-    fixed = {p.name: p.value for p in small.fit.structure.parameters if p.held}
-    free = {p.name for p in large.fit.structure.free}
-    extra = [name for name in fixed if name in free]
-    same = small.fit.structure.names == large.fit.structure.names
-    if not same or not extra or len(large.fit.parameters) - len(small.fit.parameters) != len(extra):
+    extra = _extra(small.fit.structure, large.fit.structure)
+    if not extra:
         return None
     statistic = max(2.0 * (small.fit.cost - large.fit.cost), 0.0)
     # a value at a bound makes the gain smaller than a chi-square: at most this is the probability
@@ -170,22 +227,42 @@ def _ratio(small: TimeCandidate, large: TimeCandidate) -> TimeRatio | None:
         small=small.name,
         large=large.name,
         statistic=statistic,
-        extra=len(extra),
+        names=tuple(extra),
         p_value=chi_square_tail(statistic, len(extra)),
     )
 
 
-def _words(candidates: Sequence[TimeCandidate], ratios: Sequence[TimeRatio]) -> Sequence[str]:
+def _words(
+    candidates: Sequence[TimeCandidate], ratios: Sequence[TimeRatio], hidden: Mapping[str, Sequence[str]]
+) -> list[str]:
     best, *others = candidates
     words = [f"The records want {best.name}, by Schwarz' criterion on the noise of the structure that leaves least."]
-    words += [f"{other.name} is worse by {other.bic - best.bic:.1f}." for other in others]
-    for ratio in ratios:
-        wanted = "needs" if ratio.p_value < UNLIKELY else "can do without"
-        more = "the parameter" if ratio.extra == 1 else f"the {ratio.extra} parameters"
-        words.append(
-            f"It {wanted} {more} that {ratio.large} has more than {ratio.small}: likelihood ratio "
-            f"{ratio.statistic:.1f}, p = {ratio.p_value:.2g}."
-        )
+    words += [_beside(other, best) for other in others]
+    words += [_ratio_words(ratio) for ratio in ratios if not set(ratio.names) <= set(hidden[ratio.large])]
+    words += [_hidden_words(name, names) for name, names in hidden.items() if names]
     refused = [one.name for one in candidates if one.own.p_value is not None and one.own.p_value < UNLIKELY]
     words += [f"{name} does not explain the records within their noise." for name in refused]
     return words
+
+
+def _beside(other: TimeCandidate, best: TimeCandidate) -> str:
+    gap = f"{other.bic - best.bic:.1f}"
+    if _extra(best.fit.structure, other.fit.structure):
+        return f"{other.name}, which holds it, fits no better than by chance: its criterion is higher by {gap}."
+    return f"{other.name} is worse by {gap}."
+
+
+def _ratio_words(ratio: TimeRatio) -> str:
+    wanted = "needs" if ratio.p_value < UNLIKELY else "can do without"
+    more = "the parameter" if len(ratio.names) == 1 else f"the {len(ratio.names)} parameters"
+    return (
+        f"It {wanted} {more} that {ratio.large} has more than {ratio.small}: likelihood ratio {ratio.statistic:.1f}, "
+        f"p = {ratio.p_value:.2g}."
+    )
+
+
+def _hidden_words(name: str, hidden: Sequence[str]) -> str:
+    return (
+        f"{name}: the records cannot tell {', '.join(hidden)} from the offset of a sensor, as where all motion goes "
+        'one way; record motion in both directions, or state offset = "none" where the zero of the sensor is known.'
+    )

@@ -43,7 +43,8 @@ def drive_record_table(fingerprint: "DriveFingerprint") -> Table:
         *texts("unit"),
     )
     title = f"Records; together p = {'-' if fingerprint.p_value is None else p_value_text(fingerprint.p_value)}"
-    return Table(title=title, columns=columns, rows=tuple(rows), note=NOTE)
+    note = f"{NOTE} {fingerprint.starts_at_optimum} of {fingerprint.starts} starts of the search ended at this result."
+    return Table(title=title, columns=columns, rows=tuple(rows), note=note)
 
 
 def drive_assumed_table(fingerprint: "DriveFingerprint") -> Table:

@@ -244,7 +244,7 @@ class OutputError(WhitenedTerm):
         rows[0] = data - rows[0]
         rows[1:] *= -1.0
         left = without(rows, basis)
-        taken = np.linalg.norm(left[1:], axis=1) <= ROUNDING * np.linalg.norm(rows[1:], axis=1)
+        taken = np.abs(left[1:]).max(axis=1) <= ROUNDING * np.abs(rows[1:]).max(axis=1)
         left[1:][taken] = 0.0
         return left, basis
 

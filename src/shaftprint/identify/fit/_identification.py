@@ -30,6 +30,8 @@ class Cluster:
     """How many starts reached it."""
     stable: bool | None
     """Whether the model is stable there; None where it was not asked."""
+    which: tuple[int, ...] = ()
+    """Which starts of the draw these are."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from shaftprint.arguments import refusing_none
-from shaftprint.arrays import FloatArray, frozen_float
+from shaftprint.arrays import FloatArray, IntArray, frozen_float
 from shaftprint.errors import IdentificationError
 from shaftprint.identify.fit._covariance import estimate_covariance
 from shaftprint.identify.fit._fit_test import tested_fit
@@ -17,11 +17,14 @@ from shaftprint.identify.search import Descent, Settings, polish, search
 from shaftprint.models import Structure
 from shaftprint.spectra import FrequencyResponse
 
-# Starts belong to one optimum when their costs differ by less than this share, ...
-SAME_COST = 1e-3
-# ... or by less than this share of the cost of no model at all (for data without noise).
+# Starts belong to one optimum when their costs differ by no more than the search may have left undone, so many times
+# its tolerance as a share of the cost, ...
+UNDONE = 100.0
+# ... or by this share of the cost of no model at all (for data without noise), ...
 SAME_COST_OF_NOTHING = 1e-9
-# ... and no parameter differs by more than this share of the width between its bounds.
+# ... when the information at the lower one makes their places differ by no more cost either: the width between the
+# bounds says nothing of two optima, which may lie within a thousandth of it ...
+# ... and when no parameter differs by more than this share of that width: a flat valley is several places.
 SAME_PLACE = 0.02
 # The noise of measured inputs is carried through the fit before, until no parameter moves by more than this share of
 # its standard deviation; the weights change little, so that a few fits are enough.
@@ -130,7 +133,7 @@ def _identified(
     )
     descent = search(objective, settings, rng)
     sharp = bool(descent.converged[np.argmin(descent.cost)])
-    clusters, winner = _judged(objective, _clustered(objective, descent), settings, sharp=sharp)
+    clusters, winner = _judged(objective, _clustered(objective, descent, settings), settings, sharp=sharp)
     parts_and_tests = [term.assessed(winner.values, number) for number, term in enumerate(objective.terms)]
     return Identification(
         parts=tuple(part for part, _ in parts_and_tests),
@@ -160,24 +163,27 @@ def _expect_right_kinds(pairs: Sequence[Source], rng: np.random.Generator) -> No
         raise IdentificationError(f"rng: expected numpy.random.default_rng(seed), found {rng!r}.")
 
 
-def _clustered(objective: Objective, descent: Descent) -> list[tuple[FloatArray, float, int]]:
-    """Return parameters, cost and number of starts of each distinct optimum, lowest cost first."""
-    order = np.argsort(descent.cost, kind="stable")
-    theta, cost = descent.theta[order], descent.cost[order]
-    nothing = objective.null_cost
+def _clustered(objective: Objective, descent: Descent, settings: Settings) -> list[tuple[FloatArray, float, IntArray]]:
+    """Return parameters, cost and the starts of each distinct optimum, lowest cost first."""
+    left = np.argsort(descent.cost, kind="stable")
     width = objective.upper - objective.lower
-    clusters: list[tuple[FloatArray, float, int]] = []
-    while cost.size:
-        close = cost - cost[0] <= SAME_COST * cost[0] + SAME_COST_OF_NOTHING * nothing
-        close &= np.all(np.abs(theta - theta[0]) <= SAME_PLACE * width, axis=1)
+    clusters: list[tuple[FloatArray, float, IntArray]] = []
+    while left.size:
+        first = left[0]
+        theta, cost = descent.theta[first], float(descent.cost[first])
+        apart = descent.theta[left] - theta
+        undone = UNDONE * settings.tolerance * cost + SAME_COST_OF_NOTHING * objective.null_cost
+        close = descent.cost[left] - cost <= undone
+        close &= 0.5 * np.vecdot(apart @ descent.information[first], apart) <= undone
+        close &= np.all(np.abs(apart) <= SAME_PLACE * width, axis=1)
         close[0] = True
-        clusters.append((theta[0], float(cost[0]), int(close.sum())))
-        theta, cost = theta[~close], cost[~close]
+        clusters.append((theta, cost, left[close]))
+        left = left[~close]
     return clusters
 
 
 def _judged(
-    objective: Objective, optima: list[tuple[FloatArray, float, int]], settings: Settings, *, sharp: bool
+    objective: Objective, optima: list[tuple[FloatArray, float, IntArray]], settings: Settings, *, sharp: bool
 ) -> tuple[tuple[Cluster, ...], Cluster]:
     """Return all optima and the winner: the lowest cost that is stable, polished to the last digit.
 
@@ -185,10 +191,11 @@ def _judged(
     """
     clusters: list[Cluster] = []
     winner: Cluster | None = None
-    for theta, cost, starts in optima:
+    for theta, cost, rows in optima:
+        starts, which = rows.size, tuple(sorted(rows.tolist()))
         if winner is not None:
             values = frozen_float(objective.complete(theta))
-            clusters.append(Cluster(values=values, cost=cost, starts=starts, stable=None))
+            clusters.append(Cluster(values=values, cost=cost, starts=starts, stable=None, which=which))
             continue
         best, lowest = theta, cost
         if clusters or not sharp:
@@ -196,7 +203,7 @@ def _judged(
             best, lowest = polished.theta[0], float(polished.cost[0])
         values = frozen_float(objective.complete(best))
         stable = bool(objective.stable(values[None, :])[0])
-        cluster = Cluster(values=values, cost=lowest, starts=starts, stable=stable)
+        cluster = Cluster(values=values, cost=lowest, starts=starts, stable=stable, which=which)
         clusters.append(cluster)
         if stable or settings.stability == "ignored":
             winner = cluster

@@ -16,9 +16,11 @@ from shaftprint.identify.search import descend, highest_between
 # 95 % point of chi-square with one degree of freedom.
 WITHIN = 3.841458820694124
 POLISH_TOLERANCE, POLISH_ITERATIONS = 1e-12, 300
-# Optima are one where no parameter differs by more than this share of its bounds' width, and the deviance by this share
-# of the 95 % limit.
-SAME_PLACE, SAME_COST = 0.02, 1e-3
+# Optima are one where the deviance differs by no more than this share of the 95 % limit, and the places by this many
+# standard deviations, ...
+SAME_COST, SAME_DEVIATIONS = 1e-3, 0.1
+# ... and where no parameter differs by more than this share of its bounds' width: a flat valley is several places.
+SAME_PLACE = 0.02
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -114,8 +116,13 @@ def _distance(identification: Identification, cost: FloatArray) -> FloatArray:
 def _same(identification: Identification, values: FloatArray, distance: FloatArray) -> bool:
     objective = identification.objective
     free = list(objective.free)
-    apart = np.abs(values[1, free] - values[0, free]) / (objective.upper - objective.lower)
-    return bool(apart.max() <= SAME_PLACE and abs(distance[1] - distance[0]) <= SAME_COST * WITHIN)
+    apart = values[1, free] - values[0, free]
+    beyond = np.abs(apart) > SAME_PLACE * (objective.upper - objective.lower)
+    if beyond.any() or abs(distance[1] - distance[0]) > SAME_COST * WITHIN:
+        return False
+    _, slopes = objective.residuals(values[:1, free])
+    rise = _distance(identification, identification.cost + 0.5 * np.sum((apart @ slopes) ** 2, axis=1))
+    return bool(rise[0] <= SAME_DEVIATIONS**2)
 
 
 def _stable(identification: Identification, values: FloatArray) -> BoolArray:

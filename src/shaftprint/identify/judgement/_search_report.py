@@ -16,6 +16,11 @@ class SearchReport:
     """What a reader must know of them."""
 
     @property
+    def agreeing(self) -> int:
+        """How many starts ended at the result, or in one valley with it."""
+        return sum(optimum.starts for optimum in self.optima if optimum.connected)
+
+    @property
     def rivals(self) -> tuple[Optimum, ...]:
         """Other stable optima that fit as well within the noise."""
         return tuple(optimum for optimum in self.optima[1:] if is_rival(optimum))

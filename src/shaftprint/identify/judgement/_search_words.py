@@ -2,11 +2,13 @@
 
 import numpy as np
 
-from shaftprint.identify.fit import SAME_COST, SAME_PLACE, WITHIN, Identification, Optimum, is_passed_over, is_rival
+from shaftprint.identify.fit import SAME_COST, WITHIN, Identification, Optimum, is_passed_over, is_rival
 from shaftprint.identify.judgement._phrases import listed, number
 
 # How many optima, and how many parameters of a rival, a sentence names.
 NAMED = 4
+# Parameters of a rival that differ by no more standard deviations are not named beside others that do.
+DIFFERS = 1.0
 
 
 def search_words(identification: Identification, optima: tuple[Optimum, ...]) -> tuple[str, ...]:
@@ -25,6 +27,8 @@ def search_words(identification: Identification, optima: tuple[Optimum, ...]) ->
 def _reached(optima: tuple[Optimum, ...]) -> str:
     total = sum(o.starts for o in optima)
     reached = sum(o.starts for o in optima if o.connected)
+    if total == 1:
+        return "One start was made: whether its optimum is the only one was not examined."
     valley = ", which is a valley: see what the data cannot tell apart" if sum(o.connected for o in optima) > 1 else ""
     others = [o for o in optima if not o.connected]
     if not others:
@@ -67,19 +71,22 @@ def _missed(optimum: Optimum) -> str:
 
 
 def rival_words(identification: Identification, rival: Optimum) -> str:
-    """Return that the result is not unique, with the parameters that differ most."""
+    """Return that the result is not unique, with the parameters that differ most in their standard deviations."""
     objective = identification.objective
     free = list(objective.free)
-    apart = np.abs(rival.values - identification.values)[free] / (objective.upper - objective.lower)
-    most = [int(i) for i in np.argsort(-apart)[:NAMED] if apart[i] > SAME_PLACE]
+    change = np.abs(rival.values - identification.values)[free]
+    # no standard deviation, as of what the data say nothing of, is the widest that there is
+    apart = np.divide(change, np.sqrt(np.diag(identification.covariance)), out=np.zeros(len(free)), where=change > 0.0)
+    most = [int(i) for i in np.argsort(-apart, kind="stable")[:NAMED]]
+    most = [i for i in most if apart[i] > DIFFERS] or most[:1]
     differences = [
         f"{p.name} = {number(float(rival.values[free[i]]), p.unit)} instead of "
         f"{number(float(identification.values[free[i]]), p.unit)}"
         for i, p in ((i, objective.free_parameters[i]) for i in most)
     ]
     return (
-        f"The result is not unique: another optimum, with {listed(differences)}, lies only {rival.distance:.2g} of "
-        f"deviance higher, within the 95 % limit of {WITHIN:.2f}."
+        f"The result is not unique: another optimum, with {listed(differences)}, lies only "
+        f"{max(rival.distance, 0.0):.2g} of deviance higher, within the 95 % limit of {WITHIN:.2f}."
     )
 
 

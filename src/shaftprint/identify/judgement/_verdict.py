@@ -210,11 +210,11 @@ def _why_trusted(evidence: Evidence) -> str:
     fit = evidence.identification
     p_value = fit.p_value
     explains = "within what the noise allows" if p_value is None else f"within their noise ({probability(p_value)})"
-    uniqueness = (
-        " and the optimum is the only one"
-        if evidence.loop is None
-        else f", the optimum is the only one, and the loop is stable with {evidence.loop} margins"
-    )
+    # of one start nobody knows whether it is
+    clauses = ["the optimum is the only one"] if evidence.search.agreeing > 1 else []
+    clauses += [] if evidence.loop is None else [f"the loop is stable with {evidence.loop} margins"]
+    ending = "".join(f", {clause}" for clause in clauses[:-1]) + (", and" if len(clauses) > 1 else " and")
+    uniqueness = f"{ending} {clauses[-1]}" if clauses else ""
     return f"The fit can be trusted: {fit.objective.name} explains {_data_words(evidence)} {explains}{uniqueness}."
 
 

@@ -58,6 +58,8 @@ class Descent:
     """Whether the tolerance was reached before the limit of iterations, shape (starts,)."""
     refused: BoolArray
     """Whether a step to a lower cost led to where the parameters are not allowed to be, shape (starts,)."""
+    information: FloatArray
+    """Product of the derivatives of the residuals at the end of each, ``J J^T``, shape (starts, free, free)."""
 
 
 def descend(
@@ -97,6 +99,7 @@ def descend(
     iterations = np.full(starts.size, max_iterations)
     cost = np.empty(starts.size)
     converged, refused = np.zeros((2, starts.size), dtype=np.bool_)
+    information = np.empty((*theta.shape, theta.shape[1]))
     # The old Jacobian lives until the new one is there: freed before, its memory would go back and be faulted in again.
     r, jacobian = residuals(theta, starts)
     at, lowest = _Position.at_start(theta, r, jacobian), np.inf
@@ -113,7 +116,7 @@ def descend(
         if flat.any():
             lowest = min(lowest, at.cost[flat].min())
             done, moving = at.starts[flat], ~flat
-            theta[done], cost[done] = at.theta[flat], at.cost[flat]
+            theta[done], cost[done], information[done] = at.theta[flat], at.cost[flat], at.hessian[flat]
             iterations[done], converged[done], refused[done] = iteration, True, at.refused[flat]
             at, step, predicted = at.chosen(moving), step[moving], predicted[moving]
             if at.starts.size == 0:
@@ -122,7 +125,15 @@ def descend(
         r, jacobian = residuals(trial, at.starts)
         at.advance(trial, r, jacobian, predicted, allowed)
     theta[at.starts], cost[at.starts], refused[at.starts] = at.theta, at.cost, at.refused
-    return Descent(theta=theta, cost=cost, iterations=iterations, converged=converged, refused=refused)
+    information[at.starts] = at.hessian
+    return Descent(
+        theta=theta,
+        cost=cost,
+        iterations=iterations,
+        converged=converged,
+        refused=refused,
+        information=information,
+    )
 
 
 @dataclass(slots=True, eq=False)

@@ -147,7 +147,7 @@ def _in_steps(
         theta = _descended(_with_floor(objective, floor), theta, settings, allowed).theta
     last = _descended(objective, theta, settings, allowed)
     descent = replace(first, cost=np.full(first.cost.size, np.inf))
-    for name in ("theta", "cost", "converged", "refused"):
+    for name in ("theta", "cost", "converged", "refused", "information"):
         getattr(descent, name)[best] = getattr(last, name)
     return descent
 
@@ -165,4 +165,5 @@ def _lower(one: Descent, other: Descent) -> Descent:
         iterations=one.iterations + other.iterations,
         converged=np.where(better, other.converged, one.converged),
         refused=np.where(better, other.refused, one.refused),
+        information=np.where(better[:, None, None], other.information, one.information),
     )
