@@ -9,6 +9,7 @@ from shaftprint.catalogue import structure
 from shaftprint.errors import IdentificationError
 from shaftprint.identify import Prior, Settings, Unweighted, compare_structures, identify
 from shaftprint.identify.comparison import HoldOut, compare_fits, comparison_words
+from shaftprint.identify.search import GivenStarts
 from shaftprint.models import Gain, Parameter, PIGovernor, Structure
 
 CL3 = {"tau_n": 0.35, "K_p": 1.6, "K_i": 4.4, "omega_n": 9.8, "zeta": 0.5}
@@ -198,3 +199,18 @@ def test_fits_at_hand_are_compared_without_a_new_search(make_response):
     assert {id(candidate.identification) for candidate in found.candidates} == {id(fit) for fit in fits}
     assert [(ratio.small, ratio.large) for ratio in found.ratios] == [("OL5 held", "OL5")]
     assert found.best.hold_out is None
+
+
+def test_a_larger_structure_whose_search_ended_too_early_starts_from_the_smaller(make_response):
+    """A search of two steps leaves the larger structure worse than the one it holds, which it cannot be."""
+    response = make_response("CL3", CL3, noise=0.02, correlation=0.3, rng=np.random.default_rng(5))
+    small = identify(structure("CL3"), response, rng=np.random.default_rng(1), settings=SETTINGS)
+    middle = np.array([[0.5 * (p.lower + p.upper) for p in structure("CL4").free]])
+    early = Settings(starts=1, draw=GivenStarts(middle), max_iterations=2)
+    stopped = identify(structure("CL4"), response, rng=np.random.default_rng(1), settings=early)
+    assert stopped.cost > 2.0 * small.cost
+    found = compare_fits([small, replace(stopped, settings=SETTINGS)], rng=np.random.default_rng(1), folds=0)
+    assert found.candidate("CL4").identification.cost <= small.cost
+    assert [(ratio.small, ratio.large) for ratio in found.ratios] == [("CL3", "CL4")]
+    assert 0.0 <= found.ratios[0].statistic < 10.0
+    assert sum(cluster.starts for cluster in found.candidate("CL4").identification.clusters) == 2

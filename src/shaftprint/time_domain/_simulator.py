@@ -16,6 +16,8 @@ from shaftprint.time_domain._record import Record
 
 # Outputs beyond this have run away, and so have those beyond this times the largest that was measured.
 RUN_AWAY = 1e6
+# Slopes beyond this are those of steps too long for the equations, whose motion a limit holds; squared they are infinite.
+STEEPEST = 1e100
 
 
 class Simulator(Protocol):
@@ -118,5 +120,5 @@ def on_record(
             simulated[0, :, column] = record.decimator.thinned(fine.outputs[name][:, None])[:, 0]
             simulated[1:, :, column] = record.decimator.thinned(fine.derivatives[name].T).T
     largest = np.array([max(1.0, float(np.abs(record.outputs.get(name, 0.0)).max())) for name in structure.outputs])
-    stays = np.all(np.abs(simulated[0]) < RUN_AWAY * largest) and np.all(np.isfinite(simulated))
+    stays = np.all(np.abs(simulated[0]) < RUN_AWAY * largest) and np.all(np.abs(simulated[1:]) < STEEPEST)
     return simulated if stays else None

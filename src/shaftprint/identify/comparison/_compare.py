@@ -11,7 +11,7 @@ from shaftprint.identify.comparison._comparison import Candidate, StructureCompa
 from shaftprint.identify.comparison._criteria import criteria_of
 from shaftprint.identify.comparison._hold_out import HoldOut, hold_out
 from shaftprint.identify.comparison._likelihood_ratio import LikelihoodRatio, likelihood_ratio
-from shaftprint.identify.comparison._nesting import nesting
+from shaftprint.identify.comparison._nesting import nesting, no_worse
 from shaftprint.identify.comparison._sentences import comparison_words
 from shaftprint.identify.fit import Identification, fit_of
 from shaftprint.identify.search import Settings
@@ -135,6 +135,7 @@ def compare_fits(
     expect_comparable([fit.structure for fit in fits], least=1)
     _expect_same_data(fits)
     left_out = list(rng.spawn(len(fits)))
+    fits, ratios = _ratios(fits, rng, draws)
     candidates = [
         Candidate(
             identification=fit,
@@ -145,7 +146,6 @@ def compare_fits(
     ]
     candidates.sort(key=lambda candidate: candidate.criteria.bic)
     reasons = dict(failed or {})
-    ratios = _ratios([candidate.identification for candidate in candidates], rng, draws)
     return StructureComparison(
         candidates=tuple(candidates),
         failed=reasons,
@@ -227,13 +227,22 @@ def _hold_out(fit: Identification, folds: int, rng: np.random.Generator) -> Hold
         return None
 
 
-def _ratios(fits: Sequence[Identification], rng: np.random.Generator, draws: int) -> tuple[LikelihoodRatio, ...]:
-    """Return the tests of all pairs of which one holds the other, the smaller structures first."""
-    ordered = sorted(fits, key=lambda fit: len(fit.parameters))
+def _ratios(
+    fits: Sequence[Identification], rng: np.random.Generator, draws: int
+) -> tuple[list[Identification], tuple[LikelihoodRatio, ...]]:
+    """Return fits of which none is worse than one that it holds, and the tests of all such pairs, the smaller first."""
+    places = sorted(range(len(fits)), key=lambda place: (criteria_of(fits[place]).bic, place))
+    places.sort(key=lambda place: len(fits[place].parameters))
     ratios = []
-    for i, small in enumerate(ordered):
-        for large in ordered[i + 1 :]:
+    for i, few in enumerate(places):
+        for many in places[i + 1 :]:
+            small, large = fits[few], fits[many]
             nested = nesting(small, large, rng=rng)
-            if nested is not None:
-                ratios.append(likelihood_ratio(small, large, nested, rng=rng, draws=draws))
-    return tuple(ratios)
+            if nested is None:
+                continue
+            lower = no_worse(small, large, nested, rng=rng)
+            if lower is not large:
+                # what was tested with the unfinished search is tested anew
+                return _ratios([lower if fit is large else fit for fit in fits], rng, draws)
+            ratios.append(likelihood_ratio(small, large, nested, rng=rng, draws=draws))
+    return list(fits), tuple(ratios)

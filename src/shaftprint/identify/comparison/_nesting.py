@@ -14,6 +14,7 @@ from shaftprint.distributions import chi_square_tail
 from shaftprint.errors import IdentificationError
 from shaftprint.identify.fit import Identification, fit_of
 from shaftprint.identify.likelihood import Objective, load_factors
+from shaftprint.identify.search import GivenStarts
 from shaftprint.spectra import FrequencyResponse
 
 # Squared distance over the square of the response itself below which nothing is left.
@@ -28,6 +29,8 @@ AT_BOUND = 1e-5
 RANK_TOLERANCE = 1e-6
 # A likelihood ratio below this is none: the larger structure has stopped where the smaller one is.
 NO_GAIN = 1e-6
+# Costs that differ by a smaller share are one.
+ROUNDING = 1e-9
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -89,6 +92,35 @@ def nesting(small: Identification, large: Identification, *, rng: np.random.Gene
         at_bound=tuple(p.name for p, there in zip(parameters, at_bound, strict=True) if there),
         meaningless=tuple(p.name for p, gone in zip(parameters, lost, strict=True) if gone),
     )
+
+
+def no_worse(
+    small: Identification, large: Identification, nested: Nesting, *, rng: np.random.Generator
+) -> Identification:
+    """Return the larger fit, or a lower one from where it imitates the smaller, if its own search missed that.
+
+    Only what is known beforehand of its further parameters can make it cost more then.
+
+    Parameters
+    ----------
+    small, large
+        Fits to the same data.
+    nested
+        How the larger holds the smaller.
+    rng
+        Source of start values, of which none is drawn.
+    """
+    if large.cost <= small.cost * (1.0 + ROUNDING):
+        return large
+    pairs = [
+        (experiment.structure, replace(experiment.response, used=experiment.fitted))
+        for experiment in large.objective.experiments
+    ]
+    settings = replace(large.settings, starts=1, draw=GivenStarts(nested.values[None]))
+    lower = fit_of(pairs, rng=rng, settings=settings)
+    if lower.cost >= large.cost * (1.0 - ROUNDING):
+        return large
+    return replace(lower, settings=large.settings, clusters=(*lower.clusters, *large.clusters))
 
 
 def _responses_of(identification: Identification, values: FloatArray) -> list[FrequencyResponse]:
