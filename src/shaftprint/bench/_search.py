@@ -115,17 +115,16 @@ def search_drive(
     """
     white = _White(one, records, settings, time, rng)
     ends = white.ends(settings.starts)
-    for made in (list(further), white.frictionless(ends), white.mirrored(ends)):
-        if made:
-            ends = ends.beside(white.ends(len(made), np.array(made)))
-    if white.friction:
-        made = white.sizes(ends)
-        ends = ends.beside(white.ends(len(made), np.array(made)))
-    while True:
+    ends = ends.beside(white.made(further))
+    ends = ends.beside(white.made(white.frictionless(ends)))
+    ends = ends.beside(white.made(white.mirrored(ends)))
+    ends = ends.beside(white.made(white.sizes(ends)))
+    searched = _coloured(one, records, settings, time, ends, rng)
+    tried = int(ends.starts.sum())
+    while searched.agreeing < AGREE and tried < MOST:
+        ends, tried = ends.beside(white.made(white.drawn(MORE))), tried + MORE
         searched = _coloured(one, records, settings, time, ends, rng)
-        if searched.agreeing >= AGREE or ends.starts.sum() >= MOST:
-            return searched
-        ends = ends.beside(white.ends(MORE))
+    return searched
 
 
 class _White:
@@ -146,6 +145,22 @@ class _White:
         self.friction = [i for i, p in enumerate(self.parameters) if p.name in rubs and p.lower == 0.0]
         self._released: FloatArray | None = None
 
+    def made(self, starts: Sequence[FloatArray]) -> _Ends:
+        """Return where given starts end; those at which the simulation runs away end nowhere."""
+        theta = np.array(starts).reshape(-1, len(self.parameters))
+        theta = theta[np.all([term.evaluable(theta) for term in self.terms], axis=0)] if theta.size else theta
+        if not theta.size:
+            return _Ends(theta=theta, cost=np.empty(0), starts=np.empty(0, dtype=np.int64))
+        return self.ends(len(theta), theta)
+
+    def drawn(self, count: int) -> FloatArray:
+        """Return further starts."""
+        lower = np.array([p.lower for p in self.parameters])
+        upper = np.array([p.upper for p in self.parameters])
+        draw = self.settings.draw
+        others = draw.others if isinstance(draw, GivenStarts) and draw.others is not None else draw
+        return others.starts(lower, upper, count, self.rng)
+
     def ends(self, count: int, theta: FloatArray | None = None) -> _Ends:
         """Return where starts end: given ones, or as many as are drawn."""
         fit = self._fit(count, theta)
@@ -165,6 +180,9 @@ class _White:
         theta[:, self.friction] = 0.0
         rubs = [self.parameters[i] for i in self.friction]
         nothing = {p.name: Prior(0.0, HELD * p.upper) for p in rubs}
+        theta = theta[np.all([term.evaluable(theta) for term in self.terms], axis=0)]
+        if not theta.size:
+            return []
         fit = self._fit(len(theta), theta, nothing)
         self._released = fit.values[list(fit.objective.free)].copy()
         self._released[self.friction] = 0.0
@@ -172,8 +190,8 @@ class _White:
 
     def sizes(self, ends: _Ends) -> list[FloatArray]:
         """Return the optimum without friction beside other sizes of it than that of the best end."""
-        made = []
-        for share in SIZES:
+        made: list[FloatArray] = []
+        for share in SIZES if self.friction else ():
             theta = np.array(ends.best if self._released is None else self._released)
             for i in self.friction:
                 upper = self.parameters[i].upper

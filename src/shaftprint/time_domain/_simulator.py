@@ -16,7 +16,7 @@ from shaftprint.time_domain._record import Record
 
 # Outputs beyond this have run away, and so have those beyond this times the largest that was measured.
 RUN_AWAY = 1e6
-# Slopes beyond this are those of steps too long for the equations, whose motion a limit holds; squared they are infinite.
+# Slopes beyond this are those of steps too long for the equations, whose motion a limit holds; their squares overflow.
 STEEPEST = 1e100
 
 
