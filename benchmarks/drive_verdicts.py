@@ -34,8 +34,9 @@ SEED = 96
 FINER = 100
 FAR = 3.9
 SHAPES = ("steps", "binary", "sines", "coast", "one way")
-# What Coulomb's ideal law does not have and the bristles of the model do, small against the moves [rad].
-YIELDING = 1e-3
+# What Coulomb's ideal law does not have and the bristles of the model do, small against the moves [rad] and times; and
+# steps that follow it.
+YIELDING, WITHIN_S, STEP_S = 1e-5, 2e-4, 5e-4
 
 DRIVE = """\
 name = "rotor"
@@ -56,7 +57,7 @@ parameters = {{ gain = "B" }}
 output = "dry"
 kind = "coulomb-friction"
 inputs = ["omega"]
-parameters = {{ size = "T_C", yielding = {yielding} }}
+parameters = {{ size = "T_C", yielding = {yielding}, within = {within_s} }}
 [[blocks]]
 output = "omega"
 kind = "integrator"
@@ -87,6 +88,7 @@ meaning = "dry friction"
 start = "{start}"
 offset = "constant"
 inputs_hold = {hold}
+longest_step_s = {step_s}
 """
 
 
@@ -136,7 +138,7 @@ def drawn(number: int) -> Drawn:
     speed = _speed(torque, hold, 1.0 / rate_hz, truth["a"], truth["B"], truth["T_C"], _first(shape, torque, truth))
     if moving:
         torque, speed = torque[150:], speed[150:]
-    noise = rng.uniform(0.002, 0.02) * np.std(speed) * rng.standard_normal(speed.size)
+    noise = rng.uniform(0.01, 0.05) * np.std(speed) * rng.standard_normal(speed.size)
     omega = speed + rng.uniform(-1.0, 1.0) * np.std(speed) + noise
     record = record_from_arrays(f"record {number}", {"T": torque}, {"omega": omega}, rate_hz=rate_hz, hold=hold)
     return Drawn(shape=shape, truth=truth, hold=hold, moving=moving, record=record)
@@ -169,7 +171,8 @@ def outcome(one: Drawn, number: int, seed: int, folder: Path) -> dict[str, Any]:
     """Return what a seed of the search made of a record."""
     path = folder / "drive.toml"
     start = "found" if one.moving else "steady"
-    path.write_text(DRIVE.format(yielding=YIELDING, start=start, hold=str(one.hold).lower()), encoding="utf-8")
+    text = DRIVE.format(yielding=YIELDING, within_s=WITHIN_S, step_s=STEP_S, start=start, hold=str(one.hold).lower())
+    path.write_text(text, encoding="utf-8")
     begun = time.process_time()
     kept: dict[str, Any] = {"record": number, "seed": seed, "shape": one.shape, "moving": one.moving, "hold": one.hold}
     try:
