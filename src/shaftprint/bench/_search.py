@@ -122,7 +122,7 @@ def search_drive(
     searched = _coloured(one, records, settings, time, ends, rng)
     tried = int(ends.starts.sum())
     while searched.agreeing < AGREE and tried < MOST:
-        ends, tried = ends.beside(white.made(white.drawn(MORE))), tried + MORE
+        ends, tried = ends.beside(white.made(list(white.drawn(MORE)))), tried + MORE
         searched = _coloured(one, records, settings, time, ends, rng)
     return searched
 
