@@ -135,14 +135,14 @@ def _prepared(recording: "Recording", vessel: "Vessel", campaign: Campaign, read
     legs = samples_of_legs(campaign, readings)
     stopped = stopped_generators(legs, readings)
     states: tuple[LegState, ...]
-    unsteady: tuple[Reason, ...] = ()
     if campaign.legs and not campaign.sines:
         steady, states = steady_state_of_legs(campaign, readings, legs, channel=vessel.sensors.set_point.channel)
         strange = expect_plausible(steady.working_point, vessel)
         _calibrated_in_place(readings.set_point, steady.calibration)
     else:
         states = tuple(leg_state(one) for one in legs)
-        steady, strange, unsteady = _steady_state(vessel, campaign, readings)
+        steady, strange = _steady_state(vessel, campaign, readings)
+    reasons += _changes_of_gauge(vessel, campaign, readings)
     signals, absent = _signals_by_name(readings, steady)
     delays, missed = find_step_delays(
         readings.set_point,
@@ -184,7 +184,7 @@ def _prepared(recording: "Recording", vessel: "Vessel", campaign: Campaign, read
             *absent,
             *missed,
         ),
-        reasons=(*reasons, *unsteady),
+        reasons=tuple(reasons),
         recording_sha256=recording.sha256,
         recording_name=recording.path.name,
     )
@@ -252,10 +252,25 @@ def _differences_from_campaign(
     return lost, mismatches
 
 
-def _steady_state(
-    vessel: "Vessel", campaign: Campaign, readings: Readings
-) -> tuple[SteadyState, tuple[str, ...], tuple[Reason, ...]]:
-    """Return working point and line of the set point, with what is strange about them and what speaks against them.
+def _changes_of_gauge(vessel: "Vessel", campaign: Campaign, readings: Readings) -> tuple[Reason, ...]:
+    """Return what says that the torque gauge changed within the tests."""
+    clock = readings.clock
+    if clock.mode == "thesis":
+        return ()
+    return expect_steady_gauge(
+        campaign.of_input(),
+        set_point=readings.set_point,
+        speed_rev_s=readings.pick_ups[0].values,
+        torque_nm=readings.torque_nm,
+        rate_hz=clock.rate_hz,
+        start_s=clock.start_s,
+        channel=vessel.sensors.shaft_torque.channel,
+        coverage=readings.coverage,
+    )
+
+
+def _steady_state(vessel: "Vessel", campaign: Campaign, readings: Readings) -> tuple[SteadyState, tuple[str, ...]]:
+    """Return working point and line of the set point, with what is strange about them.
 
     The values of the set point become a speed, in place since the signals of a whole test are large.
     """
@@ -267,7 +282,6 @@ def _steady_state(
     stretches = steady_stretches(n_set, speed, torque, campaign, **grid, coverage=coverage)
     quiet = stretches_at_working_point(stretches, campaign, channel=channel)
     scale = DcScale(value=1.0, std=0.0, findings=())
-    unsteady: tuple[Reason, ...] = ()
     if clock.mode == "thesis":
         calibration, point = calibrate(stretches, channel=channel), find_working_point(quiet)
         strange = expect_plausible(point, vessel)
@@ -288,10 +302,6 @@ def _steady_state(
         )
         point = working_point_of_test(speed, torque, at_v=about_v, at=(at[0], at[1]), **grid, coverage=coverage)
         strange = expect_plausible(point, vessel)
-        gauge = vessel.sensors.shaft_torque.channel
-        unsteady = expect_steady_gauge(
-            stretches, tests, speed_rev_s=speed, torque_nm=torque, **grid, channel=gauge, coverage=coverage
-        )
         _calibrated_in_place(n_set, calibration)
         if calibration.level_v.size > 1:
             scale = _rescale(n_set, speed, tests, coverage, calibration, **grid, about=point.engine_speed_rev_s)
@@ -300,7 +310,7 @@ def _steady_state(
     steady = SteadyState(
         clock=clock, stretches=quiet, working_point=point, calibration=calibration, scale=scale, speed_rev_s=speed
     )
-    return steady, strange, unsteady
+    return steady, strange
 
 
 def _step_v(readings: Readings) -> float:

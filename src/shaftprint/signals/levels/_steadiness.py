@@ -1,40 +1,55 @@
 """Whether the torque gauge and the load were the same from the first to the last minute of a test.
 
-In bollard pull the torque is ``M = c n^2 + z`` with the load ``c`` and the zero ``z`` of the gauge. Means over whole
-periods and over steady stretches, each over the mean of ``n^2``, tell ``c`` all over the test. It wanders by a per cent
-or three over 10 to 100 s. That wander, a stationary process of first order, is held against the same with a straight
-drift, and with a jump between two windows: twice the gain in log-likelihood says how much better that is.
+In bollard pull the torque is ``M = g (c n^2 + I dn/dt) + z`` with the gain ``g`` and the zero ``z`` of the gauge and
+the load ``c``. The test is cut into pieces. In each, what accelerates the shaft tells ``g`` whatever the load does
+(``_fast_gain.py``), and the mean over that of ``n^2`` tells ``g c``; that wanders by a per cent or three over 10 to
+100 s, a stationary process of first order. A gain that changes changes both alike. A step at any time, a straight
+line, and a gauge that warms up with any time constant are held against the same without: twice the gain in
+log-likelihood says how much better that is.
 
-A load that really changes and a gain that does look alike in the means; either way the means of different lines do not
-belong to one state, and what is compared across the lines is in doubt.
+What changes the means alone is load or zero. Their means do not belong to one state then, and what is compared across
+the lines is in doubt as well. A zero makes the mean torque differ between speeds, and so does a propeller whose torque
+does not quite go with the square: what goes with ``1 / n^2`` is therefore no change. The fast torque needs no such
+allowance, and compares two speeds by itself.
 """
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Literal, TypeAlias
 
 import numpy as np
 
-from shaftprint.arrays import FloatArray
+from shaftprint.arrays import BoolArray, FloatArray
 from shaftprint.reasons import Reason
 from shaftprint.signals._gaps import EVERYTHING, Coverage
+from shaftprint.signals.levels._fast_gain import FastGains, fast_gains
 from shaftprint.signals.levels._wander import window_covariance
 
 if TYPE_CHECKING:
     from shaftprint.campaign import Campaign
-    from shaftprint.signals.levels._steady import SteadyStretch
 
-# Parts of a long window: shorter ones say no more, for the wander is as slow; longer ones hide a jump.
-_SHORTEST_S, _MOST_PARTS = 20.0, 50
+# Pieces in which the gain is looked at, and of how many a mean load is made: a shorter mean says no more.
+_PIECE_S, _MOST_PIECES, _PIECES_A_LOAD = 10.0, 200, 2
 # Correlation times of the wander that are tried [s]; what is slower is a drift.
 _TIMES_S = np.geomspace(10.0, 100.0, 8)
-# Windows on either side of a jump, and in all.
+# Time constants of a gauge that warms up [s], the longest over the length of the test: longer is a straight line.
+_SHORTEST_WARM_UP_S, _LONGEST_WARM_UP, _WARM_UPS = 30.0, 0.7, 8
+# Means of the load on either side of a step, and in all.
 _FEWEST_BESIDE, _FEWEST = 2, 8
-# Twice the gain in log-likelihood that the wander alone exceeds once in several hundred tests, and the least change
-# that is worth a word: a tenth of it stays in the mean torque.
-_DRIFT_GAIN, _JUMP_GAIN = 14.0, 20.0
-_LEAST_CHANGE = 0.03
+# Twice the gain in log-likelihood that a test without a change exceeds once in several hundred tests, and the least
+# change that is worth a word: of the gain, and of the load, of which a tenth stays in the mean torque.
+_OF_GAIN, _OF_LOAD_SLOWLY, _OF_LOAD_AT_ONCE = 16.0, 14.0, 20.0
+_LEAST_OF_GAIN, _LEAST_OF_LOAD = 0.025, 0.03
+# Within so much of twice the best log-likelihood lies the time of a step in 95 of 100.
+_AS_GOOD = 3.84
+_ROUNDS = 8
+# Median of the size of a normal variable of deviation 1, and the least scatter of neighbours that is taken for theirs.
+_MEDIAN_OF_NORMAL, _LEAST_SCATTER = 0.6745, 0.8
+# A piece whose gain is known worse than this tells nothing of the scatter.
+_LARGEST_STD = 0.3
 _PERCENT = 100.0
+
+Kind: TypeAlias = Literal["step", "drift", "warm-up"]
+"""Course of a change."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -53,20 +68,46 @@ class Loads:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Change:
-    """A change of the load within a test."""
+    """A change within a test."""
 
-    gain: float
-    """Twice the gain in log-likelihood over the wander alone."""
+    kind: Kind
+    """Its course."""
+    of_gain: bool
+    """Whether the fast torque changes with the mean torque."""
+    likelihood: float
+    """Twice the gain in log-likelihood over no change."""
     size: float
-    """Relative change from the begin to the end, or across the jump [-]."""
-    at_s: float | None
-    """When it jumps [s]; None for a drift."""
+    """Relative change from the begin to the end [-]."""
+    time_s: float
+    """When it steps, or the time constant of a warm-up [s]; 0 for a drift."""
+    between_s: tuple[float, float]
+    """Where the time of a step lies in 95 of 100 [s]."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class _Courses:
+    """Courses that are tried; each is 0 at the begin, and 1 at the end or far behind it."""
+
+    kinds: tuple[Kind, ...]
+    """What each is, steps last, shape (courses,)."""
+    time_s: FloatArray
+    """When each steps, or its time constant [s], shape (courses,)."""
+
+    def means(self, start_s: FloatArray, stop_s: FloatArray, within_s: tuple[float, float]) -> FloatArray:
+        """Return the mean of each course in windows of the test, shape (windows, courses)."""
+        begin, end = (of[:, np.newaxis] - within_s[0] for of in (start_s, stop_s))
+        time_s = np.maximum(self.time_s, 1e-9)
+        step = np.clip((end + within_s[0] - self.time_s) / (end - begin), 0.0, 1.0)
+        drift = 0.5 * (begin + end) / (within_s[1] - within_s[0])
+        warm = 1.0 - time_s * (np.exp(-begin / time_s) - np.exp(-end / time_s)) / (end - begin)
+        kinds = np.array(self.kinds)
+        return np.where(kinds == "step", step, np.where(kinds == "drift", drift, warm))
 
 
 def expect_steady_gauge(
-    stretches: "tuple[SteadyStretch, ...]",
     campaign: "Campaign",
     *,
+    set_point: FloatArray,
     speed_rev_s: FloatArray,
     torque_nm: FloatArray,
     rate_hz: float,
@@ -74,118 +115,250 @@ def expect_steady_gauge(
     channel: str,
     coverage: Coverage = EVERYTHING,
 ) -> tuple[Reason, ...]:
-    """Return a reason where torque over the square of the speed jumps or drifts within the test.
+    """Return a reason where the gain of the torque gauge, its zero or the load changes within the tests.
 
     Parameters
     ----------
-    stretches
-        Where set point, speed and torque stand still.
     campaign
-        Says where the sines are; means over their whole periods are used.
-    speed_rev_s, torque_nm
-        Signals on the grid, shape (samples,).
+        What was asked of the ship, in sines, legs or anything else; its first test begins what is looked at.
+    set_point, speed_rev_s, torque_nm
+        Signals on the grid, shape (samples,); the set point in any unit.
     rate_hz, start_s
         The grid.
     channel
         Name of the torque channel.
     coverage
-        What the recording covers; windows in a gap are left out.
+        What the recording covers; pieces in a gap are left out.
     """
-    planned = [*((s.start_s, s.stop_s) for s in stretches), *_parts(campaign)]
-    windows = [window for window in planned if not coverage.missing(*window)]
-    loads = loads_of(windows, speed_rev_s=speed_rev_s, torque_nm=torque_nm, rate_hz=rate_hz, start_s=start_s)
-    if loads.load.size < _FEWEST:
+    tests = campaign.excitations
+    if not tests:
         return ()
-    drift, jump = changes(loads)
-    if jump.gain > _JUMP_GAIN and abs(jump.size) > _LEAST_CHANGE and jump.gain >= drift.gain:
-        return (_reason(jump, channel),)
-    if drift.gain > _DRIFT_GAIN and abs(drift.size) > _LEAST_CHANGE:
-        return (_reason(drift, channel),)
-    return ()
+    change = change_within(
+        set_point,
+        speed_rev_s,
+        torque_nm,
+        within_s=(
+            max(min(test.start_s for test in tests), start_s),
+            min(max(test.stop_s for test in tests), start_s + torque_nm.size / rate_hz),
+        ),
+        rate_hz=rate_hz,
+        start_s=start_s,
+        coverage=coverage,
+    )
+    return () if change is None else (_reason(change, channel),)
+
+
+def change_within(
+    set_point: FloatArray,
+    speed_rev_s: FloatArray,
+    torque_nm: FloatArray,
+    *,
+    within_s: tuple[float, float],
+    rate_hz: float,
+    start_s: float = 0.0,
+    coverage: Coverage = EVERYTHING,
+) -> Change | None:
+    """Return the change that explains the torque best; None where there is none.
+
+    Parameters
+    ----------
+    set_point, speed_rev_s, torque_nm
+        Signals on the grid, shape (samples,).
+    within_s
+        Begin and end of what is looked at [s].
+    rate_hz, start_s
+        The grid.
+    coverage
+        What the recording covers.
+    """
+    begin_s, end_s = within_s
+    count = min(int((end_s - begin_s) / _PIECE_S), _MOST_PIECES) // _PIECES_A_LOAD * _PIECES_A_LOAD
+    if count < _FEWEST * _PIECES_A_LOAD:
+        return None
+    border_s = np.linspace(begin_s, end_s, count + 1)
+    grid = {"rate_hz": rate_hz, "start_s": start_s}
+    fast = fast_gains(set_point, speed_rev_s, torque_nm, **grid, border_s=border_s, whole=_whole(border_s, coverage))
+    wide_s = border_s[::_PIECES_A_LOAD]
+    whole = _whole(wide_s, coverage)
+    loads = loads_of(
+        wide_s[:-1][whole],
+        wide_s[1:][whole],
+        speed_rev_s=speed_rev_s,
+        torque_nm=torque_nm,
+        inertia_s=fast.inertia_s,
+        **grid,
+    )
+    if loads.load.size < _FEWEST:
+        return None
+    courses = _courses(border_s)
+    along, power = fast.of_courses(courses.means(fast.start_s, fast.stop_s, within_s))
+    by_fast = along / _scatter(fast) ** 2, power / _scatter(fast) ** 2
+    nothing = np.zeros(courses.time_s.size), np.zeros(courses.time_s.size)
+    by_load = _by_load(loads, courses.means(loads.start_s, loads.stop_s, within_s))
+    of_gain = _best(courses, by_load, by_fast, within_s)
+    of_load = _best(courses, by_load, nothing, within_s)
+    if of_gain.likelihood >= of_load.likelihood:
+        is_change = of_gain.likelihood > _OF_GAIN and abs(of_gain.size) > _LEAST_OF_GAIN
+        return replace(of_gain, of_gain=True) if is_change else None
+    least = _OF_LOAD_AT_ONCE if of_load.kind == "step" else _OF_LOAD_SLOWLY
+    return of_load if of_load.likelihood > least and abs(of_load.size) > _LEAST_OF_LOAD else None
+
+
+def _whole(border_s: FloatArray, coverage: Coverage) -> BoolArray:
+    """Return which pieces hold no gap, shape (pieces,)."""
+    pieces = zip(border_s[:-1].tolist(), border_s[1:].tolist(), strict=True)
+    return np.array([not coverage.missing(*piece) for piece in pieces], dtype=np.bool_)
+
+
+def loads_of(
+    begin_s: FloatArray,
+    end_s: FloatArray,
+    *,
+    speed_rev_s: FloatArray,
+    torque_nm: FloatArray,
+    inertia_s: float,
+    rate_hz: float,
+    start_s: float,
+) -> Loads:
+    """Return the load in windows.
+
+    Parameters
+    ----------
+    begin_s, end_s
+        When they begin and end [s], shape (windows,).
+    speed_rev_s, torque_nm
+        Signals on the grid, shape (samples,).
+    inertia_s
+        Inertia behind the gauge, a time, at the mean speed and torque: what accelerates it is no load.
+    rate_hz, start_s
+        The grid.
+    """
+    first, stop = (np.round((of - start_s) * rate_hz).astype(int) for of in (begin_s, end_s))
+    speed, torque = speed_rev_s / speed_rev_s.mean(), torque_nm / torque_nm.mean()
+    length = np.maximum(stop - first, 1)
+    square, mean = (
+        (of[stop] - of[first]) / length for of in (np.append(0.0, np.cumsum(values)) for values in (speed**2, torque))
+    )
+    at = np.append(speed[:1], 0.5 * (speed[1:] + speed[:-1]))
+    at = np.append(at, speed[-1:])
+    load = (mean - inertia_s * (at[stop] - at[first]) * rate_hz / length) / square
+    return Loads(start_s=begin_s, stop_s=end_s, load=load / load.mean(), square=square / square.mean())
+
+
+def _courses(border_s: FloatArray) -> _Courses:
+    """Return the courses that are tried in a test cut into pieces: steps at every half of one."""
+    length_s, half_s = border_s[-1] - border_s[0], 0.5 * (border_s[1] - border_s[0])
+    beside = _FEWEST_BESIDE * _PIECES_A_LOAD
+    steps_s = np.arange(border_s[beside], border_s[-1 - beside] + 1e-6, half_s)
+    warm_ups_s = np.geomspace(_SHORTEST_WARM_UP_S, max(_LONGEST_WARM_UP * length_s, _SHORTEST_WARM_UP_S), _WARM_UPS)
+    kinds: list[Kind] = ["drift"]
+    kinds += ["warm-up"] * _WARM_UPS
+    kinds += ["step"] * steps_s.size
+    return _Courses(kinds=tuple(kinds), time_s=np.concatenate([[0.0], warm_ups_s, steps_s]))
+
+
+def _scatter(fast: FastGains) -> float:
+    """Return by how much neighbours differ over what their deviations let expect.
+
+    The median does not see the one pair between which a gain steps.
+    """
+    told = fast.std < _LARGEST_STD
+    if np.count_nonzero(told) < _FEWEST:
+        return 1.0
+    apart = np.abs(np.diff(fast.gain[told])) / np.hypot(fast.std[told][1:], fast.std[told][:-1])
+    return max(_LEAST_SCATTER, float(np.median(apart)) / _MEDIAN_OF_NORMAL)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class _ByLoad:
+    """What the mean loads say of the size of each course, for each correlation time of their wander."""
+
+    count: int
+    """Number of windows."""
+    log: FloatArray
+    """Logarithm of what the white residual is divided by, shape (times, 1)."""
+    square: FloatArray
+    """Sum of its squares without a change, shape (times, 1)."""
+    along: FloatArray
+    """Sum of its products with each course, shape (times, courses)."""
+    power: FloatArray
+    """Sum of the squares of each course, shape (times, courses)."""
+
+    def likelihood(self, size: FloatArray | float) -> FloatArray:
+        """Return the log-likelihood of sizes, shape (times, courses)."""
+        return np.asarray(self.log - 0.5 * self.count * np.log(self.left(size)))
+
+    def left(self, size: FloatArray | float) -> FloatArray:
+        """Return the sum of squares that sizes leave, shape (times, courses)."""
+        least = np.finfo(np.float64).tiny
+        return np.asarray(np.maximum(self.square - 2.0 * size * self.along + size**2 * self.power, least))
+
+
+def _by_load(loads: Loads, courses: FloatArray) -> _ByLoad:
+    common = np.stack([np.ones(loads.load.size), 1.0 / loads.square - 1.0], axis=1)
+    rows = []
+    for time_s in _TIMES_S.tolist():
+        lower = np.linalg.cholesky(window_covariance(loads.start_s, loads.stop_s, time_s))
+        white = np.linalg.solve(lower, np.column_stack([common, loads.load, courses]))
+        basis = np.linalg.qr(white[:, :2]).Q
+        rest = white[:, 2:] - basis @ (basis.T @ white[:, 2:])
+        load, changed = rest[:, 0], rest[:, 1:]
+        rows.append((-np.log(np.diag(lower)).sum(), load @ load, changed.T @ load, np.sum(changed**2, axis=0)))
+    log, square, along, power = (np.array(of) for of in zip(*rows, strict=True))
+    return _ByLoad(
+        count=loads.load.size, log=log[:, np.newaxis], square=square[:, np.newaxis], along=along, power=power
+    )
+
+
+def _best(
+    courses: _Courses, by_load: _ByLoad, by_fast: tuple[FloatArray, FloatArray], within_s: tuple[float, float]
+) -> Change:
+    """Return the course and size that explain mean loads and fast gains best."""
+    along, power = by_fast
+    size = np.zeros_like(by_load.along)
+    for _ in range(_ROUNDS):
+        weight = by_load.count / by_load.left(size)
+        size = (along + weight * by_load.along) / np.maximum(power + weight * by_load.power, np.finfo(np.float64).tiny)
+    by_time = by_load.likelihood(size) + size * along - 0.5 * size**2 * power
+    best = 2.0 * (by_time.max(axis=0) - by_load.likelihood(0.0).max())
+    place = int(np.argmax(best))
+    kind, of_steps = courses.kinds[place], courses.time_s[np.array(courses.kinds) == "step"]
+    alike = of_steps[best[-of_steps.size :] > best[place] - _AS_GOOD] if kind == "step" else np.zeros(1)
+    end = float(courses.means(np.array([within_s[1] - 1e-3]), np.array([within_s[1]]), within_s)[0, place])
+    return Change(
+        kind=kind,
+        of_gain=False,
+        likelihood=float(best[place]),
+        size=float(size[int(np.argmax(by_time[:, place])), place]) * end,
+        time_s=float(courses.time_s[place]),
+        between_s=(float(alike.min()), float(alike.max())),
+    )
 
 
 def _reason(change: Change, channel: str) -> Reason:
-    how = "drifts" if change.at_s is None else f"jumps at about {change.at_s:.0f} s"
+    percent = _PERCENT * change.size
+    if not change.of_gain:
+        how = f"jumps at about {change.time_s:.0f} s" if change.kind == "step" else "drifts"
+        sentence = (
+            f"The torque over the square of the speed {how} by {percent:+.1f} %, more than a load wanders: zero of the "
+            f"torque gauge in channel {channel} changed within the test, or the ship did; check the telemetry, or use "
+            "a part of the test."
+        )
+        return Reason(kind="gauge steadiness", where=channel, sentence=sentence)
+    first_s, last_s = change.between_s
+    course = {
+        "step": f"is {abs(percent):.1f} % {'higher' if percent > 0.0 else 'lower'} from {change.time_s:.0f} s on "
+        f"(between {first_s:.0f} and {last_s:.0f} s)",
+        "drift": f"drifts by {percent:+.1f} % from the first test to the last",
+        "warm-up": f"changes by {percent:+.1f} % as it warms up, with a time constant of about {change.time_s:.0f} s",
+    }[change.kind]
+    instead = "before or after it" if change.kind == "step" else "in which it stands"
     return Reason(
         kind="gauge steadiness",
         where=channel,
         sentence=(
-            f"The torque over the square of the speed {how} by {_PERCENT * change.size:+.1f} %, more than a load "
-            f"wanders: gain or zero of the torque gauge in channel {channel} changed within the test, or the ship did; "
-            "check the telemetry, or use a part of the test."
-        ),
-    )
-
-
-def _parts(campaign: "Campaign") -> Iterator[tuple[float, float]]:
-    """Yield parts of the sines that hold whole periods."""
-    total = sum(sine.window_s for sine in campaign.sines)
-    shortest_s = max(_SHORTEST_S, total / _MOST_PARTS)
-    for sine in campaign.sines:
-        period = 1.0 / sine.frequency_hz
-        count = max(sine.periods // max(int(np.ceil(shortest_s / period)), 1), 1)
-        borders = sine.settled_s + period * (sine.periods // count) * np.arange(count + 1)
-        yield from zip(borders[:-1].tolist(), borders[1:].tolist(), strict=True)
-
-
-def loads_of(
-    windows: Sequence[tuple[float, float]],
-    *,
-    speed_rev_s: FloatArray,
-    torque_nm: FloatArray,
-    rate_hz: float,
-    start_s: float,
-) -> Loads:
-    """Return the load in windows; those outside the signals are left out."""
-    rows = []
-    for begin, end in sorted(windows):
-        first, stop = round((begin - start_s) * rate_hz), round((end - start_s) * rate_hz)
-        if first < 0 or stop > torque_nm.size or stop <= first:
-            continue
-        square = float(np.mean(speed_rev_s[first:stop] ** 2))
-        rows.append((begin, end, float(np.mean(torque_nm[first:stop])) / square, square))
-    table = np.array(rows).reshape(-1, 4)
-    return Loads(
-        start_s=table[:, 0],
-        stop_s=table[:, 1],
-        load=table[:, 2] / np.mean(table[:, 2]),
-        square=table[:, 3] / np.mean(table[:, 3]),
-    )
-
-
-def changes(loads: Loads) -> tuple[Change, Change]:
-    """Return the best drift and the best jump of the load."""
-    middle = 0.5 * (loads.start_s + loads.stop_s)
-    count = middle.size
-    places = range(_FEWEST_BESIDE, count - _FEWEST_BESIDE + 1)
-    tried = np.stack(
-        [(middle - middle[0]) / (middle[-1] - middle[0]), *(np.arange(count) >= index for index in places)], axis=1
-    )
-    common = np.stack([np.ones(count), 1.0 / loads.square - 1.0], axis=1)
-    plain = -np.inf
-    best, sizes = np.full(tried.shape[1], -np.inf), np.zeros(tried.shape[1])
-    for time_s in _TIMES_S:
-        lower = np.linalg.cholesky(window_covariance(loads.start_s, loads.stop_s, float(time_s)))
-        white = np.linalg.solve(lower, np.column_stack([loads.load, common, tried]))
-        basis = np.linalg.qr(white[:, 1:3]).Q
-        residual = white - basis @ (basis.T @ white)
-        load_residual, more = residual[:, 0], residual[:, 3:]
-        along = more.T @ load_residual
-        power = np.sum(more**2, axis=0)
-        square = float(load_residual @ load_residual)
-        log = -np.log(np.diag(lower)).sum()
-        plain = max(plain, log - 0.5 * count * np.log(square))
-        log_likelihood = log - 0.5 * count * np.log(square - along**2 / power)
-        better = log_likelihood > best
-        best[better], sizes[better] = log_likelihood[better], (along / power)[better]
-    gains = 2.0 * (best - plain)
-    index = 1 + int(np.argmax(gains[1:]))
-    at = places[index - 1]
-    return (
-        Change(gain=float(gains[0]), size=float(sizes[0]), at_s=None),
-        Change(
-            gain=float(gains[index]),
-            size=float(sizes[index]),
-            at_s=0.5 * float(loads.stop_s[at - 1] + loads.start_s[at]),
+            f"The gain of the torque gauge in channel {channel} {course}, by the torque that accelerates the shaft as "
+            "well, which no load changes; check gauge and telemetry, and whether the gauge is linear, and identify "
+            f"the tests {instead} alone, with a campaign file that names no others."
         ),
     )

@@ -1,0 +1,230 @@
+"""The gain of the torque gauge piece by piece, from what accelerates the shaft: no weather and no load moves that.
+
+Fast motion asks the shaft behind the gauge for ``tau_dn du/dt``, whatever the propeller does: over a test it changes
+with the gain of the gauge alone. With ``u`` the speed and ``q = u^2``, both over their means, the torque is
+
+    m = g (tau_dn du/dt + smaller terms) + k q + lags of q + noise
+
+whose numbers are fitted once, to the whole recording, and ``g`` and ``k`` then to each piece of it. The second
+derivative takes what is late, the third a line that twists a little, the lags a slipstream that follows the propeller.
+What disturbs the ship moves the speed as well, so that least squares would take noise for gain: the equations are
+weighted with the motion that the set point makes, by the mean response of the recording (instrumental variables;
+L. Ljung, "System Identification", 1999, section 7.6). A piece in which nothing is moved tells nothing and says so. The
+noise is made white beforehand by its own autoregression; its size is that of the pieces around.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy
+
+from shaftprint.arrays import BoolArray, FloatArray, IntArray
+
+# Rate at which torque and speed are compared [Hz]: faster, the shaft twists.
+_RATE_HZ = 20.0
+# Length of the parts whose spectra tell how the speed follows the set point [s].
+_PART_S = 10.0
+# Times in which a slipstream follows [s].
+_LAGS_S = (0.2, 0.8)
+# Of the autoregression of the noise, and rounds in which it and the fit improve each other.
+_ORDER, _ROUNDS = 20, 3
+# Pieces on either side whose noise counts as that of a piece.
+_AROUND = 4
+# Terms that accelerate the shaft, the first ones; the others are the propeller's.
+_OF_GAIN = 3
+# By how much the load of a piece may differ from that of the whole.
+_LOAD_STD = 0.05
+_NOTHING = 1e-10
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class FastGains:
+    """Gain of the torque gauge in pieces of a recording, over that of the whole."""
+
+    start_s: FloatArray
+    """When each piece begins [s], shape (pieces,)."""
+    stop_s: FloatArray
+    """When it ends [s], shape (pieces,)."""
+    told: FloatArray
+    """Sums over each piece for the common terms and for its own gain, the load of the piece taken out: their products
+    with each other, and last with what the common terms leave, over the variance of the noise, shape (pieces, terms
+    + 1, terms + 2)."""
+    inertia_s: float
+    """Inertia behind the gauge, a time: ``tau_dn`` at the mean speed and torque [s]."""
+
+    @property
+    def gain(self) -> FloatArray:
+        """Gain of each piece where the common terms are right [-], shape (pieces,)."""
+        return np.asarray(1.0 + self.told[:, -1, -1] / np.maximum(self.told[:, -1, -2], np.finfo(np.float64).tiny))
+
+    @property
+    def std(self) -> FloatArray:
+        """Its standard deviation; very large where nothing moves fast, shape (pieces,)."""
+        return np.asarray(np.maximum(self.told[:, -1, -2], np.finfo(np.float64).tiny) ** -0.5)
+
+    def of_courses(self, courses: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return what the pieces say of the size ``a`` of a change of the gain, whatever the common terms are.
+
+        Parameters
+        ----------
+        courses
+            Mean of each course in each piece, shape (pieces, courses).
+
+        Returns
+        -------
+        ``b`` and ``p`` of the log-likelihood ``a b - a^2 p / 2``, each of shape (courses,).
+        """
+        own, common = self.told[:, -1, :], self.told[:, :-1, :].sum(axis=0)
+        of_terms, against_terms = courses.T @ own[:, :-2], self.told[:, :-1, -2].T @ courses
+        size = np.sqrt(np.maximum(np.abs(np.diag(common)), np.finfo(np.float64).tiny))
+        scaled = common[:, :-2] / np.outer(size, size)
+        absorbed, *_ = np.linalg.lstsq(
+            scaled, np.column_stack([against_terms, common[:, -1]]) / size[:, np.newaxis], rcond=_NOTHING
+        )
+        rest = of_terms / size @ absorbed
+        along = courses.T @ own[:, -1] - rest[:, -1]
+        power = courses.T**2 @ own[:, -2] - np.diagonal(rest)
+        return along, np.maximum(power, 0.0)
+
+
+def fast_gains(
+    set_point: FloatArray,
+    speed: FloatArray,
+    torque: FloatArray,
+    *,
+    rate_hz: float,
+    start_s: float,
+    border_s: FloatArray,
+    whole: BoolArray,
+) -> FastGains:
+    """Return the gain of the gauge in each piece.
+
+    Parameters
+    ----------
+    set_point, speed, torque
+        Signals on the grid, in any unit, shape (samples,).
+    rate_hz, start_s
+        The grid.
+    border_s
+        Where one piece ends and the next begins [s], ascending, shape (pieces + 1,).
+    whole
+        Which pieces hold no gap, shape (pieces,).
+    """
+    step = max(round(rate_hz / _RATE_HZ), 1)
+    rate = rate_hz / step
+    count = speed.size // step
+    place = np.clip(np.round((border_s - start_s) * rate).astype(int), 0, count)
+    pieces = [slice(first, stop) for first, stop in zip(place[:-1].tolist(), place[1:].tolist(), strict=True)]
+    used = np.zeros(count, dtype=np.bool_)
+    for piece, is_whole in zip(pieces, whole, strict=True):
+        used[piece] = is_whole
+    columns, motion, values = _terms(set_point, speed, torque, rate_hz=rate_hz, step=step)
+    square = columns[:, _OF_GAIN].copy()
+    common = _solved(columns, motion, values, used)
+    of_noise = columns, motion, values
+    for _ in range(_ROUNDS):
+        # what is late is so in the load as well, which goes with the square of the speed and not as the speed does
+        late_s = common[1] / common[0] if common[0] else 0.0
+        columns[:, _OF_GAIN] = square + late_s * np.gradient(square) * rate
+        white = _whitening(values - columns @ common, used)
+        of_noise = (_filtered(white, columns), _filtered(white, motion), _filtered(white, values))
+        common = _solved(*of_noise, used)
+    columns, motion, values = of_noise
+    # what accelerates the shaft, and what the propeller takes
+    terms, moved = (
+        np.column_stack([of, of[:, :_OF_GAIN] @ common[:_OF_GAIN], of[:, _OF_GAIN:] @ common[_OF_GAIN:]])
+        for of in (columns, motion)
+    )
+    left = values - columns @ common
+    variance = _variance(left, pieces, whole)
+    told = np.zeros((len(pieces), common.size + 1, common.size + 2))
+    for row in np.flatnonzero(whole & (variance > 0.0)).tolist():
+        piece = pieces[row]
+        sums = moved[piece].T @ np.column_stack([terms[piece], left[piece]]) / variance[row]
+        # the load of the piece is its own
+        sums[-1, -2] += _LOAD_STD**-2.0
+        told[row] = np.delete(sums - np.outer(sums[:, -2], sums[-1]) / sums[-1, -2], -2, axis=1)[:-1]
+    return FastGains(start_s=border_s[:-1], stop_s=border_s[1:], told=told, inertia_s=float(common[0]))
+
+
+def _terms(
+    set_point: FloatArray, speed: FloatArray, torque: FloatArray, *, rate_hz: float, step: int
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return the terms of the torque, the same of the motion that the set point makes, and the torque."""
+    rate = rate_hz / step
+    relative = speed / speed.mean()
+    first = np.gradient(relative) * rate_hz
+    second = np.gradient(first) * rate_hz
+    derivatives = [_means(of, step) for of in (first, second, np.gradient(second) * rate_hz)]
+    square = _means(relative**2, step)
+    columns = np.column_stack([*derivatives, square, *_lags(square, rate)])
+    motion = _motion(_means(set_point, step), _means(relative, step), rate)
+    of_motion = [np.gradient(motion) * rate]
+    for _ in range(_OF_GAIN - 1):
+        of_motion.append(np.gradient(of_motion[-1]) * rate)
+    return (
+        columns,
+        np.column_stack([*of_motion, 2.0 * motion, *_lags(2.0 * motion, rate)]),
+        _means(torque / torque.mean(), step),
+    )
+
+
+def _means(values: FloatArray, step: int) -> FloatArray:
+    count = values.size // step
+    return np.asarray(values[: count * step].reshape(count, step).mean(axis=1))
+
+
+def _lags(values: FloatArray, rate_hz: float) -> list[FloatArray]:
+    """Return values behind lags of first order."""
+    lags = []
+    for time_s in _LAGS_S:
+        share = -np.expm1(-1.0 / (rate_hz * time_s))
+        lags.append(values[0] + scipy.signal.lfilter([share], [1.0, share - 1.0], values - values[0]))
+    return lags
+
+
+def _motion(set_point: FloatArray, speed: FloatArray, rate_hz: float) -> FloatArray:
+    """Return the motion of the speed that follows the set point, by their mean response."""
+    length = min(round(_PART_S * rate_hz), speed.size)
+    taper = np.hanning(length)
+    begins = np.arange(0, speed.size - length + 1, max(length // 2, 1))
+    # of differences: what is slow would leak all over the spectrum
+    asked, shown = (np.fft.rfft(_parts(of, begins, length) * taper) for of in (set_point, speed))
+    power = np.sum(np.abs(asked) ** 2, axis=0)
+    response = np.sum(asked.conj() * shown, axis=0) / np.maximum(power, np.finfo(np.float64).tiny)
+    hertz, coarse = np.fft.rfftfreq(speed.size, 1.0 / rate_hz), np.fft.rfftfreq(length, 1.0 / rate_hz)
+    between = np.interp(hertz, coarse, response.real) + 1j * np.interp(hertz, coarse, response.imag)
+    return np.asarray(np.fft.irfft(np.fft.rfft(set_point - set_point.mean()) * between, speed.size))
+
+
+def _parts(values: FloatArray, begins: IntArray, length: int) -> FloatArray:
+    """Return the differences of values in parts of the recording, shape (parts, length)."""
+    return np.asarray(np.diff(values, prepend=values[0])[begins[:, np.newaxis] + np.arange(length)])
+
+
+def _solved(columns: FloatArray, motion: FloatArray, values: FloatArray, used: BoolArray) -> FloatArray:
+    """Return the numbers of the terms; differences come first, before the noise is known."""
+    solved, *_ = np.linalg.lstsq(motion[used].T @ columns[used], motion[used].T @ values[used], rcond=None)
+    return solved
+
+
+def _whitening(noise: FloatArray, used: BoolArray) -> FloatArray:
+    """Return the filter that makes noise white: of its difference, as the load wanders, an autoregression."""
+    change = np.where(used[1:] & used[:-1], np.diff(noise), 0.0)
+    related = np.array([change[: change.size - lag] @ change[lag:] for lag in range(_ORDER + 1)])
+    related[0] = 1.000001 * related[0] + np.finfo(np.float64).tiny
+    return np.convolve([1.0, -1.0], np.append(1.0, scipy.linalg.solve_toeplitz(related[:-1], -related[1:])))
+
+
+def _filtered(taps: FloatArray, values: FloatArray) -> FloatArray:
+    return np.asarray(scipy.signal.lfilter(taps, [1.0], values - values[:1], axis=0))
+
+
+def _variance(noise: FloatArray, pieces: list[slice], whole: BoolArray) -> FloatArray:
+    """Return the variance of the noise in each piece: the median of those around, or its own where that is larger."""
+    own = np.array(
+        [np.mean(noise[piece] ** 2) if is_whole else np.nan for piece, is_whole in zip(pieces, whole, strict=True)]
+    )
+    around = np.lib.stride_tricks.sliding_window_view(np.pad(own, _AROUND, constant_values=np.nan), 2 * _AROUND + 1)
+    median = np.array([np.median(row[np.isfinite(row)]) if np.isfinite(row).any() else np.nan for row in around])
+    return np.asarray(np.fmax(own, median))
