@@ -48,6 +48,7 @@ from shaftprint.signals.levels import (
     expect_plausible,
     expect_stated_slope,
     expect_steady_gauge,
+    expect_steady_set_point,
     find_working_point,
     leg_state,
     scale_of_sines,
@@ -131,6 +132,7 @@ def _prepared(recording: "Recording", vessel: "Vessel", campaign: Campaign, read
     sensor = vessel.sensors.demand
     late, asked = (None, ()) if sensor is None else delay_of_demand(recording, sensor, campaign, readings)
     _straightened_in_place(readings.set_point, vessel.sensors.set_point, campaign)
+    reasons += _changes_of_set_point(vessel, campaign, readings)
     differences = compare_speeds(readings.pick_ups, vessel, rate_hz=clock.rate_hz, start_s=clock.start_s)
     legs = samples_of_legs(campaign, readings)
     stopped = stopped_generators(legs, readings)
@@ -250,6 +252,21 @@ def _differences_from_campaign(
     expect_one_sign(readings.torque_nm, sensors.shaft_torque, **grid)
     expect_moving_torque(readings.torque_nm, campaign.of_input(), sensors.shaft_torque, **grid, coverage=coverage)
     return lost, mismatches
+
+
+def _changes_of_set_point(vessel: "Vessel", campaign: Campaign, readings: Readings) -> tuple[Reason, ...]:
+    """Return what says that the set point, still in volts, changed within the tests."""
+    clock = readings.clock
+    if clock.mode == "thesis":
+        return ()
+    return expect_steady_set_point(
+        campaign.of_input(),
+        readings.set_point,
+        rate_hz=clock.rate_hz,
+        start_s=clock.start_s,
+        channel=vessel.sensors.set_point.channel,
+        coverage=readings.coverage,
+    )
 
 
 def _changes_of_gauge(vessel: "Vessel", campaign: Campaign, readings: Readings) -> tuple[Reason, ...]:

@@ -21,6 +21,7 @@ from shaftprint.signals.levels._speed_scale import (
     scale_doubt,
     scale_evidence,
 )
+from shaftprint.signals.levels._set_point_steadiness import expect_steady_set_point
 from shaftprint.signals.levels._steadiness import expect_steady_gauge
 from shaftprint.signals.levels._steady import SteadyStretch, steady_stretches
 from shaftprint.signals.levels._wander import fit_through_wander
@@ -56,6 +57,7 @@ __all__ = [
     "expect_plausible",
     "expect_stated_slope",
     "expect_steady_gauge",
+    "expect_steady_set_point",
     "find_working_point",
     "fit_through_wander",
     "leg_periods",

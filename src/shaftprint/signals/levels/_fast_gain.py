@@ -35,6 +35,8 @@ _OF_GAIN = 3
 # By how much the load of a piece may differ from that of the whole.
 _LOAD_STD = 0.05
 _NOTHING = 1e-10
+# Of a gain that is told with this or less, nothing is known.
+_NO_NEWS = 1e-6
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -55,12 +57,12 @@ class FastGains:
     @property
     def gain(self) -> FloatArray:
         """Gain of each piece where the common terms are right [-], shape (pieces,)."""
-        return np.asarray(1.0 + self.told[:, -1, -1] / np.maximum(self.told[:, -1, -2], np.finfo(np.float64).tiny))
+        return np.asarray(1.0 + self.told[:, -1, -1] / np.maximum(self.told[:, -1, -2], _NO_NEWS))
 
     @property
     def std(self) -> FloatArray:
         """Its standard deviation; very large where nothing moves fast, shape (pieces,)."""
-        return np.asarray(np.maximum(self.told[:, -1, -2], np.finfo(np.float64).tiny) ** -0.5)
+        return np.asarray(np.maximum(self.told[:, -1, -2], _NO_NEWS) ** -0.5)
 
     def of_courses(self, courses: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return what the pieces say of the size ``a`` of a change of the gain, whatever the common terms are.
@@ -203,9 +205,8 @@ def _parts(values: FloatArray, begins: IntArray, length: int) -> FloatArray:
 
 
 def _solved(columns: FloatArray, motion: FloatArray, values: FloatArray, used: BoolArray) -> FloatArray:
-    """Return the numbers of the terms; differences come first, before the noise is known."""
-    solved, *_ = np.linalg.lstsq(motion[used].T @ columns[used], motion[used].T @ values[used], rcond=None)
-    return solved
+    """Return the numbers of the terms."""
+    return np.asarray(np.linalg.lstsq(motion[used].T @ columns[used], motion[used].T @ values[used], rcond=None)[0])
 
 
 def _whitening(noise: FloatArray, used: BoolArray) -> FloatArray:

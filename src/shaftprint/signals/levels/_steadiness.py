@@ -37,7 +37,7 @@ _SHORTEST_WARM_UP_S, _LONGEST_WARM_UP, _WARM_UPS = 30.0, 0.7, 8
 _FEWEST_BESIDE, _FEWEST = 2, 8
 # Twice the gain in log-likelihood that a test without a change exceeds once in several hundred tests, and the least
 # change that is worth a word: of the gain, and of the load, of which a tenth stays in the mean torque.
-_OF_GAIN, _OF_LOAD_SLOWLY, _OF_LOAD_AT_ONCE = 16.0, 14.0, 20.0
+_OF_GAIN, _OF_LOAD_SLOWLY, _OF_LOAD_AT_ONCE = 14.0, 14.0, 20.0
 _LEAST_OF_GAIN, _LEAST_OF_LOAD = 0.025, 0.03
 # Within so much of twice the best log-likelihood lies the time of a step in 95 of 100.
 _AS_GOOD = 3.84

@@ -1,0 +1,322 @@
+"""Whether the set point was recorded with one amplitude from the first to the last minute of a test.
+
+The campaign file says with which amplitude each line was put out, and the recorded one is known to a thousandth. An
+amplifier or a range that is changed in the middle makes all lines from then on larger by one factor, and all responses
+smaller. Three things are held against such a change, each with the
+scatter that it shows itself, so that what was set or moved by hand is none:
+
+- within a line, what its stretches show (in a leg its periods), whatever the line as a whole is;
+- from line to line, the recorded over the asked amplitude. A set point that is held or filtered falls smoothly with the
+  frequency, and between legs, which hold the same lines, not at all;
+- within a staircase, from step to step.
+
+The stretch in which the change lies is left out: it is of neither amplitude.
+
+Generator and channel look alike here. Where the generator put out more, the responses are right.
+"""
+
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import TYPE_CHECKING, Literal, TypeAlias
+
+import numpy as np
+
+from shaftprint.arrays import FloatArray, IntArray
+from shaftprint.reasons import Reason
+from shaftprint.signals._gaps import EVERYTHING, Coverage
+from shaftprint.signals.levels._leg_periods import leg_periods
+
+if TYPE_CHECKING:
+    from shaftprint.campaign import Campaign, Leg, Sine, Staircase
+
+# A window is looked at in so many stretches of whole periods.
+_STRETCHES = 6
+# Legs are compared by their lines below this [Hz]: faster ones are bent by what holds or filters the set point.
+_SLOW_HZ = 1.0
+# Scatter that is expected before any is seen, and how many values that counts for: of stretches, sines, legs, steps.
+_OF_STRETCHES, _OF_SINES, _OF_LEGS, _OF_STEPS, _COUNTS = 1e-3, 1e-3, 2e-4, 1e-3, 4
+# Stretches on either side of a change.
+_FEWEST_BESIDE = 2
+# Share of a stretch in which a change may pass unseen.
+_UNSEEN = 0.4
+# Twice the gain in log-likelihood that a set point without a change does not reach, and the least change of interest.
+_THRESHOLD, _LEAST = 25.0, 0.006
+# A set point that moves by less than this share of what was asked is another fault.
+_SILENT = 0.1
+# Within so much of twice the best log-likelihood lies the time of a change in 95 of 100.
+_AS_GOOD = 3.84
+_ROUNDS = 8
+_PERCENT = 100.0
+
+Kind: TypeAlias = Literal["sine", "leg", "staircase"]
+"""What stretches are of."""
+_Row: TypeAlias = tuple[float, float, float]
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Amplitudes:
+    """Recorded over asked amplitude of the set point in stretches of its lines, in order of time."""
+
+    start_s: FloatArray
+    """When each stretch begins [s], shape (stretches,)."""
+    stop_s: FloatArray
+    """When it ends [s], shape (stretches,)."""
+    log_ratio: FloatArray
+    """Logarithm of the recorded over the asked amplitude, shape (stretches,)."""
+    test: IntArray
+    """Which test it is of, ascending, shape (stretches,)."""
+    kinds: tuple[Kind, ...]
+    """What each test is."""
+    frequency_hz: FloatArray
+    """Frequency of each test [Hz]; 0 where it has none of its own, shape (tests,)."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class AmplitudeChange:
+    """A change of the amplitude of the set point."""
+
+    likelihood: float
+    """Twice the gain in log-likelihood over no change."""
+    size: float
+    """Relative change [-]."""
+    between_s: tuple[float, float]
+    """When it was, in 95 of 100 [s]."""
+
+
+def expect_steady_set_point(
+    campaign: "Campaign",
+    set_point_v: FloatArray,
+    *,
+    rate_hz: float,
+    start_s: float,
+    channel: str,
+    coverage: Coverage = EVERYTHING,
+) -> tuple[Reason, ...]:
+    """Return a reason where the amplitude of the set point changes within the tests.
+
+    Parameters
+    ----------
+    campaign
+        What was asked of the ship; its sines, legs and staircases are used.
+    set_point_v
+        The set point on the grid [V], shape (samples,).
+    rate_hz, start_s
+        The grid.
+    channel
+        Name of its channel.
+    coverage
+        What the recording covers; stretches in a gap are left out.
+    """
+    change = change_of(amplitudes_of(campaign, set_point_v, rate_hz=rate_hz, start_s=start_s, coverage=coverage))
+    if change is None:
+        return ()
+    first_s, last_s = change.between_s
+    percent = _PERCENT * change.size
+    return (
+        Reason(
+            kind="set-point shape",
+            where=channel,
+            sentence=(
+                f"The amplitude of the set point in channel {channel} is {abs(percent):.1f} % "
+                f"{'higher' if percent > 0.0 else 'lower'} from {0.5 * (first_s + last_s):.0f} s on (between "
+                f"{first_s:.0f} and {last_s:.0f} s) than before, over what the campaign file asks: check its amplifier "
+                "and the range of the logger, and whether the generator was set anew; identify the tests before or "
+                "after it alone, with a campaign file that names no others."
+            ),
+        ),
+    )
+
+
+def amplitudes_of(
+    campaign: "Campaign", set_point_v: FloatArray, *, rate_hz: float, start_s: float, coverage: Coverage = EVERYTHING
+) -> Amplitudes:
+    """Return the amplitude of every line of a campaign, stretch by stretch.
+
+    Parameters
+    ----------
+    campaign, set_point_v, rate_hz, start_s, coverage
+        As of ``expect_steady_set_point``.
+    """
+    cut = _Cut(
+        values=set_point_v,
+        rate_hz=rate_hz,
+        start_s=start_s,
+        stop_s=start_s + set_point_v.size / rate_hz,
+        coverage=coverage,
+    )
+    tests: list[tuple[float, Kind, float, list[_Row]]] = [
+        *((sine.start_s, "sine", sine.frequency_hz, cut.of_sine(sine)) for sine in campaign.sines),
+        *((leg.start_s, "leg", 0.0, cut.of_leg(leg)) for leg in campaign.legs),
+        *((stairs.start_s, "staircase", 0.0, cut.of_staircase(stairs)) for stairs in campaign.staircases),
+    ]
+    heard = [
+        (kind, hertz, [row for row in rows if row[2] > _SILENT])
+        for _, kind, hertz, rows in sorted(tests, key=lambda test: test[0])
+    ]
+    heard = [test for test in heard if test[2]]
+    table = np.array([row for _, _, rows in heard for row in rows]).reshape(-1, 3)
+    return Amplitudes(
+        start_s=table[:, 0],
+        stop_s=table[:, 1],
+        log_ratio=np.log(table[:, 2]),
+        test=np.repeat(np.arange(len(heard)), [len(rows) for _, _, rows in heard]).astype(np.int64),
+        kinds=tuple(kind for kind, _, _ in heard),
+        frequency_hz=np.array([hertz for _, hertz, _ in heard]),
+    )
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class _Cut:
+    """A set point of which stretches are cut out."""
+
+    values: FloatArray
+    rate_hz: float
+    start_s: float
+    stop_s: float
+    coverage: Coverage
+
+    def of(self, begin_s: float, end_s: float) -> FloatArray:
+        """Return the samples of a stretch."""
+        first, stop = (round((at_s - self.start_s) * self.rate_hz) for at_s in (begin_s, end_s))
+        return self.values[first:stop]
+
+    def of_sine(self, sine: "Sine") -> list[_Row]:
+        """Return begin, end and recorded over asked amplitude of stretches of a sine."""
+        length_s = max(sine.periods // _STRETCHES, 1) / sine.frequency_hz
+        rows = []
+        for begin_s in sine.settled_s + length_s * np.arange(int(sine.periods / sine.frequency_hz / length_s + 1e-6)):
+            end_s = begin_s + length_s
+            if begin_s < self.start_s or end_s > self.stop_s or self.coverage.missing(begin_s, end_s):
+                continue
+            values = self.of(begin_s, end_s)
+            turn = 2.0 * np.pi * sine.frequency_hz / self.rate_hz * np.arange(values.size)
+            columns = np.stack([np.sin(turn), np.cos(turn), np.ones(turn.size), turn], axis=1)
+            solved, *_ = np.linalg.lstsq(columns, values, rcond=None)
+            rows.append((float(begin_s), float(end_s), float(np.hypot(solved[0], solved[1])) / sine.amplitude_v))
+        return rows
+
+    def of_leg(self, leg: "Leg") -> list[_Row]:
+        """Return begin, end and recorded over asked amplitude of the periods of a leg, its lines by their power.
+
+        The size of each line alone counts: a generator whose clock is another turns them.
+        """
+        held = leg_periods(leg, self.coverage)
+        if held is None or held.start_s < self.start_s or held.stop_s > self.stop_s + 1.0 / self.rate_hz:
+            return []
+        harmonics = [line for line in leg.lines if line < 0.45 * self.rate_hz * held.period_s]
+        asked = np.array([leg.lines[line] for line in harmonics])
+        borders_s = held.start_s + held.period_s * np.arange(held.periods + 1)
+        sizes = []
+        for begin_s, end_s in pairwise(borders_s.tolist()):
+            values = self.of(begin_s, end_s)
+            sizes.append(2.0 / values.size * np.abs(np.fft.rfft(values - values.mean())[harmonics]))
+        mean = np.mean(sizes, axis=0)
+        slow = np.array(harmonics) <= max(_SLOW_HZ * held.period_s, harmonics[0])
+        common = float(asked[slow] @ mean[slow] / (asked[slow] @ asked[slow]))
+        return [
+            (float(begin_s), float(end_s), common * float(size @ mean / max(mean @ mean, np.finfo(np.float64).tiny)))
+            for begin_s, end_s, size in zip(borders_s[:-1], borders_s[1:], sizes, strict=True)
+        ]
+
+    def of_staircase(self, stairs: "Staircase") -> list[_Row]:
+        """Return begin, end and recorded over asked size of the steps of a staircase, from middle to end of a level."""
+        begins = stairs.start_s + stairs.dwell_s * np.arange(len(stairs.levels_v))
+        means = []
+        for begin_s in begins.tolist():
+            first_s, last_s = begin_s + 0.5 * stairs.dwell_s, begin_s + stairs.dwell_s
+            inside = self.start_s <= first_s and last_s <= self.stop_s and not self.coverage.missing(first_s, last_s)
+            means.append(float(self.of(first_s, last_s).mean()) if inside else np.nan)
+        rows = []
+        for place, asked in enumerate(np.diff(stairs.levels_v).tolist(), start=1):
+            ratio = (means[place] - means[place - 1]) / asked if asked else np.nan
+            if np.isfinite(ratio):
+                begin_s = float(begins[place])
+                rows.append((begin_s - 0.5 * stairs.dwell_s, begin_s + stairs.dwell_s, float(ratio)))
+        return rows
+
+
+def change_of(amplitudes: Amplitudes) -> AmplitudeChange | None:
+    """Return the change of the amplitude that explains its stretches best; None where there is none.
+
+    Parameters
+    ----------
+    amplitudes
+        Of every stretch.
+    """
+    begin_s, end_s = amplitudes.start_s, amplitudes.stop_s
+    tried = []
+    for place in range(_FEWEST_BESIDE, begin_s.size - _FEWEST_BESIDE + 1):
+        # a stretch of which a small part has changed looks like one that has not
+        # and what a step of a staircase is made of overlaps the next
+        borders = sorted((float(end_s[place - 1]), float(begin_s[place])))
+        first_s = borders[0] - _UNSEEN * float(end_s[place - 1] - begin_s[place - 1])
+        last_s = borders[1] + _UNSEEN * float(end_s[place] - begin_s[place])
+        tried.append((*_compared(amplitudes, place, place), first_s, last_s))
+        if place < begin_s.size - _FEWEST_BESIDE:
+            tried.append((*_compared(amplitudes, place, place + 1), float(begin_s[place]), float(end_s[place])))
+    likelihood, size, _, _ = max(tried, default=(0.0, 0.0, 0.0, 0.0))
+    if not (likelihood > _THRESHOLD and abs(np.expm1(size)) > _LEAST):
+        return None
+    alike = [one for one in tried if one[0] > likelihood - _AS_GOOD and one[1] * size > 0.0]
+    return AmplitudeChange(
+        likelihood=likelihood,
+        size=float(np.expm1(size)),
+        between_s=(min(one[2] for one in alike), max(one[3] for one in alike)),
+    )
+
+
+def _compared(amplitudes: Amplitudes, before: int, after: int) -> tuple[float, float]:
+    """Return twice the gain in log-likelihood, and the size of a change of the logarithm.
+
+    Parameters
+    ----------
+    amplitudes
+        Of every stretch.
+    before, after
+        How many stretches are before the change, and the first one after it.
+    """
+    count = amplitudes.log_ratio.size
+    kept = np.r_[0:before, after:count]
+    values, tests = amplitudes.log_ratio[kept], amplitudes.test[kept]
+    changed = (kept >= after).astype(float)
+    parts, means = [], []
+    for test, kind in enumerate(amplitudes.kinds):
+        inside = tests == test
+        if not inside.any():
+            continue
+        of_values, of_course = values[inside], changed[inside]
+        if 0.0 < of_course.mean() < 1.0:
+            centred = of_values - of_values.mean(), of_course - of_course.mean()
+            parts.append((*centred, _OF_STEPS if kind == "staircase" else _OF_STRETCHES))
+        else:
+            means.append((kind, amplitudes.frequency_hz[test], of_values.mean(), of_course[0]))
+    of_sines = np.array([row[1:] for row in means if row[0] == "sine"]).reshape(-1, 3)
+    if len(of_sines):
+        square = (of_sines[:, 0] / of_sines[:, 0].max()) ** 2
+        smooth = np.stack([np.ones(square.size), square, square**2], axis=1)
+        rest = of_sines[:, 1:] - smooth @ np.linalg.lstsq(smooth, of_sines[:, 1:], rcond=None)[0]
+        parts.append((rest[:, 0], rest[:, 1], _OF_SINES))
+    of_legs = np.array([row[2:] for row in means if row[0] == "leg"]).reshape(-1, 2)
+    if len(of_legs):
+        rest = of_legs - of_legs.mean(axis=0)
+        parts.append((rest[:, 0], rest[:, 1], _OF_LEGS))
+    size = 0.0
+    for _ in range(_ROUNDS):
+        weights = [_number(part) / _left(part, size) for part in parts]
+        along = sum(weight * float(part[1] @ part[0]) for weight, part in zip(weights, parts, strict=True))
+        power = sum(weight * float(part[1] @ part[1]) for weight, part in zip(weights, parts, strict=True))
+        size = along / power if power > 0.0 else 0.0
+    return sum(_number(part) * float(np.log(_left(part, 0.0) / _left(part, size))) for part in parts), size
+
+
+_Part: TypeAlias = tuple[FloatArray, FloatArray, float]
+
+
+def _number(part: _Part) -> float:
+    return float(part[0].size + _COUNTS)
+
+
+def _left(part: _Part, size: float) -> float:
+    """Return the sum of squares that a size leaves, that of the expected scatter counted."""
+    values, course, expected = part
+    return float(np.sum((values - size * course) ** 2)) + _COUNTS * expected**2
