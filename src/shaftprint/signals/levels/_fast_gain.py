@@ -37,6 +37,8 @@ _LOAD_STD = 0.05
 _NOTHING = 1e-10
 # Of a gain that is told with this or less, nothing is known.
 _NO_NEWS = 1e-6
+# Share of what the pieces say of a course that the common terms must leave.
+_TOLD_SHARE = 1e-3
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -85,8 +87,11 @@ class FastGains:
         )
         rest = of_terms / size @ absorbed
         along = courses.T @ own[:, -1] - rest[:, -1]
-        power = courses.T**2 @ own[:, -2] - np.diagonal(rest)
-        return along, np.maximum(power, 0.0)
+        alone = courses.T**2 @ own[:, -2]
+        power = alone - np.diagonal(rest)
+        # what the common terms explain as well is no change
+        is_told = power > _TOLD_SHARE * alone
+        return np.where(is_told, along, 0.0), np.where(is_told, power, 0.0)
 
 
 def fast_gains(
@@ -145,7 +150,10 @@ def fast_gains(
         sums = moved[piece].T @ np.column_stack([terms[piece], left[piece]]) / variance[row]
         # the load of the piece is its own
         sums[-1, -2] += _LOAD_STD**-2.0
-        told[row] = np.delete(sums - np.outer(sums[:, -2], sums[-1]) / sums[-1, -2], -2, axis=1)[:-1]
+        apart = np.delete(sums - np.outer(sums[:, -2], sums[-1]) / sums[-1, -2], -2, axis=1)[:-1]
+        # where the motion is not what the set point makes, its weights say nothing
+        if apart[-1, -2] > 0.0 and sums[-1, -2] > 0.0:
+            told[row] = apart
     return FastGains(start_s=border_s[:-1], stop_s=border_s[1:], told=told, inertia_s=float(common[0]))
 
 

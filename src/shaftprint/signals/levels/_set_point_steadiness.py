@@ -2,15 +2,16 @@
 
 The campaign file says with which amplitude each line was put out, and the recorded one is known to a thousandth. An
 amplifier or a range that is changed in the middle makes all lines from then on larger by one factor, and all responses
-smaller. Three things are held against such a change, each with the
-scatter that it shows itself, so that what was set or moved by hand is none:
+smaller. Two things are held against such a change, each with the
+scatter that it shows itself, so that what was set by hand is none:
 
 - within a line, what its stretches show (in a leg its periods), whatever the line as a whole is;
 - from line to line, the recorded over the asked amplitude. A set point that is held or filtered falls smoothly with the
-  frequency, and between legs, which hold the same lines, not at all;
-- within a staircase, from step to step.
+  frequency, and between legs, which hold the same lines, not at all.
 
 The stretch in which the change lies is left out: it is of neither amplitude.
+
+A staircase ahead of the sines is not looked at: they get their scale from the speed (``_dc_scale.py``).
 
 Generator and channel look alike here. Where the generator put out more, the responses are right.
 """
@@ -27,20 +28,23 @@ from shaftprint.signals._gaps import EVERYTHING, Coverage
 from shaftprint.signals.levels._leg_periods import leg_periods
 
 if TYPE_CHECKING:
-    from shaftprint.campaign import Campaign, Leg, Sine, Staircase
+    from shaftprint.campaign import Campaign, Leg, Sine
 
 # A window is looked at in so many stretches of whole periods.
 _STRETCHES = 6
 # Legs are compared by their lines below this [Hz]: faster ones are bent by what holds or filters the set point.
 _SLOW_HZ = 1.0
-# Scatter that is expected before any is seen, and how many values that counts for: of stretches, sines, legs, steps.
-_OF_STRETCHES, _OF_SINES, _OF_LEGS, _OF_STEPS, _COUNTS = 1e-3, 1e-3, 2e-4, 1e-3, 4
-# Stretches on either side of a change.
-_FEWEST_BESIDE = 2
+# Scatter that is expected before any is seen, and how many values that counts for: of stretches, sines, legs.
+_OF_STRETCHES, _OF_SINES, _OF_LEGS, _COUNTS = 1e-3, 1e-3, 2e-4, 4
+# Highest frequency over the corners of filters of first order whose mixtures resemble what a set point passes.
+_CORNERS = (0.8, 3.0)
+# Length of the stretches on either side of a change [s]: what is shorter is a disturbance.
+_LEAST_BESIDE_S = 20.0
 # Share of a stretch in which a change may pass unseen.
 _UNSEEN = 0.4
-# Twice the gain in log-likelihood that a set point without a change does not reach, and the least change of interest.
-_THRESHOLD, _LEAST = 25.0, 0.006
+# Twice the gain in log-likelihood that a set point without a change does not reach, and what changes are looked for: a
+# larger one is no change of gain, and has its remark at each line.
+_THRESHOLD, _LEAST, _MOST = 25.0, 0.006, 0.3
 # A set point that moves by less than this share of what was asked is another fault.
 _SILENT = 0.1
 # Within so much of twice the best log-likelihood lies the time of a change in 95 of 100.
@@ -48,7 +52,7 @@ _AS_GOOD = 3.84
 _ROUNDS = 8
 _PERCENT = 100.0
 
-Kind: TypeAlias = Literal["sine", "leg", "staircase"]
+Kind: TypeAlias = Literal["sine", "leg"]
 """What stretches are of."""
 _Row: TypeAlias = tuple[float, float, float]
 
@@ -97,7 +101,7 @@ def expect_steady_set_point(
     Parameters
     ----------
     campaign
-        What was asked of the ship; its sines, legs and staircases are used.
+        What was asked of the ship; its sines and legs are used.
     set_point_v
         The set point on the grid [V], shape (samples,).
     rate_hz, start_s
@@ -147,7 +151,6 @@ def amplitudes_of(
     tests: list[tuple[float, Kind, float, list[_Row]]] = [
         *((sine.start_s, "sine", sine.frequency_hz, cut.of_sine(sine)) for sine in campaign.sines),
         *((leg.start_s, "leg", 0.0, cut.of_leg(leg)) for leg in campaign.legs),
-        *((stairs.start_s, "staircase", 0.0, cut.of_staircase(stairs)) for stairs in campaign.staircases),
     ]
     heard = [
         (kind, hertz, [row for row in rows if row[2] > _SILENT])
@@ -218,22 +221,6 @@ class _Cut:
             for begin_s, end_s, size in zip(borders_s[:-1], borders_s[1:], sizes, strict=True)
         ]
 
-    def of_staircase(self, stairs: "Staircase") -> list[_Row]:
-        """Return begin, end and recorded over asked size of the steps of a staircase, from middle to end of a level."""
-        begins = stairs.start_s + stairs.dwell_s * np.arange(len(stairs.levels_v))
-        means = []
-        for begin_s in begins.tolist():
-            first_s, last_s = begin_s + 0.5 * stairs.dwell_s, begin_s + stairs.dwell_s
-            inside = self.start_s <= first_s and last_s <= self.stop_s and not self.coverage.missing(first_s, last_s)
-            means.append(float(self.of(first_s, last_s).mean()) if inside else np.nan)
-        rows = []
-        for place, asked in enumerate(np.diff(stairs.levels_v).tolist(), start=1):
-            ratio = (means[place] - means[place - 1]) / asked if asked else np.nan
-            if np.isfinite(ratio):
-                begin_s = float(begins[place])
-                rows.append((begin_s - 0.5 * stairs.dwell_s, begin_s + stairs.dwell_s, float(ratio)))
-        return rows
-
 
 def change_of(amplitudes: Amplitudes) -> AmplitudeChange | None:
     """Return the change of the amplitude that explains its stretches best; None where there is none.
@@ -244,18 +231,19 @@ def change_of(amplitudes: Amplitudes) -> AmplitudeChange | None:
         Of every stretch.
     """
     begin_s, end_s = amplitudes.start_s, amplitudes.stop_s
+    length_s = np.append(0.0, np.cumsum(end_s - begin_s))
     tried = []
-    for place in range(_FEWEST_BESIDE, begin_s.size - _FEWEST_BESIDE + 1):
-        # a stretch of which a small part has changed looks like one that has not
-        # and what a step of a staircase is made of overlaps the next
-        borders = sorted((float(end_s[place - 1]), float(begin_s[place])))
-        first_s = borders[0] - _UNSEEN * float(end_s[place - 1] - begin_s[place - 1])
-        last_s = borders[1] + _UNSEEN * float(end_s[place] - begin_s[place])
-        tried.append((*_compared(amplitudes, place, place), first_s, last_s))
-        if place < begin_s.size - _FEWEST_BESIDE:
-            tried.append((*_compared(amplitudes, place, place + 1), float(begin_s[place]), float(end_s[place])))
+    for before in range(1, begin_s.size):
+        for after in range(before, min(before + 2, begin_s.size)):
+            if min(length_s[before], length_s[-1] - length_s[after]) < _LEAST_BESIDE_S:
+                continue
+            # a stretch of which a small part has changed looks like one that has not
+            unseen = _UNSEEN if after == before else 0.0
+            first_s = end_s[before - 1] - unseen * (end_s[before - 1] - begin_s[before - 1])
+            last_s = begin_s[after] + unseen * (end_s[after] - begin_s[after])
+            tried.append((*_compared(amplitudes, before, after), float(first_s), float(last_s)))
     likelihood, size, _, _ = max(tried, default=(0.0, 0.0, 0.0, 0.0))
-    if not (likelihood > _THRESHOLD and abs(np.expm1(size)) > _LEAST):
+    if not (likelihood > _THRESHOLD and _LEAST < abs(size) < _MOST):
         return None
     alike = [one for one in tried if one[0] > likelihood - _AS_GOOD and one[1] * size > 0.0]
     return AmplitudeChange(
@@ -287,13 +275,12 @@ def _compared(amplitudes: Amplitudes, before: int, after: int) -> tuple[float, f
         of_values, of_course = values[inside], changed[inside]
         if 0.0 < of_course.mean() < 1.0:
             centred = of_values - of_values.mean(), of_course - of_course.mean()
-            parts.append((*centred, _OF_STEPS if kind == "staircase" else _OF_STRETCHES))
+            parts.append((*centred, _OF_STRETCHES))
         else:
             means.append((kind, amplitudes.frequency_hz[test], of_values.mean(), of_course[0]))
     of_sines = np.array([row[1:] for row in means if row[0] == "sine"]).reshape(-1, 3)
     if len(of_sines):
-        square = (of_sines[:, 0] / of_sines[:, 0].max()) ** 2
-        smooth = np.stack([np.ones(square.size), square, square**2], axis=1)
+        smooth = _smooth(of_sines[:, 0] / of_sines[:, 0].max())
         rest = of_sines[:, 1:] - smooth @ np.linalg.lstsq(smooth, of_sines[:, 1:], rcond=None)[0]
         parts.append((rest[:, 0], rest[:, 1], _OF_SINES))
     of_legs = np.array([row[2:] for row in means if row[0] == "leg"]).reshape(-1, 2)
@@ -307,6 +294,13 @@ def _compared(amplitudes: Amplitudes, before: int, after: int) -> tuple[float, f
         power = sum(weight * float(part[1] @ part[1]) for weight, part in zip(weights, parts, strict=True))
         size = along / power if power > 0.0 else 0.0
     return sum(_number(part) * float(np.log(_left(part, 0.0) / _left(part, size))) for part in parts), size
+
+
+def _smooth(frequency: FloatArray) -> FloatArray:
+    """Return how a held or filtered set point may fall, of frequencies over the highest, shape (lines, columns)."""
+    square = frequency**2
+    filters = [np.log1p((corner * frequency) ** 2) for corner in _CORNERS]
+    return np.stack([np.ones(square.size), square, *filters], axis=1)
 
 
 _Part: TypeAlias = tuple[FloatArray, FloatArray, float]
