@@ -40,6 +40,10 @@ _OF_STRETCHES, _OF_SINES, _OF_LEGS, _COUNTS = 1e-3, 1e-3, 2e-4, 4
 _CORNERS = (0.8, 3.0)
 # Length of the stretches on either side of a change [s]: what is shorter is a disturbance.
 _LEAST_BESIDE_S = 20.0
+# Stretches of a line in which a change lies, on either side of it.
+_FEWEST_BESIDE = 2
+# A stretch that ends so near to the end of its sine may hold less than the sine [s].
+_EDGE_S = 0.5
 # Share of a stretch in which a change may pass unseen.
 _UNSEEN = 0.4
 # Twice the gain in log-likelihood that a set point without a change does not reach, and what changes are looked for: a
@@ -189,7 +193,9 @@ class _Cut:
         rows = []
         for begin_s in sine.settled_s + length_s * np.arange(int(sine.periods / sine.frequency_hz / length_s + 1e-6)):
             end_s = begin_s + length_s
-            if begin_s < self.start_s or end_s > self.stop_s or self.coverage.missing(begin_s, end_s):
+            # a set point that is a little early ends within it
+            is_cut = length_s < _LEAST_BESIDE_S and end_s > sine.stop_s - _EDGE_S
+            if is_cut or begin_s < self.start_s or end_s > self.stop_s or self.coverage.missing(begin_s, end_s):
                 continue
             values = self.of(begin_s, end_s)
             turn = 2.0 * np.pi * sine.frequency_hz / self.rate_hz * np.arange(values.size)
@@ -234,7 +240,7 @@ def change_of(amplitudes: Amplitudes) -> AmplitudeChange | None:
     length_s = np.append(0.0, np.cumsum(end_s - begin_s))
     tried = []
     for before in range(1, begin_s.size):
-        for after in range(before, min(before + 2, begin_s.size)):
+        for after in range(before, min(before + 3, begin_s.size)):
             if min(length_s[before], length_s[-1] - length_s[after]) < _LEAST_BESIDE_S:
                 continue
             # a stretch of which a small part has changed looks like one that has not
@@ -274,6 +280,8 @@ def _compared(amplitudes: Amplitudes, before: int, after: int) -> tuple[float, f
             continue
         of_values, of_course = values[inside], changed[inside]
         if 0.0 < of_course.mean() < 1.0:
+            if min(of_course.sum(), of_course.size - of_course.sum()) < _FEWEST_BESIDE:
+                return 0.0, 0.0
             centred = of_values - of_values.mean(), of_course - of_course.mean()
             parts.append((*centred, _OF_STRETCHES))
         else:

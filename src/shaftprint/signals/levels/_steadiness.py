@@ -323,6 +323,8 @@ def _best(
     best = 2.0 * (by_time.max(axis=0) - by_load.likelihood(0.0).max())
     place = int(np.argmax(best))
     kind, of_steps = courses.kinds[place], courses.time_s[np.array(courses.kinds) == "step"]
+    # steps are tried at halves of a piece
+    half_s = float(np.min(np.diff(of_steps), initial=0.5 * _PIECE_S))
     alike = of_steps[best[-of_steps.size :] > best[place] - _AS_GOOD] if kind == "step" else np.zeros(1)
     end = float(courses.means(np.array([within_s[1] - 1e-3]), np.array([within_s[1]]), within_s)[0, place])
     return Change(
@@ -331,7 +333,7 @@ def _best(
         likelihood=float(best[place]),
         size=float(size[int(np.argmax(by_time[:, place])), place]) * end,
         time_s=float(courses.time_s[place]),
-        between_s=(float(alike.min()), float(alike.max())),
+        between_s=(float(alike.min()) - half_s, float(alike.max()) + half_s),
     )
 
 
