@@ -13,6 +13,7 @@ from shaftprint.signals.levels._leg_periods import LegPeriods, leg_periods
 from shaftprint.signals.levels._leg_state import LegSamples, calibration_of_legs, leg_state, stretch_of
 from shaftprint.signals.levels._load import torque_of_mean_load
 from shaftprint.signals.levels._repeated_periods import repeated_periods
+from shaftprint.signals.levels._set_point_steadiness import expect_steady_set_point
 from shaftprint.signals.levels._speed_scale import (
     ScaleDoubt,
     ScaleEvidence,
@@ -21,7 +22,6 @@ from shaftprint.signals.levels._speed_scale import (
     scale_doubt,
     scale_evidence,
 )
-from shaftprint.signals.levels._set_point_steadiness import expect_steady_set_point
 from shaftprint.signals.levels._steadiness import expect_steady_gauge
 from shaftprint.signals.levels._steady import SteadyStretch, steady_stretches
 from shaftprint.signals.levels._wander import fit_through_wander
