@@ -10,6 +10,7 @@ from shaftprint.campaign import Campaign
 from shaftprint.errors import SignalError
 from shaftprint.memory import give_back_memory
 from shaftprint.reasons import Reason
+from shaftprint.signals._changes import changes_of_gauge, changes_of_set_point
 from shaftprint.signals._channel_readings import ChannelReadings, logger_channels, read_channels
 from shaftprint.signals._channel_signals import ChannelSignal, SpeedSignal
 from shaftprint.signals._channels import find_channel
@@ -47,8 +48,6 @@ from shaftprint.signals.levels import (
     expect_asked_speed,
     expect_plausible,
     expect_stated_slope,
-    expect_steady_gauge,
-    expect_steady_set_point,
     find_working_point,
     leg_state,
     scale_of_sines,
@@ -132,7 +131,7 @@ def _prepared(recording: "Recording", vessel: "Vessel", campaign: Campaign, read
     sensor = vessel.sensors.demand
     late, asked = (None, ()) if sensor is None else delay_of_demand(recording, sensor, campaign, readings)
     _straightened_in_place(readings.set_point, vessel.sensors.set_point, campaign)
-    reasons += _changes_of_set_point(vessel, campaign, readings)
+    reasons += changes_of_set_point(vessel, campaign, readings)
     differences = compare_speeds(readings.pick_ups, vessel, rate_hz=clock.rate_hz, start_s=clock.start_s)
     legs = samples_of_legs(campaign, readings)
     stopped = stopped_generators(legs, readings)
@@ -144,7 +143,7 @@ def _prepared(recording: "Recording", vessel: "Vessel", campaign: Campaign, read
     else:
         states = tuple(leg_state(one) for one in legs)
         steady, strange = _steady_state(vessel, campaign, readings)
-    reasons += _changes_of_gauge(vessel, campaign, readings)
+    reasons += changes_of_gauge(vessel, campaign, readings)
     signals, absent = _signals_by_name(readings, steady)
     delays, missed = find_step_delays(
         readings.set_point,
@@ -252,38 +251,6 @@ def _differences_from_campaign(
     expect_one_sign(readings.torque_nm, sensors.shaft_torque, **grid)
     expect_moving_torque(readings.torque_nm, campaign.of_input(), sensors.shaft_torque, **grid, coverage=coverage)
     return lost, mismatches
-
-
-def _changes_of_set_point(vessel: "Vessel", campaign: Campaign, readings: Readings) -> tuple[Reason, ...]:
-    """Return what says that the set point, still in volts, changed within the tests."""
-    clock = readings.clock
-    if clock.mode == "thesis":
-        return ()
-    return expect_steady_set_point(
-        campaign.of_input(),
-        readings.set_point,
-        rate_hz=clock.rate_hz,
-        start_s=clock.start_s,
-        channel=vessel.sensors.set_point.channel,
-        coverage=readings.coverage,
-    )
-
-
-def _changes_of_gauge(vessel: "Vessel", campaign: Campaign, readings: Readings) -> tuple[Reason, ...]:
-    """Return what says that the torque gauge changed within the tests."""
-    clock = readings.clock
-    if clock.mode == "thesis":
-        return ()
-    return expect_steady_gauge(
-        campaign.of_input(),
-        set_point=readings.set_point,
-        speed_rev_s=readings.pick_ups[0].values,
-        torque_nm=readings.torque_nm,
-        rate_hz=clock.rate_hz,
-        start_s=clock.start_s,
-        channel=vessel.sensors.shaft_torque.channel,
-        coverage=readings.coverage,
-    )
 
 
 def _steady_state(vessel: "Vessel", campaign: Campaign, readings: Readings) -> tuple[SteadyState, tuple[str, ...]]:

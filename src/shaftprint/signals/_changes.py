@@ -1,0 +1,55 @@
+"""What says that a channel changed within the tests."""
+
+from typing import TYPE_CHECKING
+
+from shaftprint.reasons import Reason
+from shaftprint.signals.levels import expect_steady_gauge, expect_steady_set_point
+
+if TYPE_CHECKING:
+    from shaftprint.campaign import Campaign
+    from shaftprint.signals._readings import Readings
+    from shaftprint.vessel import Vessel
+
+
+def changes_of_set_point(vessel: "Vessel", campaign: "Campaign", readings: "Readings") -> tuple[Reason, ...]:
+    """Return what says that the set point changed within the tests.
+
+    Parameters
+    ----------
+    vessel, campaign, readings
+        Of the recording; the set point still in volts.
+    """
+    clock = readings.clock
+    if clock.mode == "thesis":
+        return ()
+    return expect_steady_set_point(
+        campaign.of_input(),
+        readings.set_point,
+        rate_hz=clock.rate_hz,
+        start_s=clock.start_s,
+        channel=vessel.sensors.set_point.channel,
+        coverage=readings.coverage,
+    )
+
+
+def changes_of_gauge(vessel: "Vessel", campaign: "Campaign", readings: "Readings") -> tuple[Reason, ...]:
+    """Return what says that the torque gauge changed within the tests.
+
+    Parameters
+    ----------
+    vessel, campaign, readings
+        Of the recording.
+    """
+    clock = readings.clock
+    if clock.mode == "thesis":
+        return ()
+    return expect_steady_gauge(
+        campaign.of_input(),
+        set_point=readings.set_point,
+        speed_rev_s=readings.pick_ups[0].values,
+        torque_nm=readings.torque_nm,
+        rate_hz=clock.rate_hz,
+        start_s=clock.start_s,
+        channel=vessel.sensors.shaft_torque.channel,
+        coverage=readings.coverage,
+    )
