@@ -178,7 +178,13 @@ class OutputError(WhitenedTerm):
         if start is not None:
             effects = self._white(start.effects)
             states = state_estimates(start, effects, self.drifts, slopes=slopes, covariance=covariance)
-        within = np.where(stopped[:, None] | stopped, 0.0, covariance)
+        hidden = ~np.isfinite(np.diag(covariance)) & slopes.any(axis=1)
+        hidden &= ~self._projected(simulated, start, self.measured)[0][1:].any(axis=1)
+        known = stopped | hidden
+        within = np.where(known[:, None] | known, 0.0, covariance)
+        # what an offset takes whole may be anywhere between its bounds, and the offset goes with it
+        wide = np.array([self.structure.parameters[i].upper - self.structure.parameters[i].lower for i in self.free])
+        within[hidden, hidden] = wide[hidden] ** 2
         return states, self._offsets(start, simulated[0], slopes=slopes, covariance=within)
 
     def start_effects(self, values: FloatArray) -> FloatArray:
