@@ -33,6 +33,8 @@ _PIECE_S, _MOST_PIECES, _PIECES_A_LOAD = 10.0, 200, 2
 _TIMES_S = np.geomspace(10.0, 100.0, 8)
 # Time constants of a gauge that warms up [s], the longest over the length of the test: longer is a straight line.
 _SHORTEST_WARM_UP_S, _LONGEST_WARM_UP, _WARM_UPS = 30.0, 0.7, 8
+# What mean loads may lose by a change of the gain, twice the log-likelihood, before it is none.
+_MOST_AGAINST = 16.0
 # Means of the load on either side of a step, and in all.
 _FEWEST_BESIDE, _FEWEST = 2, 8
 # Twice the gain in log-likelihood that a test without a change exceeds once in several hundred tests, and the least
@@ -82,6 +84,8 @@ class Change:
     """When it steps, or the time constant of a warm-up [s]; 0 for a drift."""
     between_s: tuple[float, float]
     """Where the time of a step lies in 95 of 100 [s]."""
+    against: float
+    """Twice the log-likelihood that the mean loads alone would lose by it; below 0 where they gain."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -198,7 +202,10 @@ def change_within(
     of_gain = _best(courses, by_load, by_fast, within_s)
     of_load = _best(courses, by_load, nothing, within_s)
     if of_gain.likelihood >= of_load.likelihood:
-        is_change = of_gain.likelihood > _OF_GAIN and abs(of_gain.size) > _LEAST_OF_GAIN
+        # a torque that comes late, now more and now less, loses fast motion and keeps its means
+        is_change = (
+            of_gain.likelihood > _OF_GAIN and abs(of_gain.size) > _LEAST_OF_GAIN and of_gain.against < _MOST_AGAINST
+        )
         return replace(of_gain, of_gain=True) if is_change else None
     least = _OF_LOAD_AT_ONCE if of_load.kind == "step" else _OF_LOAD_SLOWLY
     return of_load if of_load.likelihood > least and abs(of_load.size) > _LEAST_OF_LOAD else None
@@ -334,6 +341,7 @@ def _best(
         size=float(size[int(np.argmax(by_time[:, place])), place]) * end,
         time_s=float(courses.time_s[place]),
         between_s=(float(alike.min()) - half_s, float(alike.max()) + half_s),
+        against=2.0 * float(by_load.likelihood(0.0).max() - by_load.likelihood(size)[:, place].max()),
     )
 
 
