@@ -123,8 +123,8 @@ def gauge_ecu(s, p):
     return pick_up(s, p) * speed, torque, rack
 
 
-def gauge_elastic(s, p):
-    """Three bodies, ``n`` at the shaft and ``M_s`` at the gauge; the governor feels the engine's ``n_1``.
+def gauge_elastic(s, p, on_engine=False):
+    """Three bodies, the pick-up at shaft or engine, ``M_s`` at the gauge; the governor feels the engine's ``n_1``.
 
     ``M_b - T = (tau_up - tau_m) s n_1``, ``T - M_s = tau_m s n``, ``M_s - k_q n = tau_dn s n``,
     ``s T = (k_c + d_c s) (n_1 - n)`` and ``M_b = g n_1 + v C e^(-s t_d) F (c_set e^(-s t_sp) n_set - n_1)``, solved as
@@ -142,8 +142,8 @@ def gauge_elastic(s, p):
             [1, 0, 0, engine - p["g"], 0],
         ]
     )
-    _, _, torque, _, speed = mp.lu_solve(matrix, mp.matrix([0, 0, 0, 0, engine * demand]))
-    return pick_up(s, p) * speed, torque * telemetry(s, p)
+    _, _, torque, ahead, behind = mp.lu_solve(matrix, mp.matrix([0, 0, 0, 0, engine * demand]))
+    return pick_up(s, p) * (ahead if on_engine else behind), torque * telemetry(s, p)
 
 
 def gauge_hybrid(s, p):
@@ -282,6 +282,7 @@ FORMS = {
     "GAUGE-CLOSED": gauge_closed,
     "GAUGE-INFLOW": gauge_closed,
     "GAUGE-ELASTIC": gauge_elastic,
+    "GAUGE-ELASTIC-ENGINE": lambda s, p: gauge_elastic(s, p, on_engine=True),
     "GAUGE-ECU": gauge_ecu,
     "GAUGE-MOTOR": gauge_motor,
     "GAUGE-PITCH": gauge_pitch,
@@ -342,8 +343,9 @@ def test_responses_equal_the_printed_equations(name):
             np.testing.assert_allclose(shipped.response(values, 1j * OMEGA), expected, rtol=1e-12, atol=0.0)
 
 
-def test_a_coupling_without_end_of_stiffness_is_a_rigid_line():
-    elastic, rigid = structure("GAUGE-ELASTIC"), structure("GAUGE-CLOSED")
+@pytest.mark.parametrize("name", ["GAUGE-ELASTIC", "GAUGE-ELASTIC-ENGINE"])
+def test_a_coupling_without_end_of_stiffness_is_a_rigid_line(name):
+    elastic, rigid = structure(name), structure("GAUGE-CLOSED")
     for seed in (1, 2, 3):
         values = dict(zip(elastic.names, random_values(elastic, seed), strict=True)) | {"k_c": 1e13, "tau_m": 0.1}
         plain = rigid.vector({name: values[name] for name in rigid.names})
@@ -361,6 +363,7 @@ LONG = (
     "FREE-CLOSED",
     "GAUGE-ECU",
     "GAUGE-ELASTIC",
+    "GAUGE-ELASTIC-ENGINE",
     "GAUGE-HYBRID",
     "GAUGE-INFLOW",
 )

@@ -32,6 +32,8 @@ def stretch_of(rack: np.ndarray, start: int = 0, *, engine_rpm: float = 0.0) -> 
         time_s=(start + np.arange(rack.size)) / 2000.0,
         shaft_speed_rev_s=zeros + engine_rpm / 60.0 / 3.82,
         shaft_angle_rev=zeros,
+        engine_speed_rev_s=zeros + engine_rpm / 60.0 / 3.82,
+        engine_angle_rev=zeros,
         shaft_torque_nm=zeros,
         brake_torque_nm=zeros,
         rack_given=rack,

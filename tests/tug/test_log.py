@@ -29,6 +29,8 @@ def values(log: SpeedLog, speed: np.ndarray, stretch_samples: int) -> np.ndarray
                     time_s=(first + np.arange(count)) / RATE_HZ,
                     shaft_speed_rev_s=zeros[part],
                     shaft_angle_rev=zeros[part],
+                    engine_speed_rev_s=zeros[part],
+                    engine_angle_rev=zeros[part],
                     shaft_torque_nm=zeros[part],
                     brake_torque_nm=zeros[part],
                     rack_given=zeros[part],

@@ -269,21 +269,37 @@ def gauge_motor() -> Structure:
 
 
 def gauge_elastic() -> Structure:
-    """Return the gauge-aware closed loop with an elastic coupling ahead of the gauge, ``n`` and ``M_s`` from ``n_set``.
+    """Return the gauge-aware closed loop with an elastic coupling ahead of the gauge, the pick-up behind it.
 
     ``n_1 / M_b = 1 / ((tau_up - tau_m) s - g + Z n / n_1)`` and ``n / n_1 = 1 / (1 + Z s / (d_c s + k_c))`` with
     ``Z = (tau_m + tau_dn) s + k_q``. The governor feels the speed of the engine, ``L = v C exp(-s t_d) F n_1 / M_b``,
     the pick-up that of the shaft, ``n = c_set sensor exp(-s t_sp) L / (1 + L) n / n_1``. Where ``k_c`` has no end it is
     GAUGE-CLOSED; ``tau_m`` is held at 0, where the gauge shows what the coupling carries.
     """
-    engine = RationalBlock(engine_end, (TAU_UP, TAU_M, TAU_DN, K_Q, G, K_C, D_C))
+    return _elastic("GAUGE-ELASTIC", on_engine=False)
+
+
+def gauge_elastic_engine() -> Structure:
+    """Return the same with the pick-up ahead of the coupling, where it shows the engine.
+
+    ``n = c_set sensor exp(-s t_sp) L / (1 + L)`` with ``L`` of GAUGE-ELASTIC, for it is the speed that the governor
+    feels; ``M_s = (tau_dn s + k_q) exp(-s t_gauge) / (T_filter s + 1) n / n_1`` of it without the speed sensor.
+    """
+    return _elastic("GAUGE-ELASTIC-ENGINE", on_engine=True)
+
+
+def _elastic(name: str, *, on_engine: bool) -> Structure:
+    """Return the elastic line with the speed of the engine or that of the shaft measured."""
+    end = RationalBlock(engine_end, (TAU_UP, TAU_M, TAU_DN, K_Q, G, K_C, D_C))
     follows = RationalBlock(shaft_end, (TAU_M, TAU_DN, K_Q, K_C, D_C))
-    speed, torque, _ = _measured(engine, _rigid_load(), _governor(), _engine(V_ONE), follows)
+    engine, _ = _speed_and_rack(end, _governor(), _engine(V_ONE))
+    shaft = engine * follows
+    shown, where = (engine, ", pick-up on the engine") if on_engine else (shaft, "")
     return Structure(
-        name="GAUGE-ELASTIC",
-        title="gauge-aware closed loop with an elastic coupling",
+        name=name,
+        title=f"gauge-aware closed loop with an elastic coupling{where}",
         input="n_set",
-        outputs={"n": speed, "M_s": torque},
+        outputs={"n": shown * _speed_sensor(), "M_s": shaft * _rigid_load() * _torque_sensor()},
         combinations=(*gauge_combinations(), coupling_mode()),
     )
 
@@ -345,18 +361,19 @@ def _torque_sensor() -> Expression:
 
 
 def _measured(
-    shaft: Expression, load: Expression, rack: Expression, drive: Expression, follows: Expression | None = None
+    shaft: Expression, load: Expression, rack: Expression, drive: Expression
 ) -> tuple[Expression, Expression, Expression]:
     """Return ``n``, ``M_s`` and ``X`` from ``n_set`` as measured.
 
-    It is that of ``n / M_b`` and ``M_s / n`` of a line, ``X / e`` of its governor and ``M_b / X`` of what drives it;
-    of an elastic line ``follows`` is the speed of the shaft over that of the engine, which ``n / M_b`` is of then.
+    It is that of ``n / M_b`` and ``M_s / n`` of a line, ``X / e`` of its governor and ``M_b / X`` of what drives it.
     """
+    speed, given = _speed_and_rack(shaft, rack, drive)
+    return speed * _speed_sensor(), speed * load * _torque_sensor(), given * Delay(T_RACK)
+
+
+def _speed_and_rack(shaft: Expression, rack: Expression, drive: Expression) -> tuple[Expression, Expression]:
+    """Return the speed that the governor feels and the rack that it gives, from ``n_set``, before any sensor."""
     loop = rack * drive * shaft
     left_of_error = Sensitivity(loop)
     set_point = Delay(T_SP) * Gain(C_SET)
-    speed = loop * left_of_error * set_point
-    if follows is not None:
-        speed *= follows
-    torque = speed * load * _torque_sensor()
-    return speed * _speed_sensor(), torque, rack * left_of_error * set_point * Delay(T_RACK)
+    return loop * left_of_error * set_point, rack * left_of_error * set_point

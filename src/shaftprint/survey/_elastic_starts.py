@@ -14,7 +14,10 @@ from shaftprint.identify import Identification, Settings
 from shaftprint.identify.search import GivenStarts
 from shaftprint.models import Structure
 
-_MODES, _LOWEST_HZ, _BEYOND = 16, 1.0, 1.5
+_MODES, _LOWEST_HZ = 16, 1.0
+# Modes beyond the highest line that still show, as multiples of it: the twist itself shows from a third of the mode on
+# where a speed ahead of the coupling stands beside a torque behind it, else what it does to the loop alone.
+_BEYOND = {"GAUGE-ELASTIC": 1.5, "GAUGE-ELASTIC-ENGINE": 3.0}
 # Share of the line that either body has at least, and inertia time of the line [s].
 _LEAST_BODY, _LEAST_LINE_S = 0.01, 0.01
 # Of rubber couplings.
@@ -26,6 +29,11 @@ _OPTIMA = 3
 def highest_hz(fit: Identification) -> float:
     """Return the highest frequency of the lines that were fitted [Hz]."""
     return max(float(np.max(one.s.imag)) for one in fit.objective.experiments) / (2.0 * np.pi)
+
+
+def beyond_lines(elastic: Structure) -> float:
+    """Return up to which multiple of the highest line a mode of an elastic line shows."""
+    return _BEYOND[elastic.name]
 
 
 def with_elastic_starts(settings: Settings, elastic: Structure, rigid: Identification) -> Settings:
@@ -40,7 +48,7 @@ def with_elastic_starts(settings: Settings, elastic: Structure, rigid: Identific
     rigid
         The fit of the rigid one.
     """
-    modes_hz = np.geomspace(_LOWEST_HZ, _BEYOND * highest_hz(rigid), _MODES)
+    modes_hz = np.geomspace(_LOWEST_HZ, beyond_lines(elastic) * highest_hz(rigid), _MODES)
     optima = [dict(zip(rigid.objective.names, one.values.tolist(), strict=True)) for one in rigid.clusters[:_OPTIMA]]
     starts = [_start(elastic, settings, optimum, float(mode_hz)) for optimum in optima for mode_hz in modes_hz]
     draw = GivenStarts(np.array(starts), settings.draw)

@@ -17,6 +17,9 @@ _PITCH = "pitch_set_point"
 _UNDERWAY, _UNDERWAY_WITH_LOG = "FREE-CLOSED", "FREE-LOG"
 # What is known to some per cent is free up to this multiple.
 _WIDE = 2.0
+# Share of the inertia upstream of the gauge that a coupling drives at most, as far as nobody says: an engine is the
+# larger part.
+_MOST_DRIVEN = 0.5
 # Legs of one level have speeds that differ by what the load does to them.
 _SAME_SPEED = 1.02
 
@@ -103,12 +106,18 @@ def at_speeds(structure: Structure, speeds: Iterable[float]) -> Structure:
 def _driven(structure: Structure, vessel: Vessel) -> dict[str, tuple[float, float]]:
     """Return bounds of the inertia time between coupling and gauge, wide about that of the vessel file."""
     names = [p.name for p in structure.parameters if p.held and p.role == ShipRole.INERTIA_DRIVEN]
-    coupling = line_coupling(vessel) if names else None
-    if coupling is None or coupling.driven_kg_m2 == 0.0:
+    if not names:
+        return {}
+    coupling, upstream = line_coupling(vessel), vessel.inertia_upstream_kg_m2
+    if coupling is not None and coupling.driven_kg_m2 > 0.0:
+        most = min(_WIDE * coupling.driven_kg_m2, upstream)
+    elif coupling is None and structure.name == "GAUGE-ELASTIC-ENGINE":
+        most = _MOST_DRIVEN * upstream
+    else:
         return {}
     point = vessel.working_point
     tau = inertia_time_s(
-        min(_WIDE * coupling.driven_kg_m2, vessel.inertia_upstream_kg_m2),
+        most,
         shaft_speed_rev_s=rev_s_from_rpm(point.engine_speed_rpm) / vessel.gearbox.ratio,
         shaft_torque_nm=point.driving_torque_nm,
     )

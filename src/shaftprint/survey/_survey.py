@@ -34,7 +34,14 @@ from shaftprint.notebook import Shown, Summary, shortened
 from shaftprint.reasons import Reason
 from shaftprint.signals import Mode, Signals
 from shaftprint.spectra import Spectra
-from shaftprint.survey._elastic_line import ElasticOffer, begun_at_rigid, elastic_offer, elastic_structure, may_twist
+from shaftprint.survey._elastic_line import (
+    ElasticOffer,
+    begun_at_rigid,
+    elastic_offer,
+    elastic_structures,
+    is_elastic,
+    may_twist,
+)
 from shaftprint.survey._fits import comparisons_of, fit, priors_of
 from shaftprint.survey._legs import LegTest, leg_tests
 from shaftprint.survey._legs_apart import LegAlone, apart_reasons, legs_alone
@@ -217,14 +224,15 @@ def _offer(
     progress: Progress,
 ) -> ElasticOffer | None:
     """Return the elastic line where the first structure is a rigid one that it beats; None where it was asked for."""
-    elastic = elastic_structure(fits[0].structure, trial.vessel)
-    if elastic is None or any(one.structure.name == elastic.name for one in fits):
+    elastic = elastic_structures(fits[0].structure, trial.vessel)
+    if not elastic or any(is_elastic(one.structure) for one in fits):
         return None
     if not may_twist(fits[0], trial.vessel):
         return None
     progress.begin("Asking whether the line twists")
-    how = settings(elastic, measurement, trial)
-    return elastic_offer(fits[0], elastic, measurement, trial, settings=how, rng=rng)
+    return elastic_offer(
+        fits[0], elastic, measurement, trial, settings=lambda one: settings(one, measurement, trial), rng=rng
+    )
 
 
 def _began(stated: datetime | None, by_the_recording: datetime | None, trial: Trial) -> datetime | None:

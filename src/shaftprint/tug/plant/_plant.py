@@ -350,6 +350,8 @@ def advance(  # type: ignore[no-untyped-def]
         traces.brake_torque_nm[j] = rates[7]
         traces.limited[j] = rates[8] or rack_given != rates[5]
         traces.ship_speed_m_s[j] = x[6]
+        traces.engine_speed_rev_s[j] = _engine_end(x, plant)
+        traces.engine_angle_rev[j] = x[5] + x[8]
         if plant.air_share < 1.0:
             _, full_load = torque_limits(plant.gear_ratio * _engine_end(x, plant), plant)
             carried.boost[0] += step_s / plant.turbocharger_lag_s * (rates[7] / full_load - carried.boost[0])

@@ -39,3 +39,5 @@ class Traces(NamedTuple):
     rack_given: FloatArray
     limited: BoolArray
     ship_speed_m_s: FloatArray
+    engine_speed_rev_s: FloatArray
+    engine_angle_rev: FloatArray

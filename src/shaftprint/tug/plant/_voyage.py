@@ -32,6 +32,11 @@ class Stretch:
     """Speed of the propeller shaft [rev/s], shape (steps,)."""
     shaft_angle_rev: FloatArray
     """Angle of the propeller shaft since the start [rev], shape (steps,)."""
+    engine_speed_rev_s: FloatArray
+    """Speed of the engine at the propeller shaft [rev/s], which differs from the shaft's where a coupling twists, shape
+    (steps,)."""
+    engine_angle_rev: FloatArray
+    """Angle of the engine at the propeller shaft [rev], that of the shaft and the twist, shape (steps,)."""
     shaft_torque_nm: FloatArray
     """Torque at the gauge [N m], shape (steps,)."""
     brake_torque_nm: FloatArray
@@ -164,8 +169,8 @@ def ready_line(tug: Tug, vessel: Vessel, campaign: Campaign, *, step_s: float, s
 
 def empty_traces(count: int) -> Traces:
     """Return traces for a number of steps, to be filled."""
-    speed, angle, torque, brake, rack, way = np.empty((6, count))
-    return Traces(speed, angle, torque, brake, rack, np.empty(count, dtype=np.bool_), way)
+    speed, angle, torque, brake, rack, way, engine, turned = np.empty((8, count))
+    return Traces(speed, angle, torque, brake, rack, np.empty(count, dtype=np.bool_), way, engine, turned)
 
 
 def stretch_of(traces: Traces, forces: Forces, *, first: int, start_s: float, step_s: float) -> Stretch:
@@ -175,6 +180,8 @@ def stretch_of(traces: Traces, forces: Forces, *, first: int, start_s: float, st
         time_s=start_s + step_s * np.arange(first, first + count, dtype=np.float64),
         shaft_speed_rev_s=traces.shaft_speed_rev_s,
         shaft_angle_rev=traces.shaft_angle_rev,
+        engine_speed_rev_s=traces.engine_speed_rev_s,
+        engine_angle_rev=traces.engine_angle_rev,
         shaft_torque_nm=traces.shaft_torque_nm,
         brake_torque_nm=traces.brake_torque_nm,
         rack_given=traces.rack_given,

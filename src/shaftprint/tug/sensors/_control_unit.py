@@ -59,7 +59,7 @@ class ControlUnit:
         rack, first = stretch.rack_given, self._first_rack
         if self._sensor.goes_with_speed:
             ratio = self._vessel.working_point.turning * self._vessel.gearbox.ratio
-            speed_rpm = rpm_from_rev_s(ratio * stretch.shaft_speed_rev_s)
+            speed_rpm = rpm_from_rev_s(ratio * stretch.engine_speed_rev_s)
             share = self._sensor.share(speed_rpm, self._vessel.machine)
             rack, first = rack / share, first / float(share[0])
         shown, time_s = self._stream.next(rack / self._sensor.rack_per_unit, first=first / self._sensor.rack_per_unit)

@@ -9,7 +9,7 @@ from shaftprint.tug._tug import Tug
 from shaftprint.tug.plant import Stretch
 from shaftprint.tug.sensors._faults import Fault
 from shaftprint.tug.sensors._late import Late
-from shaftprint.tug.sensors._turns import turns_of
+from shaftprint.tug.sensors._turns import motion_of, turns_of
 from shaftprint.vessel import SpeedSensor, Vessel
 
 # Values of a channel of 16 bits; the lowest stands for an angle of 0.
@@ -34,7 +34,7 @@ class Encoder:
                 f"vessel {vessel.name}: expected rolls_over_at of at most {_VALUES} counts for channel "
                 f"{sensor.channel}, which is simulated in 16 bits, found {whole:g}."
             )
-        self._turns = turns_of(sensor, vessel)
+        self._sensor, self._turns = sensor, turns_of(sensor, vessel)
         self._counts_per_rev, self._counts = turn / self.scale, whole / self.scale
         self._phase_rev = float(rng.uniform())
         self._error_rev = tug.encoder_error_deg / 360.0
@@ -44,8 +44,9 @@ class Encoder:
     def next(self, stretch: Stretch) -> NDArray[np.int16]:
         """Return the counts of the next stretch, shape (steps,)."""
         # before the start the line ran steadily
-        step = self._turns * stretch.shaft_speed_rev_s[0] / self._rate_hz
-        shown = self._late.next(self._turns * stretch.shaft_angle_rev, before=step)
+        speed_rev_s, angle_rev = motion_of(self._sensor, stretch)
+        step = self._turns * speed_rev_s[0] / self._rate_hz
+        shown = self._late.next(self._turns * angle_rev, before=step)
         shown += self._phase_rev + self._error_rev * self._rng.standard_normal(shown.size)
         counts: FloatArray = np.floor(shown * self._counts_per_rev) % self._counts
         return (counts + _LOWEST).astype(np.int16)

@@ -10,7 +10,7 @@ from shaftprint.kernels import compiled
 from shaftprint.tug._tug import Tug
 from shaftprint.tug.plant import Stretch
 from shaftprint.tug.sensors._faults import Fault, draw_times
-from shaftprint.tug.sensors._turns import turns_of
+from shaftprint.tug.sensors._turns import motion_of, turns_of
 from shaftprint.vessel import SpeedSensor, Vessel
 
 VOLT_PER_COUNT = 10.24 / 32768.0
@@ -136,6 +136,7 @@ class PickUp:
         self._rng = rng
         self._noise_v = noise.pulse_rms_v
         self.channel = sensor.channel
+        self._sensor = sensor
         marked_edge = _teeth_of(sensor, tug, rng) if sensor.wheel else _strips_of(sensor, tug)
         counted = marked_edge if not sensor.toothed.extra else marked_edge[: -sensor.toothed.extra]
         turns = turns_of(sensor, vessel)
@@ -173,7 +174,8 @@ class PickUp:
         """Return the counts of the next stretch, shape (steps,)."""
         counts = np.empty(stretch.time_s.size, dtype=np.int16)
         noise_v = self._rng.standard_normal(counts.size, dtype=np.float32) * np.float32(self._noise_v)
-        _pulse_train(stretch.shaft_angle_rev, stretch.shaft_speed_rev_s, noise_v, self._strips, self._view, counts)
+        speed_rev_s, angle_rev = motion_of(self._sensor, stretch)
+        _pulse_train(angle_rev, speed_rev_s, noise_v, self._strips, self._view, counts)
         return counts
 
     def faults(self) -> list[Fault]:

@@ -11,7 +11,7 @@ from shaftprint.tug.plant import Stretch
 from shaftprint.tug.sensors._bus import Bus, MessageStream, MessageTimes
 from shaftprint.tug.sensors._faults import Fault
 from shaftprint.tug.sensors._late import Late
-from shaftprint.tug.sensors._turns import turns_of
+from shaftprint.tug.sensors._turns import motion_of, turns_of
 from shaftprint.vessel import SpeedSensor, Vessel
 
 # Counts at 30 % above rated speed, which no engine reaches.
@@ -28,7 +28,7 @@ class SpeedMeter:
         self, sensor: SpeedSensor, tug: Tug, vessel: Vessel, *, rate_hz: float, rng: np.random.Generator
     ) -> None:
         self.channel = sensor.channel
-        self._turns = turns_of(sensor, vessel)
+        self._sensor, self._turns = sensor, turns_of(sensor, vessel)
         highest_rev_s = 1.3 * vessel.machine.rated_speed_rpm / 60.0 * abs(self._turns) / vessel.gearbox.ratio
         self._per_rev_s, self._at_rest = _line(sensor)
         self.offset = self._at_rest
@@ -42,7 +42,7 @@ class SpeedMeter:
 
     def next(self, stretch: Stretch) -> NDArray[np.int16]:
         """Return the counts of the next stretch, shape (steps,)."""
-        shown = self._late.next(self._turns * stretch.shaft_speed_rev_s)
+        shown = self._late.next(self._turns * motion_of(self._sensor, stretch)[0])
         shown += self._noise_rev_s * self._rng.standard_normal(shown.size)
         counts: FloatArray = np.rint(shown * self._per_rev_s / self.scale)
         return counts.clip(-32768, 32767).astype(np.int16)
@@ -65,7 +65,7 @@ class SpeedMessages:
         """Value of one count [rpm]."""
         self.times = MessageTimes(bus, cycle_s=cycle_s, rng=rng)
         """When its messages come."""
-        self._turns = turns_of(sensor, vessel)
+        self._sensor, self._turns = sensor, turns_of(sensor, vessel)
         self._stream = MessageStream(self.times, latency_s=sensor.latency_s, rate_hz=rate_hz)
         self._first: float | None = None
 
@@ -75,7 +75,7 @@ class SpeedMessages:
 
     def messages(self, stretch: Stretch) -> tuple[NDArray[np.int16], FloatArray]:
         """Return counts and times [s] of the messages of the next stretch, each of shape (messages,)."""
-        rpm = 60.0 * self._turns * stretch.shaft_speed_rev_s
+        rpm = 60.0 * self._turns * motion_of(self._sensor, stretch)[0]
         # before the start the line ran steadily
         self._first = float(rpm[0]) if self._first is None else self._first
         shown, time_s = self._stream.next(rpm, first=self._first)
