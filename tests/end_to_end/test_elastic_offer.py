@@ -90,6 +90,56 @@ def test_elastic_line_is_found_where_it_is_asked_for(surveyed, towboat):
     assert survey.fingerprint.verdict.trustworthy
 
 
+@pytest.fixture(scope="module")
+def half_way():
+    """The short check with three lines more, up to half of the mode."""
+    short = load_campaign("short").model_dump(exclude_none=True)
+    begin = short["duration_s"]
+    for number, frequency_hz in enumerate((4.3, 5.4, 6.8)):
+        settled = begin + 6.0
+        stop = settled + round(25.0 * frequency_hz) / frequency_hz + 0.05
+        times = {"start_s": begin, "settled_s": settled, "stop_s": stop}
+        short["sines"] += ({"name": f"H{number}", "frequency_hz": frequency_hz, "amplitude_v": 0.6} | times,)
+        begin += 33.0
+    return Campaign.model_validate(short | {"duration_s": begin + 2.0})
+
+
+@pytest.fixture(scope="module")
+def engine_first(towboat):
+    """The towboat without its links, the strip on the engine as the first sensor."""
+    speeds = tuple(reversed(towboat.sensors.speed))
+    sensors = towboat.sensors.model_copy(update={"speed": speeds})
+    return towboat.model_copy(update={"sensors": sensors, "links": ()})
+
+
+def test_pick_up_on_the_engine_is_taken_for_it(towboat, engine_first, half_way, tmp_path):
+    truth = sail(engine_first, half_way, tmp_path / "test.nc", tug=like_stan_tug_1205(towboat), seed=4)
+    survey = run(tmp_path / "test.nc", engine_first, half_way, judge=False, rng=np.random.default_rng(1))
+    verdict = survey.fingerprint.verdict
+    assert [one.structure.name for one in survey.fits] == [RIGID, f"{ELASTIC}-ENGINE"]
+    assert verdict.reason.startswith(f"The line twists: {ELASTIC}-ENGINE, with an elastic coupling of ")
+    assert "channel PTM_e ahead of the coupling" in verdict.reason
+    assert not {"tau_dn", "t_gauge"} & {*verdict.trusted}
+    point = survey.signals.working_point
+    scale = 2.0 * np.pi * point.engine_speed_rev_s / 6.16 / point.shaft_torque_nm
+    true = {"k_c": scale * truth.physical["coupling_stiffness_nm_rad"], "tau_dn": scale * 70.9, "t_gauge": 0.0}
+    elastic = survey.fits[1]
+    found = {one.name: one for one in (*elastic.parameters, *elastic.combinations)}
+    for name, value in (true | {"f_1": MODE_HZ}).items():
+        assert abs(found[name].value - value) < 3.5 * found[name].std, name
+    # the rigid line is not: what it makes of the twist is far outside of its own intervals
+    rigid = {one.name: one for one in survey.fits[0].parameters}
+    assert abs(rigid["tau_dn"].value - true["tau_dn"]) > 4.0 * rigid["tau_dn"].std
+
+
+def test_a_rigid_ship_with_a_pick_up_on_the_engine_is_told_of_no_coupling(towboat, engine_first, half_way, tmp_path):
+    rigid = replace(like_stan_tug_1205(towboat), coupling=None)
+    sail(engine_first, half_way, tmp_path / "test.nc", tug=rigid, seed=4)
+    survey = run(tmp_path / "test.nc", engine_first, half_way, judge=False, rng=np.random.default_rng(1))
+    assert [one.structure.name for one in survey.fits] == [RIGID]
+    assert survey.fingerprint.verdict.trustworthy
+
+
 def test_a_rigid_ship_is_told_of_no_coupling(surveyed, towboat):
     """Though its vessel file states one whose mode is among the lines."""
     _, survey = surveyed(replace(like_stan_tug_1205(towboat), coupling=None))

@@ -16,7 +16,7 @@ from shaftprint.tug import (
     normalised_truth,
     simulate_signals,
 )
-from shaftprint.tug.plant import ENGINE, SPEED, TWIST, build_plant, derivatives, equilibrium
+from shaftprint.tug.plant import ENGINE, SPEED, TWIST, Disturbance, build_plant, derivatives, equilibrium, voyage
 from shaftprint.vessel import Vessel, load_vessel
 
 Make = Callable[..., Any]
@@ -85,6 +85,31 @@ def test_stepped_line_follows_a_small_sine_as_linearised(
     found = np.array([part(signals.engine_speed_rev_s), part(signals.shaft_torque_nm)]) / set_point
     expected = linearised_response(tug, vessel, [frequency_hz])[:, 0, 0]
     assert found == pytest.approx(expected, rel=2e-3)
+
+
+def test_engine_turns_ahead_of_the_coupling_by_its_twist(vessel: Vessel, quiet_tug: Tug, ask: Make, sine: Make) -> None:
+    """``n / n_1 = (c s + k) / (J s^2 + (c + q) s + k)``, J behind the coupling, q the slope of the load."""
+    frequency_hz, step_s = 4.0, 1e-3
+    campaign = ask(25.0, sines=[sine(frequency_hz, 0.01) | {"settled_s": 20.0, "stop_s": 24.01}])
+    quiet = Disturbance(quiet_tug.noise, step_s, np.random.default_rng(1))
+    tug = replace(quiet_tug, coupling=SOFT)
+    (stretch,) = voyage(tug, vessel, campaign, step_s=step_s, steps=24000, chunk=24000, disturbance=quiet)
+    late = stretch.time_s >= 20.0
+    phase = 2.0 * np.pi * frequency_hz * stretch.time_s[late]
+    columns = np.stack([np.cos(phase), np.sin(phase), np.ones_like(phase)], axis=1)
+
+    def part(values: np.ndarray) -> complex:
+        cosine, sine_part, _ = np.linalg.lstsq(columns, values[late], rcond=None)[0]
+        return complex(cosine, -sine_part)
+
+    s, slope = 2j * np.pi * frequency_hz, 2.0 * 1725.0 / (2.0 * np.pi * SPEED_S)
+    expected = (60.0 * s + 40e3) / ((DOWNSTREAM + 12.0) * s**2 + (60.0 + slope) * s + 40e3)
+    found = part(stretch.shaft_speed_rev_s) / part(stretch.engine_speed_rev_s)
+    assert abs(expected) > 1.5
+    assert found == pytest.approx(expected, rel=2e-3)
+    # the angles are those of the speeds
+    moved = part(stretch.engine_angle_rev - stretch.shaft_angle_rev)
+    assert moved * s == pytest.approx(part(stretch.engine_speed_rev_s - stretch.shaft_speed_rev_s), rel=2e-3)
 
 
 def test_truth_is_told_normalised_and_in_si(vessel: Vessel) -> None:
