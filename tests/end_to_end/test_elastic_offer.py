@@ -119,6 +119,13 @@ def test_pick_up_on_the_engine_is_taken_for_it(towboat, engine_first, half_way, 
     assert [one.structure.name for one in survey.fits] == [RIGID, f"{ELASTIC}-ENGINE"]
     assert verdict.reason.startswith(f"The line twists: {ELASTIC}-ENGINE, with an elastic coupling of ")
     assert "channel PTM_e ahead of the coupling" in verdict.reason
+    # the wheel on the shaft beside it shows the twist without any model
+    between = next(one for one in verdict.reasons if "twists between PTM_e" in one.sentence)
+    assert between.kind == "elastic coupling"
+    # 15 kN m/rad with 0.65 kg m2 at 6.16 times the speed and 76.9 kg m2 behind it
+    alone_hz = np.sqrt(15e3 * SQUARE / (0.65 * SQUARE + 76.9)) / (2.0 * np.pi)
+    swings, deviation = between.sentence.split(" Hz against")[0].split("swings at ")[1].split(" +/- ")
+    assert abs(float(swings) - alone_hz) < 3.5 * float(deviation) < 0.1 * alone_hz
     assert not {"tau_dn", "t_gauge"} & {*verdict.trusted}
     point = survey.signals.working_point
     scale = 2.0 * np.pi * point.engine_speed_rev_s / 6.16 / point.shaft_torque_nm

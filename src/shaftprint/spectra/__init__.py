@@ -28,6 +28,7 @@ from shaftprint.spectra._measured_inputs import with_measured_inputs
 from shaftprint.spectra._open_loop import governor_and_engine, open_loop
 from shaftprint.spectra._plain_covariance import circular_covariance, coherence_covariance
 from shaftprint.spectra._spectra import Spectra, estimate_response, estimate_spectra
+from shaftprint.spectra._speed_ratios import SpeedRatio
 from shaftprint.spectra.lines import (
     ExactBin,
     Harmonics,
@@ -59,6 +60,7 @@ __all__ = [
     "SignalToNoise",
     "SineMethod",
     "Spectra",
+    "SpeedRatio",
     "WholePeriodSine",
     "Window",
     "WindowSamples",

@@ -13,6 +13,7 @@ from shaftprint.reasons import Reason
 from shaftprint.spectra._frequency_response import FrequencyResponse
 from shaftprint.spectra._line_responses import response_of_lines
 from shaftprint.spectra._shift_check import shift_reasons
+from shaftprint.spectra._speed_ratios import SpeedRatio, speed_ratios
 from shaftprint.spectra.lines import (
     Harmonics,
     LineMeasurement,
@@ -72,6 +73,8 @@ class Spectra(Shown):
     """Name of the speed sensor in the response."""
     remarks: Mapping[str, str] = field(default_factory=dict)
     """What was found, by name of the line: also lines that the recording does not hold."""
+    speed_ratios: tuple[SpeedRatio, ...] = ()
+    """What the other speed sensors show over that of the response."""
 
 
 @refusing_none(ResponseError)
@@ -179,7 +182,12 @@ def estimate_spectra(
         load_drift=drift,
         speed=sensor.name,
         remarks=remarks | silent | left_out,
+        speed_ratios=() if thesis else speed_ratios(measurements, sensor, _others(signals, sensor, names)),
     )
+
+
+def _others(signals: "Signals", sensor: "SpeedSignal", names: Sequence[str]) -> list["SpeedSignal"]:
+    return [one for name, one in signals.speeds.items() if name != sensor.name and name in names]
 
 
 def _against(

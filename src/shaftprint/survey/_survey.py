@@ -53,6 +53,7 @@ from shaftprint.survey._progress import SILENT, Progress
 from shaftprint.survey._ship_numbers import ship_numbers
 from shaftprint.survey._stray_line import without_stray_line
 from shaftprint.survey._trial import Trial, load_trial
+from shaftprint.survey._twist import twist_reasons
 from shaftprint.survey._validation_apart import with_validation
 from shaftprint.survey._validations import failed_steps, validations_of, validations_with_limits
 from shaftprint.validation import Validation
@@ -337,14 +338,17 @@ def _of_fits(
 ) -> Survey:
     progress.begin("Finding the intervals")
     tests = leg_tests(fits[0], measurement.working_points)
+    knows = is_elastic(fits[0].structure)
+    twisted = () if knows else twist_reasons(measurement.spectra.speed_ratios, trial.vessel)
     fingerprint = _fingerprint(
         fits[0],
         measurement,
         trial,
         tests,
         now=now,
-        reasons=(*apart_reasons(fits[0], alone), *([] if offer is None else [offer.reason])),
-        explained_share=0.0 if offer is None else offer.share,
+        reasons=(*apart_reasons(fits[0], alone), *([] if offer is None else [offer.reason]), *twisted),
+        # a twist between two sensors is measured, and no other cause explains more
+        explained_share=1.0 if twisted else 0.0 if offer is None else offer.share,
     )
     return Survey(
         trial=trial,
