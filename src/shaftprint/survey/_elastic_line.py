@@ -95,7 +95,8 @@ def may_twist(rigid: Identification, vessel: Vessel) -> bool:
     """
     if not rigid.is_likelihood or rigid.objective.others:
         return False
-    if not explained(rigid) or (ON_ENGINE in sides(vessel) and rigid.p_value < _DOUBTED_P):
+    doubtful = rigid.p_value is not None and rigid.p_value < _DOUBTED_P
+    if not explained(rigid) or (doubtful and ON_ENGINE in sides(vessel)):
         return True
     coupling = line_coupling(vessel)
     return coupling is not None and highest_hz(rigid) > _SHOWS * coupling.frequency_hz
