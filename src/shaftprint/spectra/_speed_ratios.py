@@ -14,6 +14,8 @@ if TYPE_CHECKING:
 
 # Up to this share of the pulse rate the spline through pulses shows a sine but for 0.4 %.
 _SHOWN_SHARE = 0.2
+# What is left of two noises that cancel.
+_ROUNDING = 1e-9
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -60,8 +62,12 @@ def _ratio(lines: Sequence["LineMeasurement"], first: "SpeedSignal", other: "Spe
             continue
         # the logarithm of the ratio moves by the difference of both relative errors
         weight = np.array([-1.0, 1.0]) / amplitude
-        noise = weight @ line.noise.covariance[np.ix_(places, places)] @ weight.conj()
+        covariance = line.noise.covariance[np.ix_(places, places)]
+        noise = float((weight @ covariance @ weight.conj()).real)
+        if not noise > _ROUNDING * float(np.abs(weight) ** 2 @ np.diagonal(covariance).real):
+            # without noise of their own nobody says how far two sensors may differ
+            continue
         gain = abs(other.gain(frequency_hz) / first.gain(frequency_hz))
-        rows.append((frequency_hz, abs(amplitude[1] / amplitude[0]) / gain, np.sqrt(0.5 * noise.real)))
+        rows.append((frequency_hz, abs(amplitude[1] / amplitude[0]) / gain, np.sqrt(0.5 * noise)))
     frequency, size, std = np.array(rows).reshape(-1, 3).T
     return SpeedRatio(name=other.name, frequency_hz=frequency, size=size, std=std)
