@@ -18,6 +18,14 @@ _WORDS: "Mapping[ReasonKind, tuple[str, str]]" = {
         "The channels do not share one clock.",
         "Record all channels with one logger, or merge the files of both loggers anew.",
     ),
+    "held samples": (
+        "A channel stood still or was filtered while the ship moved.",
+        "Check telemetry and logger for lost values, holds and filters, and repeat the test.",
+    ),
+    "set-point band": (
+        "The recorded speed set point is slower than what was sent.",
+        "Log the set point where it enters the governor, without a filter, mean or hold, and repeat the test.",
+    ),
     "clipping": (
         "The torque reached the end of its measuring range.",
         "Set a larger range of the torque telemetry and repeat the test.",
