@@ -81,7 +81,7 @@ POINT_RPM = VESSEL.working_point.engine_speed_rpm
 SPEEDS = (1.15, 0.78)
 MAIN_V, MAIN_S = 1.0, 720.0
 # Two legs of 45 s.
-SCOUT_V, SCOUT_S = 1.0 / 3.0, 135.0
+SCOUT_V, SCOUT_S = 1.0 / 3.0, 155.0
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -51,6 +51,11 @@ def deviations(coverage: float, degrees_of_freedom: float = math.inf) -> float:
     return _quantile(lambda value: f_tail(value**2, 1.0, degrees_of_freedom), 1.0 - coverage)
 
 
+def deviations_passed(share: float) -> float:
+    """Return the standard deviations that a normal number passes, to one side, with a probability below a half."""
+    return deviations(1.0 - 2.0 * share)
+
+
 def chi_square_quantile(coverage: float, degrees_of_freedom: float) -> float:
     """Return the value below which a share of a chi-square distribution lies."""
     return _quantile(lambda value: chi_square_tail(value, degrees_of_freedom), 1.0 - coverage)

@@ -35,7 +35,9 @@ def test_ramps_go_from_level_to_level_without_a_jump(plan, campaign):
     assert (speed[0], speed[-1]) == pytest.approx((plan.legs[0].level_rpm, plan.legs[1].level_rpm), abs=1.0)
     assert np.abs(np.diff(speed)).max() == pytest.approx(0.3, rel=1e-3)
     assert campaign.offset_v == first.level_v
-    assert campaign.duration_s == pytest.approx(plan.duration_s + 0.02 + 0.45 * 1183.8 / 30.0 + 10.0)
+    # a ramp back and a rest of 5 s
+    assert campaign.duration_s == pytest.approx(second.stop_s + 0.45 * 1183.8 / 30.0 + 0.01 + 5.0)
+    assert campaign.duration_s == plan.duration_s
 
 
 def test_set_point_without_a_slope_is_refused(plan):

@@ -218,6 +218,15 @@ def test_each_leg_is_planned_at_its_own_speed(rises, ratio):
     assert fast.structure(gauge) == gauge
 
 
+def test_legs_may_be_planned_about_a_working_point_that_is_none_of_them():
+    """The first leg at 1.15 of it, the other 1.7 V of 0.2 of it slower; amplitudes are over the speed of each leg."""
+    fast, slow = planned_legs(two_legs(), white(1e-6), rises=False, first_share=1.15)
+    assert (fast.speed_share, slow.speed_share) == pytest.approx((1.15, 1.15 - 0.2 * 1.7))
+    for leg, seconds in ((fast, 100.0), (slow, 80.0)):
+        amplitude = 0.2 * 0.4 / leg.speed_share
+        assert leg.response.covariance[0, 0, 0] == pytest.approx(1e-6 / (seconds * amplitude**2))
+
+
 def test_the_noise_of_a_leg_plans_the_same_leg_again():
     """The levels of a recorded leg give back its covariance at the lines that it had."""
     levels = white(3e-6)

@@ -8,5 +8,7 @@ from shaftprint.limits.prediction import governor_test
 
 
 def test_legs_alone_are_refused_before_anything_is_computed():
-    with pytest.raises(SignalError, match=r"expected sines and steps about one working point.*found legs \(M1, M2\)"):
+    with pytest.raises(
+        SignalError, match=r"expected sines or steps about one working point.*found legs alone \(M1, M2\)"
+    ):
         governor_test(None, load_campaign("two-speeds"), None)

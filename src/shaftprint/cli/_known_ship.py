@@ -33,12 +33,14 @@ from shaftprint.identify import (
 )
 from shaftprint.models import Structure
 from shaftprint.survey import (
-    assumed_noise,
+    NOISE_SPREAD,
+    RECORDED_SPREAD,
     at_speeds,
     expected_of_ship,
     load_trial,
     measure,
     noise_at_speeds,
+    noise_of_unknown_ship,
     of_vessel,
     stated_working_point,
 )
@@ -94,14 +96,25 @@ def stated_ship(vessel_name: str, structure_name: TypedName | None, options: Kno
     )
 
 
+FIRST_TEST_S = 160.0
+"""Length of a first test [s]: two legs of 45 s, with ramps between them and back."""
 _SET_POINT_LIMIT = (
     "--limit set-point=..., the largest deviation of the set point from the level of a leg, in V or rpm, such as "
     "--limit set-point=1.0V"
 )
 
 
-def knowledge_of(stated: Stated, *, steps: Steps) -> Knowledge:
+def knowledge_of(stated: Stated, *, steps: Steps, within_s: float | None = None) -> Knowledge:
     """Return what is known of the ship.
+
+    Parameters
+    ----------
+    stated
+        What the user states.
+    steps
+        Is told what is being done.
+    within_s
+        Length of the test that is planned [s], if it is stated.
 
     Raises
     ------
@@ -118,20 +131,22 @@ def knowledge_of(stated: Stated, *, steps: Steps) -> Knowledge:
     speeds, point_rpm = _speeds(stated, limits), limits.engine_speed_rpm
     structure = at_speeds(stated.structure, speeds)
     outputs = structure.outputs
-    levels, source = _noise(stated, recorded)
-    noise = {share: noise_at(levels, share * point_rpm) for share in speeds}
     point = stated_working_point(stated.vessel)
-    priors = _known(options, priors_from_vessel(structure, stated.vessel, point))
     expected = _known(options, expected_from_vessel(structure, stated.vessel, point))
+    ship = _ship(stated, structure, expected)
+    levels, spread, source = _noise(stated, recorded, ship)
+    noise = {share: noise_at(levels, share * point_rpm) for share in speeds}
+    priors = _known(options, priors_from_vessel(structure, stated.vessel, point))
     return Knowledge(
         vessel=stated.vessel.name,
-        ship=_ship(stated, structure, expected),
+        ship=ship,
         limits=limits,
         line=line,
         noise={share: level.of_outputs(*outputs) for share, level in noise.items()},
+        noise_spread=spread,
         noise_source=source,
         priors=priors,
-        remarks=_remarks(stated),
+        remarks=(*_remarks(stated), *_first_test(stated, recorded, limits, within_s)),
     )
 
 
@@ -143,6 +158,21 @@ def _remarks(stated: Stated) -> tuple[str, ...]:
         f"The pitch stands at P/D {stated.vessel.propeller.pitch_ratio:g} while the speed is moved: the plan is for "
         f"{stated.structure.name}, and what the pitch does to the torque is not found; lines of both are a campaign by "
         "hand, such as the shipped pitch, which shaftprint predict takes.",
+    )
+
+
+def _first_test(
+    stated: Stated, recorded: "_Recorded | None", limits: Limits, within_s: float | None
+) -> tuple[str, ...]:
+    """Return what to do first where nothing was recorded of the ship."""
+    is_first = within_s is not None and within_s < 2.0 * FIRST_TEST_S
+    if is_first or recorded is not None or stated.first_test is not None:
+        return ()
+    third = f"{limits.set_point_rpm / 3.0:.0f}rpm"
+    return (
+        "Nobody has measured the noise of this ship. A first test of 90 s does: plan "
+        f"--within {FIRST_TEST_S:g}s --limit set-point={third}, sail and identify it, and plan again with --after and "
+        "its fingerprint; then what is promised is kept.",
     )
 
 
@@ -202,16 +232,22 @@ def _recorded(stated: Stated, steps: Steps) -> _Recorded:
     )
 
 
-def _noise(stated: Stated, recorded: _Recorded | None) -> tuple[Mapping[float, NoiseLevels], str]:
-    """Return the noise by engine speed [rpm] and where it is from: the recording, else the first test, else assumed."""
+def _noise(
+    stated: Stated, recorded: _Recorded | None, ship: AssumedShip
+) -> tuple[Mapping[float, NoiseLevels], float, str]:
+    """Return the noise by engine speed [rpm], how far it may be from that, and where it is from.
+
+    It is that of the recording, else of the first test, else what is usual on ships of the kind.
+    """
     if recorded is not None:
-        return recorded.noise, f"noise of {Path(str(stated.options.noise_from)).name}"
+        return recorded.noise, RECORDED_SPREAD, f"noise of {Path(str(stated.options.noise_from)).name}"
     first_test = stated.first_test
     if first_test is not None and first_test.noise:
-        return first_test.noise_at_speeds, f"noise of the first test, {first_test.conditions.campaign}"
+        source = f"noise of the first test, {first_test.conditions.campaign}"
+        return first_test.noise_at_speeds, RECORDED_SPREAD, source
     point_rpm = stated.vessel.working_point.engine_speed_rpm
-    assumed = assumed_noise(stated.vessel)
-    return {share * point_rpm: level for share, level in assumed.legs.items()}, assumed.words
+    assumed = noise_of_unknown_ship(stated.vessel, ship.structure, ship.by_name)
+    return {share * point_rpm: level for share, level in assumed.legs.items()}, NOISE_SPREAD, assumed.words
 
 
 def _line(stated: Stated, recorded: _Recorded | None) -> SetPointLine:

@@ -38,6 +38,7 @@ LIMITS: Final[Mapping[str, LimitKind]] = {
     "resolution": LimitKind(field="demand_resolution_rpm", units=_RPM, example="resolution=4.8rpm"),
     "cycle": LimitKind(field="demand_cycle_s", units={"s": 1.0, "ms": 1e-3}, example="cycle=50ms"),
     "frequency": LimitKind(field="highest_frequency_hz", units={"Hz": 1.0}, example="frequency=3Hz"),
+    "time-over": LimitKind(field="share_over", units={"%": 0.01}, example="time-over=0.03%"),
     "noise-margin": LimitKind(field="noise_sigmas", units={"": 1.0}, example="noise-margin=4"),
     "torque": LimitKind(field="", units={"Nm": 1.0, "N m": 1.0, "kNm": 1e3}, example="torque=1100Nm"),
     "motoring": LimitKind(field="", units={"Nm": 1.0, "N m": 1.0, "kNm": 1e3}, example="motoring=250Nm"),

@@ -58,7 +58,7 @@ from shaftprint.design.operation import (
     recorded_operation,
     stated_limits,
 )
-from shaftprint.design.plan import Leg, Peaks, Plan, Timetable, campaign_of
+from shaftprint.design.plan import Leg, Peaks, Plan, Timetable, campaign_of, length_words
 from shaftprint.design.planned_test import (
     PlannedTest,
     Rehearsal,
@@ -124,6 +124,7 @@ __all__ = [
     "expected_operation",
     "inputs_left_out",
     "length_curve",
+    "length_words",
     "limit_uses",
     "limits_from_vessel",
     "limits_of_fingerprint",

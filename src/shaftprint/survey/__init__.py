@@ -5,7 +5,13 @@ The single steps are verbs too: ``measure``, ``fit``, ``survey_of``. Numbers in 
 rooms that they come from.
 """
 
-from shaftprint.survey._assumed_noise import AssumedNoise, assumed_noise
+from shaftprint.survey._assumed_noise import (
+    NOISE_SPREAD,
+    RECORDED_SPREAD,
+    AssumedNoise,
+    assumed_noise,
+    noise_of_unknown_ship,
+)
 from shaftprint.survey._both_shafts import SurveyOfBoth, load_trials_of_both, run_both
 from shaftprint.survey._contradiction import contradiction
 from shaftprint.survey._everything import of_joint_fit, with_everything
@@ -31,6 +37,8 @@ from shaftprint.survey._wash import Wash, wash_on, wash_sentences
 
 __all__ = [
     "GAUGE",
+    "NOISE_SPREAD",
+    "RECORDED_SPREAD",
     "SET_POINT_OFF",
     "SILENT",
     "AssumedNoise",
@@ -73,6 +81,7 @@ __all__ = [
     "measure",
     "noise_at_speeds",
     "noise_of_further",
+    "noise_of_unknown_ship",
     "of_joint_fit",
     "of_legs",
     "of_vessel",

@@ -1,20 +1,33 @@
 """The noise that is assumed of a ship without a recording: that of the simulated ship that is most like it."""
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 from shaftprint.campaign import Campaign
+from shaftprint.distributions import NORMAL_95
 from shaftprint.identify import STAN_TUG_NOISE, STAN_TUG_NOISE_AT_SPEEDS, NoiseLevels
 from shaftprint.identify.prediction import (
     COMBINATOR_NOISE,
     PITCH_NOISE,
     RESEARCH_VESSEL_NOISE,
+    STAN_TUG_LINE,
     STAN_TUG_NOISE_UNDERWAY,
+    noise_of_line,
     with_log,
 )
+from shaftprint.models import Structure, at_working_point
 from shaftprint.signals import HIGHEST_SHARE_OF_RATE, moved_beside
 from shaftprint.vessel import Vessel
 
+# What ships of the same kind have of the density of the simulated ship's noise, 19 of 20 of them.
+_LEAST_DENSITY, _MOST_DENSITY = 0.5, 3.0
+MIDDLE_DENSITY = math.sqrt(_LEAST_DENSITY * _MOST_DENSITY)
+"""Density of the noise of a usual ship over that of the simulated one."""
+NOISE_SPREAD = 0.25 * math.log(_MOST_DENSITY / _LEAST_DENSITY) / NORMAL_95
+"""Standard deviation of the logarithm of the amplitude of that noise."""
+RECORDED_SPREAD = 0.1
+"""The same of the noise of a recording of the ship: it is known from few samples, and of another hour."""
 _LOG, _PITCH = "v_s", "theta_set"
 
 
@@ -58,6 +71,38 @@ def assumed_noise(vessel: Vessel | None = None, campaign: Campaign | None = None
         return AssumedNoise(sines=levels, legs={1.0: levels}, beside=beside, words=words)
     words = f"noise of the Stan Tug 1205 assumed{whose}"
     return AssumedNoise(sines=STAN_TUG_NOISE, legs=STAN_TUG_NOISE_AT_SPEEDS, beside=beside, words=words)
+
+
+def noise_of_unknown_ship(vessel: Vessel, structure: Structure, values: Mapping[str, float]) -> AssumedNoise:
+    """Return the noise that is usual on a ship of which no recording is there, for a plan of its first test.
+
+    What disturbs the torques of the simulated ship goes through the loop of the line that is assumed, and has the
+    middle of the densities that ships of the kind have; how far they are from it says ``NOISE_SPREAD``.
+
+    Parameters
+    ----------
+    vessel
+        The installation.
+    structure
+        The structure that the test is to find.
+    values
+        What is assumed of the ship, by parameter.
+    """
+    assumed = assumed_noise(vessel)
+    is_closed_loop = assumed.legs is STAN_TUG_NOISE_AT_SPEEDS and set(STAN_TUG_LINE) <= set(structure.names)
+    legs = {
+        share: noise_of_line(
+            level, at_working_point(structure, speed_share=share), measured_at=STAN_TUG_LINE, values=values
+        )
+        if is_closed_loop
+        else level
+        for share, level in assumed.legs.items()
+    }
+    return replace(
+        assumed,
+        legs={share: level.times(MIDDLE_DENSITY) for share, level in legs.items()},
+        words=f"{assumed.words}, which may have {_LEAST_DENSITY:g} to {_MOST_DENSITY:g} times its density",
+    )
 
 
 def _beside(vessel: Vessel, campaign: Campaign) -> dict[str, NoiseLevels]:

@@ -4,10 +4,10 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from shaftprint.design import length_words
 from shaftprint.digits import fine_unit, interval, plain, rounded, unit_text, with_deviation
 from shaftprint.distributions import NORMAL_95
 from shaftprint.plain_table import Symbol, Table, numbers, texts
-from shaftprint.units import SECONDS_PER_MINUTE
 
 if TYPE_CHECKING:
     from shaftprint.design import AbortCard, PlannedTest, Standing
@@ -79,8 +79,8 @@ def abort_table(card: "AbortCard") -> Table:
         ("brake torque", f"{_range(card.brake_torque_nm, 0)} N·m", "the engine smokes, stalls, or goes on hunting"),
         ("set point", f"{_range(card.set_point_v, 2)} V", "the voltage is another"),
         ("speed asked for", f"{_range(card.set_point_rpm, 0)} rpm", "the speed does not come back between swings"),
-        ("its fastest change", f"{plain(card.rate_rpm_per_s, 0)} rpm/s", ""),
-        ("length", f"{plain(card.duration_s / SECONDS_PER_MINUTE, 1)} min", "the water ahead will not last so long"),
+        ("its fastest change", f"{plain(card.rate_rpm_per_s, 0)} rpm/s{_steps(card)}", ""),
+        ("length", length_words(card.duration_s), "the water ahead will not last so long"),
     )
     how = (
         f"To stop: hold the set point at {plain(card.level_v, 2)} V, which asks for {plain(card.level_rpm, 0)} rpm, "
@@ -88,6 +88,10 @@ def abort_table(card: "AbortCard") -> Table:
         "period."
     )
     return Table(title="Card for the bridge", columns=texts("what", "is seen", "stop when"), rows=rows, note=how)
+
+
+def _steps(card: "AbortCard") -> str:
+    return f", at the end steps of {plain(card.step_rpm, 0)} rpm" if card.step_rpm else ""
 
 
 def standing_table(standing: "Standing") -> Table:
@@ -126,12 +130,18 @@ def _number_table(test: "PlannedTest", names: Sequence[str], title: str) -> Tabl
     rehearsal = test.rehearsal
     over = {} if rehearsal is None else rehearsal.over_planned
     coverage = {} if rehearsal is None else rehearsal.coverage
+    band = test.plan.band
     columns = (*texts("quantity"), *numbers("value ± std", "std [%]", "95 % interval"), *texts("unit"))
+    if band is not None:
+        columns += numbers("std on 8 of 10 ships")
     if rehearsal is not None:
         columns += numbers("rehearsed error / std", "intervals that hold [%]")
     rows = []
     for name in names:
-        cells = [Symbol(name), *_predicted(test.plan.predicted.estimate(name))]
+        number = test.plan.predicted.estimate(name)
+        cells = [Symbol(name), *_predicted(number)]
+        if band is not None:
+            cells.append(_reach(number, band.deviations[name]) if name in band.deviations else "")
         if rehearsal is not None:
             cells += [plain(over[name], 2), plain(PERCENT * coverage[name], 0)] if name in over else ["", ""]
         rows.append(tuple(cells))
@@ -149,6 +159,17 @@ def _predicted(number: "Estimate") -> tuple[str, str, str, str]:
         interval(low, high, factor * number.std) if known else "",
         unit_text(unit),
     )
+
+
+def _reach(number: "Estimate", ends: tuple[float, float]) -> str:
+    """Return the lower and upper standard deviation [%]; in the number's unit where its value is zero."""
+    if not math.isfinite(number.std):
+        return ""
+    factor, unit = fine_unit(number.unit, number.value, number.std)
+    scale = factor * number.std if number.value == 0.0 else PERCENT * number.std / abs(number.value)
+    words = unit_text(unit) if number.value == 0.0 else "%"
+    low, high = (rounded(scale * end, 2) for end in ends)
+    return f"{low} to {high} {words}".rstrip(" -")
 
 
 def _range(ends: tuple[float, float], decimals: int) -> str:

@@ -138,13 +138,14 @@ def findings_of(
     *,
     quadratic_propeller: bool,
     linear: bool,
+    line_of_stairs: bool,
 ) -> tuple[str, ...]:
     """Return what the reader should know of how a validation was made."""
     total = sum(stretch.shape[1] for stretch in noise.stretches) / noise.rate_hz
     longest = noise.longest_s
     findings = [
-        f"noise is taken from {len(noise.stretches)} stretches in which the set point stands still, {total:.0f} s in "
-        "all, for each excerpt from those of the nearest load"
+        f"noise is taken from {len(noise.stretches)} stretches in which the set point stands still or a leg repeats "
+        f"itself, {total:.0f} s in all, for each excerpt from those of the nearest load"
     ]
     long = [_place(c) for c in comparisons if c.misfits[0].noise_pieces == 0]
     if long:
@@ -161,7 +162,7 @@ def findings_of(
             "the torque of the model is linear in its speed, while that of a propeller goes with the square: at steps "
             "of the set point that is the larger part of what it misses"
         )
-    if any(c.excerpt.kind != "chirp band" for c in comparisons):
+    if line_of_stairs and any(c.excerpt.kind != "chirp band" for c in comparisons):
         findings.append(
             "the line from voltage to speed was drawn through the levels of the staircases: how a step is made is new "
             "to the model, where it ends is not"

@@ -109,7 +109,15 @@ def validate(
         sentences=outcome_sentences(validated, comparisons, settings, linear=linear),
         findings=(
             *lost,
-            *findings_of(validated, comparisons, data.noise, quadratic_propeller=quadratic_propeller, linear=linear),
+            *findings_of(
+                validated,
+                comparisons,
+                data.noise,
+                quadratic_propeller=quadratic_propeller,
+                linear=linear,
+                # that of legs alone is drawn through their means
+                line_of_stairs=bool(campaign.sines or not campaign.legs),
+            ),
         ),
     )
 

@@ -43,6 +43,12 @@ LONGEST_S = 3600.0
 @click.option(
     "--shortest", "is_shortest", is_flag=True, help="Look for the shortest test, of at most --within or an hour."
 )
+@click.option(
+    "--staircase/--no-staircase",
+    "stairs",
+    default=None,
+    help="End with a minute of steps, which validate and limits need; by default a test of 5 min and more does.",
+)
 @known_ship_options
 @click.option(
     "--rehearse",
@@ -68,6 +74,7 @@ def command(
     wishes: tuple[tuple[str, float, bool], ...],
     within_s: float | None,
     is_shortest: bool,
+    stairs: bool | None,
     options: KnownShipOptions,
     rehearsals: int,
     rate_hz: float,
@@ -88,11 +95,12 @@ def command(
     print_disagreements(stated.vessel, vessel)
     with output_folder(output, of="plan", force=force) as folder, progress(hidden=no_progress) as steps:
         planned = plan_test(
-            knowledge_of(stated, steps=steps),
+            knowledge_of(stated, steps=steps, within_s=within_s),
             wish,
             name=name or f"Planned test of {stated.vessel.name}",
             within_s=within_s or LONGEST_S,
             is_shortest=is_shortest,
+            stairs=stairs,
             now=datetime.now(UTC).replace(microsecond=0),
             seed=seed,
             tell=lambda words: steps.tell("Planning", words),

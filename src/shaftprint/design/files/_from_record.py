@@ -6,7 +6,7 @@ import numpy as np
 
 from shaftprint.arrays import frozen_float
 from shaftprint.design.inputs import AssumedShip, SetPointLine, Wish
-from shaftprint.design.plan import Leg, Plan, predicted_accuracy
+from shaftprint.design.plan import Band, Leg, Plan, predicted_accuracy
 from shaftprint.design.planned_test import PlannedTest, Rehearsal, Remedy, SailedLeg
 from shaftprint.errors import DesignError
 from shaftprint.identify import NoiseLevels, Prior
@@ -74,6 +74,8 @@ def _plan(record: "PlanRecord", structure: Structure, sailed: tuple[SailedLeg, .
         noise=noise,
         structures=structures,
         legs=legs,
+        stairs_rpm=record.stairs_rpm,
+        band=None if record.band is None else Band(deviations=record.band.deviations, seconds=record.band.seconds),
         peaks=tuple(leg.peaks for leg in record.legs),
         earlier=earlier,
         predicted=predicted_accuracy(structures, legs, noise, values=ship.by_name, priors=priors, earlier=earlier),

@@ -141,6 +141,15 @@ class SailedRecord(Record):
     """Delay of the speed behind the true one [s]."""
 
 
+class BandRecord(Record):
+    """How far what is predicted reaches."""
+
+    deviations: dict[Text, tuple[float, float]]
+    """Lower and upper predicted deviation over that of the plan, by number."""
+    seconds: tuple[float, float] | None = None
+    """Shortest and longest test that meets every wish [s]."""
+
+
 class PlanRecord(Record):
     """The whole file."""
 
@@ -178,8 +187,12 @@ class PlanRecord(Record):
     """What the fit will know besides: mean and standard deviation."""
     timetable: Timetable
     """How the time is divided."""
+    stairs_rpm: Row = ()
+    """Levels of the staircase at the end, as deviations from the level of the first leg [rpm]."""
     legs: Annotated[tuple[PlannedLegRecord, ...], Field(min_length=1, max_length=100)]
     """Legs in the order in which they are sailed."""
+    band: BandRecord | None = None
+    """How far what is predicted reaches, where ship or noise are not known."""
     rehearsal: RehearsalRecord | None = None
     """What came out of sailing it on simulated ships."""
     remarks: tuple[Text, ...] = ()

@@ -6,6 +6,7 @@ import numpy as np
 
 from shaftprint.arrays import ComplexArray, FloatArray
 from shaftprint.design.files._records import (
+    BandRecord,
     NoiseRecord,
     PlannedLegRecord,
     PlanRecord,
@@ -46,7 +47,11 @@ def record_of(test: "PlannedTest") -> PlanRecord:
         limits=plan.limits,
         priors={name: (prior.mean, prior.std) for name, prior in plan.priors.items()},
         timetable=plan.timetable,
+        stairs_rpm=plan.stairs_rpm,
         legs=tuple(_leg(*one) for one in zip(plan.legs, plan.noise, plan.peaks, strict=True)),
+        band=None
+        if plan.band is None
+        else BandRecord(deviations=dict(plan.band.deviations), seconds=plan.band.seconds),
         rehearsal=None if test.rehearsal is None else _rehearsal(test.rehearsal),
         remarks=test.remarks,
         remedies=tuple(RemedyRecord(name=one.name, worst=one.worst, ratios=dict(one.ratios)) for one in test.remedies),

@@ -27,6 +27,9 @@ class Knowledge(Shown):
     """From volts to engine speed."""
     noise: "Mapping[float, NoiseLevels]"
     """Noise at each planned speed, by its share of the working point; their order is that of the legs."""
+    noise_spread: float = 0.0
+    """Standard deviation of the logarithm of the noise's amplitude: how far it may be from that level; 0 where it was
+    measured well."""
     noise_source: str
     """Where it comes from, in words."""
     priors: "Mapping[str, Prior]"

@@ -18,8 +18,11 @@ Curve: TypeAlias = tuple[tuple[float, float], ...]
 """Torque over speed: points of engine speed [rpm] and brake torque [N m], speeds ascending."""
 
 NO_MOTORING: Curve = ((0.0, 0.0),)
-# Standard deviations of the noise of speed and torque that stay free below a limit: at 4 one sample in 30,000 passes.
-NOISE_SIGMAS = 4.0
+# Share of the time for which the noise may take the torque of a leg beyond a limit: less than that for which one
+# may act in the windows of a test.
+SHARE_OVER = 3e-4
+SPEED_SIGMAS = 4.0
+"""Standard deviations of the noise that stay free below a limit of the speed: one sample in 30,000 passes them."""
 # Above this frequency a test leaves out lines unless asked: shaft orders are there when the speed swings.
 HIGHEST_FREQUENCY_HZ = 3.4
 # Speeds of the legs over the working point where nobody says otherwise, and how many times the largest deviation of the
@@ -53,8 +56,11 @@ class Limits(Shown):
     motoring: Curve = NO_MOTORING
     """Torque that turns the engine without fuel, over speed: the brake torque falls to its negative. One point holds at
     all speeds."""
-    noise_sigmas: float = NOISE_SIGMAS
-    """Standard deviations of the noise of speed and brake torque that are kept free below their limits."""
+    share_over: float = SHARE_OVER
+    """Share of the time of a leg for which noise may take the torque beyond a limit."""
+    noise_sigmas: float | None = None
+    """Standard deviations of the noise of speed and brake torque that are kept free below their limits at every crest,
+    instead of a share of the time; None: by ``share_over``."""
     demand_rate_limit_rpm_per_s: float | None = None
     """Fastest change of the set point that the engine's control unit follows [rpm/s]; None: no limit."""
     demand_resolution_rpm: float | None = None
@@ -206,6 +212,7 @@ def _not_positive(limits: Limits) -> list[str]:
         "brake_torque_nm": limits.brake_torque_nm,
         "set_point_rpm": limits.set_point_rpm,
         "highest_frequency_hz": limits.highest_frequency_hz,
+        "share_over": limits.share_over,
         "demand_rate_limit_rpm_per_s": limits.demand_rate_limit_rpm_per_s,
         "demand_resolution_rpm": limits.demand_resolution_rpm,
         "demand_cycle_s": limits.demand_cycle_s,
@@ -220,7 +227,8 @@ def _not_positive(limits: Limits) -> list[str]:
 def _not_ascending(limits: Limits) -> list[str]:
     ranges = {"speeds": (limits.lowest_speed_rpm, limits.highest_speed_rpm)}
     ranges |= {f"barred range {number}": span for number, span in enumerate(limits.barred_rpm, start=1)}
-    wrong = [
+    wrong = [] if limits.share_over < 0.5 else [f"a share_over below 0.5, found {limits.share_over:g}"]
+    wrong += [
         f"{name} from lower to higher, found {low:g} to {high:g} rpm"
         for name, (low, high) in ranges.items()
         if not low < high

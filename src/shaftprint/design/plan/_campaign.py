@@ -2,17 +2,17 @@
 
 import numpy as np
 
-from shaftprint.campaign import Campaign, Multisine
+from shaftprint.campaign import Campaign, Multisine, Staircase
 from shaftprint.design.plan._leg import Leg
 from shaftprint.design.plan._plan import Plan
 from shaftprint.errors import DesignError
 
-# Ramps are this much shorter than the time between legs, so that rounding does not make one too long [s].
-_SPARE_S = 0.01
+STAIRS_NAME = "St1"
+"""Name of the staircase of a planned test."""
 
 
 def campaign_of(plan: Plan, *, name: str, offset_v: float, slope_rpm_per_v: float) -> Campaign:
-    """Return the campaign of a plan: a multisine for each leg, with ramps between them and back to the first level.
+    """Return the campaign of a plan: a multisine for each leg with ramps between them, the way back, and a staircase.
 
     Parameters
     ----------
@@ -33,19 +33,28 @@ def campaign_of(plan: Plan, *, name: str, offset_v: float, slope_rpm_per_v: floa
     if slope_rpm_per_v == 0.0:
         raise DesignError(f"campaign {name}: expected a slope of the set point in rpm for one volt, found 0.")
     multisines = tuple(
-        _multisine(leg, f"M{number}", start_s + number * _SPARE_S, plan, offset_v, slope_rpm_per_v)
+        _multisine(leg, f"M{number}", start_s, plan, offset_v, slope_rpm_per_v)
         for number, (leg, start_s) in enumerate(zip(plan.legs, plan.starts_s, strict=True), start=1)
     )
-    first, last = plan.legs[0], plan.legs[-1]
-    back_s = abs(first.level_rpm - last.level_rpm) / plan.timetable.ramp_rpm_per_s
     return Campaign(
         name=name,
-        duration_s=multisines[-1].stop_s + back_s + plan.timetable.lead_s,
+        duration_s=plan.duration_s,
         offset_v=multisines[0].level_v,
         offset_rpm=plan.legs[0].level_rpm,
         slope_rpm_per_v=slope_rpm_per_v,
         ramp_v_per_s=plan.timetable.ramp_rpm_per_s / abs(slope_rpm_per_v),
         multisines=multisines,
+        staircases=_staircases(plan, multisines[0].level_v, slope_rpm_per_v),
+    )
+
+
+def _staircases(plan: Plan, level_v: float, slope_rpm_per_v: float) -> tuple[Staircase, ...]:
+    """Return the staircase about a level [V]; none where the plan has none."""
+    if not plan.stairs_rpm:
+        return ()
+    levels_v = tuple(level_v + deviation_rpm / slope_rpm_per_v for deviation_rpm in plan.stairs_rpm)
+    return (
+        Staircase(name=STAIRS_NAME, levels_v=levels_v, dwell_s=plan.timetable.dwell_s, start_s=plan.stairs_start_s),
     )
 
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.design.inputs import AssumedShip, Limits, Wish
+from shaftprint.design.plan._band import Band
 from shaftprint.design.plan._leg import Leg
 from shaftprint.design.plan._timetable import Timetable
 from shaftprint.identify import NoiseLevels, Prior
@@ -18,11 +19,20 @@ from shaftprint.notebook import Shown, Summary
 from shaftprint.spectra import FrequencyResponse
 from shaftprint.units import SECONDS_PER_MINUTE
 
+# A longer test is stated in hours.
+_LONGEST_IN_MINUTES = 200.0
+
 SailedTest: TypeAlias = tuple[Structure, FrequencyResponse]
 """A structure as it is normalised where a test was sailed, and the response that was measured."""
 
 # A limit binds when a leg uses so much of it.
 BINDS = 0.98
+
+
+def length_words(seconds: float) -> str:
+    """Return the length of a test in words, the same wherever it is stated."""
+    minutes = seconds / SECONDS_PER_MINUTE
+    return f"{minutes:.3g} min" if minutes < _LONGEST_IN_MINUTES else f"{minutes / 60.0:,.0f} h"
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
@@ -73,6 +83,10 @@ class Plan(Shown):
     """The legs, in the order in which they are sailed."""
     peaks: tuple[Peaks, ...]
     """The most that each leg asks for."""
+    stairs_rpm: tuple[float, ...] = ()
+    """Levels of the staircase at the end, as deviations from the level of the first leg [rpm]; none without one."""
+    band: Band | None = None
+    """How far what is predicted reaches, where ship or noise are not known; None where it was not looked for."""
     earlier: tuple[SailedTest, ...] = ()
     """Tests that were sailed before and are fitted together with this one."""
     predicted: Accuracy
@@ -85,7 +99,7 @@ class Plan(Shown):
             for name, target in self.targets.items()
         }
         facts = {
-            "length": f"{self.duration_s / SECONDS_PER_MINUTE:.3g} min, not rehearsed",
+            "length": f"{length_words(self.duration_s)}, not rehearsed",
             "legs": ", ".join(f"{leg.level_rpm:.0f} rpm +/- {leg.peak_rpm:.0f}" for leg in self.legs),
             **numbers,
             "limits that bind": ", ".join(dict.fromkeys(name for peaks in self.peaks for name in peaks.binding)),
@@ -94,16 +108,22 @@ class Plan(Shown):
 
     @property
     def duration_s(self) -> float:
-        """Length of the test [s]."""
-        return self.starts_s[-1] + self.legs[-1].duration_s
+        """Length of the test [s], from the first second to the last: what is put out and recorded."""
+        return self.stairs_start_s + self.timetable.dwell_s * len(self.stairs_rpm)
+
+    @property
+    def stairs_start_s(self) -> float:
+        """When the staircase begins, after the way back to the level of the first leg [s]; the end without one."""
+        last = self.legs[-1]
+        back_s = self.timetable.ramp_s(last.level_rpm, self.legs[0].level_rpm)
+        return self.starts_s[-1] + last.duration_s + back_s + self.timetable.rest_s
 
     @property
     def starts_s(self) -> tuple[float, ...]:
         """When the multisine of each leg begins, after the ramp to its level [s]."""
         starts = [self.timetable.lead_s]
         for before, leg in pairwise(self.legs):
-            ramp_s = abs(leg.level_rpm - before.level_rpm) / self.timetable.ramp_rpm_per_s
-            starts.append(starts[-1] + before.duration_s + ramp_s)
+            starts.append(starts[-1] + before.duration_s + self.timetable.ramp_s(before.level_rpm, leg.level_rpm))
         return tuple(starts)
 
     @property

@@ -82,7 +82,7 @@ class Rehearsal(Shown):
         if self.limited.max() > MOST_LIMITED:
             sentences.append(
                 f"A limit acted for up to {100.0 * self.limited.max():.2g} % of the time in the windows: plan with a "
-                "larger margin (noise_sigmas)."
+                "larger margin (share_over)."
             )
         if self.failures:
             sentences.append(f"{len(self.failures)} of {count + len(self.failures)} gave no result: {self.failures[0]}")

@@ -3,21 +3,21 @@
 import math
 from collections.abc import Sequence
 
-from shaftprint.design.plan import Plan
+import numpy as np
+
+from shaftprint.design.inputs import numbers_of_line
+from shaftprint.design.plan import HELD, Plan, length_words
 from shaftprint.design.planned_test._rehearsal import Rehearsal
 from shaftprint.design.planned_test._remedies import Remedy
 from shaftprint.digits import stated
-from shaftprint.units import SECONDS_PER_MINUTE
 
 NOT_REHEARSED = ("The plan was not rehearsed.",)
-# A longer test is stated in hours.
-_LONGEST_IN_MINUTES = 200.0
 
 
 def plan_sentences(plan: Plan, remedies: Sequence[Remedy] = (), rehearsal: Rehearsal | None = None) -> tuple[str, ...]:
     """Return what a plan reaches, the answer first, and at the end what a rehearsal says of it."""
     missed = {name: ratio for name, ratio in plan.ratios.items() if not ratio <= 1.0}
-    length = f"{_length(plan.duration_s)} at {_speeds(plan)}"
+    length = f"{length_words(plan.duration_s)} at {_speeds(plan)}"
     if not plan.wish.names:
         answer = f"{length} make the numbers of the line known as well as its limits allow."
     elif missed:
@@ -26,11 +26,29 @@ def plan_sentences(plan: Plan, remedies: Sequence[Remedy] = (), rehearsal: Rehea
         answer = f"{length} meet every wish, as predicted."
     return (
         answer,
+        *_reach(plan),
         *(_miss(plan, name) for name in sorted(missed, key=lambda name: -missed[name])),
         *_binding(plan),
         *(remedy.sentence for remedy in remedies if missed),
         *(NOT_REHEARSED if rehearsal is None else rehearsal.sentences),
     )
+
+
+def _reach(plan: Plan) -> list[str]:
+    """Return how far the promise of a plan reaches where ship or noise are not known."""
+    if plan.band is None:
+        return []
+    share = f"{HELD * 10.0:.0f} of 10 ships that are possible"
+    if plan.band.seconds is not None:
+        return [f"On {share} such a test meets the wishes in {_span(*plan.band.seconds)}."]
+    numbers = [name for name in numbers_of_line(plan.ship.structure) if name in plan.band.deviations]
+    low, high = (float(np.median([plan.band.deviations[name][end] for name in numbers])) for end in (0, 1))
+    return [f"On {share} the numbers become known {low:.2g} to {high:.2g} times as far as predicted, in the median."]
+
+
+def _span(low_s: float, high_s: float) -> str:
+    low, high = length_words(low_s), length_words(high_s)
+    return f"{low.removesuffix(' min')} to {high}" if high.endswith(" min") else f"{low} to {high}"
 
 
 def _speeds(plan: Plan) -> str:
@@ -44,13 +62,8 @@ def _miss(plan: Plan, name: str) -> str:
     best = stated(number.value, number.std, number.unit)
     return (
         f"{name}: the best that can be reached is {best}, {number.std / target:.3g} times the wish; such a test of "
-        f"{_length(plan.seconds_per_wish[name])} would reach it."
+        f"{length_words(plan.seconds_per_wish[name])} would reach it."
     )
-
-
-def _length(seconds: float) -> str:
-    minutes = seconds / SECONDS_PER_MINUTE
-    return f"{minutes:.3g} min" if minutes < _LONGEST_IN_MINUTES else f"{minutes / 60.0:,.0f} h"
 
 
 def _binding(plan: Plan) -> list[str]:

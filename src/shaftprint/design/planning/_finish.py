@@ -9,13 +9,14 @@ from shaftprint.arrays import ComplexArray, FloatArray
 from shaftprint.design.motion import motion
 from shaftprint.design.plan import Leg, Peaks, Plan, peaks_of, predicted_accuracy, strong_lines
 from shaftprint.design.planning._brief import Brief
+from shaftprint.design.planning._stairs import stairs_of
 from shaftprint.design.planning._start import gentle_start
 from shaftprint.design.search import Uses, held_draws
 
 # Share of the possible ships for which every limit of every leg holds.
 SHARE_HELD = 0.98
 # How many times finer the grid is on which the peaks of a finished plan are taken.
-_FINE = 4
+FINE = 4
 
 
 def plan_of_lines(brief: Brief, amplitudes: Sequence[ComplexArray], table: FloatArray) -> Plan:
@@ -31,7 +32,7 @@ def plan_of_lines(brief: Brief, amplitudes: Sequence[ComplexArray], table: Float
         Possible ships, the assumed one first, shape (rows, parameters).
     """
     strong = [strong_lines(lines, leg) for lines, leg in zip(brief.harmonics, amplitudes, strict=True)]
-    uses = [brief.uses(number, table, harmonics, _FINE) for number, (harmonics, _) in enumerate(strong)]
+    uses = [brief.uses(number, table, harmonics, FINE) for number, (harmonics, _) in enumerate(strong)]
     held = held_draws(uses, [leg for _, leg in strong], SHARE_HELD)
     finished = []
     for number, ((harmonics, leg), use) in enumerate(zip(strong, uses, strict=True)):
@@ -53,6 +54,7 @@ def plan_of_lines(brief: Brief, amplitudes: Sequence[ComplexArray], table: Float
         structures=brief.structures,
         legs=legs,
         peaks=tuple(peaks for _, peaks in finished),
+        stairs_rpm=stairs_of(brief, table[held]),
         predicted=predicted,
         earlier=brief.earlier,
     )
@@ -84,14 +86,15 @@ def _scaled(brief: Brief, number: int, leg: Leg, start_use: float, uses: Uses, t
     table
         Their parameters, shape (rows, parameters).
     """
-    largest = float(uses.largest(leg.amplitudes).max())
-    scaled = replace(leg, amplitudes=leg.amplitudes / largest)
+    strengths = uses.strengths(leg.amplitudes, brief.bounds[number], brief.limits.share_over)
+    strength = float(strengths.min())
+    scaled = replace(leg, amplitudes=strength * leg.amplitudes)
     by_name: dict[str, float] = {}
-    for bound, use in zip(brief.bounds[number], uses.largest(scaled.amplitudes).max(axis=1).tolist(), strict=True):
+    for bound, use in zip(brief.bounds[number], (strength / strengths).tolist(), strict=True):
         by_name[bound.name] = max(use, by_name.get(bound.name, 0.0))
     responses = motion(brief.structures[number], table, 2.0 * np.pi * leg.frequency_hz)
     ends = extremes(responses, scaled, uses.samples)
-    return scaled, peaks_of(scaled, ends, by_name, start_use / largest, brief.limits)
+    return scaled, peaks_of(scaled, ends, by_name, strength * start_use, brief.limits)
 
 
 def extremes(responses: ComplexArray, leg: Leg, samples: int) -> FloatArray:

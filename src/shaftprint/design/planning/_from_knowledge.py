@@ -2,20 +2,20 @@
 
 from collections.abc import Callable
 from datetime import datetime
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from shaftprint.design.inputs import Knowledge, Wish
-from shaftprint.design.plan import Plan
+from shaftprint.design.plan import STAIRS, Plan, Timetable
 from shaftprint.design.planned_test import PlannedTest, remedies
+from shaftprint.design.planning._band import with_band
 from shaftprint.design.planning._design import design_campaign
 from shaftprint.design.planning._shortest import shortest
 from shaftprint.design.search import Effort
 from shaftprint.units import SECONDS_PER_MINUTE
 
-if TYPE_CHECKING:
-    pass
+# A shorter test has no staircase unless it is asked for: it would be a fifth of it, or more.
+_WITH_STAIRS_S = 300.0
 
 
 def plan_test(
@@ -26,6 +26,7 @@ def plan_test(
     within_s: float,
     now: datetime,
     is_shortest: bool = False,
+    stairs: bool | None = None,
     seed: int = 1,
     effort: Effort | None = None,
     tell: Callable[[str], None] | None = None,
@@ -46,6 +47,9 @@ def plan_test(
         When it is planned, with time zone.
     is_shortest
         Whether a shorter test is looked for.
+    stairs
+        Whether the test ends with a staircase of a minute, on which the model is tried and limits show; None: that of
+        five minutes and more does.
     seed
         Of the possible ships and the starts of the search.
     effort
@@ -59,6 +63,9 @@ def plan_test(
         If there is no such plan: no room below a limit, too little time, an unknown wish.
     """
     say = tell or _silent
+
+    def has_stairs(seconds: float) -> bool:
+        return seconds >= _WITH_STAIRS_S if stairs is None else stairs
 
     def design(seconds: float, speeds: tuple[float, ...] = tuple(knowledge.noise)) -> Plan:
         say(f"{seconds / SECONDS_PER_MINUTE:.3g} min at {len(speeds)} speed{'s' if len(speeds) > 1 else ''}")
@@ -74,10 +81,12 @@ def plan_test(
             within_s=seconds,
             rng=np.random.default_rng(seed),
             priors=knowledge.priors,
+            timetable=Timetable(stairs=STAIRS if has_stairs(seconds) else ()),
             effort=effort,
         )
 
     plan = shortest(design, longest_s=within_s) if is_shortest else design(within_s)
+    plan = with_band(plan, noise_spread=knowledge.noise_spread, rng=np.random.default_rng(seed))
     help_needed = bool(wish.names) and not plan.is_enough
     return PlannedTest(
         name=name,

@@ -89,7 +89,7 @@ def _start_uses(
     time = leg.period_s / count * np.arange(count)
     about = leg.set_point_rpm(starts_s[:, None] + time) / leg.level_rpm - 1.0
     spectrum = np.fft.rfft(np.concatenate([np.zeros_like(about), about], axis=1), axis=1)
-    weights = np.array([bound.weights / bound.room for bound in bounds])
+    weights = np.array([bound.weights / bound.free for bound in bounds])
     transfer = weights @ _responses(leg, structure, values, spectrum.shape[1])
     settling = slice(count, count + max(1, int(count * min(leg.settle_s / leg.period_s, 1.0))))
     largest = [np.fft.irfft(spectrum * row, n=2 * count, axis=1)[:, settling].max(axis=1) for row in transfer]

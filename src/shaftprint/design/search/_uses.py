@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Self
 
 import numpy as np
+import scipy
 
 from shaftprint.arrays import ComplexArray, FloatArray, IntArray
 from shaftprint.design.motion import Bound
@@ -13,6 +14,8 @@ from shaftprint.design.motion import Bound
 SAMPLES_PER_PERIOD = 8
 # Powers of uses that are smaller than this against the largest one are left out of a sum of powers.
 _NEGLIGIBLE = 1e-9
+# Ships with the highest crests, in whose time beyond a bound is looked; and how often a strength is halved for it.
+_WORST_SHIPS, _HALVINGS = 12, 20
 
 
 def samples_of_period(highest_harmonic: int, samples_per_period: float) -> int:
@@ -49,7 +52,7 @@ class Uses:
         fold
             How many times more samples than usual are taken.
         """
-        weights = np.array([bound.weights / bound.room for bound in bounds])
+        weights = np.array([bound.weights / bound.free for bound in bounds])
         transfer = np.einsum("bs,dsk->bdk", weights, responses).reshape(-1, len(harmonics))
         samples = samples_of_period(harmonics[-1], fold * SAMPLES_PER_PERIOD)
         return cls(transfer=transfer, harmonics=harmonics, samples=samples, draws=responses.shape[0])
@@ -63,6 +66,34 @@ class Uses:
     def largest(self, amplitudes: ComplexArray) -> FloatArray:
         """Return the largest use of each bound by each possible ship, shape (bounds, draws)."""
         return np.asarray(self.in_time(amplitudes).max(axis=1).reshape(-1, self.draws))
+
+    def strengths(self, amplitudes: ComplexArray, bounds: tuple[Bound, ...], share_over: float) -> FloatArray:
+        """Return how many times as strong the lines may be for each bound, shape (bounds,).
+
+        With the noise on top, normal and of any colour, every possible ship is beyond the bound for a share of the time
+        at most; without it, never.
+
+        Parameters
+        ----------
+        amplitudes
+            Complex amplitudes of the lines.
+        bounds
+            The bounds that the rows are of.
+        share_over
+            Share of the time.
+        """
+        every = self.in_time(amplitudes).reshape(len(bounds), self.draws, self.samples)
+        largest = every.max(axis=2)
+        return np.array(
+            [
+                _strength(
+                    signals[np.argsort(peaks)[-_WORST_SHIPS:]] * (bound.free / bound.room),
+                    bound.noise / bound.room,
+                    share_over,
+                )
+                for bound, signals, peaks in zip(bounds, every, largest, strict=True)
+            ]
+        )
 
     def norm(self, amplitudes: ComplexArray, power: float) -> tuple[float, ComplexArray]:
         """Return the p-norm of all positive uses over one period, and its gradient.
@@ -100,6 +131,24 @@ class Uses:
         """Return the uses by those lines, among some, whose largest use is highest."""
         worst = self.largest(amplitudes)[:, places].max(axis=0)
         return self.of_draws(places[np.argsort(worst, kind="stable")[-count:]])
+
+
+def _strength(signals: FloatArray, noise: float, share_over: float) -> float:
+    """Return how many times as strong signals over their room may be, shape (ships, samples), by halving."""
+    strongest = 1.0 / float(signals.max())
+    if noise == 0.0:
+        return strongest
+
+    def share(strength: float) -> float:
+        return float(scipy.special.ndtr((strength * signals - 1.0) / noise).mean(axis=1).max())
+
+    low, high = 0.0, strongest
+    if share(high) <= share_over:
+        return high
+    for _ in range(_HALVINGS):
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if share(middle) > share_over else (middle, high)
+    return low
 
 
 def held_draws(uses: Sequence[Uses], amplitudes: Sequence[ComplexArray], share: float) -> IntArray:

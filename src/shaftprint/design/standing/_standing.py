@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shaftprint.arrays import FloatArray, frozen_complex
+from shaftprint.arrays import FloatArray
 from shaftprint.design.plan import Plan, predicted_accuracy
 from shaftprint.design.planned_test import PlannedTest, SailedLeg
 from shaftprint.design.standing._periods import PeriodInformation, missing_periods, period_information
@@ -27,7 +27,7 @@ from shaftprint.units import SECONDS_PER_MINUTE
 
 if TYPE_CHECKING:
     from shaftprint.design.plan import Leg
-    from shaftprint.identify import Identification, NoiseLevels
+    from shaftprint.identify import Identification
 
 # A further leg has so many periods at least: the noise is what differs between them.
 FEWEST_MORE = 2
@@ -147,7 +147,7 @@ def standing_of(
         raise DesignError(f"plan {test.name}: expected a leg such as {names[0]} in the recording, found none.")
     ship = updated_ship(plan, fit)
     ratio = _noise_ratio(plan, names, sailed, recorded)
-    noise = tuple(_scaled(level, ratio) for level in plan.noise)
+    noise = tuple(level.times(ratio) for level in plan.noise)
     costs = [_cost(leg, name, sailed) for leg, name in zip(plan.legs, names, strict=True)]
     so_far = period_information(plan, noise, values=ship.by_name, costs=costs)
     legs, peaks = legs_within(plan, ship, np.random.default_rng(seed))
@@ -199,6 +199,10 @@ def _remaining(test: PlannedTest, sailed: Sequence[SailedLeg], more: Sequence[in
         structures=structures,
         noise=levels,
         peaks=tuple(plan.peaks[place] for place in kept),
+        # it is about the level of the first leg, for which its height was found
+        stairs_rpm=plan.stairs_rpm if 0 in kept else (),
+        # the noise is known now
+        band=None,
         earlier=earlier,
         predicted=predicted_accuracy(
             structures, legs, levels, values=plan.ship.by_name, priors=plan.priors, earlier=earlier
@@ -238,7 +242,3 @@ def _noise_ratio(plan: Plan, names: Sequence[str], sailed: Sequence[SailedLeg], 
                 whitened = np.linalg.solve(planned.covariance[rows[name]], of_errors[line])
                 ratios.append(float(np.trace(whitened)) / len(whitened))
     return float(np.median(ratios)) if ratios else 1.0
-
-
-def _scaled(noise: "NoiseLevels", ratio: float) -> "NoiseLevels":
-    return replace(noise, density=frozen_complex(ratio * noise.density))

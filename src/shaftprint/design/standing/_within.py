@@ -9,7 +9,7 @@ from shaftprint.arrays import frozen_float
 from shaftprint.design.inputs import AssumedShip, ship_of_fit
 from shaftprint.design.motion import bounds_of_leg, motion, motion_noise
 from shaftprint.design.plan import Peaks, Plan, peaks_of
-from shaftprint.design.planning import SHARE_HELD, extremes
+from shaftprint.design.planning import FINE, SHARE_HELD, extremes
 from shaftprint.design.search import Uses
 from shaftprint.errors import DesignError
 
@@ -58,13 +58,14 @@ def _leg_within(plan: Plan, place: int, ship: AssumedShip, table: "FloatArray") 
     leg, structure = plan.legs[place], plan.structures[place]
     bounds = bounds_of_leg(plan.limits, leg.speed_share, motion_noise(structure, ship.values, plan.noise[place]))
     responses = motion(structure, table, 2.0 * np.pi * leg.frequency_hz)
-    uses = Uses.of(responses, bounds, leg.harmonics)
+    uses = Uses.of(responses, bounds, leg.harmonics, FINE)
     largest = uses.largest(leg.amplitudes)
     held = np.argsort(largest.max(axis=0), kind="stable")[: int(np.ceil(SHARE_HELD * len(table)))]
-    strength = min(1.0, 1.0 / float(largest[:, held].max()))
+    strengths = uses.of_draws(held).strengths(leg.amplitudes, bounds, plan.limits.share_over)
+    strength = min(1.0, float(strengths.min()))
     scaled = replace(leg, amplitudes=strength * leg.amplitudes)
     by_name: dict[str, float] = {}
-    for bound, use in zip(bounds, (strength * largest[:, held].max(axis=1)).tolist(), strict=True):
+    for bound, use in zip(bounds, (strength / strengths).tolist(), strict=True):
         by_name[bound.name] = max(use, by_name.get(bound.name, 0.0))
     ends = extremes(responses[held], scaled, uses.samples)
     return scaled, peaks_of(scaled, ends, by_name, strength * plan.peaks[place].start_use, plan.limits)

@@ -1,10 +1,12 @@
 """The noun ``AbortCard``: what the bridge may see during a test, and when it is to stop."""
 
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from shaftprint.design.inputs import SPEED_SIGMAS
 from shaftprint.design.motion import SIGNALS, motion_noise
 from shaftprint.notebook import Shown
 
@@ -29,8 +31,10 @@ class AbortCard(Shown):
     """Lowest and highest brake torque that may be seen [N m]."""
     rate_rpm_per_s: float
     """Fastest change of the set point [rpm/s]."""
+    step_rpm: float
+    """Largest step of the staircase at the end [rpm]; 0 without one."""
     duration_s: float
-    """Length of the whole test with its ramps [s]."""
+    """Length of the whole test with its ramps and its staircase [s]."""
     leave_rpm: tuple[float, float]
     """Engine speeds that must not be passed: the limits of the ship [rpm]."""
     level_v: float
@@ -42,17 +46,18 @@ class AbortCard(Shown):
 def abort_card(test: "PlannedTest") -> AbortCard:
     """Return what the bridge may see.
 
-    Speed and torque are the peaks of the possible ships with as many standard deviations of the noise as the limits
-    keep free, so that a sample beyond them is a reason to stop.
+    Speed and torque are the peaks of the possible ships with four standard deviations of the noise, so that a sample
+    beyond them is a reason to stop.
     """
     plan, campaign = test.plan, test.campaign
     speeds, torques = [], []
     for leg, peaks, structure, noise in zip(plan.legs, plan.peaks, plan.structures, plan.noise, strict=True):
-        spread = np.sqrt(np.diag(motion_noise(structure, plan.ship.values, noise))[_OWN]) * plan.limits.noise_sigmas
+        spread = np.sqrt(np.diag(motion_noise(structure, plan.ship.values, noise))[_OWN]) * SPEED_SIGMAS
         speed, torque = leg.level_rpm * spread[0], leg.speed_share**2 * plan.limits.brake_torque_nm * spread[1]
         speeds += [peaks.speed_rpm[0] - speed, peaks.speed_rpm[1] + speed]
         torques += [peaks.brake_torque_nm[0] - torque, peaks.brake_torque_nm[1] + torque]
     volts = [edge for leg in campaign.legs for edge in leg.extremes_v] + [campaign.offset_v]
+    volts += [level_v for stairs in campaign.staircases for level_v in stairs.levels_v]
     asked = test.line.speed_rpm(np.array(volts), working_point_rpm=plan.limits.engine_speed_rpm)
     return AbortCard(
         set_point_v=(min(volts), max(volts)),
@@ -60,7 +65,8 @@ def abort_card(test: "PlannedTest") -> AbortCard:
         speed_rpm=(float(min(speeds)), float(max(speeds))),
         brake_torque_nm=(float(min(torques)), float(max(torques))),
         rate_rpm_per_s=max(*(peaks.rate_rpm_per_s for peaks in plan.peaks), plan.timetable.ramp_rpm_per_s),
-        duration_s=campaign.duration_s,
+        step_rpm=max((abs(after - before) for before, after in pairwise((0.0, *plan.stairs_rpm))), default=0.0),
+        duration_s=plan.duration_s,
         leave_rpm=(plan.limits.lowest_speed_rpm, plan.limits.highest_speed_rpm),
         level_v=campaign.offset_v,
         level_rpm=plan.legs[0].level_rpm,

@@ -10,6 +10,7 @@ from shaftprint.identify.prediction._log_noise import with_log
 from shaftprint.identify.prediction._lost_directions import Direction
 from shaftprint.identify.prediction._noise_at_speeds import noise_at
 from shaftprint.identify.prediction._noise_levels import NoiseLevels, noise_levels, stated_noise
+from shaftprint.identify.prediction._noise_of_line import noise_of_line
 from shaftprint.identify.prediction._order_cost import common_share
 from shaftprint.identify.prediction._pitch_noise import PITCH_NOISE
 from shaftprint.identify.prediction._planned_legs import PlannedLeg, first_leg, planned_beside, planned_legs
@@ -17,13 +18,14 @@ from shaftprint.identify.prediction._planned_response import expected_response, 
 from shaftprint.identify.prediction._predicted_intervals import predict_intervals, predict_joint_intervals
 from shaftprint.identify.prediction._research_vessel_noise import RESEARCH_VESSEL_NOISE
 from shaftprint.identify.prediction._stan_tug_noise import STAN_TUG_NOISE
-from shaftprint.identify.prediction._stan_tug_noise_at_speeds import STAN_TUG_NOISE_AT_SPEEDS
+from shaftprint.identify.prediction._stan_tug_noise_at_speeds import STAN_TUG_LINE, STAN_TUG_NOISE_AT_SPEEDS
 from shaftprint.identify.prediction._stan_tug_noise_underway import STAN_TUG_NOISE_UNDERWAY
 
 __all__ = [
     "COMBINATOR_NOISE",
     "PITCH_NOISE",
     "RESEARCH_VESSEL_NOISE",
+    "STAN_TUG_LINE",
     "STAN_TUG_NOISE",
     "STAN_TUG_NOISE_AT_SPEEDS",
     "STAN_TUG_NOISE_UNDERWAY",
@@ -41,6 +43,7 @@ __all__ = [
     "line_information",
     "noise_at",
     "noise_levels",
+    "noise_of_line",
     "planned_beside",
     "planned_legs",
     "planned_lines",

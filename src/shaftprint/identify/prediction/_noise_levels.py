@@ -83,6 +83,10 @@ class NoiseLevels:
             interpolated[:, i, j] += 1j * np.interp(wanted, stated, shape[:, i, j].imag)
         return interpolated * root[:, :, None] * root[:, None, :]
 
+    def times(self, factor: float) -> "NoiseLevels":
+        """Return the levels with so many times the density."""
+        return replace(self, density=factor * self.density)
+
     def of_outputs(self, *names: str) -> "NoiseLevels":
         """Return the levels of some of the outputs.
 

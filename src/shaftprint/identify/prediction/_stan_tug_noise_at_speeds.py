@@ -135,3 +135,11 @@ STAN_TUG_NOISE_AT_SPEEDS: Mapping[float, NoiseLevels] = MappingProxyType(
     }
 )
 """Noise levels of the Stan Tug 1205 in legs, by share of the working-point speed of 1183.8 rpm."""
+
+STAN_TUG_LINE: Mapping[str, float] = MappingProxyType(
+    {
+        "K_p": 5.7, "K_i": 4.27, "t_d": 0.0703, "omega_n": 10.3, "zeta": 0.47, "tau_dn": 0.3198, "tau_up": 1.016,
+        "k_q": 2.0, "g": 0.0, "t_sp": 0.0518,
+    }
+)  # fmt: skip
+"""The line that has this noise, normalised at the same working point."""

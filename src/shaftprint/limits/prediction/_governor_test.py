@@ -1,6 +1,6 @@
 """What the limited governor is driven by and compared with: set point, speed and engine torque of a whole test."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -30,6 +30,8 @@ SLOW, BESIDE_S = -0.45, 1.0
 SETTLED_S = 25.0
 # Means over this time [s] show the offset of the set point where it moves by no more than this deviation [-].
 BLOCK_S, STILL = 2.0, 0.02
+# Levels of legs that differ by less are one [V].
+_SAME_LEVEL_V = 0.01
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -180,11 +182,12 @@ def governor_test(signals: Signals, campaign: Campaign, vessel: Vessel) -> Gover
         If the signals do not hold the tests of the campaign.
     """
     tests = campaign.excitations
-    if campaign.legs and not campaign.sines:
+    if campaign.legs and not (campaign.sines or campaign.staircases or campaign.chirps):
         raise SignalError(
-            f"campaign {campaign.name}: expected sines and steps about one working point, in which limits are told "
-            f"apart, found legs ({', '.join(leg.name for leg in campaign.legs)}): a limit that acts in a leg makes the "
-            "fit of `shaftprint identify` fail; add sines and a staircase to find which it is."
+            f"campaign {campaign.name}: expected sines or steps about one working point, in which limits are told "
+            f"apart, found legs alone ({', '.join(leg.name for leg in campaign.legs)}): a limit that acts in a leg "
+            "makes the fit of `shaftprint identify` fail; end the next test with a staircase, as `shaftprint plan` "
+            "does."
         )
     time = signals.start_s + np.arange(signals.samples) / signals.rate_hz
     begin = max(tests[0].start_s - BEFORE_S, float(time[0]) + 1.0)
@@ -202,6 +205,7 @@ def governor_test(signals: Signals, campaign: Campaign, vessel: Vessel) -> Gover
     lost = ~(np.isfinite(speed) & np.isfinite(torque) & np.isfinite(set_point))
     margin, settled = round(BESIDE_S * signals.rate_hz), round(SETTLED_S * signals.rate_hz)
     lost = _within(lost | _within(speed < SLOW, margin, margin), 0, settled)
+    lost |= _at_another_speed(time, campaign)
     curve = np.array(vessel.machine.full_load_shape(point.engine_speed_rev_s))
     set_point = _filled(time, set_point)
     jumps = jumps_in(time, set_point, campaign)
@@ -240,6 +244,28 @@ def sum_of_jumps(time_s: FloatArray, jumps: Sequence[Jump], late_s: FloatArray) 
     for jump, late in zip(jumps, late_s.tolist(), strict=True):
         passed += (jump.after - jump.before) * jump.passed(time_s, late_s=late)
     return passed
+
+
+def _at_another_speed(time_s: FloatArray, campaign: Campaign) -> BoolArray:
+    """Return where a test is about another speed than its working point, with the ramps there and back.
+
+    The governor is followed through it, since speed and set point are known; but its gains may be others there.
+    """
+    elsewhere = np.zeros(time_s.shape, dtype=np.bool_)
+    legs, tests = campaign.legs, campaign.of_input().excitations
+    if not legs:
+        return elsewhere
+    about_v = campaign.offset_v if campaign.sines else min((leg.level_v for leg in legs), key=_far_from(campaign))
+    ends = [0.0, *(test.stop_s for test in tests), np.inf]
+    starts = [*(test.start_s for test in tests), np.inf]
+    for place, test in enumerate(tests):
+        if test in legs and abs(test.level_v - about_v) > _SAME_LEVEL_V:
+            elsewhere |= (time_s >= ends[place]) & (time_s < starts[place + 1])
+    return elsewhere
+
+
+def _far_from(campaign: Campaign) -> Callable[[float], float]:
+    return lambda level_v: abs(level_v - campaign.offset_v)
 
 
 def _within(where: BoolArray, before: int, after: int) -> BoolArray:

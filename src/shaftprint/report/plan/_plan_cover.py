@@ -2,9 +2,9 @@
 
 from typing import TYPE_CHECKING
 
+from shaftprint.design import length_words
 from shaftprint.report.sections import Card, Cover
 from shaftprint.tables import plain, wish_table
-from shaftprint.units import SECONDS_PER_MINUTE
 
 if TYPE_CHECKING:
     from shaftprint.design import PlannedTest
@@ -39,7 +39,7 @@ def _facts(test: "PlannedTest") -> list[tuple[str, str]]:
     return [
         ("Ship", test.vessel),
         ("Test", test.name),
-        ("Length", f"{plain(test.campaign.duration_s / SECONDS_PER_MINUTE, 1)} min with the way back"),
+        ("Length", f"{length_words(plan.duration_s)}, the way back and the staircase included"),
         ("Speeds", ", ".join(f"{plain(leg.level_rpm, 0)} rpm" for leg in plan.legs)),
         ("Set point", f"± {plain(largest, 0)} rpm, ± {plain(volts, 2)} V at most, about each speed"),
     ]
@@ -63,10 +63,13 @@ def _wishes(test: "PlannedTest") -> Card:
 
 def _limits(test: "PlannedTest") -> Card:
     names = list(dict.fromkeys(name for peaks in test.plan.peaks for name in peaks.binding))
-    words = (
-        "Planned for 98 of 100 ships that are possible within what is assumed, with "
-        f"{test.plan.limits.noise_sigmas:g} standard deviations of noise left free."
+    limits = test.plan.limits
+    noise = (
+        f"which noise passes for at most {PERCENT * limits.share_over:g} % of the time"
+        if limits.noise_sigmas is None
+        else f"with {limits.noise_sigmas:g} standard deviations of noise left free"
     )
+    words = f"Planned for 98 of 100 ships that are possible within what is assumed, {noise}."
     bound = f" It is bound by {', '.join(names)}." if names else ""
     return Card(question="Does it keep the limits of ship and engine?", state="fine", sentence=words + bound)
 

@@ -8,11 +8,15 @@ Noise depends on the speed: its size goes with the load of the propeller, and th
 it, at idle into the band of the model. An excerpt therefore takes the stretches whose load is nearest to its own, one
 by one until they give enough pieces, and the rest of the difference is made up by scaling with the load.
 
+A leg never stands still, but repeats itself: what differs from period to period, over the root of two, is noise of its
+speed.
+
 What changes more slowly than a piece is long does not show in it. It is the scatter of the means of the quiet stretches
 at the working point, and stays out of the test, which takes the mean off as well; for FitPercent, which does not, it
 is part of the noise.
 """
 
+import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
@@ -24,7 +28,7 @@ import scipy
 from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.campaign import Campaign, Staircase
 from shaftprint.errors import ValidationError
-from shaftprint.signals import Signals
+from shaftprint.signals import LegState, Signals
 
 # What the low-pass shows of a step before it happens.
 _AHEAD_S = 1.0
@@ -164,6 +168,11 @@ def quiet_noise(
         loads.append(max(1.0 + float(mean[1, 0]), LEAST_LOAD))
         if between:
             means.append(mean[:, 0])
+    for state in signals.legs:
+        stretch, load = _between_periods(outputs, state, rate_hz=rate_hz, start_s=start_s)
+        if stretch.shape[1] >= _SHORTEST_S * rate_hz and np.isfinite(stretch).all():
+            cut.append(stretch - stretch.mean(axis=1, keepdims=True))
+            loads.append(max(1.0 + load, LEAST_LOAD))
     if not cut:
         raise ValidationError(
             f"campaign {campaign.name}: expected a stretch of {rest_s + _AHEAD_S + _SHORTEST_S:g} s in which the set "
@@ -173,6 +182,21 @@ def quiet_noise(
     return QuietNoise(
         rate_hz=rate_hz, stretches=tuple(cut), loads=frozen_float(loads), offset_variance=frozen_float(scatter)
     )
+
+
+def _between_periods(
+    outputs: Callable[[slice], FloatArray], state: LegState, *, rate_hz: float, start_s: float
+) -> tuple[FloatArray, float]:
+    """Return what differs from period to period of a leg, over the root of two, and the mean deviation of its torque.
+
+    Independent noise of two periods has twice the variance of one; what repeats itself is gone.
+    """
+    first, last = (round((time - start_s) * rate_hz) for time in (state.start_s, state.stop_s))
+    values = outputs(slice(max(first, 0), last))
+    places = np.arange(values.shape[1], dtype=np.float64)
+    later = places[places + state.period_s * rate_hz <= places[-1]]
+    shifted = np.stack([np.interp(later + state.period_s * rate_hz, places, row) for row in values])
+    return (shifted - values[:, : later.size]) / math.sqrt(2.0), float(values[1].mean())
 
 
 def _still(campaign: Campaign, end_s: float) -> Iterator[tuple[float, float, bool]]:

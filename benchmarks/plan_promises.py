@@ -1,0 +1,207 @@
+"""What a plan promises and what is stated: drawn ships whose noise nobody knew, from a card and after a first test.
+
+For every seed a ship is drawn as in ``scouted_tests``, its set-point line bends by 0 to 0.3 % per volt, and the density
+of all its noise is 0.5 to 3 times the simulated tug's. All ships sail the test that is planned from the card. Those of
+``--scouted`` sail the first test of two legs of 45 s too, after which twelve minutes are planned and sailed. Stated
+deviations are held against planned ones. Run ``python
+benchmarks/plan_promises.py --ships 40 --scouted 12 --outcomes build/promises``: ten seconds of processor time a ship,
+half a minute more for one with a first test. Ships that the folder holds are not sailed again.
+"""
+
+import argparse
+import json
+import math
+import sys
+import tempfile
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass, field, replace
+from pathlib import Path
+
+import numpy as np
+
+ROOT = Path(__file__).resolve().parent.parent
+# Run as a file, the folder of the benchmarks is on the path, not the one above.
+sys.path.insert(0, str(ROOT))
+
+from benchmarks.scouted_tests import (  # noqa: E402
+    CLOSED,
+    MAIN_S,
+    MAIN_SEED,
+    MAIN_V,
+    POINT_RPM,
+    SCOUT_S,
+    SCOUT_V,
+    SPEEDS,
+    VESSEL,
+    drawn_tug,
+    identified,
+    knowledge_of,
+    planned,
+)
+from shaftprint.design import Knowledge, PlannedTest  # noqa: E402
+from shaftprint.errors import ShaftprintError  # noqa: E402
+from shaftprint.fingerprint import Fingerprint  # noqa: E402
+from shaftprint.identify import noise_at  # noqa: E402
+from shaftprint.identify.fit import Estimate  # noqa: E402
+from shaftprint.survey import NOISE_SPREAD, RECORDED_SPREAD, noise_of_unknown_ship  # noqa: E402
+from shaftprint.tug import Tug  # noqa: E402
+
+SEED = 93
+DENSITY = (0.5, 3.0)
+MOST_BEND_PER_V = 0.003
+CARD, TOLD = (0.5, 1.5), (0.75, 1.33)
+"""Stated over planned deviations that are asked for of nine numbers of ten: from a card, after a first test."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Outcome:
+    """What one ship gave: standard deviations by number."""
+
+    seed: int
+    """Seed of the ship."""
+    density: float
+    """Density of its noise over that of the simulated tug."""
+    stated: Mapping[str, float] = field(default_factory=dict)
+    """Of the test that was planned from the card."""
+    error: Mapping[str, float] = field(default_factory=dict)
+    """Its errors over the stated deviations."""
+    planned_after: Mapping[str, float] = field(default_factory=dict)
+    """Of the main test, planned after the first."""
+    stated_after: Mapping[str, float] = field(default_factory=dict)
+    """Of the main test, as its fit states them."""
+    refused: str = ""
+    """Why something is missing."""
+
+
+def ship_of(seed: int) -> tuple[Tug, float]:
+    """Return the ship of a seed, and the density of its noise over the simulated tug's."""
+    rng = np.random.default_rng([SEED, seed])
+    density = float(np.exp(rng.uniform(*np.log(DENSITY))))
+    tug = drawn_tug(seed)
+    bend = float(rng.uniform(0.0, MOST_BEND_PER_V))
+    return replace(tug, noise=tug.noise.scaled(math.sqrt(density)), set_point_bend_per_v=bend), density
+
+
+def of_card(set_point_v: float) -> Knowledge:
+    """Return what ``shaftprint plan --free tau_up --speeds 1.15,0.78`` knows before any test."""
+    known = knowledge_of(set_point_v)
+    assumed = noise_of_unknown_ship(VESSEL, CLOSED, known.ship.by_name)
+    levels = {share * POINT_RPM: level for share, level in assumed.legs.items()}
+    noise = {share: noise_at(levels, share * POINT_RPM).of_outputs(*CLOSED.outputs) for share in SPEEDS}
+    return replace(known, noise=noise, noise_spread=NOISE_SPREAD)
+
+
+def after(first_test: Fingerprint) -> Knowledge:
+    """Return what the same with ``--after`` knows."""
+    return replace(knowledge_of(MAIN_V, first_test), noise_spread=RECORDED_SPREAD)
+
+
+def deviations(numbers: Sequence[Estimate]) -> dict[str, float]:
+    """Return standard deviations by name."""
+    return {one.name: one.std for one in numbers}
+
+
+def predicted(test: PlannedTest) -> dict[str, float]:
+    """Return what a plan promises."""
+    accuracy = test.plan.predicted
+    return deviations((*accuracy.parameters, *accuracy.combinations))
+
+
+def outcome(seed: int, card: PlannedTest, scouting: PlannedTest | None, folder: Path) -> Outcome:
+    """Return what the ship of a seed gives."""
+    tug, density = ship_of(seed)
+    begun = Outcome(seed=seed, density=density)
+    try:
+        survey, true = identified(tug, card.campaign, MAIN_SEED + seed, folder)
+        found = survey.identification
+        every = (*found.parameters, *found.combinations)
+        begun = replace(
+            begun,
+            stated=deviations(every),
+            error={one.name: (one.value - true[one.name]) / one.std for one in every if one.name in true},
+        )
+        if scouting is None:
+            return begun
+        first, _ = identified(tug, scouting.campaign, seed, folder)
+        main = planned("Main test", after(first.fingerprint), MAIN_S)
+        survey, _ = identified(tug, main.campaign, 2 * MAIN_SEED + seed, folder)
+        found = survey.identification
+        return replace(
+            begun, planned_after=predicted(main), stated_after=deviations((*found.parameters, *found.combinations))
+        )
+    except ShaftprintError as error:
+        return replace(begun, refused=str(error))
+
+
+def outcomes_of(ships: int, scouted: int, card: PlannedTest, *, kept: Path | None = None) -> Iterator[Outcome]:
+    """Give what each ship gave, from the file where it stands there already."""
+    lines = kept.read_text(encoding="utf-8").splitlines() if kept and kept.exists() else []
+    earlier = {one.seed: one for one in (Outcome(**json.loads(line)) for line in lines)}
+    scouting = planned("First test", of_card(SCOUT_V), SCOUT_S) if scouted else None
+    with tempfile.TemporaryDirectory() as folder:
+        for seed in range(1, ships + 1):
+            wanted = scouting if seed <= scouted else None
+            there = earlier.get(seed)
+            if there is not None and (wanted is None or there.stated_after or there.refused):
+                yield there
+                continue
+            one = outcome(seed, card, wanted, Path(folder))
+            if kept:
+                with kept.open("a", encoding="utf-8") as file:
+                    file.write(json.dumps(asdict(one)) + "\n")
+            yield one
+
+
+def table(card: Mapping[str, float], outcomes: Sequence[Outcome]) -> str:
+    """Return stated over planned deviations: median, range, and the share within what is asked for."""
+    rows = [
+        "| number | planned | from the card: median, 10 to 90 % | within 0.5 to 1.5 | after: median, 10 to 90 % "
+        "| within 0.75 to 1.33 | rms z |",
+        "|---|---|---|---|---|---|---|",
+    ]
+    shares = []
+    for name, std in card.items():
+        of_card_ = np.array([one.stated[name] / std for one in outcomes if name in one.stated])
+        of_after = np.array(
+            [one.stated_after[name] / one.planned_after[name] for one in outcomes if name in one.stated_after]
+        )
+        z = np.array([one.error[name] for one in outcomes if name in one.error])
+        cells = [_cells(of_card_, CARD), _cells(of_after, TOLD)]
+        shares.append([share for _, share in cells])
+        rms = f"{math.sqrt(float(np.mean(z**2))):.2f}" if z.size else ""
+        words = " | ".join(f"{text} | {100.0 * share:.0f} %" for text, share in cells)
+        rows.append(f"| `{name}` | {std:.3g} | {words} | {rms} |")
+    whole = np.nanmean(np.array(shares), axis=0)
+    refused = [f"{one.seed}: {one.refused}" for one in outcomes if one.refused]
+    rows += [
+        "",
+        f"All numbers together: {100.0 * whole[0]:.0f} % from the card, {100.0 * whole[1]:.0f} % after a first test; "
+        f"{len(outcomes)} ships, {sum(bool(one.stated_after) for one in outcomes)} with a first test. Not finished: "
+        f"{len(refused)}. {' '.join(refused)}",
+    ]
+    return "\n".join(rows)
+
+
+def _cells(ratios: np.ndarray, asked: tuple[float, float]) -> tuple[str, float]:
+    if not ratios.size:
+        return "", math.nan
+    low, middle, high = np.quantile(ratios, (0.1, 0.5, 0.9))
+    return f"{middle:.2f}, {low:.2f} to {high:.2f}", float(np.mean((ratios >= asked[0]) & (ratios <= asked[1])))
+
+
+def main() -> None:
+    """Sail the ships and print their table."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--ships", type=int, default=4, help="number of ships")
+    parser.add_argument("--scouted", type=int, default=1, help="those of them that sail a first test and a main test")
+    parser.add_argument("--outcomes", type=Path, help="folder in which outcomes of ships are kept")
+    options = parser.parse_args()
+    if options.outcomes:
+        options.outcomes.mkdir(parents=True, exist_ok=True)
+    kept = options.outcomes / "promises.jsonl" if options.outcomes else None
+    card = planned("From the card", of_card(MAIN_V), MAIN_S)
+    print(table(predicted(card), list(outcomes_of(options.ships, options.scouted, card, kept=kept))))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,19 @@
+"""The noun ``Band``: how well a test may make the numbers known on the ships and in the noise that are possible."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from shaftprint.notebook import Shown
+
+HELD = 0.8
+"""Share of the possible ships that a band holds: a tenth lies on either side."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
+class Band(Shown):
+    """What is left open of a plan's accuracy by the noise and the numbers of a ship that are not known."""
+
+    deviations: Mapping[str, tuple[float, float]]
+    """Lower and upper predicted standard deviation over that of the plan, by number."""
+    seconds: tuple[float, float] | None = None
+    """Shortest and longest test like this one that meets every wish [s]; None without wishes."""

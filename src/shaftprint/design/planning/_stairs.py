@@ -1,0 +1,53 @@
+"""The staircase at the end of a planned test: as high as the limits let steps be.
+
+Steps are what a model is held against that was fitted to lines, and what limits of governor and engine show on.
+"""
+
+import numpy as np
+
+from shaftprint.arrays import FloatArray
+from shaftprint.design.motion import Bound, motion
+from shaftprint.design.planning._brief import Brief
+
+# Rate at which steps are seen [Hz]: what governor and engine do to them is far slower.
+_RATE_HZ = 64.0
+# The limit of a rate is left to the control unit, which follows a step as fast as it does.
+_OF_STEPS = "rate of the set point"
+# Possible ships whose steps are looked at.
+_MOST_SHIPS = 60
+
+
+def stairs_of(brief: Brief, table: FloatArray) -> tuple[float, ...]:
+    """Return the levels of the staircase about the level of the first leg [rpm]; none where the plan has none.
+
+    Parameters
+    ----------
+    brief
+        Timetable, and what binds the first leg.
+    table
+        Possible ships for which limits are held, shape (rows, parameters).
+    """
+    shape, dwell_s = brief.timetable.stairs, brief.timetable.dwell_s
+    if not shape:
+        return ()
+    bounds = tuple(bound for bound in brief.bounds[0] if bound.name != _OF_STEPS)
+    largest = _largest_use(brief, bounds, table[:_MOST_SHIPS], np.array(shape), dwell_s)
+    level_rpm = brief.speeds[0] * brief.limits.engine_speed_rpm
+    return tuple(level_rpm * level / largest for level in shape)
+
+
+def _largest_use(
+    brief: Brief, bounds: tuple[Bound, ...], table: FloatArray, shape: FloatArray, dwell_s: float
+) -> float:
+    """Return the largest use of the bounds by a staircase of one, with as long a rest after it."""
+    steps = np.repeat(shape, round(_RATE_HZ * dwell_s))
+    count = 2 * steps.size
+    hertz = np.fft.rfftfreq(count, 1.0 / _RATE_HZ)
+    # smoothed by the Lanczos factor, so that a step of limited band does not overshoot by itself
+    spectrum = np.fft.rfft(steps, n=count) * np.sinc(2.0 * hertz / _RATE_HZ)
+    omega = 2.0 * np.pi * hertz
+    # an integrator has no value at zero, its loop has
+    omega[0] = 1e-3 * omega[1]
+    weights = np.array([bound.weights / bound.free for bound in bounds])
+    responses = motion(brief.structures[0], table, omega)
+    return max(float(np.fft.irfft((weights @ of_ship) * spectrum, n=count, axis=1).max()) for of_ship in responses)
