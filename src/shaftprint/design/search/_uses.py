@@ -135,7 +135,7 @@ class Uses:
 
 def _strength(signals: FloatArray, noise: float, share_over: float) -> float:
     """Return how many times as strong signals over their room may be, shape (ships, samples), by halving."""
-    strongest = 1.0 / float(signals.max())
+    strongest = 1.0 / float(_crests(signals).max())
     if noise == 0.0:
         return strongest
 
@@ -149,6 +149,14 @@ def _strength(signals: FloatArray, noise: float, share_over: float) -> float:
         middle = 0.5 * (low + high)
         low, high = (low, middle) if share(middle) > share_over else (middle, high)
     return low
+
+
+def _crests(signals: FloatArray) -> FloatArray:
+    """Return the highest value of each periodic signal, between its samples too: the top of a parabola."""
+    places, rows = np.argmax(signals, axis=1), np.arange(len(signals))
+    before, at, after = (signals[rows, (places + step) % signals.shape[1]] for step in (-1, 0, 1))
+    bend = 2.0 * at - before - after
+    return np.asarray(at + np.where(bend > 0.0, (after - before) ** 2 / (8.0 * np.maximum(bend, 1e-300)), 0.0))
 
 
 def held_draws(uses: Sequence[Uses], amplitudes: Sequence[ComplexArray], share: float) -> IntArray:
