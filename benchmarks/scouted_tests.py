@@ -25,7 +25,8 @@ sys.path.insert(0, str(ROOT))
 from benchmarks.leg_outcomes import as_planned, true_values  # noqa: E402
 from benchmarks.monte_carlo_short import LEAST_GAIN_MARGIN, gain_margin  # noqa: E402
 from benchmarks.monte_carlo_tables import write_between_marks  # noqa: E402
-from benchmarks.planned_tests import CLOSED, OFFSET_V, SLOPE_RPM_PER_V, VESSEL  # noqa: E402
+from benchmarks.planned_tests import CLOSED as AT_ONE_SPEED  # noqa: E402
+from benchmarks.planned_tests import OFFSET_V, SLOPE_RPM_PER_V, VESSEL  # noqa: E402
 from benchmarks.sailed_limits import SailedLimits, sailed_limits  # noqa: E402
 from benchmarks.scouted_tests_tables import scouted_table  # noqa: E402
 from shaftprint.campaign import Campaign  # noqa: E402
@@ -49,7 +50,7 @@ from shaftprint.identify import STAN_TUG_NOISE_AT_SPEEDS as STORED  # noqa: E402
 from shaftprint.identify import Settings, noise_at, priors_from_vessel  # noqa: E402
 from shaftprint.identify.prediction import planned_lines, predict_joint_accuracy  # noqa: E402
 from shaftprint.models import Structure, at_working_point  # noqa: E402
-from shaftprint.survey import Measurement, Survey, Trial, priors_of, run, stated_working_point  # noqa: E402
+from shaftprint.survey import Measurement, Survey, Trial, at_speeds, priors_of, run, stated_working_point  # noqa: E402
 from shaftprint.tug import Tug, normalised_truth, sail  # noqa: E402
 
 DOCUMENT = ROOT / "docs" / "planning.md"
@@ -70,6 +71,8 @@ SPREAD: Mapping[str, float] = {
 }
 STD_OF_G = 0.1
 LEAST_FACTOR = 0.2
+SPEEDS = (1.15, 0.78)
+CLOSED = at_speeds(AT_ONE_SPEED, SPEEDS)
 NOT_KNOWN = "tau_up"
 """Parameter of which the vessel file knows what the drawn ships do not keep."""
 PRIORS = {
@@ -78,7 +81,6 @@ PRIORS = {
     if name != NOT_KNOWN
 }
 POINT_RPM = VESSEL.working_point.engine_speed_rpm
-SPEEDS = (1.15, 0.78)
 MAIN_V, MAIN_S = 1.0, 720.0
 # Two legs of 45 s.
 SCOUT_V, SCOUT_S = 1.0 / 3.0, 155.0
@@ -214,9 +216,15 @@ def outcome(seed: int, scouting: Campaign, folder: Path) -> Outcome:
     first, found = survey.identification, main.identification
     return replace(
         begun,
-        scouted_error={one.name: one.value - scouted[one.name] for one in (*first.parameters, *first.combinations)},
+        scouted_error={
+            one.name: one.value - scouted[one.name]
+            for one in (*first.parameters, *first.combinations)
+            if one.name in scouted
+        },
         scouted_std={one.name: one.std for one in (*first.parameters, *first.combinations)},
-        error={one.name: one.value - true[one.name] for one in (*found.parameters, *found.combinations)},
+        error={
+            one.name: one.value - true[one.name] for one in (*found.parameters, *found.combinations) if one.name in true
+        },
         std={one.name: one.std for one in (*found.parameters, *found.combinations)},
         truth=true,
         p_value=found.p_value or 0.0,
