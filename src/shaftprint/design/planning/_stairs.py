@@ -45,7 +45,7 @@ def _largest_use(
     hertz = np.fft.rfftfreq(count, 1.0 / _RATE_HZ)
     # smoothed by the Lanczos factor, so that a step of limited band does not overshoot by itself
     spectrum = np.fft.rfft(steps, n=count) * np.sinc(2.0 * hertz / _RATE_HZ)
-    omega = 2.0 * np.pi * hertz
+    omega = np.asarray(2.0 * np.pi * hertz, dtype=np.float64)
     # an integrator has no value at zero, its loop has
     omega[0] = 1e-3 * omega[1]
     weights = np.array([bound.weights / bound.free for bound in bounds])

@@ -7,7 +7,7 @@ import numpy as np
 from shaftprint.arrays import ComplexArray, FloatArray
 from shaftprint.catalogue import ShipRole
 from shaftprint.identify.prediction._noise_levels import NoiseLevels
-from shaftprint.models import Structure
+from shaftprint.models import Role, Structure
 
 _SPEED, _TORQUE = "n", "M_s"
 _NEEDED = (ShipRole.INERTIA_UPSTREAM, ShipRole.SET_POINT_LATENCY)
@@ -45,10 +45,10 @@ def noise_of_line(
     shown = levels.of_outputs(_SPEED, _TORQUE)
     s = np.asarray(2j * np.pi * shown.frequency_hz, dtype=np.complex128)
     ends = [_sides(structure, structure.vector(one), s) for one in (measured_at, values)]
-    change = np.linalg.solve(ends[1], ends[0])
+    change = np.asarray(np.linalg.solve(ends[1], ends[0]), dtype=np.complex128)
     density = change @ shown.density @ change.conj().swapaxes(1, 2)
     # rounding leaves an imaginary part on the diagonal
-    density = 0.5 * (density + density.conj().swapaxes(1, 2))
+    density = np.asarray(0.5 * (density + density.conj().swapaxes(1, 2)), dtype=np.complex128)
     return NoiseLevels(
         frequency_hz=shown.frequency_hz,
         density=density,
@@ -61,17 +61,23 @@ def noise_of_line(
 def _sides(structure: Structure, vector: FloatArray, s: ComplexArray) -> ComplexArray:
     """Return what disturbs the downstream and the upstream torque, of speed and shaft torque, shape (lines, 2, 2)."""
     table = vector[None, :]
-    named = structure.columns(table)
     outputs = [output for output, _ in structure.channels]
     response = structure.response(table, s)[0]
     speed, torque = response[outputs.index(_SPEED)], response[outputs.index(_TORQUE)]
-    upstream_s = float(named[structure.named_as(ShipRole.INERTIA_UPSTREAM)][0, 0])
-    late = np.exp(-s * float(named[structure.named_as(ShipRole.SET_POINT_LATENCY)][0, 0]))
-    slope_name = structure.named_as(ShipRole.ENGINE_SPEED_SLOPE)
-    slope = 0.0 if slope_name is None else float(named[slope_name][0, 0])
+    upstream_s, late_s, slope = (
+        _value(structure, table, role)
+        for role in (ShipRole.INERTIA_UPSTREAM, ShipRole.SET_POINT_LATENCY, ShipRole.ENGINE_SPEED_SLOPE)
+    )
+    late = np.exp(-s * late_s)
     # M_s = G (late r - n) + g n - tau_up s n gives what governor and engine make of an error of the speed
     of_error = (torque + (upstream_s * s - slope) * speed) / (late - speed)
     rows = np.ones((s.size, 2, 2), dtype=np.complex128)
     rows[:, 0, 0] = -torque / speed
     rows[:, 1, 0] = of_error - slope + upstream_s * s
     return rows
+
+
+def _value(structure: Structure, table: FloatArray, role: Role) -> float:
+    """Return the parameter of a role as the blocks take it; zero where there is none."""
+    name = structure.named_as(role)
+    return 0.0 if name is None else float(structure.columns(table)[name][0, 0])
