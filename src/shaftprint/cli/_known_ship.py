@@ -172,7 +172,7 @@ def _first_test(
     return (
         "Nobody has measured the noise of this ship. A first test of 90 s does: plan "
         f"--within {FIRST_TEST_S:g}s --limit set-point={third}, sail and identify it, and plan again with --after and "
-        "its fingerprint; then what is promised is kept.",
+        "its fingerprint; the noise of the plan is then that of this ship.",
     )
 
 
