@@ -4,7 +4,9 @@ A structure that lacks something misses several neighbouring lines, for every re
 line alone that is far off every model, between two that are not, was moved by what acts at its frequency only.
 """
 
+from collections.abc import Callable
 from dataclasses import replace
+from typing import TypeAlias
 
 from shaftprint.arrays import frozen_bool
 from shaftprint.digits import p_value_text, plain
@@ -18,19 +20,29 @@ from shaftprint.survey._measurement import Measurement
 _USUAL = 0.02
 
 
-def without_stray_line(fit: Identification, measurement: Measurement) -> Measurement | None:
-    """Return a measurement without its stray line; None where there is none.
+Fits: TypeAlias = tuple[Identification, ...]
+
+
+def fits_beside_a_stray_line(fit: Callable[[Measurement], Fits], measurement: Measurement) -> tuple[Fits, Measurement]:
+    """Return the fits to a measurement with what they are of: without its stray line, where they explain the rest.
 
     Parameters
     ----------
     fit
-        A fit.
+        Fits structures to a measurement; by the first of them a line is stray.
     measurement
-        What it was made from.
+        What was measured.
     """
-    stray = stray_line(fit)
+    fits = fit(measurement)
+    stray = stray_line(fits[0])
     if stray is None:
-        return None
+        return fits, measurement
+    rest = _without_line(stray, fits[0], measurement)
+    again = fit(rest)
+    return (again, rest) if explained(again[0]) else (fits, measurement)
+
+
+def _without_line(stray: LineTest, fit: Identification, measurement: Measurement) -> Measurement:
     frequency_hz = _frequency_hz(fit, stray)
     remark = (
         f"it alone lies off every model of the other lines (p = {p_value_text(stray.p_value)}), as where a swell or a "

@@ -27,7 +27,6 @@ from shaftprint.fingerprint import (
 )
 from shaftprint.identify import Identification, Settings
 from shaftprint.identify.comparison import StructureComparison
-from shaftprint.identify.judgement import explained
 from shaftprint.limits import LimitFit
 from shaftprint.models import Structure
 from shaftprint.notebook import Shown, Summary, shortened
@@ -51,7 +50,7 @@ from shaftprint.survey._noise import noise_at_speeds
 from shaftprint.survey._of_vessel import at_speeds, default_structure, expect_one_speed, of_vessel
 from shaftprint.survey._progress import SILENT, Progress
 from shaftprint.survey._ship_numbers import ship_numbers
-from shaftprint.survey._stray_line import without_stray_line
+from shaftprint.survey._stray_line import fits_beside_a_stray_line
 from shaftprint.survey._trial import Trial, load_trial
 from shaftprint.survey._twist import twist_reasons
 from shaftprint.survey._validation_apart import with_validation
@@ -203,12 +202,9 @@ def run(
     speeds = [point.engine_speed_rev_s for point in measurement.working_points.values()]
     chosen = tuple(at_speeds(one, speeds) for one in chosen)
     by_name = settings_by_name(chosen, measurement, trial, settings or _with_priors)
-    fits = fit(chosen, measurement, settings=by_name, rng=rng, progress=progress)
-    rest = without_stray_line(fits[0], measurement)
-    if rest is not None:
-        again = fit(chosen, rest, settings=by_name, rng=rng, progress=progress)
-        if explained(again[0]):
-            fits, measurement = again, rest
+    fits, measurement = fits_beside_a_stray_line(
+        partial(fit, chosen, settings=by_name, rng=rng, progress=progress), measurement
+    )
     alone = legs_alone(fits[0], measurement, settings=by_name, rng=rng)
     offer = _offer(fits, measurement, trial, settings or _with_priors, rng=rng, progress=progress)
     survey = _of_fits(fits, measurement, trial, now=now, progress=progress, alone=alone, offer=offer)
