@@ -32,7 +32,7 @@ def surveyed(tmp_path_factory):
     closed = structure("GAUGE-CLOSED")
     knowledge = Knowledge(
         vessel=vessel.name,
-        ship=assumed_ship(closed, STAN_TUG_LINE, std={}),
+        ship=assumed_ship(closed, {closed.named_as(role): value for role, value in STAN_TUG_LINE.items()}, std={}),
         limits=limits_from_vessel(vessel, set_point_rpm=251.0),
         line=SetPointLine(slope_rpm_per_v=-250.97, offset_v=-5.0),
         noise={share: STAN_TUG_NOISE_AT_SPEEDS[1.0].of_outputs(*closed.outputs) for share in shares},

@@ -10,7 +10,8 @@ from shaftprint.tug import Tug, normalised_truth
 from shaftprint.vessel import load_vessel
 
 CLOSED = structure("GAUGE-CLOSED")
-OTHER = dict(STAN_TUG_LINE) | {"K_p": 4.0, "K_i": 3.0, "t_d": 0.09, "tau_dn": 0.8, "tau_up": 1.9, "g": -0.1}
+TUG = {CLOSED.named_as(role): value for role, value in STAN_TUG_LINE.items()}
+OTHER = TUG | {"K_p": 4.0, "K_i": 3.0, "t_d": 0.09, "tau_dn": 0.8, "tau_up": 1.9, "g": -0.1}
 HERTZ = np.array([0.02, 0.1, 0.5, 1.3, 2.0, 4.0])
 # Densities of what disturbs the torque of the propeller and of the engine [1/Hz], and of the gauge alone.
 OF_PROPELLER, OF_ENGINE, OF_GAUGE = 1e-4, 3e-4, 2e-6
@@ -35,7 +36,7 @@ def by_hand(line):
 
 
 def test_what_disturbs_the_torques_goes_through_the_loop_of_the_other_line():
-    moved = noise_of_line(by_hand(STAN_TUG_LINE), CLOSED, measured_at=STAN_TUG_LINE, values=OTHER)
+    moved = noise_of_line(by_hand(TUG), CLOSED, measured_at=TUG, values=OTHER)
     expected = by_hand(OTHER)
     assert np.abs(moved.density / expected.density - 1.0).max() < 1e-6
     assert moved.outputs == ("n", "M_s")
@@ -43,10 +44,10 @@ def test_what_disturbs_the_torques_goes_through_the_loop_of_the_other_line():
 
 def test_the_same_line_has_the_same_noise():
     level = STAN_TUG_NOISE_AT_SPEEDS[1.0]
-    same = noise_of_line(level, CLOSED, measured_at=STAN_TUG_LINE, values=STAN_TUG_LINE)
+    same = noise_of_line(level, CLOSED, measured_at=TUG, values=TUG)
     assert np.abs(same.density - level.density).max() <= 1e-9 * np.abs(level.density).max()
 
 
 def test_the_line_of_the_stored_noise_is_the_simulated_tug():
     truth = normalised_truth(Tug.stan_tug_1205(), load_vessel("stan-tug-1205"))
-    assert dict(STAN_TUG_LINE) == pytest.approx({name: truth[name] for name in STAN_TUG_LINE}, rel=1e-3)
+    assert TUG == pytest.approx({name: truth[name] for name in TUG}, rel=1e-3)

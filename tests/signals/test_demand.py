@@ -15,6 +15,8 @@ from shaftprint.survey import priors_of
 from shaftprint.vessel import Vessel
 
 LATE_S = 0.08
+# a line of which nothing is known of its bend
+UNBENT = SimpleNamespace(bend=0.0, bend_std=np.inf)
 
 
 def vessel_with_demand(vessel, **changes):
@@ -88,10 +90,11 @@ def test_what_was_found_is_known_of_the_latency(vessel):
         set_point_v=-5.0, load_std=0.001,
     )  # fmt: skip
     found = SetPointDelay(channel="Desired", delay_s=0.052, std_s=0.0003, lines=9)
-    signals = SimpleNamespace(set_point_delay=found, working_point=point, mode="shaftprint", excitations={})
+    of_test = {"working_point": point, "mode": "shaftprint", "excitations": {}, "calibration": UNBENT}
+    signals = SimpleNamespace(set_point_delay=found, **of_test)
     known = vessel_with_demand(vessel, latency_s=0.01, latency_std_s=0.0004)
     prior = priors_of(structure("GAUGE-CLOSED"), known, signals)["t_sp"]
     assert (prior.mean, prior.std) == (0.052, pytest.approx(0.0005))
     assert prior.sources == {"demand noise": 0.0003, "demand latency": 0.0004}
-    without = SimpleNamespace(set_point_delay=None, working_point=point, mode="shaftprint", excitations={})
+    without = SimpleNamespace(set_point_delay=None, **of_test)
     assert "t_sp" not in priors_of(structure("GAUGE-CLOSED"), known, without)

@@ -89,10 +89,12 @@ def noise_of_unknown_ship(vessel: Vessel, structure: Structure, values: Mapping[
         What is assumed of the ship, by parameter.
     """
     assumed = assumed_noise(vessel)
-    is_closed_loop = assumed.legs is STAN_TUG_NOISE_AT_SPEEDS and set(STAN_TUG_LINE) <= set(structure.names)
+    names = {name: role for name, role in structure.roles.items() if role in STAN_TUG_LINE}
+    is_closed_loop = assumed.legs is STAN_TUG_NOISE_AT_SPEEDS and len(names) == len(STAN_TUG_LINE)
+    measured_at = {name: STAN_TUG_LINE[role] for name, role in names.items()}
     legs = {
         share: noise_of_line(
-            level, at_working_point(structure, speed_share=share), measured_at=STAN_TUG_LINE, values=values
+            level, at_working_point(structure, speed_share=share), measured_at=measured_at, values=values
         )
         if is_closed_loop
         else level

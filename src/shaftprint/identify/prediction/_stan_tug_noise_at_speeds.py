@@ -10,8 +10,10 @@ there decides how well inertia and load slope are known. Below 0.01 Hz the level
 from collections.abc import Mapping
 from types import MappingProxyType
 
+from shaftprint.catalogue import ShipRole
 from shaftprint.identify.prediction._noise_levels import NoiseLevels, tabulated_noise
 from shaftprint.identify.prediction._stan_tug_noise import ORDERS_HZ, SLOW_LEVELS, STAN_TUG_NOISE
+from shaftprint.models import Role
 
 _LEVELS: dict[float, tuple[tuple[float, float, float, complex], ...]] = {
     0.70: (
@@ -136,10 +138,18 @@ STAN_TUG_NOISE_AT_SPEEDS: Mapping[float, NoiseLevels] = MappingProxyType(
 )
 """Noise levels of the Stan Tug 1205 in legs, by share of the working-point speed of 1183.8 rpm."""
 
-STAN_TUG_LINE: Mapping[str, float] = MappingProxyType(
+STAN_TUG_LINE: Mapping[Role, float] = MappingProxyType(
     {
-        "K_p": 5.7, "K_i": 4.27, "t_d": 0.0703, "omega_n": 10.3, "zeta": 0.47, "tau_dn": 0.3198, "tau_up": 1.016,
-        "k_q": 2.0, "g": 0.0, "t_sp": 0.0518,
+        ShipRole.PROPORTIONAL_GAIN: 5.7,
+        ShipRole.INTEGRAL_GAIN: 4.27,
+        ShipRole.LOOP_DELAY: 0.0703,
+        ShipRole.ACTUATOR_FREQUENCY: 10.3,
+        ShipRole.ACTUATOR_DAMPING: 0.47,
+        ShipRole.INERTIA_DOWNSTREAM: 0.3198,
+        ShipRole.INERTIA_UPSTREAM: 1.016,
+        ShipRole.LOAD_SLOPE: 2.0,
+        ShipRole.ENGINE_SPEED_SLOPE: 0.0,
+        ShipRole.SET_POINT_LATENCY: 0.0518,
     }
-)  # fmt: skip
-"""The line that has this noise, normalised at the same working point."""
+)
+"""The line that has this noise, normalised at the same working point: its parameters by their roles."""
