@@ -50,4 +50,4 @@ def test_the_same_line_has_the_same_noise():
 
 def test_the_line_of_the_stored_noise_is_the_simulated_tug():
     truth = normalised_truth(Tug.stan_tug_1205(), load_vessel("stan-tug-1205"))
-    assert TUG == pytest.approx({name: truth[name] for name in TUG}, rel=1e-3)
+    assert {name: truth[name] for name in TUG} == pytest.approx(TUG, rel=1e-3)
