@@ -63,7 +63,7 @@ def test_what_was_set_on_purpose_leaves_earlier_tests_out(run, yard):
 def test_the_page_of_the_server_says_the_same(run, yard):
     question = {"kind": "class", "lines": [[{"name": name}, "port"] for name in NAMES]}
     asked = subprocess.Popen(
-        [sys.executable, "-m", "shaftprint.web.calculator", str(2**32)],
+        [sys.executable, "-m", "shaftprint.web.calculator", str(2**32), str(2**30)],
         stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True,
         env=os.environ | {"SHAFTPRINT_STORE": str(yard[1])},
     )  # fmt: skip

@@ -78,7 +78,9 @@ def test_torque_in_every_unit(response, in_volts, vessel, fields, per_v, at_zero
         # -10 to 0 V are 20 to 4 mA, and 100 to 0 %
         pytest.param({"unit": "mA", "v_per_unit": -0.625, "v_at_zero": 2.5}, -1.6, 4.0, id="mA"),
         pytest.param({"unit": "%", "v_per_unit": -0.1}, -10.0, 0.0, id="%"),
-        pytest.param({"unit": "rpm", "v_per_unit": -0.004, "v_at_zero": -0.3}, -250.0, -75.0, id="rpm"),
+        pytest.param(
+            {"unit": "rpm", "v_per_unit": -0.004, "v_at_zero": -0.3, "bend_std": 0.015}, -250.0, -75.0, id="rpm"
+        ),
     ],
 )
 def test_set_point_in_every_unit(response, in_volts, vessel, fields, per_v, at_zero):

@@ -156,7 +156,7 @@ def test_pages_work_with_the_keyboard_and_without_scripts(browser, server):
     page.get_by_role("link", name="Ada").focus()
     page.keyboard.press("Enter")
     page.wait_for_url(f"**/ships/{ADA}/port")
-    page.locator("summary").focus()
+    page.locator("summary", has_text="Note what was done").focus()
     page.keyboard.press("Enter")
     page.get_by_label("Note", exact=True).focus()
     page.keyboard.type("by hand")
