@@ -304,6 +304,19 @@ def test_what_changes_with_time_is_no_gear_ratio(ratio, words):
         compare_speeds(speeds, vessel, rate_hz=2.0, start_s=0.0)
 
 
+def test_a_speed_that_is_late_is_no_slip():
+    """A swing of 10 % and 12 s that is shown 0.4 s late: means of 5 s are 1.5 % apart, to either side."""
+    sensors = [SimpleNamespace(name=name, shaft="engine") for name in ("a", "b")]
+    vessel = SimpleNamespace(sensors=SimpleNamespace(speed=sensors), gearbox=SimpleNamespace(ratio=3.82))
+    time_s = np.arange(2000) / 10.0
+    shown = {
+        name: 20.0 * (1.0 + 0.1 * np.sin(2.0 * np.pi * (time_s - late) / 12.0))
+        for name, late in (("a", 0.0), ("b", 0.4))
+    }
+    speeds = tuple(SimpleNamespace(name=name, channel=name, values=values, gaps=()) for name, values in shown.items())
+    assert compare_speeds(speeds, vessel, rate_hz=10.0, start_s=0.0) == ()
+
+
 def test_a_speed_is_compared_where_it_has_one():
     """Through a gap a straight line goes on, whatever the shaft did meanwhile."""
     sensors = [SimpleNamespace(name=name, shaft="engine") for name in ("a", "b")]
