@@ -136,7 +136,7 @@ offset = "none"
 """
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_masses_that_turn_freely_begin_in_states_that_are_found(tmp_path, run_program):
     """No friction at all: no steady running under a torque, and a record that begins in motion."""
     j_1, j_2, stiffness, damping, step = 1.2e-3, 2.6e-3, 24.0, 3e-3, 1e-5

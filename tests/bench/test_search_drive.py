@@ -197,7 +197,7 @@ def one_way(tmp_path_factory):
     return one, [one_way_record("up", rng, 1.0), one_way_record("down", rng, -1.0)]
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_friction_that_an_offset_hides_leaves_the_other_numbers_right(one_way):
     """In motion that never turns dry friction is a constant: each record's offset takes it."""
     one, records = one_way

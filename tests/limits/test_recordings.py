@@ -84,6 +84,7 @@ def test_a_set_point_with_a_limited_rate(limits_of):
     assert rate.upper - rate.lower < 0.05 * one.levels["r_s_rpm"]
 
 
+@pytest.mark.long
 def test_a_set_point_that_goes_on_in_steps(limits_of):
     """The ship of seed 5 with a set point in steps of 16 rpm instead of messages."""
     _, found = limits_of(5, demand_cycle_s=None, demand_resolution_rpm=16.0)
@@ -94,6 +95,7 @@ def test_a_set_point_that_goes_on_in_steps(limits_of):
     assert step.upper - step.lower < 2.0
 
 
+@pytest.mark.long
 def test_two_limits_that_hold_each_other_in_place_of_the_true_ones(both_torque_limits_of):
     """Seed 103: a slow set point joins first, then messages; neither goes alone, 2 log L 680 worse than the truth."""
     share, lowest_nm, found = both_torque_limits_of(103)
