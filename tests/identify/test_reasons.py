@@ -136,3 +136,13 @@ def test_a_prior_that_the_data_pull_by_three_deviations_is_a_word_and_no_reason(
     about = "what is assumed of t_gauge"
     assert not any(about in reason.sentence for reason in verdict.reasons)
     assert sum(about in caution for caution in verdict.cautions) == 1
+
+
+def test_a_scale_of_the_set_point_that_a_lever_explains_is_a_word_and_no_reason(gauge):
+    """A set point whose line is 0.9 % steeper than its levels said, known to 0.1 %."""
+    fitted, response = gauge
+    verdict = assess(fitted(replace(response, response=1.009 * response.response, covariance=response.covariance)))
+    assert verdict.reasons == ()
+    (caution,) = [one for one in verdict.cautions if "scale of the set point" in one]
+    assert "c_set = 1.009" in caution or "c_set = 1.008" in caution
+    assert not any("scale of the set point" in one for one in assess(fitted()).cautions)

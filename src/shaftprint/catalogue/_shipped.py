@@ -33,8 +33,8 @@ def shipped_structure(name: str, parameters: Container[str] = ()) -> Structure:
     name
         The name.
     parameters
-        Names of its parameters in a file: with the bend of the set point's line among them it is that of several
-        speeds.
+        Names of its parameters in a file, or of those of a structure beside it: with the bend of the set point's line
+        among them it is that of several speeds.
 
     Raises
     ------

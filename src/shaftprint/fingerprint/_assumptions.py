@@ -85,7 +85,7 @@ def _of_engine_side(
     names = {p.role: p.name for p in identification.structure.free}
     inertia, slope = names[ShipRole.INERTIA_UPSTREAM], names.get(ShipRole.ENGINE_SPEED_SLOPE)
     priors = identification.settings.priors
-    if not intervals or inertia not in intervals:
+    if inertia not in intervals:
         return
     elsewhere = {inertia: [share * priors[inertia].mean for share in OTHER_INERTIAS]}
     said = f"an inertia {PERCENT * (OTHER_INERTIAS[1] - 1.0):.0f} % smaller or larger"

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from shaftprint.catalogue import CLOSED_LOOPS, ShipRole, shipped_structure, with_bend
+from shaftprint.catalogue import CLOSED_LOOPS, ShipRole, shipped_structure
 from shaftprint.digits import p_value_text, plain, plain_letters, with_deviation
 from shaftprint.errors import IdentificationError
 from shaftprint.identify import Identification, Settings
@@ -80,9 +80,7 @@ def is_elastic(structure: Structure) -> bool:
 
 
 def _beside(rigid: Structure, name: str, vessel: Vessel) -> Structure:
-    elastic = of_vessel(shipped_structure(name), vessel)
-    if rigid.named_as(ShipRole.SET_POINT_BEND):
-        elastic = with_bend(elastic)
+    elastic = of_vessel(shipped_structure(name, rigid.names), vessel)
     free = {parameter.name for parameter in elastic.free}
     return elastic.held_at(**{p.name: p.value for p in rigid.parameters if p.held and p.name in free})
 
@@ -167,9 +165,7 @@ def begun_at_rigid(elastic: Structure, measurement: Measurement, settings: Setti
     """
     if not is_elastic(elastic):
         return settings
-    rigid = shipped_structure(RIGID)
-    if elastic.named_as(ShipRole.SET_POINT_BEND):
-        rigid = with_bend(rigid)
+    rigid = shipped_structure(RIGID, elastic.names)
     held = {p.name: p.value for p in elastic.parameters if p.held and p.name in {one.name for one in rigid.free}}
     rigid = rigid.held_at(**held)
     known = {name: prior for name, prior in settings.priors.items() if name in {p.name for p in rigid.free}}

@@ -4,18 +4,15 @@ import math
 
 import numpy as np
 
-from shaftprint.catalogue import ShipRole
 from shaftprint.digits import stated
 from shaftprint.identify.judgement._evidence import Evidence, gain_reserve, loop_delay_s
 from shaftprint.identify.judgement._line_quality import crossings_rad_s
 from shaftprint.identify.judgement._phrases import listed, probability
-from shaftprint.identify.judgement._prior_contradictions import strange_priors
+from shaftprint.identify.judgement._prior_contradictions import off_nominal, strange_priors
 from shaftprint.identify.judgement._search_words import wrong_basin_words
 
 # A fit that is better than this probability allows has less noise than its covariance says.
 TOO_GOOD = 0.999
-# So many standard deviations from what was expected are worth a sentence.
-SURPRISING = 3.5
 
 
 def cautions_of(evidence: Evidence) -> tuple[str, ...]:
@@ -78,8 +75,7 @@ def _scale_of_set_point(evidence: Evidence) -> list[str]:
     return [
         f"The scale of the set point, {one.name} = {stated(one.value, one.std, one.unit)}, is not that of its line: "
         "the lever bends, or its levels were others; it is counted in all numbers."
-        for one in evidence.identification.parameters
-        if one.role == ShipRole.SET_POINT_SCALE and abs(one.value - 1.0) > SURPRISING * one.std > 0.0
+        for one in off_nominal(evidence.identification)
     ]
 
 

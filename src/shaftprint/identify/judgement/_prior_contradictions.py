@@ -47,6 +47,15 @@ def strange_priors(identification: Identification) -> tuple[str, ...]:
     )
 
 
+def off_nominal(identification: Identification) -> tuple[Estimate, ...]:
+    """Return the scales of sensors that are off their nominal value by more than their own deviation explains."""
+    return tuple(
+        one
+        for one in identification.parameters
+        if one.role in NOMINAL and abs(one.value - NOMINAL[one.role][0]) > PULLED * one.std > 0.0
+    )
+
+
 def _distances(identification: Identification) -> Iterator[tuple[Estimate, float, str, str, str]]:
     """Return each parameter of which something is assumed, how many deviations it is away, and that in words."""
     priors = identification.settings.priors

@@ -1,6 +1,6 @@
 """What the limited governor is driven by and compared with: set point, speed and engine torque of a whole test."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -9,6 +9,7 @@ from shaftprint.arrays import BoolArray, FloatArray, frozen_bool, frozen_float
 from shaftprint.campaign import Campaign
 from shaftprint.catalogue import AHEAD_S
 from shaftprint.errors import SignalError
+from shaftprint.identify.prediction import first_leg
 from shaftprint.limits.prediction._set_point import GovernorRecord
 from shaftprint.normalisation import Normalisation
 from shaftprint.signals import Signals, deviation
@@ -255,17 +256,13 @@ def _at_another_speed(time_s: FloatArray, campaign: Campaign) -> BoolArray:
     legs, tests = campaign.legs, campaign.of_input().excitations
     if not legs:
         return elsewhere
-    about_v = campaign.offset_v if campaign.sines else min((leg.level_v for leg in legs), key=_far_from(campaign))
+    about_v = campaign.offset_v if campaign.sines else first_leg(campaign).level_v
     ends = [0.0, *(test.stop_s for test in tests), np.inf]
     starts = [*(test.start_s for test in tests), np.inf]
     for place, test in enumerate(tests):
         if test in legs and abs(test.level_v - about_v) > _SAME_LEVEL_V:
             elsewhere |= (time_s >= ends[place]) & (time_s < starts[place + 1])
     return elsewhere
-
-
-def _far_from(campaign: Campaign) -> Callable[[float], float]:
-    return lambda level_v: abs(level_v - campaign.offset_v)
 
 
 def _within(where: BoolArray, before: int, after: int) -> BoolArray:
