@@ -182,12 +182,13 @@ def main() -> None:
     """Sail what is missing, spoil it and print the table."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--seeds", type=int, default=20, help="recordings of each kind of test")
+    parser.add_argument("--first", type=int, default=1, help="seed of the first recording")
     parser.add_argument("--test", choices=TESTS, action="append", help="some kinds alone")
     parser.add_argument("--recordings", type=Path, required=True, help="folder in which recordings are kept")
     parser.add_argument("--write", action="store_true", help=f"put the table into {DOCUMENT.relative_to(ROOT)}")
     options = parser.parse_args()
     options.recordings.mkdir(parents=True, exist_ok=True)
-    seeds = range(1, options.seeds + 1)
+    seeds = range(options.first, options.first + options.seeds)
     rows = [row for test in options.test or TESTS for row in rows_of(test, seeds, options.recordings)]
     header = ["test", "fault", "recordings", "named", "of these as gain or amplitude", "something else said"]
     text = table("Changes within a test", header, rows)
