@@ -113,7 +113,7 @@ def test_hints_settle_what_the_file_leaves_open(tmp_path):
             "time [s];a [V]\n0,1;abc\n0,2;1,5\n0,3;def\n0,4;1,6\n0,5;1,7\n",
             r'2 fields or rows cannot be used\.\n  line 2, column 2 .*found "abc"\.\n  line 4, .*found "def"\.$',
         ),
-        ("time [rad],a [V]\n0,1\n1,2\n", 'line 1: expected a column "time \\[s\\]"'),
+        ("time [rad],a [V]\n0,1\n1,2\n", 'column time: expected times in seconds .*, found the unit "rad"'),
         ("clock [s],a [V]\n0,1\n1,2\n", 'line 1: expected a column "time \\[s\\]"'),
         ("time [s],a [V],a [V]\n0,1,2\n1,2,3\n", "line 1: expected different names, found a twice"),
         ("time [s],\n0,\n1,\n", 'line 1: expected titles like "M_s \\[V\\]", found ""'),
@@ -135,7 +135,7 @@ def test_a_file_that_cannot_be_used_is_explained(tmp_path, text, expected):
         ({"delimiter": 5}, "the hint delimiter cannot be 5"),
         (
             {"sheet": 5},
-            "only the hints columns, delimiter, decimal, encoding, sample_rate_hz for this .*, found the hint sheet",
+            "only the hints columns, delimiter, .*, time_unit, sample_rate_hz for this .*, found the hint sheet",
         ),
         ({"sample_rate_hz": 0.0}, "the hint sample_rate_hz cannot be 0"),
         ({"encoding": "nonsense"}, "expected text in nonsense"),

@@ -108,7 +108,7 @@ def test_column_vectors_and_row_vectors_are_the_same(save):
         ({"fs": 0.0, "M_s": TORQUE}, {}, "channel M_s: expected a positive rate"),
         ({"fs": 1.0, "M_s": TORQUE}, {"sample_rate_hz": -1}, "the hint sample_rate_hz cannot be -1"),
         ({"fs": 1.0, "M_s": TORQUE}, {"sample_rate_hz": True}, "the hint sample_rate_hz cannot be True"),
-        ({"fs": 1.0, "M_s": TORQUE}, {"decimal": ","}, "only the hints columns, sample_rate_hz for this format"),
+        ({"fs": 1.0, "M_s": TORQUE}, {"decimal": ","}, "only the hints columns, time_unit, sample_rate_hz for this"),
         ({"fs": 1.0, "M_s": TORQUE + 1j}, {}, "M_s: expected real numbers, found complex ones"),
     ],
 )

@@ -51,7 +51,9 @@ def read_records(
                 for signal in (one.drive.inputs if planned else one.drive.signals)
             }
             _expect_one_clock(channels, path)
-            records += [_record(path, channels, one, stretch, hold) for stretch in one.drive.records or (None,)]
+            of_file = [_record(path, channels, one, stretch, hold) for stretch in one.drive.records or (None,)]
+            taken = tuple(f"in {path.name} {remark}" for remark in recording.remarks)
+            records += [replace(record, remarks=(*record.remarks, *taken)) for record in of_file]
     names = [record.name for record in records]
     twice = next((name for name in names if names.count(name) > 1), None)
     if twice is not None:
@@ -103,6 +105,7 @@ def _record(
             )
     if last - first < FEWEST:
         raise RecordingError(f"{path}: expected {FEWEST} samples or more in a record, found {last - first}.")
+    _expect_no_jump(path, name, clock, first, last)
     drive, nothing = one.drive, np.zeros(last - first)
     read, remarks = {}, []
     for signal in drive.signals:
@@ -126,6 +129,16 @@ def _record(
         hold=hold if drive.fit.inputs_hold is None else drive.fit.inputs_hold,
     )
     return replace(record, remarks=tuple(remarks))
+
+
+def _expect_no_jump(path: Path, name: str, clock: Channel, first: int, last: int) -> None:
+    jump = next((jump for jump in clock.clock_jumps if first < jump.sample < last), None)
+    if jump is not None:
+        at_s = clock.start_s + jump.sample / clock.rate_hz
+        raise RecordingError(
+            f"{path}, record {name}: expected one clock throughout, found times that jump by {jump.jump_s:.4g} s at "
+            f"{at_s:.6g} s; cut the record there with [[records]] in the drive file."
+        )
 
 
 def _finite(values: FloatArray, channel: Channel, first: int, path: Path) -> FloatArray:

@@ -66,6 +66,9 @@ def campaign_option(command: Callable[..., Any]) -> Callable[..., Any]:
 def reading_options(command: Callable[..., Any]) -> Callable[..., Any]:
     """Add the options that say what a file does not say itself: its rate, its columns, its letters, its messages."""
     rate = click.option("--sample-rate", type=float, help="Samples a second, where the file has no clock [Hz].")
+    time_unit = click.option(
+        "--time-unit", metavar="UNIT", help="Unit of times whose file gives none: s, ms, us, ns, min, h or days."
+    )
     columns = click.option(
         "--columns",
         metavar="NAME,...",
@@ -78,7 +81,7 @@ def reading_options(command: Callable[..., Any]) -> Callable[..., Any]:
     interleaved = click.option(
         "--interleaved", type=click.IntRange(min=2), help="Signals that each TDMS channel holds, sample by sample."
     )
-    return rate(columns(delimiter(decimal(encoding(dbc(interleaved(command)))))))
+    return rate(time_unit(columns(delimiter(decimal(encoding(dbc(interleaved(command))))))))
 
 
 def cut_options(command: Callable[..., Any]) -> Callable[..., Any]:

@@ -1,6 +1,7 @@
 """Opening a logger file with the one reader that knows its format."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from shaftprint.arguments import refusing_none
@@ -10,6 +11,7 @@ from shaftprint.files import reason
 from shaftprint.publication import complete
 from shaftprint.recording._recording import Recording
 from shaftprint.recording.readers import READERS, Reader, read_outside
+from shaftprint.recording.readers._time_scale import FASTEST_HZ, SLOWEST_HZ
 
 
 @refusing_none(RecordingError)
@@ -42,12 +44,24 @@ def read_recording(path: str | Path, *, readers: Sequence[Reader] = READERS, **h
         if path.stat().st_size == 0:
             raise RecordingError(f"{path}: expected a logger file, found an empty one.")
         outside = read_outside(path, **hints) if readers is READERS else None
-        return outside or _the_reader(path, readers).read(path, **hints)
+        return _questioned(outside or _the_reader(path, readers).read(path, **hints))
     except OSError as error:
         raise RecordingError(f"{path}: the file cannot be read: {reason(error)}.") from None
     except RecordingError as error:
         # what is quoted from a damaged file may hold anything
         raise RecordingError(terminal_message(str(error))) from error.__cause__
+
+
+def _questioned(recording: Recording) -> Recording:
+    """Return a recording with a sentence on channels whose rates no shaft line asks for."""
+    odd = [one for one in recording.channels.values() if not SLOWEST_HZ <= one.rate_hz <= FASTEST_HZ]
+    if not odd:
+        return recording
+    sentence = (
+        f"{recording.path}, {odd[0].name}: a rate of {odd[0].rate_hz:g} Hz; is the unit of its times right? State it "
+        "with time_unit= (--time-unit)."
+    )
+    return replace(recording, remarks=(*recording.remarks, sentence))
 
 
 def _the_reader(path: Path, readers: Sequence[Reader]) -> Reader:

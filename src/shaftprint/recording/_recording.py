@@ -33,6 +33,8 @@ class Recording(Shown):
     """Every channel by its name, in the order of the file."""
     left_out: Mapping[str, str] = field(default_factory=dict)
     """Why other channels of the file cannot be used, by their names."""
+    remarks: tuple[str, ...] = ()
+    """What was taken from the file though it does not say it, a sentence each: the unit of its times."""
     began: datetime | None = None
     """Date and time of second 0 by the logger's own clock, where the file gives it."""
     attributes: Mapping[str, str | float] = field(default_factory=dict)
@@ -53,6 +55,7 @@ class Recording(Shown):
             **dict(list(channels.items())[:MOST_CHANNELS]),
             "further channels": shortened(list(channels)[MOST_CHANNELS:]),
             "left out": shortened(self.left_out),
+            "taken for granted": " ".join(self.remarks),
         }
         return Summary(title=f"Recording {self.path.name}", facts=facts)
 

@@ -76,7 +76,7 @@ def measure(
     """
     progress.begin(f"Reading the recording ({mode} mode)", total=1.0)
     with read_recording(recording) as opened:
-        clocks, began = logger_clocks(opened), opened.began
+        clocks, began, remarks = logger_clocks(opened), opened.began, opened.remarks
         watch = watch_levels(opened)
         signals = prepare_signals(watch.recording, trial.vessel, trial.campaign, mode=mode, progress=progress.reach)
         levels = watch.levels()
@@ -90,7 +90,7 @@ def measure(
     # without sines the leg of the working point is what everything is told of
     spectra = estimate_spectra(signals, trial.campaign, method=method) if trial.campaign.sines else legs[0].spectra
     influences = clock_influences(clocks, spectra=spectra, signals=signals)
-    signals = replace(signals, findings=(*signals.findings, *clock_findings(influences)))
+    signals = replace(signals, findings=(*signals.findings, *clock_findings(influences), *remarks))
     latency = trial.vessel.sensors.set_point.latency_s or 0.0
     further = {
         name: estimate_spectra(signals, trial.campaign, method=method, excitation=name)

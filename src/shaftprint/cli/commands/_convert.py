@@ -67,6 +67,8 @@ def command(
                 channels = [_with_unit(opened, name, unit_of) for name in opened.channels]
                 write_by_ending(target, channels, attributes=opened.attributes, overwrite=force)
                 left_out = dict(opened.left_out) | _facts_left_out(opened, target)
+            for remark in recording.remarks:
+                echo(f"{source}: {remark}", err=True)
             for name, reason in left_out.items():
                 echo(f"{source}: left out {name}: {reason}", err=True)
             answer(f"{target}: {len(channels)} channels of {source}.")

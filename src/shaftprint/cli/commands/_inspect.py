@@ -206,9 +206,28 @@ def _print_channels(opened: Recording, levels_of: Mapping[str, Levels]) -> list[
     )
     print_table(Table(title="Channels, raw", columns=columns, rows=tuple(rows)))
     _print_messages(opened)
+    for title, sentences in (("Taken for granted", opened.remarks), ("Jumps of the clock", _jumps(opened))):
+        if sentences:
+            print_findings(title, sentences)
     if opened.began is not None:
         echo(f"Second 0 is {opened.began.isoformat(sep=' ')} by the logger's clock.\n")
     return seen
+
+
+def _jumps(opened: Recording) -> list[str]:
+    """Return where clocks of the file jump, the channels that jump together in one sentence."""
+    channels: dict[tuple[float, float], list[str]] = {}
+    for name, channel in opened.channels.items():
+        for jump in channel.clock_jumps:
+            at_s = channel.start_s + jump.sample / channel.rate_hz
+            channels.setdefault((at_s, jump.jump_s), []).append(name)
+    sentences = [
+        f"At {at_s:.6g} s the times of {', '.join(names)} are set {'back' if jump_s < 0.0 else 'on'} by "
+        f"{abs(jump_s):.4g} s. The samples go on one by one; what follows is on another clock."
+        for (at_s, jump_s), names in channels.items()
+    ]
+    more = [f"{len(sentences) - _MOST_GAPS} more"] if len(sentences) > _MOST_GAPS else []
+    return [*sentences[:_MOST_GAPS], *more]
 
 
 def _print_messages(opened: Recording) -> None:

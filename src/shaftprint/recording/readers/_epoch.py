@@ -1,28 +1,39 @@
 """Clocks that count from 1970, brought to the beginning of the recording."""
 
+import re
 from collections.abc import Mapping
-from datetime import UTC, datetime, timedelta
+from datetime import UTC, datetime, timedelta, timezone
 
 from shaftprint.recording._channel import Channel
 
 # three years: no test lasts that long
 _LATER_THAN_ANY_TEST_S = 1e8
 _LATEST_S = 4e9
+_REFERENCE = re.compile(
+    r"(\d{1,4})-(\d\d?)-(\d\d?)(?:[T ]+(\d\d?):(\d\d?)(?::(\d\d?(?:\.\d*)?))?)?\s*(?:Z|UTC|GMT|([+-])(\d\d?):?(\d\d)?)?"
+)
 
 
-def from_second_zero(channels: Mapping[str, Channel]) -> tuple[dict[str, Channel], datetime | None]:
+def from_second_zero(
+    channels: Mapping[str, Channel], *, has_zone: bool = True, reference_s: float | None = None
+) -> tuple[dict[str, Channel], datetime | None]:
     """Return channels with times from the first of them on, where they count seconds since 1970, and that date.
 
     Parameters
     ----------
     channels
         Channels as the file has them; those that begin within three years of their zero are left as they are.
+    has_zone
+        Whether 1970 is that of UTC; else it is that of the place, and the date has no offset.
+    reference_s
+        Date of the zero of those that are left as they are, in seconds since 1970.
     """
     starts = [channel.start_s for channel in channels.values() if channel.start_s > _LATER_THAN_ANY_TEST_S]
+    zero = datetime(1970, 1, 1, tzinfo=UTC if has_zone else None)
     if not starts:
-        return dict(channels), None
+        return dict(channels), None if reference_s is None else zero + timedelta(seconds=reference_s)
     first = min(starts)
-    began = datetime(1970, 1, 1, tzinfo=UTC) + timedelta(seconds=first) if first < _LATEST_S else None
+    began = zero + timedelta(seconds=first) if first < _LATEST_S else None
     moved = {
         name: channel.on_other_clock(start_s=channel.start_s - first, rate_hz=channel.rate_hz)
         if channel.start_s >= first
@@ -30,3 +41,21 @@ def from_second_zero(channels: Mapping[str, Channel]) -> tuple[dict[str, Channel
         for name, channel in channels.items()
     }
     return moved, began
+
+
+def reference_s(text: str) -> float | None:
+    """Return the seconds since 1970 of the date behind ``seconds since``; None where it is none.
+
+    Without an offset it is in UTC, as the CF conventions have it.
+    """
+    match = _REFERENCE.fullmatch(text.strip())
+    if match is None:
+        return None
+    year, month, day, hour, minute = (int(part or 0) for part in match.groups()[:5])
+    sign, hours, minutes = match.groups()[6:]
+    offset = timedelta(hours=int(hours or 0), minutes=int(minutes or 0)) * (-1 if sign == "-" else 1)
+    try:
+        date = datetime(year, month, day, hour, minute, tzinfo=timezone(offset))
+    except ValueError:
+        return None
+    return (date - datetime(1970, 1, 1, tzinfo=UTC)).total_seconds() + float(match[6] or 0.0)

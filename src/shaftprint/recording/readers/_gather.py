@@ -10,6 +10,7 @@ from shaftprint.escape import printable
 from shaftprint.recording._channel import Channel
 from shaftprint.recording._recording import Recording, sha256_of
 from shaftprint.recording.readers._epoch import from_second_zero
+from shaftprint.recording.readers._time_scale import TimeScale
 
 _SHOWN = 5
 
@@ -24,6 +25,8 @@ class Gathered:
     """What can be used, by name."""
     left_out: dict[str, str] = field(default_factory=dict)
     """Why the others cannot, by name."""
+    scales: list[TimeScale] = field(default_factory=list)
+    """What the numbers of the times of these channels mean."""
 
     def add(self, name: str, make: Callable[[], Channel]) -> None:
         """Keep a channel, or the reason why it cannot be made."""
@@ -55,7 +58,9 @@ class Gathered:
 
     def recording_from_second_zero(self, kind: str, release: Callable[[], None]) -> Recording:
         """Return the same with times from the first sample on, where they count seconds since 1970."""
-        channels, began = from_second_zero(self.expect_some())
+        has_zone = all(scale.has_zone for scale in self.scales)
+        reference_s = next((scale.reference_s for scale in self.scales if scale.reference_s is not None), None)
+        channels, began = from_second_zero(self.expect_some(), has_zone=has_zone, reference_s=reference_s)
         return self._recording(channels, kind, release, began)
 
     def _recording(
@@ -67,6 +72,7 @@ class Gathered:
             format=kind,
             channels=channels,
             left_out=self.left_out,
+            remarks=tuple(dict.fromkeys(scale.remark for scale in self.scales if scale.remark)),
             began=began,
             release=release,
         )

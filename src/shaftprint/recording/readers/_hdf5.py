@@ -14,6 +14,7 @@ from shaftprint.recording.readers._damage import told_as_damage
 from shaftprint.recording.readers._hints import rate_hint
 from shaftprint.recording.readers._native import has_mark
 from shaftprint.recording.readers._opened import Opened
+from shaftprint.recording.readers._time_scale import expect_time_unit
 from shaftprint.recording.readers._vectors import Vector, gather_vectors
 from shaftprint.recording.readers.hdf5_files import expect_storage, is_hdf5, open_hdf5
 
@@ -30,14 +31,14 @@ def is_mine(path: Path) -> bool:
 def read(path: Path, **hints: object) -> Recording:
     """Open an HDF5 or NetCDF-4 file; samples are read as channels are asked for them.
 
-    Hint: ``sample_rate_hz`` where the file has no clock.
+    Hints: ``sample_rate_hz`` where the file has no clock; ``time_unit`` of times without a unit.
 
     Raises
     ------
     RecordingError
         If the file is damaged or no channel can be used.
     """
-    rate = rate_hint(path, hints)
+    rate, unit = rate_hint(path, hints, {"time_unit": str}), expect_time_unit(path, hints.get("time_unit"))
     file = open_hdf5(path, NAME)
     opened = Opened(path, file.close)
     try:
@@ -45,7 +46,7 @@ def read(path: Path, **hints: object) -> Recording:
             vectors: list[Vector] = []
             scalars = {"": _numbers(file.attrs)}
             _walk(path, file, "", opened, vectors, scalars, depth=0)
-            gathered = gather_vectors(path, vectors, scalars, rate_hz=rate)
+            gathered = gather_vectors(path, vectors, scalars, rate_hz=rate, time_unit=unit)
             return gathered.recording_from_second_zero(NAME, opened.close)
     except BaseException:
         opened.close()

@@ -12,6 +12,7 @@ from shaftprint.recording._recording import Recording
 from shaftprint.recording.readers._damage import expect_plausible, told_as_damage
 from shaftprint.recording.readers._hints import rate_hint
 from shaftprint.recording.readers._opened import Opened
+from shaftprint.recording.readers._time_scale import expect_time_unit
 from shaftprint.recording.readers._vectors import Vector, gather_vectors
 
 NAME = "NetCDF classic"
@@ -28,14 +29,14 @@ def is_mine(path: Path) -> bool:
 def read(path: Path, **hints: object) -> Recording:
     """Open a classic NetCDF file; samples are taken from the file as channels are asked for them.
 
-    Hint: ``sample_rate_hz`` where the file has no clock.
+    Hints: ``sample_rate_hz`` where the file has no clock; ``time_unit`` of times without a unit.
 
     Raises
     ------
     RecordingError
         If the file is damaged or no channel can be used.
     """
-    rate = rate_hint(path, hints)
+    rate, unit = rate_hint(path, hints, {"time_unit": str}), expect_time_unit(path, hints.get("time_unit"))
     with told_as_damage(path, NAME):
         file = scipy.io.netcdf_file(path, "r", mmap=False)
         opened = Opened(path, file.close)
@@ -47,7 +48,7 @@ def read(path: Path, **hints: object) -> Recording:
                 if len(variable.shape) == 1 and int(variable.shape[0]) > 1 and variable.typecode() in "hifdb"
             ]
             scalars = {"": _numbers(vars(file)["_attributes"])}
-            gathered = gather_vectors(path, vectors, scalars, rate_hz=rate)
+            gathered = gather_vectors(path, vectors, scalars, rate_hz=rate, time_unit=unit)
             return gathered.recording_from_second_zero(NAME, opened.close)
     except BaseException:
         opened.close()

@@ -1,30 +1,29 @@
 """Files that are named vectors in groups: which are channels, which are clocks, which units they have."""
 
-import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
 
 import numpy as np
 
+from shaftprint.arrays import FloatArray
 from shaftprint.errors import RecordingError
 from shaftprint.recording._channel import Channel, Source
-from shaftprint.recording.readers._clock import SampleClock, clock_of_times, on_clock
+from shaftprint.recording.readers._clock import SampleClock, on_clock
 from shaftprint.recording.readers._gather import Gathered, unique_names
+from shaftprint.recording.readers._time_scale import TimeScale, is_capital, time_scale, unit_in_name
 from shaftprint.recording.readers._units import seconds_in
 from shaftprint.units import plain_unit
 
-TIME_NAMES = ("time", "t", "timestamp", "timestamps", "time_s", "zeit", "tijd")
 _RATES = ("sample_rate_hz", "fs", "sample_rate", "sampling_rate", "sampling_frequency", "samplerate", "rate_hz")
 _STEPS = ("dt", "ts", "wf_increment", "sampling_interval", "sample_time")
 _STARTS = ("start_s", "t0", "wf_start_offset")
 _UNITS = ("units", "unit", "unit_string")
 _RATE_AGREEMENT = 1e-6
-_SINCE = re.compile(r"(\w+) since .*")
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Vector:
     """One vector of numbers."""
 
@@ -55,6 +54,7 @@ def gather_vectors(
     scalars: Mapping[str, Scalars],
     *,
     rate_hz: float | None,
+    time_unit: str = "",
     left_out: Mapping[str, str] | None = None,
 ) -> Gathered:
     """Make a channel of every vector that is no time, each on its own clock, that of its group or the whole file.
@@ -69,6 +69,8 @@ def gather_vectors(
         Numbers by group and name.
     rate_hz
         Sample rate that the caller knows [Hz].
+    time_unit
+        Unit of the times that the caller knows.
     left_out
         Why other variables cannot be used.
 
@@ -79,12 +81,19 @@ def gather_vectors(
     """
     gathered = Gathered(path=path, left_out=dict(left_out or {}))
     axes = {vector.axis for vector in vectors if vector.axis}
-    signals = [vector for vector in vectors if not _is_time(vector) and vector.name not in axes]
+    times = _times_among(vectors)
+    signals = [vector for vector in vectors if vector not in times and vector.name not in axes]
     names = unique_names([(vector.group, vector.name) for vector in signals])
     clocks: dict[tuple[str, str], SampleClock] = {}
 
+    def clock_of(time: Vector) -> SampleClock:
+        key = (time.group, time.name)
+        if key not in clocks:
+            clocks[key] = _clock_of_times(path, time, gathered.scales, time_unit)
+        return clocks[key]
+
     def make(vector: Vector, name: str) -> Channel:
-        clock = _clock(path, vector, vectors, scalars, rate_hz, clocks)
+        clock = _clock(path, vector, _time_of(path, vector, vectors, times), scalars, rate_hz, clock_of)
         channel = Channel(
             name=name,
             unit=plain_unit(_text(vector.attributes, _UNITS)),
@@ -103,29 +112,36 @@ def gather_vectors(
     return gathered
 
 
-def _is_time(vector: Vector) -> bool:
-    return vector.name.lower() in TIME_NAMES or vector.name.lower().endswith("_time")
+def _times_among(vectors: Sequence[Vector]) -> list[Vector]:
+    """Return the vectors that are times by their names; a capital T is one only where its group has no other."""
+    named = [
+        vector for vector in vectors if unit_in_name(vector.name) is not None or vector.name.lower().endswith("_time")
+    ]
+    plain = [vector for vector in named if not is_capital(vector.name)]
+    return [vector for vector in named if not is_capital(vector.name) or not any(_holds(one, vector) for one in plain)]
+
+
+def _holds(time: Vector, vector: Vector) -> bool:
+    """Return whether a time stands in the group of a vector or above it."""
+    return time.group in ("", vector.group) or vector.group.startswith(f"{time.group}/")
 
 
 def _clock(
     path: Path,
     vector: Vector,
-    vectors: Sequence[Vector],
+    time: Vector | None,
     scalars: Mapping[str, Scalars],
     hint_hz: float | None,
-    clocks: dict[tuple[str, str], SampleClock],
+    clock_of: Callable[[Vector], SampleClock],
 ) -> SampleClock:
     """Take the clock from the nearest place that says one, and refuse places that disagree."""
     rates: dict[str, float] = {}
     starts: list[float] = []
-    time = _time_of(path, vector, vectors)
-    if time is not None:
-        clock_key = (time.group, time.name)
-        if clock_key not in clocks:
-            clocks[clock_key] = _clock_of_times(path, time)
-        if clocks[clock_key].is_uneven:
-            return clocks[clock_key]
-        rates[time.name], starts = clocks[clock_key].rate_hz, [clocks[clock_key].start_s]
+    of_times = None if time is None else clock_of(time)
+    if time is not None and of_times is not None:
+        if of_times.is_uneven:
+            return of_times
+        rates[time.name], starts = of_times.rate_hz, [of_times.start_s]
     attributes = {key.lower(): value for key, value in vector.attributes.items() if isinstance(value, int | float)}
     for source in (attributes, scalars.get(vector.group, {}), scalars.get("", {})):
         stated = _said(path, source)
@@ -145,9 +161,9 @@ def _clock(
         raise RecordingError(f"{path}: expected one sample rate, found {listed}.")
     starts += [float(group[key]) for group in (scalars.get("", {}),) for key in _STARTS if key in group]
     start_s = starts[0] if starts else 0.0
-    if time is None:
+    if of_times is None:
         return SampleClock(rate_hz=rate, start_s=start_s)
-    return replace(clocks[(time.group, time.name)], rate_hz=rate, start_s=start_s)
+    return replace(of_times, rate_hz=rate, start_s=start_s)
 
 
 def _said(path: Path, source: Mapping[str, object]) -> dict[str, float]:
@@ -161,15 +177,17 @@ def _said(path: Path, source: Mapping[str, object]) -> dict[str, float]:
     return rates
 
 
-def _time_of(path: Path, vector: Vector, vectors: Sequence[Vector]) -> Vector | None:
+def _time_of(path: Path, vector: Vector, vectors: Sequence[Vector], times: Sequence[Vector]) -> Vector | None:
     """Return the times of a vector: its axis, else ``<name>_time``, else the time of its group, else of the file."""
     if vector.axis:
         for other in _nearest(vector, vectors, (vector.axis.lower(),)):
-            if other.count == vector.count and (_is_time(other) or _seconds(other) is not None):
+            if other.count == vector.count and (other in times or _counts_time(other)):
                 return other
         return None
-    for names in ((f"{vector.name}_time".lower(),), TIME_NAMES):
-        candidates = [other for other in _nearest(vector, vectors, names) if other.count == vector.count]
+    own = f"{vector.name}_time".lower()
+    any_time = {other.name.lower() for other in times if unit_in_name(other.name) is not None}
+    for names in ((own,), any_time):
+        candidates = [other for other in _nearest(vector, times, names) if other.count == vector.count]
         if len(candidates) > 1:
             raise RecordingError(
                 f"{path}: expected one of {' or '.join(other.name for other in candidates)}, found both."
@@ -179,7 +197,7 @@ def _time_of(path: Path, vector: Vector, vectors: Sequence[Vector]) -> Vector | 
     return None
 
 
-def _nearest(vector: Vector, vectors: Iterable[Vector], names: Sequence[str]) -> list[Vector]:
+def _nearest(vector: Vector, vectors: Iterable[Vector], names: Collection[str]) -> list[Vector]:
     """Return the vectors of some names in the same group, else in those that hold it."""
     named = [other for other in vectors if other.name.lower() in names]
     parts = vector.group.split("/")
@@ -190,26 +208,28 @@ def _nearest(vector: Vector, vectors: Iterable[Vector], names: Sequence[str]) ->
     return []
 
 
-def _clock_of_times(path: Path, time: Vector) -> SampleClock:
-    factor = _seconds(time)
-    if factor is None:
-        unit = _text(time.attributes, _UNITS)
-        raise RecordingError(f'{path}, {time.name}: expected times in seconds, found the unit "{unit}".')
-    scale = factor * time.scale
+def _clock_of_times(path: Path, time: Vector, scales: list[TimeScale], time_unit: str) -> SampleClock:
+    unit = _text(time.attributes, _UNITS) or unit_in_name(time.name) or ""
 
-    def read(start: int, stop: int) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
-        return time.source(start, stop).astype(np.float64) * scale + factor * time.offset
+    def read(start: int, stop: int) -> FloatArray:
+        return time.source(start, stop).astype(np.float64) * time.scale + time.offset
 
-    return clock_of_times(path, f"variable {time.name}", time.count, read)
+    scale = time_scale(path, f"variable {time.name}", time.count, read, unit=unit, asked=time_unit)
+    others = {one.reference_s for one in scales if one.reference_s is not None}
+    if scale.reference_s is not None and others - {scale.reference_s}:
+        raise RecordingError(
+            f'{path}, variable {time.name}: expected times since the date of the others, found "{unit}"; write all '
+            "since one date."
+        )
+    clock = scale.clock(path, f"variable {time.name}", time.count, read)
+    scales.append(scale)
+    return clock
 
 
-def _seconds(time: Vector) -> float | None:
-    """Return how many seconds one unit of a vector has; seconds where no unit is given."""
-    unit = _text(time.attributes, _UNITS)
-    since = _SINCE.fullmatch(unit)
-    word = since.group(1) if since else unit
-    words = {"days": 86_400.0, "hours": 3600.0, "minutes": 60.0, "milliseconds": 1e-3, "microseconds": 1e-6}
-    return 1.0 if word == "" else words.get(word.lower(), seconds_in(word))
+def _counts_time(axis: Vector) -> bool:
+    """Return whether the unit of an axis is one of time, or none is given."""
+    unit = _text(axis.attributes, _UNITS)
+    return unit == "" or seconds_in(unit.partition(" since ")[0]) is not None
 
 
 def _text(attributes: Mapping[str, object], keys: Sequence[str]) -> str:

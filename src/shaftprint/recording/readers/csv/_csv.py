@@ -14,12 +14,12 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import RecordingError
-from shaftprint.recording._channel import Channel
+from shaftprint.recording._channel import Channel, Times
 from shaftprint.recording._recording import Recording, sha256_of
 from shaftprint.recording._spool import Spool
 from shaftprint.recording.readers._clock import SampleClock, clock_of_times, on_clock
-from shaftprint.recording.readers._epoch import from_second_zero
 from shaftprint.recording.readers._hints import rate_hint
+from shaftprint.recording.readers._time_scale import TimeScale, expect_time_unit, time_scale
 from shaftprint.recording.readers.csv._dates import dates, seconds_from
 from shaftprint.recording.readers.csv._edge_list import edge_channels
 from shaftprint.recording.readers.csv._header import (
@@ -65,7 +65,8 @@ def read(path: Path, **hints: object) -> Recording:
     """Read a text file, packed with gzip or not, into temporary files, one a column; closing deletes them.
 
     Hints: ``columns``, titles such as ``time [s],M_s [N m]``, where the file has none or others; ``sample_rate_hz``
-    where it has no times; ``delimiter`` and ``decimal`` where it leaves them open; ``encoding`` if it is not UTF-8.
+    where it has no times; ``time_unit`` of a column of times without a unit; ``delimiter`` and ``decimal`` where it
+    leaves them open; ``encoding`` if it is not UTF-8.
     Empty fields become values that are not numbers. A list of edges becomes pulses.
 
     Raises
@@ -73,7 +74,9 @@ def read(path: Path, **hints: object) -> Recording:
     RecordingError
         If header, a row or the clock cannot be used.
     """
-    rate_hz = rate_hint(path, hints, {"columns": str, "delimiter": str, "decimal": str, "encoding": str})
+    texts = ("columns", "delimiter", "decimal", "encoding", "time_unit")
+    rate_hz = rate_hint(path, hints, dict.fromkeys(texts, str))
+    time_unit = expect_time_unit(path, hints.get("time_unit"))
     encoding = cast(str, hints.get("encoding", _encoding(path)))
     try:
         with _text(path, encoding) as file:
@@ -89,7 +92,7 @@ def read(path: Path, **hints: object) -> Recording:
         try:
             with _text(path, encoding) as file:
                 count, began = _unpack(path, file, header, spool)
-            return _recording(path, header, spool, count, began, rate_hz)
+            return _recording(path, header, spool, count, began, rate_hz, time_unit)
         except BaseException:
             spool.close()
             raise
@@ -149,8 +152,6 @@ def _unpack(path: Path, file: TextIO, header: Header, spool: Spool) -> tuple[int
         block = _numbers(path, rows, header, numbers)
         if began is not None and rows:
             block[:, header.time_column] = seconds_from(began, dates)
-        elif header.second not in (None, 1.0):
-            block[:, header.time_column] *= header.second
         spool.append(block)
         count += block.shape[0]
     spool.finish()
@@ -204,12 +205,21 @@ def _parse(lines: Sequence[str], delimiter: str) -> FloatArray:
     return np.loadtxt(lines, dtype=np.float64, delimiter=between, comments=None, ndmin=2)
 
 
-def _clock(path: Path, header: Header, spool: Spool, count: int, rate_hz: float | None) -> SampleClock:
+def _time_scale(path: Path, header: Header, spool: Spool, count: int, asked: str) -> TimeScale:
+    """Return what the numbers of the times mean; dates are seconds already."""
+    if header.time_column is None or header.time_unit is None:
+        return TimeScale()
+    name = f"column {header.names[header.time_column]}"
+    read = spool.source(header.time_column)
+    return time_scale(path, name, count, read, unit=header.time_unit, asked=asked)
+
+
+def _clock(path: Path, header: Header, read: Times | None, count: int, rate_hz: float | None) -> SampleClock:
     """Return the clock of the times, or that of the rate which the caller knows."""
-    if header.time_column is None:
+    if header.time_column is None or read is None:
         return SampleClock(rate_hz=cast(float, rate_hz), start_s=0.0)
     name = f"column {header.names[header.time_column]}"
-    clock = clock_of_times(path, name, count, spool.source(header.time_column))
+    clock = clock_of_times(path, name, count, read)
     if rate_hz is not None and abs(clock.rate_hz / rate_hz - 1.0) > _RATE_AGREEMENT:
         raise RecordingError(
             f"{path}: expected one sample rate, found {clock.rate_hz:g} Hz in {name} and {rate_hz:g} Hz in the hint."
@@ -218,24 +228,34 @@ def _clock(path: Path, header: Header, spool: Spool, count: int, rate_hz: float 
 
 
 def _recording(
-    path: Path, header: Header, spool: Spool, count: int, began: datetime | None, rate_hz: float | None
+    path: Path,
+    header: Header,
+    spool: Spool,
+    count: int,
+    began: datetime | None,
+    rate_hz: float | None,
+    time_unit: str,
 ) -> Recording:
-    edges = edge_channels(path, header, spool, count) if rate_hz is None else None
-    channels = _sampled(path, header, spool, count, rate_hz) if edges is None else edges
-    moved, epoch = from_second_zero(channels)
+    scale = _time_scale(path, header, spool, count, time_unit)
+    read = None if header.time_column is None else scale.reading(spool.source(header.time_column))
+    edges = edge_channels(path, header, spool, count, read) if rate_hz is None else None
+    channels = _sampled(path, header, spool, count, rate_hz, read) if edges is None else edges
     return Recording(
         path=path,
         sha256=sha256_of(path),
         format=NAME if edges is None else f"{NAME}, list of edges",
-        channels=moved,
-        began=began or epoch,
+        channels=channels,
+        began=began or scale.began,
+        remarks=(scale.remark,) if scale.remark else (),
         release=spool.close,
     )
 
 
-def _sampled(path: Path, header: Header, spool: Spool, count: int, rate_hz: float | None) -> dict[str, Channel]:
+def _sampled(
+    path: Path, header: Header, spool: Spool, count: int, rate_hz: float | None, read: Times | None
+) -> dict[str, Channel]:
     """Return the columns as channels with one row a sample."""
-    clock = _clock(path, header, spool, count, rate_hz)
+    clock = _clock(path, header, read, count, rate_hz)
     return {
         name: on_clock(
             Channel(

@@ -6,7 +6,7 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray, IntArray
 from shaftprint.errors import RecordingError
-from shaftprint.recording._channel import Channel
+from shaftprint.recording._channel import Channel, Times
 from shaftprint.recording._spool import Spool
 from shaftprint.recording.readers._clock import uniform_clock
 from shaftprint.recording.readers._edges import pulses_at
@@ -23,7 +23,9 @@ _FEWEST = 10
 _CHANGING = 0.9
 
 
-def edge_channels(path: Path, header: Header, spool: Spool, count: int) -> dict[str, Channel] | None:
+def edge_channels(
+    path: Path, header: Header, spool: Spool, count: int, read: Times | None
+) -> dict[str, Channel] | None:
     """Return the channels of a list of edges, named as its columns; nothing where the file is none.
 
     Columns of a list hold two levels, and the times are not those of a clock, or something changes with every row. A
@@ -37,13 +39,15 @@ def edge_channels(path: Path, header: Header, spool: Spool, count: int) -> dict[
         Its columns.
     count
         Number of rows.
+    read
+        Gives their times [s], where the file has any.
 
     Raises
     ------
     RecordingError
         If times are missing or descend.
     """
-    if header.time_column is None:
+    if header.time_column is None or read is None:
         return None
     columns = [column for column in range(len(header.names)) if column != header.time_column]
     changes = []
@@ -53,9 +57,9 @@ def edge_channels(path: Path, header: Header, spool: Spool, count: int) -> dict[
             return None
         changes.append(found)
     times_alone = not columns
-    if not times_alone and not _are_edges(path, header, spool, count, changes):
+    if not times_alone and not _are_edges(path, header, read, count, changes):
         return None
-    time_s = _times(path, header, spool, count)
+    time_s = _times(path, header, read, count)
     if times_alone:
         return {PULSES: _pulses_of(time_s)}
     return {
@@ -85,7 +89,7 @@ def _changes(spool: Spool, column: int, count: int) -> IntArray | None:
     return np.concatenate(rows)
 
 
-def _are_edges(path: Path, header: Header, spool: Spool, count: int, changes: list[IntArray]) -> bool:
+def _are_edges(path: Path, header: Header, read: Times, count: int, changes: list[IntArray]) -> bool:
     """Return whether columns of two levels are a list of edges, not samples."""
     if max(rows.size for rows in changes) < _FEWEST:
         return False
@@ -93,16 +97,16 @@ def _are_edges(path: Path, header: Header, spool: Spool, count: int, changes: li
         return True
     time = header.time_column or 0
     try:
-        uniform_clock(path, header.names[time], count, spool.source(time))
+        uniform_clock(path, header.names[time], count, read)
     except RecordingError:
         return True
     return False
 
 
-def _times(path: Path, header: Header, spool: Spool, count: int) -> FloatArray:
+def _times(path: Path, header: Header, read: Times, count: int) -> FloatArray:
     """Return the times of all rows [s]."""
     time = header.time_column or 0
-    time_s: FloatArray = spool.source(time)(0, count)
+    time_s: FloatArray = read(0, count)
     where = f"{path}, column {header.names[time]}"
     if count < _FEWEST:
         raise RecordingError(f"{where}: expected the times of at least {_FEWEST} edges, found {count}.")

@@ -8,8 +8,8 @@ from pathlib import Path
 
 from shaftprint.errors import RecordingError
 from shaftprint.escape import csv_cell_text
+from shaftprint.recording.readers._time_scale import time_of, unit_in_name
 from shaftprint.recording.readers._units import seconds_in
-from shaftprint.recording.readers._vectors import TIME_NAMES
 from shaftprint.recording.readers.csv._dates import is_date
 from shaftprint.recording.readers.csv._wrong_rows import wrong_rows
 from shaftprint.units import plain_unit
@@ -21,7 +21,7 @@ _DELIMITERS = (*_MARKS, WHITE_SPACE)
 _SPACED_TITLE = re.compile(r"\S+(?:\s*[\[(][^\])]*[\])])?")
 _COLUMN = re.compile(r"(?P<name>.*\S)\s*[\[(](?P<unit>[^\])]*)[\])]")
 _NUMBER = re.compile(r"[+-]?(\d+([.,]\d*)?|[.,]\d+)([eE][+-]?\d+)?|[+-]?(nan|inf(inity)?)", re.IGNORECASE)
-_TIMES = (*TIME_NAMES, "date", "datetime", "date/time", "date time", "datum", "elapsed time", "x_value")
+_TIMES = ("date", "datetime", "date/time", "date time", "datum", "x_value")
 # LabVIEW's titles end with one for remarks, which its rows of numbers do not have.
 _REMARKS = "comment"
 
@@ -42,13 +42,13 @@ class Header:
     """How many lines stand before the first row of numbers."""
     time_column: int | None
     """Which column holds the times; None where there is none."""
-    second: float | None
-    """How many seconds one unit of time has; None where times are dates, or there are none."""
+    time_unit: str | None
+    """Unit of the times, empty where the file gives none; None where times are dates, or there are none."""
 
     @property
     def dated(self) -> bool:
         """Whether times are dates."""
-        return self.time_column is not None and self.second is None
+        return self.time_column is not None and self.time_unit is None
 
 
 def split_row(line: str, delimiter: str) -> list[str]:
@@ -96,7 +96,7 @@ def read_header(
     names, units = _named(path, first, titles, units)
     rows = lines[first:]
     where = f"{path}, line {max(first, 1)}"
-    time, second = _time(where, rows, delimiter, names, units)
+    time, unit = _time(rows, delimiter, names, units)
     if time is None and not has_rate:
         raise RecordingError(
             f'{where}: expected a column "time [s]", found "{"; ".join(titles)[:80]}"; '
@@ -104,7 +104,7 @@ def read_header(
         )
     if time is not None and len(names) == 1 and has_rate:
         raise RecordingError(f"{where}: expected a channel besides the time, found none.")
-    decimal = decimal or _decimal(path, rows, delimiter, time if second is None else None)
+    decimal = decimal or _decimal(path, rows, delimiter, time if unit is None else None)
     if decimal == delimiter:
         raise RecordingError(f'{path}: expected decimal sign and delimiter to differ, found "{decimal}" for both.')
     return Header(
@@ -114,7 +114,7 @@ def read_header(
         units=tuple(units),
         lines=first,
         time_column=time,
-        second=second,
+        time_unit=unit,
     )
 
 
@@ -156,7 +156,7 @@ def _layout(path: Path, lines: Sequence[str], delimiter: str | None, width: int)
 def _row_below_lone_time(lines: Sequence[str]) -> int | None:
     """Return the place of the first number of a column of times alone, below its title; nothing where there is none."""
     for row, (title, line) in enumerate(pairwise(lines), start=1):
-        if _bare(title.lstrip("\ufeff").lstrip("#%").strip().strip('"')).lower() in _TIMES:
+        if _time_column([_bare(title.lstrip("\ufeff").lstrip("#%").strip().strip('"'))]) is not None:
             return row if _NUMBER.fullmatch(line.strip()) else None
     return None
 
@@ -171,7 +171,7 @@ def _expect_titles_above(path: Path, lines: Sequence[str], first: int, delimiter
     """
     for place in range(first - 1):
         titles = [_bare(title) for title in _title_fields(lines[place], delimiter, 0)]
-        time = next((column for column, name in enumerate(titles) if name.lower() in _TIMES), None)
+        time = _time_column(titles)
         if time is None:
             continue
         rows = [(number + 1, _fields(lines[number], delimiter)) for number in range(place + 1, first)]
@@ -213,19 +213,21 @@ def _fields(line: str, delimiter: str) -> list[str]:
 
 
 def _time(
-    where: str, rows: Sequence[str], delimiter: str, names: Sequence[str], units: Sequence[str]
-) -> tuple[int | None, float | None]:
-    """Return which column holds the times, and how many seconds its unit has, None for dates."""
-    time = next((column for column, name in enumerate(names) if name.lower() in _TIMES), None)
+    rows: Sequence[str], delimiter: str, names: Sequence[str], units: Sequence[str]
+) -> tuple[int | None, str | None]:
+    """Return which column holds the times, and their unit, None for dates."""
+    time = _time_column(names)
     if time is None:
         return None, None
     first = _fields(rows[0], delimiter) if rows else []
     if is_date(first[time] if time < len(first) else ""):
         return time, None
-    second = 1.0 if units[time] == "" else seconds_in(units[time])
-    if second is None:
-        raise RecordingError(f'{where}: expected a column "time [s]", found "{names[time]} [{units[time]}]".')
-    return time, second
+    return time, units[time] or unit_in_name(names[time]) or ""
+
+
+def _time_column(names: Sequence[str]) -> int | None:
+    """Return which column holds the times by its title; one of dates goes before others."""
+    return next((column for column, name in enumerate(names) if name.lower() in _TIMES), time_of(names))
 
 
 def _titles(lines: Sequence[str], first: int, delimiter: str) -> tuple[list[str], list[str]]:
@@ -234,7 +236,7 @@ def _titles(lines: Sequence[str], first: int, delimiter: str) -> tuple[list[str]
     below = _title_fields(lines[first - 1], delimiter, width) if lines else [""]
     if first >= 2:
         above = _title_fields(lines[first - 2], delimiter, width)
-        time = next((column for column, name in enumerate(above) if name.lower() in _TIMES), None)
+        time = _time_column(above)
         if time is not None and len(above) == len(below):
             units = [field.strip("[]() ") for field in below]
             if seconds_in(units[time]) is not None or units[time] in ("", "-"):
@@ -261,7 +263,7 @@ def _named(path: Path, first: int, titles: Sequence[str], units: Sequence[str]) 
         name = match["name"].strip() if match else title
         if not name:
             raise RecordingError(f'{path}, line {max(first, 1)}: expected titles like "M_s [V]", found "{title[:80]}".')
-        names.append(name.replace("/", "|") if name.lower() not in _TIMES else name)
+        names.append(name.replace("/", "|") if _time_column([name]) is None else name)
         parsed_units.append(plain_unit(match["unit"] if match else units[column] if units else ""))
     twice = sorted({name for name in names if names.count(name) > 1})
     if twice:

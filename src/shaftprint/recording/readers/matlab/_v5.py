@@ -14,6 +14,7 @@ from shaftprint.recording._recording import Recording
 from shaftprint.recording._spool import Spool
 from shaftprint.recording.readers._damage import told_as_damage
 from shaftprint.recording.readers._hints import rate_hint
+from shaftprint.recording.readers._time_scale import expect_time_unit
 from shaftprint.recording.readers._vectors import Vector
 from shaftprint.recording.readers.matlab._v5_headers import MatHeader, headers_of
 from shaftprint.recording.readers.matlab._variables import (
@@ -47,18 +48,20 @@ def is_mine(path: Path) -> bool:
 def read(path: Path, **hints: object) -> Recording:
     """Read a MATLAB file into temporary files, one variable after the other.
 
-    Hints: ``sample_rate_hz`` where the file has no clock; ``columns``, what the columns of a table are.
+    Hints: ``sample_rate_hz`` where the file has no clock; ``time_unit`` of times without a unit; ``columns``, what the
+    columns of a table are.
 
     Raises
     ------
     RecordingError
         If the file is damaged, or has no channels or no clock.
     """
-    rate = rate_hint(path, hints, {"columns": str})
+    rate = rate_hint(path, hints, {"columns": str, "time_unit": str})
+    unit = expect_time_unit(path, hints.get("time_unit"))
     with told_as_damage(path, "MATLAB"):
         spool = Spool(path, ())
         try:
-            gathered = gather_variables(path, _survey(path, spool, titles_of(hints)), rate_hz=rate)
+            gathered = gather_variables(path, _survey(path, spool, titles_of(hints)), rate_hz=rate, time_unit=unit)
             spool.finish()
             return gathered.recording_from_second_zero(NAME, spool.close)
         except BaseException:

@@ -13,6 +13,7 @@ from shaftprint.recording._recording import Recording
 from shaftprint.recording.readers._damage import told_as_damage
 from shaftprint.recording.readers._hints import rate_hint
 from shaftprint.recording.readers._opened import Opened
+from shaftprint.recording.readers._time_scale import expect_time_unit
 from shaftprint.recording.readers._vectors import Vector
 from shaftprint.recording.readers.hdf5_files import expect_storage, open_hdf5
 from shaftprint.recording.readers.matlab._variables import (
@@ -50,21 +51,23 @@ def is_mine(path: Path) -> bool:
 def read(path: Path, **hints: object) -> Recording:
     """Open a MATLAB file; samples are read as channels are asked for them.
 
-    Hints: ``sample_rate_hz`` where the file has no clock; ``columns``, what the columns of a table are.
+    Hints: ``sample_rate_hz`` where the file has no clock; ``time_unit`` of times without a unit; ``columns``, what the
+    columns of a table are.
 
     Raises
     ------
     RecordingError
         If the file is damaged, or has no channels or no clock.
     """
-    rate = rate_hint(path, hints, {"columns": str})
+    rate = rate_hint(path, hints, {"columns": str, "time_unit": str})
+    unit = expect_time_unit(path, hints.get("time_unit"))
     file = open_hdf5(path, "MATLAB")
     opened = Opened(path, file.close)
     try:
         with told_as_damage(path, "MATLAB"):
             variables = MatVariables(titles=titles_of(hints))
             _survey(path, file, "", opened, variables)
-            gathered = gather_variables(path, variables, rate_hz=rate)
+            gathered = gather_variables(path, variables, rate_hz=rate, time_unit=unit)
             return gathered.recording_from_second_zero(NAME, opened.close)
     except BaseException:
         opened.close()

@@ -114,7 +114,7 @@ def cell_reason() -> str:
     )
 
 
-def gather_variables(path: Path, variables: MatVariables, *, rate_hz: float | None) -> Gathered:
+def gather_variables(path: Path, variables: MatVariables, *, rate_hz: float | None, time_unit: str = "") -> Gathered:
     """Make a channel of every vector but the times.
 
     The clock of a structure or of the whole file is a vector ``time`` or ``t`` [s], or a scalar ``sample_rate_hz`` or
@@ -128,6 +128,8 @@ def gather_variables(path: Path, variables: MatVariables, *, rate_hz: float | No
         What it holds.
     rate_hz
         Sample rate that the caller knows [Hz].
+    time_unit
+        Unit of the times that the caller knows.
 
     Raises
     ------
@@ -141,7 +143,7 @@ def gather_variables(path: Path, variables: MatVariables, *, rate_hz: float | No
     scalars: Mapping[str, Mapping[str, float]] = {
         group: {name.lower(): value for name, value in numbers.items()} for group, numbers in variables.scalars.items()
     }
-    return gather_vectors(path, named, scalars, rate_hz=rate_hz, left_out=variables.left_out)
+    return gather_vectors(path, named, scalars, rate_hz=rate_hz, time_unit=time_unit, left_out=variables.left_out)
 
 
 def _unit(vector: Vector, texts: Mapping[tuple[str, str], str]) -> dict[str, object]:
