@@ -145,7 +145,7 @@ def _tdms(path, numbers):
         file.write_segment([ChannelObject("G", "timestamp", numbers), ChannelObject("G", "M_s", TORQUE)])
 
 
-@pytest.mark.parametrize(("ending", "write"), [("h5", _hdf5), ("mat", _mat)])
+@pytest.mark.parametrize(("ending", "write"), [("h5", _hdf5), ("mat", _mat), ("tdms", _tdms)])
 def test_every_format_has_the_same_rule(tmp_path, ending, write):
     path = tmp_path / f"log.{ending}"
     write(path, 1000 * AT_S + np.rint(1e3 * SECONDS).astype(np.int64))

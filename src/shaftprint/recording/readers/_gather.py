@@ -27,6 +27,8 @@ class Gathered:
     """Why the others cannot, by name."""
     scales: list[TimeScale] = field(default_factory=list)
     """What the numbers of the times of these channels mean."""
+    remarks: list[str] = field(default_factory=list)
+    """What else was taken from the file though it does not say it, a sentence each."""
 
     def add(self, name: str, make: Callable[[], Channel]) -> None:
         """Keep a channel, or the reason why it cannot be made."""
@@ -72,7 +74,7 @@ class Gathered:
             format=kind,
             channels=channels,
             left_out=self.left_out,
-            remarks=tuple(dict.fromkeys(scale.remark for scale in self.scales if scale.remark)),
+            remarks=tuple(dict.fromkeys((*(scale.remark for scale in self.scales if scale.remark), *self.remarks))),
             began=began,
             release=release,
         )
