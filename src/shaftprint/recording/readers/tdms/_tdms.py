@@ -194,8 +194,8 @@ class _Source:
             raise group
         raise RecordingError(
             f"{self.path}: expected wf_increment in the properties or a channel of times in the group, found neither; "
-            "give the sample rate (--sample-rate), and how many signals a channel holds where they are sample by sample "
-            "(--interleaved)."
+            "give the sample rate (--sample-rate), and how many signals a channel holds where they stand sample by "
+            "sample (--interleaved)."
         )
 
     def _agree(self, rate_hz: float, other_hz: float) -> bool:
