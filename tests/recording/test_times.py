@@ -1,7 +1,7 @@
 """Times that are no seconds: one rule for all readers; what the numbers do not tell is asked for."""
 
 import re
-from datetime import UTC, datetime
+from datetime import UTC, datetime, timedelta, timezone
 
 import h5py
 import numpy as np
@@ -191,3 +191,40 @@ def test_a_capital_t_beside_a_time_is_no_clock(tmp_path):
     scipy.io.savemat(tmp_path / "alone.mat", {"T": SECONDS, "M_s": TORQUE})
     with read_recording(tmp_path / "alone.mat") as recording:
         assert (set(recording.channels), recording.channel("M_s").rate_hz) == ({"M_s"}, 100.0)
+
+
+def _dated(tmp_path, dates):
+    path = tmp_path / "log.csv"
+    rows = "".join(f"{date};{value:.6f}\n" for date, value in zip(dates, TORQUE, strict=True))
+    path.write_text(f"time;M_s [V]\n{rows}")
+    return path
+
+
+def test_dates_with_an_offset_go_on_over_the_change_to_summer_time(tmp_path):
+    # 400 rows from 00:59:58 UTC on, in Europe's local time, which goes from 02:00 to 03:00 at 01:00 UTC
+    began = datetime(2026, 3, 29, 0, 59, 58, tzinfo=UTC)
+    zones = [timezone(timedelta(hours=2 if row >= 200 else 1)) for row in range(400)]
+    at = [began + timedelta(milliseconds=10 * row) for row in range(400)]
+    texts = [one.astimezone(zone).isoformat(timespec="milliseconds") for one, zone in zip(at, zones, strict=True)]
+    assert (texts[199][:13], texts[200][:13]) == ("2026-03-29T01", "2026-03-29T03")
+    with read_recording(_dated(tmp_path, texts)) as recording:
+        torque = recording.channel("M_s")
+        assert (recording.began, torque.rate_hz, torque.count, torque.clock_jumps) == (began, 100.0, 400, ())
+    with pytest.raises(RecordingError, match="expected dates with an offset from UTC throughout, found"):
+        read_recording(_dated(tmp_path, [*texts[:-1], "2026-03-29T03:00:01.990"]))
+
+
+@pytest.mark.parametrize(
+    ("text", "began"),
+    [
+        ("2026-3-5 9:07:{:06.3f}", "2026-03-05T09:07:00"),
+        ("2026/3/15 19:07:{:06.3f}", "2026-03-15T19:07:00"),
+        ("5.3.2026 9:07:{:06.3f}", "2026-03-05T09:07:00"),
+        ("2026-03-05T09:07:{:06.3f}-0330", "2026-03-05T12:37:00+00:00"),
+        ("2026-03-05 09:07:{:06.3f} +05", "2026-03-05T04:07:00+00:00"),
+        ("2026-03-05T09:07:{:06.3f}Z", "2026-03-05T09:07:00+00:00"),
+    ],
+)
+def test_dates_of_one_figure_and_with_zones(tmp_path, text, began):
+    with read_recording(_dated(tmp_path, [text.format(s) for s in SECONDS])) as recording:
+        assert (recording.began, recording.channel("M_s").rate_hz) == (datetime.fromisoformat(began), 100.0)

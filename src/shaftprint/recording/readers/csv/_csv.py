@@ -5,7 +5,7 @@ import gzip
 import io
 import zlib
 from collections.abc import Iterator, Sequence
-from datetime import datetime
+from datetime import UTC, datetime
 from itertools import islice
 from pathlib import Path
 from typing import IO, TextIO, cast
@@ -20,7 +20,7 @@ from shaftprint.recording._spool import Spool
 from shaftprint.recording.readers._clock import SampleClock, clock_of_times, on_clock
 from shaftprint.recording.readers._hints import rate_hint
 from shaftprint.recording.readers._time_scale import TimeScale, expect_time_unit, time_scale
-from shaftprint.recording.readers.csv._dates import dates, seconds_from
+from shaftprint.recording.readers.csv._dates import dates, has_offset, seconds_from
 from shaftprint.recording.readers.csv._edge_list import edge_channels
 from shaftprint.recording.readers.csv._header import (
     WHITE_SPACE,
@@ -140,6 +140,7 @@ def _unpack(path: Path, file: TextIO, header: Header, spool: Spool) -> tuple[int
         file.readline()
     count, first_line = 0, header.lines + 1
     began: np.datetime64 | None = None
+    in_utc = False
     while lines := file.readlines(_BLOCK_CHARACTERS):
         if header.decimal == ",":
             lines = [line.replace(",", ".") for line in lines]
@@ -147,7 +148,7 @@ def _unpack(path: Path, file: TextIO, header: Header, spool: Spool) -> tuple[int
         rows = [line for line in lines if not line.isspace()]
         first_line += len(lines)
         if header.dated and rows:
-            rows, dates = _without_dates(path, rows, header)
+            rows, dates, in_utc = _without_dates(path, rows, header)
             began = dates[0] if began is None else began
         block = _numbers(path, rows, header, numbers)
         if began is not None and rows:
@@ -155,13 +156,14 @@ def _unpack(path: Path, file: TextIO, header: Header, spool: Spool) -> tuple[int
         spool.append(block)
         count += block.shape[0]
     spool.finish()
-    return count, None if began is None else cast("datetime", began.item())
+    date = None if began is None else cast("datetime", began.item())
+    return count, date.replace(tzinfo=UTC) if date is not None and in_utc else date
 
 
 def _without_dates(
     path: Path, rows: Sequence[str], header: Header
-) -> "tuple[list[str], np.ndarray[tuple[int], np.dtype[np.datetime64]]]":
-    """Return rows with zeros in place of their dates, and the dates."""
+) -> "tuple[list[str], np.ndarray[tuple[int], np.dtype[np.datetime64]], bool]":
+    """Return rows with zeros in place of their dates, the dates, and whether these are in UTC."""
     plain, texts = [], []
     time = cast(int, header.time_column)
     for row in rows:
@@ -169,7 +171,7 @@ def _without_dates(
         texts.append(fields[time].strip().strip('"') if time < len(fields) else "")
         fields[min(time, len(fields) - 1)] = "0"
         plain.append(header.delimiter.join(fields))
-    return plain, dates(path, texts)
+    return plain, dates(path, texts), has_offset(texts[0])
 
 
 def _numbers(path: Path, lines: Sequence[str], header: Header, numbers: Sequence[int]) -> FloatArray:

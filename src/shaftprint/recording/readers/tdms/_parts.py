@@ -52,8 +52,9 @@ class Part:
     def increment_s(self) -> float | None:
         """Time from one sample to the next [s]; None where none is given."""
         increment = self.told.get("wf_increment")
-        given = isinstance(increment, int | float) and np.isfinite(increment) and increment > 0.0
-        return float(increment) if given else None
+        if not isinstance(increment, int | float) or not (np.isfinite(increment) and increment > 0.0):
+            return None
+        return float(increment)
 
     def start_s(self, began: np.datetime64 | None) -> float:
         """Return when it begins, in seconds from a date on, or from nothing known."""
