@@ -1,7 +1,7 @@
 """Kinds of text that loggers and spreadsheets write."""
 
 import gzip
-from datetime import datetime
+from datetime import UTC, datetime
 
 import numpy as np
 import pytest
@@ -61,7 +61,7 @@ def test_dates(tmp_path, dates, began):
     channel, values, recording = _read(path)
     assert values == TORQUE
     assert (channel.rate_hz, channel.start_s) == (10.0, 0.0)
-    assert recording.began == datetime(*began)  # noqa: DTZ001
+    assert recording.began == datetime(*began, tzinfo=UTC if dates[0].endswith("Z") else None)
 
 
 def test_seconds_since_1970(tmp_path):
