@@ -1,5 +1,7 @@
 """HDF5 and NetCDF-4 files of other programs: vectors of numbers are channels."""
 
+from collections.abc import Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +23,8 @@ from shaftprint.recording.readers.hdf5_files import expect_storage, is_hdf5, ope
 NAME = "HDF5 or NetCDF-4"
 
 _MOST_COLUMNS = 64
+# whole, real and logical numbers
+_NUMBERS = "fiub"
 
 
 def is_mine(path: Path) -> bool:
@@ -43,57 +47,105 @@ def read(path: Path, **hints: object) -> Recording:
     opened = Opened(path, file.close)
     try:
         with told_as_damage(path, NAME):
-            vectors: list[Vector] = []
-            scalars = {"": _numbers(file.attrs)}
-            _walk(path, file, "", opened, vectors, scalars, depth=0)
-            gathered = gather_vectors(path, vectors, scalars, rate_hz=rate, time_unit=unit)
+            found = _Found(scalars={"": _numbers(file.attrs)})
+            _walk(path, file, "", opened, found, depth=0)
+            gathered = gather_vectors(
+                path, found.vectors, found.scalars, rate_hz=rate, time_unit=unit, left_out=found.left_out
+            )
             return gathered.recording_from_second_zero(NAME, opened.close)
     except BaseException:
         opened.close()
         raise
 
 
-def _walk(
-    path: Path,
-    group: Any,
-    name: str,
-    opened: Opened,
-    vectors: list[Vector],
-    scalars: dict[str, dict[str, float]],
-    *,
-    depth: int,
-) -> None:
+@dataclass(frozen=True, kw_only=True, slots=True)
+class _Found:
+    """What a file holds."""
+
+    scalars: dict[str, dict[str, float]]
+    vectors: list[Vector] = field(default_factory=list)
+    left_out: dict[str, str] = field(default_factory=dict)
+
+
+def _walk(path: Path, group: Any, name: str, opened: Opened, found: _Found, *, depth: int) -> None:
     """Collect the vectors and numbers of a group and of those in it; links may make circles, so to a depth only."""
     for key, item in group.items():
         inside = f"{name}/{key}" if name else key
         if isinstance(item, h5py.Group) and depth < 8:
-            scalars[inside] = _numbers(item.attrs)
-            _walk(path, item, inside, opened, vectors, scalars, depth=depth + 1)
-        elif isinstance(item, h5py.Dataset) and item.dtype.kind in "fiu" and item.shape is not None:
-            if item.size == 1:
-                scalars.setdefault(name, {})[key] = float(np.asarray(item[()]).ravel()[0])
-            elif item.ndim == 1 and item.size > 1:
-                vectors.append(_vector(path, item, key, name, opened))
-            elif item.ndim == 2 and 1 < item.shape[1] <= _MOST_COLUMNS < item.shape[0]:
-                vectors += [
-                    _vector(path, item, f"{key} column {column + 1}", name, opened, column)
-                    for column in range(item.shape[1])
-                ]
+            found.scalars[inside] = _numbers(item.attrs)
+            _walk(path, item, inside, opened, found, depth=depth + 1)
+        elif isinstance(item, h5py.Dataset) and item.shape is not None and item.size:
+            _keep(path, item, key, name, opened, found)
 
 
-def _vector(path: Path, item: Any, key: str, group: str, opened: Opened, column: int | None = None) -> Vector:
-    count = int(item.shape[0])
+def _keep(path: Path, item: Any, key: str, group: str, opened: Opened, found: _Found) -> None:
+    """Sort a data set into its kind: a number, a vector of any shape, columns or rows, a table, or none of them."""
+    inside = f"{group}/{key}" if group else key
+    axes = [axis for axis, length in enumerate(item.shape) if length > 1]
+    if item.dtype.names is not None and len(axes) == 1:
+        _keep_table(path, item, inside, axes[0], opened, found)
+    elif item.dtype.kind not in _NUMBERS:
+        # one text alone says something of the file and is no signal
+        found.left_out |= {inside: f"expected real numbers, found {_kind(item.dtype)}."} if axes else {}
+    elif not axes:
+        found.scalars.setdefault(group, {})[key] = float(np.asarray(item[()]).ravel()[0])
+    elif len(axes) == 1:
+        found.vectors.append(_vector(path, item, key, group, opened, axes[0]))
+    else:
+        few = [axis for axis in axes if item.shape[axis] <= _MOST_COLUMNS]
+        if item.ndim != 2 or len(few) != 1:
+            size = " x ".join(map(str, item.shape))
+            found.left_out[inside] = (
+                f"expected a vector or at most {_MOST_COLUMNS} of them side by side, found an array of {size}; save "
+                "each signal as a vector of its own."
+            )
+            return
+        word = "row" if few[0] == 0 else "column"
+        found.vectors.extend(
+            _vector(path, item, f"{key} {word} {place + 1}", group, opened, 1 - few[0], place)
+            for place in range(item.shape[few[0]])
+        )
+
+
+def _keep_table(path: Path, item: Any, inside: str, along: int, opened: Opened, found: _Found) -> None:
+    """Take the fields of a compound type as vectors in a group of their own."""
+    for name in item.dtype.names:
+        kind = item.dtype[name]
+        if kind.kind not in _NUMBERS or kind.shape:
+            found.left_out[f"{inside}/{name}"] = f"expected real numbers, found {_kind(kind)}."
+            continue
+        expect_storage(path, inside, item)
+        found.vectors.append(
+            Vector(
+                name=name,
+                group=inside,
+                count=int(item.shape[along]),
+                source=_source(path, name, item.fields(name), opened, along, item.ndim, fills=()),
+            )
+        )
+
+
+def _kind(dtype: np.dtype[Any]) -> str:
+    if dtype.names is not None or dtype.kind == "c":
+        return "a table or complex numbers"
+    return "several numbers a row" if dtype.shape else "text" if dtype.kind in "OSU" else str(dtype)
+
+
+def _vector(path: Path, item: Any, key: str, group: str, opened: Opened, along: int, place: int = 0) -> Vector:
+    """Return what lies along one axis of a data set, at one place of its other axis."""
     expect_storage(path, key, item)
     attributes = {name: _plain(value) for name, value in item.attrs.items() if not name.isupper()}
     scale = float(np.asarray(item.attrs.get("scale_factor", 1.0)).ravel()[0])
     offset = float(np.asarray(item.attrs.get("add_offset", 0.0)).ravel()[0])
-    scales = item.dims[0].keys() if item.dims[0] else []
-    axis = str(item.dims[0][0].name).rsplit("/", 1)[-1] if len(item.dims[0]) else ""
+    dimension = item.dims[along]
+    scales = dimension.keys() if dimension else []
+    axis = str(dimension[0].name).rsplit("/", 1)[-1] if len(dimension) else ""
+    fills = tuple(item.attrs[name] for name in ("_FillValue", "missing_value") if name in item.attrs)
     return Vector(
         name=key,
         group=group,
-        count=count,
-        source=_source(path, key, item, opened, column),
+        count=int(item.shape[along]),
+        source=_source(path, key, item, opened, along, item.ndim, place=place, fills=fills),
         axis=axis if scales and axis != key else "",
         attributes=attributes,
         scale=scale,
@@ -101,13 +153,22 @@ def _vector(path: Path, item: Any, key: str, group: str, opened: Opened, column:
     )
 
 
-def _source(path: Path, name: str, item: Any, opened: Opened, column: int | None) -> Source:
-    fills = [item.attrs[key] for key in ("_FillValue", "missing_value") if key in item.attrs]
-
+def _source(
+    path: Path,
+    name: str,
+    item: Any,
+    opened: Opened,
+    along: int,
+    axes: int,
+    *,
+    fills: Sequence[Any],
+    place: int = 0,
+) -> Source:
     def read_samples(start: int, stop: int) -> NDArray[Any]:
         opened.expect_open(name)
+        where = tuple(slice(start, stop) if axis == along else place for axis in range(axes))
         try:
-            counts: NDArray[Any] = item[start:stop] if column is None else item[start:stop, column]
+            counts: NDArray[Any] = item[where]
         except (OSError, RuntimeError) as error:
             raise RecordingError(f"{path}, channel {name}: samples [{start}, {stop}) are damaged ({error}).") from None
         if counts.dtype == np.int16 and not fills:
