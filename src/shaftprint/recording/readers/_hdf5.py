@@ -86,7 +86,8 @@ def _keep(path: Path, item: Any, key: str, group: str, opened: Opened, found: _F
         _keep_table(path, item, inside, axes[0], opened, found)
     elif item.dtype.kind not in _NUMBERS:
         # one text alone says something of the file and is no signal
-        found.left_out |= {inside: f"expected real numbers, found {_kind(item.dtype)}."} if axes else {}
+        if axes:
+            found.left_out[inside] = f"expected real numbers, found {_kind(item.dtype)}."
     elif not axes:
         found.scalars.setdefault(group, {})[key] = float(np.asarray(item[()]).ravel()[0])
     elif len(axes) == 1:
