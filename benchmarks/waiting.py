@@ -41,7 +41,7 @@ def _test(folder: Path) -> tuple[str, ...]:
 
 
 def _exports(folder: Path, scratch: Path, repetitions: int) -> list[Run]:
-    words = ("export", "fmu", str(folder), "-o", str(scratch / "line.fmu"), "--force")
+    words = ("export", "fmu", str(folder), "--platform", "all", "-o", str(scratch / "line.fmu"), "--force")
     return [_shaftprint(*words) for _ in range(repetitions)]
 
 

@@ -5,6 +5,7 @@ from xml.etree import ElementTree as ET
 
 import pytest
 
+from shaftprint.errors import ExportError
 from shaftprint.fingerprint import read_fingerprint
 
 
@@ -65,6 +66,24 @@ def test_name_of_the_vessel_by_default(run, demo, tmp_path, monkeypatch):
     assert again.exit_code == 1
     assert "--force" in again.stderr
     assert run("export", "fmu", demo[0], "--source-only", "--force").exit_code == 0
+
+
+def test_a_system_that_fails_is_named_and_the_others_are_written(run, demo, tmp_path, monkeypatch):
+    def build(folder, sources, name, binary):
+        if name == "win64":
+            raise ExportError("FMU for win64: the compiler was ended after 600 s.")
+        binary.write_bytes(b"")
+
+    monkeypatch.setattr("shaftprint.export._fmu.build_binary", build)
+    result = run("export", "fmu", demo[0], "--platform", "all", "-o", tmp_path / "tug.fmu")
+    assert result.exit_code == 1
+    said = " ".join(result.stderr.split())
+    assert "has binaries for linux64, linux-arm64, darwin64, darwin-arm64 only. FMU for win64: the compiler was" in said
+    _, names = description(tmp_path / "tug.fmu")
+    assert sum(name.startswith("binaries/") for name in names) == 4
+    alone = run("export", "fmu", demo[0], "--platform", "win64", "-o", tmp_path / "win.fmu")
+    assert alone.exit_code == 1
+    assert not (tmp_path / "win.fmu").exists()
 
 
 def test_mistakes_end_in_a_sentence_and_leave_nothing(run, demo, tmp_path):

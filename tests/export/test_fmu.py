@@ -4,6 +4,7 @@ import ctypes
 import shutil
 import threading
 import zipfile
+from xml.etree import ElementTree as ET
 
 import numpy as np
 import pytest
@@ -94,6 +95,29 @@ def test_outputs_say_which_inputs_they_show_at_once(exported, tmp_path, name, re
     inputs = {variable.name for variable in found.modelVariables if variable.causality == "input"}
     shown = {u.variable.name for u in found.outputs if inputs & {v.name for v in u.dependencies}}
     assert shown == reached
+
+
+@pytest.mark.parametrize("version", [2, 3])
+def test_the_name_of_the_model_is_a_name_and_its_title_is_in_the_words(exported, tmp_path, version):
+    """OMSimulator refuses other names; libcosim and ecos look for files and sets by them."""
+    found = described(exported, tmp_path / "Stan-Tug 1205, port.fmu", GAUGE[0], version=version)
+    assert found.modelName == found.coSimulation.modelIdentifier == "Stan_Tug_1205__port"
+    assert found.description.startswith("simulated tug, GAUGE-CLOSED: ")
+
+
+@pytest.mark.parametrize("name", ["GAUGE-CLOSED", "FREE-PITCH", "GAUGE-HYBRID"])
+def test_the_reference_of_a_state_is_its_place(exported, tmp_path, name):
+    """OMSimulator takes the reference of a state, which its derivative names, for the state's place in the list."""
+    write_fmu(exported(structure(name)), tmp_path / "tug.fmu", version=3, platforms=[], samples=0)
+    with zipfile.ZipFile(tmp_path / "tug.fmu") as archive:
+        root = ET.fromstring(archive.read("modelDescription.xml"))  # noqa: S314
+    listed = list(root.find("ModelVariables"))
+    derivatives = [variable for variable in listed if variable.get("derivative")]
+    assert derivatives
+    for variable in derivatives:
+        state = listed[int(variable.get("derivative")) - 1]
+        assert state.get("valueReference") == variable.get("derivative")
+        assert variable.get("name") == f"der({state.get('name')})"
 
 
 def test_equal_models_give_equal_files(exported, tmp_path):
@@ -380,13 +404,39 @@ def test_systems_are_compiled_together_and_stand_in_their_order(exported, tmp_pa
     assert shares == [0.5, 1.0]
 
 
-def test_a_compiler_that_fails_leaves_no_file(exported, tmp_path, compile_by):
+def test_a_compiler_that_fails_costs_its_own_system_only(exported, tmp_path, compile_by):
     def build(folder, sources, name, binary):
         if name == "win64":
             raise ExportError("FMU for win64: no compiler")
         binary.write_bytes(b"")
 
     compile_by(build)
+    written = write_fmu(exported(*TORQUE), tmp_path / "m.fmu", platforms=["win64", "linux64"])
+    assert (written.platforms, written.failed) == (("linux64",), ("FMU for win64: no compiler",))
+    with zipfile.ZipFile(tmp_path / "m.fmu") as archive:
+        assert [name for name in archive.namelist() if name.startswith("bin")] == ["binaries/linux64/m.so"]
     with pytest.raises(ExportError, match="FMU for win64"):
-        write_fmu(exported(*TORQUE), tmp_path / "m.fmu", platforms=["linux64", "win64"])
-    assert not (tmp_path / "m.fmu").exists()
+        write_fmu(exported(*TORQUE), tmp_path / "other.fmu", platforms=["win64"])
+    assert not (tmp_path / "other.fmu").exists()
+
+
+def test_this_system_is_compiled_for_by_default(exported, tmp_path, compile_by):
+    compile_by(lambda folder, sources, name, binary: binary.write_bytes(b""))
+    assert write_fmu(exported(*TORQUE), tmp_path / "m.fmu").platforms == (host_platform(),)
+
+
+def test_what_was_compiled_is_kept(exported, tmp_path, monkeypatch):
+    """The second time a compiler that cannot compile any more is not asked; other sources are compiled."""
+    if shutil.which("cc") is None:
+        pytest.skip("there is no C compiler called cc")
+    monkeypatch.setenv("SHAFTPRINT_CACHE", str(tmp_path / "kept"))
+    calls = tmp_path / "calls"
+    compiler = tmp_path / "cc"
+    compiler.write_text(f'#!/bin/sh\necho >> {calls}\nexec {shutil.which("cc")} "$@"\n')
+    compiler.chmod(0o755)
+    monkeypatch.setattr("shaftprint.export._fmu_build._host_compiler", lambda: str(compiler))
+    for _ in range(2):
+        write_fmu(exported(*TORQUE), tmp_path / "m.fmu", overwrite=True)
+        assert calls.read_text() == "\n"
+    write_fmu(exported(*GAUGE), tmp_path / "m.fmu", overwrite=True)
+    assert calls.read_text() == "\n\n"

@@ -49,6 +49,14 @@ def test_a_line_with_its_propeller_gives_speed_and_torque(exported, tmp_path):
     assert (rpm.get("rad"), rpm.get("s")) == ("1", "-1")
 
 
+def test_the_simulator_finds_it_by_the_name_of_the_model(exported, tmp_path):
+    model = exported(structure("GAUGE-CLOSED"))
+    write_fmu(model, tmp_path / "Tug 1205, port.fmu", platforms=())
+    with zipfile.ZipFile(tmp_path / "Tug 1205, port.fmu") as archive:
+        name = ET.fromstring(archive.read("modelDescription.xml")).get("modelName")  # noqa: S314
+    assert write_osp(model, tmp_path / "Tug 1205, port.fmu").name == f"{name}_OspModelDescription.xml"
+
+
 @pytest.mark.parametrize("name", ["OL1", "GAUGE-CORE"])
 def test_torque_in_and_speed_out_are_a_mechanical_port(exported, tmp_path, name):
     groups, _ = groups_of(write_osp(exported(structure(name)), tmp_path / "tug.fmu"))

@@ -39,7 +39,8 @@ def test_values_come_back_bit_for_bit(exported, tmp_path):
     root = read(write_ssv(model, tmp_path / "tug.ssv"))
     assert root.tag == f"{SSV}ParameterSet"
     assert root.get("version") == "1.0"
-    assert "GAUGE-CLOSED" in root.get("name")
+    assert root.get("name") == "tug"
+    assert root.get("description") == "simulated tug, GAUGE-CLOSED"
     found = {entry.get("name"): entry for entry in root.iter(f"{SSV}Parameter")}
     assert float(found["K_p"][0].get("value")) == 4.639315938308769
     assert float(found["t_gauge"][0].get("value")) == -0.00012532915688092308

@@ -164,11 +164,13 @@ def test_xml_of_the_fmu_of_ssp_and_of_osp_gives_every_text_back(tmp_path_factory
         write_fmu(model, folder / "tug.fmu", version=version, platforms=(), overwrite=True)
         with zipfile.ZipFile(folder / "tug.fmu") as archive:
             root = ET.fromstring(archive.read("modelDescription.xml"))  # noqa: S314
-        assert root.get("modelName") == title
+        assert root.get("modelName") == "tug"
+        assert root.get("description").startswith(f"{title}: ")
         words = [element.get("description", "") for element in root.iter()]
         assert sum(entry.endswith(f", {seen(text)}") for entry in words) >= 2
     write_ssv(model, folder / "tug.ssv", overwrite=True)
-    assert ET.parse(folder / "tug.ssv").getroot().get("name") == title  # noqa: S314
+    entry = ET.parse(folder / "tug.ssv").getroot()  # noqa: S314
+    assert (entry.get("name"), entry.get("description")) == ("tug", title)
     ET.parse(write_osp(model, folder / "tug.fmu", overwrite=True))  # noqa: S314
 
 

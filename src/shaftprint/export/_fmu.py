@@ -17,7 +17,7 @@ from shaftprint.arguments import refusing_none
 from shaftprint.errors import ExportError
 from shaftprint.escape import printable
 from shaftprint.export._c_text import identifier
-from shaftprint.export._fmu_build import PLATFORMS, build_binary, can_build
+from shaftprint.export._fmu_build import PLATFORMS, build_binary, host_platform
 from shaftprint.export._fmu_description import (
     FmuDescription,
     build_description,
@@ -51,6 +51,8 @@ class WrittenFmu:
     """Version of the interface."""
     platforms: tuple[str, ...]
     """Systems with a binary."""
+    failed: tuple[str, ...]
+    """A sentence for each system whose binary was asked for and could not be compiled."""
     internal_step_s: float
     """Internal step of co-simulation [s]."""
     largest_pole_rad_s: float
@@ -82,7 +84,8 @@ def write_fmu(
     version
         Version of the Functional Mock-up Interface.
     platforms
-        Systems to compile for, of ``PLATFORMS``; all that can be built here if not given, none for sources only.
+        Systems to compile for, of ``PLATFORMS``; this computer's if not given, none for sources only. One that fails
+        beside others is left out of the file and stands in ``failed``.
     samples
         How many samples of the parameters it holds besides the estimate.
     rng
@@ -95,7 +98,8 @@ def write_fmu(
     Raises
     ------
     ExportError
-        If a number is not finite, a time constant is too short, there is no compiler, or no source of samples.
+        If a number is not finite, a time constant is too short, nothing that was asked for could be compiled, or there
+        is no source of samples.
     StructureError
         If a block of the structure has no equations in time.
     FileExistsError
@@ -103,7 +107,7 @@ def write_fmu(
     """
     if samples and rng is None:
         raise ExportError("FMU of posterior samples: expected rng, a source of random numbers, found none.")
-    fmu_path, wanted = Path(path), can_build() if platforms is None else tuple(dict.fromkeys(platforms))
+    fmu_path, wanted = Path(path), (host_platform(),) if platforms is None else tuple(dict.fromkeys(platforms))
     ready = fmu_program(model.structure, model.values)
     draws = posterior_deviations(model, samples, rng if rng is not None else np.random.default_rng(0))
     pole = largest_pole(ready, model.values + draws)
@@ -117,11 +121,12 @@ def write_fmu(
     )
     description, texts = _described(model, equations, identifier(fmu_path.stem), version)
     with written_whole(fmu_path, overwrite=overwrite) as part, tempfile.TemporaryDirectory() as folder:
-        _pack(part, Path(folder), description, texts, version, wanted, progress)
+        built, failed = _pack(part, Path(folder), description, texts, version, wanted, progress)
     return WrittenFmu(
         path=fmu_path,
         version=version,
-        platforms=wanted,
+        platforms=built,
+        failed=failed,
         internal_step_s=equations.settings[2],
         largest_pole_rad_s=pole,
         model_exchange=description.model_exchange,
@@ -199,8 +204,8 @@ def _pack(
     version: Literal[2, 3],
     platforms: Sequence[str],
     progress: Callable[[float], None] | None,
-) -> None:
-    """Compile in a folder and write the archive."""
+) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Compile in a folder and write the archive; return the systems of its binaries, and why others have none."""
     members: dict[str, bytes] = {
         "modelDescription.xml": description_of_fmi_2(d) if version == 2 else description_of_fmi_3(d)
     }
@@ -209,43 +214,52 @@ def _pack(
         (folder / name).write_bytes(text.encode())
     if version == 3:
         members["sources/buildDescription.xml"] = build_description(d)
-    members.update(_binaries(folder, d, version, platforms, progress))
+    binaries, failed = _binaries(folder, d, platforms, progress)
+    for name, binary in binaries.items():
+        members[f"{PLATFORMS[name].folder(version)}/{d.identifier}{PLATFORMS[name].suffix}"] = binary
     with zipfile.ZipFile(part, "w", zipfile.ZIP_DEFLATED) as archive:
         for name, content in members.items():
             archive.writestr(zipfile.ZipInfo(name, DATE), content, zipfile.ZIP_DEFLATED)
+    return tuple(binaries), failed
 
 
 def _binaries(
-    folder: Path,
-    d: FmuDescription,
-    version: Literal[2, 3],
-    platforms: Sequence[str],
-    progress: Callable[[float], None] | None,
-) -> dict[str, bytes]:
-    """Return the libraries of some systems by their place in the archive, in the order of the systems.
+    folder: Path, d: FmuDescription, platforms: Sequence[str], progress: Callable[[float], None] | None
+) -> tuple[dict[str, bytes], tuple[str, ...]]:
+    """Return the libraries of some systems in their order, and a sentence for each that could not be compiled.
 
     Each compiler is a process of its own, so that threads are enough to wait for as many as there are cores.
     """
     unknown = [name for name in platforms if name not in PLATFORMS]
     if unknown:
-        raise ExportError(f"FMU: there is no system {unknown[0]!r}; there are {', '.join(PLATFORMS)}.")
+        raise ExportError(
+            f"FMU: there is no system {unknown[0]!r}; there are {', '.join(PLATFORMS)}."
+            if unknown[0]
+            else "FMU: this computer's system has no name among those of FMUs; name one with --platform, or write "
+            "sources only."
+        )
     paths = {name: folder / name / f"{d.identifier}{PLATFORMS[name].suffix}" for name in platforms}
+    built, errors = dict[str, bytes](), dict[str, ExportError]()
+    for path in paths.values():
+        path.parent.mkdir()
     pool = ThreadPoolExecutor(max_workers=os.cpu_count() or 1)
     try:
-        for path in paths.values():
-            path.parent.mkdir()
-        jobs = [pool.submit(build_binary, folder, d.sources, name, path) for name, path in paths.items()]
+        jobs = {pool.submit(build_binary, folder, d.sources, name, path): name for name, path in paths.items()}
         for done, job in enumerate(as_completed(jobs), start=1):
-            job.result()
+            try:
+                job.result()
+                built[jobs[job]] = paths[jobs[job]].read_bytes()
+            except ExportError as error:
+                errors[jobs[job]] = error
             if progress is not None:
                 progress(done / len(jobs))
     finally:
-        # what has not begun when a compiler fails is not begun any more
+        # what has not begun when the user ends the command is not begun any more
         pool.shutdown(cancel_futures=True)
-    return {
-        f"{PLATFORMS[name].folder(version)}/{d.identifier}{PLATFORMS[name].suffix}": path.read_bytes()
-        for name, path in paths.items()
-    }
+    failed = tuple(errors[name] for name in paths if name in errors)
+    if failed and not built:
+        raise failed[0]
+    return {name: built[name] for name in paths if name in built}, tuple(map(str, failed))
 
 
 def _template(name: str) -> str:

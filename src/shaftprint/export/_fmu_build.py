@@ -1,5 +1,6 @@
 """Binaries of an FMU: compiled by the computer's own compiler, or by Zig for other systems."""
 
+import importlib.metadata
 import importlib.util
 import platform
 import shutil
@@ -12,6 +13,7 @@ from types import MappingProxyType
 from typing import Final
 
 from shaftprint.errors import ExportError
+from shaftprint.export._fmu_kept import keep_binary, place_of_binary
 from shaftprint.files import reason
 
 EXTRA: Final = 'pip install "shaftprint[fmu]"'
@@ -72,13 +74,6 @@ def host_platform() -> str:
     return _HOSTS.get((sys.platform, platform.machine().lower()), "")
 
 
-def can_build() -> tuple[str, ...]:
-    """Return the systems for which binaries can be built here."""
-    if importlib.util.find_spec("ziglang") is not None:
-        return tuple(PLATFORMS)
-    return (host_platform(),) if _host_compiler() and host_platform() else ()
-
-
 def build_binary(folder: Path, sources: Sequence[str], name: str, binary: Path) -> None:
     """Compile sources to a shared library.
 
@@ -89,7 +84,7 @@ def build_binary(folder: Path, sources: Sequence[str], name: str, binary: Path) 
     sources
         Their file names.
     name
-        System to build for, one of ``PLATFORMS``.
+        System to build for, one of ``PLATFORMS``. What was compiled before from the same sources is taken as it is.
     binary
         File to write; in systems where a library knows its name, it is that of the file.
 
@@ -98,12 +93,18 @@ def build_binary(folder: Path, sources: Sequence[str], name: str, binary: Path) 
     ExportError
         If there is no compiler for that system, or it fails.
     """
-    command = [*_compiler(name), *FLAGS, "-o", str(binary), *sources]
+    compiler = _compiler(name)
+    options = [*FLAGS, *sources]
     if PLATFORMS[name].suffix != ".dll":
-        command += ["-fPIC", "-lm"]
+        options += ["-fPIC", "-lm"]
     if PLATFORMS[name].suffix == ".dylib":
         # else it would be known by the folder in which it was built
-        command.append(f"-Wl,-install_name,@rpath/{binary.name}")
+        options.append(f"-Wl,-install_name,@rpath/{binary.name}")
+    kept = place_of_binary([*compiler, *options, _compiler_version(compiler)], folder)
+    if kept is not None and kept.is_file():
+        binary.write_bytes(kept.read_bytes())
+        return
+    command = [*compiler, *options, "-o", str(binary)]
     try:
         # a list of our own words and file names, no shell
         done = subprocess.run(  # noqa: S603
@@ -119,6 +120,8 @@ def build_binary(folder: Path, sources: Sequence[str], name: str, binary: Path) 
             f"FMU for {name}: the compiler ended with {done.returncode}: {messages or 'no words'}; leave this system "
             "out with --platform, or write sources only."
         )
+    if kept is not None:
+        keep_binary(binary, kept)
 
 
 def _compiler(name: str) -> list[str]:
@@ -136,3 +139,11 @@ def _compiler(name: str) -> list[str]:
 
 def _host_compiler() -> str | None:
     return None if sys.platform == "win32" else shutil.which("cc")
+
+
+def _compiler_version(compiler: Sequence[str]) -> str:
+    """Return what changes when another version of a compiler takes its place."""
+    if len(compiler) > 1:
+        return importlib.metadata.version("ziglang")
+    status = Path(compiler[0]).stat()
+    return f"{status.st_size} {status.st_mtime_ns}"

@@ -17,11 +17,11 @@ class FmuDescription:
     """What a model description is made of."""
 
     title: str
-    """Name of the model."""
+    """What the model is of, with blanks and what else a ship's name has."""
     words: str
     """What the model is, in words."""
     identifier: str
-    """Name of binaries, a name in C."""
+    """Name of the model and of its binaries, a name in C."""
     token: str
     """What ties binary and description together."""
     variables: tuple[Variable, ...]
@@ -105,9 +105,10 @@ def _root(d: FmuDescription, version: str, token: str) -> Element:
         "fmiModelDescription",
         {
             "fmiVersion": version,
-            "modelName": d.title,
+            # OMSimulator takes a plain identifier only, and libcosim finds the OSP description by this name
+            "modelName": d.identifier,
             token: d.token,
-            "description": d.words,
+            "description": f"{d.title}: {d.words}",
             "generationTool": f"shaftprint {__version__}",
             "variableNamingConvention": "structured",
         },
@@ -117,7 +118,7 @@ def _root(d: FmuDescription, version: str, token: str) -> Element:
 def _common(root: Element, d: FmuDescription, variables: Sequence[Variable]) -> None:
     root.append(unit_definitions(variable.unit for variable in variables))
     categories = SubElement(root, "LogCategories")
-    for name in ("logStatusError", "logStatusFatal"):
+    for name in ("logStatusWarning", "logStatusError", "logStatusFatal"):
         SubElement(categories, "Category", name=name)
     SubElement(
         root,

@@ -65,22 +65,26 @@ class FmuEquations:
 
     @property
     def references(self) -> dict[str, int]:
-        """First value reference of each kind of variable."""
+        """First value reference of each kind of variable.
+
+        Up to the derivatives, where none is ever left out, a reference is the variable's place in the list of FMI 3.0,
+        time being the first: OMSimulator takes the reference of a state for its place.
+        """
         sizes = self.sizes
         counts = {
             "TIME": 1,
             "INPUT": sizes["INPUTS"],
             "OUTPUT": sizes["OUTPUTS"],
+            "STATE": sizes["STATES"],
+            "DERIVATIVE": sizes["STATES"],
             "SETTING": sizes["SETTINGS"],
             "POSTERIOR_SAMPLE": 1,
             "STEP": 1,
             "PARAMETER": sizes["PARAMETERS"],
             "LATENESS": sizes["OUTPUTS"],
-            "STATE": sizes["STATES"],
-            "DERIVATIVE": sizes["STATES"],
             "INDICATOR": sizes["INDICATORS"],
         }
-        references, first = {}, 0
+        references, first = {}, 1
         for name, count in counts.items():
             references[name] = first
             first += count
@@ -160,6 +164,8 @@ class FmuEquations:
         lines = [f"const int {name}[] = {c_integers(values)};\n" for name, values in integers.items()]
         lines.append(f"const double model_settings[] = {c_array(self.settings)};\n")
         lines.append(f"const double model_start[] = {c_array(self.start.tolist())};\n")
+        names = ", ".join(c_string(signal.name) for signal in self.inputs)
+        lines.append(f"const char *const model_input_names[] = {{{names}{', ' * bool(names)}0}};\n")
         return "".join(lines) + f"const double model_draws[][PARAMETERS + 1] = {{\n{rows}\n}};\n"
 
 

@@ -73,7 +73,11 @@ class FmuProgram:
 
     @property
     def indicators(self) -> list[Formula]:
-        """Differences that change sign where a limit begins or ends to act."""
+        """Differences that change sign where a limit begins or ends to act.
+
+        Not among them is what a computer without a period compares with: that goes with the length of the step, so that
+        a solver that ends its step there meets it again in every step.
+        """
         program = self.program
         formulas = [*program.rates, *(late.signal for late in program.pasts), *(s.value for s in program.samples)]
         indicators = []
@@ -84,7 +88,7 @@ class FmuProgram:
                 indicators.append(node.of[0])
             elif node.operation == "table":
                 indicators += [node.of[0] - corner for corner, _ in node.points]
-        return indicators
+        return [one for one in indicators if all(leaf.operation != "step" for leaf in postorder([one]))]
 
     @property
     def asks_input_rates(self) -> bool:

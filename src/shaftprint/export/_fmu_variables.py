@@ -39,7 +39,7 @@ class Variable:
 
 
 def variables(model: ExportedModel, equations: FmuEquations) -> tuple[Variable, ...]:
-    """Return all variables of a model: time, inputs and outputs, parameters, states and what belongs to them."""
+    """Return all variables of a model: time, inputs and outputs, states, parameters and what belongs to them."""
     return (
         Variable(
             name="time",
@@ -50,9 +50,10 @@ def variables(model: ExportedModel, equations: FmuEquations) -> tuple[Variable, 
             unit="s",
         ),
         *_signals(model, equations),
+        *_states(equations),
         *_settings(model, equations),
         *_parameters(model, equations),
-        *_inner(equations),
+        *_lateness(equations),
     )
 
 
@@ -137,18 +138,21 @@ def _parameters(model: ExportedModel, equations: FmuEquations) -> Iterator[Varia
         )
 
 
-def _inner(equations: FmuEquations) -> Iterator[Variable]:
-    references, program, ready = equations.references, equations.ready.program, equations.ready
+def _lateness(equations: FmuEquations) -> Iterator[Variable]:
     for i, signal in enumerate(equations.outputs):
-        if not ready.lateness[i].is_number:
+        if not equations.ready.lateness[i].is_number:
             yield Variable(
                 name=f"lateness.{structured_name(signal.name)}",
-                reference=references["LATENESS"] + i,
+                reference=equations.references["LATENESS"] + i,
                 causality="calculatedParameter",
                 variability="tunable",
                 meaning="by how much the output comes later than its time stamp in the recording, which lies ahead",
                 unit="s",
             )
+
+
+def _states(equations: FmuEquations) -> Iterator[Variable]:
+    references, program, ready = equations.references, equations.ready.program, equations.ready
     names = [f"state.{identifier(name)}_{i + 1}" for i, name in enumerate(program.states)]
     for i, name in enumerate(names):
         yield Variable(

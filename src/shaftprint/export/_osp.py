@@ -12,6 +12,7 @@ from xml.etree.ElementTree import Element, SubElement
 
 from shaftprint.arguments import refusing_none
 from shaftprint.errors import ExportError
+from shaftprint.export._c_text import identifier
 from shaftprint.export._fmu_signals import ENGINE_SPEED, SHAFT_TORQUE, FmuSignal
 from shaftprint.export._fmu_units import unit_definitions, unit_name
 from shaftprint.export._fmu_variables import structured_name
@@ -31,7 +32,8 @@ def write_osp(model: ExportedModel, fmu: str | Path, *, overwrite: bool = False)
     Parameters
     ----------
     fmu
-        The FMU; it need not exist yet. The description is named after it, as the simulator expects.
+        The FMU; it need not exist yet. The description is named after its ``modelName``, by which the simulator looks
+        for it: the FMU's file name with underscores for what is no letter, digit or underscore.
     overwrite
         Whether an earlier file is replaced.
 
@@ -44,7 +46,7 @@ def write_osp(model: ExportedModel, fmu: str | Path, *, overwrite: bool = False)
     FileExistsError
         If the file exists and is not to be replaced.
     """
-    xml_path = Path(fmu).with_name(f"{Path(fmu).stem}{ENDING}")
+    xml_path = Path(fmu).with_name(f"{identifier(Path(fmu).stem)}{ENDING}")
     with written_whole(xml_path, overwrite=overwrite) as part:
         part.write_bytes(osp_description(model))
     return xml_path

@@ -7,6 +7,7 @@ from xml.etree.ElementTree import Element, SubElement, register_namespace
 from shaftprint import __version__
 from shaftprint.arguments import refusing_none
 from shaftprint.errors import ExportError
+from shaftprint.export._c_text import identifier
 from shaftprint.export._fmu_units import BASE_UNITS, unit_name
 from shaftprint.export._fmu_variables import structured_name
 from shaftprint.export._model import ExportedModel
@@ -41,18 +42,23 @@ def write_ssv(model: ExportedModel, path: str | Path, *, overwrite: bool = False
     """
     ssv_path = Path(path)
     with written_whole(ssv_path, overwrite=overwrite) as part:
-        part.write_bytes(parameter_set(model))
+        part.write_bytes(parameter_set(model, identifier(ssv_path.stem)))
     return ssv_path
 
 
-def parameter_set(model: ExportedModel) -> bytes:
-    """Return the parameter set as XML."""
+def parameter_set(model: ExportedModel, name: str) -> bytes:
+    """Return the parameter set as XML.
+
+    Parameters
+    ----------
+    name
+        Name of the set, by which ecos takes it.
+    """
     register_namespace("ssv", SSV)
     register_namespace("ssc", SSC)
-    name = f"{model.title}, {model.structure.name}"
     root = Element(f"{{{SSV}}}ParameterSet", version=VERSION, name=name, generationTool=f"shaftprint {__version__}")
-    if model.remark:
-        root.set("description", model.remark)
+    title = f"{model.title}, {model.structure.name}"
+    root.set("description", f"{title}; {model.remark}" if model.remark else title)
     listed, units = SubElement(root, f"{{{SSV}}}Parameters"), dict[str, None]()
     for parameter, unit, value, words in _entries(model):
         entry = SubElement(listed, f"{{{SSV}}}Parameter", name=parameter, description=words)

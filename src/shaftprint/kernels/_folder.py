@@ -6,7 +6,6 @@ import stat
 import sys
 from pathlib import Path
 
-_FOLDER = "kernels"
 # who may write into a folder besides its owner
 _OTHERS = stat.S_IWGRP | stat.S_IWOTH
 
@@ -31,15 +30,20 @@ def cache_folder() -> Path:
     return base / "shaftprint"
 
 
-def private_folder() -> Path | None:
-    """Return the folder in which kernels may be kept; None where there is none that only the user can write.
+def private_folder(name: str = "kernels") -> Path | None:
+    """Return the folder in which code may be kept; None where there is none that only the user can write.
 
     The folder is made where it is missing, for the user alone. It and all folders around it must belong to the user or
     to the system, and be closed to others for writing; a folder such as ``/tmp``, where nobody can take away what is
     another's, may be around it. On Windows it must lie in the user's profile, which is closed to others.
+
+    Parameters
+    ----------
+    name
+        Its name: what is kept in it.
     """
     try:
-        wanted = cache_folder() / _FOLDER
+        wanted = cache_folder() / name
         wanted.parent.parent.mkdir(parents=True, exist_ok=True)
         for folder in (wanted.parent, wanted):
             folder.mkdir(mode=0o700, exist_ok=True)

@@ -10,6 +10,11 @@
 /* How closely a limit's time is found, as a share of a step. */
 #define RESOLVED 1e-6
 #define MOST_ROUNDS 30
+/* What is a jump among an input's changes from step to step, and what is left of the largest after one. */
+#define FAR_MORE 10.0
+#define FORGOTTEN 0.5
+/* An announced event that is passed by less does no harm [s]. */
+#define LATE_EVENT_S 1e-6
 
 /* What a deviation is multiplied by. */
 double core_scale(const Fixed *f, int setting) { return setting < 0 ? 1.0 : f->settings[setting]; }
@@ -36,22 +41,41 @@ void core_evaluate(Model *m, double time) { at(m, time, 1); }
 
 static double due(const Fixed *f, int sample) { return f->start_time + (f->ticks[sample] + 1.0) * f->period[sample]; }
 
-/* Take the values of computers whose period is over; of those without a period at every step. */
-static int take_samples(Model *m, int every_step) {
+/* Let computers without a period give what they would if the step ended now: they are continuous, whatever the step.
+   One may follow another, hence as many rounds as there are. */
+void core_samples_now(Model *m) {
+    Fixed *f = &m->f;
+    double taken[SAMPLES + 1];
+    f->v.step = f->v.time - f->sampled;
+    for (int round = 0; round < SAMPLES; round++)
+        for (int k = 0; k < SAMPLES; k++) {
+            if (f->period[k] > 0.0) continue;
+            f->v.z[k] = f->held[k];
+            model_values(&f->v, taken);
+            f->v.z[k] = taken[k];
+        }
+}
+
+/* End the step of computers without a period. */
+static void keep_samples(Model *m) {
+    Fixed *f = &m->f;
+    memcpy(f->held, f->v.z, sizeof f->held);
+    f->sampled = f->v.time;
+}
+
+/* Take the values of computers whose period is over. */
+static int take_samples(Model *m) {
     Fixed *f = &m->f;
     double taken[SAMPLES + 1];
     int found = 0;
     if (!SAMPLES) return 0;
-    f->v.step = f->v.time - f->sampled;
     model_values(&f->v, taken);
     for (int k = 0; k < SAMPLES; k++) {
-        if ((f->period[k] <= 0.0) != every_step) continue;
-        if (!every_step && due(f, k) > f->v.time + tiny(f->v.time)) continue;
-        f->v.z[k] = taken[k];
-        if (!every_step) f->ticks[k] += 1.0;
+        if (f->period[k] <= 0.0 || due(f, k) > f->v.time + tiny(f->v.time)) continue;
+        f->v.z[k] = f->held[k] = taken[k];
+        while (due(f, k) <= f->v.time + tiny(f->v.time)) f->ticks[k] += 1.0;
         found = 1;
     }
-    if (every_step) f->sampled = f->v.time;
     return found;
 }
 
@@ -97,7 +121,7 @@ static int changes(Model *m) {
     at(m, f->time, 0);
     if (changed && !core_use_step(m)) return 0;
     const int moved = inputs_moved(f);
-    const int taken = take_samples(m, 0);
+    const int taken = take_samples(m);
     return changed || moved || taken ? begin_segment(m, 1) : 1;
 }
 
@@ -188,7 +212,7 @@ static int advance(Model *m, double next) {
         const double reached = step_to_limit(m, f->time, end);
         if (!core_all_finite(f->v.x, STATES)) return core_failed(m, "the states grew beyond all numbers: the loop is unstable");
         f->time = reached;
-        take_samples(m, 1);
+        keep_samples(m);
         history_forget(m);
         if (!history_add(m, -1)) return core_failed(m, "there is no memory left");
         if (reached < end && !begin_segment(m, 1)) return 0;
@@ -220,21 +244,87 @@ int core_do_step(Model *m, double duration) {
 }
 
 /* Keep what a solver found at the end of its step. */
-int core_completed_step(Model *m) {
+static int keep_step(Model *m) {
     at(m, m->f.time, 0);
-    take_samples(m, 1);
+    keep_samples(m);
     history_forget(m);
     return history_add(m, -1) ? 1 : core_failed(m, "there is no memory left");
 }
 
-/* Keep what was before an event. */
-int core_enter_event(Model *m) {
-    if (m->node[m->f.nodes - 1].time >= m->f.time - tiny(m->f.time)) return 1;
-    return core_completed_step(m);
+static void look_for_next_event(Model *m) {
+    Fixed *f = &m->f;
+    f->next_event = history_next_arrival(m);
+    for (int k = 0; k < SAMPLES; k++)
+        if (f->period[k] > 0.0 && due(f, k) < f->next_event) f->next_event = due(f, k);
 }
 
-/* Take notice of an event; 0 if that failed. The time of the next is infinite if none is known. */
-int core_event(Model *m, double *next_time) {
+static void forget_seen(Fixed *f) {
+    memcpy(f->seen, f->inputs, sizeof f->seen);
+    f->seen_from = f->seen_to = f->time;
+}
+
+static int seen_are_given(const Fixed *f) {
+    for (int i = 0; i < INPUTS; i++)
+        if (fabs(f->inputs[i] - f->seen[i]) > SAME_INPUT * (fabs(f->inputs[i]) + fabs(f->seen[i]))) return 0;
+    return 1;
+}
+
+/* Whether an input has jumped at the end of a step: it stood still through the solver's last rates, since the tool holds
+   it, and is another now by far more than it lately moved from step to step, as samples of something smooth do. */
+static int inputs_jumped(Model *m) {
+    Fixed *f = &m->f;
+    const int held = f->seen_to > f->seen_from + tiny(f->seen_to);
+    int jumped = 0;
+    for (int i = 0; i < INPUTS; i++) {
+        const double by = fabs(f->inputs[i] - f->seen[i]);
+        jumped |= held && by > FAR_MORE * f->moved[i] + SAME_INPUT * (fabs(f->inputs[i]) + fabs(f->seen[i]));
+        f->moved[i] = by > FORGOTTEN * f->moved[i] ? by : FORGOTTEN * f->moved[i];
+    }
+    return jumped;
+}
+
+/* Keep a step with the inputs that it was made with; those that jumped at its end belong to what follows. */
+static int keep_step_before_jump(Model *m) {
+    Fixed *f = &m->f;
+    double given[INPUTS + 1];
+    memcpy(given, f->inputs, sizeof given);
+    memcpy(f->inputs, f->seen, sizeof f->inputs);
+    const int good = keep_step(m);
+    memcpy(f->inputs, given, sizeof given);
+    return good;
+}
+
+/* A solver's step has ended. It is asked for an event where an input has jumped or something arrives that it has not been
+   told or has passed; what it has passed is served here as well, since not every tool does as it is asked. */
+int core_completed_step(Model *m, int *wants_event) {
+    Fixed *f = &m->f;
+    const double late = f->time - f->next_event;
+    const int jumped = inputs_jumped(m);
+    if (!(jumped ? keep_step_before_jump(m) : keep_step(m))) return 0;
+    *wants_event = jumped || f->untold || late >= -tiny(f->time);
+    if (late > LATE_EVENT_S)
+        core_warn(m, EVENT_PASSED,
+                  "the solver passed the event announced for %g s and stopped at %g s: late signals that jump come late; "
+                  "let it stop at time events, or use co-simulation",
+                  f->next_event, f->time);
+    if (!jumped && !(late > tiny(f->time))) return 1;
+    if (!arrive(m) || !changes(m)) return 0;
+    core_remember_inputs(f);
+    forget_seen(f);
+    look_for_next_event(m);
+    f->untold = f->next_event < HUGE_VAL;
+    return 1;
+}
+
+/* Keep what was before an event. */
+int core_enter_event(Model *m) {
+    m->f.asked = 0;
+    if (m->node[m->f.nodes - 1].time >= m->f.time - tiny(m->f.time)) return 1;
+    return keep_step(m);
+}
+
+/* Take notice of an event; 0 if that failed. */
+int core_event(Model *m) {
     Fixed *f = &m->f;
     at(m, f->time, 0);
     const int expected = history_arriving_order(m) <= HIGHEST_ORDER;
@@ -242,15 +332,36 @@ int core_event(Model *m, double *next_time) {
     /* an event that nothing else explains is a limit that begins or ends to act */
     if (!begin_segment(m, expected || begins_now(m) ? HIGHEST_ORDER + 1 : 1)) return 0;
     core_remember_inputs(f);
-    *next_time = history_next_arrival(m);
-    for (int k = 0; k < SAMPLES; k++)
-        if (f->period[k] > 0.0 && due(f, k) < *next_time) *next_time = due(f, k);
+    forget_seen(f);
+    look_for_next_event(m);
+    f->asked = 1;
+    f->untold = 0;
+    return 1;
+}
+
+/* Go on to continuous time; a tool that has not asked for new discrete states is told the next event after its first
+   step. */
+int core_begin_continuous(Model *m) {
+    if (m->f.asked) return 1;
+    if (!core_event(m)) return 0;
+    m->f.untold = m->f.next_event < HUGE_VAL;
     return 1;
 }
 
 void core_derivatives(Model *m, double *rates) {
-    at(m, m->f.time, 0);
-    model_rates(&m->f.v, rates);
+    Fixed *f = &m->f;
+    at(m, f->time, 0);
+    model_rates(&f->v, rates);
+    if (f->mode != CONTINUOUS) return;
+    if (!seen_are_given(f)) forget_seen(f);
+    if (f->time < f->seen_from) f->seen_from = f->time;
+    if (f->time > f->seen_to) f->seen_to = f->time;
+    const double ahead = f->time - m->node[f->nodes - 1].time;
+    if (ahead > f->longest_ahead)
+        core_warn(m, STEP_TOO_LONG,
+                  "at %g s the solver asked for rates %g s after its last completed step, longer than the shortest delay "
+                  "lets late signals be known (%g s): set its largest step below that, or use co-simulation",
+                  f->time, ahead, f->longest_ahead);
 }
 
 void core_indicators(Model *m, double *indicators) {

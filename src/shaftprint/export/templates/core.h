@@ -45,7 +45,17 @@ typedef struct {
     double period[SAMPLES + 1];
     double ticks[SAMPLES + 1];       /* periods that have passed */
     double sampled;                  /* when the values of every step were taken */
+    double held[SAMPLES + 1];        /* what computers took last; v.z is what they give now */
     long long segment[LATES + 1];    /* where each past stands; -1 before the start */
+    /* what a solver from outside was told, and does */
+    int asked;                       /* new discrete states were asked for since event mode was entered */
+    int untold;                      /* there is a next event that it has not been told */
+    double next_event;               /* infinite where there is none */
+    double longest_ahead;            /* how far beyond its last step it may ask without harm [s] */
+    double seen[INPUTS + 1];         /* inputs that it has lately asked rates for, in their own units */
+    double seen_from, seen_to;       /* between these times */
+    double moved[INPUTS + 1];        /* by how much they lately moved from step to step */
+    int said;                        /* which warnings were given */
     Values v;
     long long dropped_nodes, dropped_segments;
     int nodes, segments;
@@ -57,7 +67,11 @@ typedef struct {
     Segment *segment;
     int node_room, segment_room;
     const char *problem;             /* what went wrong last, in words */
+    char note[320];                  /* a warning that is to be passed on; empty where there is none */
 } Model;
+
+/* What is warned of, each once in a run. */
+enum { FAR_START = 1, EVENT_PASSED = 2, STEP_TOO_LONG = 4 };
 
 /* A copy of everything, and the way back. */
 typedef struct {
@@ -82,6 +96,8 @@ double steady_longest_step(Model *m);
 
 /* start.c */
 int core_failed(Model *m, const char *problem);
+void core_warn(Model *m, int kind, const char *format, ...);
+void core_warn_of_start(Model *m);
 int core_all_finite(const double *values, int count);
 void core_remember_inputs(Fixed *f);
 void core_use_parameters(Model *m);
@@ -92,8 +108,10 @@ int core_ready(Model *m);
 
 /* core.c */
 int core_do_step(Model *m, double duration);
-int core_completed_step(Model *m);
-int core_event(Model *m, double *next_time);
+void core_samples_now(Model *m);
+int core_begin_continuous(Model *m);
+int core_completed_step(Model *m, int *wants_event);
+int core_event(Model *m);
 double core_scale(const Fixed *f, int setting);
 int core_enter_event(Model *m);
 void core_inputs(Model *m, double time);

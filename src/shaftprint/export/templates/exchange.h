@@ -1,11 +1,17 @@
 /* Model exchange where FMI 2.0 and 3.0 have it alike but for the names: before this is included, FMI(name) is a name of the
-   version, and Instance, Status and problem() are its own. */
+   version, and Instance, Status, problem() and tell() are its own. */
 
-static Status ended(Instance *c, int good) { return good ? OK : problem(c, ERROR); }
+static Status ended(Instance *c, int good) {
+    tell(c);
+    return good ? OK : problem(c, ERROR);
+}
 
 EXPORTED Status FMI(EnterContinuousTimeMode)(void *instance) {
-    ((Instance *)instance)->m.f.mode = CONTINUOUS;
-    return OK;
+    Instance *c = instance;
+    if (c->m.f.mode != EVENTS && c->m.f.mode != CONTINUOUS) return problem(c, ERROR);
+    const int good = core_begin_continuous(&c->m);
+    c->m.f.mode = CONTINUOUS;
+    return ended(c, good);
 }
 
 EXPORTED Status FMI(SetTime)(void *instance, double time) {

@@ -56,6 +56,13 @@ static Status problem(Instance *c, Status status) {
     return status;
 }
 
+/* Pass on a warning. */
+static void tell(Instance *c) {
+    if (c->logger && c->m.note[0])
+        c->logger(c->environment, c->name, WARNING, "logStatusWarning", "%s.", c->m.note);
+    c->m.note[0] = 0;
+}
+
 #define FMI(name) NAMED(fmi2##name)
 #include "exchange.h"
 
@@ -119,7 +126,8 @@ EXPORTED Status NAMED(fmi2ExitInitializationMode)(void *instance) {
     Instance *c = instance;
     if (c->m.f.mode != INITIALISING || !core_ready(&c->m)) return problem(c, ERROR);
     c->m.f.mode = c->kind == CO_SIMULATION ? STEPPING : EVENTS;
-    return OK;
+    core_warn_of_start(&c->m);
+    return ended(c, 1);
 }
 
 EXPORTED Status NAMED(fmi2Terminate)(void *instance) {
@@ -232,11 +240,10 @@ EXPORTED Status NAMED(fmi2EnterEventMode)(void *instance) {
 
 EXPORTED Status NAMED(fmi2NewDiscreteStates)(void *instance, EventInfo *info) {
     Instance *c = instance;
-    double next = HUGE_VAL;
     memset(info, 0, sizeof *info);
-    if (!core_event(&c->m, &next)) return problem(c, ERROR);
-    info->next_defined = next < HUGE_VAL;
-    info->next_time = info->next_defined ? next : 0.0;
+    if (!core_event(&c->m)) return problem(c, ERROR);
+    info->next_defined = c->m.f.next_event < HUGE_VAL;
+    info->next_time = info->next_defined ? c->m.f.next_event : 0.0;
     return OK;
 }
 
@@ -244,14 +251,14 @@ EXPORTED Status NAMED(fmi2CompletedIntegratorStep)(void *instance, int no_return
     Instance *c = instance;
     (void)no_return;
     *enter_event = *terminate = 0;
-    return ended(c, core_completed_step(&c->m));
+    return ended(c, core_completed_step(&c->m, enter_event));
 }
 
 EXPORTED Status NAMED(fmi2GetDerivatives)(void *instance, double rates[], size_t count) {
     Instance *c = instance;
     if (count != STATES || !core_ready(&c->m)) return problem(c, ERROR);
     core_derivatives(&c->m, rates);
-    return OK;
+    return ended(c, 1);
 }
 
 /* ---- co-simulation ---- */

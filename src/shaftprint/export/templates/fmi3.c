@@ -42,6 +42,12 @@ static Status problem(Instance *c, Status status) {
     return status;
 }
 
+/* Pass on a warning. */
+static void tell(Instance *c) {
+    if (c->logger && c->m.note[0]) c->logger(c->environment, WARNING, "logStatusWarning", c->m.note);
+    c->m.note[0] = 0;
+}
+
 #define FMI(name) NAMED(fmi3##name)
 #include "exchange.h"
 
@@ -115,7 +121,8 @@ EXPORTED Status NAMED(fmi3ExitInitializationMode)(void *instance) {
     Instance *c = instance;
     if (c->m.f.mode != INITIALISING || !core_ready(&c->m)) return problem(c, ERROR);
     c->m.f.mode = c->co_simulation ? STEPPING : EVENTS;
-    return OK;
+    core_warn_of_start(&c->m);
+    return ended(c, 1);
 }
 
 EXPORTED Status NAMED(fmi3Terminate)(void *instance) {
@@ -250,13 +257,12 @@ EXPORTED Status NAMED(fmi3EnterEventMode)(void *instance) {
 EXPORTED Status NAMED(fmi3UpdateDiscreteStates)(void *instance, bool *more, bool *terminate, bool *nominals_changed,
                                                 bool *states_changed, bool *next_defined, double *next_time) {
     Instance *c = instance;
-    double next = HUGE_VAL;
     *more = *terminate = *nominals_changed = *states_changed = *next_defined = false;
     *next_time = 0.0;
-    if (c->co_simulation || !core_event(&c->m, &next)) return problem(c, ERROR);
-    if (next < HUGE_VAL) {
+    if (c->co_simulation || !core_event(&c->m)) return problem(c, ERROR);
+    if (c->m.f.next_event < HUGE_VAL) {
         *next_defined = true;
-        *next_time = next;
+        *next_time = c->m.f.next_event;
     }
     return OK;
 }
@@ -264,16 +270,19 @@ EXPORTED Status NAMED(fmi3UpdateDiscreteStates)(void *instance, bool *more, bool
 EXPORTED Status NAMED(fmi3CompletedIntegratorStep)(void *instance, bool no_return, bool *enter_event,
                                                    bool *terminate) {
     Instance *c = instance;
+    int wants_event = 0;
     (void)no_return;
-    *enter_event = *terminate = false;
-    return ended(c, core_completed_step(&c->m));
+    const int good = core_completed_step(&c->m, &wants_event);
+    *enter_event = wants_event;
+    *terminate = false;
+    return ended(c, good);
 }
 
 EXPORTED Status NAMED(fmi3GetContinuousStateDerivatives)(void *instance, double rates[], size_t count) {
     Instance *c = instance;
     if (count != STATES || !core_ready(&c->m)) return problem(c, ERROR);
     core_derivatives(&c->m, rates);
-    return OK;
+    return ended(c, 1);
 }
 
 EXPORTED Status NAMED(fmi3GetNumberOfEventIndicators)(void *instance, size_t *count) {

@@ -171,6 +171,7 @@ void history_look(Model *m, double time, int outputs_too) {
             look_at(m, j, segment_at(m, time - late), time - late);
         }
     }
+    core_samples_now(m);
     if (!outputs_too) return;
     model_lates(&f->v, now);
     for (int j = 0; j < LATES; j++) {

@@ -28,6 +28,7 @@ extern const int model_feeds[];
 extern const int model_varies[];
 extern const int model_input_scale[];
 extern const int model_input_offset[];
+extern const char *const model_input_names[];
 extern const int model_output_scale[];
 extern const int model_output_offset[];
 extern const double model_settings[];

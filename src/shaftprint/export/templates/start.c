@@ -1,15 +1,40 @@
 /* The start of a run: parameters, steady running, the step. */
 #include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "core.h"
 
 #define SHORTEST_STEP_S 1e-6
+/* As a share of the working point; a ship is identified within a few per cent of it. */
+#define FAR_FROM_WORKING_POINT 0.5
 
 /* Keep what went wrong, in words, and return 0. */
 int core_failed(Model *m, const char *problem) {
     m->problem = problem;
     return 0;
+}
+
+/* Keep a warning for the tool's log, the first of its kind in a run. */
+void core_warn(Model *m, int kind, const char *format, ...) {
+    va_list values;
+    if (m->f.said & kind) return;
+    m->f.said |= kind;
+    va_start(values, format);
+    vsnprintf(m->note, sizeof m->note, format, values);
+    va_end(values);
+}
+
+/* Warn of a run that begins far from where the model was identified: some tools give 0 before the first value. */
+void core_warn_of_start(Model *m) {
+    Fixed *f = &m->f;
+    for (int i = 0; i < INPUTS; i++)
+        if (model_input_offset[i] && fabs(f->v.u[i]) > FAR_FROM_WORKING_POINT)
+            core_warn(m, FAR_START,
+                      "the run begins in steady running at %s = %g, far from the working point of %g; if that is not "
+                      "meant, give the input its start value in your tool",
+                      model_input_names[i], f->inputs[i], core_scale(f, model_input_scale[i]));
 }
 
 int core_all_finite(const double *values, int count) {
@@ -70,7 +95,9 @@ int core_start(Model *m) {
         return core_failed(m, "the equations are not finite at these parameters: a time constant may be zero");
     if (!core_use_step(m)) return 0;
     for (int k = 0; k < SAMPLES; k++) f->ticks[k] = 0.0;
+    memcpy(f->held, f->v.z, sizeof f->held);
     core_remember_inputs(f);
+    f->next_event = HUGE_VAL;
     if (!history_begin(m)) return core_failed(m, "there is no memory left");
     f->stale = f->changed = 0;
     return 1;

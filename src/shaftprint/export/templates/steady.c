@@ -179,5 +179,7 @@ double steady_longest_step(Model *m) {
         if (model_feeds[j] && m->f.delay[j] / DELAY_PARTS < shortest) shortest = m->f.delay[j] / DELAY_PARTS;
     const double extrapolated = soon > 0.0 ? MOST_EXTRAPOLATED / soon : HUGE_VAL;
     const double bound = shortest > extrapolated ? shortest : extrapolated;
+    /* from there on a past is extrapolated whose signal is not known yet, more than the loop bears */
+    m->f.longest_ahead = DELAY_PARTS * shortest > extrapolated ? DELAY_PARTS * shortest : extrapolated;
     return bound < step ? bound : step;
 }

@@ -21,6 +21,10 @@ from shaftprint.cli.commands.formats._exported import (
 from shaftprint.cli.output import no_progress_option, progress
 from shaftprint.export import PLATFORMS, WrittenFmu, write_fmu
 
+ALL = "all"
+# times the fastest pole: where the rule of Runge and Kutta stops being stable
+STABLE = 2.7
+
 
 @click.command("fmu")
 @fingerprint_argument
@@ -33,10 +37,9 @@ from shaftprint.export import PLATFORMS, WrittenFmu, write_fmu
 @click.option(
     "--platform",
     "platforms",
-    type=click.Choice(list(PLATFORMS)),
+    type=click.Choice([*PLATFORMS, ALL]),
     multiple=True,
-    help="System to compile for, may be repeated; all that can be built here by default: others than this one need the "
-    "extra fmu.",
+    help="System to compile for, may be repeated; this computer's by default. Others than this one need the extra fmu.",
 )
 @click.option("--source-only", is_flag=True, help="Compile nothing; the user's tool compiles the sources.")
 @click.option(
@@ -69,7 +72,8 @@ def command(
 
     FINGERPRINT is the JSON file, or the folder in which identify or demo has put it. The FMU is for
     co-simulation and model exchange, has exact delays and its sources, and every parameter of the
-    structure can be tuned. Inputs and outputs are in rpm and N m about the working point.
+    structure can be tuned. Inputs and outputs are in rpm and N m about the working point. Choose
+    co-simulation where your tool has it: the FMU then takes its own steps.
     """
     if source_only and platforms:
         raise click.UsageError("--source-only compiles nothing: leave --platform out.")
@@ -77,12 +81,12 @@ def command(
     path = file_to_write(output, model, ".fmu", inputs=(fingerprint,), force=force)
     number: Literal[2, 3] = 2 if version == "2" else 3
     with progress(hidden=no_progress) as steps:
-        steps.begin("Compiling for each system, the first time for some minutes", total=1.0)
+        steps.begin("Compiling, for other systems the first time for some minutes", total=1.0)
         written = write_fmu(
             model,
             path,
             version=number,
-            platforms=() if source_only else platforms or None,
+            platforms=() if source_only else tuple(PLATFORMS) if ALL in platforms else platforms or None,
             samples=samples,
             rng=np.random.default_rng(seed),
             overwrite=force,
@@ -94,10 +98,16 @@ def command(
 def _print(written: WrittenFmu) -> None:
     kinds = "co-simulation and model exchange" if written.model_exchange else "co-simulation only"
     say(f"FMI {written.version}.0, {kinds}, sources, binaries for {', '.join(written.platforms) or 'no system'}")
-    say(
-        f"internal step {1e3 * written.internal_step_s:g} ms, fastest pole {written.largest_pole_rad_s:.3g} rad/s: "
-        f"{written.internal_step_s * written.largest_pole_rad_s:.2g} of 2.7 that is stable"
-    )
+    step_s = written.internal_step_s
+    stable = f"; stable up to {1e3 * STABLE / written.largest_pole_rad_s:.2g} ms" if written.largest_pole_rad_s else ""
+    say(f"internal step {1e3 * step_s:g} ms{stable}")
+    if written.model_exchange:
+        say("choose co-simulation in your tool: in model exchange the tool's own solver must stop at every event")
     for name in written.late_outputs:
         say(f"{name} comes later than its time stamp in the recording, by lateness.{name} in the FMU")
     answer(written.path)
+    if written.failed:
+        raise click.ClickException(
+            f"{written.path} has binaries for {', '.join(written.platforms)} only. {' '.join(written.failed)} What was "
+            "compiled is kept: to try the others again, give --force as well."
+        )
