@@ -233,3 +233,18 @@ def test_proposal_for_a_campaign_whose_times_are_wrong(run, recording, tmp_path)
     again = run("inspect", recording, "--vessel", "stan-tug-1205", "--campaign", path)
     assert "Proposal for the campaign file" not in again.output
     assert "0.83 Hz" in head
+
+
+def test_jumps_of_the_clock_and_what_is_taken_for_granted_are_said(run, tmp_path):
+    path = tmp_path / "log.csv"
+    # milliseconds since 1970 that are set back by half a second at row 100
+    times = [1_795_000_000_000 + 10 * row - (500 if row >= 100 else 0) for row in range(200)]
+    path.write_text("timestamp,M_s [V]\n" + "".join(f"{time},1\n" for time in times))
+    output = " ".join(run("inspect", path).output.split())
+    assert "At 1 s the times of M_s are set back by 0.5 s." in output
+    assert "numbers such as 1.795e+12 were taken for milliseconds since 1970." in output
+    assert "Second 0 is 2026-11-18 11:06:40+00:00" in output
+    result = run("convert", path, "-o", tmp_path / "out.csv")
+    assert "left out the jumps of the clock of M_s: only the native container" in result.output
+    assert "left out the date of second 0: 2026-11-18 11:06:40+00:00" in result.output
+    assert "taken for milliseconds since 1970" in result.output

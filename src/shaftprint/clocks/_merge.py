@@ -143,7 +143,13 @@ def _chain(parts: Sequence[tuple[Recording, Channel]], follow_on: bool) -> Chann
             )
         counts.append(channel.count)
     channels = [channel for _, channel in parts]
-    return replace(first, count=sum(counts), source=partial(_pieces, channels, Channel.read))
+    begins = np.cumsum([0, *counts[:-1]]).tolist()
+    jumps = tuple(
+        replace(jump, sample=begin + jump.sample)
+        for begin, channel in zip(begins, channels, strict=True)
+        for jump in channel.clock_jumps
+    )
+    return replace(first, count=sum(counts), source=partial(_pieces, channels, Channel.read), clock_jumps=jumps)
 
 
 def _chain_of_messages(parts: Sequence[tuple[Recording, Channel]], follow_on: bool) -> Channel:
@@ -203,5 +209,12 @@ def _one(
             part.close()
 
     return Recording(
-        path=parts[0].path, sha256=digest, format=kind, channels=channels, attributes=attributes, release=release
+        path=parts[0].path,
+        sha256=digest,
+        format=kind,
+        channels=channels,
+        remarks=tuple(dict.fromkeys(remark for part in parts for remark in part.remarks)),
+        began=parts[0].began,
+        attributes=attributes,
+        release=release,
     )

@@ -26,6 +26,7 @@ from shaftprint.recording.readers import READERS, Reader, ReaderFunction
 from shaftprint.recording.writers import (
     NATIVE_ENDINGS,
     expect_known_ending,
+    holds_date,
     write_by_ending,
     write_csv,
     write_mat_v5,
@@ -50,6 +51,7 @@ __all__ = [
     "Samples",
     "cut",
     "expect_known_ending",
+    "holds_date",
     "judge_messages",
     "messages_of",
     "read_recording",

@@ -122,6 +122,9 @@ class Channel:
             self,
             start_s=start_s,
             count=last - first,
+            clock_jumps=tuple(
+                replace(jump, sample=jump.sample - first) for jump in self.clock_jumps if first < jump.sample < last
+            ),
             source=lambda start, stop: source(first + start, first + stop),
             stamps=None if stamps is None else lambda start, stop: stamps(first + start, first + stop),
         )

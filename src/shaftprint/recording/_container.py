@@ -18,7 +18,13 @@ UNEVEN = "is_uneven"
 GROUP = "channels"
 """The group that holds one data set a channel."""
 
-OWN = ("Conventions", "format", "format_version")
+BEGAN = "began"
+"""Root attribute with the date of second 0 as ISO 8601 has it, where it is known."""
+
+JUMPS, JUMPS_S = "clock_jump_samples", "clock_jumps_s"
+"""Attributes of a channel whose clock jumps: the first samples behind the jumps, and how far each is [s]."""
+
+OWN = ("Conventions", "format", "format_version", BEGAN)
 """Root attributes that are the container's own; all others are facts on the recording."""
 
 CHUNK_SAMPLES = 262_144

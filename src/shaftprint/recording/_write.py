@@ -1,6 +1,7 @@
 """Copying channels into the native container."""
 
 from collections.abc import Iterable, Mapping
+from datetime import datetime
 from pathlib import Path
 
 import numpy as np
@@ -15,6 +16,7 @@ def write_recording(
     channels: Iterable[Channel],
     *,
     attributes: Mapping[str, str | float] | None = None,
+    began: datetime | None = None,
     overwrite: bool = False,
 ) -> None:
     """Write channels, each on its own clock, into the native container.
@@ -27,6 +29,8 @@ def write_recording(
         Channels of any recording; counts are copied as they are.
     attributes
         Facts on the whole recording.
+    began
+        Date of second 0, where it is known.
     overwrite
         Whether a file of that name may be replaced.
 
@@ -36,7 +40,7 @@ def write_recording(
         If the file exists and may not be replaced, or cannot be written.
     """
     written = list(channels)
-    with RecordingWriter(path, attributes=attributes, overwrite=overwrite) as writer:
+    with RecordingWriter(path, attributes=attributes, began=began, overwrite=overwrite) as writer:
         for channel in written:
             is_counts = channel.read(0, 0).dtype == np.int16
             writer.declare(
@@ -49,6 +53,7 @@ def write_recording(
                 long_name=channel.long_name,
                 dtype="int16" if is_counts else "float64",
                 times="by rate" if channel.stamps is None else "uneven" if channel.is_uneven else "beside the rate",
+                clock_jumps=channel.clock_jumps,
             )
         # block by block, not channel by channel: some formats keep all channels of a moment in one record
         for start in range(0, max((channel.count for channel in written), default=0), CHUNK_SAMPLES):

@@ -3,6 +3,7 @@
 import contextlib
 from collections.abc import Mapping
 from contextlib import ExitStack
+from datetime import datetime
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Literal, Self
@@ -13,9 +14,9 @@ from numpy.typing import NDArray
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import RecordingError
 from shaftprint.files import written_whole
-from shaftprint.recording._channel import Channel
+from shaftprint.recording._channel import Channel, ClockJump
 from shaftprint.recording._channel_writer import ChannelWriter
-from shaftprint.recording._container import FORMAT, GROUP, VERSION, VERSION_WITH_TIMES
+from shaftprint.recording._container import BEGAN, FORMAT, GROUP, VERSION, VERSION_WITH_TIMES
 from shaftprint.recording._hdf5_output import Hdf5Output
 from shaftprint.recording._seal import add_seal
 
@@ -36,6 +37,7 @@ class RecordingWriter:
         path: str | Path,
         *,
         attributes: Mapping[str, str | float] | None = None,
+        began: datetime | None = None,
         overwrite: bool = False,
     ) -> None:
         """Say where the recording belongs; nothing is written before the ``with`` block begins.
@@ -46,11 +48,13 @@ class RecordingWriter:
             The finished file.
         attributes
             Facts on the whole recording, such as ``{"ship": "Stan Tug 1205"}``.
+        began
+            Date of second 0, where it is known.
         overwrite
             Whether a file of that name may be replaced.
         """
         self._path = Path(path)
-        self._attributes = dict(attributes or {})
+        self._attributes = {**(attributes or {}), **({} if began is None else {BEGAN: began.isoformat()})}
         self._overwrite = overwrite
         self._stack = ExitStack()
         self._open: dict[str, ChannelWriter] = {}
@@ -119,6 +123,7 @@ class RecordingWriter:
         long_name: str = "",
         dtype: Literal["int16", "float64"] = "int16",
         times: Literal["by rate", "beside the rate", "uneven"] = "by rate",
+        clock_jumps: tuple[ClockJump, ...] = (),
     ) -> None:
         """Announce a channel before its first samples.
 
@@ -141,6 +146,8 @@ class RecordingWriter:
         times
             Whether the samples lie on the clock of the rate, have times of their own near it too, or have those alone,
             as messages on a bus do.
+        clock_jumps
+            Where its clock jumps.
 
         Raises
         ------
@@ -161,6 +168,7 @@ class RecordingWriter:
             source=lambda start, stop: np.zeros(0, dtype=dtype),
             stamps=None if times == "by rate" else lambda start, stop: np.zeros(0),
             is_uneven=times == "uneven",
+            clock_jumps=clock_jumps,
         )
         try:
             with self._output.calls():

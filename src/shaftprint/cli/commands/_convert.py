@@ -15,6 +15,7 @@ from shaftprint.recording import (
     Recording,
     cut,
     expect_known_ending,
+    holds_date,
     read_recording,
     write_by_ending,
 )
@@ -65,7 +66,7 @@ def command(
             with read_recording(source, **hints_of(**said)) as recording:
                 opened = cut(_only(recording, chosen), from_s=from_s, to_s=to_s)
                 channels = [_with_unit(opened, name, unit_of) for name in opened.channels]
-                write_by_ending(target, channels, attributes=opened.attributes, overwrite=force)
+                write_by_ending(target, channels, attributes=opened.attributes, began=opened.began, overwrite=force)
                 left_out = dict(opened.left_out) | _facts_left_out(opened, target)
             for remark in recording.remarks:
                 echo(f"{source}: {remark}", err=True)
@@ -85,7 +86,12 @@ def _facts_left_out(opened: Recording, target: Path) -> dict[str, str]:
     """Return which facts on the whole recording the target cannot hold, with the reason."""
     if target.suffix.lower() in NATIVE_ENDINGS:
         return {}
-    return {f"the attribute {name}": "only the native container (.nc) holds it" for name in opened.attributes}
+    only = "only the native container (.nc) holds it"
+    facts = {f"the attribute {name}": only for name in opened.attributes}
+    facts |= {f"the jumps of the clock of {name}": only for name, one in opened.channels.items() if one.clock_jumps}
+    if opened.began is not None and not holds_date(target, opened.began):
+        facts["the date of second 0"] = f"{opened.began.isoformat(sep=' ')}: the native container (.nc) holds it"
+    return facts
 
 
 def _unit(text: str) -> tuple[str, str]:

@@ -29,7 +29,9 @@ def command(
     with ExitStack() as stack:
         opened = [stack.enter_context(read_recording(part)) for part in parts]
         recording = cut(joined(opened, follow_on=follow_on), from_s=from_s, to_s=to_s)
-        write_recording(output, recording.channels.values(), attributes=recording.attributes, overwrite=force)
+        write_recording(
+            output, recording.channels.values(), attributes=recording.attributes, began=recording.began, overwrite=force
+        )
         for channel in recording.channels.values():
             echo(f"{channel.name}: {channel.count} samples, {channel.duration_s:.1f} s")
     answer(output)

@@ -70,7 +70,7 @@ def command(
             )
         both = merged(still, [(moving, alignment)])
         print_tables([clock_map_table(logger_clocks(both))])
-        write_recording(output, both.channels.values(), attributes=both.attributes, overwrite=force)
+        write_recording(output, both.channels.values(), attributes=both.attributes, began=both.began, overwrite=force)
     answer(output)
 
 

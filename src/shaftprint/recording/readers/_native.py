@@ -1,6 +1,7 @@
 """The native container: HDF5 laid out as NetCDF-4, counts in int16, each channel on its own clock."""
 
 from collections.abc import Callable
+from datetime import datetime
 from pathlib import Path
 from typing import Any
 
@@ -8,8 +9,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shaftprint.errors import RecordingError
-from shaftprint.recording._channel import Channel, Times
-from shaftprint.recording._container import CHUNK_SAMPLES, FORMAT, GROUP, OWN, TIMES, UNEVEN, VERSION_WITH_TIMES
+from shaftprint.recording._channel import Channel, ClockJump, Times
+from shaftprint.recording._container import (
+    BEGAN,
+    CHUNK_SAMPLES,
+    FORMAT,
+    GROUP,
+    JUMPS,
+    JUMPS_S,
+    OWN,
+    TIMES,
+    UNEVEN,
+    VERSION_WITH_TIMES,
+)
 from shaftprint.recording._recording import Recording
 from shaftprint.recording._seal import has_seal, hashed
 from shaftprint.recording.readers._damage import told_as_damage
@@ -74,9 +86,17 @@ def _recording(path: Path, file: Any, sha256: str) -> Recording:
         sha256=sha256,
         format=NAME,
         channels=channels,
+        began=_began(path, file.attrs.get(BEGAN)),
         attributes=_facts(file.attrs),
         release=file.close,
     )
+
+
+def _began(path: Path, stated: Any) -> datetime | None:
+    try:
+        return None if stated is None else datetime.fromisoformat(str(stated))
+    except ValueError:
+        raise RecordingError(f"{path}: expected a date in the attribute {BEGAN}, found {str(stated)[:40]!r}.") from None
 
 
 def _facts(attributes: Any) -> dict[str, str | float]:
@@ -117,6 +137,15 @@ def _channel(path: Path, name: str, dataset: Any, group: Any) -> Channel:
         source=_source(path, name, dataset),
         stamps=_times(path, name, dataset, group),
         is_uneven=bool(attributes.get(UNEVEN, 0)),
+        clock_jumps=_jumps(attributes),
+    )
+
+
+def _jumps(attributes: Any) -> tuple[ClockJump, ...]:
+    samples, jumps_s = np.ravel(attributes.get(JUMPS, ())), np.ravel(attributes.get(JUMPS_S, ()))
+    return tuple(
+        ClockJump(sample=int(sample), jump_s=float(jump_s))
+        for sample, jump_s in zip(samples.tolist(), jumps_s.tolist(), strict=True)
     )
 
 

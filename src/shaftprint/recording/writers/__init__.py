@@ -1,6 +1,6 @@
 """Recordings for other tools: one file a format; values in the channel's unit instead of counts."""
 
-from shaftprint.recording.writers._by_ending import NATIVE_ENDINGS, expect_known_ending, write_by_ending
+from shaftprint.recording.writers._by_ending import NATIVE_ENDINGS, expect_known_ending, holds_date, write_by_ending
 from shaftprint.recording.writers._csv import write_csv
 from shaftprint.recording.writers._mat_v5 import write_mat_v5
 from shaftprint.recording.writers._mat_v73 import write_mat_v73
@@ -10,6 +10,7 @@ from shaftprint.recording.writers._tdms import write_tdms
 __all__ = [
     "NATIVE_ENDINGS",
     "expect_known_ending",
+    "holds_date",
     "write_by_ending",
     "write_csv",
     "write_mat_v5",

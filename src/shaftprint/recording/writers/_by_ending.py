@@ -1,6 +1,7 @@
 """Writing a recording in the format that the ending of the file's name says."""
 
 from collections.abc import Callable, Iterable, Mapping
+from datetime import datetime
 from pathlib import Path
 
 from shaftprint.errors import RecordingError
@@ -13,6 +14,9 @@ from shaftprint.recording.writers._tdms import write_tdms
 
 NATIVE_ENDINGS = (".nc", ".h5", ".hdf5")
 """Endings of the native container."""
+
+_DATED = (".mf4", ".tdms")
+"""Endings of the other formats that hold the date of second 0."""
 
 _WRITERS: dict[str, Callable[..., None]] = {
     ".csv": write_csv,
@@ -38,11 +42,20 @@ def expect_known_ending(path: Path) -> None:
         )
 
 
+def holds_date(path: Path, began: datetime | None) -> bool:
+    """Return whether a file of this ending holds a date of second 0; TDMS has them in UTC alone."""
+    ending = path.suffix.lower()
+    if ending == ".tdms" and began is not None and began.tzinfo is None:
+        return False
+    return ending in (*NATIVE_ENDINGS, *_DATED)
+
+
 def write_by_ending(
     path: str | Path,
     channels: Iterable[Channel],
     *,
     attributes: Mapping[str, str | float] | None = None,
+    began: datetime | None = None,
     overwrite: bool = False,
 ) -> None:
     """Write channels as .nc, .h5, .hdf5 (native container), .csv, .mat (version 7.3), .mf4 or .tdms.
@@ -55,6 +68,8 @@ def write_by_ending(
         Channels of any recording; for .csv and .mat on one clock.
     attributes
         Facts on the whole recording; only the native container holds them.
+    began
+        Date of second 0, where it is known; .csv and .mat do not hold it.
     overwrite
         Whether a file of that name may be replaced.
 
@@ -66,6 +81,8 @@ def write_by_ending(
     path = Path(path)
     expect_known_ending(path)
     if path.suffix.lower() in NATIVE_ENDINGS:
-        write_recording(path, channels, attributes=attributes, overwrite=overwrite)
+        write_recording(path, channels, attributes=attributes, began=began, overwrite=overwrite)
+    elif holds_date(path, began):
+        _WRITERS[path.suffix.lower()](path, channels, began=began, overwrite=overwrite)
     else:
         _WRITERS[path.suffix.lower()](path, channels, overwrite=overwrite)

@@ -16,7 +16,9 @@ from shaftprint.recording.readers import library
 _VERSION = "4.10"
 
 
-def write_mdf4(path: str | Path, channels: Iterable[Channel], *, overwrite: bool = False) -> None:
+def write_mdf4(
+    path: str | Path, channels: Iterable[Channel], *, began: datetime | None = None, overwrite: bool = False
+) -> None:
     """Write channels, each on its own clock, as MDF 4.10; channels on one clock share a group.
 
     Parameters
@@ -25,6 +27,8 @@ def write_mdf4(path: str | Path, channels: Iterable[Channel], *, overwrite: bool
         The file to write, whole or not at all.
     channels
         Channels of any recording; counts are written as counts with their scale.
+    began
+        Date of second 0, where it is known.
     overwrite
         Whether a file of that name may be replaced.
 
@@ -43,8 +47,8 @@ def write_mdf4(path: str | Path, channels: Iterable[Channel], *, overwrite: bool
     try:
         with written_whole(path, overwrite=overwrite) as part:
             file = asammdf.MDF(version=_VERSION)
-            # no date: the same recording is to give the same file
-            file.start_time = datetime(1970, 1, 1, tzinfo=UTC)
+            # not the date of writing: the same recording is to give the same file
+            file.start_time = began or datetime(1970, 1, 1, tzinfo=UTC)
             try:
                 for number, group in enumerate(groups.values()):
                     _append(asammdf, file, number, group)

@@ -1,6 +1,7 @@
 """NI TDMS files: one group, each channel with waveform properties and counts with a linear scale."""
 
 from collections.abc import Iterable
+from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +18,9 @@ _GROUP = "recording"
 _NO_SCALE_BEFORE = 0xFFFFFFFF
 
 
-def write_tdms(path: str | Path, channels: Iterable[Channel], *, overwrite: bool = False) -> None:
+def write_tdms(
+    path: str | Path, channels: Iterable[Channel], *, began: datetime | None = None, overwrite: bool = False
+) -> None:
     """Write channels, each on its own clock, as TDMS.
 
     Parameters
@@ -26,6 +29,8 @@ def write_tdms(path: str | Path, channels: Iterable[Channel], *, overwrite: bool
         The file to write, whole or not at all.
     channels
         Channels of any recording; counts are written as counts with their scale.
+    began
+        Date of second 0 with its offset from UTC, where it is known.
     overwrite
         Whether a file of that name may be replaced.
 
@@ -40,7 +45,7 @@ def write_tdms(path: str | Path, channels: Iterable[Channel], *, overwrite: bool
         with written_whole(path, overwrite=overwrite) as part, nptdms.TdmsWriter(str(part)) as writer:
             for channel in channels:
                 expect_no_messages(path, channel, on="clocks")
-                properties = _properties(nptdms.types, channel)
+                properties = _properties(nptdms.types, channel, began)
                 # an empty channel is one segment without samples
                 for start in range(0, max(channel.count, 1), CHUNK_SAMPLES):
                     counts = channel.read(start, min(start + CHUNK_SAMPLES, channel.count))
@@ -50,7 +55,7 @@ def write_tdms(path: str | Path, channels: Iterable[Channel], *, overwrite: bool
         raise RecordingError(f"{path}: the file cannot be written: {reason(error)}") from None
 
 
-def _properties(types: Any, channel: Channel) -> dict[str, object]:
+def _properties(types: Any, channel: Channel, began: datetime | None) -> dict[str, object]:
     properties: dict[str, object] = {
         "wf_increment": 1.0 / channel.rate_hz,
         "wf_start_offset": float(channel.start_s),
@@ -58,6 +63,8 @@ def _properties(types: Any, channel: Channel) -> dict[str, object]:
         "unit_string": channel.unit,
         "description": channel.long_name,
     }
+    if began is not None:
+        properties["wf_start_time"] = np.datetime64(began.astimezone(UTC).replace(tzinfo=None), "us")
     if channel.read(0, 0).dtype == np.int16 and (channel.scale, channel.offset) != (1.0, 0.0):
         properties |= {
             "NI_Scaling_Status": "unscaled",
