@@ -107,6 +107,8 @@ class Seen:
     """The channel."""
     is_pulses: bool
     """Whether its values are at two levels, most of the time at one of them."""
+    is_empty: bool = False
+    """Whether none of its values is a number."""
 
 
 def proposed_sensors(seen: Sequence[Seen]) -> list[str]:
@@ -117,6 +119,9 @@ def proposed_sensors(seen: Sequence[Seen]) -> list[str]:
     seen
         The channels of a recording.
     """
+    rate = max((item.channel.rate_hz for item in seen), default=0.0)
+    empty = [item.channel.name for item in seen if item.is_empty]
+    seen = [item for item in seen if not item.is_empty]
     uses = {item.channel.name: _use(item) for item in seen} | _uses_by_number(seen)
     lines = []
     single: set[str] = set()
@@ -140,7 +145,7 @@ def proposed_sensors(seen: Sequence[Seen]) -> list[str]:
     lines += _without_sensor(seen, uses)
     if not speeds:
         lines += ["# [[sensors.speed]]: no channel holds pulses, a speed or an angle", ""]
-    rate = max((item.channel.rate_hz for item in seen), default=0.0)
+    lines += [f"# {name!r}: it holds no numbers" for name in empty] + ([""] if empty else [])
     return [*lines, "[logger]", f"sample_rate_hz = {rate!r}"]
 
 

@@ -195,7 +195,8 @@ def _print_channels(opened: Recording, levels_of: Mapping[str, Levels]) -> list[
     rows, seen = [], []
     for name, channel in opened.channels.items():
         levels = levels_of[name]
-        seen.append(Seen(channel=channel, is_pulses=levels.is_pulses))
+        is_empty = levels.missing == channel.count
+        seen.append(Seen(channel=channel, is_pulses=levels.is_pulses, is_empty=is_empty))
         values = [f"{value:.5g}" for value in (levels.lowest, levels.mean, levels.highest)]
         span = f"{channel.start_s:g} to {channel.start_s + channel.duration_s:g}"
         rows.append((channel.name, channel.unit, f"{channel.rate_hz:g}", span, *values, str(levels.missing)))

@@ -1,19 +1,20 @@
 """What is told of a file whose bytes are not what its format promises."""
 
 import contextlib
-import warnings
+import io
 from collections.abc import Iterator
 from pathlib import Path
 
 from shaftprint.errors import RecordingError
+from shaftprint.recording.readers._library_output import quiet
 
 # Deflate packs at most 1032 bytes into one; a file that promises more samples than that is damaged.
 _LARGEST_RATIO = 1100
 
 
 @contextlib.contextmanager
-def told_as_damage(path: Path, what: str) -> Iterator[None]:
-    """Turn whatever a library raises on damaged bytes into one sentence.
+def told_as_damage(path: Path, what: str) -> Iterator[io.StringIO]:
+    """Turn whatever a library raises on damaged bytes into one sentence, and keep what it prints from every output.
 
     Parameters
     ----------
@@ -22,16 +23,19 @@ def told_as_damage(path: Path, what: str) -> Iterator[None]:
     what
         The format, in words.
 
+    Yields
+    ------
+    io.StringIO
+        What the library said.
+
     Raises
     ------
     RecordingError
         If the block raises any error.
     """
     try:
-        with warnings.catch_warnings():
-            # libraries warn of odd bytes where the sentence below, or a channel that is left out, says it
-            warnings.simplefilter("ignore")
-            yield
+        with quiet() as said:
+            yield said
     except RecordingError:
         raise
     except Exception as error:

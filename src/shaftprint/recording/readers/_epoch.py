@@ -12,6 +12,7 @@ _LATEST_S = 4e9
 _REFERENCE = re.compile(
     r"(\d{1,4})-(\d\d?)-(\d\d?)(?:[T ]+(\d\d?):(\d\d?)(?::(\d\d?(?:\.\d*)?))?)?\s*(?:Z|UTC|GMT|([+-])(\d\d?):?(\d\d)?)?"
 )
+_UNDATED = 1970
 
 
 def from_second_zero(
@@ -59,3 +60,39 @@ def reference_s(text: str) -> float | None:
     except ValueError:
         return None
     return (date - datetime(1970, 1, 1, tzinfo=UTC)).total_seconds() + float(match[6] or 0.0)
+
+
+def from_its_zero(
+    channels: Mapping[str, Channel], began: datetime | None
+) -> tuple[dict[str, Channel], datetime | None]:
+    """Return channels with times from the first of them on, where the file's date is no beginning of theirs.
+
+    That of a file which was converted from another is when that was done: all samples then lie before it.
+
+    Parameters
+    ----------
+    channels
+        Channels as the file has them; what begins at its date, or somewhat before it, is left as it is.
+    began
+        The date of second zero.
+    """
+    starts = [channel.start_s for channel in channels.values()]
+    first, last = min(starts), max(channel.start_s + channel.duration_s for channel in channels.values())
+    if first > _LATER_THAN_ANY_TEST_S:
+        return from_second_zero(channels)
+    if last > 0.0:
+        return dict(channels), began
+    moved = {
+        name: channel.on_other_clock(start_s=channel.start_s - first, rate_hz=channel.rate_hz)
+        for name, channel in channels.items()
+    }
+    return moved, None if began is None else _date_of(began, first)
+
+
+def _date_of(began: datetime, first_s: float) -> datetime | None:
+    try:
+        date = began + timedelta(seconds=first_s)
+    except OverflowError:
+        return None
+    # times that begin at zero, put before a date, come to 1970: a date that nobody knows
+    return date if date.year > _UNDATED else None

@@ -2,11 +2,11 @@
 
 import importlib
 import importlib.util
-import logging
 from pathlib import Path
 from typing import Any
 
 from shaftprint.errors import RecordingError
+from shaftprint.recording.readers._library_output import quiet, take_over_logging
 
 
 def library(path: Path, package: str, what: str) -> Any:
@@ -27,15 +27,13 @@ def library(path: Path, package: str, what: str) -> Any:
         If it is not installed, or does not run on this computer.
     """
     try:
-        module = importlib.import_module(package)
+        with quiet():
+            module = importlib.import_module(package)
     except ImportError:
         raise _absent(path, package, what) from None
     except (OSError, NotImplementedError) as error:
         raise RecordingError(f"{path}: {package}, which reads {what} files, does not run here ({error}).") from None
-    # what a library has to say about odd bytes goes into our own sentences
-    for name in list(logging.root.manager.loggerDict):
-        if name.partition(".")[0] == package:
-            logging.getLogger(name).setLevel(logging.CRITICAL)
+    take_over_logging(package.partition(".")[0])
     return module
 
 

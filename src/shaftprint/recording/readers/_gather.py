@@ -9,7 +9,7 @@ from shaftprint.errors import RecordingError
 from shaftprint.escape import printable
 from shaftprint.recording._channel import Channel
 from shaftprint.recording._recording import Recording, sha256_of
-from shaftprint.recording.readers._epoch import from_second_zero
+from shaftprint.recording.readers._epoch import from_its_zero, from_second_zero
 from shaftprint.recording.readers._time_scale import TimeScale
 
 _SHOWN = 5
@@ -63,6 +63,11 @@ class Gathered:
         has_zone = all(scale.has_zone for scale in self.scales)
         reference_s = next((scale.reference_s for scale in self.scales if scale.reference_s is not None), None)
         channels, began = from_second_zero(self.expect_some(), has_zone=has_zone, reference_s=reference_s)
+        return self._recording(channels, kind, release, began)
+
+    def recording_from_its_zero(self, kind: str, release: Callable[[], None], began: datetime | None) -> Recording:
+        """Return the same with times from the first sample on, where all lie before the date of the file."""
+        channels, began = from_its_zero(self.expect_some(), began)
         return self._recording(channels, kind, release, began)
 
     def _recording(

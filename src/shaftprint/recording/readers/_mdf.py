@@ -2,12 +2,10 @@
 
 import contextlib
 import re
-from collections.abc import Mapping
 from dataclasses import dataclass
 from datetime import datetime
-from functools import partial
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,21 +14,17 @@ from shaftprint.arrays import FloatArray
 from shaftprint.errors import RecordingError
 from shaftprint.recording._channel import Channel
 from shaftprint.recording._recording import Recording
-from shaftprint.recording.readers._bus_logging import (
-    BusSignal,
-    bus_signals,
-    is_bus_logging,
-    message_of,
-    signal_of,
-    taken_apart,
-)
 from shaftprint.recording.readers._clock import SampleClock, clock_of_times, on_clock
 from shaftprint.recording.readers._damage import expect_plausible, told_as_damage
 from shaftprint.recording.readers._extra import library
 from shaftprint.recording.readers._gather import Gathered, unique_names
 from shaftprint.recording.readers._hints import rate_hint
+from shaftprint.recording.readers._library_output import quiet, remarks
+from shaftprint.recording.readers._mdf_frames import frames_of, holds_frames, holds_no_values, is_bus_logging
 from shaftprint.recording.readers._mdf_records import MdfRecords, expect_in_record
+from shaftprint.recording.readers._mdf_values import is_text_table, numbers_of, unit_of
 from shaftprint.recording.readers._opened import Opened
+from shaftprint.recording.readers.can import Database, Decoded, add_signals, database_of, decoded, expect_known
 from shaftprint.units import plain_unit
 
 NAME = "MDF"
@@ -41,7 +35,9 @@ _SIGNATURES = (b"MDF     ", b"UnFinMF ")
 _MASTERS = (2, 3)
 _TIME = 1
 _LINEAR = 1
-_FIRST_TEXT_CONVERSION = 7
+_ALL_INVALID, _HAS_INVALIDATION_BITS = 1, 2
+# MDF 3, block CC: tables of texts
+_TEXTS_OF_MDF_3 = (11, 12)
 
 
 def is_mine(path: Path) -> bool:
@@ -62,38 +58,36 @@ def read(path: Path, **hints: object) -> Recording:
         If the file is damaged or no channel can be used.
     """
     rate = rate_hint(path, hints, {"dbc": (str, Path)})
-    dbc = None if hints.get("dbc") is None else Path(str(hints["dbc"]))
-    signals, unread = ({}, {}) if dbc is None else bus_signals(dbc)
+    database = database_of(hints)
     asammdf = library(path, "asammdf", NAME)
     _close_in_silence(asammdf)
     _expect_version(path)
     handle = path.open("rb")
     try:
-        with told_as_damage(path, NAME):
-            file = asammdf.MDF(handle, process_bus_logging=dbc is not None)
+        with told_as_damage(path, NAME) as said:
+            file = asammdf.MDF(handle, process_bus_logging=False)
     except BaseException:
         handle.close()
         raise
-    files = [file]
-    opened = Opened(path, partial(_close, files, handle))
+    closing = contextlib.ExitStack()
+    closing.callback(handle.close)
+    closing.callback(_close, file)
+    opened = Opened(path, closing.close)
     try:
         with told_as_damage(path, NAME):
-            if dbc is not None:
-                files.append(taken_apart(path, file, dbc))
-            gathered = _gather(path, files, opened, rate, signals)
-            gathered.left_out.update(unread)
+            gathered = _gather(path, file, opened, rate, database, closing)
+            gathered.left_out.update(remarks(said, "asammdf"))
             began = file.start_time
             is_dated = isinstance(began, datetime) and began.year > 1970
-            return gathered.recording(f"{NAME} {file.version}", opened.close, began if is_dated else None)
+            return gathered.recording_from_its_zero(f"{NAME} {file.version}", opened.close, began if is_dated else None)
     except BaseException:
         opened.close()
         raise
 
 
-def _close(files: list[Any], handle: BinaryIO) -> None:
-    for file in files:
+def _close(file: Any) -> None:
+    with quiet():
         file.close()
-    handle.close()
 
 
 def _expect_version(path: Path) -> None:
@@ -120,7 +114,7 @@ def _close_in_silence(asammdf: Any) -> None:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class _Place:
-    """Where a channel stands: in the file itself, or in what was taken out of its raw messages."""
+    """Where a channel stands."""
 
     file: Any
     records: MdfRecords
@@ -131,49 +125,90 @@ class _Place:
     def described(self) -> Any:
         return self.file.groups[self.group].channels[self.index]
 
-    @property
-    def label(self) -> str:
-        """Name of the group."""
-        return message_of(self.file.groups[self.group]) or f"group {self.group}"
-
 
 def _gather(
-    path: Path, files: list[Any], opened: Opened, rate_hz: float | None, signals: Mapping[str, BusSignal]
+    path: Path,
+    file: Any,
+    opened: Opened,
+    rate_hz: float | None,
+    database: Database,
+    closing: contextlib.ExitStack,
 ) -> Gathered:
     gathered = Gathered(path=path)
-    raw = [group for group, described in enumerate(files[0].groups) if is_bus_logging(described)]
-    if not signals:
-        for group in raw:
-            gathered.left_out[f"group {group}"] = (
-                "raw messages of a bus; give the DBC file that says what they hold, dbc= (--dbc of shaftprint convert)."
-            )
-    places = [place for place in _places(files[0]) if place.group not in raw]
-    places += [place for file in files[1:] for place in _places(file)]
-    names = unique_names([(place.label, place.described.name) for place in places])
-    clocks: dict[tuple[int, int], SampleClock | RecordingError] = {}
-    for place, name in zip(places, names, strict=True):
-        key = (id(place.file), place.group)
-        if key not in clocks:
+    records = MdfRecords(file)
+    taken = _frames(path, file, records, database)
+    if taken is not None:
+        closing.callback(taken.close)
+    gathered.left_out.update(_other_buses(file, is_taken=taken is not None and bool(taken.named)))
+    places = _places(file, records)
+    named = [(f"group {place.group}", place.described.name) for place in places]
+    names = unique_names(named + list(() if taken is None else taken.named))
+    clocks: dict[int, SampleClock | RecordingError] = {}
+    for place, name in zip(places, names[: len(places)], strict=True):
+        if place.group not in clocks:
             try:
-                clocks[key] = _clock(path, place.file, place.group, rate_hz)
+                clocks[place.group] = _clock(path, file, place.group, rate_hz)
             except RecordingError as error:
-                clocks[key] = error
+                clocks[place.group] = error
 
-        def make(place: _Place = place, name: str = name, key: tuple[int, int] = key) -> Channel:
-            clock = clocks[key]
+        def make(place: _Place = place, name: str = name) -> Channel:
+            clock = clocks[place.group]
             if isinstance(clock, RecordingError):
                 raise clock
-            return _channel(path, place, opened, name, clock, signal_of(place.described, signals))
+            return _channel(path, place, opened, name, clock)
 
         gathered.add(name, make)
+    if taken is not None:
+        add_signals(gathered, taken, names[len(places) :])
     return gathered
 
 
-def _places(file: Any) -> list[_Place]:
-    records = MdfRecords(file)
+def _frames(path: Path, file: Any, records: MdfRecords, database: Database) -> Decoded | None:
+    """Return what the frames of a CAN bus hold; None where there are none.
+
+    Raises
+    ------
+    RecordingError
+        If there is a DBC file and it knows none of them, or there are none.
+    """
+    has_frames = any(holds_frames(group) and int(group.channel_group.cycles_nr) for group in file.groups)
+    if not has_frames and not database.name:
+        return None
+    if not has_frames:
+        raise RecordingError(
+            f"{path}: expected raw messages of a bus for {database.name}, found none; leave the DBC file out."
+        )
+    taken = decoded(path, frames_of(file, records), database)
+    if database.name:
+        try:
+            expect_known(path, taken, database)
+        except RecordingError:
+            taken.close()
+            raise
+    return taken
+
+
+def _other_buses(file: Any, *, is_taken: bool) -> dict[str, str]:
+    """Return why raw messages are left out: frames that nothing says of, and those of buses other than CAN."""
+    left_out: dict[str, str] = {}
+    for number, group in enumerate(file.groups):
+        count = int(group.channel_group.cycles_nr)
+        if not count or not is_bus_logging(group) or holds_no_values(group):
+            continue
+        if not holds_frames(group):
+            left_out[f"group {number}"] = "raw messages of a bus other than CAN, which cannot be read."
+        elif not is_taken:
+            left_out[f"group {number}"] = (
+                "raw messages of a bus; give the DBC file that says what they hold, dbc= (--dbc of shaftprint convert)."
+            )
+    return left_out
+
+
+def _places(file: Any, records: MdfRecords) -> list[_Place]:
     return [
         _Place(file=file, records=records, group=group, index=index)
         for group, channel_group in enumerate(file.groups)
+        if not is_bus_logging(channel_group)
         for index, channel in enumerate(channel_group.channels)
         if file.masters_db.get(group) != index and int(channel.channel_type) not in _MASTERS
     ]
@@ -208,9 +243,7 @@ def _clock(path: Path, file: Any, group: int, rate_hz: float | None) -> SampleCl
         return clock_of_times(path, f"master {channel.name}", count, read)
 
 
-def _channel(
-    path: Path, place: _Place, opened: Opened, name: str, clock: SampleClock, signal: BusSignal | None
-) -> Channel:
+def _channel(path: Path, place: _Place, opened: Opened, name: str, clock: SampleClock) -> Channel:
     file, records, group, index = place.file, place.records, place.group, place.index
     described = place.described
     count = _count(path, file, group)
@@ -218,19 +251,20 @@ def _channel(
     conversion = described.conversion
     kind = -1 if conversion is None else int(conversion.conversion_type)
     scale, offset = 1.0, 0.0
-    first, invalid = records.samples(group, index, 0, min(count, 2), raw=True)
+    is_text = _is_v4(file) and is_text_table(conversion)
+    flags = int(getattr(described, "flags", 0))
+    has_bits = bool(flags & (_ALL_INVALID | _HAS_INVALIDATION_BITS)) and _is_v4(file)
+    first, _ = records.samples(group, index, 0, min(count, 2), raw=True)
     if first.ndim != 1 or first.dtype.kind not in "fiu":
         raise RecordingError(f"{path}, channel {name}: expected one real number a sample, found {_shape(first)}.")
-    is_counts = (
-        first.dtype == np.int16 and invalid is None and signal is None and (conversion is None or kind == _LINEAR)
-    )
+    is_counts = first.dtype == np.int16 and not has_bits and (conversion is None or kind == _LINEAR)
     if is_counts and conversion is not None and _is_v4(file):
         scale, offset = float(conversion.a), float(conversion.b)
         is_counts = scale != 0.0 and bool(np.isfinite([scale, offset]).all())
         scale, offset = (scale, offset) if is_counts else (1.0, 0.0)
     elif conversion is not None:
         is_counts = False
-    raw = is_counts or (_is_v4(file) and kind >= _FIRST_TEXT_CONVERSION)
+    raw = is_counts or is_text or (not _is_v4(file) and kind in _TEXTS_OF_MDF_3)
 
     def source(start: int, stop: int) -> NDArray[Any]:
         with opened.reading(name), told_as_damage(path, NAME):
@@ -239,13 +273,16 @@ def _channel(
                 raise RecordingError(f"{path}, channel {name}: samples [{start}, {stop}) are missing; is the file cut?")
             if is_counts:
                 return np.ascontiguousarray(values, dtype=np.int16)
-            # a copy into a new array: the library's type of numbers carries the conversion, and would apply it again
-            numbers = np.empty(len(values))
-            numbers[:] = values
-            if invalid is not None:
+            if is_text:
+                numbers = numbers_of(conversion, values)
+            else:
+                # a copy: the library's type of numbers carries the conversion, and would apply it again
+                numbers = np.empty(len(values))
+                numbers[:] = values
+            if flags & _ALL_INVALID and has_bits and not flags & _HAS_INVALIDATION_BITS:
+                numbers[:] = np.nan
+            elif invalid is not None:
                 numbers[np.asarray(invalid, dtype=bool)] = np.nan
-            if signal is not None:
-                numbers[(numbers < signal.lowest) | (numbers > signal.highest)] = np.nan
             return numbers
 
     source(0, min(count, 2))
@@ -258,15 +295,9 @@ def _channel(
         source=source,
         scale=scale,
         offset=offset,
-        long_name=_long_name(described, signal),
+        long_name=str(getattr(described, "comment", "") or "")[:200],
     )
     return on_clock(channel, clock)
-
-
-def _long_name(described: Any, signal: BusSignal | None) -> str:
-    if signal is None or signal.spn is None:
-        return str(getattr(described, "comment", "") or "")[:200]
-    return f"SPN {signal.spn}{': ' if signal.comment else ''}{signal.comment}"[:200]
 
 
 def _is_v4(file: Any) -> bool:
@@ -274,7 +305,7 @@ def _is_v4(file: Any) -> bool:
 
 
 def _unit(described: Any) -> str:
-    unit = getattr(described, "unit", "") or getattr(described.conversion, "unit", "") or ""
+    unit = getattr(described, "unit", "") or unit_of(described.conversion)
     return unit.decode("latin-1").strip(" \0") if isinstance(unit, bytes) else str(unit).strip()
 
 

@@ -17,6 +17,7 @@ from shaftprint.errors import RecordingError
 from shaftprint.recording._channel import Channel, Times
 from shaftprint.recording._recording import Recording, sha256_of
 from shaftprint.recording._spool import Spool
+from shaftprint.recording.readers import can
 from shaftprint.recording.readers._clock import SampleClock, clock_of_times, on_clock
 from shaftprint.recording.readers._hints import rate_hint
 from shaftprint.recording.readers._time_scale import TimeScale, expect_time_unit, time_scale
@@ -53,7 +54,7 @@ def is_mine(path: Path) -> bool:
     except (EOFError, zlib.error, gzip.BadGzipFile):
         # too damaged to tell: the name decides
         return name.suffix.lower() in _ENDINGS
-    if b"\0" in begin and not begin.startswith(_UTF_16):
+    if (b"\0" in begin and not begin.startswith(_UTF_16)) or can.is_mine(path):
         return False
     if name.suffix.lower() in _ENDINGS:
         return True

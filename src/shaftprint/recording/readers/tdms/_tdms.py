@@ -19,6 +19,7 @@ from shaftprint.recording.readers._damage import expect_plausible, told_as_damag
 from shaftprint.recording.readers._extra import library
 from shaftprint.recording.readers._gather import Gathered, unique_names
 from shaftprint.recording.readers._hints import rate_hint
+from shaftprint.recording.readers._library_output import remarks
 from shaftprint.recording.readers._opened import Opened
 from shaftprint.recording.readers._time_scale import expect_time_unit, time_of, time_scale, unit_in_name
 from shaftprint.recording.readers.tdms._parts import (
@@ -67,14 +68,14 @@ def read(path: Path, **hints: object) -> Recording:
     raw = path.open("rb")
     opened = Opened(path, raw.close)
     try:
-        with told_as_damage(path, NAME):
+        with told_as_damage(path, NAME) as said:
             file = nptdms.TdmsFile.open(raw)
             return _Source(
                 path=path,
                 file=file,
                 opened=opened,
                 parts=parts_of(nptdms, raw),
-                gathered=Gathered(path=path),
+                gathered=Gathered(path=path, left_out=remarks(said, "npTDMS")),
                 rate_hz=rate,
                 time_unit=time_unit,
                 interleaved=interleaved,

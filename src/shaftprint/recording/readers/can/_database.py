@@ -1,0 +1,182 @@
+"""What a DBC or ARXML file says of the messages of a CAN bus."""
+
+import io
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+from shaftprint.errors import RecordingError
+from shaftprint.escape import printable
+from shaftprint.recording.readers._extra import library
+from shaftprint.recording.readers._library_output import quiet
+from shaftprint.recording.readers.can._dbc_lines import lost_lines, whole_messages
+from shaftprint.recording.readers.can._frames import EXTENDED, is_j1939, is_nmea_2000, pgn_of, sender_of
+from shaftprint.recording.readers.can._known import KNOWN
+from shaftprint.recording.readers.can._messages import Message, Selection, Signal
+
+# what the library prints where it leaves a line out
+_LINE = re.compile(r"error with line no: (\d+)")
+_INSTANCE = re.compile(r"(?:^|[^a-z])instance$|[a-z]Instance$", re.IGNORECASE)
+# the address of nobody, under which DBC files state a message of any sender
+_NO_SENDER = 0xFE
+_FRAME_BYTES = 8
+# Programs write [0|1] where nobody stated a range.
+_WIDEST_OF_A_SWITCH = 7
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Database:
+    """Messages, to be looked up by identifiers."""
+
+    name: str
+    """File, for messages; empty of those that need none."""
+    messages: tuple[Message, ...]
+    """All of them."""
+    left_out: Mapping[str, str] = field(default_factory=dict)
+    """What of the file cannot be read, and why."""
+    _by_identifier: dict[int, Message] = field(default_factory=dict)
+    _by_group: dict[int, Message] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        """Sort the messages."""
+        for message in self.messages:
+            whole = message.identifier | (int(EXTENDED) if message.is_extended else 0)
+            if message.is_of_any_sender:
+                self._by_group.setdefault(pgn_of(message.identifier), message)
+            if not message.is_of_any_sender or sender_of(message.identifier) != _NO_SENDER:
+                self._by_identifier.setdefault(whole, message)
+
+    def message(self, identifier: int) -> Message | None:
+        """Return the message of an identifier, which has the mark of 29 bits; None of one that is not known."""
+        message = self._by_identifier.get(identifier)
+        if message is None and identifier & int(EXTENDED):
+            return self._by_group.get(pgn_of(identifier & ~int(EXTENDED)))
+        return message
+
+
+def known_messages() -> Database:
+    """Return the messages that need no file."""
+    return Database(name="", messages=KNOWN)
+
+
+def read_database(path: Path) -> Database:
+    """Read a DBC or ARXML file.
+
+    Raises
+    ------
+    RecordingError
+        If it is missing, no such file, or empty.
+    """
+    kind = "ARXML" if path.suffix.lower() == ".arxml" else "DBC"
+    if not path.is_file():
+        raise RecordingError(f"{path}: expected a {kind} file, found none there.")
+    canmatrix = library(path, "canmatrix", kind)
+    library(path, "canmatrix.formats", kind)
+    try:
+        with quiet() as said:
+            content = path.read_bytes()
+            without_id: dict[str, str] = {}
+            if kind == "DBC":
+                content, without_id = whole_messages(path.name, content)
+            matrices = canmatrix.formats.load(io.BytesIO(content), kind.lower())
+            buses = [matrix for matrix in matrices.values() if matrix is not None]
+            messages = tuple(message for matrix in buses for message in _messages(matrix, is_dbc=kind == "DBC"))
+    except Exception as error:
+        reason = printable(" ".join(str(error).split())[:200]) or type(error).__name__
+        raise RecordingError(f"{path}: expected a {kind} file, found one that cannot be read ({reason}).") from None
+    signals_of = {
+        (message.identifier | (int(EXTENDED) if message.is_extended else 0), signal.name)
+        for message in messages
+        for signal in message.signals
+    }
+    numbers = [int(number) for number in _LINE.findall(said.getvalue())]
+    usable, unusable = [], without_id | lost_lines(path.name, content, numbers, signals_of)
+    for message in messages:
+        signals = tuple(signal for signal in message.signals if signal.can_be_read)
+        for signal in set(message.signals) ^ set(signals):
+            unusable[f"{message.name}.{signal.name}"] = "expected at most 64 bits of a number, found other."
+        usable.append(replace(message, signals=signals))
+    if not any(message.signals for message in usable):
+        lost = "; ".join(f"{name}: {reason.removesuffix('.')}" for name, reason in list(unusable.items())[:3])
+        raise RecordingError(
+            f"{path}: expected a {kind} file with messages and signals, found none in it{f' ({lost})' if lost else ''}."
+        )
+    return Database(name=path.name, messages=tuple(usable), left_out=unusable)
+
+
+def _messages(matrix: Any, *, is_dbc: bool) -> Iterator[Message]:
+    is_all_j1939 = str(matrix.attributes.get("ProtocolType", "")).strip('"').lower() == "j1939"
+    for frame in matrix.frames:
+        identifier, is_extended = int(frame.arbitration_id.id), bool(frame.arbitration_id.extended)
+        marked = is_extended and (
+            frame.is_j1939
+            or is_all_j1939
+            or "J1939PG" in str(frame.attribute("VFrameFormat", db=matrix, default="") or "")
+        )
+        is_of_nobody = is_extended and is_j1939(identifier) and sender_of(identifier) == _NO_SENDER
+        signals = tuple(_signal(frame, signal) for signal in frame.signals)
+        yield Message(
+            name=str(frame.name),
+            signals=signals,
+            identifier=identifier,
+            is_extended=is_extended,
+            is_j1939=marked,
+            is_of_any_sender=marked or is_of_nobody,
+            is_fast=is_extended and is_nmea_2000(identifier) and int(frame.size) > _FRAME_BYTES,
+            instance=next((one for one in signals if _INSTANCE.search(one.name) and not one.where), None),
+        )
+
+
+def _signal(frame: Any, signal: Any) -> Signal:
+    spn = str(signal.attributes.get("SPN", ""))
+    lowest, highest = (float("nan") if end is None else float(end) for end in (signal.min, signal.max))
+    bits = int(signal.size)
+    is_range = lowest < highest and not ((lowest, highest) == (0.0, 1.0) and bits > _WIDEST_OF_A_SWITCH)
+    return Signal(
+        name=str(signal.name),
+        start=int(signal.get_startbit(bit_numbering=1)),
+        bits=bits,
+        unit=str(signal.unit or ""),
+        is_big_endian=not signal.is_little_endian,
+        is_signed=bool(signal.is_signed),
+        is_float=bool(signal.is_float),
+        factor=float(signal.factor),
+        offset=float(signal.offset),
+        lowest=lowest if is_range else -float("inf"),
+        highest=highest if is_range else float("inf"),
+        spn=int(spn) if spn.isdecimal() and int(spn) else None,
+        comment=str(signal.comment or "").strip(),
+        texts={int(code): str(text) for code, text in signal.values.items()},
+        where=tuple(_selections(frame, signal)),
+    )
+
+
+def _selections(frame: Any, signal: Any) -> Iterator[Selection]:
+    """Yield the counts of multiplexers, one within the other, that select the messages of a signal."""
+    seen: set[str] = set()
+    while True:
+        muxer, ranges = _multiplexer(frame, signal)
+        if muxer is None or muxer.name in seen:
+            return
+        seen.add(muxer.name)
+        yield Selection(
+            start=int(muxer.get_startbit(bit_numbering=1)),
+            bits=int(muxer.size),
+            is_big_endian=not muxer.is_little_endian,
+            ranges=ranges,
+        )
+        signal = muxer
+
+
+def _multiplexer(frame: Any, signal: Any) -> tuple[Any, tuple[tuple[int, int], ...]]:
+    groups: Sequence[Sequence[int]] = signal.mux_val_grp or []
+    if signal.muxer_for_signal and groups:
+        return frame.signal_by_name(signal.muxer_for_signal), tuple((int(low), int(high)) for low, high in groups)
+    value = signal.mux_val if getattr(signal, "mux_val", None) is not None else signal.multiplex
+    if not isinstance(value, int) or isinstance(value, bool):
+        return None, ()
+    others = (one for one in frame.signals if one is not signal and one.multiplex == "Multiplexor")
+    outer = [one for one in others if not one.muxer_for_signal]
+    return (outer[0] if outer else None), ((value, value),)

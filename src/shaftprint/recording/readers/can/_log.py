@@ -1,0 +1,112 @@
+"""Logs of a CAN bus that hold frames only: BLF, ASC, TRC and candump."""
+
+import contextlib
+from collections.abc import Mapping
+from pathlib import Path
+
+from shaftprint.errors import RecordingError
+from shaftprint.recording._recording import Recording
+from shaftprint.recording.readers._damage import told_as_damage
+from shaftprint.recording.readers._extra import library
+from shaftprint.recording.readers._gather import Gathered, unique_names
+from shaftprint.recording.readers._hints import expect_hints
+from shaftprint.recording.readers._opened import Opened
+from shaftprint.recording.readers.can._blf import SIGNATURE, open_blf
+from shaftprint.recording.readers.can._channels import Decoded, decoded
+from shaftprint.recording.readers.can._database import Database, known_messages, read_database
+from shaftprint.recording.readers.can._frames import FrameLog
+from shaftprint.recording.readers.can._text_logs import kind_of, open_text_log
+
+NAME = "CAN log"
+
+_FIRST_BYTES = 4096
+
+
+def is_mine(path: Path) -> bool:
+    """Return whether the file begins as one of these logs."""
+    with path.open("rb") as file:
+        begin = file.read(_FIRST_BYTES)
+    return begin.startswith(SIGNATURE) or bool(kind_of(path, _text(begin)))
+
+
+def read(path: Path, **hints: object) -> Recording:
+    """Open a log of frames; its signals are laid into a temporary file, which is deleted when it is closed.
+
+    Hints: ``dbc``, the DBC or ARXML file that says what the frames hold; without it the messages of engines, gearboxes
+    and rudders by SAE J1939 and NMEA 2000 are read.
+
+    Raises
+    ------
+    RecordingError
+        If the file is damaged or holds no message that is known.
+    """
+    expect_hints(path, hints, {"dbc": (str, Path)})
+    database = database_of(hints)
+    with contextlib.ExitStack() as stack, told_as_damage(path, NAME):
+        log = _open(path, stack)
+        taken = decoded(path, log, database)
+    opened = Opened(path, taken.close)
+    try:
+        expect_known(path, taken, database)
+        gathered = Gathered(path=path)
+        add_signals(gathered, taken, unique_names(list(taken.named)))
+        return gathered.recording(f"{NAME} ({log.kind})", opened.close, log.began)
+    except BaseException:
+        opened.close()
+        raise
+
+
+def database_of(hints: Mapping[str, object]) -> Database:
+    """Return what the hint ``dbc`` names, or the messages that need no file.
+
+    Raises
+    ------
+    RecordingError
+        If that file cannot be read.
+    """
+    return known_messages() if hints.get("dbc") is None else read_database(Path(str(hints["dbc"])))
+
+
+def expect_known(path: Path, taken: Decoded, database: Database) -> None:
+    """Refuse a log of which no message is known.
+
+    Raises
+    ------
+    RecordingError
+        If there is none.
+    """
+    if taken.named:
+        return
+    unknown = "; ".join(f"{name}: {reason}" for name, reason in list(taken.left_out(()).items())[:3])
+    found = f" ({unknown.rstrip('.')})" if unknown else ""
+    if database.name:
+        raise RecordingError(
+            f"{path}: expected messages that {database.name} knows, found none of them in the log{found}; take the DBC "
+            "file of this ship."
+        )
+    raise RecordingError(
+        f"{path}: expected messages of engine, gearbox or rudder by SAE J1939 or NMEA 2000, found none of them in the "
+        f"log{found}; give the DBC file that says what the frames hold, dbc= (--dbc of shaftprint convert)."
+    )
+
+
+def add_signals(gathered: Gathered, taken: Decoded, names: list[str]) -> None:
+    """Add the channels of a log under their names, and what is left out."""
+    for name, make in zip(names, taken.make, strict=True):
+        gathered.add(name, lambda make=make, name=name: make(name))  # type: ignore[misc]
+    gathered.left_out.update(taken.left_out(tuple(names)))
+
+
+def _open(path: Path, stack: contextlib.ExitStack) -> FrameLog:
+    binary = stack.enter_context(path.open("rb"))
+    begin = binary.read(_FIRST_BYTES)
+    binary.seek(0)
+    if begin.startswith(SIGNATURE):
+        return open_blf(path, binary)
+    package = library(path, "can", NAME)
+    text = stack.enter_context(path.open(encoding="utf-8", errors="replace"))
+    return open_text_log(path, kind_of(path, _text(begin)), text, package)
+
+
+def _text(begin: bytes) -> str:
+    return begin.decode("utf-8-sig", "replace")

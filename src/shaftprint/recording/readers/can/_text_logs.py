@@ -1,0 +1,300 @@
+"""Text logs of a CAN bus, read by python-can: Vector ASC, PEAK TRC and what candump writes with -L or -l."""
+
+import re
+from collections.abc import Callable, Iterator
+from datetime import UTC, datetime, timedelta
+from pathlib import Path
+from typing import Any, TextIO
+
+import numpy as np
+
+from shaftprint.errors import RecordingError
+from shaftprint.recording.readers.can._frames import EXTENDED, FILL, FrameLog, Frames
+
+_BLOCK_FRAMES = 1 << 16
+_LONG = 64
+
+_MONTHS = {
+    name: number
+    for number, names in enumerate(
+        ("jan", "feb", "mar", "apr", "may mai", "jun", "jul", "aug", "sep", "oct okt", "nov", "dec dez"), start=1
+    )
+    for name in names.split()
+}
+_MARCH = re.compile(r"m.{1,2}r[zs]?\.?")
+_DATE = re.compile(
+    r"\w+\.?\s+(?P<month>\S+)\s+(?P<day>\d+)\s+(?P<time>\d+:\d+:\d+)(?:[.:](?P<part>\d+))?\s*(?P<half>[ap]m)?\s+"
+    r"(?P<year>\d{4})",
+    re.IGNORECASE,
+)
+_ASC_DATE = re.compile(r"\s*date\s+(?P<date>.+)", re.IGNORECASE)
+_ASC_BASE = re.compile(r"\s*base\s+(?:hex|dec)(?:\s+timestamps\s+(?P<stamps>\w+))?", re.IGNORECASE)
+_ASC_TRIGGER = re.compile(r"\s*begin\s+triggerblock\s+(?P<date>.*)", re.IGNORECASE)
+_ASC_ROW = re.compile(r"\s*(?P<time>\d+\.\d+)(?P<rest>\s+.*)", re.DOTALL)
+_ASC_START = re.compile(r"\s+start of measurement", re.IGNORECASE)
+_TRC_VERSION = re.compile(r";\$FILEVERSION\s*=\s*(?P<version>\S+)", re.IGNORECASE)
+_TRC_VERSIONS = ("1.0", "1.1", "1.3", "2.0", "2.1")
+_CANDUMP = re.compile(r"\(\d+\.\d+\)\s+\S+\s+[0-9A-Fa-f]+#")
+_FIRST_LINES = 12
+
+
+def kind_of(path: Path, begin: str) -> str:
+    """Return which text log a file is, by its first letters; empty of others."""
+    lines = [line for line in begin.splitlines() if line.strip()][:_FIRST_LINES]
+    if not lines:
+        return ""
+    if _CANDUMP.match(lines[0]):
+        return "candump"
+    if any(_TRC_VERSION.match(line) for line in lines) or (path.suffix.lower() == ".trc" and lines[0][0] == ";"):
+        return "TRC"
+    if any(_ASC_BASE.match(line) for line in lines) and any(_ASC_DATE.match(line) for line in lines):
+        return "ASC"
+    return ""
+
+
+def open_text_log(path: Path, kind: str, file: TextIO, library: Any) -> FrameLog:
+    """Return the frames of a text log.
+
+    Parameters
+    ----------
+    path
+        The file, for messages.
+    kind
+        What `kind_of` said.
+    file
+        It, at its beginning.
+    library
+        The package python-can.
+
+    Raises
+    ------
+    RecordingError
+        If its times cannot be told, or nothing in it can be read.
+    """
+    log = FrameLog(blocks=iter(()), kind=kind)
+    lines = _AscLines(path, file) if kind == "ASC" else _Lines(file)
+    reader = {"ASC": library.ASCReader, "TRC": library.TRCReader, "candump": library.CanutilsLogReader}[kind](lines)
+    if kind == "TRC":
+        _expect_version(path, file)
+    messages = _whole(iter(reader), lines, log)
+    first = next(messages, None)
+    if first is None:
+        raise RecordingError(f"{path}: expected frames of a CAN bus, found none.")
+    zero_s, add = 0.0, 1 if kind == "ASC" else 0
+    if kind == "TRC" and reader.start_time is not None:
+        # PEAK counts days by the clock of the computer, whose zone the file does not state
+        zero_s, log.began = reader.start_time.timestamp(), reader.start_time.replace(tzinfo=None)
+    elif kind == "candump" and first.timestamp > _LATER_THAN_ANY_TEST_S:
+        zero_s, log.began = first.timestamp, datetime.fromtimestamp(first.timestamp, UTC)
+    elif isinstance(lines, _AscLines):
+        log.began = lines.began
+    buses: dict[str, int] = {}
+    log.bus_names = _Names(buses)
+
+    def bus_of(channel: Any) -> int:
+        if isinstance(channel, str):
+            return buses.setdefault(channel, len(buses))
+        return add + int(channel or 0)
+
+    log.blocks = _blocks(first, messages, log, zero_s, bus_of, lines)
+    return log
+
+
+_LATER_THAN_ANY_TEST_S = 1e8
+
+
+class _Names(dict[int, str]):
+    """Names of buses by their numbers, as they are found."""
+
+    def __init__(self, numbers: dict[str, int]) -> None:
+        super().__init__()
+        self._numbers = numbers
+
+    def get(self, key: int, default: Any = None) -> Any:
+        return next((name for name, number in self._numbers.items() if number == key), default)
+
+
+class _Lines:
+    """Lines of a file for a library that goes through them, and whether the last one has been given."""
+
+    def __init__(self, file: TextIO) -> None:
+        self._file = file
+        self._next: str | None = None
+        self.rows = 0
+
+    def __iter__(self) -> "_Lines":
+        return self
+
+    def __next__(self) -> str:
+        line = self._file.readline() if self._next is None else self._next
+        if not line:
+            raise StopIteration
+        self._next = self._file.readline()
+        return self.changed(line)
+
+    def changed(self, line: str) -> str:
+        """Return the line as the library is to read it."""
+        return line
+
+    @property
+    def is_at_end(self) -> bool:
+        """Whether no line is left."""
+        return self._next == ""
+
+    def close(self) -> None:
+        """Leave the file to who has opened it."""
+
+
+class _AscLines(_Lines):
+    """Lines of an ASC file, with times from the beginning of the measurement on.
+
+    Vector's programs state that beginning in the first line, and with each block when it was triggered; others state
+    when they wrote the file, and with the block when it began. Stamps are relative to the beginning ("absolute"), or to
+    the row before ("relative").
+    """
+
+    def __init__(self, path: Path, file: TextIO) -> None:
+        super().__init__(file)
+        self._path = path
+        self._header: datetime | None = None
+        self._trigger: datetime | None = None
+        self._is_new_block = False
+        self._shift_s = self._last_s = 0.0
+        self._is_relative = False
+        self.began: datetime | None = None
+
+    def changed(self, line: str) -> str:
+        row = _ASC_ROW.match(line)
+        if row is None:
+            self._take_header(line)
+            return line
+        stamp = float(row["time"])
+        if _ASC_START.match(row["rest"]):
+            return line
+        self.rows += 1
+        if self._is_relative:
+            self._last_s += stamp
+            return f"{self._last_s:.9f}{row['rest']}"
+        if self._is_new_block:
+            self._place_block(stamp)
+        return f"{stamp + self._shift_s:.9f}{row['rest']}" if self._shift_s else line
+
+    def _take_header(self, line: str) -> None:
+        base, date, trigger = _ASC_BASE.match(line), _ASC_DATE.match(line), _ASC_TRIGGER.match(line)
+        if base is not None:
+            self._is_relative = (base["stamps"] or "").lower() == "relative"
+        elif date is not None:
+            self._header = self.began = _date(date["date"])
+        elif trigger is not None:
+            self._trigger = _date(trigger["date"])
+            self._is_new_block = self._trigger is not None
+
+    def _place_block(self, stamp: float) -> None:
+        """Find what the stamps of a block count from: the beginning of the measurement, or that of the block."""
+        self._is_new_block = False
+        trigger, header = self._trigger, self._header
+        if trigger is None:
+            return
+        is_first = self.rows == 1
+        if header is None or trigger < header:
+            # whoever wrote the first line did so after the measurement
+            zero = trigger
+        else:
+            since_s = (trigger - header).total_seconds()
+            zero = trigger if abs(stamp) < abs(stamp - since_s) else header
+        if is_first:
+            self.began = self._header = zero
+            return
+        if self.began is not None:
+            self._shift_s = (zero - self.began).total_seconds()
+
+
+def _date(text: str) -> datetime | None:
+    found = _DATE.match(text.strip())
+    if found is None:
+        return None
+    word = found["month"].lower()
+    # an umlaut in any encoding
+    month = 3 if _MARCH.fullmatch(word) else _MONTHS.get(word[:3])
+    if month is None:
+        return None
+    hour, minute, second = (int(part) for part in found["time"].split(":"))
+    if found["half"]:
+        hour = hour % 12 + (12 if found["half"].lower() == "pm" else 0)
+    try:
+        whole = datetime(int(found["year"]), month, int(found["day"]), hour, minute, second)  # noqa: DTZ001
+    except ValueError:
+        return None
+    return whole + timedelta(seconds=float(f"0.{found['part']}") if found["part"] else 0.0)
+
+
+def _expect_version(path: Path, file: TextIO) -> None:
+    found = None
+    place = file.tell()
+    for _ in range(_FIRST_LINES):
+        found = found or _TRC_VERSION.match(file.readline())
+    file.seek(place)
+    if found is not None and found["version"] not in _TRC_VERSIONS:
+        raise RecordingError(
+            f"{path}: expected a TRC file of version {', '.join(_TRC_VERSIONS)}, found {found['version']}; convert it "
+            "with PEAK's converter."
+        )
+
+
+def _whole(messages: Iterator[Any], lines: _Lines, log: FrameLog) -> Iterator[Any]:
+    """Yield messages up to a last line that is cut."""
+    while True:
+        try:
+            message = next(messages)
+        except StopIteration:
+            return
+        except (ValueError, IndexError, KeyError):
+            if not lines.is_at_end:
+                raise
+            log.count("rows at the cut end of the file")
+            return
+        yield message
+
+
+def _blocks(
+    first: Any, messages: Iterator[Any], log: FrameLog, zero_s: float, bus_of: Callable[[Any], int], lines: _Lines
+) -> Iterator[Frames]:
+    kept: list[Any] = []
+    number = 0
+    for message in _after(first, messages):
+        number += 1
+        if message.is_error_frame:
+            log.count("error frames")
+        elif message.is_remote_frame:
+            log.count("remote frames")
+        else:
+            kept.append(message)
+        if len(kept) == _BLOCK_FRAMES:
+            yield _block(kept, zero_s, bus_of)
+            kept = []
+    if kept:
+        yield _block(kept, zero_s, bus_of)
+    if lines.rows:
+        log.count("rows of other kinds than frames", lines.rows - number)
+
+
+def _after(first: Any, messages: Iterator[Any]) -> Iterator[Any]:
+    yield first
+    yield from messages
+
+
+def _block(messages: list[Any], zero_s: float, bus_of: Callable[[Any], int]) -> Frames:
+    length = np.array([len(message.data) for message in messages])
+    width = 8 if length.max() <= 8 else _LONG
+    filling = bytes([FILL]) * width
+    whole = b"".join((bytes(message.data) + filling)[:width] for message in messages)
+    marks = int(EXTENDED)
+    return Frames(
+        time_s=np.array([message.timestamp for message in messages]) - zero_s,
+        bus=np.array([bus_of(message.channel) for message in messages]),
+        identifier=np.array(
+            [message.arbitration_id | (marks if message.is_extended_id else 0) for message in messages], dtype=np.uint64
+        ),
+        length=length,
+        content=np.frombuffer(whole, dtype=np.uint8).reshape(-1, width),
+    )
