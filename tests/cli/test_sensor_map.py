@@ -151,3 +151,16 @@ def test_gauges_are_proposed_with_what_their_unit_needs(run, tmp_path):
     assert gauges[3]["scale_nm_per_unit"] == 1000.0
     assert "# reading_at_zero =" in loop.output
     assert "[sensors.shaft_torque.shaft]: diameters" in bridge.output
+
+
+def test_a_channel_without_numbers_is_no_sensor(run, tmp_path):
+    """Control units send fields that they do not know; the next one that shows the same is proposed."""
+    path = tmp_path / "foreign.nc"
+    seconds = np.arange(1000) / 50.0
+    with RecordingWriter(path) as writer:
+        for name, values in (("Trim", np.full(1000, np.nan)), ("Rack", 40.0 + np.sin(seconds))):
+            writer.declare(name, unit="%", rate_hz=50.0, dtype="float64")
+            writer.append(name, values)
+    result = run("inspect", path)
+    assert _map(result)["sensors"] == {"rack": {"channel": "Rack", "unit": "%", "cycle_s": 0.02}}
+    assert "# 'Trim': it holds no numbers" in result.output

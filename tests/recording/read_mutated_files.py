@@ -12,6 +12,7 @@ import time
 from pathlib import Path
 
 import asammdf
+import can
 import h5netcdf
 import nptdms
 import numpy as np
@@ -101,6 +102,14 @@ def _packed(path):
     path.write_bytes(gzip.compress(path.read_bytes(), mtime=0))
 
 
+def _frames(path):
+    with can.Logger(path) as logger:
+        for number in range(400):
+            content = [0xF0, 165, 155, number % 256, 40, 0xFF, 0xFF, 0xFF]
+            frame = can.Message(timestamp=1.78e9 + CLOCK[number], arbitration_id=0x0CF00400, data=content, channel=0)
+            logger.on_message_received(frame)
+
+
 def _noise(path):
     path.write_bytes(np.random.default_rng(5).bytes(4000))
 
@@ -109,6 +118,7 @@ FORMATS = {
     "native.nc": _native, "log.mf4": _mdf, "log.mdf": _mdf3, "log.tdms": _tdms, "v4.mat": _mat("4"),
     "v5.mat": _mat("5"), "v73.mat": _mat73, "other.nc": _netcdf4, "classic.nc": _netcdf3, "log.csv": _text,
     "log.csv.gz": _packed, "plain.txt": _plain, "log.dxd": _noise,
+    "log.blf": _frames, "log.asc": _frames, "log.trc": _frames, "log.log": _frames,
 }  # fmt: skip
 
 

@@ -82,13 +82,17 @@ def test_two_engines_on_one_bus_are_told_apart(tmp_path, dbc):
         assert [one.values(5, 6)[0] for one in ports] == [TORQUE[5], TORQUE[5] - 20.0]
 
 
-def test_without_a_dbc_file_raw_frames_are_left_out_and_said(log):
+def test_without_a_dbc_file_raw_frames_of_no_standard_are_left_out_and_said(tmp_path):
+    analog_s = np.arange(6000) / 100.0
+    frames = [(FAST, 0x0CFF0400, eec1(TORQUE, RPM))]
+    log = raw_log(tmp_path / "log.mf4", frames, [Signal(np.sin(analog_s), analog_s, name="M_s", unit="V")])
     with read_recording(log) as recording:
         assert set(recording.channels) == {"M_s"}
-        assert recording.left_out == {
-            "group 1": "raw messages of a bus; give the DBC file that says what they hold, dbc= (--dbc of shaftprint "
-            "convert)."
-        }
+        assert recording.left_out["group 1"] == (
+            "raw messages of a bus; give the DBC file that says what they hold, dbc= (--dbc of shaftprint convert)."
+        )
+        unknown = "CAN1 identifier 0CFF0400 (group 65284, sender 0x0)"
+        assert recording.left_out[unknown].startswith(f"{FAST.size} frames")
 
 
 @pytest.mark.parametrize(
@@ -118,5 +122,5 @@ def test_a_line_that_cannot_be_read_is_left_out_and_the_library_prints_nothing(l
     broken = text.replace("BO_ ", ' SG_ Two Words : 24|16@1+ (1,0) [0|1] "" ECU\nBO_ ', 2).split("\n", 1)
     dbc.write_text("\n".join(broken), encoding="utf-8")
     with read_recording(log, dbc=dbc) as recording:
-        assert any("engine.dbc, line" in name for name in recording.left_out)
+        assert "Two Words cannot be read." in recording.left_out.values()
     assert capsys.readouterr() == ("", "")

@@ -77,7 +77,9 @@ def reading_options(command: Callable[..., Any]) -> Callable[..., Any]:
     delimiter = click.option("--delimiter", help="What stands between the columns of a text file.")
     decimal = click.option("--decimal", type=click.Choice([".", ","]), help="Decimal sign of a text file.")
     encoding = click.option("--encoding", help="Encoding of a text file that is not UTF-8, such as cp1252.")
-    dbc = click.option("--dbc", type=click.Path(path_type=Path), help="DBC or ARXML file: what frames of a CAN bus hold.")
+    dbc = click.option(
+        "--dbc", type=click.Path(path_type=Path), help="DBC or ARXML file: what frames of a CAN bus hold."
+    )
     interleaved = click.option(
         "--interleaved", type=click.IntRange(min=2), help="Signals that each TDMS channel holds, sample by sample."
     )

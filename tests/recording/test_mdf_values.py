@@ -1,0 +1,98 @@
+"""Scale and validity of MDF channels: texts beside numbers, and samples that the file marks as invalid."""
+
+import asammdf
+import numpy as np
+import pytest
+from asammdf.blocks.conversion_utils import from_dict
+
+from shaftprint.errors import RecordingError
+from shaftprint.recording import read_recording
+
+TIMES = 0.01 * np.arange(3000)
+COUNTS = np.rint(8.0 * (1200.0 + 100.0 * np.sin(TIMES))).astype("u2")
+COUNTS[[50, 60]] = [65535, 65024]
+LINEAR = {"a": 0.125, "b": 0.0}
+TEXTS = {"val_0": 65535.0, "text_0": b"not available", "val_1": 65024.0, "text_1": b"error"}
+
+
+def written(path, samples, conversion=None, version="4.10", **more):
+    with asammdf.MDF(version=version) as file:
+        converted = None if conversion is None else from_dict(conversion)
+        file.append([asammdf.Signal(samples, TIMES, name="n", unit="rpm", conversion=converted, **more)])
+        file.save(path, overwrite=True)
+    return path
+
+
+def values(path):
+    with read_recording(path) as recording:
+        channel = recording.channel("n")
+        return channel.values(0, channel.count)
+
+
+@pytest.mark.parametrize(
+    ("conversion", "none"),
+    [
+        ({**TEXTS, "default_addr": from_dict(LINEAR)}, [50, 60]),
+        ({"lower_0": 65024.0, "upper_0": 65535.0, "text_0": b"none", "default_addr": from_dict(LINEAR)}, [50, 60]),
+        # whatever a text says, it is no number
+        ({"val_0": 65535.0, "text_0": b"full speed", "default_addr": from_dict(LINEAR)}, [50]),
+        # a table within a table, and one whose entries have scales of their own
+        (
+            {**TEXTS, "default_addr": from_dict({"val_0": 1.0, "text_0": b"x", "default_addr": from_dict(LINEAR)})},
+            [50, 60],
+        ),
+        ({"lower_0": 0.0, "upper_0": 64255.0, "text_0": from_dict(LINEAR), "default_addr": b"no value"}, [50, 60]),
+    ],
+)
+def test_numbers_beside_texts_are_scaled(tmp_path, conversion, none):
+    speed = values(written(tmp_path / "log.mf4", COUNTS, conversion))
+    assert np.flatnonzero(np.isnan(speed)).tolist() == none
+    kept = COUNTS < 60000
+    assert speed[kept] == pytest.approx(0.125 * COUNTS[kept])
+
+
+def test_texts_for_no_value_without_a_scale_for_the_others_are_refused(tmp_path):
+    """The file does not say what a count is worth."""
+    with pytest.raises(RecordingError, match=r"n: expected a scale, found a conversion .*\(not available\)"):
+        read_recording(written(tmp_path / "log.mf4", COUNTS, TEXTS))
+
+
+def test_states_give_their_numbers(tmp_path):
+    states = {f"val_{k}": float(k) for k in range(4)} | {
+        f"text_{k}": text for k, text in enumerate((b"off", b"on", b"error", b"not available"))
+    }
+    gear = values(written(tmp_path / "log.mf4", (np.arange(3000) % 4).astype("u1"), states))
+    assert gear[:3].tolist() == [0.0, 1.0, 2.0]
+    assert np.flatnonzero(np.isnan(gear))[:2].tolist() == [3, 7]
+
+
+@pytest.mark.parametrize("kind", ["i1", "i2", "u2", "i4", "f4", "f8"])
+@pytest.mark.parametrize("conversion", [None, {"a": 0.5, "b": -3.0}])
+def test_invalid_samples_in_the_middle_of_a_file_are_no_numbers(tmp_path, kind, conversion):
+    invalid = np.zeros(3000, dtype=bool)
+    invalid[1000:1200] = True
+    samples = np.rint(50.0 + 40.0 * np.sin(TIMES)).astype(kind)
+    speed = values(written(tmp_path / "log.mf4", samples, conversion, invalidation_bits=invalid))
+    assert np.array_equal(np.isnan(speed), invalid)
+    scaled = samples.astype(float) if conversion is None else 0.5 * samples - 3.0
+    assert speed[~invalid] == pytest.approx(scaled[~invalid])
+
+
+def test_a_channel_that_is_invalid_as_a_whole(tmp_path):
+    with asammdf.MDF(version="4.10") as file:
+        file.append([asammdf.Signal(COUNTS.astype("i2"), TIMES, name="n")])
+        file.groups[0].channels[1].flags |= 1
+        file.save(tmp_path / "log.mf4", overwrite=True)
+    assert np.isnan(values(tmp_path / "log.mf4")).all()
+
+
+@pytest.mark.parametrize(("first_s", "shift_s"), [(-5.0, 0.0), (-40.0, -40.0), (-1.5e7, -1.5e7)])
+def test_times_before_the_date_of_the_file(tmp_path, first_s, shift_s):
+    """A trigger after the first samples is a date within them; a date behind all of them is that of a conversion."""
+    with asammdf.MDF(version="4.10") as file:
+        file.start_time = began = np.datetime64("2026-06-01T10:00:00").astype(object)
+        file.append([asammdf.Signal(np.sin(TIMES), first_s + TIMES, name="n")])
+        file.save(tmp_path / "log.mf4", overwrite=True)
+    with read_recording(tmp_path / "log.mf4") as recording:
+        assert recording.channel("n").start_s == pytest.approx(first_s - shift_s, abs=1e-6)
+        assert (recording.began.replace(tzinfo=None) - began).total_seconds() == pytest.approx(shift_s, abs=1e-5)
