@@ -2,6 +2,7 @@
 
 import can
 import canmatrix
+import canmatrix.formats
 import numpy as np
 import pytest
 
@@ -287,3 +288,24 @@ def test_rudder_and_gearbox_of_nmea_2000(tmp_path):
         assert set(values(recording, "Transmission oil pressure")) == {1e6}
         assert set(values(recording, "Transmission gear")) == {1.0}
         assert np.isnan(values(recording, "Rudder angle order")).all()
+
+
+def test_a_signed_field_that_nobody_fills_in_holds_no_values(tmp_path):
+    """All bits set in every message are no trim of -1 %."""
+    rows = [bytes([0, 0x70, 0x17, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF])] * COUNT
+    path, _ = log_of(tmp_path, (RAPID, rows))
+    with read_recording(path) as recording:
+        assert np.isnan(values(recording, "Tilt or trim")).all()
+        assert set(values(recording, "Engine speed")) == {1500.0}
+
+
+def test_an_arxml_file_says_the_same(tmp_path):
+    text = SPEED.format(number=0x0CF00400 | 1 << 31, range="0|8031.875")
+    path, dbc = log_of(tmp_path, (0x0CF00400, speed_rows(MARKED)), text=text)
+    matrix = canmatrix.formats.loads_flat(dbc.read_bytes(), "dbc")
+    with (tmp_path / "ship.arxml").open("wb") as file:
+        canmatrix.formats.dump({"bus": matrix}, file, "arxml")
+    with read_recording(path, dbc=tmp_path / "ship.arxml") as recording:
+        speed = values(recording, "Speed")
+        assert np.flatnonzero(np.isnan(speed)).tolist() == [10, 20, 30]
+        assert np.delete(speed, [10, 20, 30]) == pytest.approx(0.125 * np.delete(MARKED, [10, 20, 30]))
