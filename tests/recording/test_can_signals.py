@@ -198,6 +198,24 @@ def test_multiplexed_signals_come_with_their_own_messages(tmp_path):
         assert b.time_s(0, b.count) == pytest.approx(TIMES[1::3], abs=1e-6)
 
 
+def test_a_multiplexer_within_another(tmp_path):
+    rows = [bytes([k % 2, k % 3, k % 250, 0, 0, 0, 0, 0]) for k in range(6 * 200)]
+    text = (
+        'BO_ 291 M: 8 X\n SG_ Outer M : 0|8@1+ (1,0) [0|3] "" X\n SG_ Inner m1M : 8|8@1+ (1,0) [0|3] "" X\n'
+        ' SG_ Deep m2 : 16|8@1+ (1,0) [0|0] "V" X\n'
+        "SG_MUL_VAL_ 291 Inner Outer 1-1;\nSG_MUL_VAL_ 291 Deep Inner 2-2;\n"
+    )
+    with can.Logger(tmp_path / "log.blf") as logger:
+        for k, row in enumerate(rows):
+            frame = can.Message(timestamp=1.78e9 + 0.1 * k, arbitration_id=291, is_extended_id=False, data=row)
+            logger.on_message_received(frame)
+    (tmp_path / "ship.dbc").write_text(f'VERSION ""\nBU_: X\n{text}', encoding="utf-8")
+    with read_recording(tmp_path / "log.blf", dbc=tmp_path / "ship.dbc") as recording:
+        k = np.arange(1200)
+        assert values(recording, "Deep").tolist() == (k[(k % 2 == 1) & (k % 3 == 2)] % 250).tolist()
+        assert values(recording, "Inner").tolist() == (k[k % 2 == 1] % 3).tolist()
+
+
 RAPID = 0x09F20003
 
 
