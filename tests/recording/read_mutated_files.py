@@ -97,6 +97,14 @@ def _plain(path):
     path.write_text(titles + "".join(f"{0.1 * k:10.4f} {k:8d} {-3.5e-2 * k:12.4e}\n" for k in range(60)))
 
 
+def _labview(path):
+    names = ("Channels\t1", "Samples\t30", "Date\t2026/03/05", "Y_Unit_Label\tNm", "X0\t0.0", "Delta_X\t0.1")
+    head = "\n".join((*names, "***End_of_Header***", "X_Value\tM_s\tComment\n"))
+    rows = "".join(f"{0.1 * k:.6f}\t{k % 7}.25\n" for k in range(30))
+    begin = "LabVIEW Measurement\t\nSeparator\tTab\nDecimal_Separator\t.\n***End_of_Header***\t\n\n"
+    path.write_text(begin + head + rows + "\n" + head + rows)
+
+
 def _packed(path):
     _text(path)
     path.write_bytes(gzip.compress(path.read_bytes(), mtime=0))
@@ -118,7 +126,7 @@ FORMATS = {
     "native.nc": _native, "log.mf4": _mdf, "log.mdf": _mdf3, "log.tdms": _tdms, "v4.mat": _mat("4"),
     "v5.mat": _mat("5"), "v73.mat": _mat73, "other.nc": _netcdf4, "classic.nc": _netcdf3, "log.csv": _text,
     "log.csv.gz": _packed, "plain.txt": _plain, "log.dxd": _noise,
-    "log.blf": _frames, "log.asc": _frames, "log.trc": _frames, "log.log": _frames,
+    "log.blf": _frames, "log.asc": _frames, "log.trc": _frames, "log.log": _frames, "log.lvm": _labview,
 }  # fmt: skip
 
 

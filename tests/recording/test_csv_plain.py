@@ -45,7 +45,7 @@ def _torque(path, **hints):
         ("  time [s]   M_s [N m]\n   0.5   1.25\n   0.6   1.5\n   0.7  -0.002\n", "N m"),
         ("# time [s]  M_s (N m)\n0,5 1,25\n0,6 \t1,5\n0,7 -0,002  \n", "N m"),
         ("% made by a program\n% t M_s\n% s Nm\n0.5 1.25\n0.6 1.5\n0.7 -0.002\n", "N m"),
-        (LABVIEW, ""),
+        (LABVIEW, "V"),
     ],
 )
 def test_columns_apart_by_white_space_or_with_a_preamble(tmp_path, text, unit):
@@ -66,7 +66,9 @@ def test_numbers_without_titles_are_named_by_the_user(tmp_path, name):
         RecordingError, match=r"line 1: expected titles .* above 3 columns of numbers, found none; pass"
     ):
         read_recording(path)
-    with pytest.raises(RecordingError, match="expected a row of 2 columns, as the hint columns says, found none"):
+    with pytest.raises(
+        RecordingError, match="expected a row of 2 columns, as the hint columns says, found 3; name each of them"
+    ):
         read_recording(path, columns="time,M_s")
 
 

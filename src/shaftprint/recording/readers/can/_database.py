@@ -18,7 +18,7 @@ from shaftprint.recording.readers.can._messages import Message, Selection, Signa
 
 # what the library prints where it leaves a line out
 _LINE = re.compile(r"error with line no: (\d+)")
-_INSTANCE = re.compile(r"instance(?:[ _]?(?:no|nr|number|id))?$", re.IGNORECASE)
+_INSTANCE = re.compile(r"(?:^|[^a-z])instance$|[a-z]Instance$", re.IGNORECASE)
 # the address of nobody, under which DBC files state a message of any sender
 _NO_SENDER = 0xFE
 _FRAME_BYTES = 8

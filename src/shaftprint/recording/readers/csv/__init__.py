@@ -1,5 +1,8 @@
 """Text files: columns of numbers with titles, in the layouts that loggers and spreadsheets write."""
 
 from shaftprint.recording.readers.csv._csv import NAME, is_mine, read
+from shaftprint.recording.readers.csv._header import Header
+from shaftprint.recording.readers.csv._rows import Unpacked, unpack
+from shaftprint.recording.readers.csv._titles import told_apart
 
-__all__ = ["NAME", "is_mine", "read"]
+__all__ = ["NAME", "Header", "Unpacked", "is_mine", "read", "told_apart", "unpack"]

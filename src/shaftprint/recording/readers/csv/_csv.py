@@ -4,15 +4,16 @@ import contextlib
 import gzip
 import io
 import zlib
-from collections.abc import Iterator, Sequence
-from datetime import UTC, datetime
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
+from datetime import UTC, datetime, timedelta
 from itertools import islice
 from pathlib import Path
 from typing import IO, TextIO, cast
 
 import numpy as np
 
-from shaftprint.arrays import FloatArray
 from shaftprint.errors import RecordingError
 from shaftprint.recording._channel import Channel, Times
 from shaftprint.recording._recording import Recording, sha256_of
@@ -21,16 +22,10 @@ from shaftprint.recording.readers import can
 from shaftprint.recording.readers._clock import SampleClock, clock_of_times, on_clock
 from shaftprint.recording.readers._hints import rate_hint
 from shaftprint.recording.readers._time_scale import TimeScale, expect_time_unit, time_scale
-from shaftprint.recording.readers.csv._dates import dates, has_offset, seconds_from
+from shaftprint.recording.readers.csv._dates import dates, has_offset, is_date
 from shaftprint.recording.readers.csv._edge_list import edge_channels
-from shaftprint.recording.readers.csv._header import (
-    WHITE_SPACE,
-    Header,
-    looks_like_a_table,
-    read_header,
-    split_row,
-)
-from shaftprint.recording.readers.csv._wrong_rows import is_number, wrong_rows
+from shaftprint.recording.readers.csv._header import Header, looks_like_a_table, read_header
+from shaftprint.recording.readers.csv._rows import LONGEST_LINE, Unpacked, unpack
 
 NAME = "CSV"
 
@@ -38,11 +33,15 @@ _ENDINGS = (".csv", ".tsv", ".txt", ".asc", ".lvm")
 _GZIP = b"\x1f\x8b"
 _UTF_16 = (b"\xff\xfe", b"\xfe\xff")
 _FIRST_BYTES = 4096
+# text with a grammar of its own
+_LABVIEW = b"LabVIEW Measurement"
+_WINDOWS = "cp1252"
+_SEEN = 65_536
 # printed times are rounded
 _RATE_AGREEMENT = 1e-3
 _FIRST_ROWS = 1000
-_LONGEST_LINE = 1_000_000
-_BLOCK_CHARACTERS = 8_000_000
+# A stamp to the second that so many rows have tells their rate, where the caller does not.
+_STAMPS = 5_000
 
 
 def is_mine(path: Path) -> bool:
@@ -54,7 +53,10 @@ def is_mine(path: Path) -> bool:
     except (EOFError, zlib.error, gzip.BadGzipFile):
         # too damaged to tell: the name decides
         return name.suffix.lower() in _ENDINGS
-    if (b"\0" in begin and not begin.startswith(_UTF_16)) or can.is_mine(path):
+    if begin.startswith(_LABVIEW) or can.is_mine(path):
+        return False
+    # a logger that lost its supply leaves NUL bytes behind its rows
+    if b"\0" in begin.rstrip(b"\0") and not begin.startswith(_UTF_16):
         return False
     if name.suffix.lower() in _ENDINGS:
         return True
@@ -78,7 +80,7 @@ def read(path: Path, **hints: object) -> Recording:
     texts = ("columns", "delimiter", "decimal", "encoding", "time_unit")
     rate_hz = rate_hint(path, hints, dict.fromkeys(texts, str))
     time_unit = expect_time_unit(path, hints.get("time_unit"))
-    encoding = cast(str, hints.get("encoding", _encoding(path)))
+    encoding, guessed = _encoding(path) if hints.get("encoding") is None else (cast(str, hints["encoding"]), "")
     try:
         with _text(path, encoding) as file:
             header = read_header(
@@ -91,15 +93,19 @@ def read(path: Path, **hints: object) -> Recording:
             )
         spool = Spool(path, header.names)
         try:
-            with _text(path, encoding) as file:
-                count, began = _unpack(path, file, header, spool)
-            return _recording(path, header, spool, count, began, rate_hz, time_unit)
+            # the hash takes as long as the reading: both at once
+            with _numbers(path, encoding) as content, ThreadPoolExecutor(1) as pool:
+                digest = pool.submit(sha256_of, path)
+                done = unpack(path, content, header, spool)
+                sha256 = digest.result()
+            done.remarks += [guessed] if guessed else []
+            return _recording(path, sha256, header, spool, done, rate_hz or header.rate_hz, time_unit)
         except BaseException:
             spool.close()
             raise
     except (UnicodeError, LookupError) as error:
         raise RecordingError(
-            f"{path}: expected text in {encoding}, found {error}; pass encoding= (--encoding of shaftprint convert)."
+            f"{path}: expected text in {encoding}, found {error}; pass encoding= (--encoding, such as cp1252)."
         ) from None
     except (EOFError, zlib.error, gzip.BadGzipFile) as error:
         raise RecordingError(
@@ -119,93 +125,60 @@ def _text(path: Path, encoding: str) -> Iterator[TextIO]:
         yield text
 
 
-def _encoding(path: Path) -> str:
+@contextlib.contextmanager
+def _numbers(path: Path, encoding: str) -> Iterator[IO[bytes]]:
+    """Open a file as bytes whose digits and line ends are those of ASCII."""
+    with _binary(path) as binary:
+        begin = binary.read(_SEEN)
+        binary.seek(0)
+        has_line_feeds = begin.count(b"\r") == begin.count(b"\r\n")
+        if has_line_feeds and "12;".encode(encoding).endswith(b"12;"):
+            yield binary
+            return
+        with io.TextIOWrapper(binary, encoding=encoding) as text:
+            yield cast("IO[bytes]", io.BufferedReader(_InUtf8(text), _SEEN))
+
+
+class _InUtf8(io.RawIOBase):
+    """Text as UTF-8 with line feeds."""
+
+    def __init__(self, text: TextIO) -> None:
+        self._text, self._rest = text, b""
+
+    def readable(self) -> bool:
+        """Return that it can be read."""
+        return True
+
+    def readinto(self, target: "memoryview") -> int:  # type: ignore[override]
+        """Fill a piece of memory; return how many bytes there were."""
+        self._rest = self._rest or self._text.read(_SEEN).encode()
+        count = min(len(target), len(self._rest))
+        target[:count], self._rest = self._rest[:count], self._rest[count:]
+        return count
+
+
+def _encoding(path: Path) -> tuple[str, str]:
+    """Return the encoding that a file has by its mark or its first lines, and what has to be said of that."""
     try:
         with _binary(path) as file:
-            return "utf-16" if file.read(2) in _UTF_16 else "utf-8-sig"
+            begin = b"".join(islice(iter(lambda: file.readline(LONGEST_LINE), b""), _FIRST_ROWS))
     except (EOFError, zlib.error, gzip.BadGzipFile):
-        return "utf-8-sig"
+        return "utf-8-sig", ""
+    if begin[:2] in _UTF_16:
+        return "utf-16", ""
+    try:
+        begin.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        return _WINDOWS, f"The text is no UTF-8 and was read as {_WINDOWS} (--encoding)."
+    return "utf-8-sig", ""
 
 
 def _lines(path: Path, file: TextIO) -> Iterator[str]:
     """Yield lines, and refuse one without an end: a binary file, perhaps."""
-    while line := file.readline(_LONGEST_LINE):
-        if len(line) == _LONGEST_LINE:
-            raise RecordingError(f"{path}: expected lines of text, found one of over {_LONGEST_LINE} characters.")
+    while line := file.readline(LONGEST_LINE):
+        if len(line) == LONGEST_LINE:
+            raise RecordingError(f"{path}: expected lines of text, found one of over {LONGEST_LINE} characters.")
         yield line
-
-
-def _unpack(path: Path, file: TextIO, header: Header, spool: Spool) -> tuple[int, datetime | None]:
-    """Put every row into the columns; return how many there are and the date of the first, where rows have dates."""
-    for _ in range(header.lines):
-        file.readline()
-    count, first_line = 0, header.lines + 1
-    began: np.datetime64 | None = None
-    in_utc = False
-    while lines := file.readlines(_BLOCK_CHARACTERS):
-        if header.decimal == ",":
-            lines = [line.replace(",", ".") for line in lines]
-        numbers = [number for number, line in enumerate(lines, start=first_line) if not line.isspace()]
-        rows = [line for line in lines if not line.isspace()]
-        first_line += len(lines)
-        if header.dated and rows:
-            rows, dates, in_utc = _without_dates(path, rows, header)
-            began = dates[0] if began is None else began
-        block = _numbers(path, rows, header, numbers)
-        if began is not None and rows:
-            block[:, header.time_column] = seconds_from(began, dates)
-        spool.append(block)
-        count += block.shape[0]
-    spool.finish()
-    date = None if began is None else cast("datetime", began.item())
-    return count, date.replace(tzinfo=UTC) if date is not None and in_utc else date
-
-
-def _without_dates(
-    path: Path, rows: Sequence[str], header: Header
-) -> "tuple[list[str], np.ndarray[tuple[int], np.dtype[np.datetime64]], bool]":
-    """Return rows with zeros in place of their dates, the dates, and whether these are in UTC."""
-    plain, texts = [], []
-    time = cast(int, header.time_column)
-    for row in rows:
-        fields = split_row(row, header.delimiter)
-        texts.append(fields[time].strip().strip('"') if time < len(fields) else "")
-        fields[min(time, len(fields) - 1)] = "0"
-        plain.append(header.delimiter.join(fields))
-    return plain, dates(path, texts), has_offset(texts[0])
-
-
-def _numbers(path: Path, lines: Sequence[str], header: Header, numbers: Sequence[int]) -> FloatArray:
-    """Return rows of text as numbers, shape (rows, columns); slower where fields are empty.
-
-    Parameters
-    ----------
-    numbers
-        Number of each line in the file.
-    """
-    width = len(header.names)
-    if not lines:
-        return np.empty((0, width))
-    try:
-        block = _parse(lines, header.delimiter)
-    except ValueError:
-        rows = [split_row(line, header.delimiter) for line in lines]
-        wrong = [row for row in zip(numbers, rows, strict=True) if not _is_whole(row[1], width)]
-        if wrong:
-            raise wrong_rows(path, wrong, header.names, time=header.time_column) from None
-        block = np.array([[float(field.strip() or "nan") for field in row] for row in rows])
-    if block.shape[1] != width:
-        raise wrong_rows(path, [(numbers[0], split_row(lines[0], header.delimiter))], header.names)
-    return block
-
-
-def _is_whole(fields: Sequence[str], width: int) -> bool:
-    return len(fields) == width and all(map(is_number, fields))
-
-
-def _parse(lines: Sequence[str], delimiter: str) -> FloatArray:
-    between = None if delimiter == WHITE_SPACE else delimiter
-    return np.loadtxt(lines, dtype=np.float64, delimiter=between, comments=None, ndmin=2)
 
 
 def _time_scale(path: Path, header: Header, spool: Spool, count: int, asked: str) -> TimeScale:
@@ -217,48 +190,90 @@ def _time_scale(path: Path, header: Header, spool: Spool, count: int, asked: str
     return time_scale(path, name, count, read, unit=header.time_unit, asked=asked)
 
 
-def _clock(path: Path, header: Header, read: Times | None, count: int, rate_hz: float | None) -> SampleClock:
-    """Return the clock of the times, or that of the rate which the caller knows."""
+def _clock(
+    path: Path, header: Header, read: Times | None, done: Unpacked, rate_hz: float | None
+) -> tuple[SampleClock, str]:
+    """Return the clock of the times, or that of the rate which the caller knows, and what has to be said of it."""
     if header.time_column is None or read is None:
-        return SampleClock(rate_hz=cast(float, rate_hz), start_s=0.0)
+        return SampleClock(rate_hz=cast(float, rate_hz), start_s=header.start_s), ""
     name = f"column {header.names[header.time_column]}"
-    clock = clock_of_times(path, name, count, read)
+    rows = _rows_of_a_stamp(read, done.count) if header.dated else 1
+    if rows > 1 and rate_hz is None:
+        raise RecordingError(
+            f"{path}, {name}: expected times of the rows, found about {rows} rows with each stamp; pass their rate, "
+            f"sample_rate_hz= (--sample-rate {rows})."
+        )
+    if rows > 1:
+        remark = f"{name}: {rows} rows have each stamp; the rows are placed by the rate of {rate_hz:g} Hz."
+        return SampleClock(rate_hz=cast(float, rate_hz), start_s=0.0), remark
+    clock = clock_of_times(path, name, done.count, read)
     if rate_hz is not None and abs(clock.rate_hz / rate_hz - 1.0) > _RATE_AGREEMENT:
         raise RecordingError(
             f"{path}: expected one sample rate, found {clock.rate_hz:g} Hz in {name} and {rate_hz:g} Hz in the hint."
         )
-    return clock
+    return clock, ""
+
+
+def _rows_of_a_stamp(read: Times, count: int) -> int:
+    """Return how many rows have one stamp, in most places."""
+    seconds = read(0, min(count, _STAMPS))
+    changes = np.flatnonzero(np.diff(seconds))
+    if 2 * changes.size > seconds.size or changes.size < 2:
+        return 1
+    return int(np.median(np.diff(changes)))
 
 
 def _recording(
-    path: Path,
-    header: Header,
-    spool: Spool,
-    count: int,
-    began: datetime | None,
-    rate_hz: float | None,
-    time_unit: str,
+    path: Path, sha256: str, header: Header, spool: Spool, done: Unpacked, rate_hz: float | None, time_unit: str
 ) -> Recording:
-    scale = _time_scale(path, header, spool, count, time_unit)
+    scale = _time_scale(path, header, spool, done.count, time_unit)
     read = None if header.time_column is None else scale.reading(spool.source(header.time_column))
-    edges = edge_channels(path, header, spool, count, read) if rate_hz is None else None
-    channels = _sampled(path, header, spool, count, rate_hz, read) if edges is None else edges
-    return Recording(
+    edges = edge_channels(path, header, spool, done.count, read) if rate_hz is None else None
+    channels, remark = _sampled(path, header, spool, done, rate_hz, read) if edges is None else (edges, "")
+    left_out = {**header.left_out, **done.left_out}
+    left_out |= {name: "it has no value in any row" for name in done.empty if name in channels}
+    channels = {name: channel for name, channel in channels.items() if name not in left_out}
+    if not channels:
+        raise RecordingError(f"{path}: expected a channel with numbers, found none in {done.count} rows.")
+    recording = Recording(
         path=path,
-        sha256=sha256_of(path),
+        sha256=sha256,
         format=NAME if edges is None else f"{NAME}, list of edges",
         channels=channels,
-        began=began or scale.began,
-        remarks=(scale.remark,) if scale.remark else (),
+        left_out=left_out,
+        began=scale.began if done.stamps is None else done.stamps.began,
+        remarks=tuple(one for one in (*header.remarks, scale.remark, remark, *done.remarks) if one),
         release=spool.close,
     )
+    return _with_more(recording, header, done)
+
+
+def _with_more(recording: Recording, header: Header, done: Unpacked) -> Recording:
+    """Return a recording with what is said of a clock without a date, and of titles that come again."""
+    remarks, began = list(recording.remarks), recording.began
+    day_time_s = None if done.stamps is None else done.stamps.day_time_s
+    if day_time_s is not None:
+        remarks.append(f"Second 0 is {timedelta(seconds=round(day_time_s, 6))} of a day that is not said.")
+    first = next(iter(recording.channels.values()), None)
+    for line, row in done.titles_again:
+        if first is None:
+            break
+        end_s = first.start_s + row / first.rate_hz
+        remarks.append(
+            f"Line {line}: the titles come again, the program was started anew; what is before it ends at second "
+            f"{end_s:.9g} (--to {end_s:.9g})."
+        )
+    if began is None and first is not None and is_date(done.date_beside):
+        day = cast("datetime", dates(recording.path, [done.date_beside])[0].item())
+        began = (day.replace(tzinfo=UTC) if has_offset(done.date_beside) else day) - timedelta(seconds=first.start_s)
+    return replace(recording, remarks=tuple(remarks), began=began)
 
 
 def _sampled(
-    path: Path, header: Header, spool: Spool, count: int, rate_hz: float | None, read: Times | None
-) -> dict[str, Channel]:
-    """Return the columns as channels with one row a sample."""
-    clock = _clock(path, header, read, count, rate_hz)
+    path: Path, header: Header, spool: Spool, done: Unpacked, rate_hz: float | None, read: Times | None
+) -> tuple[dict[str, Channel], str]:
+    """Return the columns as channels with one row a sample, and what has to be said of their clock."""
+    clock, remark = _clock(path, header, read, done, rate_hz)
     return {
         name: on_clock(
             Channel(
@@ -266,11 +281,11 @@ def _sampled(
                 unit=unit,
                 rate_hz=clock.rate_hz,
                 start_s=clock.start_s,
-                count=count,
+                count=done.count,
                 source=spool.source(number),
             ),
             clock,
         )
         for number, (name, unit) in enumerate(zip(header.names, header.units, strict=True))
-        if number != header.time_column
-    }
+        if number != header.time_column and name not in done.left_out
+    }, remark

@@ -1,29 +1,34 @@
-"""The first lines of a text file: what separates the columns, what they are called and in which unit."""
+"""The first lines of a text file: what separates the columns, what they are called, in which unit, which are times."""
 
-import re
 from collections.abc import Sequence
-from dataclasses import dataclass
-from itertools import pairwise
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from shaftprint.errors import RecordingError
-from shaftprint.escape import csv_cell_text
-from shaftprint.recording.readers._time_scale import time_of, unit_in_name
-from shaftprint.recording.readers._units import seconds_in
-from shaftprint.recording.readers.csv._dates import is_date
-from shaftprint.recording.readers.csv._wrong_rows import wrong_rows
+from shaftprint.escape import printable
+from shaftprint.recording.readers.csv._fields import (
+    DATE,
+    DAY_TIME,
+    GAP,
+    NUMBER,
+    TEXT,
+    WHITE_SPACE,
+    is_number,
+    split_row,
+)
+from shaftprint.recording.readers.csv._head_facts import HeadFacts, head_facts, is_fact
+from shaftprint.recording.readers.csv._table import Table, find_table
+from shaftprint.recording.readers.csv._time_columns import TimeColumns, expect_no_words_as_times, time_columns
+from shaftprint.recording.readers.csv._time_titles import is_time_title
+from shaftprint.recording.readers.csv._titles import counts_rows, name_and_unit, titles_and_units, told_apart
 from shaftprint.units import plain_unit
 
-WHITE_SPACE = " "
-_MARKS = (";", "\t", ",")
-_DELIMITERS = (*_MARKS, WHITE_SPACE)
-# a title with its unit behind it, where white space stands between columns
-_SPACED_TITLE = re.compile(r"\S+(?:\s*[\[(][^\])]*[\])])?")
-_COLUMN = re.compile(r"(?P<name>.*\S)\s*[\[(](?P<unit>[^\])]*)[\])]")
-_NUMBER = re.compile(r"[+-]?(\d+([.,]\d*)?|[.,]\d+)([eE][+-]?\d+)?|[+-]?(nan|inf(inity)?)", re.IGNORECASE)
-_TIMES = ("date", "datetime", "date/time", "date time", "datum", "x_value")
-# LabVIEW's titles end with one for remarks, which its rows of numbers do not have.
-_REMARKS = "comment"
+# Titles of a column that counts the rows.
+_COUNTERS = (
+    "", "no", "no.", "nr", "nr.", "number", "index", "#", "sequence", "record", "sample", "samples", "point", "row",
+    "id", "rn", "scan", "stepcount", "step", "count", "counter", "zeile", "unnamed: 0",
+)  # fmt: skip
+_SHOWN = 80
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -35,25 +40,50 @@ class Header:
     decimal: str
     """Decimal point or comma."""
     names: tuple[str, ...]
-    """Name of each column."""
+    """Name of each column that is read."""
     units: tuple[str, ...]
-    """Unit of each column; empty where the file gives none."""
+    """Unit of each; empty where the file gives none."""
+    places: tuple[int, ...]
+    """Which column of the file each is."""
+    width: int
+    """Number of fields of a row."""
     lines: int
     """How many lines stand before the first row of numbers."""
     time_column: int | None
-    """Which column holds the times; None where there is none."""
+    """Which of the columns that are read holds the times; None where there is none."""
     time_unit: str | None
     """Unit of the times, empty where the file gives none; None where times are dates, or there are none."""
+    is_whole: bool = False
+    """Whether rows have all fields, the last a number: one that is shorter is damaged."""
+    first_line: int = 1
+    """Which line of the file is the first of what is read."""
+    stamps: tuple[int, ...] = ()
+    """Columns of the file that hold dates, times of day and milliseconds, which make the times together."""
+    milliseconds: int | None = None
+    """Which of the stamps holds milliseconds alone."""
+    dates_beside: int | None = None
+    """Column of the file that holds dates beside times that are numbers."""
+    rate_hz: float | None = None
+    """Sample rate that the lines above the titles give, where there are no times [Hz]."""
+    start_s: float = 0.0
+    """Second of the first row that they give [s]."""
+    head: frozenset[str] = frozenset()
+    """The titles and the lines about them, without white space at their ends: they may come again."""
+    left_out: dict[str, str] = field(default_factory=dict)
+    """Why other columns are not read."""
+    remarks: tuple[str, ...] = ()
+    """What was taken though the file does not say it, a sentence each."""
 
     @property
     def dated(self) -> bool:
-        """Whether times are dates."""
-        return self.time_column is not None and self.time_unit is None
+        """Whether times are dates or times of day."""
+        return bool(self.stamps)
 
 
-def split_row(line: str, delimiter: str) -> list[str]:
-    """Return the fields of a line as they are written."""
-    return line.split() if delimiter == WHITE_SPACE else line.rstrip("\r\n").split(delimiter)
+def looks_like_a_table(lines: Sequence[str]) -> bool:
+    """Return whether text has rows of numbers below each other, at least two in a row."""
+    table = find_table(lines)
+    return table is not None and len(table.rows) > 1
 
 
 def read_header(
@@ -67,7 +97,7 @@ def read_header(
 ) -> Header:
     """Understand titles such as ``time [s];M_s [V];...``, or titles with a row of units below.
 
-    Lines before the titles are passed over. Without a unit, times are seconds.
+    Lines before the titles are passed over, but for what they say of the clock.
 
     Parameters
     ----------
@@ -78,210 +108,222 @@ def read_header(
     delimiter, decimal
         What the caller knows; found in the lines if absent.
     columns
-        Titles that the caller gives in place of the file's, separated by commas.
+        Titles that the caller gives in place of the file's, separated by commas, or other names for some of them, as in
+        ``Datum/Uhrzeit=time``.
     has_rate
         Whether the caller knows the sample rate, so that a column of times may be absent.
 
     Raises
     ------
     RecordingError
-        If a name is missing or comes twice, there are no titles or no times, or delimiter or decimal sign could be
-        read in two ways.
+        If there are no titles or no times, or delimiter or decimal sign could be read in two ways.
     """
-    hinted = [] if columns is None else [title.strip() for title in columns.split(",")]
-    delimiter, first = _layout(path, lines, delimiter, len(hinted))
-    if not hinted:
-        _expect_titles_above(path, lines, first, delimiter)
-    titles, units = (hinted, []) if hinted else _titles(lines, first, delimiter)
-    names, units = _named(path, first, titles, units)
-    rows = lines[first:]
-    where = f"{path}, line {max(first, 1)}"
-    time, unit = _time(rows, delimiter, names, units)
-    if time is None and not has_rate:
+    asked = [] if columns is None else [title.strip() for title in columns.split(",")]
+    renamed = bool(asked) and all("=" in title for title in asked)
+    table = _expect_table(path, lines, delimiter, 0 if renamed else len(asked))
+    units: list[str]
+    titles, units = (asked + [""] * (table.width - len(asked)), []) if asked and not renamed else ([], [])
+    if not titles:
+        titles, units = titles_and_units(lines, table)
+        _expect_titles(path, lines, table, titles)
+    if renamed:
+        titles = _renamed(path, titles, asked)
+    parsed = [name_and_unit(title) for title in titles] if not units else list(zip(titles, units, strict=True))
+    names = [printable(name if is_time_title(name) else name.replace("/", "|")) for name, _ in parsed]
+    names = ["" if kind == GAP and is_fact(name) else name for name, kind in zip(names, table.kinds, strict=True)]
+    units = [plain_unit(unit) for _, unit in parsed]
+    facts = head_facts([line for line in lines[: table.first] if line.strip()], table.delimiter)
+    times = time_columns(table, [name for name, _ in parsed], units, has_rate=has_rate)
+    where = f"{path}, line {max(table.first, 1)}"
+    if times.place is None and not has_rate and facts.rate_hz is None:
+        expect_no_words_as_times(path, table, names)
+        proposal = ",".join(["time [s]", *(name or "-" for name in names[1:])])
         raise RecordingError(
-            f'{where}: expected a column "time [s]", found "{"; ".join(titles)[:80]}"; '
-            "name it so with columns=, or pass sample_rate_hz= (--columns and --sample-rate of shaftprint convert)."
+            f'{where}: expected a column "time [s]", found "{"; ".join(titles)[:_SHOWN]}"; name the columns, columns='
+            f' (--columns "{proposal[:_SHOWN]}"), or pass sample_rate_hz= (--sample-rate) where there are no times.'
         )
-    if time is not None and len(names) == 1 and has_rate:
-        raise RecordingError(f"{where}: expected a channel besides the time, found none.")
-    decimal = decimal or _decimal(path, rows, delimiter, time if unit is None else None)
-    if decimal == delimiter:
-        raise RecordingError(f'{path}: expected decimal sign and delimiter to differ, found "{decimal}" for both.')
+    kept, left_out = _chosen(table, names, times)
+    if not set(kept) - {times.place} and (has_rate or len(names) > 1):
+        reasons = "".join(f"; {name}: {reason}" for name, reason in left_out.items())
+        raise RecordingError(f"{where}: expected a channel besides the time, found none{reasons[:_SHOWN]}.")
+    names = told_apart(names)
+    decimal = decimal or _decimal(path, table, [place for place in kept if place not in times.stamps])
+    _expect_other_delimiter(path, table, decimal)
     return Header(
-        delimiter=delimiter,
+        delimiter=table.delimiter,
         decimal=decimal,
-        names=tuple(names),
-        units=tuple(units),
-        lines=first,
-        time_column=time,
-        time_unit=unit,
+        names=tuple(names[place] or "time" for place in kept),
+        units=tuple(units[place] for place in kept),
+        places=tuple(kept),
+        width=table.width,
+        is_whole=not set(table.kinds[1 + max([*kept, *times.stamps]) :]) & {GAP, TEXT} and table.kinds[-1] == NUMBER,
+        lines=table.first,
+        time_column=None if times.place is None else kept.index(times.place),
+        time_unit=times.unit,
+        stamps=times.stamps,
+        milliseconds=times.milliseconds,
+        dates_beside=times.dates_beside,
+        rate_hz=facts.rate_hz if times.place is None else None,
+        start_s=facts.start_s if times.place is None else 0.0,
+        head=frozenset(line.strip() for line in lines[: table.first] if line.strip()),
+        left_out=left_out,
+        remarks=_remarks(path, times, facts, has_rate=has_rate),
     )
 
 
-def looks_like_a_table(lines: Sequence[str]) -> bool:
-    """Return whether text has rows of numbers below each other, at least two in a row."""
-    return any(_first_row(lines, delimiter) is not None for delimiter in _DELIMITERS)
-
-
-def _layout(path: Path, lines: Sequence[str], delimiter: str | None, width: int) -> tuple[str, int]:
-    """Return the delimiter and the number of lines before the first row of numbers, of which there are ``width``."""
-    lone = None if delimiter or width else _row_below_lone_time(lines)
-    if lone is not None:
-        return _MARKS[0], lone
-    candidates = (delimiter,) if delimiter else _DELIMITERS
-    places = {candidate: _first_row(lines, candidate, width) for candidate in candidates}
-    for candidate, first in places.items():
-        if first or (first == 0 and width):
-            return candidate, first
-    if width:
-        raise RecordingError(f"{path}: expected a row of {width} columns, as the hint columns says, found none.")
-    untitled = [candidate for candidate, first in places.items() if first == 0]
-    if untitled:
-        width_of_row = len(_fields(lines[0], untitled[0]))
-        raise RecordingError(
-            f'{path}, line 1: expected titles such as "time [s];M_s [N m]" above {width_of_row} columns of numbers, '
-            "found none; pass columns= (--columns of shaftprint convert), such as time,u,y."
-        )
-    title = lines[0] if lines else ""
-    marks = [mark for mark in _MARKS if mark in title]
-    if len(marks) != 1 and delimiter is None:
-        what = "several of them" if marks else "none of them"
-        raise RecordingError(
-            f"{path}, line 1: expected columns separated by semicolon, tab, comma or white space, found {what} in "
-            f'"{title.strip()[:80]}"; pass delimiter= (--delimiter of shaftprint convert).'
-        )
-    return delimiter or marks[0], 1
-
-
-def _row_below_lone_time(lines: Sequence[str]) -> int | None:
-    """Return the place of the first number of a column of times alone, below its title; nothing where there is none."""
-    for row, (title, line) in enumerate(pairwise(lines), start=1):
-        if _time_column([_bare(title.lstrip("\ufeff").lstrip("#%").strip().strip('"'))]) is not None:
-            return row if _NUMBER.fullmatch(line.strip()) else None
-    return None
-
-
-def _expect_titles_above(path: Path, lines: Sequence[str], first: int, delimiter: str) -> None:
-    """Refuse a damaged row of numbers that would be taken for titles, because the row below it is the first good one.
+def _expect_table(path: Path, lines: Sequence[str], delimiter: str | None, width: int) -> Table:
+    """Return the table of a file.
 
     Raises
     ------
     RecordingError
-        If a line above the first row has a time where titles further above have their column of times.
+        If there is none, or not one of the number of columns that the caller names.
     """
-    for place in range(first - 1):
-        titles = [_bare(title) for title in _title_fields(lines[place], delimiter, 0)]
-        time = _time_column(titles)
-        if time is None:
-            continue
-        rows = [(number + 1, _fields(lines[number], delimiter)) for number in range(place + 1, first)]
-        timed = [(number, row) for number, row in rows if time < len(row) and _is_row(row[time : time + 1])]
-        wrong = [(number, row) for number, row in timed if len(row) != len(titles) or not _is_row(row)]
-        if wrong:
-            raise wrong_rows(path, [(number, list(map(_pointed, row))) for number, row in wrong], titles, time=time)
-        return
+    table = find_table(lines, delimiter=delimiter, width=width)
+    if table is None and width:
+        table = find_table(lines, delimiter=delimiter)
+        if table is not None and (table.width < width or set(table.kinds[width:]) - {GAP}):
+            shown = "; ".join(title or "(no title)" for title in titles_and_units(lines, table)[0])
+            raise RecordingError(
+                f"{path}: expected a row of {width} columns, as the hint columns says, found {table.width}"
+                + (f": {shown[:_SHOWN]}" if shown else "")
+                + '; name each of them in order, or only some with their titles, as "Datum/Uhrzeit=time".'
+            )
+    return table or _lone(path, lines, delimiter, width)
 
 
-def _pointed(field: str) -> str:
-    return field.replace(",", ".") if _NUMBER.fullmatch(field) else field
+def _lone(path: Path, lines: Sequence[str], delimiter: str | None, width: int) -> Table:
+    """Return the table of a column of times alone, or of titles without a row.
 
-
-def _bare(title: str) -> str:
-    match = _COLUMN.fullmatch(title)
-    return match["name"].strip() if match else title
-
-
-def _first_row(lines: Sequence[str], delimiter: str, width: int = 0) -> int | None:
-    """Return the place of the first row of numbers, ``width`` or else at least two, that has a row like it below."""
-    for row, line in enumerate(lines):
-        fields = _fields(line, delimiter)
-        if (len(fields) != width if width else len(fields) < 2) or not _is_row(fields):
-            continue
-        below = next((line for line in lines[row + 1 :] if line.strip()), None)
-        if below is None or _is_row(_fields(below, delimiter)):
-            return row
-    return None
-
-
-def _is_row(fields: Sequence[str]) -> bool:
-    numbers = [field for field in fields if field]
-    return bool(numbers) and all(_NUMBER.fullmatch(field) or is_date(field) for field in numbers)
-
-
-def _fields(line: str, delimiter: str) -> list[str]:
-    return [field.strip().strip('"').strip() for field in split_row(line, delimiter)]
-
-
-def _time(
-    rows: Sequence[str], delimiter: str, names: Sequence[str], units: Sequence[str]
-) -> tuple[int | None, str | None]:
-    """Return which column holds the times, and their unit, None for dates."""
-    time = _time_column(names)
-    if time is None:
-        return None, None
-    first = _fields(rows[0], delimiter) if rows else []
-    if is_date(first[time] if time < len(first) else ""):
-        return time, None
-    return time, units[time] or unit_in_name(names[time]) or ""
-
-
-def _time_column(names: Sequence[str]) -> int | None:
-    """Return which column holds the times by its title; one of dates goes before others."""
-    return next((column for column, name in enumerate(names) if name.lower() in _TIMES), time_of(names))
-
-
-def _titles(lines: Sequence[str], first: int, delimiter: str) -> tuple[list[str], list[str]]:
-    """Return titles and units: those of a separate row, where the time's field there is a unit of time."""
-    width = len(split_row(lines[first], delimiter)) if first < len(lines) else 0
-    below = _title_fields(lines[first - 1], delimiter, width) if lines else [""]
-    if first >= 2:
-        above = _title_fields(lines[first - 2], delimiter, width)
-        time = _time_column(above)
-        if time is not None and len(above) == len(below):
-            units = [field.strip("[]() ") for field in below]
-            if seconds_in(units[time]) is not None or units[time] in ("", "-"):
-                return above, ["" if unit == "-" else unit for unit in units]
-    return below, []
-
-
-def _title_fields(line: str, delimiter: str, width: int) -> list[str]:
-    """Return the titles of a line; with white space between columns those that are as many as the columns."""
-    line = line.lstrip("\ufeff").lstrip("#%")
-    if delimiter != WHITE_SPACE:
-        titles = [csv_cell_text(field) for field in _fields(line, delimiter)]
-        return titles[:-1] if len(titles) == width + 1 and titles[-1].lower() == _REMARKS else titles
-    spaced = _SPACED_TITLE.findall(line)
-    far_apart = re.split(r"\s{2,}", line.strip())
-    return far_apart if len(spaced) != width == len(far_apart) else spaced
-
-
-def _named(path: Path, first: int, titles: Sequence[str], units: Sequence[str]) -> tuple[list[str], list[str]]:
-    """Return names and units, taken apart where a title has both."""
-    names, parsed_units = [], []
-    for column, title in enumerate(titles):
-        match = None if units else _COLUMN.fullmatch(title)
-        name = match["name"].strip() if match else title
-        if not name:
-            raise RecordingError(f'{path}, line {max(first, 1)}: expected titles like "M_s [V]", found "{title[:80]}".')
-        names.append(name.replace("/", "|") if _time_column([name]) is None else name)
-        parsed_units.append(plain_unit(match["unit"] if match else units[column] if units else ""))
-    twice = sorted({name for name in names if names.count(name) > 1})
-    if twice:
+    Raises
+    ------
+    RecordingError
+        If the file is neither.
+    """
+    table = find_table(lines, width=1, delimiter=delimiter or ";")
+    if table is not None and table.first > 0 and is_time_title(_plain_title(lines[table.first - 1])):
+        return table
+    if width:
+        raise RecordingError(f"{path}: expected a row of {width} columns, as the hint columns says, found none.")
+    titles = next((line for line in lines if line.strip()), "")
+    marks = [mark for mark in (";", "\t", ",") if mark in titles]
+    if len(marks) != 1 and delimiter is None:
+        if is_time_title(_plain_title(titles)):
+            return Table(delimiter=";", first=1, width=1, kinds=NUMBER, rows=())
+        what = "several of them" if marks else "none of them"
         raise RecordingError(
-            f"{path}, line {max(first, 1)}: expected different names, found {', '.join(twice)[:200]} twice."
+            f"{path}, line 1: expected columns separated by semicolon, tab, comma or white space, with rows of "
+            f'numbers, found {what} in "{printable(titles.strip())[:_SHOWN]}"; pass delimiter= (--delimiter).'
         )
-    return names, parsed_units
+    mark = delimiter or marks[0]
+    count = len(split_row(titles, mark))
+    return Table(
+        delimiter=mark, first=lines.index(titles) + 1 if titles else 0, width=count, kinds=NUMBER * count, rows=()
+    )
 
 
-def _decimal(path: Path, rows: Sequence[str], delimiter: str, dates: int | None) -> str:
-    if delimiter == ",":
-        return "."
-    fields = [field for row in rows for column, field in enumerate(_fields(row, delimiter)) if column != dates]
+def _plain_title(line: str) -> str:
+    return line.lstrip("\ufeff").lstrip("#%").strip().strip('"')
+
+
+def _expect_titles(path: Path, lines: Sequence[str], table: Table, titles: Sequence[str]) -> None:
+    if len(titles) == table.width:
+        return
+    place = next((place for place in range(table.first, len(lines)) if lines[place].strip()), table.first)
+    shown = "; ".join(split_row(lines[place], table.delimiter))[:_SHOWN] if lines else ""
+    example = ",".join(["time [s]", *"uyzabcdefghijklmnopqrstvwx"[: table.width - 1]])
+    if not titles or all(is_number(title) for title in titles):
+        raise RecordingError(
+            f'{path}, line 1: expected titles such as "time [s];M_s [N m]" above {table.width} columns of numbers, '
+            f'found none; pass columns= (--columns "{example}").'
+        )
+    raise RecordingError(
+        f"{path}, line {place + 1}: expected {len(titles)} fields, as many as titles, found {table.width} in "
+        f'"{shown}"; is a decimal comma taken for a delimiter? Else name the columns, columns= (--columns "{example}").'
+    )
+
+
+def _renamed(path: Path, titles: Sequence[str], asked: Sequence[str]) -> list[str]:
+    """Return titles with those that the caller calls otherwise.
+
+    Raises
+    ------
+    RecordingError
+        If the file has no such title.
+    """
+    new = list(titles)
+    for pair in asked:
+        old, _, name = (part.strip() for part in pair.rpartition("="))
+        place = next((at for at, title in enumerate(titles) if old in (title, name_and_unit(title)[0])), None)
+        if place is None:
+            raise RecordingError(
+                f'{path}: expected a column "{old}", as the hint columns says, found {"; ".join(titles)[:200]}.'
+            )
+        new[place] = name
+    return new
+
+
+def _chosen(table: Table, names: Sequence[str], times: TimeColumns) -> tuple[list[int], dict[str, str]]:
+    """Return the columns that are read, and why others are not."""
+    kept: list[int] = []
+    left_out: dict[str, str] = {}
+    numbers = [
+        place for place, kind in enumerate(table.kinds) if kind == NUMBER and place not in (times.place, *times.stamps)
+    ]
+    columns = [[row[place] for row in table.rows] for place in range(table.width)]
+    counters = [place for place in numbers if _is_counter(place, names[place], columns[place])]
+    # what counts is a channel where nothing else is one
+    counters = counters if len(counters) < len(numbers) else [place for place in counters if not names[place]]
+    for place, kind in enumerate(table.kinds):
+        name = names[place]
+        shown = name or f"column {place + 1}, which has no title"
+        if place == times.place:
+            kept.append(place)
+        elif place in times.stamps or (not name and kind == GAP):
+            continue
+        elif place in counters:
+            left_out[shown] = "it counts the rows"
+        elif name and kind in (NUMBER, GAP):
+            kept.append(place)
+        elif kind == TEXT:
+            word = next((field for field in columns[place] if field and not is_number(field)), "")
+            left_out[shown] = f'it holds text, such as "{printable(word)[:30]}"'
+        elif kind in (DATE, DAY_TIME):
+            left_out[shown] = "it holds dates or times of day beside the times of the rows"
+        else:
+            left_out[shown] = "name it with columns= (--columns)"
+    return kept, left_out
+
+
+def _is_counter(place: int, name: str, fields: Sequence[str]) -> bool:
+    return (name.lower() in _COUNTERS or (place == 0 and name.lower() == "x")) and counts_rows(fields)
+
+
+def _decimal(path: Path, table: Table, places: Sequence[int]) -> str:
+    fields = [row[place] for row in table.rows for place in places if is_number(row[place])]
     commas = any("," in field for field in fields)
     points = any("." in field for field in fields)
     if commas and points:
         raise RecordingError(
-            f"{path}: expected a decimal point or a decimal comma, found both in the first rows; pass decimal= "
-            "(--decimal of shaftprint convert)."
+            f"{path}: expected a decimal point or a decimal comma, found both in the first rows; pass "
+            "decimal= (--decimal)."
         )
     return "," if commas else "."
+
+
+def _expect_other_delimiter(path: Path, table: Table, decimal: str) -> None:
+    """Refuse a decimal sign that is the delimiter, unless quotes keep the numbers together."""
+    in_quotes = any("," in field for row in table.rows for field in row)
+    if decimal == table.delimiter and not in_quotes:
+        raise RecordingError(f'{path}: expected decimal sign and delimiter to differ, found "{decimal}" for both.')
+
+
+def _remarks(path: Path, times: TimeColumns, facts: HeadFacts, *, has_rate: bool) -> tuple[str, ...]:
+    if times.remark:
+        return (f"{times.remark}.",)
+    if times.place is None and facts.rate_hz is not None and not has_rate:
+        return (f'The rate of {facts.rate_hz:g} Hz is that of "{facts.source}" above the rows.',)
+    return ()
+
+
+__all__ = ["WHITE_SPACE", "Header", "looks_like_a_table", "read_header"]

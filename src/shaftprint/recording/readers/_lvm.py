@@ -1,0 +1,380 @@
+"""LabVIEW's measurement text (.lvm): a head, then one or more segments with a head, titles and rows of their own."""
+
+import io
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from datetime import datetime
+from functools import partial
+from itertools import pairwise
+from pathlib import Path
+from typing import IO
+
+import numpy as np
+
+from shaftprint.arrays import FloatArray
+from shaftprint.errors import RecordingError
+from shaftprint.escape import printable
+from shaftprint.recording._channel import Channel
+from shaftprint.recording._recording import Recording
+from shaftprint.recording._spool import Spool
+from shaftprint.recording.readers._clock import Hole, SampleClock, clock_of_times, on_clock
+from shaftprint.recording.readers._gather import Gathered
+from shaftprint.recording.readers._hints import rate_hint
+from shaftprint.recording.readers._printed_rate import rate_of_step
+from shaftprint.recording.readers.csv import Header, Unpacked, told_apart, unpack
+from shaftprint.units import plain_unit
+
+NAME = "LabVIEW LVM"
+
+_MARK = b"LabVIEW Measurement"
+_END_OF_HEAD, _SPECIAL, _END_OF_SPECIAL = "***End_of_Header***", "***Start_Special***", "***End_Special***"
+_LONGEST_LINE = 1_000_000
+_SEPARATORS = {"tab": "\t", "comma": ",", "semicolon": ";", "space": " "}
+_COMMENT = "comment"
+_TITLE = b"X_Value"
+_DATE = re.compile(r"(\d{4})[/.-](\d\d?)[/.-](\d\d?)")
+_TIME = re.compile(r"(\d\d?):(\d\d):(\d\d)(?:[.,](\d+))?")
+# seconds since 1904 are no seconds of a test
+_LATER_THAN_ANY_TEST_S = 1e8
+_RATES_AGREE = 1e-4
+# Steps within a segment, and distances of two, to this part of a step; a hole is whole samples long to less than that.
+# One that is so many times as long as all rows is kept as a jump.
+_HALF, _WHOLE, _LONGEST_HOLE = 0.5, 0.05, 20
+
+
+@dataclass(slots=True)
+class _Segment:
+    """Rows below one head."""
+
+    head: dict[str, list[str]]
+    titles: list[str]
+    line: int
+    begin: int
+    end: int = 0
+    count: int = 0
+    columns: dict[int, FloatArray] = field(default_factory=dict)
+
+
+def is_mine(path: Path) -> bool:
+    """Return whether the file begins as LabVIEW's text does."""
+    with path.open("rb") as file:
+        return file.read(len(_MARK)) == _MARK
+
+
+def read(path: Path, **hints: object) -> Recording:
+    """Read LabVIEW's text into temporary files, one a column; closing deletes them.
+
+    Hints: ``sample_rate_hz``, where neither times nor a step are in the file. Comments and special blocks are left out.
+    Segments follow each other by their times: what is missing between them becomes values that are not numbers.
+
+    Raises
+    ------
+    RecordingError
+        If a head or a row cannot be used.
+    """
+    rate_hz = rate_hint(path, hints)
+    with path.open("rb") as file:
+        general, segments = _scanned(path, file)
+        if not segments:
+            raise RecordingError(f"{path}: expected segments with titles X_Value ..., found none.")
+        spool = Spool(path, [])
+        try:
+            return _recording(path, file, general, segments, spool, rate_hz)
+        except BaseException:
+            spool.close()
+            raise
+
+
+def _scanned(path: Path, file: IO[bytes]) -> tuple[dict[str, list[str]], list[_Segment]]:
+    """Return the general head, and where the segments are."""
+    general: dict[str, list[str]] = {}
+    head: dict[str, list[str]] = {}
+    segments: list[_Segment] = []
+    separator, in_head, in_special, position, number = "\t", True, False, 0, 0
+    while raw := file.readline(_LONGEST_LINE):
+        number += 1
+        position += len(raw)
+        is_row = raw[:1] in b"\t,;-+.0123456789" or not raw.strip()
+        if is_row and not in_head and not in_special:
+            continue
+        line = _decoded(raw).strip("\r\n")
+        fields = [one.strip() for one in line.split(separator)]
+        if in_special or line.startswith(_SPECIAL):
+            in_special = not line.startswith(_END_OF_SPECIAL)
+        elif raw.startswith(_TITLE):
+            if segments and not segments[-1].end:
+                segments[-1].end = position - len(raw)
+            segments.append(
+                _Segment(
+                    head=head or (segments[-1].head if segments else {}), titles=fields, line=number, begin=position
+                )
+            )
+            head, in_head = {}, False
+        elif line.startswith(_END_OF_HEAD):
+            general = general or head
+            head = {} if head is general else head
+        elif fields[0]:
+            if segments and not segments[-1].end:
+                segments[-1].end = position - len(raw)
+            in_head = True
+            head[fields[0]] = fields[1:]
+            if line.startswith("Separator") and not general:
+                separator = _SEPARATORS.get(re.split(r"[\t,; ]", line.strip("\t,; "))[-1].lower(), "\t")
+    if segments and not segments[-1].end:
+        segments[-1].end = position
+    for one in segments:
+        one.head = one.head if one.titles else general
+    general["Separator"] = [separator]
+    return general, segments
+
+
+def _decoded(raw: bytes) -> str:
+    try:
+        return raw.decode("utf-8")
+    except UnicodeDecodeError:
+        return raw.decode("cp1252", "replace")
+
+
+def _recording(
+    path: Path,
+    file: IO[bytes],
+    general: dict[str, list[str]],
+    segments: list[_Segment],
+    spool: Spool,
+    rate_hz: float | None,
+) -> Recording:
+    separator = general["Separator"][0]
+    titles = segments[0].titles
+    if any(segment.titles != titles for segment in segments):
+        other = next(segment for segment in segments if segment.titles != titles)
+        raise RecordingError(
+            f"{path}, line {other.line}: expected the titles of the first segment, found others; save each group of "
+            "channels in a file of its own."
+        )
+    decimal = (general.get("Decimal_Separator") or [""])[0] or _decimal(file, segments[0], separator)
+    gathered = Gathered(path=path)
+    remarks: list[str] = []
+    width = len(titles)
+    values = [place for place in range(width) if titles[place].lower() not in ("x_value", _COMMENT, "")]
+    times = [place for place in range(width) if titles[place] == "X_Value"]
+    places = sorted([*values, *times])
+    header = Header(
+        delimiter=separator,
+        decimal=decimal,
+        names=tuple(f"{titles[place]} {place}" for place in places),
+        units=("",) * len(places),
+        places=tuple(places),
+        width=width,
+        lines=0,
+        time_column=None,
+        time_unit=None,
+    )
+    for place in places:
+        spool.add_column(titles[place])
+    wordy: dict[int, str] = {}
+    for segment in segments:
+        done = _rows(path, file, segment, header, spool)
+        segment.count = done.count
+        remarks += done.remarks
+        wordy = {places[header.names.index(name)]: reason for name, reason in done.left_out.items()} | wordy
+    began = _moment(segments[0].head, values[0] if values else 1)
+    _note_comments(gathered, file, segments[0], separator)
+    names = told_apart([printable(titles[place].replace("/", "|")) for place in values])
+    for place, name in zip(values, names, strict=True):
+        make = partial(_channel, path, place, name, segments, spool, places, times, wordy, rate_hz, remarks)
+        gathered.add(name, make)
+    recording = gathered.recording(NAME, spool.close, began)
+    return replace(recording, remarks=tuple(dict.fromkeys([*recording.remarks, *remarks])))
+
+
+def _decimal(file: IO[bytes], segment: _Segment, separator: str) -> str:
+    """Return the decimal sign of the first rows, where no head says it."""
+    file.seek(segment.begin)
+    rows = file.read(min(segment.end - segment.begin, 4096))
+    return "," if separator != "," and b"," in rows and b"." not in rows else "."
+
+
+def _rows(path: Path, file: IO[bytes], segment: _Segment, header: Header, spool: Spool) -> Unpacked:
+    file.seek(segment.begin)
+    piece = io.BufferedReader(_Piece(file, segment.end - segment.begin))
+    return unpack(path, piece, replace(header, first_line=segment.line + 1), spool)
+
+
+class _Piece(io.RawIOBase):
+    """The next bytes of a file, so many."""
+
+    def __init__(self, file: IO[bytes], count: int) -> None:
+        self._file, self._left = file, count
+
+    def readable(self) -> bool:
+        """Return that it can be read."""
+        return True
+
+    def readinto(self, target: "memoryview") -> int:  # type: ignore[override]
+        """Fill a piece of memory; return how many bytes there were."""
+        content = self._file.read(min(len(target), max(self._left, 0)))
+        target[: len(content)] = content
+        self._left -= len(content)
+        return len(content)
+
+
+def _note_comments(gathered: Gathered, file: IO[bytes], segment: _Segment, separator: str) -> None:
+    if segment.titles[-1].lower() != _COMMENT:
+        return
+    file.seek(segment.begin)
+    width = len(segment.titles)
+    for raw in file.read(min(segment.end - segment.begin, 65_536)).splitlines():
+        fields = _decoded(raw).split(separator)
+        if len(fields) >= width and fields[width - 1].strip():
+            gathered.left_out["Comment"] = f'it holds text, such as "{printable(fields[width - 1].strip())[:30]}"'
+            return
+
+
+def _channel(
+    path: Path,
+    place: int,
+    name: str,
+    segments: Sequence[_Segment],
+    spool: Spool,
+    places: Sequence[int],
+    times: Sequence[int],
+    wordy: Mapping[int, str],
+    hint_hz: float | None,
+    remarks: list[str],
+) -> Channel:
+    """Return a channel with its segments one behind the other, each at its time."""
+    source = spool.source(places.index(place))
+    count = sum(segment.count for segment in segments)
+    own = max((time for time in times if time < place), default=None)
+    for read in (place, own):
+        if read is not None and read in wordy:
+            raise RecordingError(wordy[read])
+    printed = None if own is None else spool.source(places.index(own))(0, count)
+    printed = printed if printed is not None and np.isfinite(printed).any() else None
+    filled = np.flatnonzero(np.isfinite(source(0, count) if printed is None else printed))
+    if not filled.size or not np.isfinite(source(0, count)).any():
+        raise RecordingError("it has no value in any row")
+    last = int(filled[-1]) + 1
+    steps = [rate_of_step(_of(segment.head, "Delta_X", place)) for segment in segments]
+    rate_hz = hint_hz or steps[0]
+    if printed is None and rate_hz is None:
+        raise RecordingError("expected times or a Delta_X, found neither; pass sample_rate_hz= (--sample-rate)")
+    if printed is None and any(step is not None and step != steps[0] for step in steps):
+        raise RecordingError("expected one Delta_X for all segments, found several")
+    pieces = _seconds(segments, place, printed, rate_hz, path, remarks)
+    clock = _clock(path, name, pieces, last, rate_hz, remarks)
+    exact = rate_hz if rate_hz is not None and abs(clock.rate_hz / rate_hz - 1.0) < _RATES_AGREE else clock.rate_hz
+    if hint_hz is not None and exact != hint_hz:
+        raise RecordingError(
+            f"expected one sample rate, found {clock.rate_hz:g} Hz in its times and {hint_hz:g} Hz in the hint"
+        )
+    if printed is None and hint_hz is None and rate_hz is not None:
+        step = _of(segments[0].head, "Delta_X", place)
+        if abs(rate_hz * float(step.replace(",", ".")) - 1.0) > 1e-9:
+            remarks.append(f"The rate of {rate_hz:g} Hz is the roundest one whose step is printed as {step} (Delta_X).")
+    channel = Channel(
+        name=name,
+        unit=plain_unit(_of(segments[0].head, "Y_Unit_Label", place)),
+        rate_hz=exact,
+        start_s=clock.start_s,
+        count=last,
+        source=source,
+    )
+    return on_clock(channel, replace(clock, rate_hz=exact))
+
+
+def _seconds(
+    segments: Sequence[_Segment],
+    place: int,
+    printed: FloatArray | None,
+    rate_hz: float | None,
+    path: Path,
+    remarks: list[str],
+) -> list[FloatArray]:
+    """Return the times of the rows of every segment from the date of the first on [s]."""
+    pieces: list[FloatArray] = []
+    first = _moment(segments[0].head, place)
+    row, end_s, zero_s = 0, -np.inf, 0.0
+    for segment in segments:
+        if not segment.count:
+            continue
+        if printed is None:
+            rate = rate_hz or 1.0
+            seconds = _number(_of(segment.head, "X0", place)) + np.arange(segment.count) / rate
+        else:
+            seconds = np.array(printed[row : row + segment.count])
+        if not pieces and abs(seconds[0]) > _LATER_THAN_ANY_TEST_S:
+            zero_s = float(seconds[0])
+        seconds = seconds - zero_s
+        if pieces and not seconds[0] > end_s:
+            # its times begin anew: those of its head say when
+            when = _moment(segment.head, place)
+            passed = (when - first).total_seconds() if when is not None and first is not None else 0.0
+            step = 1.0 / rate_hz if rate_hz else float(np.median(np.diff(seconds))) if seconds.size > 1 else 0.0
+            shift = passed if seconds[0] + passed > end_s else end_s + step - float(seconds[0])
+            if shift != passed:
+                remarks.append(
+                    f"Line {segment.line}: the head of the segment does not say when it begins; it was put right "
+                    "behind the one before."
+                )
+            seconds = seconds + shift
+        pieces.append(seconds)
+        end_s = float(np.nanmax(seconds)) if np.isfinite(seconds).any() else end_s
+        row += segment.count
+    return pieces
+
+
+def _clock(
+    path: Path, name: str, pieces: Sequence[FloatArray], count: int, rate_hz: float | None, remarks: list[str]
+) -> SampleClock:
+    """Return the clock of some segments: with holes where whole samples are missing between them, else with jumps."""
+    seconds = np.concatenate(pieces)[:count]
+    step = 1.0 / rate_hz if rate_hz else 0.0
+    is_known = step > 0.0 and all(np.all(np.abs(np.diff(piece) - step) < _HALF * step) for piece in pieces)
+    if len(pieces) == 1 or not is_known or rate_hz is None:
+        return clock_of_times(path, f"the times of {name}", count, lambda start, stop: seconds[start:stop])
+    holes, row, longest_s = [], 0, 0.0
+    for before, after in pairwise(pieces):
+        row += before.size
+        gap = float(after[0] - before[-1]) * rate_hz - 1.0
+        if abs(gap) < _HALF:
+            continue
+        missing = round(gap)
+        longest_s = max(longest_s, gap / rate_hz)
+        is_hole = 0 < missing < _LONGEST_HOLE * count and abs(gap - missing) <= _WHOLE
+        holes.append(
+            Hole(row=row, missing=missing, jump_s=0.0) if is_hole else Hole(row=row, missing=0, jump_s=gap / rate_hz)
+        )
+    if holes:
+        remarks.append(
+            f"{len(pieces)} segments, up to {longest_s:.6g} s apart; whole samples that are missing between two are "
+            "no numbers, other distances are kept as jumps of the clock."
+        )
+    return SampleClock(rate_hz=rate_hz, start_s=float(seconds[0]), holes=tuple(holes))
+
+
+def _of(head: dict[str, list[str]], key: str, place: int) -> str:
+    fields = head.get(key, [])
+    return fields[place - 1] if 0 < place <= len(fields) else ""
+
+
+def _number(text: str) -> float:
+    try:
+        return float(text.replace(",", "."))
+    except ValueError:
+        return 0.0
+
+
+def _moment(head: dict[str, list[str]], place: int) -> datetime | None:
+    """Return the date and time of a head."""
+    date, time = _DATE.fullmatch(_of(head, "Date", place)), _TIME.fullmatch(_of(head, "Time", place))
+    if date is None or time is None:
+        return None
+    try:
+        second = np.datetime64(
+            f"{date[1]}-{int(date[2]):02}-{int(date[3]):02}T{int(time[1]):02}:{time[2]}:{time[3]}", "us"
+        )
+        return (second + np.timedelta64(int(f"{time[4] or '0':.6}".ljust(6, "0")), "us")).item()
+    except ValueError:
+        return None

@@ -1,0 +1,71 @@
+"""Fields of a line of text, and what one can be: a number, a date, a time of day, a mark for no value, or words."""
+
+import csv
+import re
+from collections.abc import Iterable
+
+from shaftprint.recording.readers.csv._dates import is_date
+from shaftprint.recording.readers.csv._day_times import is_day_time
+
+WHITE_SPACE = " "
+MARKS = (";", "\t", ",", "|")
+DELIMITERS = (*MARKS, WHITE_SPACE)
+
+NUMBER, DATE, DAY_TIME, GAP, TEXT = "n", "d", "c", "g", "t"
+"""Kinds of a field, a letter each; a mark for no value and an empty field are of one kind."""
+
+# What instruments and programs write in place of a number: nothing, an overload, a sensor that is off.
+_GAPS = (
+    "na", "n/a", "#n/a", "#na", "null", "none", "nil", "-nan", "+nan", "nan(ind)", "-nan(ind)", "1.#qnan", "1.#ind",
+    "-1.#ind", "#value!", "#div/0!", "#num!", "ol", "+ol", "-ol", "ovld", "over", "+over", "-over", "overload",
+    "overrange", "over range", "underrange", "overflow", "burnout", "burn out", "b.o.", "invalid", "bad", "no data",
+    "nodata", "err", "error", "fault", "?", "off",
+)  # fmt: skip
+_DASHES = re.compile(r"[-*_.]*|[+-]?\*+|[+-]?-{2,}")
+_NUMBER = re.compile(r"[+-]?(\d+([.,]\d*)?|[.,]\d+)([eE][+-]?\d+)?|[+-]?(nan|inf(inity)?)", re.IGNORECASE)
+_PLAIN = re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?|[+-]?(nan|inf(inity)?)", re.IGNORECASE)
+_LONGEST = 120_000
+
+
+def split_row(line: str, delimiter: str) -> list[str]:
+    """Return the fields of a line without the white space and the quotes around them."""
+    plain = line.rstrip("\r\n")
+    if '"' not in plain or len(plain) > _LONGEST:
+        fields = plain.split() if delimiter == WHITE_SPACE else plain.split(delimiter)
+        return [field.strip() for field in fields]
+    if delimiter == WHITE_SPACE:
+        plain = re.sub(r"[\t ]+", " ", plain.strip())
+    (fields,) = csv.reader([plain], delimiter=delimiter, skipinitialspace=True)
+    return [field.strip().strip('"').strip() for field in fields]
+
+
+def is_number(field: str) -> bool:
+    """Return whether a field is a number with a decimal point or comma."""
+    return _NUMBER.fullmatch(field) is not None
+
+
+def number(field: str) -> float | None:
+    """Return the number that a field with a decimal point is, not a number for a gap; None for words."""
+    if _PLAIN.fullmatch(field) is not None:
+        return float(field)
+    return float("nan") if is_gap(field) else None
+
+
+def is_gap(field: str) -> bool:
+    """Return whether a field stands for no value."""
+    return _DASHES.fullmatch(field) is not None or field.lower() in _GAPS
+
+
+def kinds_of(fields: Iterable[str]) -> str:
+    """Return the kinds of some fields, a letter each."""
+    return "".join(map(_kind, fields))
+
+
+def _kind(field: str) -> str:
+    if _NUMBER.fullmatch(field) is not None:
+        return NUMBER
+    if is_gap(field):
+        return GAP
+    if is_date(field):
+        return DATE
+    return DAY_TIME if is_day_time(field) else TEXT

@@ -1,0 +1,181 @@
+"""Titles of the columns of a text file: the line they stand in, the units in it or below it, one name a column."""
+
+import re
+from collections.abc import Sequence
+
+from shaftprint.escape import csv_cell_text, printable
+from shaftprint.recording.readers._units import seconds_in
+from shaftprint.recording.readers.csv._fields import WHITE_SPACE, is_number, split_row
+from shaftprint.recording.readers.csv._head_facts import is_fact
+from shaftprint.recording.readers.csv._table import Table
+from shaftprint.recording.readers.csv._time_titles import begins_as_time, is_time_title
+from shaftprint.units import plain_unit
+
+# a title with its unit behind it, where white space stands between columns
+_SPACED_TITLE = re.compile(r"\S+(?:\s*[\[(][^\])]*[\])])?")
+_IN_BRACKETS = re.compile(r"(?P<name>.*\S)\s*[\[(](?P<unit>[^\])]*)[\])]")
+_BEHIND_A_WORD = re.compile(r"(?P<name>.*?)\s*(?:\bin\b|/|,)\s*(?P<unit>\S+(?: m)?)")
+# What stands in brackets behind a variable of a co-simulation: its number, its type and what it is.
+_OF_A_VARIABLE = re.compile(
+    r"(\d+\s+)?(real|integer|boolean|string|enumeration|u?int(eger)?\d*|float\d*|double|bool)(\s+\w+)*", re.IGNORECASE
+)
+_UNITS = frozenset(
+    {
+        "V", "mV", "kV", "uV", "µV", "mA", "kA", "N", "kN", "Nm", "N·m", "kNm", "N m", "kN m", "mm", "cm", "um", "µm",
+        "m/s", "m/s^2", "m/s²", "m/s2", "mm/s", "Hz", "kHz", "rpm", "rad", "deg", "rad/s", "deg/s", "rev", "rev/s",
+        "degC", "°C", "°", "bar", "mbar", "Pa", "kPa", "MPa", "hPa", "kW", "MW", "VA", "var", "%", "s", "ms", "us",
+        "ns", "min", "kn", "L/h", "kg", "kJ", "Ohm", "ohm", "kOhm", "dB", "um/m", "µm/m", "mV/V", "counts", "-", "#",
+    }
+)  # fmt: skip
+_LETTER_UNITS = frozenset({"m", "g", "C", "t", "h", "A", "K", "W", "J"})
+_TIME_FORMATS = re.compile(r"[hHmMsSydDYtT:./ _-]+|ts|abs|rel|date|time", re.IGNORECASE)
+_HIGHEST = 12
+# Lines of a head that hold titles and units without standing above their columns (Yokogawa, Hioki, LabChart).
+_NAMES = ("tracename", "trace name", "signal", "channeltitle", "channel title", "channel titles", "channel names")
+_UNIT_ROWS = ("vunit", "v unit", "unit", "units", "vert units", "vertical units", "unitname", "channel units")
+_REMARKS = ("comment", "comments", "remark", "remarks")
+_TOA5, _TOA5_ROWS = ("TOA5", "TOB1"), 4
+
+
+def titles_and_units(lines: Sequence[str], table: Table) -> tuple[list[str], list[str]]:
+    """Return the titles above a table, one a column, and their units where those stand in a row of their own.
+
+    Both are empty where there are none.
+    """
+    above = [line for line in lines[: table.first] if line.strip()]
+    if above and split_row(above[0].lstrip("\ufeff"), table.delimiter)[0] in _TOA5 and len(above) >= _TOA5_ROWS:
+        return _padded(_fields(above[1], table), table), [
+            _unit(field) for field in _padded(_fields(above[2], table), table)
+        ]
+    named = _named_rows(above, table)
+    if named is not None:
+        return named
+    rows = []
+    for line in reversed(above[-_HIGHEST:]):
+        fields = _as_wide(_fields(line, table), table)
+        if fields is None:
+            break
+        rows.append(fields)
+    if not rows:
+        return [_fields(above[-1], table), []] if above else [[], []]  # type: ignore[return-value]
+    place = _place_of_titles(rows)
+    units = rows[place - 1] if place > 0 and _are_units(rows[place - 1], rows[place]) else []
+    return rows[place], [_unit(field) for field in units]
+
+
+def _named_rows(above: Sequence[str], table: Table) -> tuple[list[str], list[str]] | None:
+    """Return titles and units where lines of the head say what they are, as "TraceName","CH1","CH2" does."""
+    rows: dict[str, list[str]] = {}
+    for line in above:
+        key, *fields = _fields(line, table) or [""]
+        word, _, first = key.partition("=")
+        fields = [one for one in ([first] if first else []) + fields if one]
+        rows.setdefault(" ".join(word.lower().replace("_", " ").split()), fields)
+    names = next((rows[key] for key in _NAMES if len(rows.get(key, [])) >= table.width - 1 > 0), None)
+    if names is None or len(names) > table.width:
+        return None
+    units = next((rows[key] for key in _UNIT_ROWS if len(rows.get(key, [])) == len(names)), [""] * len(names))
+    if len(names) < table.width:
+        names, units = ["time", *names], ["s", *units]
+    if is_time_title(names[0]):
+        units = [units[0].lower(), *units[1:]]
+    return names, [_unit(unit) for unit in units]
+
+
+def _place_of_titles(rows: Sequence[Sequence[str]]) -> int:
+    """Return which of the rows above the numbers, the lowest first, holds the titles."""
+    timed = next(
+        (place for place, row in enumerate(rows) if any(map(is_time_title, row)) or begins_as_time(row[0])), None
+    )
+    if timed is not None and (timed > 0 or len(rows) == 1 or not _are_units(rows[0], rows[1])):
+        return timed
+    return 1 if len(rows) > 1 and _are_units(rows[0], rows[1]) else 0
+
+
+def _are_units(row: Sequence[str], above: Sequence[str]) -> bool:
+    """Return whether a row below titles holds their units."""
+    time = next((column for column, title in enumerate(above) if is_time_title(title)), 0)
+    if time >= len(row) or any(
+        is_number(field) and len(field) > 1 and not above[place].strip() for place, field in enumerate(row)
+    ):
+        return False
+    bracketed = [field for field in row if field[:1] in "[(" and field[-1:] in "])"]
+    words = [field for place, field in enumerate(row) if field and place != time and not is_number(field)]
+    known = [field for field in words if field in bracketed or is_unit(field)]
+    of_time = row[time].strip("[]() ")
+    may_be_time = (
+        seconds_in(of_time) is not None or of_time in ("", "-") or _TIME_FORMATS.fullmatch(of_time) is not None
+    )
+    if seconds_in(of_time) is not None and not is_time_title(row[time]):
+        return True
+    return (may_be_time or bool(known)) and 2 * len(known) >= len(words) > 0
+
+
+def is_unit(text: str) -> bool:
+    """Return whether a word is a unit."""
+    plain = text.strip("[]() ")
+    return plain_unit(plain) != plain or plain in _UNITS or plain in _LETTER_UNITS
+
+
+def _unit(field: str) -> str:
+    plain = field.strip("[]() ")
+    return "" if plain == "-" else plain_unit(plain)
+
+
+def _fields(line: str, table: Table) -> list[str]:
+    """Return the titles of a line; with white space between columns those that are as many as the columns."""
+    line = line.lstrip("\ufeff").lstrip("#%")
+    if table.delimiter != WHITE_SPACE or '"' in line:
+        return [csv_cell_text(field) for field in split_row(line, table.delimiter)]
+    spaced = [title.strip() for title in _SPACED_TITLE.findall(line)]
+    far_apart = re.split(r"\s{2,}", line.strip())
+    return far_apart if len(spaced) != table.width == len(far_apart) else spaced
+
+
+def _as_wide(fields: list[str], table: Table) -> list[str] | None:
+    """Return fields as many as columns, where they differ by separators at the end, remarks, or a count of the rows."""
+    width = table.width
+    while len(fields) > width and (not fields[-1] or is_fact(fields[-1])):
+        fields = fields[:-1]
+    if len(fields) == width + 1 and fields[-1].lower() in _REMARKS:
+        fields = fields[:-1]
+    if len(fields) < width and not set(table.kinds[len(fields) :]) - {"g"} and len(fields) > 1:
+        fields = _padded(fields, table)
+    if len(fields) == width - 1 and counts_rows([row[0] for row in table.rows]):
+        fields = ["", *fields]
+    return fields if len(fields) == width else None
+
+
+def _padded(fields: list[str], table: Table) -> list[str]:
+    return (fields + [""] * table.width)[: table.width]
+
+
+def counts_rows(fields: Sequence[str]) -> bool:
+    """Return whether fields are whole numbers that step by one from 0 or 1 on."""
+    numbers = [int(field) if field.isdecimal() else -1 for field in fields]
+    return len(numbers) > 1 and numbers[0] in (0, 1) and numbers == list(range(numbers[0], numbers[0] + len(numbers)))
+
+
+def name_and_unit(title: str) -> tuple[str, str]:
+    """Return the name and the unit of a title that may hold both."""
+    text = printable(title).strip()
+    match = _IN_BRACKETS.fullmatch(text)
+    if match is not None:
+        inside = match["unit"].strip()
+        return match["name"].strip(), "" if _OF_A_VARIABLE.fullmatch(inside) else plain_unit(inside)
+    behind = _BEHIND_A_WORD.fullmatch(text)
+    if behind is not None and behind["unit"].strip() not in _LETTER_UNITS and is_unit(behind["unit"]):
+        return behind["name"].strip(), plain_unit(behind["unit"])
+    return text, ""
+
+
+def told_apart(names: Sequence[str]) -> list[str]:
+    """Return names of which each stands once; those that come again get a number."""
+    unique: list[str] = []
+    for name in names:
+        number, candidate = 2, name
+        while candidate and candidate in unique:
+            candidate = f"{name} ({number})"
+            number += 1
+        unique.append(candidate)
+    return unique
