@@ -158,9 +158,10 @@ def test_a_channel_without_numbers_is_no_sensor(run, tmp_path):
     path = tmp_path / "foreign.nc"
     seconds = np.arange(1000) / 50.0
     with RecordingWriter(path) as writer:
-        for name, values in (("Trim", np.full(1000, np.nan)), ("Rack", 40.0 + np.sin(seconds))):
+        channels = {"Load": np.full(1000, np.nan), "Trim tabs": np.sin(seconds), "Rack": 40.0 + np.sin(seconds)}
+        for name, values in channels.items():
             writer.declare(name, unit="%", rate_hz=50.0, dtype="float64")
             writer.append(name, values)
     result = run("inspect", path)
     assert _map(result)["sensors"] == {"rack": {"channel": "Rack", "unit": "%", "cycle_s": 0.02}}
-    assert "# 'Trim': it holds no numbers" in result.output
+    assert "# 'Load': it holds no numbers" in result.output

@@ -1,9 +1,12 @@
 """Logs of a CAN bus as python-can writes them: the same values and times from each, and the date where it is stated."""
 
+import gzip
 import logging
+import struct
 import sys
 import threading
 import warnings
+import zlib
 from datetime import datetime
 
 import can
@@ -14,6 +17,7 @@ from tests.can_frames import DBC, EEC1, EEC2, eec1, eec2, raw_log
 from shaftprint.errors import RecordingError
 from shaftprint.recording import read_recording
 from shaftprint.recording.readers._library_output import quiet
+from shaftprint.recording.readers.can._blf import open_blf
 
 BEGAN_S = 1_780_308_000.25
 TIMES = 0.02 * np.arange(400) + 0.001 * np.sin(np.arange(400.0))
@@ -120,6 +124,21 @@ def test_names_of_buses_are_those_of_the_log(tmp_path, dbc):
         assert recording.left_out["rows at the cut end of the file"] == "1, which hold no values."
 
 
+@pytest.mark.parametrize(
+    "row", ["({t:.6f})  can0  0CF00400   [8]  {spaced}", "({t:.6f}) can0  RX - -  0CF00400   [8]  {spaced}"]
+)
+def test_what_candump_shows_is_read_as_what_it_logs(tmp_path, dbc, row):
+    rows = [row.format(t=BEGAN_S + t, spaced=c.tobytes().hex(" ").upper()) for t, c in zip(TIMES, CONTENT, strict=True)]
+    with gzip.open(tmp_path / "log.txt.gz", "wt") as file:
+        file.write("\n".join(rows) + "\n")
+    with read_recording(tmp_path / "log.txt.gz", dbc=dbc) as recording:
+        assert values(recording, "ActualEnginePercentTorque") == pytest.approx(TORQUE)
+        assert recording.channel("EngineSpeed").stamps_s(0, 400) == pytest.approx(TIMES - TIMES[0], abs=1e-6)
+    (tmp_path / "log.txt").write_text("\n".join(one.partition(")")[2] for one in rows), encoding="utf-8")
+    with pytest.raises(RecordingError, match="expected times in front of the frames"):
+        read_recording(tmp_path / "log.txt", dbc=dbc)
+
+
 ASC_ROW = "   {time:.6f} 1  CF00400x       Rx   d 8 {bytes}\n"
 
 
@@ -169,6 +188,63 @@ def test_long_frames_and_other_objects_of_a_blf_file(tmp_path):
         assert values(recording, "First") == pytest.approx(0.5 * np.arange(400) - 10.0)
         assert values(recording, "Last") == pytest.approx(0.001 * torque, abs=1e-9)
         assert recording.left_out["objects of other kinds"] == "4, which hold no values."
+
+
+def blf_object(kind, body, ticks, *, version=1, unit=2):
+    """An object of Vector's programs: head, times, body, filled up as they do."""
+    head = struct.pack("<LHHQ", unit, 0, 0, ticks) if version == 1 else struct.pack("<LBxHQ8x", unit, 0, 0, ticks)
+    size = 16 + len(head) + len(body)
+    return struct.pack("<4sHHLL", b"LOBJ", 16 + len(head), version, size, kind) + head + body + bytes(size % 4)
+
+
+def random_object(rng, number):
+    """Frames of each kind that a BLF file has, and what is none, with what python-can reads of it."""
+    kind, channel, identifier = int(rng.choice([1, 86, 100, 101, 73, 6])), int(rng.integers(1, 4)), 0x123
+    length = int(rng.integers(0, 9 if kind in (1, 86) else 65))
+    content, remote = rng.bytes(length), int(rng.random() < 0.1)
+    if kind in (1, 86):
+        body = struct.pack("<HBBL8s", channel, 0x80 * remote, length, identifier, content)
+        body += rng.bytes(int(rng.integers(0, 7))) if kind == 86 else b""
+    elif kind == 100:
+        body = struct.pack(
+            "<HBBLLBBB5x64s", channel, 0x80 * remote, 9, identifier, 0, 0, 1, length, content.ljust(64, b"\0")
+        )
+    elif kind == 101:
+        flags = 0x1000 | 0x10 * remote
+        body = struct.pack("<BBBBLLLLLLLHBBL", channel, 9, length, 0, identifier, 0, flags, 0, 0, 0, 0, 0, 0, 0, 0)
+        body += content
+    elif kind == 73:
+        body = struct.pack("<HHLBBBxLLH2x8s", channel, 0, 0, 0, 0, 8, 0, 1, 0, bytes(8))
+    else:
+        body = rng.bytes(int(rng.integers(5, 40)))
+    unit = int(rng.integers(1, 3))
+    ticks = number * (1000 if unit == 1 else 10_000_000)
+    return blf_object(kind, body, ticks, version=int(rng.integers(1, 3)), unit=unit)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_objects_of_all_kinds_are_read_as_another_library_reads_them(tmp_path, seed):
+    rng = np.random.default_rng(seed)
+    data = b"".join(random_object(rng, number) for number in range(600))
+    header = struct.pack("<4sLBBBBBBBBQQLL8H8H", b"LOGG", 144, *[0] * 12, *[2026, 6, 1, 1, 10, 0, 0, 250], *[0] * 8)
+    with (tmp_path / "log.blf").open("wb") as file:
+        file.write(header.ljust(144, b"\0"))
+        while data:
+            part, data = data[:3000], data[3000:]
+            packed = zlib.compress(part)
+            size = 32 + len(packed)
+            file.write(struct.pack("<4sHHLL", b"LOBJ", 16, 1, size, 10) + struct.pack("<H6xL4x", 2, len(part)))
+            file.write(packed + bytes(size % 4))
+    frames = [one for one in can.BLFReader(tmp_path / "log.blf") if not one.is_error_frame and not one.is_remote_frame]
+    with (tmp_path / "log.blf").open("rb") as file:
+        blocks = list(open_blf(tmp_path / "log.blf", file).blocks)
+    length = np.concatenate([block.length for block in blocks])
+    content = [row.tobytes() for block in blocks for row in block.content]
+    assert [row[:size] for row, size in zip(content, length, strict=True)] == [bytes(one.data) for one in frames]
+    assert all(set(row[size:]) <= {0xFF} for row, size in zip(content, length, strict=True))
+    assert np.concatenate([block.bus for block in blocks]).tolist() == [one.channel + 1 for one in frames]
+    times = np.concatenate([block.time_s for block in blocks])
+    assert times == pytest.approx([one.timestamp - 1_780_308_000.25 for one in frames], abs=1e-6)
 
 
 def test_a_blf_file_that_is_cut_is_read_to_there(tmp_path, dbc):

@@ -2,6 +2,7 @@
 
 import can
 import canmatrix
+import canmatrix.formats
 import numpy as np
 import pytest
 
@@ -197,6 +198,38 @@ def test_multiplexed_signals_come_with_their_own_messages(tmp_path):
         assert b.time_s(0, b.count) == pytest.approx(TIMES[1::3], abs=1e-6)
 
 
+def test_a_multiplexer_that_cannot_be_read_loses_its_signals(tmp_path):
+    """Read from all messages they would be right in one of three."""
+    rows = [bytes([k % 3, k % 7, k % 250, 0, 0, 0, 0, 0]) for k in range(COUNT)]
+    text = (
+        'BO_ 291 M: 8 X\n SG_ Which m : 0|8@1+ (1,0) [0|3] "" X\n SG_ A m0 : 8|8@1+ (1,0) [0|0] "V" X\n'
+        ' SG_ Always : 16|8@1+ (1,0) [0|0] "V" X\n'
+    )
+    path, dbc = log_of(tmp_path, (0x123, rows), text=text)
+    with read_recording(path, dbc=dbc) as recording:
+        assert set(recording.channels) == {"Always"}
+        assert recording.left_out["line 4 of ship.dbc"] == "Which m cannot be read."
+        assert recording.left_out["M.A"].startswith("expected a multiplexer")
+
+
+def test_a_multiplexer_within_another(tmp_path):
+    rows = [bytes([k % 2, k % 3, k % 250, 0, 0, 0, 0, 0]) for k in range(6 * 200)]
+    text = (
+        'BO_ 291 M: 8 X\n SG_ Outer M : 0|8@1+ (1,0) [0|3] "" X\n SG_ Inner m1M : 8|8@1+ (1,0) [0|3] "" X\n'
+        ' SG_ Deep m2 : 16|8@1+ (1,0) [0|0] "V" X\n'
+        "SG_MUL_VAL_ 291 Inner Outer 1-1;\nSG_MUL_VAL_ 291 Deep Inner 2-2;\n"
+    )
+    with can.Logger(tmp_path / "log.blf") as logger:
+        for k, row in enumerate(rows):
+            frame = can.Message(timestamp=1.78e9 + 0.1 * k, arbitration_id=291, is_extended_id=False, data=row)
+            logger.on_message_received(frame)
+    (tmp_path / "ship.dbc").write_text(f'VERSION ""\nBU_: X\n{text}', encoding="utf-8")
+    with read_recording(tmp_path / "log.blf", dbc=tmp_path / "ship.dbc") as recording:
+        k = np.arange(1200)
+        assert values(recording, "Deep").tolist() == (k[(k % 2 == 1) & (k % 3 == 2)] % 250).tolist()
+        assert values(recording, "Inner").tolist() == (k[k % 2 == 1] % 3).tolist()
+
+
 RAPID = 0x09F20003
 
 
@@ -287,3 +320,24 @@ def test_rudder_and_gearbox_of_nmea_2000(tmp_path):
         assert set(values(recording, "Transmission oil pressure")) == {1e6}
         assert set(values(recording, "Transmission gear")) == {1.0}
         assert np.isnan(values(recording, "Rudder angle order")).all()
+
+
+def test_a_signed_field_that_nobody_fills_in_holds_no_values(tmp_path):
+    """All bits set in every message are no trim of -1 %."""
+    rows = [bytes([0, 0x70, 0x17, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF])] * COUNT
+    path, _ = log_of(tmp_path, (RAPID, rows))
+    with read_recording(path) as recording:
+        assert np.isnan(values(recording, "Tilt or trim")).all()
+        assert set(values(recording, "Engine speed")) == {1500.0}
+
+
+def test_an_arxml_file_says_the_same(tmp_path):
+    text = SPEED.format(number=0x0CF00400 | 1 << 31, range="0|8031.875")
+    path, dbc = log_of(tmp_path, (0x0CF00400, speed_rows(MARKED)), text=text)
+    matrix = canmatrix.formats.loads_flat(dbc.read_bytes(), "dbc")
+    with (tmp_path / "ship.arxml").open("wb") as file:
+        canmatrix.formats.dump({"bus": matrix}, file, "arxml")
+    with read_recording(path, dbc=tmp_path / "ship.arxml") as recording:
+        speed = values(recording, "Speed")
+        assert np.flatnonzero(np.isnan(speed)).tolist() == [10, 20, 30]
+        assert np.delete(speed, [10, 20, 30]) == pytest.approx(0.125 * np.delete(MARKED, [10, 20, 30]))

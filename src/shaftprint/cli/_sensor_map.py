@@ -14,6 +14,7 @@ Use: TypeAlias = Literal["speed", "instrument", "encoder", "shaft_torque", "set_
 _SET_POINT = re.compile(r"set[ _-]*p|setpoint|demand|lever|throttle|soll|u_set|command", re.IGNORECASE)
 _TORQUE = re.compile(r"torque|m_s\b|\bms\b|koppel|drehmoment|strain", re.IGNORECASE)
 _PULSES = re.compile(r"ptm|pulse|tacho|pick|rpm|speed|\bn_?e", re.IGNORECASE)
+_NO_RACK = re.compile(r"trim|tilt|slip", re.IGNORECASE)
 _ENCODER = re.compile(r"enc|crank|shaft|counter|turn", re.IGNORECASE)
 _ENGINE = re.compile(r"eng|motor|_e\b|crank|flywheel", re.IGNORECASE)
 
@@ -22,7 +23,8 @@ _ENGINE = re.compile(r"eng|motor|_e\b|crank|flywheel", re.IGNORECASE)
 _SPN = re.compile(r"SPN (\d+)")
 _LOAD_NUMBER, _FUEL_NUMBER = 92, 183
 _RACK_NUMBERS = (2432, 513, 512, _LOAD_NUMBER, _FUEL_NUMBER)
-_SPEED_NUMBER, _PEDAL_NUMBER, _DEMAND_NUMBER = 190, 91, 515
+# speeds of the engine, and of the shaft behind the gearbox
+_SPEED_NUMBERS, _PEDAL_NUMBER, _DEMAND_NUMBER = (190, 191), 91, 515
 _OF_RACK = {
     _LOAD_NUMBER: 'shows = "load"',
     _FUEL_NUMBER: "# rated_l_h =                    # fuel rate at rated power and speed, from the data sheet [L/h]",
@@ -163,7 +165,7 @@ def _uses_by_number(seen: Sequence[Seen]) -> dict[str, Use | None]:
     is_asked = any(_use(item) == "set_point" for item in others)
     uses: dict[str, Use | None] = {name: None for name, number in numbers.items() if number is not None}
     for name, number in numbers.items():
-        if number == _SPEED_NUMBER:
+        if number in _SPEED_NUMBERS:
             uses[name] = "instrument"
         elif number == _DEMAND_NUMBER:
             uses[name] = "demand"
@@ -188,7 +190,7 @@ def _use(item: Seen) -> Use | None:
     """Return what a channel is most likely used for: unit and name first, then its shape."""
     name, unit = item.channel.name, item.channel.unit
     if unit == "%" and item.channel.rate_hz <= 100.0:
-        return "rack"
+        return None if _NO_RACK.search(name) else "rack"
     if unit in ("kn", "m/s"):
         return "ship_speed"
     if _SET_POINT.search(name) and unit in _SET_POINTS and (unit != "%" or item.channel.rate_hz > 100.0):

@@ -13,6 +13,7 @@ from shaftprint.recording.readers.can import EXTENDED, FILL, FrameLog, Frames
 _BUS_EVENT = 2
 _DATA, _OTHERS = "CAN_DataFrame", {"CAN_ErrorFrame": "error frames", "CAN_RemoteFrame": "remote frames"}
 _BLOCK_FRAMES = 1 << 18
+_MOST_BUSES = 0xFF
 _MARK_BIT, _IDENTIFIER_BITS = 31, (1 << 29) - 1
 
 
@@ -65,6 +66,9 @@ def _block(file: Any, records: MdfRecords, group: int, places: dict[str, int], s
     times = file.get_master(group, record_offset=start, record_count=stop - start)
     identifier, is_long, bus = numbers("ID"), numbers("IDE"), numbers("BusChannel")
     content, length = field("DataBytes"), numbers("DataLength")
+    if content is not None and content.dtype.kind == "S":
+        # bytes of their own length, filled up with zeros
+        content = np.frombuffer(content.tobytes(), dtype=np.uint8).reshape(len(content), content.dtype.itemsize)
     if identifier is None or content is None or content.ndim != 2:
         raise ValueError("frames without identifiers or bytes")
     if is_long is None:
@@ -80,7 +84,7 @@ def _block(file: Any, records: MdfRecords, group: int, places: dict[str, int], s
     whole[np.arange(width) >= length[:, None]] = FILL
     return Frames(
         time_s=np.asarray(times, dtype=np.float64),
-        bus=np.zeros(len(identifier), dtype=np.int64) if bus is None else bus,
+        bus=np.zeros(len(identifier), dtype=np.int64) if bus is None else bus & _MOST_BUSES,
         identifier=(identifier & _IDENTIFIER_BITS) | np.where(is_long != 0, int(EXTENDED), 0),
         length=length,
         content=whole,

@@ -6,6 +6,7 @@ from functools import partial
 from pathlib import Path
 
 from shaftprint.errors import RecordingError
+from shaftprint.escape import printable
 from shaftprint.recording._channel import Channel
 from shaftprint.recording._spool import Spool
 from shaftprint.recording.readers._clock import SampleClock, clock_of_times, on_clock
@@ -122,10 +123,18 @@ def _long_name(signal: Signal) -> str:
 
 def _left_out(streams: Streams, places: list[tuple[Stream, Signal]], names: tuple[str, ...]) -> dict[str, str]:
     left_out = dict(streams.database.left_out)
+    empty = []
     for (stream, signal), name in zip(places, names, strict=True):
-        counted = stream.tallies[signal].counted()
-        if counted:
+        tally = stream.tallies[signal]
+        if tally.is_empty:
+            empty.append(name)
+        elif counted := tally.counted():
             left_out[f"values of {name}"] = counted
+    if empty:
+        more = f" and {len(empty) - _MOST_LISTED} more" if len(empty) > _MOST_LISTED else ""
+        left_out[f"values of {len(empty)} channels"] = (
+            f"in no message there is one: {', '.join(map(printable, empty[:_MOST_LISTED]))}{more}."
+        )
     for origin, number in streams.packets.lost.items():
         left_out[f"packets of {getattr(origin, 'label', '')}"] = f"{number} are not whole."
     listed = sorted(streams.unknown.items(), key=lambda item: -item[1])

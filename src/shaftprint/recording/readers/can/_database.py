@@ -18,7 +18,7 @@ from shaftprint.recording.readers.can._messages import Message, Selection, Signa
 
 # what the library prints where it leaves a line out
 _LINE = re.compile(r"error with line no: (\d+)")
-_INSTANCE = re.compile(r"(?:^|[^a-z])instance$|[a-z]Instance$", re.IGNORECASE)
+_INSTANCE = re.compile(r"instance(?:[ _]?(?:no|nr|number|id))?$", re.IGNORECASE)
 # the address of nobody, under which DBC files state a message of any sender
 _NO_SENDER = 0xFE
 _FRAME_BYTES = 8
@@ -70,8 +70,9 @@ def read_database(path: Path) -> Database:
         If it is missing, no such file, or empty.
     """
     kind = "ARXML" if path.suffix.lower() == ".arxml" else "DBC"
+    kind_in_words = "an ARXML" if kind == "ARXML" else "a DBC"
     if not path.is_file():
-        raise RecordingError(f"{path}: expected a {kind} file, found none there.")
+        raise RecordingError(f"{path}: expected {kind_in_words} file, found none there.")
     canmatrix = library(path, "canmatrix", kind)
     library(path, "canmatrix.formats", kind)
     try:
@@ -85,7 +86,10 @@ def read_database(path: Path) -> Database:
             messages = tuple(message for matrix in buses for message in _messages(matrix, is_dbc=kind == "DBC"))
     except Exception as error:
         reason = printable(" ".join(str(error).split())[:200]) or type(error).__name__
-        raise RecordingError(f"{path}: expected a {kind} file, found one that cannot be read ({reason}).") from None
+        raise RecordingError(
+            f"{path}: expected {kind_in_words} file, found one that cannot be read ({reason})"
+            f"{'; export it as DBC' if kind == 'ARXML' else ''}."
+        ) from None
     signals_of = {
         (message.identifier | (int(EXTENDED) if message.is_extended else 0), signal.name)
         for message in messages
@@ -96,13 +100,16 @@ def read_database(path: Path) -> Database:
     for message in messages:
         signals = tuple(signal for signal in message.signals if signal.can_be_read)
         for signal in set(message.signals) ^ set(signals):
-            unusable[f"{message.name}.{signal.name}"] = "expected at most 64 bits of a number, found other."
+            unusable[f"{message.name}.{signal.name}"] = (
+                "expected a multiplexer that says which messages hold it, found none that can be read."
+                if any(not one.bits for one in signal.where)
+                else "expected a number of at most 64 bits, found other bits."
+            )
         usable.append(replace(message, signals=signals))
     if not any(message.signals for message in usable):
         lost = "; ".join(f"{name}: {reason.removesuffix('.')}" for name, reason in list(unusable.items())[:3])
-        raise RecordingError(
-            f"{path}: expected a {kind} file with messages and signals, found none in it{f' ({lost})' if lost else ''}."
-        )
+        found = f"none in it ({lost})" if lost else "none in it"
+        raise RecordingError(f"{path}: expected {kind_in_words} file with messages and signals, found {found}.")
     return Database(name=path.name, messages=tuple(usable), left_out=unusable)
 
 
@@ -158,7 +165,11 @@ def _selections(frame: Any, signal: Any) -> Iterator[Selection]:
     seen: set[str] = set()
     while True:
         muxer, ranges = _multiplexer(frame, signal)
+        if not ranges:
+            return
         if muxer is None or muxer.name in seen:
+            # a multiplexer that the file does not have: in which messages the signal is cannot be told
+            yield Selection(start=0, bits=0)
             return
         seen.add(muxer.name)
         yield Selection(

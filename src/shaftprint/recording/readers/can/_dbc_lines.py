@@ -10,6 +10,8 @@ _MESSAGE = re.compile(rb"\s*BO_ +(\d+) +(\S+?) *: *(\d+) +\S+")
 _SIGNAL = re.compile(rb"\s*SG_\s+([^:]+?)\s*:")
 _OF_SIGNAL = re.compile(rb"\s*(?:BA_|CM_|VAL_|SIG_VALTYPE_|SG_MUL_VAL_)\D*?\b(\d+)\s+(\w+)")
 _OF_OTHERS = re.compile(rb"\s*(?:BA_|CM_|VAL_|SIG_VALTYPE_|SG_MUL_VAL_|BO_TX_BU_|SIG_GROUP_|EV_)")
+# where CANdb++ keeps signals of no message
+_NO_MESSAGE = b"VECTOR__INDEPENDENT_SIG_MSG"
 _SHORT_BITS, _MARK = 11, 1 << 31
 
 
@@ -35,6 +37,8 @@ def whole_messages(name: str, content: bytes) -> tuple[bytes, dict[str, str]]:
             is_lost = message is None or 1 << _SHORT_BITS <= int(message[1]) < _MARK or int(message[1]) >= 2 * _MARK
             if message is None:
                 left_out[f"line {place + 1} of {name}"] = "the message cannot be read."
+            elif message[2] == _NO_MESSAGE:
+                is_lost = True
             elif is_lost:
                 number = int(message[1])
                 left_out[printable(message[2].decode("latin-1"))] = (

@@ -1,8 +1,12 @@
 """Logs of a CAN bus that hold frames only: BLF, ASC, TRC and candump."""
 
 import contextlib
+import gzip
+import io
+import zlib
 from collections.abc import Mapping
 from pathlib import Path
+from typing import BinaryIO, cast
 
 from shaftprint.errors import RecordingError
 from shaftprint.recording._recording import Recording
@@ -20,12 +24,12 @@ from shaftprint.recording.readers.can._text_logs import kind_of, open_text_log
 NAME = "CAN log"
 
 _FIRST_BYTES = 4096
+_GZIP = b"\x1f\x8b"
 
 
 def is_mine(path: Path) -> bool:
     """Return whether the file begins as one of these logs."""
-    with path.open("rb") as file:
-        begin = file.read(_FIRST_BYTES)
+    begin = _begin(path)
     return begin.startswith(SIGNATURE) or bool(kind_of(path, _text(begin)))
 
 
@@ -98,14 +102,28 @@ def add_signals(gathered: Gathered, taken: Decoded, names: list[str]) -> None:
 
 
 def _open(path: Path, stack: contextlib.ExitStack) -> FrameLog:
-    binary = stack.enter_context(path.open("rb"))
-    begin = binary.read(_FIRST_BYTES)
-    binary.seek(0)
+    begin = _begin(path)
+    binary = stack.enter_context(_binary(path))
     if begin.startswith(SIGNATURE):
         return open_blf(path, binary)
     package = library(path, "can", NAME)
-    text = stack.enter_context(path.open(encoding="utf-8", errors="replace"))
+    text = stack.enter_context(io.TextIOWrapper(binary, encoding="utf-8-sig", errors="replace"))
     return open_text_log(path, kind_of(path, _text(begin)), text, package)
+
+
+def _binary(path: Path) -> BinaryIO:
+    with path.open("rb") as file:
+        packed = file.read(len(_GZIP)) == _GZIP
+    return cast("BinaryIO", gzip.open(path, "rb")) if packed else path.open("rb")
+
+
+def _begin(path: Path) -> bytes:
+    """Return the first bytes, unpacked; none where they are too damaged for it."""
+    try:
+        with _binary(path) as file:
+            return file.read(_FIRST_BYTES)
+    except (EOFError, zlib.error, gzip.BadGzipFile):
+        return b""
 
 
 def _text(begin: bytes) -> str:

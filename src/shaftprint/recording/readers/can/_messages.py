@@ -17,7 +17,7 @@ class Selection:
     start: int
     """First bit of the multiplexer."""
     bits: int
-    """Its length."""
+    """Its length; 0 where nobody knows which signal it is."""
     is_big_endian: bool = False
     """Whether its first byte is the highest."""
     ranges: tuple[tuple[int, int], ...] = ()
@@ -68,9 +68,9 @@ class Signal:
 
     @property
     def can_be_read(self) -> bool:
-        """Whether it is a number that is not longer than a word."""
+        """Whether it is a number that is not longer than a word, in messages that can be told."""
         floats = (32, 64) if self.is_float else range(1, _WORD + 1)
-        return self.start >= 0 and self.bits in floats
+        return self.start >= 0 and self.bits in floats and all(one.bits for one in self.where)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

@@ -12,7 +12,7 @@ from shaftprint.errors import RecordingError
 from shaftprint.recording.readers.can._frames import EXTENDED, FILL, FrameLog, Frames
 
 _BLOCK_FRAMES = 1 << 16
-_LONG = 64
+_CLASSIC, _LONG = 8, 64
 
 _MONTHS = {
     name: number
@@ -35,6 +35,11 @@ _ASC_START = re.compile(r"\s+start of measurement", re.IGNORECASE)
 _TRC_VERSION = re.compile(r";\$FILEVERSION\s*=\s*(?P<version>\S+)", re.IGNORECASE)
 _TRC_VERSIONS = ("1.0", "1.1", "1.3", "2.0", "2.1")
 _CANDUMP = re.compile(r"\(\d+\.\d+\)\s+\S+\s+[0-9A-Fa-f]+#")
+# what candump shows on a terminal, with or without times: (1780308000.25)  can0  0CF00400   [8]  F0 A5 9B
+_SHOWN = re.compile(
+    r"\s*(?:\((?P<time>\d+\.\d+)\)\s+)?(?P<bus>[a-z]\w*)\s+(?:[TR]X\s+\S+\s+\S+\s+|[TR]X\s+)?(?P<id>[0-9A-F]{3,8})\s+"
+    r"\[(?P<length>\d+)\]\s+(?P<rest>(?:[0-9A-F]{2}\s*)+|remote request)"
+)
 _FIRST_LINES = 12
 
 
@@ -43,7 +48,7 @@ def kind_of(path: Path, begin: str) -> str:
     lines = [line for line in begin.splitlines() if line.strip()][:_FIRST_LINES]
     if not lines:
         return ""
-    if _CANDUMP.match(lines[0]):
+    if _CANDUMP.match(lines[0]) or _SHOWN.match(lines[0]):
         return "candump"
     if any(_TRC_VERSION.match(line) for line in lines) or (path.suffix.lower() == ".trc" and lines[0][0] == ";"):
         return "TRC"
@@ -72,7 +77,7 @@ def open_text_log(path: Path, kind: str, file: TextIO, library: Any) -> FrameLog
         If its times cannot be told, or nothing in it can be read.
     """
     log = FrameLog(blocks=iter(()), kind=kind)
-    lines = _AscLines(path, file) if kind == "ASC" else _Lines(file)
+    lines = {"ASC": _AscLines, "candump": _CandumpLines}.get(kind, _Lines)(path, file)
     reader = {"ASC": library.ASCReader, "TRC": library.TRCReader, "candump": library.CanutilsLogReader}[kind](lines)
     if kind == "TRC":
         _expect_version(path, file)
@@ -117,7 +122,8 @@ class _Names(dict[int, str]):
 class _Lines:
     """Lines of a file for a library that goes through them, and whether the last one has been given."""
 
-    def __init__(self, file: TextIO) -> None:
+    def __init__(self, path: Path, file: TextIO) -> None:
+        self._path = path
         self._file = file
         self._next: str | None = None
         self.rows = 0
@@ -145,6 +151,22 @@ class _Lines:
         """Leave the file to who has opened it."""
 
 
+class _CandumpLines(_Lines):
+    """Lines of candump, those that it shows on a terminal as those that it logs."""
+
+    def changed(self, line: str) -> str:
+        shown = _SHOWN.match(line)
+        if shown is None:
+            return line
+        if shown["time"] is None:
+            raise RecordingError(
+                f"{self._path}: expected times in front of the frames, found none; log with candump -L, or -t a."
+            )
+        rest = "R" if shown["rest"].startswith("r") else "".join(shown["rest"].split())
+        mark = "##0" if int(shown["length"]) > _CLASSIC else "#"
+        return f"({shown['time']}) {shown['bus']} {shown['id']}{mark}{rest}\n"
+
+
 class _AscLines(_Lines):
     """Lines of an ASC file, with times from the beginning of the measurement on.
 
@@ -154,8 +176,7 @@ class _AscLines(_Lines):
     """
 
     def __init__(self, path: Path, file: TextIO) -> None:
-        super().__init__(file)
-        self._path = path
+        super().__init__(path, file)
         self._header: datetime | None = None
         self._trigger: datetime | None = None
         self._is_new_block = False

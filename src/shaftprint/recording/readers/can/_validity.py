@@ -173,6 +173,12 @@ class Tally:
         return sum(count for reason, count in self._counts.items() if reason.startswith("outside"))
 
     @property
+    def is_empty(self) -> bool:
+        """Whether none of the counts is a value, for whatever reason but the range alone."""
+        none = self.invalid + self.short + sum(self._ends[code] for code in self.apart)
+        return none == self.total and not self.outside
+
+    @property
     def none_otherwise(self) -> int:
         """Values that are none for another reason."""
         return self.invalid - self.outside + self.short
@@ -187,6 +193,9 @@ class Tally:
     @property
     def apart(self) -> tuple[int, ...]:
         """Counts that stand apart from all others."""
+        if not self._levels and self._ends.get(-1) and not self._ends[(1 << self._bits) - 1]:
+            # a field that is never filled in, by a sender that knows no sign
+            return (-1,)
         if len(self._levels) < _FEWEST_LEVELS:
             return ()
         end = (1 << self._bits) - 1
