@@ -248,3 +248,24 @@ def test_jumps_of_the_clock_and_what_is_taken_for_granted_are_said(run, tmp_path
     assert "left out the jumps of the clock of M_s: only the native container" in result.output
     assert "left out the date of second 0: 2026-11-18 11:06:40+00:00" in result.output
     assert "taken for milliseconds since 1970" in result.output
+
+
+def test_a_pick_up_alone_shows_its_speed_from_edges_at_any_rate(run, tmp_path):
+    vessel = (files("shaftprint") / "vessel" / "shipped" / "stan_tug_1205.toml").read_text(encoding="utf-8")
+    head, _, rest = vessel.partition("[[sensors.speed]]")
+    wheel = '[[sensors.speed]]\nname = "n"\nchannel = "Channel 0"\nshaft = "engine"\nunit = "V"\nwheel = "12+1"\n'
+    (tmp_path / "mine.toml").write_text(head + wheel + rest[rest.index("\n[sensors.") :], encoding="utf-8")
+    # twelve teeth and one between two of them, 60 turns of a starter at 188 rpm; the engine will run at 1183 rpm
+    turn_s = 60.0 / 188.0
+    teeth = np.sort(np.append(np.arange(12) / 12.0, 0.5 / 12.0))
+    rising = ((np.arange(60)[:, None] + teeth).ravel() * turn_s + 0.1).tolist()
+    rows = [f"{time:.7f},1\n{time + 0.01 * turn_s:.7f},0\n" for time in rising]
+    (tmp_path / "edges.csv").write_text("Time [s],Channel 0\n0.0,0\n" + "".join(rows))
+    result = run("inspect", tmp_path / "edges.csv", "--vessel", tmp_path / "mine.toml")
+    assert result.exit_code == 0, result.output
+    assert "188.00" in next(line for line in result.output.splitlines() if "0 to 1 V" in line)
+    output = " ".join(result.output.split())
+    assert 'expected a channel "M_s" for the shaft torque' in output
+    assert "log at" not in output
+    result = run("inspect", tmp_path / "edges.csv", "--vessel", tmp_path / "mine.toml", "--campaign", "short")
+    assert result.exit_code == 1

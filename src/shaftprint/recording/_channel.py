@@ -59,6 +59,8 @@ class Channel:
     is_uneven: bool = False
     """Whether the samples lie on no clock: they are messages at the times of ``stamps``, and ``rate_hz`` is that of
     their sender."""
+    is_of_edges: bool = False
+    """Whether the samples were made of a list of edges: the rate is made up, and says nothing of the logger."""
 
     def __post_init__(self) -> None:
         """Check that the channel can be placed in time.

@@ -18,6 +18,9 @@ UNEVEN = "is_uneven"
 GROUP = "channels"
 """The group that holds one data set a channel."""
 
+EDGES = "is_of_edges"
+"""Attribute of such a channel: 1 where its samples were made of a list of edges."""
+
 BEGAN = "began"
 """Root attribute with the date of second 0 as ISO 8601 has it, where it is known."""
 

@@ -54,6 +54,7 @@ def write_recording(
                 dtype="int16" if is_counts else "float64",
                 times="by rate" if channel.stamps is None else "uneven" if channel.is_uneven else "beside the rate",
                 clock_jumps=channel.clock_jumps,
+                is_of_edges=channel.is_of_edges,
             )
         # block by block, not channel by channel: some formats keep all channels of a moment in one record
         for start in range(0, max((channel.count for channel in written), default=0), CHUNK_SAMPLES):

@@ -124,6 +124,7 @@ class RecordingWriter:
         dtype: Literal["int16", "float64"] = "int16",
         times: Literal["by rate", "beside the rate", "uneven"] = "by rate",
         clock_jumps: tuple[ClockJump, ...] = (),
+        is_of_edges: bool = False,
     ) -> None:
         """Announce a channel before its first samples.
 
@@ -148,6 +149,8 @@ class RecordingWriter:
             as messages on a bus do.
         clock_jumps
             Where its clock jumps.
+        is_of_edges
+            Whether the samples were made of a list of edges.
 
         Raises
         ------
@@ -169,6 +172,7 @@ class RecordingWriter:
             stamps=None if times == "by rate" else lambda start, stop: np.zeros(0),
             is_uneven=times == "uneven",
             clock_jumps=clock_jumps,
+            is_of_edges=is_of_edges,
         )
         try:
             with self._output.calls():

@@ -36,6 +36,8 @@ class ChannelReadings:
     """Why the others gave nothing."""
     held: Mapping[str, HeldSamples] = field(default_factory=dict)
     """Which of them keep their last value, and how."""
+    missing: tuple[str, ...] = ()
+    """Why channels of the vessel file were not read, where a speed alone was to do."""
 
 
 def read_channels(
@@ -46,6 +48,7 @@ def read_channels(
     rate_hz: float = 200.0,
     chunk_s: float | None = None,
     progress: Callable[[float], None] | None = None,
+    partly: bool = False,
 ) -> ChannelReadings:
     """Read every channel that the vessel file names.
 
@@ -53,13 +56,15 @@ def read_channels(
     ----------
     recording, vessel, mode, rate_hz, chunk_s, progress
         As for `prepare_signals`.
+    partly
+        Whether a speed alone will do, as in a trial of a pick-up; else every channel has to be there.
 
     Raises
     ------
     SignalError
         If a channel is missing, empty, or in another unit.
     """
-    sources = find_sources(recording, vessel)
+    sources, missing = find_sources(recording, vessel, partly=partly)
     clock = common_clock(logger_channels(sources), mode=mode, rate_hz=rate_hz, chunk_s=chunk_s, progress=progress)
     stated_s = {source.name: source.kind.stated_hold_s(source) for source in sources}
     tallies = {source.name: RunTally(source.channel) for source in sources if stated_s[source.name] is not None}
@@ -79,7 +84,7 @@ def read_channels(
     give_back_memory()
     kept = {name: held_samples(tally.runs(), stated_s=stated_s[name] or 0.0) for name, tally in tallies.items()}
     held = {name: one for name, one in kept.items() if one is not None}
-    return ChannelReadings(clock=clock, sources=sources, by_name=by_name, problems=problems, held=held)
+    return ChannelReadings(clock=clock, sources=sources, by_name=by_name, problems=problems, held=held, missing=missing)
 
 
 def _watched(source: "Source[Any]", tallies: "Mapping[str, RunTally]") -> "Source[Any]":

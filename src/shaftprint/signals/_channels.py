@@ -24,6 +24,10 @@ _SPOT_SAMPLES = 65_536
 _GLANCE_SAMPLES = 4_096
 
 
+class MissingChannel(SignalError):
+    """A channel of the vessel file is not in the recording."""
+
+
 def find_channel(
     recording: "Recording",
     name: str,
@@ -56,7 +60,7 @@ def find_channel(
         If the channel is missing, empty, in another unit, or on no clock where it has to be.
     """
     if name not in recording.channels:
-        raise SignalError(
+        raise MissingChannel(
             f'{recording.path}: expected a channel "{name}" for the {use}, as the vessel file says, '
             f"found {', '.join(recording.channels) or 'no channel at all'}; {way_out}."
         )

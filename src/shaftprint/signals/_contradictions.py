@@ -114,7 +114,10 @@ def _in_words(sensors: Sequence["SpeedSensor"], pulses: Mapping[str, PulseReport
 def _of_torque(reports: Sequence[ChannelReport], vessel: "Vessel") -> tuple[str, ...]:
     sensor, expected = vessel.sensors.shaft_torque, vessel.working_point.shaft_torque_nm
     by_use = {report.use: report for report in reports}
-    torque, set_point = by_use["shaft torque"], by_use["set point"]
+    torque, set_point = by_use.get("shaft torque"), by_use.get("set point")
+    if torque is None:
+        # a pick-up alone is tried
+        return ()
 
     def mean_nm(report: ChannelReport) -> float:
         return float(sensor.torque_nm(report.mean))
@@ -123,13 +126,13 @@ def _of_torque(reports: Sequence[ChannelReport], vessel: "Vessel") -> tuple[str,
     if not np.isfinite(mean_torque_nm) or mean_torque_nm / expected >= _CLEARLY_NEGATIVE:
         return ()
     sentence = f"expected a torque around {expected:.4g} N m, found a mean of {mean_torque_nm:.4g} N m"
-    swapped = mean_nm(set_point)
     # astern torque and set point have one sign, so that the sign tells of no swap
-    may_be_swapped = set_point.unit == torque.unit and not vessel.working_point.is_astern
-    if may_be_swapped and _AROUND[0] < swapped / expected < _AROUND[1]:
+    alike = set_point if set_point is not None and set_point.unit == torque.unit else None
+    swapped = np.nan if alike is None or vessel.working_point.is_astern else mean_nm(alike)
+    if alike is not None and _AROUND[0] < swapped / expected < _AROUND[1]:
         return (
-            f"channels {torque.channel} and {set_point.channel} seem to be swapped: {sentence} in {torque.channel}, "
-            f"and {swapped:.4g} N m in {set_point.channel}. Correct the channels in the vessel file or the columns of "
+            f"channels {torque.channel} and {alike.channel} seem to be swapped: {sentence} in {torque.channel}, "
+            f"and {swapped:.4g} N m in {alike.channel}. Correct the channels in the vessel file or the columns of "
             "the recording.",
         )
     sign = "the sign of sensors.shaft_torque.scale_nm_per_unit" if sensor.shaft is None else "reversed of its shaft"

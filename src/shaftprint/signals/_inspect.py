@@ -11,11 +11,12 @@ from shaftprint.signals._channel_signals import ChannelRole
 from shaftprint.signals._gaps import Gap
 from shaftprint.signals._signals import Repair
 from shaftprint.signals.kinds import PulseReading
+from shaftprint.units import rpm_from_rev_s
 
 if TYPE_CHECKING:
     from shaftprint.recording import Channel, Recording
     from shaftprint.signals.kinds import Source
-    from shaftprint.vessel import Vessel
+    from shaftprint.vessel import SpeedSensor, Vessel
 
 _ORDER = (ChannelRole.RESPONSE, ChannelRole.EXCITATION, ChannelRole.SIDE)
 
@@ -64,6 +65,8 @@ class PulseReport:
     """Level during a pulse [unit of the channel]."""
     per_second: float
     """Mean number of pulses a second [Hz]; half of it is the highest frequency without aliasing."""
+    speed_rpm: float
+    """Mean speed of the shaft that carries the strips [rpm]."""
     strip_angles_deg: tuple[float, ...]
     """Angle from each strip to the next [deg]."""
     largest_error_deg: float
@@ -125,7 +128,7 @@ def _report(source: "Source[Any]", readings: ChannelReadings, levels: Levels) ->
         lowest=levels.lowest,
         highest=levels.highest,
         mean=levels.mean,
-        pulses=_pulse_report(channel, reading) if isinstance(reading, PulseReading) else None,
+        pulses=_pulse_report(channel, source.sensor, reading) if isinstance(reading, PulseReading) else None,
         faults=() if reading is None else tuple(reading.repairs),
         gaps=() if reading is None else tuple(sorted(reading.gaps, key=lambda gap: gap.start_s)),
         problem=None if problem is None else str(problem),
@@ -133,12 +136,13 @@ def _report(source: "Source[Any]", readings: ChannelReadings, levels: Levels) ->
     )
 
 
-def _pulse_report(channel: "Channel", reading: PulseReading) -> PulseReport:
+def _pulse_report(channel: "Channel", sensor: "SpeedSensor", reading: PulseReading) -> PulseReport:
     strips = reading.strips
     return PulseReport(
         low=reading.levels.low * channel.scale + channel.offset,
         high=reading.levels.high * channel.scale + channel.offset,
         per_second=reading.pulse_rate_hz,
+        speed_rpm=rpm_from_rev_s(reading.pulse_rate_hz / sensor.pulses_per_revolution),
         strip_angles_deg=(360.0,) if strips is None else tuple((strips.angle_rev * 360.0).tolist()),
         largest_error_deg=0.0 if strips is None else float(strips.error_rev[strips.worst]) * 360.0,
     )

@@ -66,14 +66,14 @@ def command(recording: Path, vessel: str | None, campaign: str | None, no_progre
     with read_recording(recording, **hints_of(**said)) as opened:
         clocks = logger_clocks(opened)
         watch = watch_levels(opened)
-        readings = None if ship is None else _read(watch, ship, hidden=no_progress)
+        readings = None if ship is None else _read(watch, ship, partly=planned is None, hidden=no_progress)
         levels = _levels(watch, hidden=no_progress)
         if ship is None or readings is None:
             _print_proposal(opened, _print_channels(opened, levels), clocks)
             return
         test = None if planned is None else _tested(opened, ship, planned, readings, clocks, hidden=no_progress)
         reports = channel_reports(readings, levels)
-        _print_answer(test, reports, ship)
+        _print_answer(test, reports, ship, missing=readings.missing)
         _print_channels(opened, levels)
         print_tables([clock_map_table(clocks)])
         _print_sensors(reports)
@@ -155,7 +155,9 @@ def _print_proposal(opened: Recording, seen: Sequence[Seen], clocks: Sequence[Lo
         echo(line)
 
 
-def _print_answer(test: _Test | None, reports: Sequence[ChannelReport], ship: Vessel) -> None:
+def _print_answer(
+    test: _Test | None, reports: Sequence[ChannelReport], ship: Vessel, *, missing: Sequence[str] = ()
+) -> None:
     """Print whether the recording is good enough, and what is wrong with its sensors."""
     signals, asked = (None, None) if test is None else (test.signals, test.planned)
     wrong = contradictions(reports, ship, signals=signals, campaign=asked)
@@ -163,7 +165,13 @@ def _print_answer(test: _Test | None, reports: Sequence[ChannelReport], ship: Ve
         () if test is None else dict.fromkeys(reason.sentence for one in test.parts for reason in one.response.reasons)
     )
     held = [report.held for report in reports if report.held is not None and report.held not in against]
-    problems = [*wrong, *against, *held, *(report.problem for report in reports if report.problem is not None)]
+    problems = [
+        *missing,
+        *wrong,
+        *against,
+        *held,
+        *(report.problem for report in reports if report.problem is not None),
+    ]
     if test is not None:
         refusal = "" if test.refusal is None else str(test.refusal)
         lost = () if test.signals is None else lost_parts(test.planned, test.signals, test.parts)
@@ -174,12 +182,12 @@ def _print_answer(test: _Test | None, reports: Sequence[ChannelReport], ship: Ve
     print_findings("Problems", problems, is_answer=True)
 
 
-def _read(watch: LevelWatch, ship: Vessel, *, hidden: bool) -> ChannelReadings:
+def _read(watch: LevelWatch, ship: Vessel, *, partly: bool, hidden: bool) -> ChannelReadings:
     """Read the channels of the vessel file, counting their levels; where one is not there, the table says which are."""
     try:
         with progress(hidden=hidden) as steps:
             steps.begin("Reading the channels", total=1.0)
-            return read_channels(watch.recording, ship, progress=steps.reach)
+            return read_channels(watch.recording, ship, progress=steps.reach, partly=partly)
     except SignalError:
         _print_channels(watch.recording, _levels(watch, hidden=hidden))
         raise
@@ -248,7 +256,7 @@ def _print_messages(opened: Recording) -> None:
 def _print_sensors(reports: Sequence[ChannelReport]) -> None:
     columns = (
         *texts("channel", "used for", "levels"),
-        *numbers("pulses [1/s]"),
+        *numbers("pulses [1/s]", "speed [rpm]"),
         *texts("strip angles [deg]", "faults"),
     )
     print_table(Table(title="Sensors of the vessel file", columns=columns, rows=tuple(map(_sensor_row, reports))))
@@ -268,6 +276,7 @@ def _sensor_row(report: ChannelReport) -> tuple[str, ...]:
         report.use,
         f"{between[0]:.3g} to {between[1]:.3g} {report.unit}",
         "" if pulses is None else f"{pulses.per_second:.3f}",
+        "" if pulses is None else f"{pulses.speed_rpm:.2f}",
         "" if pulses is None else _strips_in_words(pulses),
         ", ".join(counts) or "none",
     )

@@ -49,7 +49,16 @@ def pulses_at(name: str, edge_s: FloatArray, *, first_level: int, start_s: float
         return _levels(place[first:last], (first_level + first) % 2, start, stop)
 
     count = math.floor((stop_s - start_s) * rate_hz) + 1
-    return Channel(name=name, unit="V", rate_hz=rate_hz, start_s=start_s, count=count, source=read, scale=1.0 / _HIGH)
+    return Channel(
+        name=name,
+        unit="V",
+        rate_hz=rate_hz,
+        start_s=start_s,
+        count=count,
+        source=read,
+        scale=1.0 / _HIGH,
+        is_of_edges=True,
+    )
 
 
 def _levels(place: FloatArray, first_level: int, start: int, stop: int) -> Counts:

@@ -13,6 +13,7 @@ from shaftprint.recording._channel import Channel, ClockJump, Times
 from shaftprint.recording._container import (
     BEGAN,
     CHUNK_SAMPLES,
+    EDGES,
     FORMAT,
     GROUP,
     JUMPS,
@@ -138,6 +139,7 @@ def _channel(path: Path, name: str, dataset: Any, group: Any) -> Channel:
         stamps=_times(path, name, dataset, group),
         is_uneven=bool(attributes.get(UNEVEN, 0)),
         clock_jumps=_jumps(attributes),
+        is_of_edges=bool(attributes.get(EDGES, 0)),
     )
 
 

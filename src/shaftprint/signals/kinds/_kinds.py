@@ -5,6 +5,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from shaftprint.signals._channel_signals import ChannelRole
+from shaftprint.signals._channels import MissingChannel
 from shaftprint.signals.kinds._machine_torque import MachineTorque
 from shaftprint.signals.kinds._pick_up import Speed
 from shaftprint.signals.kinds._pitch import Pitch, PitchSetPoint
@@ -36,8 +37,17 @@ KINDS: "Mapping[str, ChannelKind[Any]]" = MappingProxyType(
 """Kinds by symbol, in the order in which their signals stand."""
 
 
-def find_sources(recording: "Recording", vessel: "Vessel") -> "tuple[Source[Any], ...]":
-    """Return the channels that the vessel file names.
+def find_sources(
+    recording: "Recording", vessel: "Vessel", *, partly: bool = False
+) -> "tuple[tuple[Source[Any], ...], tuple[str, ...]]":
+    """Return the channels that the vessel file names, and why others are missing.
+
+    Parameters
+    ----------
+    recording, vessel
+        Where to look, and what is expected.
+    partly
+        Whether a speed alone will do, as in a trial of a pick-up; else every channel has to be there.
 
     Raises
     ------
@@ -46,5 +56,13 @@ def find_sources(recording: "Recording", vessel: "Vessel") -> "tuple[Source[Any]
     """
     # what every ship answers with is missed first
     kinds = sorted(KINDS.values(), key=lambda kind: kind.role is not ChannelRole.RESPONSE)
-    sources = {kind.name: kind.sources(recording, vessel) for kind in kinds}
-    return tuple(source for name in KINDS for source in sources[name])
+    sources: dict[str, tuple[Source[Any], ...]] = {}
+    missing = []
+    for kind in kinds:
+        try:
+            sources[kind.name] = kind.sources(recording, vessel)
+        except MissingChannel as error:
+            if not partly or isinstance(kind, Speed):
+                raise
+            missing.append(str(error))
+    return tuple(source for name in KINDS for source in sources.get(name, ())), tuple(missing)

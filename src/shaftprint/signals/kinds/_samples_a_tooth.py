@@ -28,7 +28,7 @@ def fastest_turns_hz(channel: "Channel", train: "PulseTrain", wheel: "Wheel") ->
 
 
 def expect_samples(channel: "Channel", wheel: "Wheel", turns_hz: float) -> None:
-    """Check that a channel is sampled often enough for a wheel at a speed.
+    """Check that a channel is sampled often enough for a wheel at a speed; a list of edges always is.
 
     Raises
     ------
@@ -36,7 +36,7 @@ def expect_samples(channel: "Channel", wheel: "Wheel", turns_hz: float) -> None:
         If there are fewer than four samples from tooth to tooth; the rate that would do is in the message.
     """
     teeth_hz = wheel.closest * turns_hz
-    if channel.rate_hz >= SAMPLES_A_TOOTH * teeth_hz:
+    if channel.is_of_edges or channel.rate_hz >= SAMPLES_A_TOOTH * teeth_hz:
         return
     raise SignalError(
         f"channel {channel.name}: expected at least {SAMPLES_A_TOOTH:g} samples from tooth to tooth, found "
@@ -68,7 +68,7 @@ def too_slow_for_pulses(channel: "Channel", sensor: "SpeedSensor", turns_hz: flo
     else:
         width_s = duty / closest_hz
     samples = width_s * channel.rate_hz
-    if samples >= needed:
+    if channel.is_of_edges or samples >= needed:
         return ""
     least_hz = needed / width_s
     step_hz = 10.0 ** (math.floor(math.log10(least_hz)) + 1 - _DIGITS)
