@@ -9,7 +9,7 @@ TRIAL = ("--vessel", "stan-tug-1205", "--campaign", "short", "--no-progress")
 TRUTH = {"K_p": 5.7, "K_i": 4.27, "t_d": 0.0703, "t_sp": 0.0518, "omega_n": 10.3, "zeta": 0.47, "T_aw": 0.5}
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_one_fit_of_everything(invoke, recording, tmp_path):
     result = invoke("identify", recording, *TRIAL, "--with", "all", "-o", tmp_path / "result")
     assert result.exit_code == 0, result.output

@@ -24,7 +24,7 @@ def planned(invoke, tmp_path_factory):
     return folder, done
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_half_an_hour_of_dither_is_planned_for_the_ship_and_its_log(planned):
     folder, done = planned
     assert "Rehearsed with 2 simulated tests" in done.stdout
@@ -45,7 +45,7 @@ def test_half_an_hour_of_dither_is_planned_for_the_ship_and_its_log(planned):
     assert content["predicted"]["b"]["std"] == pytest.approx(known["b"].std, rel=1e-6)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_sailed_and_identified_it_gives_what_was_planned(planned, invoke, tmp_path):
     """Stated deviations over those that are predicted at the truth, the median of five recordings, which hold it."""
     folder, _ = planned
