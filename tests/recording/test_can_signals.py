@@ -341,3 +341,11 @@ def test_an_arxml_file_says_the_same(tmp_path):
         speed = values(recording, "Speed")
         assert np.flatnonzero(np.isnan(speed)).tolist() == [10, 20, 30]
         assert np.delete(speed, [10, 20, 30]) == pytest.approx(0.125 * np.delete(MARKED, [10, 20, 30]))
+
+
+def test_a_signal_beyond_any_message_is_left_out(tmp_path):
+    text = SPEED.format(number=0x123, range="0|0") + ' SG_ Far : 99999|8@1+ (1,0) [0|0] "V" X\n'
+    path, dbc = log_of(tmp_path, (0x123, speed_rows(RISING)), text=text)
+    with read_recording(path, dbc=dbc) as recording:
+        assert set(recording.channels) == {"Speed"}
+        assert "within 223 bytes" in recording.left_out["EEC1.Far"]

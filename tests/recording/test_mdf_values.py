@@ -7,6 +7,7 @@ from asammdf.blocks.conversion_utils import from_dict
 
 from shaftprint.errors import RecordingError
 from shaftprint.recording import read_recording
+from shaftprint.recording.readers._no_value import codes_without_value
 
 TIMES = 0.01 * np.arange(3000)
 COUNTS = np.rint(8.0 * (1200.0 + 100.0 * np.sin(TIMES))).astype("u2")
@@ -96,3 +97,24 @@ def test_times_before_the_date_of_the_file(tmp_path, first_s, shift_s):
     with read_recording(tmp_path / "log.mf4") as recording:
         assert recording.channel("n").start_s == pytest.approx(first_s - shift_s, abs=1e-6)
         assert (recording.began.replace(tzinfo=None) - began).total_seconds() == pytest.approx(shift_s, abs=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("text", "is_none", "is_none_of_a_list"),
+    [
+        ("not available", True, True),
+        ("Not_Available", True, True),
+        ("SNA", True, True),
+        ("signal NA", True, True),
+        ("n/a", True, True),
+        ("Error indicator", True, False),
+        ("sensor fault", True, False),
+        ("Antenna on", False, False),
+        ("Arena", False, False),
+        ("trailer not present", False, False),
+        ("neutral", False, False),
+    ],
+)
+def test_which_texts_say_that_there_is_no_value(text, is_none, is_none_of_a_list):
+    assert bool(codes_without_value([(7, text)], is_list=False)) is is_none
+    assert bool(codes_without_value([(7, text)], is_list=True)) is is_none_of_a_list

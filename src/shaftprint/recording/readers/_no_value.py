@@ -4,7 +4,7 @@ import re
 from collections.abc import Iterable
 
 _NOT_AVAILABLE = re.compile(
-    r"not\W*(?:available|valid|supported|present|used|init)|n/?a\b|sna\b|signal[ _]na\b|unavailable|invalid|no[ _]data|"
+    r"not[\W_]*(?:available|valid|supported|used|init)|(?<![a-z])s?n/?a(?![a-z])|unavailable|invalid|no[ _]data|"
     r"undefined|unknown|unspecified|reserved|nicht verf(?:ü|ue)gbar|ung(?:ü|ue)ltig",
     re.IGNORECASE,
 )

@@ -14,7 +14,7 @@ from shaftprint.recording.readers._library_output import quiet
 from shaftprint.recording.readers.can._dbc_lines import lost_lines, whole_messages
 from shaftprint.recording.readers.can._frames import EXTENDED, is_j1939, is_nmea_2000, pgn_of, sender_of
 from shaftprint.recording.readers.can._known import KNOWN
-from shaftprint.recording.readers.can._messages import Message, Selection, Signal
+from shaftprint.recording.readers.can._messages import MOST_BYTES, Message, Selection, Signal
 
 # what the library prints where it leaves a line out
 _LINE = re.compile(r"error with line no: (\d+)")
@@ -103,7 +103,7 @@ def read_database(path: Path) -> Database:
             unusable[f"{message.name}.{signal.name}"] = (
                 "expected a multiplexer that says which messages hold it, found none that can be read."
                 if any(not one.bits for one in signal.where)
-                else "expected a number of at most 64 bits, found other bits."
+                else f"expected a number of at most 64 bits within {MOST_BYTES} bytes, found other bits."
             )
         usable.append(replace(message, signals=signals))
     if not any(message.signals for message in usable):
@@ -132,7 +132,9 @@ def _messages(matrix: Any, *, is_dbc: bool) -> Iterator[Message]:
             is_j1939=marked,
             is_of_any_sender=marked or is_of_nobody,
             is_fast=is_extended and is_nmea_2000(identifier) and int(frame.size) > _FRAME_BYTES,
-            instance=next((one for one in signals if _INSTANCE.search(one.name) and not one.where), None),
+            instance=next(
+                (one for one in signals if one.can_be_read and _INSTANCE.search(one.name) and not one.where), None
+            ),
         )
 
 

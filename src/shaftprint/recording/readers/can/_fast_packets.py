@@ -8,10 +8,10 @@ from numpy.typing import NDArray
 
 from shaftprint.arrays import FloatArray
 from shaftprint.recording.readers.can._frames import FILL
+from shaftprint.recording.readers.can._messages import MOST_BYTES
 
 LONGEST_S = 0.75
 """Time within which a packet is whole [s]; the counter of packets comes round again later."""
-_MOST_BYTES = 223
 
 
 @dataclass(slots=True)
@@ -79,7 +79,7 @@ class FastPackets:
                 return None
             if packet is not None:
                 self._lose(origin)
-            if row[1] > _MOST_BYTES:
+            if row[1] > MOST_BYTES:
                 self._lose(origin)
                 self._open.pop(key, None)
                 return None

@@ -7,6 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+MOST_BYTES = 223
+"""Bytes of the longest message, a fast packet of NMEA 2000."""
 _WORD = 64
 
 
@@ -22,6 +24,11 @@ class Selection:
     """Whether its first byte is the highest."""
     ranges: tuple[tuple[int, int], ...] = ()
     """First and last count that select."""
+
+    @property
+    def last_byte(self) -> int:
+        """Number of the last byte that holds some of the multiplexer."""
+        return _last_byte(self.start, self.bits, is_big_endian=self.is_big_endian)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -62,15 +69,15 @@ class Signal:
     @property
     def last_byte(self) -> int:
         """Number of the last byte that holds some of it."""
-        if not self.is_big_endian:
-            return (self.start + self.bits - 1) // 8
-        return (_first_of_big_endian(self.start) + self.bits - 1) // 8
+        return _last_byte(self.start, self.bits, is_big_endian=self.is_big_endian)
 
     @property
     def can_be_read(self) -> bool:
         """Whether it is a number that is not longer than a word, in messages that can be told."""
         floats = (32, 64) if self.is_float else range(1, _WORD + 1)
-        return self.start >= 0 and self.bits in floats and all(one.bits for one in self.where)
+        if self.start < 0 or self.bits not in floats or self.last_byte >= MOST_BYTES:
+            return False
+        return all(0 < one.bits <= _WORD and one.start >= 0 and one.last_byte < MOST_BYTES for one in self.where)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -147,8 +154,12 @@ def selected(where: tuple[Selection, ...], content: NDArray[np.uint8]) -> NDArra
     chosen = np.ones(len(content), dtype=bool)
     for one in where:
         counts = bits_of(content, one.start, one.bits, is_big_endian=one.is_big_endian)
-        chosen &= np.any([(counts >= low) & (counts <= high) for low, high in one.ranges], axis=0)
+        chosen &= np.any([(counts >= max(low, 0)) & (counts <= max(high, 0)) for low, high in one.ranges], axis=0)
     return chosen
+
+
+def _last_byte(start: int, bits: int, *, is_big_endian: bool) -> int:
+    return ((_first_of_big_endian(start) if is_big_endian else start) + bits - 1) // 8
 
 
 def _first_of_big_endian(start: int) -> int:

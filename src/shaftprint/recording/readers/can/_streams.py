@@ -124,7 +124,8 @@ class Streams:
         origin = _origin(bus, identifier & ~int(EXTENDED), message)
         if message.is_fast:
             time_s, length, content = self.packets.add(origin, time_s, content)
-        width = _WORD_BYTES * (max((signal.last_byte for signal in message.signals), default=0) // _WORD_BYTES + 1)
+        ends = [max([signal.last_byte, *(one.last_byte for one in signal.where)]) for signal in message.signals]
+        width = _WORD_BYTES * (max(ends, default=0) // _WORD_BYTES + 1)
         if content.shape[1] < width:
             missing = np.full((len(content), width - content.shape[1]), FILL, dtype=np.uint8)
             content = np.concatenate([content, missing], axis=1)
