@@ -105,6 +105,17 @@ def _labview(path):
     path.write_text(begin + head + rows + "\n" + head + rows)
 
 
+def _universal(path):
+    lines = ["    -1", f"{58:6d}", "shaft torque", "NONE", "NONE", "NONE", "NONE"]
+    lines += ["    1         0    0         0       NONE         1   3       NONE         0   0"]
+    lines += ["         4       400         1  0.00000e+00  1.00000e-02  0.00000e+00"]
+    lines += ["        17    0    0    0 Time                 s                   "]
+    lines += ["         8    0    0    0 Torque               N m                 "]
+    lines += ["         0    0    0    0 NONE                 NONE                "] * 2
+    lines += ["".join(f"{value:20.11e}" for value in COUNTS[k : k + 4].tolist()) for k in range(0, 400, 4)]
+    path.write_text("\n".join([*lines, "    -1", ""]))
+
+
 def _packed(path):
     _text(path)
     path.write_bytes(gzip.compress(path.read_bytes(), mtime=0))
@@ -127,6 +138,7 @@ FORMATS = {
     "v5.mat": _mat("5"), "v73.mat": _mat73, "other.nc": _netcdf4, "classic.nc": _netcdf3, "log.csv": _text,
     "log.csv.gz": _packed, "plain.txt": _plain, "log.dxd": _noise,
     "log.blf": _frames, "log.asc": _frames, "log.trc": _frames, "log.log": _frames, "log.lvm": _labview,
+    "log.uff": _universal,
 }  # fmt: skip
 
 

@@ -63,3 +63,20 @@ def test_a_recording_without_channels_says_so(path):
     recording = read_recording(path, readers=[_reader("A", mine=True)])
     with recording, pytest.raises(RecordingError, match='expected a channel "U", found none'):
         recording.channel("U")
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "remedy"),
+    [
+        ("log.xlsx", b"PK\3\4\0\0", "it is a spreadsheet: save the sheet as CSV"),
+        ("log.raw", b"|CF,2,1,1;\0", "imc: in FAMOS or imc STUDIO export it as MATLAB, ASCII or MDF 4"),
+        ("log.db", b"SQLite format 3\0", "it is an SQLite database: export the table as CSV"),
+        ("log.psdata", b"\1\2\3\0", "PicoScope or PicoLog: save it as CSV or MATLAB 4"),
+        ("log.acme", b"\1\2\3\0", "export it as CSV, MATLAB or MDF 4 from the program that wrote it"),
+    ],
+)
+def test_a_format_that_is_not_read_says_which_export_is(tmp_path, name, content, remedy):
+    path = tmp_path / name
+    path.write_bytes(content)
+    with pytest.raises(RecordingError, match=f"expected one of the formats .*, found none of them; {remedy}"):
+        read_recording(path)

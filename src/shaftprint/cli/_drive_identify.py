@@ -1,8 +1,9 @@
 """``shaftprint identify --drive``: from records of a drive to its fingerprint."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from datetime import UTC, datetime
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -25,6 +26,7 @@ def identify_on_the_bench(
     options: FitOptions,
     output: Path,
     *,
+    hints: Mapping[str, Any],
     pictures: bool,
     force: bool,
     no_progress: bool,
@@ -35,7 +37,7 @@ def identify_on_the_bench(
     with output_folder(output, of="identify", force=force) as folder:
         with progress(hidden=no_progress) as steps:
             steps.begin("Reading the records")
-            records = read_records(recordings, one)
+            records = read_records(recordings, one, **hints)
             steps.begin("Fitting the records")
             fit = identify_drive(
                 one,

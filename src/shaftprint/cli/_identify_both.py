@@ -1,8 +1,9 @@
 """``shaftprint identify --starboard``: both lines of a ship from one recording, and how they differ."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -45,6 +46,7 @@ def identify_both_lines(
     options: FitOptions,
     output: Path,
     *,
+    hints: Mapping[str, Any],
     about: ReportOptions,
     pictures: bool,
     no_report: bool,
@@ -67,6 +69,7 @@ def identify_both_lines(
                 seed=options.seed,
                 tested_at=about.tested_at,
                 judge=False,
+                hints=hints,
                 progress=steps,
             )
         _print(both)
@@ -85,6 +88,7 @@ def identify_both_lines(
                     pictures=pictures,
                     previous=about.previous,
                     pdf=about.pdf,
+                    hints=hints,
                 )
         if not no_report:
             known = {structure.name: structure for structure in structures}

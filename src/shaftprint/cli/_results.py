@@ -2,6 +2,8 @@
 
 from collections.abc import Mapping
 from pathlib import Path
+from types import MappingProxyType
+from typing import Any
 
 from shaftprint.cli._terminal import echo, print_findings
 from shaftprint.cli.output import FINGERPRINT, REPORT, Steps, give, print_tables
@@ -26,6 +28,7 @@ def write_results(
     pictures: bool = False,
     previous: Fingerprint | None = None,
     pdf: bool = False,
+    hints: Mapping[str, Any] = MappingProxyType({}),
 ) -> None:
     """Write fingerprint, figures and report of a survey into a folder.
 
@@ -49,10 +52,12 @@ def write_results(
         Fingerprint of an earlier test, with which the first page compares.
     pdf
         Whether the first pages are written as PDF too.
+    hints
+        What the recording does not say itself.
     """
     write_fingerprint(survey.fingerprint, folder / FINGERPRINT)
     steps.begin("Writing the report", total=1.0)
-    with read_recording(recording) as opened:
+    with read_recording(recording, **hints) as opened:
         render_report(
             folder,
             survey,

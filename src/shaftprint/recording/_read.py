@@ -10,8 +10,7 @@ from shaftprint.escape import terminal_message
 from shaftprint.files import reason
 from shaftprint.publication import complete
 from shaftprint.recording._recording import Recording
-from shaftprint.recording.readers import READERS, Reader, read_outside
-from shaftprint.recording.readers._time_scale import FASTEST_HZ, SLOWEST_HZ
+from shaftprint.recording.readers import FASTEST_HZ, READERS, SLOWEST_HZ, Reader, read_outside, remedy
 
 
 @refusing_none(RecordingError)
@@ -74,4 +73,4 @@ def _the_reader(path: Path, readers: Sequence[Reader]) -> Reader:
             f"{path}: expected one format, found that it may be {names}; pass the right one as readers."
         )
     names = ", ".join(reader.NAME for reader in readers)
-    raise RecordingError(f"{path}: expected one of the formats {names}, found none of them.")
+    raise RecordingError(f"{path}: expected one of the formats {names}, found none of them; {remedy(path)}.")

@@ -1,11 +1,12 @@
 """Both shafts of a ship from one recording: a survey of each, and what the wash of one does to the other."""
 
 import hashlib
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from datetime import datetime
 from importlib.resources import files
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -121,6 +122,7 @@ def run_both(
     now: datetime | None = None,
     tested_at: datetime | None = None,
     judge: bool = True,
+    hints: Mapping[str, Any] | None = None,
     progress: Progress = SILENT,
 ) -> SurveyOfBoth:
     """Identify both lines of a ship from one recording, each on its own lines, and the wash on the other's.
@@ -131,7 +133,7 @@ def run_both(
         Path of the raw recording, which holds the channels of both.
     trials
         What was tested and asked of each side, port first; see ``load_trials_of_both``.
-    structures, settings, now, tested_at, judge, progress
+    structures, settings, now, tested_at, judge, hints, progress
         As for ``run``, the same for both sides.
     seed
         For the starts of the searches, the same for both sides.
@@ -154,6 +156,7 @@ def run_both(
             tested_at=tested_at,
             conditions=trial.conditions,
             judge=judge,
+            hints=hints,
             progress=progress,
         )
         for trial in trials

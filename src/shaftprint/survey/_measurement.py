@@ -4,6 +4,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from datetime import datetime
 from pathlib import Path
+from types import MappingProxyType
+from typing import Any
 
 from shaftprint.catalogue import ShipRole
 from shaftprint.clocks import logger_clocks
@@ -65,9 +67,14 @@ class Measurement(Shown):
 
 
 def measure(
-    recording: str | Path, trial: Trial, *, mode: Mode = "shaftprint", progress: Progress = SILENT
+    recording: str | Path,
+    trial: Trial,
+    *,
+    mode: Mode = "shaftprint",
+    hints: Mapping[str, Any] = MappingProxyType({}),
+    progress: Progress = SILENT,
 ) -> Measurement:
-    """Return signals and responses of a recording.
+    """Return signals and responses of a recording; ``hints`` say what its file does not, as for ``read_recording``.
 
     Raises
     ------
@@ -75,7 +82,7 @@ def measure(
         If the recording cannot be read or does not give usable signals and responses.
     """
     progress.begin(f"Reading the recording ({mode} mode)", total=1.0)
-    with read_recording(recording) as opened:
+    with read_recording(recording, **hints) as opened:
         clocks, began, remarks = logger_clocks(opened), opened.began, opened.remarks
         watch = watch_levels(opened)
         signals = prepare_signals(watch.recording, trial.vessel, trial.campaign, mode=mode, progress=progress.reach)

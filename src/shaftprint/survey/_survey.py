@@ -1,13 +1,13 @@
 """The noun and the verb of the room: all that one recording gives, and the run that makes it."""
 
 import copy
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from functools import cached_property, partial
 from pathlib import Path
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -151,6 +151,7 @@ def run(
     conditions: str | Path | TrialConditions | None = None,
     legs: Sequence[str] = (),
     judge: bool = True,
+    hints: Mapping[str, Any] | None = None,
     progress: Progress = SILENT,
 ) -> Survey:
     """Identify a line from a recording: all that ``shaftprint identify`` does, before anything is written.
@@ -158,7 +159,7 @@ def run(
     Parameters
     ----------
     recording
-        Path of the raw recording, in any format that is read.
+        Path of the raw recording, in any format that is read; ``hints`` say what the file does not.
     vessel, campaign
         What was tested and what was asked of it: paths, shipped names, or loaded.
     structures
@@ -181,8 +182,7 @@ def run(
     legs
         Names of the legs of the campaign to use; all when not given.
     judge
-        Whether structures are compared and the model is held against records that it has not seen; ``judged`` does it
-        later, for who wants the fingerprint first.
+        Whether structures are compared and the model is held against other records; ``judged`` does it later.
 
     Raises
     ------
@@ -197,7 +197,7 @@ def run(
         for one in structures or (default_structure(trial.vessel, trial.campaign),)
     )
     expect_one_speed(trial.campaign, trial.vessel, legs)
-    measurement = of_legs(measure(recording, trial, mode=mode, progress=progress), legs)
+    measurement = of_legs(measure(recording, trial, mode=mode, hints=hints or {}, progress=progress), legs)
     measurement = replace(measurement, began=_began(tested_at, measurement.began, trial))
     speeds = [point.engine_speed_rev_s for point in measurement.working_points.values()]
     chosen = tuple(at_speeds(one, speeds) for one in chosen)

@@ -1,6 +1,8 @@
 """``shaftprint identify``: from a recording to a fingerprint."""
 
+from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 import click
 import numpy as np
@@ -12,7 +14,7 @@ from shaftprint.cli._fingerprint_tables import print_fingerprint
 from shaftprint.cli._fit_options import FitOptions, fit_options, settings_of, structures_of
 from shaftprint.cli._identify_both import identify_both_lines
 from shaftprint.cli._limit_tables import print_limits, print_line
-from shaftprint.cli._options import campaign_option, structure_sources, vessel_option
+from shaftprint.cli._options import campaign_option, hints_of, reading_options, structure_sources, vessel_option
 from shaftprint.cli._own_structure import DEFAULT_HELP, OWN_FILE_HELP, TypedName
 from shaftprint.cli._report_options import ReportOptions, report_options
 from shaftprint.cli._results import print_comparison, print_paths, write_results
@@ -62,6 +64,7 @@ from shaftprint.tables import fits_table, leg_test_table
 @fit_options
 @click.option("-o", "--output", required=True, type=click.Path(path_type=Path), help="Folder for the results.")
 @report_options
+@reading_options
 @force_option
 @no_progress_option
 def command(
@@ -80,6 +83,7 @@ def command(
     about: ReportOptions,
     force: bool,
     no_progress: bool,
+    **said: object,
 ) -> None:
     """Identify the fingerprint from a recording.
 
@@ -94,9 +98,18 @@ def command(
         raise click.UsageError("--starboard is for ships: leave out --drive.")
     if no_report and (drive_file is not None or figures or about.pdf):
         raise click.UsageError("--no-report is for ships, and goes with neither --figures nor --pdf.")
+    hints = hints_of(**said)
     if drive_file is not None:
         identify_on_the_bench(
-            recordings, drive_file, names, options, output, pictures=figures, force=force, no_progress=no_progress
+            recordings,
+            drive_file,
+            names,
+            options,
+            output,
+            hints=hints,
+            pictures=figures,
+            force=force,
+            no_progress=no_progress,
         )
         return
     recording = only_recording(recordings)
@@ -110,6 +123,7 @@ def command(
             names,
             options,
             output,
+            hints=hints,
             about=about,
             pictures=figures,
             no_report=no_report,
@@ -137,6 +151,7 @@ def command(
                 conditions=about.conditions,
                 legs=legs,
                 judge=False,
+                hints=hints,
                 progress=steps,
             )
         # the answer first: what follows takes as long again
@@ -147,7 +162,9 @@ def command(
         if no_report:
             write_fingerprint(survey.fingerprint, folder / FINGERPRINT)
         else:
-            _judge_and_report(folder, recording, survey, rng=rng, pictures=figures, about=about, hidden=no_progress)
+            _judge_and_report(
+                folder, recording, survey, rng=rng, pictures=figures, about=about, hints=hints, hidden=no_progress
+            )
     print_paths(output, report=not no_report)
 
 
@@ -159,6 +176,7 @@ def _judge_and_report(
     rng: np.random.Generator,
     pictures: bool,
     about: ReportOptions,
+    hints: Mapping[str, Any],
     hidden: bool,
 ) -> None:
     """Validate the model, compare structures, print what came out, and write all of it."""
@@ -166,7 +184,16 @@ def _judge_and_report(
         survey = judged(survey, rng=rng, progress=steps)
     _print_judgement(survey)
     with progress(hidden=hidden) as steps:
-        write_results(folder, recording, survey, steps=steps, pictures=pictures, previous=about.previous, pdf=about.pdf)
+        write_results(
+            folder,
+            recording,
+            survey,
+            steps=steps,
+            pictures=pictures,
+            previous=about.previous,
+            pdf=about.pdf,
+            hints=hints,
+        )
 
 
 def _with_more(survey: Survey, more: str | None, *, rng: np.random.Generator, steps: Steps) -> Survey:

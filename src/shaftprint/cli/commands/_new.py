@@ -10,6 +10,7 @@ from shaftprint.card import write_vessel
 from shaftprint.cli._card_options import card_of, card_options
 from shaftprint.cli._options import NAMES
 from shaftprint.cli._recorded_campaign import write_recorded_campaign
+from shaftprint.cli._recorded_drive import write_recorded_drive
 from shaftprint.cli._terminal import answer
 from shaftprint.cli._vessel_file import print_disagreements
 from shaftprint.settings import write_template
@@ -37,7 +38,8 @@ _CALLED = {"vessel": "a vessel", "campaign": "a campaign", "conditions": "the co
     "recorded",
     metavar="RECORDING",
     type=click.Path(path_type=Path),
-    help="A recording: the campaign file says what its set point shows. Needs --vessel.",
+    help="A recording: the campaign file says what its set point shows, with --vessel; the drive file begins with its "
+    "channels.",
 )
 @click.option("--vessel", help=f"Vessel file of that recording, {NAMES} stan-tug-1205: says which channel it is.")
 @click.option("-o", "--output", type=click.Path(path_type=Path), help="The file, in place of FILE.")
@@ -57,7 +59,8 @@ def command(
     --test are made for the Stan Tug 1205: predict says what they would ask of another ship.
 
     With --from RECORDING and --vessel the campaign file says what the recorded set point shows, each sine, multisine,
-    binary sequence, chirp, staircase and ramp with its times; what is none of these is named.
+    binary sequence, chirp, staircase and ramp with its times; what is none of these is named. A drive file --from
+    RECORDING begins with its channels and their units, and fits a lag from one of them to the others.
 
     With what stands on a ship's card the vessel file is filled in. It needs --power-kw, --rated-rpm, --cylinders,
     --diameter-m, --blades, --pitch-ratio and --ratio or --propeller-rpm; the rest is derived or usual, and comments in
@@ -69,6 +72,11 @@ def command(
         raise click.UsageError("--test names a campaign to begin with; write `shaftprint new campaign`.")
     if card is not None and kind != "vessel":
         raise click.UsageError("A ship's card makes a vessel file; write `shaftprint new vessel`.")
+    if recorded is not None and kind == "drive":
+        if vessel is not None or test is not None or card is not None:
+            raise click.UsageError("--from makes a drive file of a recording; write `shaftprint new drive` alone.")
+        write_recorded_drive(recorded, path)
+        return
     if recorded is not None and vessel is not None:
         if kind != "campaign" or test is not None or card is not None:
             raise click.UsageError(

@@ -4,6 +4,7 @@ import math
 from decimal import Decimal, InvalidOperation
 
 _MOST_DIGITS = 9
+_ROUNDING = 1e-12
 
 
 def rate_of_step(printed: str) -> float | None:
@@ -21,7 +22,8 @@ def rate_of_step(printed: str) -> float | None:
     exponent = step.as_tuple().exponent
     half = Decimal((0, (5,), int(exponent) - 1))
     # a step may be cut off in place of being rounded
-    return round_rate(1.0 / float(step + 2 * half), 1.0 / float(max(step - half, step / 2)), float(1 / step))
+    highest_hz = (1.0 + _ROUNDING) / float(max(step - half, step / 2))
+    return round_rate(1.0 / float(step + 2 * half), highest_hz, float(1 / step))
 
 
 def round_rate(lowest_hz: float, highest_hz: float, nearest_hz: float) -> float:

@@ -18,7 +18,7 @@ from shaftprint.errors import RecordingError
 from shaftprint.recording._channel import Channel, Times
 from shaftprint.recording._recording import Recording, sha256_of
 from shaftprint.recording._spool import Spool
-from shaftprint.recording.readers import can
+from shaftprint.recording.readers import _uff, can
 from shaftprint.recording.readers._clock import SampleClock, clock_of_times, on_clock
 from shaftprint.recording.readers._hints import rate_hint
 from shaftprint.recording.readers._time_scale import TimeScale, expect_time_unit, time_scale
@@ -53,7 +53,7 @@ def is_mine(path: Path) -> bool:
     except (EOFError, zlib.error, gzip.BadGzipFile):
         # too damaged to tell: the name decides
         return name.suffix.lower() in _ENDINGS
-    if begin.startswith(_LABVIEW) or can.is_mine(path):
+    if begin.startswith(_LABVIEW) or can.is_mine(path) or _uff.is_mine(path):
         return False
     # a logger that lost its supply leaves NUL bytes behind its rows
     if b"\0" in begin.rstrip(b"\0") and not begin.startswith(_UTF_16):

@@ -1,5 +1,6 @@
 """Rows of a text file to columns of numbers, block by block: compiled, and slowly where a row needs a look."""
 
+import importlib
 from collections import deque
 from collections.abc import Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
@@ -112,7 +113,8 @@ class _Unpacking:
         columns = None if parsed is None else parsed.result()
         if columns is None:
             columns = self._slow(line, text, is_end)
-        if columns is None:
+        # nothing but columns of words
+        if not columns:
             return
         header, rows = self.header, len(next(iter(columns.values())))
         if self.done.stamps is not None and rows:
@@ -150,8 +152,8 @@ class _Unpacking:
 
     def _fast(self, text: bytes) -> _Columns | None:
         """Return the columns of whole rows; nothing where any row is none."""
-        from shaftprint.recording.readers.csv import _kernel
-
+        # a compiler is for long files only
+        _kernel = importlib.import_module("shaftprint.recording.readers.csv._kernel")
         header, texts, wanted = self.header, self._texts, self._numbers
         if b"\0" in text:
             return None

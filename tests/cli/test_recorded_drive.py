@@ -1,0 +1,73 @@
+"""A drive file that a recording begins, and options that say what a recording does not."""
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+from shaftprint.cli import shaftprint
+from shaftprint.drive import load_drive
+
+
+def _lag(path, titles, *, delimiter=",", count=600):
+    # 2 rpm/V behind steps of 5 s, time constant 0.5 s, 20 Hz
+    u = np.where((np.arange(count) // 100) % 2 == 1, 3.0, 1.0)
+    y = np.empty(count)
+    y[0] = 2.0
+    keep = np.exp(-0.05 / 0.5)
+    for k in range(1, count):
+        y[k] = keep * y[k - 1] + (1.0 - keep) * 2.0 * u[k - 1]
+    y += np.random.default_rng(3).normal(scale=0.01, size=count)
+    rows = "".join(
+        f"{0.05 * k:.2f}{delimiter}{a:g}{delimiter}{b:.5f}\n" for k, (a, b) in enumerate(zip(u, y, strict=True))
+    )
+    path.write_text(titles + rows)
+    return path
+
+
+def _said(*words):
+    return CliRunner().invoke(shaftprint, [str(word) for word in words])
+
+
+@pytest.mark.parametrize(
+    ("titles", "moved"),
+    [
+        ("time [s],Sollwert [V],n [rpm]\n", "Sollwert"),
+        # no name of an input: it is put out in steps
+        ("time [s],Kanal 1 [V],Kanal 2 [rpm]\n", "Kanal 1"),
+    ],
+)
+def test_channels_and_units_are_those_of_the_recording(tmp_path, titles, moved):
+    recording = _lag(tmp_path / "log.csv", titles)
+    said = _said("new", "drive", "--from", recording, "-o", tmp_path / "mine.toml")
+    assert said.exit_code == 0, said.output
+    drive = load_drive(tmp_path / "mine.toml")
+    assert [(one.channel, one.unit) for one in drive.inputs] == [(moved, "V")]
+    assert [one.unit for one in drive.outputs] == ["rpm"]
+    assert "by a guess" in said.output
+
+
+def test_one_channel_begins_no_drive(tmp_path):
+    path = tmp_path / "log.csv"
+    path.write_text("time [s],u [V]\n" + "".join(f"{0.1 * k:.1f},{k % 7}\n" for k in range(30)))
+    said = _said("new", "drive", "--from", path, "-o", tmp_path / "mine.toml")
+    assert said.exit_code == 1
+    assert "expected an input and an output on one clock, found u" in said.output
+    assert not (tmp_path / "mine.toml").exists()
+
+
+@pytest.mark.slow
+def test_identify_takes_what_the_file_does_not_say(tmp_path):
+    recording = _lag(tmp_path / "log.csv", "Messpunkt,a,b\n")
+    named = ("--columns", "time [s],Sollwert [V],n [rpm]")
+    target = tmp_path / "named.nc"
+    assert _said("convert", recording, "-o", target, *named).exit_code == 0
+    assert _said("new", "drive", "--from", target, "-o", tmp_path / "mine.toml").exit_code == 0
+    drive = ("--drive", tmp_path / "mine.toml")
+    refused = _said("identify", recording, *drive, "-o", tmp_path / "none", "--no-progress")
+    assert refused.exit_code == 1
+    assert "--columns" in refused.output
+    said = _said("identify", recording, *drive, *named, "-o", tmp_path / "result", "--no-progress", "-v")
+    assert said.exit_code == 0, said.output
+    shown = _said("show", tmp_path / "result")
+    gain = next(line for line in shown.output.splitlines() if line.strip().startswith(("│ K ", "K ", "| K ")))
+    assert " 2.0" in gain or " 1.99" in gain
