@@ -272,7 +272,8 @@ def dynamic(instance, fuel, torque):
     return bytes(payload)
 
 
-def test_packets_of_two_engines_are_put_together(tmp_path):
+@pytest.mark.parametrize("has_dbc", [True, False])
+def test_packets_of_two_engines_are_put_together(tmp_path, has_dbc):
     """PGN 127489 of two engines, its frames in between each other's, one frame of the port engine lost."""
     frames = []
     for k in range(COUNT):
@@ -285,16 +286,23 @@ def test_packets_of_two_engines_are_put_together(tmp_path):
     with can.Logger(tmp_path / "log.blf") as logger:
         for t, row in frames:
             logger.on_message_received(can.Message(timestamp=1.78e9 + t, arbitration_id=0x09F20103, data=row))
-    with read_recording(tmp_path / "log.blf") as recording:
-        fuel = recording.channel("Fuel rate, instance 1")
+    (tmp_path / "ship.dbc").write_text(
+        f'VERSION ""\nBU_: X\nBO_ {0x09F20103 | 1 << 31} D: 26 X\n SG_ Instance : 0|8@1+ (1,0) [0|252] "" X\n'
+        ' SG_ Fuel_rate : 72|16@1- (0.1,0) [0|0] "L/h" X\n SG_ Percent_engine_torque : 200|8@1- (1,0) [0|0] "%" X\n',
+        encoding="utf-8",
+    )
+    space, hints = ("_", {"dbc": tmp_path / "ship.dbc"}) if has_dbc else (" ", {})
+    with read_recording(tmp_path / "log.blf", **hints) as recording:
+        fuel = recording.channel(f"Fuel{space}rate, instance 1")
         assert fuel.unit == "L/h"
         assert fuel.values(0, fuel.count) == pytest.approx(0.1 * (300 + np.arange(COUNT)))
         assert fuel.stamps_s(0, 3) == pytest.approx([0.002, 0.502, 1.002], abs=1e-6)
-        assert set(values(recording, "Percent engine torque, instance 1")) == {-40.0}
-        port = recording.channel("Fuel rate, instance 0")
+        assert set(values(recording, f"Percent{space}engine{space}torque, instance 1")) == {-40.0}
+        port = recording.channel(f"Fuel{space}rate, instance 0")
         numbers = port.values(0, port.count)
         assert np.count_nonzero(np.isfinite(numbers)) == COUNT - 1
-        assert recording.left_out["packets of Engine parameters, dynamic of 0x3"] == "1 are not whole."
+        of = "D" if has_dbc else "Engine parameters, dynamic of 0x3"
+        assert recording.left_out[f"packets of {of}"] == "1 are not whole."
 
 
 def test_packets_are_not_put_together_over_a_long_time_nor_doubled():
