@@ -19,6 +19,8 @@ from shaftprint.units import plain_unit
 _RATES = ("sample_rate_hz", "fs", "sample_rate", "sampling_rate", "sampling_frequency", "samplerate", "rate_hz")
 _STEPS = ("dt", "ts", "wf_increment", "sampling_interval", "sample_time")
 _STARTS = ("start_s", "t0", "wf_start_offset")
+LOCAL = "shaftprint_local_time"
+"""Attribute of times that are dates by the clock of the place, without a zone."""
 _UNITS = ("units", "unit", "unit_string")
 _RATE_AGREEMENT = 1e-6
 
@@ -215,6 +217,7 @@ def _clock_of_times(path: Path, time: Vector, scales: list[TimeScale], time_unit
         return time.source(start, stop).astype(np.float64) * time.scale + time.offset
 
     scale = time_scale(path, f"variable {time.name}", time.count, read, unit=unit, asked=time_unit)
+    scale = replace(scale, has_zone=scale.has_zone and LOCAL not in time.attributes)
     others = {one.reference_s for one in scales if one.reference_s is not None}
     if scale.reference_s is not None and others - {scale.reference_s}:
         raise RecordingError(

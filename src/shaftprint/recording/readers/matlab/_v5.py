@@ -16,6 +16,7 @@ from shaftprint.recording.readers._damage import told_as_damage
 from shaftprint.recording.readers._hints import rate_hint
 from shaftprint.recording.readers._time_scale import expect_time_unit
 from shaftprint.recording.readers._vectors import Vector
+from shaftprint.recording.readers.matlab._objects import keep_objects
 from shaftprint.recording.readers.matlab._v5_headers import MatHeader, headers_of
 from shaftprint.recording.readers.matlab._variables import (
     MatVariables,
@@ -31,6 +32,8 @@ NAME = "MATLAB v4 to v7"
 _SIGNATURE = b"MATLAB 5.0 MAT-file"
 # Version and byte order at the end of the header; programs other than MATLAB may write what they like before it.
 _MARKS = (b"\x00\x01IM", b"\x01\x00MI")
+# Those of version 7.3, whose header may say 5.0 for all that.
+_MARKS_OF_HDF5 = (b"\x00\x02IM", b"\x02\x00MI")
 _HEADER_BYTES = 128
 _REAL = "fiub"
 _DEEPEST = 4
@@ -42,6 +45,8 @@ def is_mine(path: Path) -> bool:
     with path.open("rb") as file:
         begin = file.read(_HEADER_BYTES)
     named = path.suffix.lower() == ".mat"
+    if begin.endswith(_MARKS_OF_HDF5):
+        return False
     return begin.startswith(_SIGNATURE) or (named and (begin.endswith(_MARKS) or _is_v4(begin[:20])))
 
 
@@ -92,10 +97,11 @@ def _is_v4(begin: bytes) -> bool:
 def _survey(path: Path, spool: Spool, titles: tuple[str, ...]) -> MatVariables:
     """Load one variable after the other and keep its numbers on disk."""
     variables = MatVariables(titles=titles)
+    objects: dict[str, str] = {}
     for header in _headers(path):
         name = header.name
         if header.is_object:
-            variables.left_out[name] = object_reason(name, header.kind)
+            objects[name] = header.kind
         elif header.kind == "sparse":
             variables.left_out[name] = sparse_reason(name)
         elif header.kind == "cell":
@@ -103,6 +109,7 @@ def _survey(path: Path, spool: Spool, titles: tuple[str, ...]) -> MatVariables:
         elif header.size:
             value = scipy.io.loadmat(path, variable_names=[name], struct_as_record=False, squeeze_me=True)[name]
             _keep(name, "", value, spool, variables)
+    keep_objects(path, objects, variables)
     return variables
 
 

@@ -16,11 +16,11 @@ from shaftprint.recording.readers._opened import Opened
 from shaftprint.recording.readers._time_scale import expect_time_unit
 from shaftprint.recording.readers._vectors import Vector
 from shaftprint.recording.readers.hdf5_files import expect_storage, open_hdf5
+from shaftprint.recording.readers.matlab._objects import keep_objects
 from shaftprint.recording.readers.matlab._variables import (
     MatVariables,
     cell_reason,
     gather_variables,
-    object_reason,
     sparse_reason,
     titles_of,
 )
@@ -28,8 +28,8 @@ from shaftprint.recording.readers.matlab._variables import (
 NAME = "MATLAB v7.3"
 
 _SIGNATURE = b"MATLAB 7.3 MAT-file"
-# HDF5 behind MATLAB's header of 512 bytes; the first releases called themselves 7.0.
-_MATLAB, _HDF5, _HDF5_AT = b"MATLAB 7.", b"\x89HDF\r\n\x1a\n", 512
+# HDF5 behind MATLAB's header of 512 bytes; the first releases called themselves 7.0, mat-io 5.0.
+_MATLAB, _HDF5, _HDF5_AT = b"MATLAB ", b"\x89HDF\r\n\x1a\n", 512
 _PLAIN = (
     b"double", b"single", b"int8", b"uint8", b"int16", b"uint16", b"int32", b"uint32", b"int64", b"uint64",
     b"logical", b"",
@@ -66,7 +66,9 @@ def read(path: Path, **hints: object) -> Recording:
     try:
         with told_as_damage(path, "MATLAB"):
             variables = MatVariables(titles=titles_of(hints))
-            _survey(path, file, "", opened, variables)
+            objects: dict[str, str] = {}
+            _survey(path, file, "", opened, variables, objects)
+            keep_objects(path, objects, variables)
             gathered = gather_variables(path, variables, rate_hz=rate, time_unit=unit)
             return gathered.recording_from_second_zero(NAME, opened.close)
     except BaseException:
@@ -74,19 +76,21 @@ def read(path: Path, **hints: object) -> Recording:
         raise
 
 
-def _survey(path: Path, group: Any, name: str, opened: Opened, variables: MatVariables) -> None:
+def _survey(
+    path: Path, group: Any, name: str, opened: Opened, variables: MatVariables, objects: dict[str, str]
+) -> None:
     for key, item in group.items():
         inside = f"{name}/{key}" if name else key
         kind = bytes(np.bytes_(item.attrs.get("MATLAB_class", b"")))
         if key.startswith("#") or "MATLAB_empty" in item.attrs:
             continue
         if "MATLAB_object_decode" in item.attrs or (isinstance(item, h5py.Dataset) and kind in _OBJECTS):
-            variables.left_out[inside] = object_reason(inside.replace("/", "."), kind.decode("utf-8", "replace"))
+            objects[inside] = kind.decode("utf-8", "replace")
         elif isinstance(item, h5py.Group):
             if "MATLAB_sparse" in item.attrs:
                 variables.left_out[inside] = sparse_reason(inside.replace("/", "."))
             elif kind in (b"struct", b"") and inside.count("/") < _DEEPEST:
-                _survey(path, item, inside, opened, variables)
+                _survey(path, item, inside, opened, variables, objects)
         else:
             _keep(path, item, key, name, kind, opened, variables)
 

@@ -10,6 +10,7 @@ from shaftprint.recording.readers._gather import Gathered
 from shaftprint.recording.readers._vectors import Vector, gather_vectors
 
 _UNIT = "_unit"
+_INSTALL = 'pip install "shaftprint[readers]"'
 _TITLE = re.compile(r"(.*?)\s*\[(.*)\]")
 
 
@@ -83,10 +84,17 @@ def object_reason(name: str, kind: str) -> str:
             return f"{reason}; in MATLAB: {name} = seconds({name})."
         case "timeseries":
             return f"{reason}; in MATLAB: {name} = struct('t', {name}.Time, 'value', {name}.Data)."
+        case "categorical":
+            return f"{reason}; in MATLAB: {name} = double({name})."
+        case "table":
+            return (
+                f"{reason}; {_INSTALL} reads it, or in MATLAB: s = table2struct({name}, 'ToScalar', true); "
+                "save('plain.mat', '-struct', 's')."
+            )
         case "function" | "function_handle" | "inline":
             return f"{reason}."
     return (
-        f"{reason}; for a timetable, in MATLAB: "
+        f"{reason}; {_INSTALL} reads a timetable, or in MATLAB: "
         f"s = struct('t', seconds({name}.Properties.RowTimes - {name}.Properties.RowTimes(1))); "
         f"for v = string({name}.Properties.VariableNames), s.(v) = {name}.(v); end; save('plain.mat', '-struct', 's')."
     )

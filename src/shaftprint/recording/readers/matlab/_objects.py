@@ -1,0 +1,93 @@
+"""Objects in MATLAB files, which mat-io opens: timetables, tables, durations and dates become vectors."""
+
+import importlib
+import warnings
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from shaftprint.recording.readers._vectors import LOCAL, Vector
+from shaftprint.recording.readers.matlab._variables import MatVariables, object_reason
+
+_READ = ("timetable", "table", "duration", "datetime")
+_NUMBERS = "fiub"
+
+
+def keep_objects(path: Path, kinds: Mapping[str, str], variables: MatVariables) -> None:
+    """Add the objects of a file to its variables, or why they cannot be read.
+
+    Parameters
+    ----------
+    path
+        The file.
+    kinds
+        Class of each object by the name of its variable.
+    variables
+        What the file holds.
+    """
+    read = [name for name, kind in kinds.items() if kind in _READ and "/" not in name]
+    opened: Mapping[str, Any] = {}
+    is_zoned = False
+    if read:
+        opened, is_zoned = _opened(path, read)
+    for name, kind in kinds.items():
+        value = opened.get(name)
+        if hasattr(value, "columns"):
+            _keep_table(name, value, variables, is_zoned=is_zoned)
+        elif isinstance(value, np.ndarray) and value.dtype.kind in "mM" and value.size > 1:
+            variables.vectors.append(_vector(name, "", value.ravel(), "", is_zoned=is_zoned))
+        else:
+            variables.left_out[name] = object_reason(name.replace("/", "."), kind)
+
+
+def _opened(path: Path, names: list[str]) -> tuple[Mapping[str, Any], bool]:
+    """Return what the library makes of some variables, and whether it says that dates had a zone: they are in UTC."""
+    with warnings.catch_warnings(record=True) as said:
+        warnings.simplefilter("always")
+        try:
+            matio = importlib.import_module("matio")
+            opened = matio.load_from_mat(str(path), variable_names=names, add_table_attrs=True)
+        except Exception:
+            # not installed, or an object that it does not know: that costs the objects, not the file
+            return {}, False
+    return opened, any("timezone" in str(one.message) for one in said)
+
+
+def _keep_table(name: str, table: Any, variables: MatVariables, *, is_zoned: bool) -> None:
+    """Add the columns of a table that are numbers or times; of a timetable the times of its rows too."""
+    if len(table) < 2:
+        variables.left_out[name] = "expected rows of samples, found fewer than two."
+        return
+    row_times = np.asarray(table.index)
+    if row_times.dtype.kind in "mM":
+        variables.vectors.append(_vector("time", name, row_times, "", is_zoned=is_zoned))
+    units = next((table.attrs[key] for key in ("varUnits", "VariableUnits") if key in table.attrs), ())
+    stated = [str(unit) for unit in np.ravel(np.asarray(units, dtype=object))]
+    for place, title in enumerate(table.columns):
+        values = np.asarray(table.iloc[:, place])
+        if values.ndim != 1 or values.dtype.kind not in f"{_NUMBERS}mM":
+            variables.left_out[f"{name}/{title}"] = "expected real numbers, found texts or several numbers a row."
+            continue
+        unit = stated[place] if len(stated) == len(table.columns) else ""
+        variables.vectors.append(_vector(str(title), name, values, unit, is_zoned=is_zoned))
+
+
+def _vector(name: str, group: str, values: NDArray[Any], unit: str, *, is_zoned: bool) -> Vector:
+    """Return a vector in memory; times are nanoseconds, dates since 1970."""
+    attributes: dict[str, object] = {"unit": unit} if unit else {}
+    if values.dtype.kind in "mM":
+        attributes = {"unit": "ns"}
+        if values.dtype.kind == "M" and not is_zoned:
+            attributes[LOCAL] = 1.0
+        whole = values.astype("timedelta64[ns]" if values.dtype.kind == "m" else "datetime64[ns]")
+        numbers = np.where(np.isnat(whole), np.nan, whole.astype(np.int64).astype(np.float64))
+    else:
+        numbers = values.astype(np.float64)
+
+    def source(start: int, stop: int) -> NDArray[Any]:
+        return numbers[start:stop].copy()
+
+    return Vector(name=name, group=group, count=numbers.size, source=source, attributes=attributes)

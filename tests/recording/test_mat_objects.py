@@ -1,0 +1,74 @@
+"""Timetables, tables, durations and dates of MATLAB, written by mat-io as MATLAB writes them."""
+
+import importlib
+import sys
+import warnings
+from datetime import datetime
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from shaftprint.errors import RecordingError
+from shaftprint.recording import read_recording
+
+# 2 kHz: half a millisecond, which is no whole number of the milliseconds that MATLAB counts
+COUNT, STEP_NS = 200, 500_000
+PASSED = np.arange(COUNT) * np.timedelta64(STEP_NS, "ns")
+TORQUE = np.sin(0.1 * np.arange(COUNT))
+
+
+def _timetable(index):
+    table = pd.DataFrame({"M_s": TORQUE, "X": np.arange(COUNT), "note": ["a"] * COUNT}, index=index)
+    table.index.name = "Time"
+    return table
+
+
+@pytest.fixture(params=["v7", "v7.3"])
+def save(request, tmp_path):
+    def to_file(**variables):
+        path = tmp_path / "log.mat"
+        with warnings.catch_warnings():
+            # the library warns of what pandas will do, and of units of durations
+            warnings.simplefilter("ignore")
+            importlib.import_module("matio").save_to_mat(str(path), variables, version=request.param)
+        return path
+
+    return to_file
+
+
+def test_a_timetable_is_read_with_the_times_of_its_rows(save):
+    with read_recording(save(tt=_timetable(pd.to_timedelta(PASSED)))) as recording:
+        torque = recording.channel("M_s")
+        assert (torque.rate_hz, torque.start_s, torque.count) == (2000.0, 0.0, COUNT)
+        assert np.array_equal(torque.values(0, COUNT), TORQUE)
+        assert np.array_equal(recording.channel("X").values(0, 3), [0.0, 1.0, 2.0])
+        assert set(recording.left_out) == {"tt/note"}
+        assert recording.began is None
+
+
+def test_a_timetable_of_dates_gives_the_date(save):
+    dates = pd.DatetimeIndex(np.datetime64("2026-03-05T09:00", "ns") + PASSED)
+    with read_recording(save(tt=_timetable(dates))) as recording:
+        assert recording.channel("M_s").rate_hz == pytest.approx(2000.0, rel=1e-5)
+        assert recording.channel("M_s").clock_jumps == ()
+        assert recording.began == datetime.fromisoformat("2026-03-05T09:00")
+
+
+def test_a_table_and_a_duration(save):
+    table = pd.DataFrame({"time": 0.01 * np.arange(COUNT), "M_s": TORQUE})
+    with read_recording(save(tab=table)) as recording:
+        assert (set(recording.channels), recording.channel("M_s").rate_hz) == ({"M_s"}, 100.0)
+    with read_recording(save(t=PASSED.reshape(-1, 1), u=TORQUE)) as recording:
+        assert (set(recording.channels), recording.channel("u").rate_hz) == ({"u"}, 2000.0)
+
+
+def test_without_the_library_the_remedy_is_that_of_the_class(save, monkeypatch):
+    path = save(tt=_timetable(pd.to_timedelta(PASSED)))
+    timetable = path.rename(path.with_name("timetable.mat"))
+    table = save(tab=pd.DataFrame({"time": 0.01 * np.arange(COUNT), "M_s": TORQUE}))
+    monkeypatch.setitem(sys.modules, "matio", None)
+    with pytest.raises(RecordingError, match=r'pip install "shaftprint\[readers\]" reads .*RowTimes'):
+        read_recording(timetable)
+    with pytest.raises(RecordingError, match=r'pip install "shaftprint\[readers\]" reads it.*table2struct\(tab'):
+        read_recording(table)
