@@ -110,6 +110,11 @@ LAYOUTS = {
     "a message now and then": ("Time (s),u (V),y (RPM),App message,\n" + _rows("{t:.2f},{u},{y},,\n").replace(",,\n", ",start,\n", 1), ("V", "rpm")),
     "true and false": ("time,u,y,run\n" + _rows("{t:.2f},{u},{y},True\n"), ("", "")),
     "dates beside seconds": ("Date,time,u,y\n" + _rows("{at:%Y-%m-%d %H:%M:%S},{t:.2f},{u},{y}\n"), ("", "")),
+    "capital units": ("TIME [S];N [RPM];M [NM]\n" + _rows("{t:.2f};{u};{y}\n"), ("rpm", "N m")),
+    "am and pm": ("Time,u,y\n" + _rows("9:00:{at:%S}.{ms:03} PM,{u},{y}\n"), ("", "")),
+    "three parts of a time": ("Date,Time,Millitm,u,y\n" + _rows("{at:%Y-%m-%d},{at:%H:%M:%S},{ms},{u},{y}\n"), ("", "")),
+    "an empty first column": ("MDA\ttime\tn_e\tM\n\ts\trpm\tNm\n\tf8\tf8\tf8\n" + _rows("\t{t:.2f}\t{u}\t{y}\n"), ("rpm", "N m")),
+    "returns at the ends of lines": ("time;u;y\r" + _rows("{t:.2f};{u};{y}\r"), ("", "")),
     "bars between": ("time|u|y\n" + _rows("{t:.2f}|{u}|{y}\n"), ("", "")),
 }  # fmt: skip
 
@@ -132,7 +137,7 @@ def test_two_channels_are_read(tmp_path, name):
     first, second = values.values()
     assert np.array_equal(first, U)
     assert second == pytest.approx(Y, abs=1e-3)
-    dated = {"graphtec", "toa5", "german", "date and time of day", "dates beside seconds"}
+    dated = {"three parts of a time", "graphtec", "toa5", "german", "date and time of day", "dates beside seconds"}
     assert recording.began == (BEGAN if name in dated else None)
 
 

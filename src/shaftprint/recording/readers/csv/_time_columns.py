@@ -59,12 +59,12 @@ def time_columns(table: Table, names: Sequence[str], units: Sequence[str], *, ha
     titled = [place for place, name in enumerate(names) if kinds[place] in (NUMBER, GAP) and is_time_title(name)]
     plain = [place for place in titled if not is_capital(names[place])] or titled
     # a time in a column further on may be anything where dates stand in the first
-    if plain and not (dates and seconds_in(units[plain[0]] or "s") is None):
+    if plain and not (dates and seconds_in(_of_time(units[plain[0]]) or "s") is None):
         place = plain[0]
         if not dates or names[place].lower() not in MILLISECONDS:
             return TimeColumns(
                 place=place,
-                unit=units[place] or unit_in_name(names[place]) or "",
+                unit=_of_time(units[place]) or unit_in_name(names[place]) or "",
                 dates_beside=dates[0] if dates and not hours else None,
             )
     if dates or hours:
@@ -106,6 +106,11 @@ def _stamps(
     if thousandths is None or any("." in part.rpartition(":")[2] for part in parts):
         return TimeColumns(place=lead, stamps=tuple(stamps))
     return TimeColumns(place=lead, stamps=(*stamps, thousandths), milliseconds=thousandths)
+
+
+def _of_time(unit: str) -> str:
+    """Return the unit of a time, in small letters where only those make it one."""
+    return unit if seconds_in(unit) is not None or seconds_in(unit.lower()) is None else unit.lower()
 
 
 def _ascends(fields: Sequence[str]) -> bool:
