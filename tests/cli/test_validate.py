@@ -4,6 +4,7 @@ A saved fingerprint is validated in ``tests/docs``, as the page shows it.
 """
 
 import re
+import shutil
 from dataclasses import replace
 
 import pytest
@@ -98,3 +99,30 @@ def test_a_fingerprint_of_another_working_point(fingerprint, signals):
     point = replace(signals.working_point, engine_speed_rev_s=1.1 * signals.working_point.engine_speed_rev_s)
     with pytest.raises(FingerprintError, match=r"expected a recording around its working point of 118\d\.\d rpm"):
         fingerprint_model(fingerprint, structure("GAUGE-CLOSED"), replace(signals, working_point=point))
+
+
+@pytest.mark.slow
+def test_the_fmu_of_a_fingerprint_is_judged_as_the_fingerprint_is(run, recording, demo, tmp_path):
+    """Without the square of the speed, which the linear FMU has not either."""
+    pytest.importorskip("fmpy")
+    if shutil.which("cc") is None:
+        pytest.skip("there is no C compiler called cc")
+    path = tmp_path / "yard.fmu"
+    assert run("export", "fmu", demo[0], "--linear", "-o", path, "--no-progress").exit_code == 0
+    by_fmu = run("validate", recording, *GIVEN, "--model", path)
+    assert by_fmu.exit_code == 0, by_fmu.stderr
+    own = run("validate", recording, *GIVEN, "--fingerprint", demo[0], "--linear", "--linear-torque")
+    fit = re.compile(r"\b\d\d\.\d\b")
+    assert "yard.fmu" in by_fmu.output
+    assert len(fit.findall(own.output)) > 4
+    assert fit.findall(by_fmu.output)[:4] == fit.findall(own.output)[:4]
+
+
+def test_a_model_is_named_alone(run, recording, demo):
+    for words, said in (
+        (("--model-variable", "speed=w"), "name it too"),
+        (("--model", "a.fmu", "--fingerprint", demo[0]), "leave those out"),
+    ):
+        result = run("validate", recording, *GIVEN, *words)
+        assert result.exit_code == 2
+        assert said in " ".join(result.stderr.split())

@@ -45,6 +45,21 @@ def named_value(text: str) -> tuple[str, float]:
         raise click.BadParameter(f"expected a parameter and its value such as v=1, found {text!r}.") from None
 
 
+def named_variable(text: str) -> tuple[str, tuple[str, str]]:
+    """Return the role, and name and unit, of ``ROLE=NAME [UNIT]``; the unit is empty where none is given.
+
+    Raises
+    ------
+    click.BadParameter
+        If the text is not of that form.
+    """
+    role, name = _split(text)
+    title, bracket, unit = name.removesuffix("]").rpartition(" [")
+    if bracket and name.endswith("]"):
+        return role, (title.strip(), unit.strip())
+    return role, (name.strip(), "")
+
+
 def rpm_per_volt_option(command: Callable[..., Any]) -> Callable[..., Any]:
     """Add the option ``--rpm-per-volt``."""
     return click.option(

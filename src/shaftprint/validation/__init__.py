@@ -12,6 +12,7 @@ deviation           -       ``(x - x_0) / x_0`` from the working point
 =================== ======= ==========================================================================================
 """
 
+from shaftprint.validation._foreign import ForeignModel
 from shaftprint.validation._model import Model, identified_model, model_of
 from shaftprint.validation._prediction import Predict, linear_prediction, simulated_prediction
 from shaftprint.validation._settings import ValidationSettings
@@ -26,6 +27,7 @@ __all__ = [
     "Excerpt",
     "ExcerptComparison",
     "ExcerptTraces",
+    "ForeignModel",
     "Misfit",
     "Model",
     "Outcome",

@@ -8,6 +8,7 @@ import numpy as np
 from shaftprint.cli._drive_judge import validate_on_the_bench
 from shaftprint.cli._drive_options import drive_option, expect_not_given, only_recording
 from shaftprint.cli._fit_options import FitOptions, fit_options, held_structures, settings_of, structures_of
+from shaftprint.cli._known_values import named_variable
 from shaftprint.cli._options import campaign_option, vessel_option
 from shaftprint.cli._own_structure import DEFAULT_HELP, OWN_FILE_HELP, TypedName, structure_to_use
 from shaftprint.cli._terminal import echo
@@ -31,7 +32,7 @@ from shaftprint.fingerprint import Fingerprint
 from shaftprint.models import Structure
 from shaftprint.survey import Measurement, Trial, default_structure, fit, load_trial, measure, settings_by_name
 from shaftprint.tables import models_table
-from shaftprint.validation import Model, identified_model, thesis_models
+from shaftprint.validation import ForeignModel, Model, identified_model, thesis_models
 
 
 @click.command("validate")
@@ -48,6 +49,22 @@ from shaftprint.validation import Model, identified_model, thesis_models
     "--structure",
     metavar="NAME",
     help=f"Model structure: {OWN_FILE_HELP}. The fingerprint's, or {DEFAULT_HELP}, by default.",
+)
+@click.option(
+    "--model",
+    "foreign",
+    type=click.Path(path_type=Path),
+    help="FMU of another program (FMI 2 or 3, co-simulation) to validate instead. It is code, and is run: name none "
+    "that you do not trust.",
+)
+@click.option(
+    "--model-variable",
+    "variables",
+    metavar="ROLE=NAME",
+    type=named_variable,
+    multiple=True,
+    help="Variable of --model for set_point, speed (the engine's) or torque (the shaft's), with its unit where the FMU "
+    "has none, such as 'speed=w [rad/s]'; may be repeated.",
 )
 @click.option(
     "--record",
@@ -80,6 +97,8 @@ def command(
     campaign: str,
     fingerprint: Path | None,
     structure: TypedName | None,
+    foreign: Path | None,
+    variables: tuple[tuple[str, tuple[str, str]], ...],
     records: tuple[str, ...],
     used: tuple[str, ...],
     allow_in_sample: bool,
@@ -96,13 +115,19 @@ def command(
     Prints for each stretch how much of the motion the model misses beyond noise, the delay that is left,
     overshoot, rise and settling of steps beside those that the model predicts, and whether the model passes. A
     fingerprint that has the line with its limits is validated with them, each stretch by a fit without it.
-    --record, --used, --prior, --free and --hold may be repeated. With --drive, the model of --fingerprint is
+    --record, --used, --prior, --free and --hold may be repeated. --model holds an FMU of another program
+    against the recording instead. With --drive, the model of --fingerprint is
     held against other records of the drive.
     """
     if drive_file is not None:
-        expect_not_given("records", "used", "allow_in_sample", "linear_torque", "thesis_sets", "output")
+        expect_not_given("foreign", "variables", "records", "used", "allow_in_sample")
+        expect_not_given("linear_torque", "thesis_sets", "output")
         validate_on_the_bench(recordings, drive_file, fingerprint, structure, no_progress=no_progress)
         return
+    if foreign is None and variables:
+        raise click.UsageError("--model-variable is of a model that is named by --model; name it too.")
+    if foreign is not None and (fingerprint is not None or structure is not None):
+        raise click.UsageError("--model is validated instead of --fingerprint and --structure: leave those out.")
     recording = only_recording(recordings)
     trial = load_trial(vessel, campaign)
     kept = None if fingerprint is None else fingerprint_at(fingerprint)
@@ -116,7 +141,13 @@ def command(
         measurement = measure(recording, trial, mode=options.mode, progress=steps)
         asked = Asked(records=records, used=used, allow_in_sample=allow_in_sample, seed=options.seed)
         with_limits = kept is not None and kept.with_limits is not None and structure is None and not linear
-        if kept is not None and with_limits:
+        if foreign is not None:
+            point = measurement.signals.working_point
+            other = ForeignModel(path=foreign, working_point=point, variables=dict(variables))
+            first = asked.validated(
+                other.model, measurement.signals, trial, quadratic_propeller=False, predict=other.predict
+            )
+        elif kept is not None and with_limits:
             first = validated_with_limits(kept, measurement, trial, asked, steps=steps)
         else:
             model = _model(kept, structures, measurement, trial, options, steps=steps)
