@@ -11,6 +11,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
+import fmpy
 import numpy as np
 
 from shaftprint.arrays import FloatArray
@@ -61,8 +62,6 @@ def run(job: dict[str, Any], set_point_rev_s: FloatArray) -> FloatArray:
     Before the first the set point stands still for ``job["before_s"]``. It goes straight between samples: what the FMU
     is given from one to the next is the mean of both.
     """
-    import fmpy
-
     description = fmpy.read_model_description(job["fmu"], validate=False)
     if description.coSimulation is None or not description.fmiVersion.startswith(("2", "3")):
         raise ForeignError(f"expected FMI 2 or 3 for co-simulation, found FMI {description.fmiVersion} without it")
