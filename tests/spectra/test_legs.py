@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from tests.made_signals import made_channels
+from tests.made_signals import made_channels, with_channels
 
 from shaftprint.campaign import Campaign, Multisine
 from shaftprint.signals import LegState, SetPointCalibration, Signals, TrackedOrder, WorkingPoint
@@ -137,6 +137,25 @@ def test_each_line_has_the_response_of_the_line_with_a_linear_propeller(clock_ra
     assert np.abs(response.response[:, 0] - _expected(response)).max() < 2e-5
     assert response.used.all()
     assert response.reasons == ()
+
+
+def test_a_further_pick_up_is_held_against_the_first_at_the_lines():
+    """A shaft behind a coupling on which it swings at 8 Hz with the engine held: 1 / (1 - (f / 8 Hz)^2)."""
+    rng = np.random.default_rng(4)
+    signals = made_leg(noise=0.02, rng=rng)
+    engine = signals.engine_speed
+    spectrum = np.fft.rfft(engine.values)
+    frequency_hz = np.fft.rfftfreq(engine.values.size, 1.0 / RATE_HZ)
+    spectrum[frequency_hz > 5.0] = 0.0
+    behind = np.fft.irfft(spectrum / (1.0 - (np.minimum(frequency_hz, 5.0) / 8.0) ** 2), engine.values.size)
+    shaft = replace(engine, name="n_s", values=behind + 1e-3 * SPEED_REV_S * rng.standard_normal(behind.size))
+    (one,) = estimate_legs(with_channels(signals, n_s=shaft), CAMPAIGN)["M1"].speed_ratios
+    assert one.name == "n_s"
+    assert one.frequency_hz == pytest.approx(np.array(HARMONICS) / PERIOD_S, rel=1e-4)
+    off = np.log(one.size * (1.0 - (one.frequency_hz / 8.0) ** 2)) / one.std
+    assert np.abs(off).max() < 3.5
+    # at 2.6 Hz the twist is 12 %
+    assert one.std[-1] < 0.01
 
 
 @pytest.mark.slow

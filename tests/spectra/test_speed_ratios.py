@@ -16,6 +16,7 @@ def pick_up(name, pulse_rate_hz=20.0, **changes):
 def line(frequency_hz, amplitude=(0.02j, 0.03j), covariance=((4e-8, 1e-8), (1e-8, 9e-8))):
     return SimpleNamespace(
         window=SimpleNamespace(frequency_hz=frequency_hz),
+        channels=("n_e", "n_s", "M_s"),
         places=lambda *names: [("n_e", "n_s").index(name) for name in names],
         amplitude=np.array(amplitude),
         noise=SimpleNamespace(covariance=np.array(covariance, dtype=complex)),
@@ -42,3 +43,7 @@ def test_lines_above_a_fifth_of_the_slower_pulses_and_without_noise_are_left_out
 def test_what_smooths_is_not_compared(changes):
     assert speed_ratios([line(1.0)], pick_up("n_e"), [pick_up("n_s", **changes)]) == ()
     assert speed_ratios([line(1.0)], pick_up("n_e", **changes), [pick_up("n_s")]) == ()
+
+
+def test_a_sensor_that_the_lines_do_not_show_is_not_compared():
+    assert speed_ratios([line(1.0)], pick_up("n_e"), [pick_up("n_e"), pick_up("n_p")]) == ()

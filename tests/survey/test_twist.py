@@ -59,6 +59,22 @@ def test_few_lines_say_nothing(lines):
     assert twist_reasons((ratio(9.0, lines=lines),), VESSEL) == ()
 
 
+def test_legs_are_one_comparison():
+    """Three lines that scatter by their noise say nothing alone; those of two legs together do."""
+    rng = np.random.default_rng(2)
+    legs = tuple(ratio(15.0, rng, lines=lines) for lines in (slice(3, 9, 2), slice(2, 9, 2)))
+    assert all(twist_reasons((leg,), VESSEL) == () for leg in legs)
+    (reason,) = twist_reasons(legs, VESSEL)
+    swings, deviation = reason.sentence.split(" Hz against")[0].split("swings at ")[1].split(" +/- ")
+    assert abs(float(swings) - 15.0) < 3.0 * float(deviation) < 2.0
+
+
+def test_rigid_legs_of_noise_are_silent():
+    rng = np.random.default_rng(8)
+    told = sum(bool(twist_reasons((ratio(rng=rng), ratio(rng=rng)), VESSEL)) for _ in range(2000))
+    assert told <= 2
+
+
 def test_the_sensor_that_shows_more_is_taken():
     coarse = ratio(9.0, name="n_e1", lines=slice(0, 6))
     (reason,) = twist_reasons((coarse, ratio(9.0)), VESSEL)

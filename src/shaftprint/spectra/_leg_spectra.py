@@ -10,6 +10,7 @@ from shaftprint.errors import ResponseError
 from shaftprint.spectra._line_responses import response_of_lines
 from shaftprint.spectra._shift_check import shift_reasons
 from shaftprint.spectra._spectra import Spectra
+from shaftprint.spectra._speed_ratios import speed_ratios
 from shaftprint.spectra.legs import check_leg, cut_leg, leg_clock_reasons, leg_shape_reasons, measure_leg
 from shaftprint.spectra.lines import LoadDrift, band_of_lines, band_reasons, collect_harmonics, signal_to_noise
 
@@ -148,6 +149,7 @@ def _leg(signals: "Signals", leg: "Leg", state: "LegState", moved: "ExcitationSi
         load_drift=LoadDrift(delta=np.zeros(len(lines)), standard_deviation=0.0),
         speed=sensor.name,
         remarks=remarks | finding.silent,
+        speed_ratios=speed_ratios(lines, sensor, signals.speeds.values()),
     )
 
 

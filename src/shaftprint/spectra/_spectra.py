@@ -182,12 +182,8 @@ def estimate_spectra(
         load_drift=drift,
         speed=sensor.name,
         remarks=remarks | silent | left_out,
-        speed_ratios=() if thesis else speed_ratios(measurements, sensor, _others(signals, sensor, names)),
+        speed_ratios=() if thesis else speed_ratios(measurements, sensor, signals.speeds.values()),
     )
-
-
-def _others(signals: "Signals", sensor: "SpeedSignal", names: Sequence[str]) -> list["SpeedSignal"]:
-    return [one for name, one in signals.speeds.items() if name != sensor.name and name in names]
 
 
 def _against(

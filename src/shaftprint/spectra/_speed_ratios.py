@@ -1,6 +1,6 @@
 """Speeds of two sensors side by side at the lines: on a rigid line they are one."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -33,19 +33,21 @@ class SpeedRatio:
 
 
 def speed_ratios(
-    lines: Sequence["LineMeasurement"], first: "SpeedSignal", others: Sequence["SpeedSignal"]
+    lines: Sequence["LineMeasurement"], first: "SpeedSignal", sensors: Iterable["SpeedSignal"]
 ) -> tuple[SpeedRatio, ...]:
     """Return the ratio for every other pick-up whose pulses tell the angle; an instrument may smooth, who knows how.
 
     Parameters
     ----------
     lines
-        What was measured.
+        What was measured, the same channels at each.
     first
         Sensor of the response.
-    others
-        Sensors to be held against it.
+    sensors
+        Those of the recording; what the lines do not show, or is the first itself, is not held against it.
     """
+    shown = set(lines[0].channels) if lines else set()
+    others = [one for one in sensors if one.name != first.name and one.name in shown]
     plain = [one for one in (first, *others) if one.by_angle and one.averaging_s == 0.0 and one.hold_s == 0.0]
     if first not in plain:
         return ()

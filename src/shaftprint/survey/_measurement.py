@@ -21,6 +21,7 @@ from shaftprint.spectra import (
     ExactBin,
     FrequencyResponse,
     Spectra,
+    SpeedRatio,
     WholePeriodSine,
     estimate_spectra,
     governor_and_engine,
@@ -64,6 +65,12 @@ class Measurement(Shown):
         main = self.signals.working_point
         of_legs = {leg.name: leg.working_point for leg in self.legs}
         return of_legs if main in of_legs.values() else {SINES: main} | of_legs
+
+    @property
+    def speed_ratios(self) -> tuple[SpeedRatio, ...]:
+        """What the other speed sensors show over the first, of sines and of every leg."""
+        legs = [leg.spectra for leg in self.legs if leg.spectra is not self.spectra]
+        return tuple(ratio for one in (self.spectra, *legs) for ratio in one.speed_ratios)
 
 
 def measure(

@@ -335,7 +335,7 @@ def _of_fits(
     progress.begin("Finding the intervals")
     tests = leg_tests(fits[0], measurement.working_points)
     knows = is_elastic(fits[0].structure)
-    twisted = () if knows else twist_reasons(measurement.spectra.speed_ratios, trial.vessel)
+    twisted = () if knows else twist_reasons(measurement.speed_ratios, trial.vessel)
     fingerprint = _fingerprint(
         fits[0],
         measurement,

@@ -5,6 +5,7 @@ with ``f_a`` the frequency at which it would swing on the coupling with the engi
 ``(f / f_a)^2``.
 """
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -31,19 +32,29 @@ def twist_reasons(ratios: "tuple[SpeedRatio, ...]", vessel: "Vessel") -> tuple[R
     Parameters
     ----------
     ratios
-        Further speeds over the one that is identified.
+        Further speeds over the one that is identified; several of one sensor, as of legs, are lines of one comparison,
+        for a coupling is the same at every speed.
     vessel
         Says which sensor is on which shaft.
     """
     first, *others = vessel.sensors.speed
     channels = {one.name: one.channel for one in others if one.shaft == "propeller"}
-    shown = [one for one in ratios if one.name in channels and one.size.size >= _FEWEST_LINES]
+    names = dict.fromkeys(one.name for one in ratios if one.name in channels)
+    every = [_together([one for one in ratios if one.name == name]) for name in names]
+    shown = [one for one in every if one.size.size >= _FEWEST_LINES]
     if first.shaft != "engine" or not shown:
         return ()
     # one comparison, by the sensor that shows most
     best = min(shown, key=lambda one: _slope(one)[1])
     sentence = _twisted(best, first.channel, channels[best.name])
     return (Reason(kind="elastic coupling", where=first.channel, sentence=sentence),) if sentence else ()
+
+
+def _together(ratios: Sequence[SpeedRatio]) -> SpeedRatio:
+    """Return the lines of one sensor in several parts of a test, ascending."""
+    frequency, size, std = np.concatenate([(one.frequency_hz, one.size, one.std) for one in ratios], axis=1)
+    order = np.argsort(frequency, kind="stable")
+    return SpeedRatio(name=ratios[0].name, frequency_hz=frequency[order], size=size[order], std=std[order])
 
 
 def _slope(ratio: SpeedRatio) -> tuple[float, float]:
