@@ -1,15 +1,26 @@
 """How strong lines may be beside noise, what a staircase asks for, and how far the promise of a plan reaches."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 import scipy.stats
 
 from shaftprint.campaign import setpoint
-from shaftprint.design import Wish, campaign_of, design_campaign, expected_operation, length_words, plan_sentences
+from shaftprint.catalogue import structure
+from shaftprint.design import (
+    Wish,
+    assumed_ship,
+    campaign_of,
+    design_campaign,
+    expected_operation,
+    length_words,
+    plan_sentences,
+    possible_ship,
+)
 from shaftprint.design.motion import SIGNALS, Bound
-from shaftprint.design.plan import STAIRS, Timetable
+from shaftprint.design.plan import STAIRS, Timetable, predicted_accuracy
 from shaftprint.design.planning import with_band
 from shaftprint.design.search import Uses
 from shaftprint.identify import STAN_TUG_NOISE
@@ -103,6 +114,72 @@ def test_noise_that_is_known_to_a_factor_makes_deviations_known_to_that_factor(p
 
 def test_a_known_ship_in_known_noise_has_no_band(plan):
     assert with_band(plan, noise_spread=0.0, rng=np.random.default_rng(1)).band is None
+
+
+@pytest.mark.slow
+def test_what_is_promised_is_that_of_the_ships_on_which_it_may_be_sailed(plan, tug, truth):
+    """A ship that is known exactly: its own deviation, and what it costs that the noise is estimated, 3 to 20 %."""
+    other = assumed_ship(tug.structure, truth | {"t_d": 0.11, "zeta": 0.7, "K_p": 4.0}, std={})
+    promised = with_band(plan, noise_spread=0.1, possible=other, rng=np.random.default_rng(1)).promised
+    there = predicted_accuracy(plan.structures, plan.legs, plan.noise, values=other.by_name, priors=plan.priors)
+    for name in ("t_d", "zeta", "K_p", "tau_dn", "k_q"):
+        assert 1.02 < promised[name].std / there.estimate(name).std < 1.25
+    # half as much again as at the assumed numbers, which stay those of the table
+    assert promised["t_d"].std > 1.3 * plan.predicted.estimate("t_d").std
+    assert promised["t_d"].value == truth["t_d"]
+
+
+@pytest.mark.slow
+def test_noise_that_nobody_recorded_goes_through_the_loop_of_each_ship(plan, tug, truth):
+    """With half of the gains the same torques move the speed more, and the slow lines of it tell less of the gains."""
+    gentle = assumed_ship(tug.structure, truth | {"K_p": 0.5 * truth["K_p"], "K_i": 0.5 * truth["K_i"]}, std={})
+    recorded, assumed = (
+        with_band(
+            plan, noise_spread=0.1, possible=gentle, noise_is_assumed=is_assumed, rng=np.random.default_rng(1)
+        ).promised
+        for is_assumed in (False, True)
+    )
+    assert assumed["K_i"].std > 1.2 * recorded["K_i"].std
+
+
+# ---- which ships are possible after a first test ----
+
+
+def first_test(*, std, interval=None):
+    """A fingerprint of K_p = 10 at 1.2 times the usual speed and 1.5 times the usual torque."""
+    quantity = SimpleNamespace(name="K_p", value=10.0, std=std, interval_95=interval)
+    conditions = SimpleNamespace(engine_speed=SimpleNamespace(value=1200.0), shaft_torque=SimpleNamespace(value=1500.0))
+    return SimpleNamespace(parameters=(quantity,), conditions=conditions)
+
+
+def possible_gain(truth, *, usual, std, interval=None):
+    """Mean and deviation of K_p that follow; the usual one is known to 0.8."""
+    found = assumed_ship(structure("GAUGE-CLOSED"), truth | {"K_p": 10.0}, std={"K_p": std})
+    before = assumed_ship(structure("GAUGE-CLOSED"), truth | {"K_p": usual}, std={"K_p": 0.8})
+    ship = possible_ship(
+        found, first_test(std=std, interval=interval), before, engine_speed_rpm=1000.0, shaft_torque_nm=1000.0
+    )
+    place = ship.structure.names.index("K_p")
+    return ship.values[place], np.sqrt(ship.covariance[place, place])
+
+
+def test_what_was_found_and_what_is_usual_are_weighed_by_their_variances(truth):
+    """At the point of the test a gain is 1.2 / 1.5 of the usual one: 12 +/- 0.8 is 9.6 +/- 0.64, beside 10 +/- 0.64."""
+    mean, std = possible_gain(truth, usual=12.0, std=0.64)
+    assert mean == pytest.approx(9.8)
+    assert std == pytest.approx(0.64 / np.sqrt(2.0))
+
+
+def test_a_ship_that_is_no_usual_one_is_as_it_was_found(truth):
+    assert possible_gain(truth, usual=6.0, std=0.64) == pytest.approx((10.0, 0.64))
+
+
+def test_an_interval_wider_than_its_deviation_says_counts(truth):
+    """7 to 15 is 11 +/- 2.04, where the likelihood at its bottom says 10 +/- 0.1."""
+    weights = np.array([1.0 / (4.0 / 1.959964) ** 2, 1.0 / 0.64**2])
+    mean, std = possible_gain(truth, usual=12.0, std=0.1, interval=(7.0, 15.0))
+    assert mean == pytest.approx(weights @ [11.0, 9.6] / weights.sum())
+    assert std == pytest.approx(weights.sum() ** -0.5)
 
 
 @pytest.mark.slow

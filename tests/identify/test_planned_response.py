@@ -97,6 +97,18 @@ def test_levels_go_there_and_back():
     assert found.density == pytest.approx(np.stack([density, density]), rel=1e-12)
 
 
+def test_a_covariance_that_was_estimated_is_larger_than_the_noise():
+    """From 20 complex samples, two outputs weighed together: 20 / 18 of the noise, which the levels are without."""
+    density = np.array([[2e-6, 1e-6 + 3e-6j], [1e-6 - 3e-6j, 8e-6]])
+    noise = white(density, outputs=("n", "M_s"))
+    lines = {"frequency_hz": [0.5, 2.0], "amplitude": 0.2 * 0.6, "duration_s": [50.0, 20.0], "lines": ("slow", "fast")}
+    known = planned_lines(noise=noise, **lines)
+    estimated = planned_lines(noise=noise, degrees_of_freedom=np.array([40.0, 40.0]), **lines)
+    assert estimated.covariance == pytest.approx(known.covariance * 20.0 / 18.0)
+    found = noise_levels(estimated, two_sines(), set_point_per_v=0.2)
+    assert found.density == pytest.approx(np.stack([density, density]), rel=1e-12)
+
+
 def test_levels_between_frequencies_follow_a_power_law():
     noise = NoiseLevels(
         frequency_hz=np.array([0.1, 1.0]),

@@ -9,6 +9,7 @@ from tests.made_signals import made_channels, with_channels
 from shaftprint.campaign import Campaign, Multisine
 from shaftprint.signals import LegState, SetPointCalibration, Signals, TrackedOrder, WorkingPoint
 from shaftprint.spectra import estimate_legs
+from shaftprint.spectra.legs import leg_freedom
 from shaftprint.spectra.lines import LineNoise
 
 SPEED_REV_S, TORQUE_NM, RATE_HZ = 14.0, 830.0, 100.0
@@ -137,6 +138,15 @@ def test_each_line_has_the_response_of_the_line_with_a_linear_propeller(clock_ra
     assert np.abs(response.response[:, 0] - _expected(response)).max() < 2e-5
     assert response.used.all()
     assert response.reasons == ()
+
+
+def test_how_well_the_noise_will_be_known_is_known_beforehand():
+    measured = estimate_legs(made_leg(noise=0.02, size=0.05, rng=np.random.default_rng(4)), CAMPAIGN)["M1"].response
+    expected = leg_freedom(HARMONICS, PERIODS)
+    assert expected == pytest.approx(measured.degrees_of_freedom, rel=0.03)
+    # 36 bins of two numbers each, of which the slowest line has few within its octave
+    assert expected[-1] == pytest.approx(72.0, rel=0.04)
+    assert expected[0] < 0.4 * expected[-1]
 
 
 def test_a_further_pick_up_is_held_against_the_first_at_the_lines():

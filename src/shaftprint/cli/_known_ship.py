@@ -19,6 +19,7 @@ from shaftprint.design import (
     limits_from_vessel,
     limits_of_fingerprint,
     line_of_fingerprint,
+    possible_ship,
     ship_before_test,
     ship_of_fingerprint,
     usual_speeds,
@@ -144,6 +145,8 @@ def knowledge_of(stated: Stated, *, steps: Steps, within_s: float | None = None)
         line=line,
         noise={share: level.of_outputs(*outputs) for share, level in noise.items()},
         noise_spread=spread,
+        noise_is_assumed=recorded is None and not (stated.first_test is not None and stated.first_test.noise),
+        possible=_possible(stated, structure, expected, ship),
         noise_source=source,
         priors=priors,
         remarks=(*_remarks(stated), *_first_test(stated, recorded, limits, within_s)),
@@ -283,6 +286,27 @@ def _limits(stated: Stated, line: SetPointLine, recorded: _Recorded | None) -> L
 def _ship(stated: Stated, structure: Structure, expected: Mapping[str, Prior]) -> AssumedShip:
     if stated.first_test is not None:
         return ship_of_fingerprint(stated.first_test, stated.structure).extended(structure)
+    return _usual(stated, structure, expected)
+
+
+def _usual(stated: Stated, structure: Structure, expected: Mapping[str, Prior]) -> AssumedShip:
+    """Return what is usual on ships of the kind, before any test."""
     of_ship = expected_of_ship(structure, stated.vessel)
     unknown = {name: value for name, value in of_ship.items() if name not in expected}
     return ship_before_test(structure, expected, unknown | dict(stated.options.values))
+
+
+def _possible(
+    stated: Stated, structure: Structure, expected: Mapping[str, Prior], ship: AssumedShip
+) -> AssumedShip | None:
+    """Return the ships on which a test after a first one may be sailed; None where there was none."""
+    if stated.first_test is None:
+        return None
+    point = stated_working_point(stated.vessel)
+    return possible_ship(
+        ship,
+        stated.first_test,
+        _usual(stated, structure, expected),
+        engine_speed_rpm=rpm_from_rev_s(point.engine_speed_rev_s),
+        shaft_torque_nm=point.shaft_torque_nm,
+    )

@@ -28,7 +28,7 @@ def print_planned_test(planned: PlannedTest, folder: Path) -> None:
     give("duration_s", planned.campaign.duration_s)
     give("rehearsed", planned.rehearsal is not None)
     give("met", planned.plan.is_enough)
-    give("predicted", [*planned.plan.predicted.parameters, *planned.plan.predicted.combinations])
+    give("predicted", list(planned.plan.promised.values()))
     give("wished_std", planned.plan.targets)
     give("remedies", planned.remedies)
     give("card", card)

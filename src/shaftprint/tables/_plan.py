@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from shaftprint.identify.fit import Estimate
 
 PERCENT = 100.0
-_FIRST_ORDER = "Predicted for the assumed values, to first order"
+_FIRST_ORDER = "Predicted to first order, for the middle of the possible ships"
 
 
 def wish_table(test: "PlannedTest") -> Table:
@@ -25,7 +25,7 @@ def wish_table(test: "PlannedTest") -> Table:
         return table
     rows = []
     for name, row in zip(test.plan.wish.names, table.rows, strict=True):
-        number = test.plan.predicted.estimate(name)
+        number = test.plan.promised[name]
         factor, _ = fine_unit(number.unit, number.value, number.std)
         wish = (rounded(factor * targets[name], 2), rounded(number.std / targets[name], 2))
         rows.append((*row[:3], *wish, *row[3:]))
@@ -36,8 +36,7 @@ def wish_table(test: "PlannedTest") -> Table:
 
 def predicted_number_table(test: "PlannedTest") -> Table:
     """Return what is predicted of all numbers of which nothing is wished."""
-    every = (*test.plan.predicted.parameters, *test.plan.predicted.combinations)
-    names = [one.name for one in every if one.name not in test.plan.wish.names]
+    names = [name for name in test.plan.promised if name not in test.plan.wish.names]
     title = "What it would tell besides" if test.plan.wish.names else "What it would tell"
     return _number_table(test, names, title)
 
@@ -138,7 +137,7 @@ def _number_table(test: "PlannedTest", names: Sequence[str], title: str) -> Tabl
         columns += numbers("rehearsed error / std", "intervals that hold [%]")
     rows = []
     for name in names:
-        number = test.plan.predicted.estimate(name)
+        number = test.plan.promised[name]
         cells = [Symbol(name), *_predicted(number)]
         if band is not None:
             cells.append(_reach(number, band.deviations[name]) if name in band.deviations else "")

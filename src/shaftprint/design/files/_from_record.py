@@ -75,7 +75,9 @@ def _plan(record: "PlanRecord", structure: Structure, sailed: tuple[SailedLeg, .
         structures=structures,
         legs=legs,
         stairs_rpm=record.stairs_rpm,
-        band=None if record.band is None else Band(deviations=record.band.deviations, seconds=record.band.seconds),
+        band=None
+        if record.band is None
+        else Band(deviations=record.band.deviations, middle=record.band.middle, seconds=record.band.seconds),
         peaks=tuple(leg.peaks for leg in record.legs),
         earlier=earlier,
         predicted=predicted_accuracy(structures, legs, noise, values=ship.by_name, priors=priors, earlier=earlier),

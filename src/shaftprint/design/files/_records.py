@@ -145,7 +145,9 @@ class BandRecord(Record):
     """How far what is predicted reaches."""
 
     deviations: dict[Text, tuple[float, float]]
-    """Lower and upper predicted deviation over that of the plan, by number."""
+    """Lower and upper deviation over that of the middle, by number."""
+    middle: dict[Text, float] = {}
+    """Deviation of the middle of the possible ships over that at the assumed values, by number."""
     seconds: tuple[float, float] | None = None
     """Shortest and longest test that meets every wish [s]."""
 

@@ -51,7 +51,9 @@ def record_of(test: "PlannedTest") -> PlanRecord:
         legs=tuple(_leg(*one) for one in zip(plan.legs, plan.noise, plan.peaks, strict=True)),
         band=None
         if plan.band is None
-        else BandRecord(deviations=dict(plan.band.deviations), seconds=plan.band.seconds),
+        else BandRecord(
+            deviations=dict(plan.band.deviations), middle=dict(plan.band.middle), seconds=plan.band.seconds
+        ),
         rehearsal=None if test.rehearsal is None else _rehearsal(test.rehearsal),
         remarks=test.remarks,
         remedies=tuple(RemedyRecord(name=one.name, worst=one.worst, ratios=dict(one.ratios)) for one in test.remedies),
@@ -60,10 +62,9 @@ def record_of(test: "PlannedTest") -> PlanRecord:
 
 
 def _predicted(plan: "Plan") -> dict[str, dict[str, float | str | None]]:
-    every = (*plan.predicted.parameters, *plan.predicted.combinations)
     return {
         one.name: {"value": one.value, "std": one.std, "wished_std": plan.targets.get(one.name), "unit": one.unit}
-        for one in every
+        for one in plan.promised.values()
     }
 
 

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 
 # Of so many draws for one that is wanted nearly all lines would have to be unstable for too few to be left.
 _DRAWN_FOR_ONE = 4
+_GAINS = (ShipRole.PROPORTIONAL_GAIN, ShipRole.INTEGRAL_GAIN, ShipRole.DERIVATIVE_GAIN)
 
 RELATIVE_SPREAD: Mapping[Role, float] = {
     ShipRole.PROPORTIONAL_GAIN: 0.3,
@@ -72,10 +73,19 @@ class AssumedShip(Shown):
         covariance[known, known] = self.covariance
         return AssumedShip(structure=structure, values=usual.values, covariance=frozen_float(covariance))
 
-    def draws(self, count: int, rng: np.random.Generator) -> FloatArray:
+    def draws(self, count: int, rng: np.random.Generator, *, gain_margin: float = 1.0) -> FloatArray:
         """Return possible ships, with a stable loop and within the bounds, the assumed one first.
 
         A ship whose loop is unstable is not tested.
+
+        Parameters
+        ----------
+        count
+            Number of ships.
+        rng
+            Draws them.
+        gain_margin
+            How many times as large the gains of the governor may be, at least, before the line hunts.
 
         Returns
         -------
@@ -100,13 +110,20 @@ class AssumedShip(Shown):
             inside = np.clip(
                 rng.multivariate_normal(self.values, self.covariance, size=more, method="eigh"), lower, upper
             )
-            rows, drawn = np.concatenate([rows, inside[stable_rows(self.structure, inside)]]), drawn + more
+            quiet = stable_rows(self.structure, self.with_gains(inside, gain_margin))
+            rows, drawn = np.concatenate([rows, inside[quiet]]), drawn + more
         if rows.shape[0] < count:
             raise DesignError(
                 f"assumed ship {self.structure.name}: expected mostly stable loops within the stated uncertainty, "
                 f"found {rows.shape[0] - 1} of {drawn}; state it more narrowly, or sail a short test first."
             )
         return rows
+
+    def with_gains(self, rows: FloatArray, factor: float) -> FloatArray:
+        """Return parameter values with so many times the gains of the governor, shape (rows, parameters)."""
+        changed = rows.copy()
+        changed[:, [place for place, p in enumerate(self.structure.parameters) if p.role in _GAINS]] *= factor
+        return changed
 
 
 def assumed_ship(

@@ -30,6 +30,10 @@ class Knowledge(Shown):
     noise_spread: float = 0.0
     """Standard deviation of the logarithm of the noise's amplitude: how far it may be from that level; 0 where it was
     measured well."""
+    noise_is_assumed: bool = False
+    """Whether nobody recorded it: on each possible ship it is then what goes through that ship's loop."""
+    possible: AssumedShip | None = None
+    """The ships on which the test may be sailed, for what is promised of it; ``ship`` where not given."""
     noise_source: str
     """Where it comes from, in words."""
     priors: "Mapping[str, Prior]"

@@ -9,6 +9,7 @@ import numpy as np
 from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.catalogue import ShipRole
 from shaftprint.design.inputs._assumed_ship import AssumedShip, assumed_ship
+from shaftprint.distributions import NORMAL_95
 from shaftprint.fingerprint import identified_model
 from shaftprint.models import stable_rows
 
@@ -23,6 +24,10 @@ _GAINS = (ShipRole.PROPORTIONAL_GAIN, ShipRole.INTEGRAL_GAIN, ShipRole.DERIVATIV
 # How many times as large the gains may be before the line hunts, as those of the Stan Tug 1205 may be 1.6 times, and
 # the smallest share of the usual gains that is tried.
 _GAIN_MARGIN, _LEAST_SHARE, _SHARES = 1.6, 0.02, 60
+# So many standard deviations from the usual is no usual ship.
+_OTHER_SHIP = 3.0
+# By so much an interval is wider than the standard deviation says before the likelihood is no parabola.
+_BENT = 1.25
 
 
 def ship_before_test(
@@ -87,6 +92,66 @@ def ship_of_fingerprint(fingerprint: "Fingerprint", structure: "Structure") -> A
     covariance = np.zeros_like(usual.covariance)
     covariance[np.ix_(free, free)] = _finite(model.covariance, np.diag(usual.covariance)[free])
     return replace(usual, covariance=frozen_float(covariance))
+
+
+def possible_ship(
+    found: AssumedShip,
+    fingerprint: "Fingerprint",
+    usual: AssumedShip,
+    *,
+    engine_speed_rpm: float,
+    shaft_torque_nm: float,
+) -> AssumedShip:
+    """Return which ships the next test may be sailed on: as a first one has found them, and as ships usually are.
+
+    Both are normal distributions, of one ship. A weak test leaves governor and lag open by more than ships differ, and
+    may end at a bound: where the interval that follows the likelihood is wider than the standard deviation lets expect,
+    its middle and width count. A number that is then more than three standard deviations from the usual is as it was
+    found: that ship is another.
+
+    Parameters
+    ----------
+    found
+        The ship of the fingerprint.
+    fingerprint
+        What the first test found.
+    usual
+        What is assumed before any test, of the same parameters; where it has no deviation it says nothing.
+    engine_speed_rpm, shaft_torque_nm
+        The working point at which the usual numbers are normalised.
+    """
+    conditions, names = fingerprint.conditions, found.structure.names
+    share = (conditions.engine_speed.value / engine_speed_rpm) / (conditions.shaft_torque.value / shaft_torque_nm)
+    over_torque = {name for name, role in found.structure.roles.items() if role.over_torque}
+    factor = np.array([share if name in over_torque else 1.0 for name in names])
+    usual_std = factor * np.array([np.sqrt(np.diag(usual.covariance))[usual.structure.names.index(n)] for n in names])
+    usual_value = factor * np.array([usual.by_name[name] for name in names])
+    middle, widened = _widened(found, fingerprint)
+    open_ = np.flatnonzero(np.diag(widened) > 0.0)
+    block = np.ix_(open_, open_)
+    covariance, spread, away = widened[block], usual_std[open_] ** 2, (middle - usual_value)[open_]
+    says = (spread > 0.0) & (away**2 <= _OTHER_SHIP**2 * (spread + np.diag(covariance)))
+    before = np.diag(np.where(says, 1.0 / np.where(says, spread, 1.0), 0.0))
+    together = np.zeros_like(widened)
+    together[block] = np.linalg.inv(np.linalg.inv(covariance) + before)
+    values = middle.copy()
+    values[open_] -= together[block] @ before @ away
+    bounds = np.array([(p.lower, p.upper) for p in found.structure.parameters]).T
+    return replace(found, values=frozen_float(np.clip(values, *bounds)), covariance=frozen_float(together))
+
+
+def _widened(found: AssumedShip, fingerprint: "Fingerprint") -> tuple[FloatArray, FloatArray]:
+    """Return values and covariance of a ship that are as wide as the intervals of its fingerprint."""
+    values, covariance = found.values.copy(), found.covariance.copy()
+    intervals = {one.name: one.interval_95 for one in fingerprint.parameters if one.interval_95 is not None}
+    for place, name in enumerate(found.structure.names):
+        low, high = intervals.get(name, (0.0, 0.0))
+        std, half = float(np.sqrt(covariance[place, place])), 0.5 * (high - low) / NORMAL_95
+        if np.isfinite(half) and half > _BENT * std > 0.0:
+            values[place] = 0.5 * (low + high)
+            covariance[place] *= half / std
+            covariance[:, place] *= half / std
+    return values, covariance
 
 
 def limits_of_fingerprint(limits: "Limits", fingerprint: "Fingerprint", vessel: "Vessel") -> "Limits":

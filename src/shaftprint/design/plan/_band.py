@@ -14,6 +14,8 @@ class Band(Shown):
     """What is left open of a plan's accuracy by the noise and the numbers of a ship that are not known."""
 
     deviations: Mapping[str, tuple[float, float]]
-    """Lower and upper predicted standard deviation over that of the plan, by number."""
+    """Lower and upper standard deviation of the possible ships over that of their middle, by number."""
+    middle: Mapping[str, float]
+    """What is promised: the median over the possible ships, over what is predicted at the assumed values, by number."""
     seconds: tuple[float, float] | None = None
     """Shortest and longest test like this one that meets every wish [s]; None without wishes."""

@@ -1,7 +1,7 @@
 """The noun ``Plan``: a test that is designed, with what it would tell and what it asks of ship and engine."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import TypeAlias
 
@@ -13,10 +13,12 @@ from shaftprint.design.plan._band import Band
 from shaftprint.design.plan._leg import Leg
 from shaftprint.design.plan._timetable import Timetable
 from shaftprint.identify import NoiseLevels, Prior
+from shaftprint.identify.fit import Estimate
 from shaftprint.identify.prediction import Accuracy, planned_lines, predict_joint_accuracy
 from shaftprint.models import Structure
 from shaftprint.notebook import Shown, Summary
 from shaftprint.spectra import FrequencyResponse
+from shaftprint.spectra.legs import leg_freedom
 from shaftprint.units import SECONDS_PER_MINUTE
 
 # A longer test is stated in hours.
@@ -90,13 +92,13 @@ class Plan(Shown):
     earlier: tuple[SailedTest, ...] = ()
     """Tests that were sailed before and are fitted together with this one."""
     predicted: Accuracy
-    """How well the numbers would be known, at the assumed values."""
+    """How well the numbers would be known, at the assumed values and to first order."""
 
     def summary(self) -> Summary:
         """Return length, legs, and each wish with what is predicted."""
+        promised = self.promised
         numbers = {
-            name: f"{self.predicted.estimate(name).std:.3g} predicted, {target:.3g} wished"
-            for name, target in self.targets.items()
+            name: f"{promised[name].std:.3g} predicted, {target:.3g} wished" for name, target in self.targets.items()
         }
         facts = {
             "length": f"{length_words(self.duration_s)}, not rehearsed",
@@ -127,6 +129,13 @@ class Plan(Shown):
         return tuple(starts)
 
     @property
+    def promised(self) -> dict[str, Estimate]:
+        """Every number at its assumed value, with the standard deviation of the middle of the possible ships."""
+        middle = {} if self.band is None else self.band.middle
+        every = (*self.predicted.parameters, *self.predicted.combinations)
+        return {one.name: replace(one, std=one.std * middle.get(one.name, 1.0)) for one in every}
+
+    @property
     def targets(self) -> dict[str, float]:
         """Wished standard deviations in the numbers' units, by name."""
         values = {e.name: e.value for e in (*self.predicted.parameters, *self.predicted.combinations)}
@@ -134,8 +143,9 @@ class Plan(Shown):
 
     @property
     def ratios(self) -> dict[str, float]:
-        """Predicted standard deviation over the wish, by name; the slack is what is missing to 1."""
-        return {name: self.predicted.estimate(name).std / target for name, target in self.targets.items()}
+        """Promised standard deviation over the wish, by name; the slack is what is missing to 1."""
+        promised = self.promised
+        return {name: promised[name].std / target for name, target in self.targets.items()}
 
     @property
     def is_enough(self) -> bool:
@@ -160,12 +170,25 @@ def predicted_accuracy(
     values: Mapping[str, float],
     priors: Mapping[str, Prior],
     earlier: Sequence[SailedTest] = (),
+    is_noise_known: bool = True,
 ) -> Accuracy:
-    """Return how well the legs and earlier tests together would find the parameters."""
+    """Return how well the legs and earlier tests together would find the parameters.
+
+    Parameters
+    ----------
+    is_noise_known
+        Whether the fit knows the noise; it costs accuracy that it has to estimate it beside each line.
+    """
     pairs = [
         (
             structure,
-            planned_lines(leg.frequency_hz, noise=level, amplitude=np.abs(leg.amplitudes), duration_s=leg.window_s),
+            planned_lines(
+                leg.frequency_hz,
+                noise=level,
+                amplitude=np.abs(leg.amplitudes),
+                duration_s=leg.window_s,
+                degrees_of_freedom=None if is_noise_known else leg_freedom(leg.harmonics, leg.periods),
+            ),
         )
         for structure, leg, level in zip(structures, legs, noise, strict=True)
     ]

@@ -36,14 +36,21 @@ def plan_sentences(plan: Plan, remedies: Sequence[Remedy] = (), rehearsal: Rehea
 
 def _reach(plan: Plan) -> list[str]:
     """Return how far the promise of a plan reaches where ship or noise are not known."""
-    if plan.band is None:
+    band = plan.band
+    if band is None:
         return []
     share = f"{HELD * 10.0:.0f} of 10 ships that are possible"
-    if plan.band.seconds is not None:
-        return [f"On {share} such a test meets the wishes in {_span(*plan.band.seconds)}."]
-    numbers = [name for name in numbers_of_line(plan.ship.structure) if name in plan.band.deviations]
-    low, high = (float(np.median([plan.band.deviations[name][end] for name in numbers])) for end in (0, 1))
-    return [f"On {share} the numbers become known {low:.2g} to {high:.2g} times as far as predicted, in the median."]
+    if band.seconds is not None:
+        return [f"On {share} such a test meets the wishes in {_span(*band.seconds)}."]
+    reaches = [
+        (name, *band.deviations[name]) for name in numbers_of_line(plan.ship.structure) if name in band.deviations
+    ]
+    low, high = (float(np.median([one[end] for one in reaches])) for end in (1, 2))
+    name, least, most = max(reaches, key=lambda one: one[2] / one[1])
+    return [
+        f"On {share} the numbers become known {low:.2g} to {high:.2g} times as far as predicted, in the median; least "
+        f"sure is {name}, {least:.2g} to {most:.2g} times."
+    ]
 
 
 def _span(low_s: float, high_s: float) -> str:
@@ -56,7 +63,7 @@ def _speeds(plan: Plan) -> str:
 
 
 def _miss(plan: Plan, name: str) -> str:
-    number, target = plan.predicted.estimate(name), plan.targets[name]
+    number, target = plan.promised[name], plan.targets[name]
     if not math.isfinite(number.std):
         return f"{name}: such a test does not show it, however long."
     best = stated(number.value, number.std, number.unit)

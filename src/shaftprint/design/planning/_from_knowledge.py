@@ -72,7 +72,7 @@ def plan_test(
         nearest = {
             share: knowledge.noise[min(knowledge.noise, key=lambda sailed: abs(sailed - share))] for share in speeds
         }
-        return design_campaign(
+        plan = design_campaign(
             knowledge.ship,
             wish,
             knowledge.limits,
@@ -84,9 +84,15 @@ def plan_test(
             timetable=Timetable(stairs=STAIRS if has_stairs(seconds) else ()),
             effort=effort,
         )
+        return with_band(
+            plan,
+            noise_spread=knowledge.noise_spread,
+            noise_is_assumed=knowledge.noise_is_assumed,
+            possible=knowledge.possible,
+            rng=np.random.default_rng(seed),
+        )
 
     plan = shortest(design, longest_s=within_s) if is_shortest else design(within_s)
-    plan = with_band(plan, noise_spread=knowledge.noise_spread, rng=np.random.default_rng(seed))
     help_needed = bool(wish.names) and not plan.is_enough
     return PlannedTest(
         name=name,

@@ -37,6 +37,7 @@ def length_curve(plan: Plan, shares: Sequence[float] = _SHARES) -> LengthCurve:
     counts = sorted({tuple(max(FEWEST_PERIODS, round(share * leg.periods)) for leg in plan.legs) for share in shares})
     names = plan.wish.names or numbers_of_line(plan.ship.structure)
     names = tuple(name for name in names if plan.predicted.estimate(name).value != 0.0)
+    middle = {} if plan.band is None else plan.band.middle
     durations, rows = [], []
     for count in counts:
         legs = tuple(replace(leg, periods=periods) for leg, periods in zip(plan.legs, count, strict=True))
@@ -49,7 +50,8 @@ def length_curve(plan: Plan, shares: Sequence[float] = _SHARES) -> LengthCurve:
             earlier=plan.earlier,
         )
         durations.append(replace(plan, legs=legs).duration_s)
-        rows.append([accuracy.estimate(name).std / abs(accuracy.estimate(name).value) for name in names])
+        every = [accuracy.estimate(name) for name in names]
+        rows.append([middle.get(one.name, 1.0) * one.std / abs(one.value) for one in every])
     table = np.array(rows)
     return LengthCurve(
         duration_s=frozen_float(durations),

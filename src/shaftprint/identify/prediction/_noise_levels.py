@@ -138,12 +138,13 @@ def noise_levels(
             f"noise levels: campaign {campaign.name} has no line {', '.join(unknown)}; give the campaign that the "
             "recording was made with."
         )
-    size = len(response.outputs)
+    size, enlarged = len(response.outputs), response.weight_factors
     density = np.empty((places.size, size, size), dtype=np.complex128)
     for row, index in enumerate(places):
         amplitude_v, seconds = tested[response.lines[index]]
         amplitude = set_point_per_v * amplitude_v
-        spread = response.covariance[index]
+        # as a weight a covariance of few samples is larger than that of the errors
+        spread = response.covariance[index] / enlarged[index]
         same = spread[:size, :size] + spread[size:, size:]
         crossed = spread[size:, :size] - spread[:size, size:]
         density[row] = (same + 1j * crossed) * (0.5 * seconds * amplitude**2)

@@ -80,6 +80,7 @@ def planned_lines(
     duration_s: ArrayLike,
     lines: Sequence[str] = (),
     excitation: str = SPEED,
+    degrees_of_freedom: ArrayLike | None = None,
 ) -> FrequencyResponse:
     """Return test lines with the covariance that they would have; the values are zero.
 
@@ -97,6 +98,9 @@ def planned_lines(
         Names of the lines; numbered when empty.
     excitation
         Symbol of what is moved.
+    degrees_of_freedom
+        Real degrees of freedom from which the covariance of each line will be estimated; that costs accuracy. It is
+        taken as known where they are not given.
 
     Raises
     ------
@@ -111,7 +115,7 @@ def planned_lines(
     highest = noise.frequency_hz[-1]
     used = frequency <= (1.0 + _SAME_FREQUENCY) * highest
     names = tuple(lines) or tuple(f"line {number}" for number in range(1, frequency.size + 1))
-    return FrequencyResponse(
+    response = FrequencyResponse(
         frequency_hz=frequency,
         response=np.zeros((len(noise.outputs), 1, frequency.size), dtype=np.complex128),
         covariance=_real(spread),
@@ -124,7 +128,11 @@ def planned_lines(
             for name, is_used in zip(names, used, strict=True)
             if not is_used
         },
+        degrees_of_freedom=np.full(frequency.size, np.inf)
+        if degrees_of_freedom is None
+        else np.asarray(degrees_of_freedom, dtype=np.float64),
     )
+    return replace(response, covariance=response.weight_factors[:, None, None] * response.covariance)
 
 
 def expected_response(

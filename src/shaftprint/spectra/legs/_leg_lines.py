@@ -43,6 +43,7 @@ from shaftprint.spectra.lines import (
     Neighbours,
     ShaftRelation,
     Window,
+    equivalent_samples,
     noise_from_neighbours,
 )
 from shaftprint.spectra.orders import LineOrders
@@ -131,6 +132,29 @@ def measure_leg(
     )
     lines = tuple(_line(leg, harmonic, of_square) for harmonic, of_square in zip(harmonics, square, strict=True))
     return LegLines(window=linear, harmonics=tuple(harmonics), lines=lines, square=square)
+
+
+def leg_freedom(harmonics: Sequence[int], periods: int) -> FloatArray:
+    """Return the real degrees of freedom of the noise of each line of a leg, before it is sailed, shape (lines,).
+
+    A speed that swings far leaves fewer: bins are then related.
+
+    Parameters
+    ----------
+    harmonics
+        Its lines.
+    periods
+        Whole periods of its window.
+    """
+    every = np.arange((max(harmonics) + 1) * periods + _NOISE_BINS)
+    beside = every[every % periods != 0]
+    freedom = []
+    for line in np.array(harmonics) * periods:
+        near = _nearest(beside, int(line), _NOISE_BINS)
+        log_ratio = np.log(near / line)
+        place = Neighbours(bins=near.astype(np.float64), log_ratio=log_ratio, weight=_weight(log_ratio))
+        freedom.append(2.0 * equivalent_samples(place))
+    return np.array(freedom)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
