@@ -165,3 +165,16 @@ def test_a_channel_without_numbers_is_no_sensor(run, tmp_path):
     result = run("inspect", path)
     assert _map(result)["sensors"] == {"rack": {"channel": "Rack", "unit": "%", "cycle_s": 0.02}}
     assert "# 'Load': it holds no numbers" in result.output
+
+
+def test_names_go_before_units(run, tmp_path):
+    # a lever in % at a rate of messages is no rack; percent torque that somebody demands is none of the speed
+    time = np.arange(400) / 50.0
+    channels = {"LeverPosition": ("%", 40.0 + np.sin(time)), "DemandTorque": ("%", 50.0 + np.cos(time))}
+    path = tmp_path / "lever.nc"
+    with RecordingWriter(path) as writer:
+        for name, (unit, values) in channels.items():
+            writer.declare(name, unit=unit, rate_hz=50.0, dtype="float64")
+            writer.append(name, values)
+    found = _map(run("inspect", path))["sensors"]
+    assert (found["set_point"]["channel"], found["rack"]["channel"]) == ("LeverPosition", "DemandTorque")

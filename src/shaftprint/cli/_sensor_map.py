@@ -13,7 +13,7 @@ Use: TypeAlias = Literal["speed", "instrument", "encoder", "shaft_torque", "set_
 
 _SET_POINT = re.compile(r"set[ _-]*p|setpoint|demand|lever|throttle|soll|u_set|command", re.IGNORECASE)
 _TORQUE = re.compile(r"torque|m_s\b|\bms\b|koppel|drehmoment|strain", re.IGNORECASE)
-_PULSES = re.compile(r"ptm|pulse|tacho|pick|rpm|speed|\bn_?e", re.IGNORECASE)
+_PULSES = re.compile(r"ptm|pulse|tacho|pick|rpm|speed|drehzahl|\bn_?e", re.IGNORECASE)
 _NO_RACK = re.compile(r"trim|tilt|slip", re.IGNORECASE)
 _ENCODER = re.compile(r"enc|crank|shaft|counter|turn", re.IGNORECASE)
 _ENGINE = re.compile(r"eng|motor|_e\b|crank|flywheel", re.IGNORECASE)
@@ -190,10 +190,13 @@ def _use(item: Seen) -> Use | None:
     """Return what a channel is most likely used for: unit and name first, then its shape."""
     name, unit = item.channel.name, item.channel.unit
     if unit == "%" and item.channel.rate_hz <= 100.0:
+        # a percent torque that somebody demands is no set point of the speed
+        if _SET_POINT.search(name) and not _TORQUE.search(name):
+            return "set_point"
         return None if _NO_RACK.search(name) else "rack"
     if unit in ("kn", "m/s"):
         return "ship_speed"
-    if _SET_POINT.search(name) and unit in _SET_POINTS and (unit != "%" or item.channel.rate_hz > 100.0):
+    if _SET_POINT.search(name) and unit in _SET_POINTS:
         return "set_point"
     if _TORQUE.search(name) and unit in _TORQUES and not item.is_pulses:
         return "shaft_torque"

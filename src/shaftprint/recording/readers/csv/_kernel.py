@@ -97,7 +97,7 @@ def rows_of(text, delimiter, decimal, width, least, targets, numbers, texts, odd
                 return -1, 0, 0
             target = targets[column]
             begin = at
-            digits, places, power, count = np.uint64(0), 0, 0, 0
+            digits, power, count = np.uint64(0), 0, 0
             sign, is_number = 1.0, target >= 0
             if is_number:
                 while at < size and text[at] == _SPACE:
@@ -109,10 +109,8 @@ def rows_of(text, delimiter, decimal, width, least, targets, numbers, texts, odd
                 while at < size:
                     letter = text[at]
                     if _ZERO <= letter <= _NINE:
-                        if digits or letter != _ZERO:
-                            places += 1
-                        if places <= _MOST_DIGITS:
-                            digits = digits * np.uint64(10) + np.uint64(letter - _ZERO)
+                        # of more than 19 digits it overflows, and is left to Python
+                        digits = digits * np.uint64(10) + np.uint64(letter - _ZERO)
                         count += 1
                         power -= is_behind
                     elif letter == decimal and not is_behind:
@@ -120,7 +118,7 @@ def rows_of(text, delimiter, decimal, width, least, targets, numbers, texts, odd
                     else:
                         break
                     at += 1
-                is_number = count > 0 and places <= _MOST_DIGITS
+                is_number = 0 < count <= _MOST_DIGITS
                 if is_number and at < size and (text[at] == _EXPONENTS[0] or text[at] == _EXPONENTS[1]):
                     at += 1
                     is_small = at < size and text[at] == _MINUS
@@ -133,12 +131,10 @@ def rows_of(text, delimiter, decimal, width, least, targets, numbers, texts, odd
                     is_number = at > first
                     power += -exponent if is_small else exponent
             end = at
-            while at < size and text[at] != _LINE_FEED and (text[at] != delimiter or (spaced and at == begin)):
-                if spaced and text[at] == _TAB:
-                    break
+            while at < size and text[at] != _LINE_FEED and text[at] != delimiter and not (spaced and text[at] == _TAB):
                 if text[at] != _SPACE and text[at] != _RETURN:
                     end = at + 1
-                    is_number = is_number and False
+                    is_number = False
                 at += 1
             if target >= 0:
                 value = np.nan
