@@ -1,6 +1,5 @@
 """HDF5 and NetCDF-4 files of other programs: vectors of numbers are channels."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -15,6 +14,7 @@ from shaftprint.recording._recording import Recording
 from shaftprint.recording.readers._damage import told_as_damage
 from shaftprint.recording.readers._hints import rate_hint
 from shaftprint.recording.readers._native import has_mark
+from shaftprint.recording.readers._netcdf_values import CountRule, never_written
 from shaftprint.recording.readers._opened import Opened
 from shaftprint.recording.readers._time_scale import expect_time_unit
 from shaftprint.recording.readers._vectors import Vector, gather_vectors
@@ -25,6 +25,7 @@ NAME = "HDF5 or NetCDF-4"
 _MOST_COLUMNS = 64
 # whole, real and logical numbers
 _NUMBERS = "fiub"
+_AS_THEY_ARE = CountRule(scale=1.0, offset=0.0)
 
 
 def is_mine(path: Path) -> bool:
@@ -121,7 +122,7 @@ def _keep_table(path: Path, item: Any, inside: str, along: int, opened: Opened, 
                 name=name,
                 group=inside,
                 count=int(item.shape[along]),
-                source=_source(path, name, item.fields(name), opened, along, item.ndim, fills=()),
+                source=_source(path, name, item.fields(name), opened, along, item.ndim, _AS_THEY_ARE),
             )
         )
 
@@ -136,21 +137,21 @@ def _vector(path: Path, item: Any, key: str, group: str, opened: Opened, along: 
     """Return what lies along one axis of a data set, at one place of its other axis."""
     expect_storage(path, key, item)
     attributes = {name: _plain(value) for name, value in item.attrs.items() if not name.isupper()}
-    scale = float(np.asarray(item.attrs.get("scale_factor", 1.0)).ravel()[0])
-    offset = float(np.asarray(item.attrs.get("add_offset", 0.0)).ravel()[0])
+    # the library of NetCDF names what it writes where nothing was written in the data set itself
+    unwritten = never_written(item.dtype)
+    rule = CountRule.of(item.attrs, item.dtype, unwritten=unwritten if item.fillvalue == unwritten else None)
     dimension = item.dims[along]
     scales = dimension.keys() if dimension else []
     axis = str(dimension[0].name).rsplit("/", 1)[-1] if len(dimension) else ""
-    fills = tuple(item.attrs[name] for name in ("_FillValue", "missing_value") if name in item.attrs)
     return Vector(
         name=key,
         group=group,
         count=int(item.shape[along]),
-        source=_source(path, key, item, opened, along, item.ndim, place=place, fills=fills),
+        source=_source(path, key, item, opened, along, item.ndim, rule, place=place),
         axis=axis if scales and axis != key else "",
         attributes=attributes,
-        scale=scale,
-        offset=offset,
+        scale=rule.scale,
+        offset=rule.offset,
     )
 
 
@@ -161,8 +162,8 @@ def _source(
     opened: Opened,
     along: int,
     axes: int,
+    rule: CountRule,
     *,
-    fills: Sequence[Any],
     place: int = 0,
 ) -> Source:
     def read_samples(start: int, stop: int) -> NDArray[Any]:
@@ -172,12 +173,7 @@ def _source(
             counts: NDArray[Any] = item[where]
         except (OSError, RuntimeError) as error:
             raise RecordingError(f"{path}, channel {name}: samples [{start}, {stop}) are damaged ({error}).") from None
-        if counts.dtype == np.int16 and not fills:
-            return counts.astype(np.int16)
-        values = counts.astype(np.float64)
-        for fill in fills:
-            values[counts == np.asarray(fill).ravel()[0]] = np.nan
-        return values
+        return rule.values(counts)
 
     return read_samples
 

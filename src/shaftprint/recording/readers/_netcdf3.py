@@ -11,6 +11,7 @@ from shaftprint.recording._channel import Source
 from shaftprint.recording._recording import Recording
 from shaftprint.recording.readers._damage import expect_plausible, told_as_damage
 from shaftprint.recording.readers._hints import rate_hint
+from shaftprint.recording.readers._netcdf_values import CountRule, never_written
 from shaftprint.recording.readers._opened import Opened
 from shaftprint.recording.readers._time_scale import expect_time_unit
 from shaftprint.recording.readers._vectors import Vector, gather_vectors
@@ -60,29 +61,23 @@ def _vector(path: Path, name: str, variable: Any, opened: Opened) -> Vector:
     count, size = int(variable.shape[0]), path.stat().st_size
     expect_plausible(path, name, samples=count, sample_bytes=1, stored_bytes=size, is_packed=False)
     axis = str(variable.dimensions[0])
+    dtype = np.dtype(variable.data.dtype)
+    rule = CountRule.of(variable._attributes, dtype, unwritten=never_written(dtype))
     return Vector(
         name=name,
         count=count,
-        source=_source(name, variable, opened),
+        source=_source(name, variable, opened, rule),
         axis=axis if axis != name else "",
         attributes=attributes,
-        scale=float(np.asarray(variable._attributes.get("scale_factor", 1.0)).ravel()[0]),
-        offset=float(np.asarray(variable._attributes.get("add_offset", 0.0)).ravel()[0]),
+        scale=rule.scale,
+        offset=rule.offset,
     )
 
 
-def _source(name: str, variable: Any, opened: Opened) -> Source:
-    fills = [variable._attributes[key] for key in ("_FillValue", "missing_value") if key in variable._attributes]
-
+def _source(name: str, variable: Any, opened: Opened, rule: CountRule) -> Source:
     def read_samples(start: int, stop: int) -> NDArray[Any]:
         opened.expect_open(name)
-        counts = np.array(variable.data[start:stop])
-        if counts.dtype.kind == "i" and counts.dtype.itemsize == 2 and not fills:
-            return counts.astype(np.int16)
-        values = counts.astype(np.float64)
-        for fill in fills:
-            values[counts == np.asarray(fill).ravel()[0]] = np.nan
-        return values
+        return rule.values(np.array(variable.data[start:stop]))
 
     return read_samples
 
