@@ -5,6 +5,7 @@ import pytest
 from tests import bench_truth
 
 from shaftprint.bench import composed, equipped, read_records
+from shaftprint.bench._assumed_yielding import assumed_yielding
 from shaftprint.catalogue import shipped_structure
 from shaftprint.drive import load_drive
 from shaftprint.errors import RecordingError, SettingsError
@@ -111,6 +112,17 @@ def test_blocks_make_the_motor_of_the_catalogue(written):
     same = simulate(shipped, shipped.vector(bench_truth.MOTOR | {"theta_y": 5e-4}), time, inputs, longest_step_s=5e-4)
     for name in ("omega", "i"):
         assert np.allclose(moved[name], same.outputs[name], rtol=1e-9, atol=1e-9)
+
+
+def test_by_how_much_friction_yields_is_assumed_where_nobody_said_that_it_is_known(written):
+    one = equipped(load_drive(written(BLOCKS + ROWS)))
+    assert assumed_yielding(one) == {"friction_yielding": 2.0 * 5e-4}
+    assert "friction_yielding" not in [parameter.name for parameter in one.structure.free]
+    shipped = equipped(load_drive(written(MOTOR)))
+    assert assumed_yielding(shipped) == {"theta_y": 2.0 * 5e-4}
+    known = equipped(load_drive(written(MOTOR + '\n[[known]]\nname = "theta_y"\nvalue = 2e-4\n')))
+    freed = equipped(load_drive(written(MOTOR + '\n[[searched]]\nname = "theta_y"\nlower = 1e-5\nupper = 1e-2\n')))
+    assert assumed_yielding(known) == assumed_yielding(freed) == {}
 
 
 @pytest.mark.parametrize(

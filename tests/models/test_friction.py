@@ -57,3 +57,42 @@ def test_play_lets_a_signal_turn_without_moving_the_other():
     assert pushed[last].min() == pytest.approx(-(1.0 - 0.15), abs=0.01)
     crest = (T > 2.5) & (swing > 1.0 - 0.28) & (T < 3.0)
     assert np.ptp(pushed[crest]) < 0.01
+
+
+SPEED_DROP = 8.0
+
+
+def coasting(rate_hz, states, **values):
+    """A rotor that dry friction alone brings to a stop, at 8 rad/s^2."""
+    parameters = (SIZE, Parameter("t_w", "s", 1e-6, 1.0, 1e-3, "time within which friction follows"))
+
+    def equations(flow, torque, p):
+        speed = flow.state("speed")
+        dry = coulomb_friction(flow, speed, p.T_C, yielding=1e-3, within_s=p.t_w)
+        flow.rate(speed, SPEED_DROP / 2.0 * (torque - dry))
+        return {"y": speed}
+
+    diagram = Diagram("rotor", "u", ("y",), equations, parameters)
+    rotor = Structure(name="ROTOR", title="a rotor", input="u", outputs=dict(diagram.ports()))
+    time = np.arange(0.0, 2.0, 1.0 / rate_hz)
+    values = rotor.vector(values)
+    moved = simulate(rotor, values, time, {"u": np.zeros(time.size)}, longest_step_s=1.0 / rate_hz, initial=states)
+    return time, moved.outputs["y"]
+
+
+@pytest.mark.parametrize(("rate_hz", "within_s"), [(20.0, 1e-3), (200.0, 1e-4)])
+def test_steps_follow_dry_friction_in_motion_too(rate_hz, within_s):
+    """At rest bristles stand still and show no time of their own; steps of a sample would run away in motion.
+
+    On a way of 1e-3, by which what is held yields, the rotor reaches or loses sqrt(2 8 1e-3) = 0.13 rad/s.
+    """
+    time, speed = coasting(rate_hz, [10.0, 1.0], t_w=within_s)
+    assert speed == pytest.approx(np.maximum(10.0 - SPEED_DROP * time, 0.0), abs=0.13)
+
+
+@pytest.mark.parametrize("speed", [10.0, -10.0])
+def test_bristles_that_are_bent_too_far_give_no_impulse(speed):
+    """A search for the states of a start that met one would follow the noise of the first sample with it."""
+    _, bent = coasting(200.0, [speed, np.sign(speed)])
+    _, too_far = coasting(200.0, [speed, 1e5 * np.sign(speed)])
+    assert too_far == pytest.approx(bent, abs=1e-9)

@@ -103,3 +103,13 @@ def test_more_parameters_than_lanes_and_a_long_record():
     assert every.derivatives["n"].shape == (len(wanted), time.size)
     np.testing.assert_allclose(every.derivatives["n"][-1], last.derivatives["n"][0], atol=1e-12)
     assert np.all(np.isfinite(every.derivatives["M_s"]))
+
+
+def test_what_has_faded_is_nothing():
+    """Numbers near the smallest that there are take a processor a hundred times as long: e^-900 is 1e-391."""
+    fading = simulate(LAG, [0.002], TIME, {"u": np.zeros(TIME.size)}, wanted=["T"], initial=[1.0])
+    early = TIME <= 0.2
+    assert fading.outputs["y"][early] == pytest.approx(np.exp(-TIME[early] / 0.002), rel=0.1)
+    for faded in (fading.outputs["y"], fading.derivatives["y"][0]):
+        assert np.all(faded[TIME > 1.8] == 0.0)
+        assert np.abs(faded[faded != 0.0]).min() > 1e-215

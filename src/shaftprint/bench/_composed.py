@@ -80,6 +80,8 @@ PARTS: Mapping[BlockKind, tuple[Mapping[str, float | None], Part]] = MappingProx
     }
 )
 """What each kind of block asks for, with the usual value where there is one, and what it does."""
+# By how much what friction holds yields.
+YIELDING = "yielding"
 
 
 def composed(drive: Drive) -> Structure:
@@ -96,8 +98,9 @@ def composed(drive: Drive) -> Structure:
     _expect_wiring(drive, inputs, outputs)
     used = {text for block in drive.blocks for text in block.parameters.values() if isinstance(text, str)}
     _expect_parameters(drive, used)
-    parameters = tuple(
-        Parameter(one.name, one.unit, one.lower, one.upper, one.value, one.meaning) for one in drive.parameters
+    parameters = (
+        *(Parameter(one.name, one.unit, one.lower, one.upper, one.value, one.meaning) for one in drive.parameters),
+        *(_held_yielding(block) for block in drive.blocks if _is_number(block, YIELDING)),
     )
 
     def equations(flow: Flow, first: Formula, _: Any) -> dict[str, Formula]:
@@ -110,6 +113,8 @@ def composed(drive: Drive) -> Structure:
                 into = into - signal if name.startswith("-") else into + signal
             asked, part = PARTS[block.kind]
             values = {key: _value(flow, block, key, usual) for key, usual in asked.items()}
+            if _is_number(block, YIELDING):
+                values[YIELDING] = flow.parameter(yielding_of(block))
             flow.close(signals[block.output], part(flow, into, values), f"drive {drive.name}, block {block.output}")
         return {name: signals[name] for name in outputs}
 
@@ -124,6 +129,24 @@ def composed(drive: Drive) -> Structure:
             for output in outputs
         },
     )
+
+
+def yielding_of(block: Block) -> str:
+    """Return the parameter that says by how much what a block holds yields."""
+    value = block.parameters.get(YIELDING)
+    return value if isinstance(value, str) else f"{block.output}_{YIELDING}"
+
+
+def _is_number(block: Block, key: str) -> bool:
+    value = block.parameters.get(key)
+    return value is not None and not isinstance(value, str) and value > 0.0
+
+
+def _held_yielding(block: Block) -> Parameter:
+    """Return a number as a held parameter, so that what rests on it can be told."""
+    value = float(block.parameters[YIELDING])
+    meaning = f"by how much {block.output} yields where it holds, in units of its speed times seconds"
+    return Parameter(yielding_of(block), "-", 0.0, 2.0 * value, value, meaning, held=True)
 
 
 def _value(flow: Flow, block: Block, key: str, usual: float | None) -> Number:

@@ -7,6 +7,7 @@ import numpy as np
 
 from shaftprint.arguments import refusing_none
 from shaftprint.arrays import FloatArray
+from shaftprint.bench._assumed_yielding import assumed_yielding
 from shaftprint.bench._equipped import EquippedDrive
 from shaftprint.bench._hold import input_way
 from shaftprint.bench._record_reasons import REQUIREMENTS, held_outputs, large_offsets, starts_in_motion
@@ -173,6 +174,7 @@ def drive_time_settings(one: EquippedDrive, records: Sequence[Record]) -> TimeSe
         drift_degree=DEGREES[fit.offset],
         initial_states=fit.start == "found",
         simulator=FromStart(inner=ExactDelays(longest_step_s=step_s), known=known),
+        assumed=assumed_yielding(one),
     )
 
 

@@ -232,7 +232,7 @@ def _friction_names(one: EquippedDrive) -> set[str]:
     """Return the parameters that are sizes of dry friction."""
     of_blocks = {block.parameters.get("size") for block in one.drive.blocks if block.kind.endswith("friction")}
     names = {name for name in of_blocks if isinstance(name, str)}
-    return names | ({SHIPPED_FRICTION} if one.drive.structure in DRIVES else set())
+    return names | ({SHIPPED_FRICTION} if one.structure.name in DRIVES else set())
 
 
 def _coloured(

@@ -76,7 +76,8 @@ def validate_drive(
     settings, asked = drive_time_settings(one, records), Requirements()
     validated = []
     for number, record in enumerate(records, start=1):
-        term = with_noise_at(output_error(model.structure, record, settings=settings), model.values)
+        term = output_error(model.structure, record, settings=settings)
+        term = with_noise_at(term, model.values, assumed=settings.assumed)
         part, _ = term.assessed(model.values, number)
         seen = [check for check in part.checks if check.p_value < asked.lowest_p_value]
         missed = {

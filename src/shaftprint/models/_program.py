@@ -67,6 +67,8 @@ class Program:
     """The outputs, before their shift."""
     shifts: tuple[Formula, ...]
     """Time by which each output is late, a formula of parameters; negative where it is early."""
+    times: tuple[Formula, ...]
+    """Times within which something follows what moves [s], formulas of parameters."""
 
 
 def program_of(structure: Structure, zeros: Iterable[str] = ()) -> Program:
@@ -161,6 +163,7 @@ def completed(
         outputs=tuple(outputs),
         signals=tuple(resolver(signal) for signal, _ in outputs.values()),
         shifts=tuple(resolver(shift) for _, shift in outputs.values()),
+        times=tuple(resolver(time) for time in flow.times),
     )
 
 

@@ -12,6 +12,8 @@ from shaftprint.simulation._loop_invariants import FormulaSlopes, Hoisted
 from shaftprint.simulation._text import statements
 
 LANES = 16
+# Once a sample a state and its derivatives below this are nothing.
+FADED = 1e-200
 
 HEADER = '''"""Compiled equations of a structure; written by shaftprint, and written anew when they are missing."""
 
@@ -126,6 +128,7 @@ class EquationText:
         counts = {
             "SIZE": self.size,
             "LANES": LANES,
+            "FADED": FADED,
             "STATES": self.counts["state"],
             "LATES": self.counts["past"],
             "SAMPLES": self.counts["sample"],

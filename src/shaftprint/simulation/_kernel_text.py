@@ -60,6 +60,13 @@ def NAME(h, per, every, held, u, start, first, weight, change, bend, mask, tick,
     for k in range(last + 1):
         i, sub = k // per, k % per
         if sub == 0:
+            # what fades would end among numbers so small that each takes a processor a hundred times as long
+            for j in range(STATES):
+                if abs(v[j].real) < FADED and v[j].imag == 0.0:
+                    v[j] = 0.0
+            for j in range(STATES * LANES):  # along
+                if abs(w[j]) < FADED:  # along
+                    w[j] = 0.0  # along
             for j in range(INPUTS):
                 base[j] = u[i, j]
                 if k < last:

@@ -63,6 +63,7 @@ class SteadyEquations:
         self._matrix = plain_function([slope for leaf in self._unknown for slope in derivatives(formulas, leaf)])
         states = [Formula("state", place=index) for index in range(len(program.states))]
         self._own = plain_function([slope for leaf in states for slope in derivatives(program.rates, leaf)])
+        self._times = plain_function(list(program.times))
         lates = [late.signal for late in program.pasts]
         self._shown = [*lates, *(late.drift for late in program.pasts), *program.signals]
         self._show = plain_function(self._shown)
@@ -180,12 +181,13 @@ class SteadyEquations:
         return np.asarray(results, dtype=np.float64)
 
     def longest_step(self, values: FloatArray, inputs: FloatArray, steady: Steady, delay_s: FloatArray) -> float:
-        """Return the longest step that still follows small signals about steady running [s].
+        """Return the longest step that still follows small signals about steady running, and motion beside it [s].
 
         The fastest of them must not move by more than ``MOST_DECAY``, and the fastest that swings not by more than
         ``MOST_ANGLE``: with late signals that stand still, as for short times they do, and with late signals that are
-        prompt, as for long times they are. Runge and Kutta's rule is stable up to 2.8. Where a delay is shorter than
-        the step, late signals are extrapolated, which loops bear up to about ``MOST_EXTRAPOLATED`` only.
+        prompt, as for long times they are. Runge and Kutta's rule is stable up to 2.8. What holds still at rest and
+        follows motion, as dry friction does, must not move by more either. Where a delay is shorter than the step, late
+        signals are extrapolated, which loops bear up to about ``MOST_EXTRAPOLATED`` only.
 
         Parameters
         ----------
@@ -202,6 +204,7 @@ class SteadyEquations:
         prompt = np.linalg.eigvals(matrix[:still, :still] - matrix[:still, still:] @ through)
         rates = np.concatenate([np.linalg.eigvals(state_matrix), prompt])
         step = 1.0 / max(np.abs(rates).max() / MOST_DECAY, np.abs(rates.imag).max() / MOST_ANGLE, SLOWEST)
+        step = min(step, MOST_DECAY * float(self._call(self._times, *arguments).min(initial=np.inf)))
         shortest = float(delay_s.min(initial=np.inf))
         extrapolated = MOST_EXTRAPOLATED / max(np.abs(prompt).max(), SLOWEST)
         return float(min(step, max(shortest, extrapolated)))

@@ -15,9 +15,10 @@ from shaftprint.time_domain._decimator import Decimator
 from shaftprint.time_domain._identify_chirp import identify_chirp, spectrum_term
 from shaftprint.time_domain._identify_in_time import TimeSettings, identify_in_time, output_error, with_noise_at
 from shaftprint.time_domain._noise_model import NoiseModel, estimate_noise, white_noise
-from shaftprint.time_domain._output_error import OutputError, RecordRepeats
+from shaftprint.time_domain._output_error import OutputError
 from shaftprint.time_domain._record import Record, record_from_arrays
 from shaftprint.time_domain._record_fit import RecordFit
+from shaftprint.time_domain._record_repeats import RecordRepeats
 from shaftprint.time_domain._signal_records import records_of
 from shaftprint.time_domain._simulator import ExactDelays, Simulator
 from shaftprint.time_domain._simulator import on_record as simulated_on

@@ -8,6 +8,7 @@ section 9.4), so that after two or three rounds nothing moves, and the covarianc
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from types import MappingProxyType
 from typing import TypeAlias
 
 import numpy as np
@@ -53,6 +54,9 @@ class TimeSettings:
     """Longest memory of the noise that is tried [s]."""
     simulator: Simulator = field(default_factory=ExactDelays)
     """How structures are simulated."""
+    assumed: Mapping[str, float] = field(default_factory=dict)
+    """Held parameters that are assumed and not known, with their standard deviations: what they change is no misfit,
+    and what it looks like is known less."""
 
     def __post_init__(self) -> None:
         """Check the numbers.
@@ -112,7 +116,13 @@ def output_error(structure: Structure, record: Record, *, settings: TimeSettings
     )
 
 
-def with_noise_at(term: OutputError, values: FloatArray, *, longest_memory_s: float = LONGEST_S) -> OutputError:
+def with_noise_at(
+    term: OutputError,
+    values: FloatArray,
+    *,
+    longest_memory_s: float = LONGEST_S,
+    assumed: Mapping[str, float] = MappingProxyType({}),
+) -> OutputError:
     """Return a term with the noise that is left at some parameters.
 
     Parameters
@@ -121,6 +131,8 @@ def with_noise_at(term: OutputError, values: FloatArray, *, longest_memory_s: fl
         All parameters of the structure, shape (parameters,).
     longest_memory_s
         Longest memory that is tried [s].
+    assumed
+        Held parameters that are assumed, with their standard deviations.
 
     Raises
     ------
@@ -129,7 +141,8 @@ def with_noise_at(term: OutputError, values: FloatArray, *, longest_memory_s: fl
     """
     noise = noise_of(term.residuals(values), term.record)
     order = round(longest_memory_s * term.record.rate_hz)
-    return term.with_noise(Whitening(noise=estimate_noise(noise, term.record.stretches, max_order=order)))
+    renewed = term.with_noise(Whitening(noise=estimate_noise(noise, term.record.stretches, max_order=order)))
+    return renewed.with_assumed(assumed, values)
 
 
 @refusing_none(IdentificationError)
@@ -252,7 +265,8 @@ def _renewed(part: Part, first: Mapping[str, float], how: TimeSettings) -> Part:
     if not isinstance(part, OutputError):
         return part
     free = {p.name: first.get(p.name, p.value) for p in part.structure.free}
-    return with_noise_at(part, part.structure.vector(free), longest_memory_s=how.longest_memory_s)
+    values = part.structure.vector(free)
+    return with_noise_at(part, values, longest_memory_s=how.longest_memory_s, assumed=how.assumed)
 
 
 def _from(parts: Sequence[Part], first: Mapping[str, float], settings: Settings) -> Settings:

@@ -19,9 +19,11 @@ from shaftprint.simulation import state_names
 from shaftprint.time_domain._nuisance import left_of
 from shaftprint.time_domain._record import Record
 
-# Most steps towards initial states, and the share of their size below which one is the last: the first is exact where
-# the outputs depend on them linearly.
-STATE_STEPS, SMALL_STEP = 5, 1e-6
+# Most steps towards initial states, and the share of what they leave of a record below which what one does is nothing:
+# the first is exact where the outputs depend on them linearly, and what the last leaves is projected out with them.
+STATE_STEPS, SMALL_STEP = 5, 1e-4
+# From this step on they are near, and effects stay as they are: each costs a simulation.
+NEAR = 2
 # Change of a state over which its effect is taken.
 STATE_CHANGE = 1e-3
 
@@ -69,14 +71,21 @@ def best_states(
         States to begin with, shape (states,).
     """
     states, effects = first, np.zeros(0)
-    for _ in range(STATE_STEPS):
-        runs = effects_of(simulated, states)
-        if runs is None:
-            return None
-        run, effects = runs
-        change, *_ = np.linalg.lstsq(whitened(effects).T, data - whitened(run[None])[0], rcond=1e-9)
+    for step in range(STATE_STEPS):
+        if step < NEAR:
+            runs = effects_of(simulated, states)
+            if runs is None:
+                return None
+            run, effects = runs
+        else:
+            again = simulated(states)
+            if again is None:
+                return None
+            run = again[0]
+        moves, left = whitened(effects).T, data - whitened(run[None])[0]
+        change, *_ = np.linalg.lstsq(moves, left, rcond=1e-9)
         states = states + change
-        if np.abs(change).max(initial=0.0) <= SMALL_STEP * np.abs(states).max(initial=0.0):
+        if np.linalg.norm(moves @ change) <= SMALL_STEP * np.linalg.norm(left):
             break
     return states, effects
 

@@ -6,15 +6,16 @@ System Identification: Theory for the User, second edition, sections 4.2 and 7.4
 a record are QR-reduced to ``1 + free`` columns: 50 starts of a long record fit into memory.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from shaftprint.arrays import BoolArray, FloatArray, IntArray, frozen_float
+from shaftprint.arrays import BoolArray, FloatArray, frozen_float
 from shaftprint.errors import IdentificationError
 from shaftprint.identify.fit import Estimate
 from shaftprint.identify.likelihood import LineTest, Repeats, TermTest, WhitenedTerm
+from shaftprint.time_domain._assumed import shortened
 from shaftprint.time_domain._flexible_model import FlexibleModel
 from shaftprint.time_domain._initial_states import (
     InitialStates,
@@ -29,6 +30,7 @@ from shaftprint.time_domain._noise_model import LONGEST_S
 from shaftprint.time_domain._nuisance import drift_columns, left_of, orthonormal, without
 from shaftprint.time_domain._record import Record
 from shaftprint.time_domain._record_fit import RecordFit, record_fit
+from shaftprint.time_domain._record_repeats import RecordRepeats
 from shaftprint.time_domain._simulator import Simulator, in_parallel, on_record
 from shaftprint.time_domain._span import Span, qr_reduced
 from shaftprint.time_domain._whitening import Whitening
@@ -38,24 +40,6 @@ AWAY = 1e12
 # What offsets leave of a slope below this share of it is rounding: the parameter is one with the offset, and a search
 # that followed such a slope would go anywhere.
 ROUNDING = 1e-10
-
-
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class RecordRepeats(Repeats):
-    """Simulated repeats of a record: the noise of each is made anew whenever it is needed."""
-
-    model: FloatArray
-    """Whitened outputs without noise, shape (used samples * outputs,)."""
-    seeds: IntArray
-    """Seed of the noise of each repeat, shape (repeats,)."""
-
-    def chosen(self, repeats: IntArray | slice) -> "RecordRepeats":
-        """Return some of the repeats."""
-        return replace(self, seeds=self.seeds[repeats])
-
-    def data(self, repeat: int) -> FloatArray:
-        """Return the whitened outputs of a repeat, shape (used samples * outputs,)."""
-        return self.model + np.random.default_rng(int(self.seeds[repeat])).standard_normal(self.model.size)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -79,6 +63,8 @@ class OutputError(WhitenedTerm):
     takes the square of the speed: the torque is compared without that square."""
     longest_memory_s: float = LONGEST_S
     """Longest memory of the noise that is tried [s]."""
+    assumed: FloatArray | None = None
+    """What one standard deviation of each assumed parameter changes, shape (assumed, samples, outputs)."""
     measured: FloatArray = field(init=False, repr=False)
     """Whitened outputs, shape (used samples * outputs,)."""
     drifts: FloatArray = field(init=False, repr=False)
@@ -107,6 +93,20 @@ class OutputError(WhitenedTerm):
     def with_noise(self, whitening: Whitening) -> "OutputError":
         """Return the term with another noise."""
         return replace(self, whitening=whitening)
+
+    def with_assumed(self, assumed: Mapping[str, float], values: FloatArray) -> "OutputError":
+        """Return the term with held parameters that are assumed, by their standard deviations, as they act at values.
+
+        Raises
+        ------
+        IdentificationError
+            If the simulation runs away there.
+        """
+        names = [name for name in assumed if name in self.structure.names]
+        if not names:
+            return self
+        spread = np.array([assumed[name] for name in names])
+        return replace(self, assumed=spread[:, None, None] * self._evaluated(values, names)[1][1:])
 
     def table(self, theta: FloatArray, repeats: Repeats | None = None) -> FloatArray:
         """Return QR-reduced residuals and derivatives, a simulation a start, shape (starts, 1 + free, 1 + free)."""
@@ -250,11 +250,13 @@ class OutputError(WhitenedTerm):
         rows[0] = data - rows[0]
         rows[1:] *= -1.0
         left = without(rows, basis)
+        if self.assumed is not None:
+            left = shortened(left, left_of(self._white(self.assumed), basis))
         taken = np.abs(left[1:]).max(axis=1) <= ROUNDING * np.abs(rows[1:]).max(axis=1)
         left[1:][taken] = 0.0
         return left, basis
 
-    def _evaluated(self, values: FloatArray) -> tuple[InitialStates | None, FloatArray]:
+    def _evaluated(self, values: FloatArray, wanted: Sequence[str] = ()) -> tuple[InitialStates | None, FloatArray]:
         """Return initial states and the simulation from them with its derivatives, for the data of the record.
 
         Raises
@@ -262,7 +264,7 @@ class OutputError(WhitenedTerm):
         IdentificationError
             If the simulation runs away.
         """
-        run = self._run(values, self.measured)
+        run = self._run(values, self.measured, wanted)
         if run is None:
             raise IdentificationError(
                 f"{self.name}: the simulation of {self.structure.name} runs away at these parameters; narrow the "
@@ -270,13 +272,15 @@ class OutputError(WhitenedTerm):
             )
         return run
 
-    def _run(self, values: FloatArray, data: FloatArray) -> tuple[InitialStates | None, FloatArray] | None:
+    def _run(
+        self, values: FloatArray, data: FloatArray, wanted: Sequence[str] = ()
+    ) -> tuple[InitialStates | None, FloatArray] | None:
         """Return initial states where they are estimated, and the simulation from them; None where it runs away."""
         start = self._start(values, data) if self.initial_states else None
         if self.initial_states and start is None:
             return None
-        wanted = [self.structure.names[column] for column in self.free]
-        simulated = self._simulated(values, wanted, None if start is None else start.values)
+        free = [self.structure.names[column] for column in self.free]
+        simulated = self._simulated(values, wanted or free, None if start is None else start.values)
         return None if simulated is None else (start, simulated)
 
     def _start(self, values: FloatArray, data: FloatArray) -> InitialStates | None:
@@ -345,7 +349,7 @@ class OutputError(WhitenedTerm):
             residuals=self._compared(measured) - self._compared(self._completed(simulated[0], start)),
             simulated=simulated[0],
             slopes=simulated[1:],
-            nuisance=self._linear(start),
+            nuisance=np.concatenate([self._linear(start), *([] if self.assumed is None else [self.assumed])]),
             longest_memory_s=self.longest_memory_s,
         )
 

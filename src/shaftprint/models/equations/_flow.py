@@ -49,6 +49,8 @@ class Flow:
     """Signals that are asked for late."""
     samples: list[Sampled] = field(default_factory=list)
     """Values that a computer holds."""
+    times: list[Formula] = field(default_factory=list)
+    """Times within which something follows what moves, which small signals about rest do not show."""
     unknowns: dict[int, Formula] = field(default_factory=dict)
     """What each unknown signal turned out to be."""
     known: dict[tuple[int, int], Formula] = field(default_factory=dict)
@@ -95,6 +97,10 @@ class Flow:
     def rate(self, state: Formula, value: Number) -> None:
         """Say how fast a state changes."""
         self.rates[state.place] = as_formula(value)
+
+    def follows_within(self, time: Number) -> None:
+        """Say how fast something follows once there is motion: steps of a simulation are no longer than that [s]."""
+        self.times.append(as_formula(time))
 
     def running_sum(self, name: str, rate: Number) -> Formula:
         """Return a new state that starts at zero and goes on for ever in steady running, such as an angle."""

@@ -57,10 +57,13 @@ def stribeck_friction(
     excess, time = as_formula(breakaway) - 1.0, as_formula(within_s)
     limit = 1.0 + excess * (-((speed / as_formula(fading_speed)) ** 2.0)).exp()
     bent = flow.state("bristles")
-    # what is bent too far cannot be: it says so to whoever looks for steady running
-    too_far = (bent - clip(bent, -limit, limit)) / time
-    rate = (speed - abs(speed) * bent / limit) / (time * abs(speed) + as_formula(yielding)) - too_far
+    # what is bent too far cannot be, and acts as if it were not: it says so to whoever looks for steady running, and a
+    # search for the states of a start meets no impulse in it that would follow the noise of a sample
+    possible = clip(bent, -limit, limit)
+    too_far = (bent - possible) / time
+    rate = (speed - abs(speed) * possible / limit) / (time * abs(speed) + as_formula(yielding)) - too_far
     flow.rate(bent, rate)
+    flow.follows_within(time)
     return as_formula(size) * (bent + time * as_formula(rate))
 
 
@@ -79,4 +82,5 @@ def backlash(flow: Flow, signal: Formula, gap: Number, *, within_s: Number) -> F
     """
     pushed = flow.state("pushed")
     flow.rate(pushed, deadband(signal - pushed, 0.5 * as_formula(gap)) / as_formula(within_s))
+    flow.follows_within(within_s)
     return pushed
