@@ -150,6 +150,31 @@ def test_an_event_that_is_passed_is_said_once(fmu, solved, capsys, version):
 
 
 @VERSIONS
+def test_rates_asked_for_before_the_input_has_its_value_are_warned_of(fmu, solved, capsys, version):
+    """PathSim completes a step at zero with an input of 0, before its sources have spoken."""
+    with solved(fmu(*GAUGE, version=version)) as own:
+        own.start()
+        own._x = np.ctypeslib.as_ctypes(np.zeros(own.description.numberOfContinuousStates))
+        own._update()
+        own._rates(0.0, np.zeros(len(own._x)), 0.0)
+    (words,) = warnings_in(capsys)
+    assert "engine_speed_set_point = 0, far from the working point" in words
+
+
+@VERSIONS
+def test_an_input_that_was_none_yet_at_the_first_event_does_not_kick_the_line(fmu, solved, version):
+    """What PathSim does: late signals began with the set point of 0, and the speed fell by 3.7 rpm after the delay."""
+    with solved(fmu(*GAUGE, version=version)) as own:
+        own.start()
+        own.fmu.enterContinuousTimeMode()
+        own.set(engine_speed_set_point=0.0)
+        own.fmu.completedIntegratorStep()
+        own.fmu.enterEventMode()
+        found = Careless(own, obeys=True).run(np.arange(101) * 0.01, lambda time: SPEED_RPM)
+    assert np.abs(found - SPEED_RPM).max() < 1e-6
+
+
+@VERSIONS
 @pytest.mark.parametrize("kind", ["CoSimulation", "ModelExchange"])
 def test_a_run_that_begins_at_zero_is_warned_of(fmu, capsys, version, kind):
     """Some tools set every input to zero before the first value."""

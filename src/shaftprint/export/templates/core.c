@@ -353,6 +353,13 @@ void core_derivatives(Model *m, double *rates) {
     at(m, f->time, 0);
     model_rates(&f->v, rates);
     if (f->mode != CONTINUOUS) return;
+    /* some tools ask for rates before their sources have given the inputs a value */
+    if (f->time <= f->start_time + tiny(f->start_time)) core_warn_of_start(m);
+    if (begins_now(m) && inputs_moved(f)) {
+        /* what the solver is given now holds from there on, whatever the inputs were in the event */
+        model_lates(&f->v, m->node[f->nodes - 1].late);
+        core_remember_inputs(f);
+    }
     if (!seen_are_given(f)) forget_seen(f);
     if (f->time < f->seen_from) f->seen_from = f->time;
     if (f->time > f->seen_to) f->seen_to = f->time;
