@@ -35,9 +35,9 @@ test: $(VENV)/test ## Run the tests that a change needs, with the coverage of th
 	$(BIN)/python -m coverage report --skip-covered --fail-under 95
 	$(BIN)/python -m pytest -n auto --dist loadfile -m "$(QUICK)" $(ROOMS:%=--ignore=tests/%)
 
-test-slow: test ## Run the slow tests and every wrong recording too
+test-slow: test ## Run the slow tests and most wrong recordings too
 	$(BIN)/python -m pytest -n auto --dist loadfile -m "slow and not long"
-	$(BIN)/python -m pytest -n auto --dist worksteal -m wrong_recordings tests/wrong_recordings
+	$(BIN)/python -m pytest -n auto --dist worksteal -m "wrong_recordings and not long" tests/wrong_recordings
 
 test-all: test-slow ## Run the long searches and Monte Carlos too, as before a release
 	$(BIN)/python -m pytest -n auto --dist worksteal -m long

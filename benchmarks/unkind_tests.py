@@ -154,6 +154,21 @@ def _rows(found: Fingerprint, true: Mapping[str, float]) -> dict[str, Row]:
     }
 
 
+def is_trustworthy(outcome: Mapping[str, Any]) -> bool:
+    """Return whether a test was fitted and its trusted numbers may be used."""
+    return bool(outcome.get("trustworthy"))
+
+
+def keeps_what_is_right(outcome: Mapping[str, Any]) -> bool:
+    """Return whether no check takes from a healthy test a number that is right.
+
+    A reason takes numbers away that would be trusted without it; where there is none, only those are not trusted whose
+    own intervals are too wide.
+    """
+    lost = any(Row(**row).inside and not row["trusted"] for row in outcome.get("rows", {}).values())
+    return is_trustworthy(outcome) and not (outcome["reasons"] and lost)
+
+
 def planned_from_card(minutes: int, folder: Path) -> Path:
     """Return the campaign that ``shaftprint plan`` makes for the ship, of whose governor and noise nothing is known."""
     if not folder.exists():
@@ -183,10 +198,10 @@ def main() -> None:
         outcomes.append(one)
         wrong = [n for n, r in one.get("rows", {}).items() if r["trusted"] and not Row(**r).inside]
         print(seed, one.get("trustworthy"), one.get("p"), wrong, one.get("reasons", one.get("refused")), flush=True)
-    fitted = [one for one in outcomes if "rows" in one]
     tests = [{name: Row(**row) for name, row in one.get("rows", {}).items()} for one in outcomes]
     text = summary(tests, f"planned tests of {options.case} minutes")
-    text += f"\nTrustworthy {sum(one['trustworthy'] for one in fitted)} of {len(outcomes)}.\n"
+    trusted, whole = (sum(map(of, outcomes)) for of in (is_trustworthy, keeps_what_is_right))
+    text += f"\nTrustworthy {trusted} of {len(outcomes)}; {whole} keep all that is right.\n"
     print(text)
     if options.write:
         name = f"unkind tests of {options.case} minutes"

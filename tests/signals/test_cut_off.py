@@ -3,7 +3,9 @@
 import numpy as np
 import pytest
 
+from shaftprint.recording import Channel
 from shaftprint.signals.conditioning import CutOff, FaultLimits, flagged
+from shaftprint.signals.pulses import expect_whole_crests
 
 LIMITS = FaultLimits(floor=5_000.0, hold_samples=10, lowest=-np.inf, highest=24_000.0)
 
@@ -46,3 +48,41 @@ def test_spikes_and_rails_do_not_count_and_a_hold_counts_once():
     # three times the same highest value is no chance
     values[150_000:150_400] = 14_000
     assert level(values) == 14_000.0
+
+
+def channel_of(counts):
+    return Channel(
+        name="M_s", unit="V", rate_hz=2000.0, start_s=0.0, count=counts.size, scale=1e-3, offset=0.0,
+        source=lambda first, stop: counts[first:stop],
+    )  # fmt: skip
+
+
+def two_levels(rng, noise=500.0, count=1_000_000):
+    """Swings about 16000 in the first half of the time, and about 8000 in the second, in counts."""
+    time = np.arange(count)
+    values = np.where(time < count // 2, 16_000.0, 8_000.0) + 3000.0 * np.sin(time / 3000.0)
+    return (values + noise * rng.standard_normal(count)).astype(np.int16)
+
+
+@pytest.mark.parametrize(("half", "level"), [(0, 16_500), (1, 9_000)])
+def test_a_range_that_is_too_small_in_a_part_of_a_test_is_named(half, level):
+    counts = two_levels(np.random.default_rng(3))
+    part = slice(half * counts.size // 2, (half + 1) * counts.size // 2)
+    counts[part] = np.minimum(counts[part], level)
+    (reason,) = expect_whole_crests(channel_of(counts))
+    assert reason.kind == "clipping"
+    where = "highest value," if half == 0 else "highest value in a part of the recording,"
+    assert f"sticks at its {where} {level / 1000:.4g} V" in reason.sentence
+
+
+def test_swings_held_values_and_a_quiet_channel_that_stands_at_levels_are_whole():
+    rng = np.random.default_rng(4)
+    assert expect_whole_crests(channel_of(two_levels(rng))) == ()
+    held = two_levels(rng)
+    held[600_000:660_000] = held[600_000]
+    assert expect_whole_crests(channel_of(held)) == ()
+    # a staircase without noise behind a slow swing, with a way between its levels that is shown step by step
+    stairs = np.repeat(np.tile([8_000.0, 11_000.0, 8_000.0, 5_000.0], 25), 10_000)
+    smooth = np.convolve(stairs, np.full(2_000, 1.0 / 2_000), mode="same").astype(np.int16)
+    swing = (8_000.0 + 5_000.0 * np.sin(np.arange(60_000) * 2.0 * np.pi / 60_000)).astype(np.int16)
+    assert expect_whole_crests(channel_of(np.concatenate([swing, smooth[2_000:-2_000]]))) == ()

@@ -113,3 +113,42 @@ def test_a_test_at_another_speed_is_healthy(rpm):
 def test_a_lever_that_asks_for_half_is_no_wrong_count():
     """The campaign states twice the speed, and torque goes with the speed that is shown: the speed is right."""
     assert reasons_of(one_pick_up(), "12min", 0.55 * 1361.37) == ()
+
+
+# 0.7074 V above the offset of -5.7074 V ask for 251 rpm a volt less
+LOWER_RPM, LOWER_V = 1361.37 - 251.0, -4.7074
+
+
+def reasons_between(*, of_lower=1.0, load=1.0, lower_rpm=LOWER_RPM):
+    """Reasons of a test of two speeds whose lower one is shown by a factor, under a load that changed between them."""
+
+    def point(rpm, volt, load=1.0, of_speed=1.0):
+        return WorkingPoint(
+            engine_speed_rev_s=rpm / 60.0 * of_speed,
+            shaft_torque_nm=TORQUE_NM * load * (rpm / RPM) ** 2,
+            engine_speed_std_rev_s=0.01,
+            shaft_torque_std_nm=10.0,
+            set_point_v=volt,
+            load_std=0.01,
+        )
+
+    upper, lower = point(1361.37, -5.7074), point(lower_rpm, LOWER_V, load, of_lower)
+    campaign = CAMPAIGNS["12min"].model_copy(
+        update={"offset_v": -5.7074, "offset_rpm": 1361.37, "slope_rpm_per_v": -251}
+    )
+    return scale_reasons(upper, VESSEL, campaign, legs={"upper": upper, "lower": lower})
+
+
+@pytest.mark.parametrize("factor", COUNTS)
+@pytest.mark.parametrize("load", [0.9, 1.0, 1.1])
+def test_pulses_that_are_lost_in_one_leg_are_named_with_it(factor, load):
+    (reason,) = reasons_between(of_lower=factor, load=load)
+    assert reason.kind == "speed scale"
+    assert f"in lower it seems to be {COUNTS[factor]} the true one beside that of upper" in reason.sentence
+    assert f"{LOWER_RPM * factor:.4g} rpm" in reason.sentence
+
+
+@pytest.mark.parametrize("load", [0.75, 0.9, 1.0, 1.1, 1.3])
+@pytest.mark.parametrize("droop", [0.95, 1.0, 1.05])
+def test_legs_of_another_load_and_a_lever_that_bends_are_healthy(load, droop):
+    assert reasons_between(load=load, lower_rpm=droop * LOWER_RPM) == ()

@@ -53,6 +53,32 @@ def test_a_size_that_changes_in_mid_test_is_no_filter(size, rng):
     assert band.late_s == 0.0
 
 
+# A torque behind the set point: a closed loop of 1 Hz, and the inertia behind the gauge.
+TORQUE = 3.0 * (1.0 + 0.3j * OMEGA) / (1.0 + 2.0 * 0.4j * HERTZ - HERTZ**2)
+
+
+@pytest.mark.parametrize("share", [0.02, -0.02, 0.05])
+def test_a_share_of_another_channel_is_named_and_no_filter(share, rng):
+    """What is logged is ``u + a y``; its response to what is logged is ``y / (u + a y)``."""
+    logged = 1.0 + share * TORQUE
+    answers = {"M_s": (TORQUE / logged).real, "n": (1.0 / (1.0 + 0.2j * OMEGA)).real}
+    band = input_band(HERTZ, shown(logged, rng), NOISE, answers=answers)
+    assert (band.beside, band.late_s) == ("M_s", 0.0)
+    (reason,) = band_reasons(band, channel="U", symbol="n_set")
+    assert (reason.kind, reason.where) == ("set-point shape", "n_set")
+    assert "Channel U shows a share of another channel, M_s" in reason.sentence
+
+
+def test_sines_as_they_were_asked_for_hold_no_other_channel():
+    rng = np.random.default_rng(10)
+    answers = {"M_s": TORQUE.real}
+    bands = [input_band(HERTZ, shown(np.ones(HERTZ.size), rng), NOISE, answers=answers) for _ in range(300)]
+    assert not any(band.beside for band in bands)
+    # and a filter stays one where a torque answers
+    filtered = input_band(HERTZ, shown(1.0 / (1.0 + 1j * HERTZ / 5.0), rng), NOISE, answers=answers)
+    assert (filtered.beside, filtered.late_s > 0.0) == ("", True)
+
+
 def late(delay_s, drift):
     """Phases by which sines are late, to whole turns."""
     turn = OMEGA * (delay_s + drift * MIDDLE_S)

@@ -2,23 +2,21 @@
 
 import re
 from dataclasses import dataclass
-from datetime import UTC, datetime
 from functools import cache
 from typing import Literal
 
 import numpy as np
-from tests.wrong_recordings.cases import Case
-from tests.wrong_recordings.trial import Trial, clean
+from tests.wrong_recordings.case import Case
+from tests.wrong_recordings.trial import Sailed, Trial, clean
 
 from shaftprint.catalogue import structure
 from shaftprint.distributions import NORMAL_95
 from shaftprint.errors import ShaftprintError
-from shaftprint.fingerprint import Fingerprint, Quantity, take_fingerprint
-from shaftprint.identify import Settings, identify, priors_from_vessel
-from shaftprint.models import margins
-from shaftprint.signals import prepare_signals
-from shaftprint.spectra import estimate_spectra
-from shaftprint.tug import Truth
+from shaftprint.fingerprint import Fingerprint, Quantity
+from shaftprint.identify import Settings
+from shaftprint.models import Structure, margins
+from shaftprint.survey import Measurement, priors_of, run
+from shaftprint.survey import Trial as SurveyTrial
 
 STARTS = 12
 FIRST = 3
@@ -49,42 +47,44 @@ class Answer:
 
 def fingerprint_of(trial: Trial) -> Fingerprint:
     """Return the fingerprint of a trial, as the program makes it."""
-    signals = prepare_signals(trial.recording, trial.vessel, trial.campaign)
-    spectra = estimate_spectra(signals, trial.campaign)
-    chosen = structure("GAUGE-CLOSED")
-    priors = priors_from_vessel(chosen, trial.vessel, signals.working_point)
-    settings = Settings(starts=STARTS, priors=priors)
-    found = identify(chosen, spectra.response, rng=np.random.default_rng(1), settings=settings)
-    return take_fingerprint(
-        found,
-        signals=signals,
-        signal_to_noise=spectra.signal_to_noise,
-        vessel=trial.vessel,
-        campaign=trial.campaign,
-        settings_files=(),
-        now=datetime(2026, 1, 1, tzinfo=UTC),
-    )
+    return run(trial.recording, trial.vessel, trial.campaign, settings=_settings, judge=False).fingerprint
+
+
+def _settings(structure: Structure, measurement: Measurement, trial: SurveyTrial) -> Settings:
+    return Settings(starts=STARTS, priors=priors_of(structure, trial.vessel, measurement.signals))
 
 
 @cache
-def true_values() -> dict[str, float]:
-    """Return the truth of the numbers that do not depend on the working point that was found."""
-    _, truth = clean()
-    return _true_values(truth)
+def true_values(test: Sailed, shown_rpm: float | None = None) -> dict[str, float]:
+    """Return the truth of the numbers that do not depend on the load of the day, at a working point of the test.
 
-
-def _true_values(truth: Truth) -> dict[str, float]:
-    normal, line = truth.normalised, structure("GAUGE-CLOSED")
+    Parameters
+    ----------
+    test
+        The test.
+    shown_rpm
+        Speed of the working point as the fingerprint has it; that of the whole test where it is not given.
+    """
+    trial, truth = clean(test)
+    speeds = test.speeds_rpm
+    speed_rpm = speeds[0] if shown_rpm is None else min(speeds, key=lambda one: abs(one - shown_rpm))
+    # along the propeller law gains and inertia times, normalised, go with speed over torque
+    ratio = truth.engine_speed_rpm / speed_rpm
+    normal = {
+        name: value * (ratio if name in ("K_p", "K_i", "tau_dn", "tau_up", "g") else 1.0)
+        for name, value in truth.normalised.items()
+    }
+    line = structure("GAUGE-CLOSED")
     margin = margins(line, line.vector({name: normal[name] for name in line.names if name in normal}))
     action = truth.shaft_torque_nm / truth.engine_speed_rpm
     return {
         "I_dn": truth.physical["inertia_downstream_kg_m2"],
         "I_up": truth.physical["inertia_upstream_kg_m2"],
-        "K_Q": clean()[0].vessel.propeller.torque_coefficient,
-        "n_0": truth.engine_speed_rpm,
+        "K_Q": trial.vessel.propeller.torque_coefficient,
+        "n_0": speed_rpm,
         "t_d + t_sp": normal["t_d"] + normal["t_sp"],
-        "governor proportional action": normal["K_p"] * action,
-        "governor integral action": normal["K_i"] * action,
+        "governor proportional action": truth.normalised["K_p"] * action,
+        "governor integral action": truth.normalised["K_i"] * action,
         "K_p / K_i": normal["K_p"] / normal["K_i"],
         "gain margin": margin.gain_margin,
         "phase margin": float(np.degrees(abs(margin.phase_margin_rad))),
@@ -94,7 +94,7 @@ def _true_values(truth: Truth) -> dict[str, float]:
 
 def answer(case: Case) -> Answer:
     """Return what shaftprint answers to a case, and whether that is right."""
-    trial, _ = clean()
+    trial, _ = clean(case.sailed)
     try:
         fingerprint = fingerprint_of(case.change(trial))
     except ShaftprintError as error:
@@ -106,7 +106,8 @@ def answer(case: Case) -> Answer:
 def judged(fingerprint: Fingerprint, case: Case) -> Answer:
     """Return whether wrong numbers are trusted, and whether the cause is among the first three reasons."""
     verdict = fingerprint.verdict
-    truth = {name: value * case.truth.get(name, 1.0) for name, value in true_values().items()}
+    values = true_values(case.sailed, fingerprint.conditions.engine_speed.value)
+    truth = {name: value * case.truth.get(name, 1.0) for name, value in values.items()}
     numbers = {q.name: q for q in _numbers(fingerprint) if q.name in truth}
     wrong = [name for name, quantity in numbers.items() if not is_right(quantity, truth[name])]
     trusted = [name for name in wrong if verdict.trustworthy and name in verdict.trusted]

@@ -6,8 +6,9 @@ from functools import partial
 
 import numpy as np
 from scipy.signal import butter, sosfilt
-from tests.wrong_recordings.trial import TORQUE, Change, Trial, Values
+from tests.wrong_recordings.trial import TORQUE, TWO_SPEEDS, Change, Trial, Values, clean, of_ship
 
+from shaftprint.campaign import Multisine
 from shaftprint.recording import ClockJump
 
 
@@ -25,6 +26,64 @@ def both(*changes: Change) -> Change:
         return trial
 
     return applied
+
+
+def within(change: Change, first_s: float, last_s: float = np.inf) -> Change:
+    """Apply a change to samples between two instants only, such as those of one leg."""
+
+    def applied(trial: Trial) -> Trial:
+        spoilt = change(trial)
+        for name in trial.recording.channels:
+            time, before, after = trial.time_s(name), trial.values(name), spoilt.values(name)
+            inside = (time >= first_s) & (time < last_s)
+            if not np.array_equal(before, after):
+                spoilt = spoilt.with_values(name, np.where(inside, after, before))
+        return spoilt
+
+    return applied
+
+
+def another_ship(first_s: float, last_s: float = np.inf, **tug: object) -> Change:
+    """Take what another ship did in the two-speed test between two instants."""
+    return within(lambda trial: replace(trial, recording=clean(of_ship(TWO_SPEEDS, tug))[0].recording), first_s, last_s)
+
+
+def exchanged(one: tuple[float, float], other: tuple[float, float]) -> Change:
+    """Exchange two stretches of one length in all channels."""
+
+    def applied(time: Values, values: Values) -> Values:
+        first, second = ((time >= begin) & (time < end) for begin, end in (one, other))
+        found = values.copy()
+        found[first], found[second] = values[second], values[first]
+        return found
+
+    return lambda trial: both(*(changed(name, applied) for name in trial.recording.channels))(trial)
+
+
+def cross_talk(share: float, of: str, into: str) -> Change:
+    """Add a share of one channel to another."""
+    return lambda trial: trial.with_values(into, trial.values(into) + share * trial.values(of))
+
+
+def loses_pieces(seconds: float, every_s: float, channel: str) -> Change:
+    """Let a channel lose a piece at times, so that it comes earlier and earlier."""
+
+    def applied(time: Values, values: Values) -> Values:
+        kept = values[np.mod(time - time[0], every_s) >= seconds]
+        return np.concatenate([kept, np.full(values.size - kept.size, kept[-1])])
+
+    return changed(channel, applied)
+
+
+def slips(share: float, *channels: str) -> Change:
+    """Let the shaft of pick-ups turn more slowly, by a share that swings between nothing and twice its mean."""
+
+    def applied(time: Values, values: Values) -> Values:
+        swing_s = 60.0
+        lost = share * (time - swing_s / (2.0 * np.pi) * np.sin(2.0 * np.pi * time / swing_s))
+        return np.interp(time - lost, time, values)
+
+    return both(*(changed(channel, applied) for channel in channels))
 
 
 def gain(channel: str, of: Callable[[Values], Values]) -> Change:
@@ -272,6 +331,16 @@ def clock_jump(jump_s: float, at_s: float) -> Change:
     return applied
 
 
+def without(channel: str) -> Change:
+    """Take a channel out of the file."""
+
+    def applied(trial: Trial) -> Trial:
+        channels = {name: one for name, one in trial.recording.channels.items() if name != channel}
+        return replace(trial, recording=replace(trial.recording, channels=channels))
+
+    return applied
+
+
 def swapped(one: str, other: str) -> Change:
     """Exchange what two channels hold."""
 
@@ -303,6 +372,17 @@ def sine(name: str, **fields: object) -> Change:
 def sines(of: Callable[[object], dict[str, object]]) -> Change:
     """Change what the campaign file says of every sine."""
     return campaign(lambda trial: {"sines": tuple(one.model_copy(update=of(one)) for one in trial.campaign.sines)})
+
+
+def leg(name: str, of: Callable[[Multisine], dict[str, object]]) -> Change:
+    """Change what the campaign file says of a leg."""
+    return campaign(
+        lambda trial: {
+            "multisines": tuple(
+                one.model_copy(update=of(one)) if one.name == name else one for one in trial.campaign.multisines
+            )
+        }
+    )
 
 
 def sensor(name: str, **fields: object) -> Change:

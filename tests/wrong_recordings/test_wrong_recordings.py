@@ -1,11 +1,19 @@
 """Wrong recordings are refused or not trusted, with the cause; wrong and trusted: none."""
 
 import pytest
-from tests.wrong_recordings.cases import CASES, FAST, Case
+from tests.wrong_recordings.case import Case
+from tests.wrong_recordings.cases import CASES
 from tests.wrong_recordings.judged import answer, fingerprint_of, is_right, true_values
-from tests.wrong_recordings.trial import clean
+from tests.wrong_recordings.legs import CASES_OF_LEGS
+from tests.wrong_recordings.trial import ONE_SPEED, TWO_SPEEDS, clean
 
-SLOW = tuple(case for case in CASES if not case.fast)
+FAST = tuple(case for case in CASES if case.fast)
+
+
+def marked(case: Case) -> object:
+    """Return a case that is not of every test run: two speeds and other ships take long, but for a few."""
+    long = [pytest.mark.long] if (case.test == TWO_SPEEDS or case.ship) and not case.fast else []
+    return pytest.param(case, id=f"{case.test.file} {case.name}", marks=[pytest.mark.wrong_recordings, *long])
 
 
 def expect_right_answer(case: Case) -> None:
@@ -14,20 +22,29 @@ def expect_right_answer(case: Case) -> None:
 
 
 def test_there_are_enough_cases():
-    assert len(CASES) >= 80
-    assert len({case.name for case in CASES}) == len(CASES)
+    assert len(CASES) >= 150
+    assert len(CASES_OF_LEGS) >= 150
+    for cases in (CASES, CASES_OF_LEGS):
+        assert len({case.name for case in cases}) == len(cases)
     assert len(FAST) == 11
 
 
-def test_the_recording_that_was_not_spoilt_is_trusted_and_right():
-    """Refusing everything is no answer: the good recording keeps its numbers, and no reason speaks against it."""
-    trial, _ = clean()
-    fingerprint = fingerprint_of(trial)
+def expect_trusted_and_right(test):
+    """Refusing everything is no answer: a good recording keeps its numbers, and no reason speaks against it."""
+    fingerprint, truth = fingerprint_of(clean(test)[0]), true_values(test)
     assert fingerprint.verdict.trustworthy
     assert fingerprint.verdict.reasons == ()
     assert {"I_dn", "K_Q", "k_q", "t_d + t_sp", "gain margin", "n_0"} <= set(fingerprint.verdict.trusted)
-    truth = true_values()
     assert all(is_right(fingerprint.quantity(name), truth[name]) for name in ("I_dn", "K_Q", "t_d + t_sp"))
+
+
+def test_the_recording_that_was_not_spoilt_is_trusted_and_right():
+    expect_trusted_and_right(ONE_SPEED)
+
+
+@pytest.mark.wrong_recordings
+def test_the_two_speeds_that_were_not_spoilt_are_trusted_and_right():
+    expect_trusted_and_right(TWO_SPEEDS)
 
 
 @pytest.mark.parametrize("case", FAST, ids=lambda case: case.name)
@@ -35,7 +52,6 @@ def test_wrong_recording(case):
     expect_right_answer(case)
 
 
-@pytest.mark.wrong_recordings
-@pytest.mark.parametrize("case", SLOW, ids=lambda case: case.name)
+@pytest.mark.parametrize("case", [marked(case) for case in (*CASES, *CASES_OF_LEGS) if case not in FAST])
 def test_every_wrong_recording(case):
     expect_right_answer(case)

@@ -94,6 +94,7 @@ def _scales(
         vessel,
         campaign,
         levels_rpm=signals.levels_rpm,
+        legs={leg.name: leg.working_point for leg in signals.legs},
         of_fit=of_fit,
         beside={name: math.exp(factor.log) for name, factor in factors.items() if factor is not None},
     )

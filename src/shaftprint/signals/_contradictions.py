@@ -146,7 +146,13 @@ def _of_scales(
 ) -> tuple[str, ...]:
     """Return how speed and torque are off by one factor, by the test, or without one by the means of all channels."""
     if signals is not None and campaign is not None:
-        reasons = scale_reasons(signals.working_point, vessel, campaign, levels_rpm=signals.levels_rpm)
+        reasons = scale_reasons(
+            signals.working_point,
+            vessel,
+            campaign,
+            levels_rpm=signals.levels_rpm,
+            legs={leg.name: leg.working_point for leg in signals.legs},
+        )
     else:
         point = _mean_point(reports, vessel)
         reasons = () if point is None else scale_reasons(point, vessel)

@@ -8,6 +8,7 @@ from shaftprint.signals.levels import (
     ScaleDoubt,
     ScaleEvidence,
     asked_speed,
+    evidence_between,
     load_over_expected,
     scale_doubt,
     scale_evidence,
@@ -29,6 +30,7 @@ def scale_reasons(
     campaign: "Campaign | None" = None,
     *,
     levels_rpm: Sequence[float] = (),
+    legs: Mapping[str, "WorkingPoint"] | None = None,
     of_fit: Mapping[str, ScaleEvidence] | None = None,
     beside: Mapping[str, float] | None = None,
 ) -> tuple[Reason, ...]:
@@ -44,6 +46,8 @@ def scale_reasons(
         Says which speed was asked for; None where nobody says what was done in the recording.
     levels_rpm
         Mean engine speeds that were governed [rpm].
+    legs
+        Mean speed and torque of each leg, by its name: one factor for all of them is not all that can be wrong.
     of_fit
         What a fit tells of the scales besides, by its name.
     beside
@@ -53,7 +57,7 @@ def scale_reasons(
     evidence = (*scale_evidence(point, vessel, campaign), *further.values())
     doubt = scale_doubt(evidence, vessel, levels_rpm=levels_rpm)
     if doubt is None:
-        return ()
+        return () if campaign is None else _between_legs(point, legs or {}, vessel, campaign)
     told = beside or {}
     if doubt.of == "torque":
         return (_of_torque(doubt, point, vessel, told),)
@@ -76,6 +80,32 @@ def scale_reasons(
             ),
         ),
     )
+
+
+def _between_legs(
+    point: "WorkingPoint", legs: Mapping[str, "WorkingPoint"], vessel: "Vessel", campaign: "Campaign"
+) -> tuple[Reason, ...]:
+    """Return a reason where the speed of one leg is off by one factor beside that of the working point."""
+    main = next((name for name, one in legs.items() if one == point), "the working point")
+    for name, one in legs.items():
+        doubt = scale_doubt(evidence_between(one, point, vessel, campaign), vessel)
+        if doubt is None or doubt.of == "torque":
+            continue
+        found_rpm = rpm_from_rev_s(one.engine_speed_rev_s)
+        torque_rpm = rpm_from_rev_s(point.engine_speed_rev_s) * (one.shaft_torque_nm / point.shaft_torque_nm) ** 0.5
+        return (
+            Reason(
+                kind="speed scale",
+                where=vessel.sensors.speed[0].channel,
+                sentence=(
+                    f"The speed is in doubt: in {name} it seems to be {doubt.words} the true one beside that of "
+                    f"{main}, {found_rpm:.4g} rpm where {one.shaft_torque_nm:.4g} N m belong to {torque_rpm:.4g} rpm "
+                    f"by the torque there; look for what divides, doubles or loses pulses in one of the two, and test "
+                    "again."
+                ),
+            ),
+        )
+    return ()
 
 
 def _told(beside: Mapping[str, float], ending: str) -> str:

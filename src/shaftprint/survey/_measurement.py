@@ -1,6 +1,7 @@
 """From a raw recording to the responses that structures are fitted to."""
 
 from collections.abc import Mapping, Sequence
+from contextlib import nullcontext
 from dataclasses import dataclass, field, replace
 from datetime import datetime
 from pathlib import Path
@@ -15,7 +16,7 @@ from shaftprint.identify.fit import has_measured_inputs
 from shaftprint.memory import give_back_memory
 from shaftprint.models import Structure
 from shaftprint.notebook import Shown
-from shaftprint.recording import Levels, read_recording, watch_levels
+from shaftprint.recording import Levels, Recording, read_recording, watch_levels
 from shaftprint.signals import Mode, Signals, WorkingPoint, prepare_signals
 from shaftprint.spectra import (
     ExactBin,
@@ -74,14 +75,16 @@ class Measurement(Shown):
 
 
 def measure(
-    recording: str | Path,
+    recording: str | Path | Recording,
     trial: Trial,
     *,
     mode: Mode = "shaftprint",
     hints: Mapping[str, Any] = MappingProxyType({}),
     progress: Progress = SILENT,
 ) -> Measurement:
-    """Return signals and responses of a recording; ``hints`` say what its file does not, as for ``read_recording``.
+    """Return signals and responses of a recording: of a file, or of one that is open, which stays open.
+
+    Of a file ``hints`` say what it does not, as for ``read_recording``.
 
     Raises
     ------
@@ -89,7 +92,7 @@ def measure(
         If the recording cannot be read or does not give usable signals and responses.
     """
     progress.begin(f"Reading the recording ({mode} mode)", total=1.0)
-    with read_recording(recording, **hints) as opened:
+    with nullcontext(recording) if isinstance(recording, Recording) else read_recording(recording, **hints) as opened:
         clocks, began, remarks = logger_clocks(opened), opened.began, opened.remarks
         watch = watch_levels(opened)
         signals = prepare_signals(watch.recording, trial.vessel, trial.campaign, mode=mode, progress=progress.reach)

@@ -31,6 +31,7 @@ from shaftprint.limits import LimitFit
 from shaftprint.models import Structure
 from shaftprint.notebook import Shown, Summary, shortened
 from shaftprint.reasons import Reason
+from shaftprint.recording import Recording
 from shaftprint.signals import Mode, Signals
 from shaftprint.spectra import Spectra
 from shaftprint.survey._elastic_line import (
@@ -137,7 +138,7 @@ class Survey(Shown):
 
 @refusing_none(SettingsError)
 def run(
-    recording: str | Path,
+    recording: str | Path | Recording,
     vessel: str | Path | Vessel,
     campaign: str | Path | Campaign,
     *,
@@ -159,7 +160,8 @@ def run(
     Parameters
     ----------
     recording
-        Path of the raw recording, in any format that is read; ``hints`` say what the file does not.
+        Path of the raw recording, in any format that is read, or one that is open; ``hints`` say what the file does
+        not.
     vessel, campaign
         What was tested and what was asked of it: paths, shipped names, or loaded.
     structures

@@ -59,9 +59,18 @@ QUESTIONS: tuple[tuple[ReasonKind, Callable[[Evidence], str]], ...] = (
     ("unstable", unstable),
 )
 
-# Found in the samples and lines: beside these a drift of a clock is no cause of its own.
-LATE: frozenset[ReasonKind] = frozenset(
-    ("recording clock", "channel clock", "held samples", "set-point band", "gauge latency")
+# Found in samples, lines and working points: beside these a drift of a clock is no cause of its own. They make channels
+# late at some lines, or pull at what is known of the line, which a drift between two legs seems to mend.
+BEFORE_DRIFT: frozenset[ReasonKind] = frozenset(
+    (
+        "recording clock",
+        "channel clock",
+        "held samples",
+        "set-point band",
+        "gauge latency",
+        "speed scale",
+        "gauge scale",
+    )
 )
 
 
@@ -146,9 +155,8 @@ def assess(
     suspects = tuple(suspect for suspect in suspects if suspect.share > explained_share)
     hints = tuple(Reason(kind="suspect", sentence=suspect.sentence) for suspect in suspects)
     of_data = tuple(reason for part in identification.experiments for reason in part.response.reasons)
-    # what makes a channel late makes it so by a little more at some lines than at others
-    late = any(reason.kind in LATE for reason in of_data)
-    drifts = () if late else drift_reasons(identification)
+    is_explained = any(reason.kind in BEFORE_DRIFT for reason in (*of_data, *reasons))
+    drifts = () if is_explained else drift_reasons(identification)
     every = by_weight((*of_data, *reasons, *drifts, *contradicted_priors(identification), *of_fit, *hints))
     numbers = (*identification.parameters, *identification.combinations, *further)
     imprecise = doubts_of(identification, numbers, evidence.profile, evidence.requirements)

@@ -29,6 +29,8 @@ _ASKED, _ASSUMED = 0.07, 0.2
 # Torque over the square of the speed: weather, draught, way of the ship, a card's open-water curve. A pitch that is
 # controlled makes of it what it likes.
 _LOAD, _LOAD_OF_PITCH = 0.25, 0.7
+# The same from one leg of a test to the next: wind and current turn, a ship takes way.
+_LOAD_BETWEEN = 0.1
 # Of a recording of which nobody says what was done in it, the means of all of its time.
 _ANY_SPEED, _ANY_LOAD = 0.4, 0.4
 # A governed machine runs between its lowest and its rated speed, and 15 % beyond as the file may err.
@@ -117,6 +119,31 @@ def scale_evidence(
     if not load > 0.0:
         return (speed,)
     return (speed, ScaleEvidence(log=math.log(load), std=load_std, of_speed=-2.0, of_torque=1.0, is_load=True))
+
+
+def evidence_between(
+    point: "WorkingPoint", beside: "WorkingPoint", vessel: "Vessel", campaign: "Campaign"
+) -> tuple[ScaleEvidence, ...]:
+    """Return what mean speed and torque of one leg say of their scales, those of another leg being right.
+
+    Parameters
+    ----------
+    point, beside
+        Of the one leg, and of the other.
+    vessel
+        Says whether a pitch changes the load.
+    campaign
+        Says which speeds were asked for.
+    """
+    (asked_rpm, asked_std), (beside_rpm, _) = (asked_speed(one, vessel, campaign) for one in (point, beside))
+    speed = math.log(point.engine_speed_rev_s / beside.engine_speed_rev_s)
+    loads = [load_over_expected(one, vessel) for one in (point, beside)]
+    of_speed = ScaleEvidence(log=speed - math.log(asked_rpm / beside_rpm), std=asked_std, of_speed=1.0)
+    if not min(loads) > 0.0:
+        return (of_speed,)
+    load_std = _LOAD_BETWEEN if vessel.pitch is None else _LOAD_OF_PITCH
+    load = math.log(loads[0] / loads[1])
+    return (of_speed, ScaleEvidence(log=load, std=load_std, of_speed=-2.0, of_torque=1.0, is_load=True))
 
 
 def asked_speed(point: "WorkingPoint", vessel: "Vessel", campaign: "Campaign") -> tuple[float, float]:

@@ -3,10 +3,14 @@
 A low-pass, a moving average and a hold between what is asked for and what is logged make a sine smaller the faster it
 is, by ``1 / sqrt(1 + (w T)^2)`` or ``sinc(f T)``. To second order both are ``1 - k w^2``, and late they are by
 ``sqrt(2 k)`` and ``sqrt(6 k)``. The scale of the channel is free: only how the sines differ tells of it.
+
+A share ``a`` of another channel ``y`` on it, as where two cables lie together, makes a sine ``1 + a Re(y / u)`` times
+as large, which follows the response of that channel and no filter.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -30,6 +34,9 @@ _LATE_S = np.geomspace(1e-4, 3.0, 400)
 # A sine that is smaller is no sine of this campaign.
 _UNEXCITED_SHARE = 0.1
 _DEVIATIONS = 2.0
+# A share of another channel that changes no sine by more is none that a fit would see.
+_LEAST_SHARE = 0.003
+_PERCENT = 100.0
 # Generators and loggers keep a size to so much of it.
 _LEAST_STD = 2e-4
 
@@ -42,6 +49,10 @@ class InputBand:
     """By how much the filter that explains them best makes the channel late [s]; 0 where none is seen."""
     widest_s: float
     """By how much a hold or filter may make it late that the sines do not contradict [s]."""
+    beside: str = ""
+    """Symbol of another channel of which it shows a share; empty where it does not."""
+    beside_share: float = 0.0
+    """By how much that changes the sine that it changes most [-]."""
 
 
 def band_of_lines(
@@ -67,10 +78,24 @@ def band_of_lines(
     )
     gain = np.abs([moved.gain(frequency) for frequency in hertz.tolist()])
     tiny = np.finfo(np.float64).tiny
-    return input_band(hertz, amplitude / (gain * expected), np.sqrt(0.5 * noise) / np.maximum(amplitude, tiny))
+    answers = {
+        name: np.array(
+            [float((line.of(line.amplitude, name) / line.of(line.amplitude, moved.name)).real) for line in lines]
+        )
+        for name in (lines[0].channels if lines else ())
+        if name != moved.name
+    }
+    share_std = np.sqrt(0.5 * noise) / np.maximum(amplitude, tiny)
+    return input_band(hertz, amplitude / (gain * expected), share_std, answers=answers)
 
 
-def input_band(frequency_hz: FloatArray, share: FloatArray, share_std: FloatArray) -> InputBand | None:
+def input_band(
+    frequency_hz: FloatArray,
+    share: FloatArray,
+    share_std: FloatArray,
+    *,
+    answers: Mapping[str, FloatArray] = MappingProxyType({}),
+) -> InputBand | None:
     """Return what amplitudes say of a filter or hold; None where there are too few lines.
 
     Parameters
@@ -79,6 +104,8 @@ def input_band(frequency_hz: FloatArray, share: FloatArray, share_std: FloatArra
         Frequency of each line [Hz], shape (lines,).
     share, share_std
         Amplitude over that of the campaign file, and its relative standard deviation by noise, shape (lines,).
+    answers
+        What other channels show in phase with it, over it, by their symbols, each of shape (lines,).
     """
     kept = share > _UNEXCITED_SHARE
     if np.count_nonzero(kept) < _FEWEST_LINES:
@@ -90,16 +117,36 @@ def input_band(frequency_hz: FloatArray, share: FloatArray, share_std: FloatArra
     left = _square(seen - shapes, weight)
     without, least, spare = float(_square(seen, weight)), float(left.min()), seen.size - 2
     late_s = float(late_of_shapes_s[int(np.argmin(left))])
-    is_seen = (
-        late_s > _LEAST_LATE_S
-        and without - least > _LEAST_EXPLAINED * without
-        and f_tail((without - least) / max(least, np.finfo(np.float64).tiny) * spare, 1.0, spare) < _BY_CHANCE
-    )
+    beside, sizes, of_beside = _beside(seen, weight, {name: values[kept] for name, values in answers.items()})
+    if of_beside < least and _is_seen(without, of_beside, spare) and sizes > _LEAST_SHARE:
+        return InputBand(late_s=0.0, widest_s=_widest_s(omega, seen, weight), beside=beside, beside_share=sizes)
+    is_seen = late_s > _LEAST_LATE_S and _is_seen(without, least, spare)
     return InputBand(late_s=late_s if is_seen else 0.0, widest_s=_widest_s(omega, seen, weight))
 
 
+def _is_seen(without: float, left: float, spare: int) -> bool:
+    """Return whether a cause explains nearly all, and more than one does by chance."""
+    fall = without - left
+    return fall > _LEAST_EXPLAINED * without and bool(
+        f_tail(fall / max(left, np.finfo(np.float64).tiny) * spare, 1.0, spare) < _BY_CHANCE
+    )
+
+
+def _beside(seen: FloatArray, weight: FloatArray, answers: Mapping[str, FloatArray]) -> tuple[str, float, float]:
+    """Return the channel whose share explains the sines best, how much it changes one, and what it leaves."""
+    found = ("", 0.0, np.inf)
+    for name, values in answers.items():
+        about = values - weight @ values
+        power = float(weight @ about**2)
+        share = float(weight @ (about * seen)) / power if power else 0.0
+        left = _square(seen - share * values, weight)
+        if left < found[2]:
+            found = (name, float(np.max(np.abs(share * values))), float(left))
+    return found
+
+
 def band_reasons(band: InputBand | None, *, channel: str, symbol: str) -> tuple[Reason, ...]:
-    """Return a reason where the channel of what was moved is behind a filter or hold.
+    """Return a reason where the channel of what was moved is behind a filter or hold, or shows another one too.
 
     Parameters
     ----------
@@ -108,6 +155,18 @@ def band_reasons(band: InputBand | None, *, channel: str, symbol: str) -> tuple[
     channel, symbol
         Name of the channel, and what it shows.
     """
+    if band is not None and band.beside:
+        return (
+            Reason(
+                kind="set-point shape",
+                where=symbol,
+                sentence=(
+                    f"Channel {channel} shows a share of another channel, {band.beside}: its sines differ from those "
+                    f"of the campaign, by up to {_PERCENT * band.beside_share:.2g} %, as that one answers them; look "
+                    "for cross-talk between their cables or inputs, and log them apart."
+                ),
+            ),
+        )
     if band is None or not band.late_s:
         return ()
     corner_hz = 1.0 / (2.0 * np.pi * band.late_s)
