@@ -24,8 +24,8 @@ class Case:
     """The test that is spoilt."""
     ship: Mapping[str, object] = field(default_factory=dict)
     """In what the ship that sailed is another than the vessel file lets expect."""
-    both: bool = True
-    """Whether the test of two speeds is spoilt so as well; what has other lines or other levels has a case there."""
+    both: bool = False
+    """Whether the test of two speeds is spoilt so as well, as one of each kind is."""
     fast: bool = False
     """Whether it is among the few of every test run."""
 

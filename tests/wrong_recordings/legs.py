@@ -278,9 +278,6 @@ SHIPS = (
 )  # fmt: skip
 
 CASES_OF_LEGS = (
-    *(
-        replace(case, test=TWO_SPEEDS, both=False)
-        for case in (*GAUGE, *SPEEDS, *SET_POINTS, *CLOCKS, *GAPS, *FILES, *SHIPS)
-    ),
+    *(replace(case, test=TWO_SPEEDS) for case in (*GAUGE, *SPEEDS, *SET_POINTS, *CLOCKS, *GAPS, *FILES, *SHIPS)),
     *(replace(case, test=TWO_SPEEDS, fast=False) for case in CASES if case.both),
 )

@@ -218,6 +218,16 @@ def attributes(channel: str, **fields: object) -> Change:
     return lambda trial: trial.with_channel(channel, **fields)
 
 
+def in_another_unit(channel: str, factor: float) -> Change:
+    """Store a channel in a unit that is so many times as large, and say nothing of it."""
+
+    def applied(trial: Trial) -> Trial:
+        one = trial.recording.channels[channel]
+        return trial.with_channel(channel, scale=one.scale / factor, offset=one.offset / factor)
+
+    return applied
+
+
 def everywhere(of: Callable[[Values], Values]) -> Change:
     """Apply a function of the values to every channel; it may make them shorter."""
 

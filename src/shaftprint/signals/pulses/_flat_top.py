@@ -58,7 +58,7 @@ def expect_whole_crests(channel: "Channel") -> tuple[Reason, ...]:
     )
 
 
-def _flat_ends(values: "Counts") -> Iterator[_FlatEnd]:
+def _flat_ends(values: NDArray[Any]) -> Iterator[_FlatEnd]:
     """Yield the ends of values at which they stick."""
     levels, visits = np.unique(values, return_counts=True)
     for end, index, order in (("highest value", -1, slice(None, None, -1)), ("lowest value", 0, slice(None))):
