@@ -347,6 +347,17 @@ def test_nothing_to_fit_is_refused():
         identify_jointly([], rng=rng())
 
 
+def test_a_response_none_of_whose_lines_can_be_used_is_refused_with_its_lines(noisy):
+    silent = replace(
+        noisy,
+        lines=tuple(f"M2/{k}" for k in range(1, 14)),
+        used=np.zeros(13, dtype=bool),
+        remarks={"M2/1": "set point does not move"},
+    )
+    with pytest.raises(IdentificationError, match=r"none among M2/1 to M2/13; .* M2/1 set point does not move"):
+        identify_jointly([(structure("CL4"), noisy), (structure("CL4"), silent)], rng=rng())
+
+
 def test_structures_of_the_same_parameters_may_be_composed_otherwise(make_response):
     truth = {"K_p": 1.0, "K_i": 4.0}
     double = Structure(name="double", title="", input="e", outputs={"M_s": Constant(2.0) * governor().paths[0]})

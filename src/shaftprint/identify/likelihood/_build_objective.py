@@ -8,6 +8,7 @@ import numpy as np
 
 from shaftprint.errors import IdentificationError
 from shaftprint.identify.likelihood._build_experiment import build_experiment
+from shaftprint.identify.likelihood._experiment import Experiment
 from shaftprint.identify.likelihood._objective import Objective
 from shaftprint.identify.likelihood._prior import Prior
 from shaftprint.identify.likelihood._term import Term
@@ -112,15 +113,22 @@ def _expect_solvable(objective: Objective, with_prior: Sequence[str]) -> None:
         lines = sum(e.s.size for e in objective.experiments)
         raise IdentificationError(
             f"structure {objective.name} has {len(names)} free parameters, the response {objective.data_count} usable "
-            f"numbers ({lines} lines): measure more lines or hold parameters.{_missing_lines(objective)}"
+            f"numbers ({lines} lines): measure more lines or hold parameters.{_missing_lines(objective.experiments)}"
+        )
+    empty = [one for one in objective.experiments if not one.s.size]
+    if empty:
+        first, *_, last = (*empty[0].response.lines, *empty[0].response.lines)
+        raise IdentificationError(
+            f"joint fit: expected lines that can be used in every response, found none among {first} to {last}; fit "
+            f"the others alone (identify --leg), or measure these again.{_missing_lines(empty)}"
         )
 
 
-def _missing_lines(objective: Objective) -> str:
+def _missing_lines(experiments: Sequence[Experiment]) -> str:
     """Return why lines are missing, as a further sentence; nothing where none is."""
     remarks = [
         f"{name} {remark}"
-        for experiment in objective.experiments
+        for experiment in experiments
         for name, remark in experiment.response.remarks.items()
         if name not in experiment.response.lines or not experiment.fitted[experiment.response.lines.index(name)]
     ]
