@@ -113,15 +113,15 @@ def judged(fingerprint: Fingerprint, case: Case) -> Answer:
     trusted = [name for name in wrong if verdict.trustworthy and name in verdict.trusted]
     reasons = " | ".join(reason.sentence for reason in verdict.reasons[:FIRST])
     told = _told(wrong, trusted, numbers)
-    if trusted:
-        assumed = " | ".join(verdict.assumptions)
-        if case.assumption and re.search(case.assumption, assumed, re.IGNORECASE):
-            return Answer(outcome="right", words=f"assumption: {assumed}", wrong=told)
-        return Answer(outcome="WRONG", words=reasons, wrong=told)
     if not wrong:
         return Answer(outcome="right", words=reasons)
     named = re.search(case.cause, reasons, re.IGNORECASE)
-    return Answer(outcome="not trusted" if named else "not trusted, cause not named", words=reasons, wrong=told)
+    if named and not trusted:
+        return Answer(outcome="not trusted", words=reasons, wrong=told)
+    assumed = " | ".join(verdict.assumptions)
+    if case.assumption and re.search(case.assumption, assumed, re.IGNORECASE):
+        return Answer(outcome="right", words=f"assumption: {assumed}", wrong=told)
+    return Answer(outcome="WRONG" if trusted else "not trusted, cause not named", words=reasons, wrong=told)
 
 
 def is_right(quantity: Quantity, true: float) -> bool:
