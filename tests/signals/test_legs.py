@@ -136,11 +136,22 @@ def test_a_set_point_that_stands_still_is_refused():
         # a gap in the first period: the rest from 42 s on holds four
         (Coverage(gaps=(Gap(channel="M", start_s=41.0, stop_s=42.0, reason="has no values"),)), (42.0, 4)),
         (Coverage(start_s=0.0, stop_s=65.0), None),
+        # begun at 55 s, in the second period: three fit into 75 s
+        (Coverage(start_s=55.0, stop_s=200.0, step_s=0.01), (55.0, 3)),
+        # begun with the leg, by whose clock it is half a sample late
+        (Coverage(start_s=30.005, stop_s=200.0, step_s=0.01), (30.0, 5)),
     ],
 )
 def test_the_longest_run_of_whole_periods_is_used(coverage, expected):
     periods = leg_periods(LEG, coverage)
     assert (periods if periods is None else (periods.start_s, periods.periods)) == expected
+
+
+def test_periods_of_a_recording_that_begins_within_a_leg_are_cut_whole():
+    for start_s in (55.0, 30.005):
+        periods = leg_periods(LEG, Coverage(start_s=start_s, stop_s=200.0, step_s=1.0 / RATE_HZ))
+        values = np.arange(round((200.0 - start_s) * RATE_HZ))
+        assert periods.cut(values, rate_hz=RATE_HZ, start_s=start_s).size == periods.periods * LEG.period_s * RATE_HZ
 
 
 def _put_out(*, begins_s=0.0, stops_s=1e3, then_v=-5.0, clock_ratio=0.0, noise=0.0):

@@ -47,7 +47,7 @@ class LegPeriods:
         rate_hz, start_s
             The grid.
         """
-        first = round((self.start_s - start_s) * rate_hz)
+        first = max(0, round((self.start_s - start_s) * rate_hz))
         return values[first : first + round(self.periods * self.period_s * rate_hz)]
 
 
@@ -63,8 +63,9 @@ def leg_periods(leg: "Leg", coverage: "Coverage") -> LegPeriods | None:
     coverage
         What the recording covers.
     """
-    begin_s = max(leg.settled_s, coverage.start_s - coverage.step_s)
-    end_s = min(leg.stop_s, coverage.stop_s + coverage.step_s)
+    # a recording that begins or ends with the leg may do so a sample beside it
+    begin_s = leg.settled_s if leg.settled_s > coverage.start_s - coverage.step_s else coverage.start_s
+    end_s = leg.stop_s if leg.stop_s < coverage.stop_s + coverage.step_s else coverage.stop_s
     borders = [begin_s, *(border for gap in merged(coverage.gaps, begin_s, end_s) for border in gap), end_s]
     stretches = list(zip(borders[::2], borders[1::2], strict=True))
     first_s, last_s = max(stretches, key=lambda stretch: stretch[1] - stretch[0])
