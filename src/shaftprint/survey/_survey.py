@@ -160,13 +160,11 @@ def run(
     Parameters
     ----------
     recording
-        Path of the raw recording, in any format that is read, or one that is open; ``hints`` say what the file does
-        not.
+        Path of the raw recording in any format that is read, or an open one; ``hints`` say what the file does not.
     vessel, campaign
         What was tested and what was asked of it: paths, shipped names, or loaded.
     structures
-        Structures, or names of shipped ones, which are taken as ``of_vessel`` gives them; the fingerprint is of the
-        first, others are fitted beside it. Where there are none, that of ``default_structure``.
+        Structures, or names of shipped ones; the fingerprint is of the first. ``default_structure`` without any.
     settings
         Gives how a structure is fitted; with the priors of the vessel file where it is not given.
     mode
