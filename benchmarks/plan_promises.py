@@ -4,7 +4,7 @@ For every seed a ship is drawn as in ``scouted_tests``, its set-point line bends
 of all its noise is 0.5 to 3 times the simulated tug's. All ships sail the test that is planned from the card. Those of
 ``--scouted`` sail the first test of two legs of 45 s too, after which twelve minutes are planned and sailed. Stated
 deviations are held against planned ones. Run ``python
-benchmarks/plan_promises.py --ships 24 --scouted 12 --outcomes build/promises --write``: ten seconds of processor time
+benchmarks/plan_promises.py --ships 24 --scouted 3 --outcomes build/promises --write``: ten seconds of processor time
 a ship, half a minute more for one with a first test. Ships that the folder holds are not sailed again.
 """
 
