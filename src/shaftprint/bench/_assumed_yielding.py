@@ -6,8 +6,8 @@ is as far as nothing at all lies from it. With few and weak turns that is nothin
 more than what noise leaves uncertain.
 """
 
-from shaftprint.bench._composed import yielding_of
 from shaftprint.bench._equipped import EquippedDrive
+from shaftprint.bench._parts import yielding_of
 from shaftprint.catalogue import DRIVES
 
 # Of the assumed number, one standard deviation.

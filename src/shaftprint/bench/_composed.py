@@ -1,87 +1,15 @@
 """A structure that a drive file composes of blocks: names and numbers only, nothing of the file is run."""
 
-from collections.abc import Callable, Mapping
-from types import MappingProxyType
-from typing import Any, TypeAlias
+from collections.abc import Mapping
+from dataclasses import replace
+from functools import reduce
+from typing import Any
 
-from shaftprint.drive import Block, BlockKind, Drive
+from shaftprint.bench._parts import PARTS, YIELDING, Given, yielding_of
+from shaftprint.drive import Block, Drive
 from shaftprint.errors import SettingsError
-from shaftprint.models import (
-    Diagram,
-    Flow,
-    Formula,
-    Number,
-    Parameter,
-    Structure,
-    backlash,
-    clip,
-    coulomb_friction,
-    deadband,
-    first_order_lag,
-    number,
-    second_order_lag,
-    stribeck_friction,
-)
+from shaftprint.models import Diagram, Flow, Formula, Parameter, Structure, number
 from shaftprint.spelling import meant
-
-Values: TypeAlias = Mapping[str, Number]
-Part: TypeAlias = Callable[[Flow, Formula, Values], Formula]
-
-
-def _integrator(flow: Flow, signal: Formula, p: Values) -> Formula:
-    state = flow.state("sum")
-    flow.rate(state, signal * p["gain"])
-    return state
-
-
-def _pi(flow: Flow, signal: Formula, p: Values) -> Formula:
-    state = flow.state("sum")
-    flow.rate(state, signal * p["integral"])
-    return signal * p["proportional"] + state
-
-
-PARTS: Mapping[BlockKind, tuple[Mapping[str, float | None], Part]] = MappingProxyType(
-    {
-        "gain": ({"gain": None}, lambda flow, u, p: u * p["gain"]),
-        "sum": ({}, lambda flow, u, p: u),
-        "integrator": ({"gain": 1.0}, _integrator),
-        "first-order-lag": (
-            {"gain": 1.0, "time": None},
-            lambda flow, u, p: first_order_lag(flow, u, p["time"]) * p["gain"],
-        ),
-        "second-order-lag": (
-            {"gain": 1.0, "frequency": None, "damping": None},
-            lambda flow, u, p: second_order_lag(flow, u, p["frequency"], p["damping"]) * p["gain"],
-        ),
-        "pi": ({"proportional": None, "integral": None}, _pi),
-        "delay": ({"time": None}, lambda flow, u, p: flow.delayed(u, p["time"])),
-        "deadband": ({"half-width": None}, lambda flow, u, p: deadband(u, p["half-width"])),
-        "limit": ({"lowest": None, "highest": None}, lambda flow, u, p: clip(u, p["lowest"], p["highest"])),
-        "coulomb-friction": (
-            {"size": None, "yielding": None, "within": 1e-3},
-            lambda flow, u, p: coulomb_friction(flow, u, p["size"], yielding=p["yielding"], within_s=p["within"]),
-        ),
-        "stribeck-friction": (
-            {"size": None, "breakaway": None, "fading-speed": None, "yielding": None, "within": 1e-3},
-            lambda flow, u, p: stribeck_friction(
-                flow,
-                u,
-                p["size"],
-                breakaway=p["breakaway"],
-                fading_speed=p["fading-speed"],
-                yielding=p["yielding"],
-                within_s=p["within"],
-            ),
-        ),
-        "backlash": (
-            {"gap": None, "within": 1e-3},
-            lambda flow, u, p: backlash(flow, u, p["gap"], within_s=p["within"]),
-        ),
-    }
-)
-"""What each kind of block asks for, with the usual value where there is one, and what it does."""
-# By how much what friction holds yields.
-YIELDING = "yielding"
 
 
 def composed(drive: Drive) -> Structure:
@@ -96,7 +24,7 @@ def composed(drive: Drive) -> Structure:
     inputs = tuple(one.name for one in drive.inputs)
     outputs = tuple(one.name for one in drive.outputs)
     _expect_wiring(drive, inputs, outputs)
-    used = {text for block in drive.blocks for text in block.parameters.values() if isinstance(text, str)}
+    used = {name for block in drive.blocks for name in block.names}
     _expect_parameters(drive, used)
     parameters = (
         *(Parameter(one.name, one.unit, one.lower, one.upper, one.value, one.meaning) for one in drive.parameters),
@@ -107,15 +35,8 @@ def composed(drive: Drive) -> Structure:
         signals = {name: first if name == inputs[0] else flow.input(name) for name in inputs}
         signals |= {block.output: flow.unknown() for block in drive.blocks}
         for block in drive.blocks:
-            into = number(0.0)
-            for name in block.inputs:
-                signal = signals[name.removeprefix("-")]
-                into = into - signal if name.startswith("-") else into + signal
-            asked, part = PARTS[block.kind]
-            values = {key: _value(flow, block, key, usual) for key, usual in asked.items()}
-            if _is_number(block, YIELDING):
-                values[YIELDING] = flow.parameter(yielding_of(block))
-            flow.close(signals[block.output], part(flow, into, values), f"drive {drive.name}, block {block.output}")
+            value = _made(flow, block, _into(block, signals))
+            flow.close(signals[block.output], value, f"drive {drive.name}, block {block.output}")
         return {name: signals[name] for name in outputs}
 
     diagram = Diagram(drive.name, inputs[0], outputs, equations, parameters, further=inputs[1:])
@@ -131,12 +52,6 @@ def composed(drive: Drive) -> Structure:
     )
 
 
-def yielding_of(block: Block) -> str:
-    """Return the parameter that says by how much what a block holds yields."""
-    value = block.parameters.get(YIELDING)
-    return value if isinstance(value, str) else f"{block.output}_{YIELDING}"
-
-
 def _is_number(block: Block, key: str) -> bool:
     value = block.parameters.get(key)
     return value is not None and not isinstance(value, str) and value > 0.0
@@ -149,9 +64,24 @@ def _held_yielding(block: Block) -> Parameter:
     return Parameter(yielding_of(block), "-", 0.0, 2.0 * value, value, meaning, held=True)
 
 
-def _value(flow: Flow, block: Block, key: str, usual: float | None) -> Number:
-    value = block.parameters.get(key, usual)
-    return flow.parameter(value) if isinstance(value, str) else number(value or 0.0)
+def _into(block: Block, signals: Mapping[str, Formula]) -> Formula:
+    """Return what goes into a block: its inputs added, those of a product multiplied."""
+    of = [-signals[name[1:]] if name.startswith("-") else signals[name] for name in block.inputs]
+    if block.kind == "product":
+        return reduce(lambda left, right: left * right, of)
+    return reduce(lambda left, right: left + right, of, number(0.0))
+
+
+def _made(flow: Flow, block: Block, into: Formula) -> Formula:
+    """Return what comes out of a block; its states are called after it."""
+    asked, part = PARTS[block.kind]
+    first = len(flow.states)
+    value = part(flow, into, Given(flow, block, asked))
+    for place, state in enumerate(flow.states[first:], start=first):
+        # the output itself is what a user knows at the start; what is behind it says what it is
+        name = block.output if state is value else f"{block.output} {state.name}"
+        flow.states[place] = replace(state, name=name)
+    return value
 
 
 def _expect_wiring(drive: Drive, inputs: tuple[str, ...], outputs: tuple[str, ...]) -> None:
@@ -194,8 +124,8 @@ def _expect_parameters(drive: Drive, used: set[str]) -> None:
                     f"drive {drive.name}, block {block.output}, parameters: expected {key}, the name of a parameter or "
                     "a number, found none."
                 )
-        for value in block.parameters.values():
-            if isinstance(value, str) and value not in stated:
+        for value in block.names:
+            if value not in stated:
                 known = ", ".join(stated) or "of which there is none"
                 raise SettingsError(
                     f"drive {drive.name}, block {block.output}, parameters: expected a number or one of "
@@ -208,5 +138,5 @@ def _expect_parameters(drive: Drive, used: set[str]) -> None:
         )
 
 
-def _listed(asked: Mapping[str, float | None]) -> str:
+def _listed(asked: Mapping[str, float | str | None]) -> str:
     return ", ".join(asked) or "no parameters"

@@ -22,8 +22,10 @@ from shaftprint.models.equations._limits import (
     deadband,
     first_order_lag,
     limited_pi,
+    raised,
     rate_limited,
     second_order_lag,
+    two_sided,
 )
 from shaftprint.models.equations._realisation import Ratio, coefficients, product, realised, total
 
@@ -58,6 +60,7 @@ __all__ = [
     "postorder",
     "product",
     "quadratic_propeller",
+    "raised",
     "rate_limited",
     "realised",
     "rebuilt",
@@ -68,4 +71,5 @@ __all__ = [
     "swept",
     "table",
     "total",
+    "two_sided",
 ]

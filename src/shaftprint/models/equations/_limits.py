@@ -2,8 +2,9 @@
 
 from dataclasses import dataclass
 
+from shaftprint.errors import StructureError
 from shaftprint.models.equations._flow import Flow
-from shaftprint.models.equations._formula import Formula, Number, as_formula, clip
+from shaftprint.models.equations._formula import Formula, Number, as_formula, choose, clip, power
 
 
 def deadband(error: Formula, half_width: Number) -> Formula:
@@ -13,6 +14,38 @@ def deadband(error: Formula, half_width: Number) -> Formula:
     """
     width = as_formula(half_width)
     return error if width.equals(0.0) else error - clip(error, -width, width)
+
+
+def raised(signal: Formula, exponent: float, *, keeps_sign: bool = False) -> Formula:
+    """Return a power of a signal, such as the torque of a propeller or the force of a spring that hardens.
+
+    Parameters
+    ----------
+    exponent
+        1 or more: below, the slope at zero has no end.
+    keeps_sign
+        Whether what is negative stays so: ``sign(u) abs(u)^n``.
+
+    Raises
+    ------
+    StructureError
+        If the exponent is below 1, or no whole number where the sign is not kept.
+    """
+    whole = float(exponent).is_integer()
+    if exponent < 1.0 or not (whole or keeps_sign):
+        raise StructureError(f"equations: expected a whole exponent of 1 or more, or the sign kept, found {exponent}.")
+    if keeps_sign and not (whole and exponent % 2.0):
+        return choose(signal, 0.0, -1.0, 1.0) * power(abs(signal), exponent)
+    # products: what is negative has a power in every language then
+    result = signal
+    for _ in range(int(exponent) - 1):
+        result = result * signal
+    return result
+
+
+def two_sided(signal: Formula, above: Number, below: Number) -> Formula:
+    """Return ``above`` times what is positive of a signal, ``below`` times what is negative."""
+    return signal * choose(signal, 0.0, below, above)
 
 
 def rate_limited(flow: Flow, signal: Formula, fastest: Number, *, period_s: Number = 0.0) -> Formula:
