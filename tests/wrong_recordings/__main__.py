@@ -25,7 +25,7 @@ HEAD = """# Wrong recordings
 Two simulated tests, spoilt in {count} ways, and what comes of each: {tests}. An answer is right when the recording
 is refused and the sentence names the cause; when every wrong number is not trusted and the cause is among the first
 three reasons; when its numbers are right all the same; or, where no recording can show the fault, when the assumption
-stands beside the number. Wrong and trusted: {wrong}.
+stands beside the number. Wrong and trusted: {wrong}; not trusted, but without the cause: {unnamed}.
 
 Written by `python -m tests.wrong_recordings docs/wrong-recordings.md`; a test holds every row. The causes were written
 down, in `tests/wrong_recordings/`, before the answers were seen.
@@ -61,7 +61,10 @@ def page(answers: list[tuple[Case, Answer]]) -> str:
         return [row(case, told) for case, told in answers if case.test == test]
 
     counts = " and ".join(f"{test.words} in {len(of(test))}" for test in REMARKS)
-    text = HEAD.format(count=len(answers), tests=counts, wrong=sum(told.outcome == "WRONG" for _, told in answers))
+    wrong, unnamed = (
+        sum(told.outcome.endswith(words) for _, told in answers) for words in ("WRONG", "cause not named")
+    )
+    text = HEAD.format(count=len(answers), tests=counts, wrong=wrong, unnamed=unnamed)
     for test, remark in REMARKS.items():
         title = test.words.split(" ", 1)[1]
         text += TABLE.format(title=title[0].upper() + title[1:], remark=remark) + "\n".join(of(test)) + "\n"

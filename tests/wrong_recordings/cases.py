@@ -194,7 +194,7 @@ CLOCKS = (
     Case(name="declared rate of the set point 20 ppm high", both=True, cause=CLOCK, change=m.rate(1.00002, SET_POINT)),
     Case(name="declared rate of the pick-up 50 ppm high", cause=CLOCK, change=m.rate(1.00005, SPEED)),
     Case(name="torque sampled 0.5 % too fast", cause="clock", change=m.sampled_at(1.005, TORQUE)),
-    Case(name="pick-ups sampled 0.5 % too fast",
+    Case(name="pick-ups sampled 0.5 % too fast", both=True,
          cause="clock", change=m.sampled_at(1.005, *ENGINE_AND_PROPELLER)),
     Case(name="set point sampled 0.5 % too fast", both=True,
          cause=f"clock|{CAMPAIGN}", change=m.sampled_at(1.005, SET_POINT)),
