@@ -22,13 +22,15 @@ from tests.wrong_recordings.trial import ONE_SPEED, TWO_SPEEDS, Sailed
 
 HEAD = """# Wrong recordings
 
-Two simulated tests, spoilt in {count} ways, and what comes of each: {tests}. An answer is right when the recording
-is refused and the sentence names the cause; when every wrong number is not trusted and the cause is among the first
+Two simulated tests, spoilt in {count} ways, and what comes of each:
+{tests}. An answer is right when the recording is
+refused and the sentence names the cause; when every wrong number is not trusted and the cause is among the first
 three reasons; when its numbers are right all the same; or, where no recording can show the fault, when the assumption
 stands beside the number. Wrong and trusted: {wrong}; not trusted, but without the cause: {unnamed}.
 
 Written by `python -m tests.wrong_recordings docs/wrong-recordings.md`; a test holds every row. The causes were written
-down, in `tests/wrong_recordings/`, before the answers were seen.
+down, in `tests/wrong_recordings/`, before the answers were seen; one was widened since: of a channel that holds its
+values in one leg alone it may be said that it stands still for a share of the time.
 """
 TABLE = """
 ## {title}
