@@ -58,7 +58,7 @@ upper = 100.0
 value = 0.2
 meaning = "time constant"
 [[start]]
-name = "lag"
+name = "y"
 value = 0.0
 [fit]
 start = "known"
