@@ -46,7 +46,10 @@ def test_values_that_are_kept_are_named_with_their_time(tmp_path, kept):
 
 
 def test_start_in_motion_is_named_and_found(tmp_path):
-    reason = named(fit_of(tmp_path, 3, start=60.0, fit="inputs_hold = true"))
+    moving = fit_of(tmp_path, 3, start=60.0, fit="inputs_hold = true")
+    reason = named(moving)
+    assert [one.kind for one in moving.verdict.reasons] == ["record"]
+    assert not any("do not follow the same numbers" in sentence for sentence in moving.verdict.sentences)
     assert "Record steps does not begin in steady running" in reason
     assert 'start = "found"' in reason
     found = fit_of(tmp_path, 3, start=60.0, fit='inputs_hold = true\nstart = "found"')

@@ -9,6 +9,7 @@ from shaftprint.arguments import refusing_none
 from shaftprint.arrays import FloatArray
 from shaftprint.bench._assumed_yielding import assumed_yielding
 from shaftprint.bench._equipped import EquippedDrive
+from shaftprint.bench._former_states import start_by_names_of_today
 from shaftprint.bench._hold import input_way
 from shaftprint.bench._record_reasons import REQUIREMENTS, held_outputs, large_offsets, starts_in_motion
 from shaftprint.bench._search import AGREE, search_drive
@@ -102,11 +103,12 @@ def identify_drive(
     fit, agreeing = searched.fit, searched.agreeing
     profiled = profile(fit)
     remarks = [remark for record in records for remark in record.remarks]
+    in_motion = tuple(starts_in_motion(one, fit))
     reasons = (
         *_alone(agreeing, fit.settings.starts),
         *held_outputs(one, records),
         *way.reasons,
-        *starts_in_motion(one, fit),
+        *in_motion,
         *large_offsets(one, fit),
     )
     verdict = assess(
@@ -116,9 +118,25 @@ def identify_drive(
         equipped=one,
         identification=fit,
         intervals=profiled.intervals,
-        verdict=verdict,
+        verdict=_without_what_follows(verdict, in_motion),
         inputs_hold=way.hold,
         agreeing=agreeing,
+    )
+
+
+def _without_what_follows(verdict: Verdict, in_motion: Sequence[Reason]) -> Verdict:
+    """Return a verdict without the contradictions of a record that other states at its start explain."""
+    follow = [
+        reason
+        for reason in verdict.reasons
+        if reason.kind == "contradicting data"
+        and any(f" does not hold in record {start.where}: " in reason.sentence for start in in_motion)
+    ]
+    said = {reason.sentence for reason in follow}
+    return replace(
+        verdict,
+        reasons=tuple(reason for reason in verdict.reasons if reason not in follow),
+        sentences=tuple(sentence for sentence in verdict.sentences if sentence not in said),
     )
 
 
@@ -167,9 +185,11 @@ def drive_time_settings(one: EquippedDrive, records: Sequence[Record]) -> TimeSe
     """
     fit = one.drive.fit
     step_s = fit.longest_step_s or 1.0 / (STEPS_A_SAMPLE * max(record.rate_hz for record in records))
-    known = {state.name: state.value for state in one.drive.start} if fit.start == "known" else None
-    if known is not None:
-        _expect_states(one, known)
+    known = None
+    if fit.start == "known":
+        names = state_names(one.structure, one.structure.vector({}))
+        known = start_by_names_of_today(one.drive, names)
+        _expect_states(one, known, names)
     return TimeSettings(
         drift_degree=DEGREES[fit.offset],
         initial_states=fit.start == "found",
@@ -178,8 +198,7 @@ def drive_time_settings(one: EquippedDrive, records: Sequence[Record]) -> TimeSe
     )
 
 
-def _expect_states(one: EquippedDrive, known: Mapping[str, float]) -> None:
-    names = state_names(one.structure, one.structure.vector({}))
+def _expect_states(one: EquippedDrive, known: Mapping[str, float], names: Sequence[str]) -> None:
     for name in known:
         if name not in names:
             raise SettingsError(
