@@ -11,6 +11,7 @@ from typing import Any
 
 import pytest
 from click.testing import CliRunner, Result
+from hypothesis import HealthCheck, settings
 
 from shaftprint.cli import shaftprint
 
@@ -25,6 +26,10 @@ QUIET = (
 )
 LONGEST_WAIT_S = 1200.0
 ONE_LINE = 10_000
+
+# Nothing is timed in a test: how fast examples are drawn says what else the machine does.
+settings.register_profile("untimed", deadline=None, suppress_health_check=[HealthCheck.too_slow])
+settings.load_profile("untimed")
 
 
 @pytest.fixture(scope="session", autouse=True)

@@ -16,6 +16,7 @@ _BY_BYTES = {
 }
 _BY_ENDING = {
     (".xlsx", ".xlsm", ".xls", ".ods"): f"it is a spreadsheet: {_TABLE}",
+    (".json",): "JSON, as of a result or the truth beside a simulated recording: name the file of the logger",
     (".zip",): "it is an archive: unpack it",
     (".tdm", ".tdx"): "National Instruments' TDM: in DIAdem or LabVIEW save it as TDMS",
     (".lms", ".ldsf", ".sdf"): "Simcenter Testlab: export time data as MATLAB or as UFF 58",

@@ -35,6 +35,8 @@ _UTF_16 = (b"\xff\xfe", b"\xfe\xff")
 _FIRST_BYTES = 4096
 # text with a grammar of its own
 _LABVIEW = b"LabVIEW Measurement"
+# no row of a table begins so; a fingerprint or the truth of a simulated recording does
+_JSON = b"{"
 _WINDOWS = "cp1252"
 _SEEN = 65_536
 # printed times are rounded
@@ -53,7 +55,7 @@ def is_mine(path: Path) -> bool:
     except (EOFError, zlib.error, gzip.BadGzipFile):
         # too damaged to tell: the name decides
         return name.suffix.lower() in _ENDINGS
-    if begin.startswith(_LABVIEW) or can.is_mine(path) or _uff.is_mine(path):
+    if begin.startswith((_LABVIEW, _JSON)) or can.is_mine(path) or _uff.is_mine(path):
         return False
     # a logger that lost its supply leaves NUL bytes behind its rows
     if b"\0" in begin.rstrip(b"\0") and not begin.startswith(_UTF_16):
