@@ -259,6 +259,18 @@ def test_the_columns_that_a_refusal_proposes_read_the_file(tmp_path):
     assert np.array_equal(values["y"], Y)
 
 
+@pytest.mark.parametrize(
+    "mark",
+    ["9.90000000E+37", "-9.9E37", "9.91e+37", "9.9000000000000000E+37", "1.#INF00", "-1.#IND", "1.#QNAN0", "inf"],
+)
+def test_what_instruments_write_for_an_overload_is_no_number(tmp_path, mark):
+    rows = [f"{0.01 * k:.2f},{k}.5" for k in range(100)]
+    rows[40] = f"0.40,{mark}"
+    _, values = _read(tmp_path, "time,y\n" + "\n".join(rows) + "\n")
+    assert np.flatnonzero(np.isnan(values["y"])).tolist() == [40]
+    assert np.nanmax(values["y"]) == 99.5
+
+
 def test_text_of_windows_is_read_and_that_is_said(tmp_path):
     recording, _ = _read(tmp_path, "Zeit [s];Weg [µm];T [°C]\n" + _rows("{t:.2f};{u};{y}\n"), encoding="cp1252")
     assert recording.channel("Weg").unit == "µm"

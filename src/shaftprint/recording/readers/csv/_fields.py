@@ -16,11 +16,15 @@ NUMBER, DATE, DAY_TIME, GAP, TEXT = "n", "d", "c", "g", "t"
 
 # What instruments and programs write in place of a number: nothing, an overload, a sensor that is off.
 _GAPS = (
-    "na", "n/a", "#n/a", "#na", "null", "none", "nil", "-nan", "+nan", "nan(ind)", "-nan(ind)", "1.#qnan", "1.#ind",
-    "-1.#ind", "#value!", "#div/0!", "#num!", "ol", "+ol", "-ol", "ovld", "over", "+over", "-over", "overload",
+    "na", "n/a", "#n/a", "#na", "null", "none", "nil", "-nan", "+nan", "nan(ind)", "-nan(ind)",
+    "#value!", "#div/0!", "#num!", "ol", "+ol", "-ol", "ovld", "over", "+over", "-over", "overload",
     "overrange", "over range", "underrange", "overflow", "burnout", "burn out", "b.o.", "invalid", "bad", "no data",
     "nodata", "err", "error", "fault", "?", "off",
 )  # fmt: skip
+OVERLOAD = 9.89e37
+"""From here on a number is none: instruments write 9.9e37 for an overload and 9.91e37 for no value (SCPI 1999)."""
+# printed by programs of Windows, with as many figures as were asked for: 1.#INF00, -1.#IND, 1.#QNAN
+_WINDOWS = re.compile(r"[+-]?1[.,]#[a-z]+0*", re.IGNORECASE)
 _DASHES = re.compile(r"[-*_.]*|[+-]?\*+|[+-]?-{2,}")
 _NUMBER = re.compile(r"[+-]?(\d+([.,]\d*)?|[.,]\d+)([eE][+-]?\d+)?|[+-]?(nan|inf(inity)?)", re.IGNORECASE)
 _PLAIN = re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?|[+-]?(nan|inf(inity)?)", re.IGNORECASE)
@@ -45,15 +49,16 @@ def is_number(field: str) -> bool:
 
 
 def number(field: str) -> float | None:
-    """Return the number that a field with a decimal point is, not a number for a gap; None for words."""
+    """Return the number that a field with a decimal point is, not a number for a gap or an overload; None for words."""
     if _PLAIN.fullmatch(field) is not None:
-        return float(field)
+        value = float(field)
+        return value if abs(value) < OVERLOAD else float("nan")
     return float("nan") if is_gap(field) else None
 
 
 def is_gap(field: str) -> bool:
     """Return whether a field stands for no value."""
-    return _DASHES.fullmatch(field) is not None or field.lower() in _GAPS
+    return bool(_DASHES.fullmatch(field) or _WINDOWS.fullmatch(field)) or field.lower() in _GAPS
 
 
 def kinds_of(fields: Iterable[str]) -> str:

@@ -6,6 +6,7 @@ What is unusual in a field is left to Python, and whether a row has as many fiel
 import numpy as np
 
 from shaftprint.kernels import compiled
+from shaftprint.recording.readers.csv._fields import OVERLOAD
 
 SKIP, AS_TEXT = -1, -2
 """Targets of a column that is not read, and of one of which the place is noted."""
@@ -140,6 +141,8 @@ def rows_of(text, delimiter, decimal, width, least, targets, numbers, texts, odd
                 value = np.nan
                 if is_number:
                     value, is_number = _scaled(digits, power)
+                    # what means an overload is left to Python too
+                    is_number = is_number and value < OVERLOAD
                 if is_number:
                     value *= sign
                 elif end > begin:
