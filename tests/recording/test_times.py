@@ -129,6 +129,10 @@ def test_a_slow_counter_and_an_odd_rate_are_questioned(tmp_path):
         assert "step by 1 without a unit were taken for seconds" in recording.remarks[0]
     with read_recording(_csv(tmp_path, "time [s]", [f"{1e-7 * row:.7f}" for row in range(400)])) as recording:
         assert "M_s: a rate of 1e+07 Hz; is the unit of its times right?" in recording.remarks[0]
+    with read_recording(_csv(tmp_path, "time [s]", range(0, 4000, 10))) as recording:
+        assert "M_s: a rate of 0.1 Hz; is the unit of its times right?" in recording.remarks[0]
+    with read_recording(_csv(tmp_path, "time [s]", range(0, 1600, 4))) as recording:
+        assert not recording.remarks
 
 
 def _hdf5(path, numbers):

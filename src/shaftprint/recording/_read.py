@@ -12,6 +12,9 @@ from shaftprint.publication import complete
 from shaftprint.recording._recording import Recording
 from shaftprint.recording.readers import FASTEST_HZ, READERS, SLOWEST_HZ, Reader, read_outside, remedy
 
+# a log of ordinary service has a value a second or more often
+_SLOW_FILE_HZ = 0.2
+
 
 @refusing_none(RecordingError)
 def read_recording(path: str | Path, *, readers: Sequence[Reader] = READERS, **hints: object) -> Recording:
@@ -52,8 +55,14 @@ def read_recording(path: str | Path, *, readers: Sequence[Reader] = READERS, **h
 
 
 def _questioned(recording: Recording) -> Recording:
-    """Return a recording with a sentence on channels whose rates no shaft line asks for."""
-    odd = [one for one in recording.channels.values() if not SLOWEST_HZ <= one.rate_hz <= FASTEST_HZ]
+    """Return a recording with a sentence on channels whose rates no shaft line asks for.
+
+    A slow channel beside others may be a temperature; where all are slow, kHz may have been taken for Hz.
+    """
+    channels = list(recording.channels.values())
+    odd = [one for one in channels if not SLOWEST_HZ <= one.rate_hz <= FASTEST_HZ]
+    if channels and max(one.rate_hz for one in channels) < _SLOW_FILE_HZ:
+        odd = odd or channels
     if not odd:
         return recording
     sentence = (
