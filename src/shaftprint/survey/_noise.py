@@ -27,7 +27,9 @@ def noise_at_speeds(measurement: "Measurement", campaign: "Campaign") -> dict[fl
     if not measurement.legs:
         point = signals.working_point
         return {
-            rpm_from_rev_s(point.engine_speed_rev_s): _levels(measurement.spectra.response, campaign, signals, point)
+            rpm_from_rev_s(point.engine_speed_rev_s): _levels(
+                measurement.spectra.response, campaign, signals, point, as_weights=True
+            )
         }
     states, planned = {state.name: state for state in signals.legs}, {leg.name: leg for leg in campaign.legs}
     levels = {}
@@ -59,13 +61,19 @@ def noise_of_further(measurement: "Measurement", campaign: "Campaign") -> dict[s
             campaign,
             set_point_per_v=abs(signals.excitations[name].per_volt / signals.excitations[name].reference),
             orders_hz=[order.per_turn * turns for order in signals.orders],
+            as_weights=not measurement.legs,
         )
         for name, one in measurement.further.items()
     }
 
 
 def _levels(
-    response: "FrequencyResponse", campaign: "Campaign", signals: "Signals", point: "WorkingPoint"
+    response: "FrequencyResponse",
+    campaign: "Campaign",
+    signals: "Signals",
+    point: "WorkingPoint",
+    *,
+    as_weights: bool = False,
 ) -> NoiseLevels:
     slope = abs(signals.calibration.slope_rev_s_per_v) * signals.dc_scale
     return noise_levels(
@@ -73,4 +81,5 @@ def _levels(
         campaign,
         set_point_per_v=slope / point.engine_speed_rev_s,
         orders_hz=[order.per_turn * point.engine_speed_rev_s for order in signals.orders],
+        as_weights=as_weights,
     )

@@ -105,7 +105,12 @@ class NoiseLevels:
 
 
 def noise_levels(
-    response: FrequencyResponse, campaign: "Campaign", *, set_point_per_v: float, orders_hz: Sequence[float] = ()
+    response: FrequencyResponse,
+    campaign: "Campaign",
+    *,
+    set_point_per_v: float,
+    orders_hz: Sequence[float] = (),
+    as_weights: bool = False,
 ) -> NoiseLevels:
     """Return the noise levels behind a measured response: its covariance times length and squared amplitude of lines.
 
@@ -119,6 +124,9 @@ def noise_levels(
         Change of the set point over the working-point speed for one volt [1/V].
     orders_hz
         Where orders of the shaft line stand at the working point [Hz].
+    as_weights
+        Whether to keep the factor by which a covariance of few samples is enlarged: for lines that are estimated from
+        as few samples again, where what is planned does not count that cost, as it does for legs.
 
     Raises
     ------
@@ -138,7 +146,8 @@ def noise_levels(
             f"noise levels: campaign {campaign.name} has no line {', '.join(unknown)}; give the campaign that the "
             "recording was made with."
         )
-    size, enlarged = len(response.outputs), response.weight_factors
+    size = len(response.outputs)
+    enlarged = np.ones(len(response.lines)) if as_weights else response.weight_factors
     density = np.empty((places.size, size, size), dtype=np.complex128)
     for row, index in enumerate(places):
         amplitude_v, seconds = tested[response.lines[index]]

@@ -9,6 +9,7 @@ from shaftprint.identify.prediction._noise_levels import NoiseLevels
 from shaftprint.identify.prediction._planned_response import planned_lines
 from shaftprint.models import Structure, at_working_point
 from shaftprint.spectra import FrequencyResponse
+from shaftprint.spectra.legs import leg_freedom
 
 if TYPE_CHECKING:
     from shaftprint.campaign import Campaign, Leg
@@ -85,6 +86,7 @@ def planned_beside(multisine: "Leg", noise: NoiseLevels, *, excitation: str) -> 
         duration_s=multisine.window_s,
         lines=[f"{multisine.name}/{harmonic}" for harmonic in lines],
         excitation=excitation,
+        degrees_of_freedom=leg_freedom(list(lines), multisine.periods),
     )
 
 
@@ -103,5 +105,6 @@ def _planned(
             amplitude=[at_point.set_point_per_v * amplitude_v / ratio for amplitude_v in lines.values()],
             duration_s=leg.window_s,
             lines=[f"{leg.name}/{harmonic}" for harmonic in lines],
+            degrees_of_freedom=leg_freedom(list(lines), leg.periods),
         ),
     )

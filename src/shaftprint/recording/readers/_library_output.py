@@ -98,6 +98,10 @@ def take_over_logging(package: str) -> None:
     logger = logging.getLogger(package)
     if _LOGGED not in logger.handlers:
         logger.handlers, logger.propagate = [_LOGGED], False
+    # a library may give each of its modules a handler that prints
+    for name, other in list(logging.root.manager.loggerDict.items()):
+        if name.startswith(f"{package}.") and isinstance(other, logging.Logger):
+            other.handlers, other.propagate = [], True
 
 
 def _said() -> io.StringIO | None:
