@@ -220,11 +220,14 @@ def test_each_leg_is_planned_at_its_own_speed(rises, ratio):
     assert slow.speed_share == pytest.approx(ratio)
     assert slow.response.lines == ("slow/1", "slow/5")
     assert slow.response.frequency_hz == pytest.approx([0.05, 0.25])
-    # 2 S / (T A^2) of both parts together, with the amplitude over the speed of the leg
+    # 2 S / (T A^2) of both parts together, with the amplitude over the speed of the leg; as a weight it is larger, for
+    # the noise is estimated beside each line
     for leg, seconds in ((fast, 100.0), (slow, 80.0)):
         for row, amplitude_v in enumerate((0.4, 0.2)):
             amplitude = 0.2 * amplitude_v / leg.speed_share
-            assert leg.response.covariance[row, 0, 0] == pytest.approx(1e-6 / (seconds * amplitude**2))
+            enlarged = leg.response.weight_factors[row]
+            assert 1.0 < enlarged < 1.5
+            assert leg.response.covariance[row, 0, 0] / enlarged == pytest.approx(1e-6 / (seconds * amplitude**2))
     gauge = structure("GAUGE-CLOSED")
     assert slow.structure(gauge).factors["tau_dn"] == pytest.approx(1.0 / ratio)
     assert fast.structure(gauge) == gauge
@@ -236,7 +239,8 @@ def test_legs_may_be_planned_about_a_working_point_that_is_none_of_them():
     assert (fast.speed_share, slow.speed_share) == pytest.approx((1.15, 1.15 - 0.2 * 1.7))
     for leg, seconds in ((fast, 100.0), (slow, 80.0)):
         amplitude = 0.2 * 0.4 / leg.speed_share
-        assert leg.response.covariance[0, 0, 0] == pytest.approx(1e-6 / (seconds * amplitude**2))
+        errors = leg.response.covariance[0, 0, 0] / leg.response.weight_factors[0]
+        assert errors == pytest.approx(1e-6 / (seconds * amplitude**2))
 
 
 def test_the_noise_of_a_leg_plans_the_same_leg_again():
