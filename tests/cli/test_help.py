@@ -99,6 +99,19 @@ def test_help_loads_nothing_heavy():
     assert found.stdout.endswith("loaded: []\n")
 
 
+@pytest.mark.slow
+def test_commands_for_real_recordings_load_no_simulated_ship():
+    script = (
+        "import sys\n"
+        "from shaftprint.cli import shaftprint\n"
+        "for name in ('inspect', 'identify', 'validate', 'limits', 'show'):\n"
+        "    assert shaftprint.get_command(None, name) is not None\n"
+        "print([name for name in sys.modules if name.startswith('shaftprint.tug')])\n"
+    )
+    found = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
+    assert found.stdout == "[]\n"
+
+
 def test_module_and_program_are_the_same():
     found = subprocess.run(
         [sys.executable, "-m", "shaftprint", "--version"], capture_output=True, text=True, check=True

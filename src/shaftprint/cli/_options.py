@@ -63,6 +63,16 @@ def campaign_option(command: Callable[..., Any]) -> Callable[..., Any]:
     return click.option("--campaign", cls=NeededOfShips, required=True, type=kind, help=words)(command)
 
 
+def starboard_option(command: Callable[..., Any]) -> Callable[..., Any]:
+    """Add the option ``--starboard``."""
+    return click.option(
+        "--starboard",
+        metavar="VESSEL",
+        help="Vessel file of the starboard line in the same recording; the other vessel is the line to port then, and "
+        "the campaign is one of both shafts, such as at-once or in-turn.",
+    )(command)
+
+
 def reading_options(command: Callable[..., Any]) -> Callable[..., Any]:
     """Add the options that say what a file does not say itself: its rate, its columns, its letters, its messages."""
     rate = click.option("--sample-rate", type=float, help="Samples a second, where the file has no clock [Hz].")

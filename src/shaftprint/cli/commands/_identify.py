@@ -7,14 +7,20 @@ from typing import Any
 import click
 import numpy as np
 
-from shaftprint.cli._both_shafts import starboard_option
 from shaftprint.cli._drive_identify import identify_on_the_bench
 from shaftprint.cli._drive_options import drive_option, only_recording
 from shaftprint.cli._fingerprint_tables import print_fingerprint
 from shaftprint.cli._fit_options import FitOptions, fit_options, settings_of, structures_of
 from shaftprint.cli._identify_both import identify_both_lines
 from shaftprint.cli._limit_tables import print_limits, print_line
-from shaftprint.cli._options import campaign_option, hints_of, reading_options, structure_sources, vessel_option
+from shaftprint.cli._options import (
+    campaign_option,
+    hints_of,
+    reading_options,
+    starboard_option,
+    structure_sources,
+    vessel_option,
+)
 from shaftprint.cli._own_structure import DEFAULT_HELP, OWN_FILE_HELP, TypedName
 from shaftprint.cli._report_options import ReportOptions, report_options
 from shaftprint.cli._results import print_comparison, print_paths, write_results

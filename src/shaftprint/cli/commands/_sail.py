@@ -4,7 +4,8 @@ from pathlib import Path
 
 import click
 
-from shaftprint.cli._both_shafts import sail_both_lines, starboard_option
+from shaftprint.cli._options import starboard_option
+from shaftprint.cli._sail_both import sail_both_lines
 from shaftprint.cli._terminal import answer
 from shaftprint.cli._vessel_file import print_disagreements
 from shaftprint.cli.output import no_progress_option, progress

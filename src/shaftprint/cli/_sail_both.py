@@ -1,8 +1,6 @@
-"""Both shafts of a ship on the command line: the option that names the other line, and sailing both."""
+"""``shaftprint sail --starboard``: both lines of a ship in one recording."""
 
-from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import click
 
@@ -13,16 +11,6 @@ from shaftprint.cli.output import progress
 from shaftprint.recording import NATIVE_ENDINGS
 from shaftprint.survey import load_trials_of_both
 from shaftprint.tug import like_stan_tug_1205, sail_both, truth_path, with_lever_of
-
-
-def starboard_option(command: Callable[..., Any]) -> Callable[..., Any]:
-    """Add the option ``--starboard``."""
-    return click.option(
-        "--starboard",
-        metavar="VESSEL",
-        help="Vessel file of the starboard line in the same recording; the other vessel is the line to port then, and "
-        "the campaign is one of both shafts, such as at-once or in-turn.",
-    )(command)
 
 
 def sail_both_lines(
