@@ -79,7 +79,7 @@ def _accuracy_table(possible: Identifiability, accuracy: Accuracy, intervals: Ma
     meanings |= {c.name: c.meaning for c in (*possible.combinations, *accuracy.objective.combinations)}
     rows = tuple(
         (*_accuracy_cells(estimate, intervals.get(estimate.name)), meanings[estimate.name])
-        for estimate in (*accuracy.parameters, *accuracy.combinations)
+        for estimate in accuracy.numbers
     )
     return Table(
         title="Predicted accuracy with these lines",

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 # Of so many draws for one that is wanted nearly all lines would have to be unstable for too few to be left.
 _DRAWN_FOR_ONE = 4
-_GAINS = (ShipRole.PROPORTIONAL_GAIN, ShipRole.INTEGRAL_GAIN, ShipRole.DERIVATIVE_GAIN)
+GAINS = (ShipRole.PROPORTIONAL_GAIN, ShipRole.INTEGRAL_GAIN, ShipRole.DERIVATIVE_GAIN)
 
 RELATIVE_SPREAD: Mapping[Role, float] = {
     ShipRole.PROPORTIONAL_GAIN: 0.3,
@@ -122,7 +122,7 @@ class AssumedShip(Shown):
     def with_gains(self, rows: FloatArray, factor: float) -> FloatArray:
         """Return parameter values with so many times the gains of the governor, shape (rows, parameters)."""
         changed = rows.copy()
-        changed[:, [place for place, p in enumerate(self.structure.parameters) if p.role in _GAINS]] *= factor
+        changed[:, [place for place, p in enumerate(self.structure.parameters) if p.role in GAINS]] *= factor
         return changed
 
 

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shaftprint.arrays import FloatArray, frozen_float
-from shaftprint.catalogue import ShipRole
-from shaftprint.design.inputs._assumed_ship import AssumedShip, assumed_ship
+from shaftprint.design.inputs._assumed_ship import GAINS, AssumedShip, assumed_ship
 from shaftprint.distributions import NORMAL_95
 from shaftprint.fingerprint import identified_model
 from shaftprint.models import stable_rows
@@ -20,7 +19,6 @@ if TYPE_CHECKING:
     from shaftprint.models import Structure
     from shaftprint.vessel import Vessel
 
-_GAINS = (ShipRole.PROPORTIONAL_GAIN, ShipRole.INTEGRAL_GAIN, ShipRole.DERIVATIVE_GAIN)
 # How many times as large the gains may be before the line hunts, as those of the Stan Tug 1205 may be 1.6 times, and
 # the smallest share of the usual gains that is tried.
 _GAIN_MARGIN, _LEAST_SHARE, _SHARES = 1.6, 0.02, 60
@@ -58,7 +56,7 @@ def ship_before_test(
 
 def _usual_gains(ship: AssumedShip, stated: Mapping[str, float]) -> dict[str, float]:
     """Return the gains that are not stated, by name, lowered where the line is near to hunting with them."""
-    gains = [p.name for p in ship.structure.free if p.role in _GAINS and p.name not in stated]
+    gains = [p.name for p in ship.structure.free if p.role in GAINS and p.name not in stated]
     if not gains:
         return {}
     shares = np.geomspace(1.0, _LEAST_SHARE, _SHARES)

@@ -132,13 +132,12 @@ class Plan(Shown):
     def promised(self) -> dict[str, Estimate]:
         """Every number at its assumed value, with the standard deviation of the middle of the possible ships."""
         middle = {} if self.band is None else self.band.middle
-        every = (*self.predicted.parameters, *self.predicted.combinations)
-        return {one.name: replace(one, std=one.std * middle.get(one.name, 1.0)) for one in every}
+        return {one.name: replace(one, std=one.std * middle.get(one.name, 1.0)) for one in self.predicted.numbers}
 
     @property
     def targets(self) -> dict[str, float]:
         """Wished standard deviations in the numbers' units, by name."""
-        values = {e.name: e.value for e in (*self.predicted.parameters, *self.predicted.combinations)}
+        values = {e.name: e.value for e in self.predicted.numbers}
         return self.wish.targets(values)
 
     @property
@@ -162,6 +161,11 @@ class Plan(Shown):
         return {name: self.duration_s + window_s * (ratio**2 - 1.0) for name, ratio in self.ratios.items()}
 
 
+def noise_freedom(legs: Sequence[Leg]) -> list[FloatArray]:
+    """Return the degrees of freedom from which the noise of each line will be estimated, an array a leg."""
+    return [leg_freedom(leg.harmonics, leg.periods) for leg in legs]
+
+
 def predicted_accuracy(
     structures: Sequence[Structure],
     legs: Sequence[Leg],
@@ -170,15 +174,17 @@ def predicted_accuracy(
     values: Mapping[str, float],
     priors: Mapping[str, Prior],
     earlier: Sequence[SailedTest] = (),
-    is_noise_known: bool = True,
+    degrees_of_freedom: Sequence[FloatArray] | None = None,
 ) -> Accuracy:
     """Return how well the legs and earlier tests together would find the parameters.
 
     Parameters
     ----------
-    is_noise_known
-        Whether the fit knows the noise; it costs accuracy that it has to estimate it beside each line.
+    degrees_of_freedom
+        Of the noise beside the lines of each leg, see ``noise_freedom``: it costs accuracy that a fit has to estimate
+        it there. Known noise where they are not given.
     """
+    of_legs: Sequence[FloatArray | None] = degrees_of_freedom or [None] * len(legs)
     pairs = [
         (
             structure,
@@ -187,10 +193,10 @@ def predicted_accuracy(
                 noise=level,
                 amplitude=np.abs(leg.amplitudes),
                 duration_s=leg.window_s,
-                degrees_of_freedom=None if is_noise_known else leg_freedom(leg.harmonics, leg.periods),
+                degrees_of_freedom=freedom,
             ),
         )
-        for structure, leg, level in zip(structures, legs, noise, strict=True)
+        for structure, leg, level, freedom in zip(structures, legs, noise, of_legs, strict=True)
     ]
     return predict_joint_accuracy([*pairs, *earlier], values=values, priors=priors)
 

@@ -131,7 +131,7 @@ def rehearse(
             f"{failures[0] if failures else 'Give at least one seed.'}"
         )
     every = [{number.name: number for number in sailing.numbers} for sailing in sailings]
-    shown = {one.name: one.std for one in (*plan.predicted.parameters, *plan.predicted.combinations)}
+    shown = {one.name: one.std for one in plan.predicted.numbers}
     # what the plan does not show is no error of it
     known = [name for name in truth if name in shown and math.isfinite(shown[name])]
     names = tuple(name for name in known if all(name in numbers for numbers in every))

@@ -1,12 +1,13 @@
 """How far a plan's promise reaches: its lines on other possible ships, in other possible noise."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.design.inputs import AssumedShip
-from shaftprint.design.plan import HELD, Band, Plan, predicted_accuracy
+from shaftprint.design.plan import HELD, Band, Plan, noise_freedom, predicted_accuracy
 from shaftprint.distributions import deviations_passed
 from shaftprint.errors import DesignError
 from shaftprint.identify.prediction import noise_of_line
@@ -48,10 +49,12 @@ def with_band(
         return plan
     ships = np.resize(drawn, (_DRAWS, drawn.shape[1]))
     factors = np.exp(noise_spread * rng.permutation(_normal_quantiles(_DRAWS)))
+    freedom = noise_freedom(plan.legs)
     rows = [
-        _deviations(plan, ship, float(factor), noise_is_assumed) for ship, factor in zip(ships, factors, strict=True)
+        _deviations(plan, ship, float(factor), noise_is_assumed=noise_is_assumed, freedom=freedom)
+        for ship, factor in zip(ships, factors, strict=True)
     ]
-    here = {one.name: one.std for one in (*plan.predicted.parameters, *plan.predicted.combinations)}
+    here = {one.name: one.std for one in plan.predicted.numbers}
     # of what the plan does not tell at all nothing is said
     names = [name for name, std in here.items() if 0.0 < std < np.inf]
     table = np.array([[row[name] / here[name] for name in names] for row in rows])
@@ -88,7 +91,9 @@ def _seconds(plan: Plan, deviations: dict[str, FloatArray]) -> tuple[float, floa
     return (low, high) if np.isfinite(high) else None
 
 
-def _deviations(plan: Plan, ship: FloatArray, factor: float, noise_is_assumed: bool) -> dict[str, float]:
+def _deviations(
+    plan: Plan, ship: FloatArray, factor: float, *, noise_is_assumed: bool, freedom: Sequence[FloatArray]
+) -> dict[str, float]:
     values = dict(zip(plan.ship.structure.names, ship.tolist(), strict=True))
     noise = [level.times(factor**2) for level in plan.noise]
     if noise_is_assumed:
@@ -103,9 +108,9 @@ def _deviations(plan: Plan, ship: FloatArray, factor: float, noise_is_assumed: b
         values=values,
         priors=plan.priors,
         earlier=plan.earlier,
-        is_noise_known=False,
+        degrees_of_freedom=freedom,
     )
-    return {one.name: one.std for one in (*accuracy.parameters, *accuracy.combinations)}
+    return {one.name: one.std for one in accuracy.numbers}
 
 
 def _normal_quantiles(count: int) -> FloatArray:

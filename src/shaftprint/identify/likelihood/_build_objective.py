@@ -117,10 +117,10 @@ def _expect_solvable(objective: Objective, with_prior: Sequence[str]) -> None:
         )
     empty = [one for one in objective.experiments if not one.s.size]
     if empty:
-        first, *_, last = (*empty[0].response.lines, *empty[0].response.lines)
+        lost = empty[0].response.lines
         raise IdentificationError(
-            f"joint fit: expected lines that can be used in every response, found none among {first} to {last}; fit "
-            f"the others alone (identify --leg), or measure these again.{_missing_lines(empty)}"
+            f"joint fit: expected lines that can be used in every response, found none among {lost[0]} to {lost[-1]}; "
+            f"fit the others alone (identify --leg), or measure these again.{_missing_lines(empty)}"
         )
 
 

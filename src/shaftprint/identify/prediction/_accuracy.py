@@ -54,6 +54,11 @@ class Accuracy(Shown):
         std[np.isinf(std)] = np.nan
         return np.asarray(self.covariance / np.outer(std, std))
 
+    @property
+    def numbers(self) -> tuple[Estimate, ...]:
+        """Parameters and combinations."""
+        return (*self.parameters, *self.combinations)
+
     def estimate(self, name: str) -> Estimate:
         """Return one parameter or combination.
 
@@ -62,7 +67,7 @@ class Accuracy(Shown):
         IdentificationError
             If there is none of that name.
         """
-        estimates = {estimate.name: estimate for estimate in (*self.parameters, *self.combinations)}
+        estimates = {estimate.name: estimate for estimate in self.numbers}
         if name not in estimates:
             raise IdentificationError(f"accuracy of {self.objective.name}: {name} is not among {', '.join(estimates)}.")
         return estimates[name]
@@ -78,7 +83,7 @@ class Accuracy(Shown):
         return "\n".join(self.sentences)
 
     def _levels(self) -> list[str]:
-        every = [e for e in (*self.parameters, *self.combinations) if e.value != 0.0]
+        every = [e for e in self.numbers if e.value != 0.0]
         share = {e.name: e.std / abs(e.value) for e in every}
         sentences = []
         below = 0.0

@@ -1,6 +1,6 @@
 """The responses that the legs of a campaign would give, each about its own working point."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -8,7 +8,7 @@ from shaftprint.identify.prediction._noise_at_speeds import noise_at
 from shaftprint.identify.prediction._noise_levels import NoiseLevels
 from shaftprint.identify.prediction._planned_response import planned_lines
 from shaftprint.models import Structure, at_working_point
-from shaftprint.spectra import FrequencyResponse
+from shaftprint.spectra import SPEED, FrequencyResponse
 from shaftprint.spectra.legs import leg_freedom
 
 if TYPE_CHECKING:
@@ -78,16 +78,8 @@ def planned_beside(multisine: "Leg", noise: NoiseLevels, *, excitation: str) -> 
     excitation
         Symbol of the input.
     """
-    lines = multisine.lines
-    return planned_lines(
-        [harmonic / multisine.length_of_period_s for harmonic in lines],
-        noise=noise,
-        amplitude=[noise.set_point_per_v * amplitude_v for amplitude_v in lines.values()],
-        duration_s=multisine.window_s,
-        lines=[f"{multisine.name}/{harmonic}" for harmonic in lines],
-        excitation=excitation,
-        degrees_of_freedom=leg_freedom(list(lines), multisine.periods),
-    )
+    amplitudes = [noise.set_point_per_v * amplitude_v for amplitude_v in multisine.lines.values()]
+    return _lines(multisine, noise, amplitudes, excitation)
 
 
 def _planned(
@@ -95,16 +87,19 @@ def _planned(
 ) -> PlannedLeg:
     at_point = noise_at(noise, 1.0)
     ratio = first_share + sign * at_point.set_point_per_v * (leg.level_v - first.level_v)
-    lines = leg.lines
-    return PlannedLeg(
-        name=leg.name,
-        speed_share=ratio,
-        response=planned_lines(
-            [harmonic / leg.length_of_period_s for harmonic in lines],
-            noise=noise_at(noise, ratio),
-            amplitude=[at_point.set_point_per_v * amplitude_v / ratio for amplitude_v in lines.values()],
-            duration_s=leg.window_s,
-            lines=[f"{leg.name}/{harmonic}" for harmonic in lines],
-            degrees_of_freedom=leg_freedom(list(lines), leg.periods),
-        ),
+    amplitudes = [at_point.set_point_per_v * amplitude_v / ratio for amplitude_v in leg.lines.values()]
+    return PlannedLeg(name=leg.name, speed_share=ratio, response=_lines(leg, noise_at(noise, ratio), amplitudes, SPEED))
+
+
+def _lines(multisine: "Leg", noise: NoiseLevels, amplitudes: Sequence[float], excitation: str) -> FrequencyResponse:
+    """Return the lines of a multisine, whose noise will be estimated beside each of them."""
+    harmonics = list(multisine.lines)
+    return planned_lines(
+        [harmonic / multisine.length_of_period_s for harmonic in harmonics],
+        noise=noise,
+        amplitude=amplitudes,
+        duration_s=multisine.window_s,
+        lines=[f"{multisine.name}/{harmonic}" for harmonic in harmonics],
+        excitation=excitation,
+        degrees_of_freedom=leg_freedom(harmonics, multisine.periods),
     )
