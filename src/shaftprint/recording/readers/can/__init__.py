@@ -6,6 +6,7 @@ from shaftprint.recording.readers.can._frames import EXTENDED, FILL, FrameLog, F
 from shaftprint.recording.readers.can._log import (
     NAME,
     add_signals,
+    begins_as_log,
     database_of,
     expect_known,
     is_mine,
@@ -21,6 +22,7 @@ __all__ = [
     "FrameLog",
     "Frames",
     "add_signals",
+    "begins_as_log",
     "database_of",
     "decoded",
     "expect_known",

@@ -1,12 +1,9 @@
 """Logs of a CAN bus that hold frames only: BLF, ASC, TRC and candump."""
 
 import contextlib
-import gzip
 import io
-import zlib
 from collections.abc import Mapping
 from pathlib import Path
-from typing import BinaryIO, cast
 
 from shaftprint.errors import RecordingError
 from shaftprint.recording._recording import Recording
@@ -15,6 +12,7 @@ from shaftprint.recording.readers._extra import library
 from shaftprint.recording.readers._gather import Gathered, unique_names
 from shaftprint.recording.readers._hints import expect_hints
 from shaftprint.recording.readers._opened import Opened
+from shaftprint.recording.readers._packed import FIRST_BYTES, first_bytes, open_unpacked
 from shaftprint.recording.readers.can._blf import SIGNATURE, open_blf
 from shaftprint.recording.readers.can._channels import Decoded, decoded
 from shaftprint.recording.readers.can._database import Database, known_messages, read_database
@@ -23,13 +21,15 @@ from shaftprint.recording.readers.can._text_logs import kind_of, open_text_log
 
 NAME = "CAN log"
 
-_FIRST_BYTES = 4096
-_GZIP = b"\x1f\x8b"
-
 
 def is_mine(path: Path) -> bool:
     """Return whether the file begins as one of these logs."""
-    begin = _begin(path)
+    begin = first_bytes(path)
+    return begin is not None and begins_as_log(path, begin)
+
+
+def begins_as_log(path: Path, begin: bytes) -> bool:
+    """Return the same of a file whose first bytes have been read."""
     return begin.startswith(SIGNATURE) or bool(kind_of(path, _text(begin)))
 
 
@@ -102,28 +102,14 @@ def add_signals(gathered: Gathered, taken: Decoded, names: list[str]) -> None:
 
 
 def _open(path: Path, stack: contextlib.ExitStack) -> FrameLog:
-    begin = _begin(path)
-    binary = stack.enter_context(_binary(path))
+    binary = stack.enter_context(open_unpacked(path))
+    begin = binary.read(FIRST_BYTES)
+    binary.seek(0)
     if begin.startswith(SIGNATURE):
         return open_blf(path, binary)
     package = library(path, "can", NAME)
     text = stack.enter_context(io.TextIOWrapper(binary, encoding="utf-8-sig", errors="replace"))
     return open_text_log(path, kind_of(path, _text(begin)), text, package)
-
-
-def _binary(path: Path) -> BinaryIO:
-    with path.open("rb") as file:
-        packed = file.read(len(_GZIP)) == _GZIP
-    return cast("BinaryIO", gzip.open(path, "rb")) if packed else path.open("rb")
-
-
-def _begin(path: Path) -> bytes:
-    """Return the first bytes, unpacked; none where they are too damaged for it."""
-    try:
-        with _binary(path) as file:
-            return file.read(_FIRST_BYTES)
-    except (EOFError, zlib.error, gzip.BadGzipFile):
-        return b""
 
 
 def _text(begin: bytes) -> str:

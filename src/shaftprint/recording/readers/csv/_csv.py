@@ -1,9 +1,7 @@
 """Text with one row a sample, or an edge: a header such as ``time [s];M_s [V]``, then numbers with point or comma."""
 
 import contextlib
-import gzip
 import io
-import zlib
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
@@ -21,6 +19,7 @@ from shaftprint.recording._spool import Spool
 from shaftprint.recording.readers import _uff, can
 from shaftprint.recording.readers._clock import SampleClock, clock_of_times, on_clock
 from shaftprint.recording.readers._hints import rate_hint
+from shaftprint.recording.readers._packed import CANNOT_BE_UNPACKED, first_bytes, open_unpacked
 from shaftprint.recording.readers._time_scale import TimeScale, expect_time_unit, time_scale
 from shaftprint.recording.readers.csv._dates import dates, has_offset, is_date
 from shaftprint.recording.readers.csv._edge_list import edge_channels
@@ -30,9 +29,7 @@ from shaftprint.recording.readers.csv._rows import LONGEST_LINE, Unpacked, unpac
 NAME = "CSV"
 
 _ENDINGS = (".csv", ".tsv", ".txt", ".asc", ".lvm")
-_GZIP = b"\x1f\x8b"
 _UTF_16 = (b"\xff\xfe", b"\xfe\xff")
-_FIRST_BYTES = 4096
 # text with a grammar of its own
 _LABVIEW = b"LabVIEW Measurement"
 # no row of a table begins so; a fingerprint or the truth of a simulated recording does
@@ -49,13 +46,11 @@ _STAMPS = 5_000
 def is_mine(path: Path) -> bool:
     """Return whether the file is text, packed or not, that ends as a text file or begins as a table."""
     name = path.with_suffix("") if path.suffix.lower() == ".gz" else path
-    try:
-        with _binary(path) as file:
-            begin = file.read(_FIRST_BYTES)
-    except (EOFError, zlib.error, gzip.BadGzipFile):
+    begin = first_bytes(path)
+    if begin is None:
         # too damaged to tell: the name decides
         return name.suffix.lower() in _ENDINGS
-    if begin.startswith((_LABVIEW, _JSON)) or can.is_mine(path) or _uff.is_mine(path):
+    if begin.startswith((_LABVIEW, _JSON)) or can.begins_as_log(path, begin) or _uff.is_mine(path):
         return False
     # a logger that lost its supply leaves NUL bytes behind its rows
     if b"\0" in begin.rstrip(b"\0") and not begin.startswith(_UTF_16):
@@ -109,28 +104,22 @@ def read(path: Path, **hints: object) -> Recording:
         raise RecordingError(
             f"{path}: expected text in {encoding}, found {error}; pass encoding= (--encoding, such as cp1252)."
         ) from None
-    except (EOFError, zlib.error, gzip.BadGzipFile) as error:
+    except CANNOT_BE_UNPACKED as error:
         raise RecordingError(
             f"{path}: expected a whole gzip file, found a damaged or truncated one ({error})."
         ) from None
 
 
-def _binary(path: Path) -> IO[bytes]:
-    with path.open("rb") as file:
-        packed = file.read(len(_GZIP)) == _GZIP
-    return cast("IO[bytes]", gzip.open(path, "rb")) if packed else path.open("rb")
-
-
 @contextlib.contextmanager
 def _text(path: Path, encoding: str) -> Iterator[TextIO]:
-    with _binary(path) as binary, io.TextIOWrapper(binary, encoding=encoding) as text:
+    with open_unpacked(path) as binary, io.TextIOWrapper(binary, encoding=encoding) as text:
         yield text
 
 
 @contextlib.contextmanager
 def _numbers(path: Path, encoding: str) -> Iterator[IO[bytes]]:
     """Open a file as bytes whose digits and line ends are those of ASCII."""
-    with _binary(path) as binary:
+    with open_unpacked(path) as binary:
         begin = binary.read(_SEEN)
         binary.seek(0)
         has_line_feeds = begin.count(b"\r") == begin.count(b"\r\n")
@@ -162,9 +151,9 @@ class _InUtf8(io.RawIOBase):
 def _encoding(path: Path) -> tuple[str, str]:
     """Return the encoding that a file has by its mark or its first lines, and what has to be said of that."""
     try:
-        with _binary(path) as file:
+        with open_unpacked(path) as file:
             begin = b"".join(islice(iter(lambda: file.readline(LONGEST_LINE), b""), _FIRST_ROWS))
-    except (EOFError, zlib.error, gzip.BadGzipFile):
+    except CANNOT_BE_UNPACKED:
         return "utf-8-sig", ""
     if begin[:2] in _UTF_16:
         return "utf-16", ""

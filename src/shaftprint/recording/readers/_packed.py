@@ -1,0 +1,30 @@
+"""Files as they are, or packed with gzip."""
+
+import gzip
+import zlib
+from pathlib import Path
+from typing import BinaryIO, cast
+
+_GZIP = b"\x1f\x8b"
+FIRST_BYTES = 4096
+"""So many bytes tell of which format a text is."""
+CANNOT_BE_UNPACKED = (EOFError, zlib.error, gzip.BadGzipFile)
+"""What reading a damaged file raises."""
+
+
+def open_unpacked(path: Path) -> BinaryIO:
+    """Open a file to be read, as what is in it where it is packed."""
+    file = path.open("rb")
+    if file.peek(len(_GZIP))[: len(_GZIP)] != _GZIP:
+        return file
+    file.close()
+    return cast("BinaryIO", gzip.open(path, "rb"))
+
+
+def first_bytes(path: Path) -> bytes | None:
+    """Return the first bytes, unpacked; None where they are too damaged for it."""
+    try:
+        with open_unpacked(path) as file:
+            return file.read(FIRST_BYTES)
+    except CANNOT_BE_UNPACKED:
+        return None
