@@ -85,7 +85,7 @@ def _block(file: Any, records: MdfRecords, group: int, places: dict[str, int], s
     return Frames(
         time_s=np.asarray(times, dtype=np.float64),
         bus=np.zeros(len(identifier), dtype=np.int64) if bus is None else bus & _MOST_BUSES,
-        identifier=(identifier & _IDENTIFIER_BITS) | np.where(is_long != 0, int(EXTENDED), 0),
+        identifier=(identifier & _IDENTIFIER_BITS) | np.where(is_long != 0, EXTENDED, 0),
         length=length,
         content=whole,
     )

@@ -156,7 +156,7 @@ def _knower(database: Database) -> str:
 
 
 def _in_words(identifier: int) -> str:
-    if not identifier & int(EXTENDED):
+    if not identifier & EXTENDED:
         return f"identifier {identifier:03X}"
-    number = identifier & ~int(EXTENDED)
+    number = identifier & ~EXTENDED
     return f"identifier {number:08X} (group {pgn_of(number)}, sender 0x{sender_of(number):x})"

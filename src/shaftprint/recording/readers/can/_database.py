@@ -42,17 +42,16 @@ class Database:
     def __post_init__(self) -> None:
         """Sort the messages."""
         for message in self.messages:
-            whole = message.identifier | (int(EXTENDED) if message.is_extended else 0)
             if message.is_of_any_sender:
                 self._by_group.setdefault(pgn_of(message.identifier), message)
             if not message.is_of_any_sender or sender_of(message.identifier) != _NO_SENDER:
-                self._by_identifier.setdefault(whole, message)
+                self._by_identifier.setdefault(message.marked_identifier, message)
 
     def message(self, identifier: int) -> Message | None:
         """Return the message of an identifier, which has the mark of 29 bits; None of one that is not known."""
         message = self._by_identifier.get(identifier)
-        if message is None and identifier & int(EXTENDED):
-            return self._by_group.get(pgn_of(identifier & ~int(EXTENDED)))
+        if message is None and identifier & EXTENDED:
+            return self._by_group.get(pgn_of(identifier & ~EXTENDED))
         return message
 
 
@@ -90,22 +89,18 @@ def read_database(path: Path) -> Database:
             f"{path}: expected {kind_in_words} file, found one that cannot be read ({reason})"
             f"{'; export it as DBC' if kind == 'ARXML' else ''}."
         ) from None
-    signals_of = {
-        (message.identifier | (int(EXTENDED) if message.is_extended else 0), signal.name)
-        for message in messages
-        for signal in message.signals
-    }
+    signals_of = {(message.marked_identifier, signal.name) for message in messages for signal in message.signals}
     numbers = [int(number) for number in _LINE.findall(said.getvalue())]
     usable, unusable = [], without_id | lost_lines(path.name, content, numbers, signals_of)
     for message in messages:
-        signals = tuple(signal for signal in message.signals if signal.can_be_read)
-        for signal in set(message.signals) ^ set(signals):
-            unusable[f"{message.name}.{signal.name}"] = (
-                "expected a multiplexer that says which messages hold it, found none that can be read."
-                if any(not one.bits for one in signal.where)
-                else f"expected a number of at most 64 bits within {MOST_BYTES} bytes, found other bits."
-            )
-        usable.append(replace(message, signals=signals))
+        for signal in message.signals:
+            if not signal.can_be_read:
+                unusable[f"{message.name}.{signal.name}"] = (
+                    "expected a multiplexer that says which messages hold it, found none that can be read."
+                    if any(not selection.bits for selection in signal.where)
+                    else f"expected a number of at most 64 bits within {MOST_BYTES} bytes, found other bits."
+                )
+        usable.append(replace(message, signals=tuple(signal for signal in message.signals if signal.can_be_read)))
     if not any(message.signals for message in usable):
         lost = "; ".join(f"{name}: {reason.removesuffix('.')}" for name, reason in list(unusable.items())[:3])
         found = f"none in it ({lost})" if lost else "none in it"

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from collections.abc import Set as AbstractSet
 
 from shaftprint.escape import printable
+from shaftprint.recording.readers.can._frames import EXTENDED
 
 _MESSAGE = re.compile(rb"\s*BO_ +(\d+) +(\S+?) *: *(\d+) +\S+")
 _SIGNAL = re.compile(rb"\s*SG_\s+([^:]+?)\s*:")
@@ -12,7 +13,7 @@ _OF_SIGNAL = re.compile(rb"\s*(?:BA_|CM_|VAL_|SIG_VALTYPE_|SG_MUL_VAL_)\D*?\b(\d
 _OF_OTHERS = re.compile(rb"\s*(?:BA_|CM_|VAL_|SIG_VALTYPE_|SG_MUL_VAL_|BO_TX_BU_|SIG_GROUP_|EV_)")
 # where CANdb++ keeps signals of no message
 _NO_MESSAGE = b"VECTOR__INDEPENDENT_SIG_MSG"
-_SHORT_BITS, _MARK = 11, 1 << 31
+_SHORT_BITS = 11
 
 
 def whole_messages(name: str, content: bytes) -> tuple[bytes, dict[str, str]]:
@@ -30,26 +31,28 @@ def whole_messages(name: str, content: bytes) -> tuple[bytes, dict[str, str]]:
     left_out: dict[str, str] = {}
     lines = content.splitlines()
     is_lost = False
-    for place, line in enumerate(lines):
+    for row, line in enumerate(lines):
         begins = line.lstrip()
         if begins.startswith(b"BO_ "):
             message = _MESSAGE.match(line)
-            is_lost = message is None or 1 << _SHORT_BITS <= int(message[1]) < _MARK or int(message[1]) >= 2 * _MARK
+            is_lost = (
+                message is None or 1 << _SHORT_BITS <= int(message[1]) < EXTENDED or int(message[1]) >= 2 * EXTENDED
+            )
             if message is None:
-                left_out[f"line {place + 1} of {name}"] = "the message cannot be read."
+                left_out[f"line {row + 1} of {name}"] = "the message cannot be read."
             elif message[2] == _NO_MESSAGE:
                 is_lost = True
             elif is_lost:
                 number = int(message[1])
                 left_out[printable(message[2].decode("latin-1"))] = (
-                    f"identifier {number} has more than {_SHORT_BITS} bits and lacks bit 31; write {number | _MARK} in "
-                    f"line {place + 1} of {name}."
+                    f"identifier {number} has more than {_SHORT_BITS} bits and lacks bit 31; write {number | EXTENDED} "
+                    f"in line {row + 1} of {name}."
                 )
         elif not begins.startswith(b"SG_ "):
             # signals follow their message without other lines between, but for empty ones
             is_lost = is_lost and not begins
         if is_lost:
-            lines[place] = b""
+            lines[row] = b""
     return b"\n".join(lines), left_out
 
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from shaftprint.arrays import FloatArray
 
-EXTENDED = np.uint64(1) << np.uint64(31)
+EXTENDED = 1 << 31
 """Mark of a 29-bit identifier."""
 FILL = 0xFF
 """What stands behind the bytes of a short frame."""

@@ -7,44 +7,59 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from shaftprint.recording.readers.can._frames import EXTENDED
+
 MOST_BYTES = 223
 """Bytes of the longest message, a fast packet of NMEA 2000."""
 _WORD = 64
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Selection:
-    """Which messages hold a signal: those where another signal, the multiplexer, has certain counts."""
-
-    start: int
-    """First bit of the multiplexer."""
-    bits: int
-    """Its length; 0 where nobody knows which signal it is."""
-    is_big_endian: bool = False
-    """Whether its first byte is the highest."""
-    ranges: tuple[tuple[int, int], ...] = ()
-    """First and last count that select."""
-
-    @property
-    def last_byte(self) -> int:
-        """Number of the last byte that holds some of the multiplexer."""
-        return _last_byte(self.start, self.bits, is_big_endian=self.is_big_endian)
-
-
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class Signal:
-    """One signal of a message."""
+class BitField:
+    """Bits of a message that are one count."""
 
-    name: str
-    """Its name."""
     start: int
     """Its first bit: the lowest, or of a big-endian one the highest, counted within each byte from the lowest."""
     bits: int
     """How many it has."""
-    unit: str = ""
-    """Unit of its values."""
     is_big_endian: bool = False
     """Whether its first byte is the highest."""
+
+    @property
+    def first_bit(self) -> int:
+        """Its first bit as it is counted: that of a big-endian one from the highest bit of the first byte on."""
+        return self.start - self.start % 8 + 7 - self.start % 8 if self.is_big_endian else self.start
+
+    @property
+    def last_byte(self) -> int:
+        """Number of the last byte that holds some of it."""
+        return (self.first_bit + self.bits - 1) // 8
+
+    @property
+    def is_within_message(self) -> bool:
+        """Whether a message can be so long."""
+        return self.start >= 0 and self.last_byte < MOST_BYTES
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Selection(BitField):
+    """Which messages hold a signal: those where another signal, the multiplexer, has certain counts.
+
+    It has no bits where nobody knows which signal that is.
+    """
+
+    ranges: tuple[tuple[int, int], ...] = ()
+    """First and last count that select."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Signal(BitField):
+    """One signal of a message."""
+
+    name: str
+    """Its name."""
+    unit: str = ""
+    """Unit of its values."""
     is_signed: bool = False
     """Whether its counts have a sign."""
     is_float: bool = False
@@ -67,17 +82,11 @@ class Signal:
     """Which messages hold it; all of them where there is none."""
 
     @property
-    def last_byte(self) -> int:
-        """Number of the last byte that holds some of it."""
-        return _last_byte(self.start, self.bits, is_big_endian=self.is_big_endian)
-
-    @property
     def can_be_read(self) -> bool:
         """Whether it is a number that is not longer than a word, in messages that can be told."""
-        floats = (32, 64) if self.is_float else range(1, _WORD + 1)
-        if self.start < 0 or self.bits not in floats or self.last_byte >= MOST_BYTES:
-            return False
-        return all(0 < one.bits <= _WORD and one.start >= 0 and one.last_byte < MOST_BYTES for one in self.where)
+        lengths = (32, 64) if self.is_float else range(1, _WORD + 1)
+        is_told = all(0 < selection.bits <= _WORD and selection.is_within_message for selection in self.where)
+        return self.bits in lengths and self.is_within_message and is_told
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -101,28 +110,32 @@ class Message:
     instance: Signal | None = None
     """Which signal says of which engine, gearbox or rudder the others are."""
 
+    @property
+    def marked_identifier(self) -> int:
+        """Its identifier, with the mark of 29 bits where it has them."""
+        return self.identifier | (EXTENDED if self.is_extended else 0)
 
-def counts_of(signal: Signal, content: NDArray[np.uint8]) -> NDArray[Any]:
-    """Return the bits of a signal as counts without sign, shape (messages,).
+    @property
+    def last_byte(self) -> int:
+        """Number of the last byte that says something, of signals and multiplexers; 0 without any."""
+        return max((bits.last_byte for signal in self.signals for bits in (signal, *signal.where)), default=0)
+
+
+def counts_of(bit_field: BitField, content: NDArray[np.uint8]) -> NDArray[np.uint64]:
+    """Return the bits of a signal or multiplexer as counts without sign, shape (messages,).
 
     Parameters
     ----------
-    signal
+    bit_field
         Where it stands.
     content
-        Bytes, shape (messages, bytes), at least up to the signal's last byte.
+        Bytes, shape (messages, bytes), at least up to its last byte.
     """
-    return bits_of(content, signal.start, signal.bits, is_big_endian=signal.is_big_endian)
-
-
-def bits_of(content: NDArray[np.uint8], start: int, bits: int, *, is_big_endian: bool) -> NDArray[np.uint64]:
-    """Return bits of messages as numbers without sign; see `counts_of`."""
-    first = _first_of_big_endian(start) if is_big_endian else start
-    first_byte, last_byte = first // 8, (first + bits - 1) // 8
-    whole = [content[:, byte].astype(np.uint64) for byte in range(first_byte, last_byte + 1)]
+    first, bits = bit_field.first_bit, bit_field.bits
+    whole = [content[:, byte].astype(np.uint64) for byte in range(first // 8, bit_field.last_byte + 1)]
     mask = np.uint64((1 << bits) - 1)
     value = np.zeros(len(content), dtype=np.uint64)
-    if is_big_endian:
+    if bit_field.is_big_endian:
         shift = 7 - (first + bits - 1) % 8
         for byte in whole[:8]:
             value = value << np.uint64(8) | byte
@@ -130,8 +143,8 @@ def bits_of(content: NDArray[np.uint8], start: int, bits: int, *, is_big_endian:
             return (value << np.uint64(8 - shift) | whole[8] >> np.uint64(shift)) & mask
         return value >> np.uint64(shift) & mask
     shift = first % 8
-    for place, byte in enumerate(whole[:8]):
-        value |= byte << np.uint64(8 * place)
+    for number, byte in enumerate(whole[:8]):
+        value |= byte << np.uint64(8 * number)
     value >>= np.uint64(shift)
     if len(whole) > 8:
         value |= whole[8] << np.uint64(_WORD - shift)
@@ -152,16 +165,7 @@ def numbers_of_counts(signal: Signal, counts: NDArray[np.uint64]) -> NDArray[Any
 def selected(where: tuple[Selection, ...], content: NDArray[np.uint8]) -> NDArray[np.bool_]:
     """Return which messages hold a signal."""
     chosen = np.ones(len(content), dtype=bool)
-    for one in where:
-        counts = bits_of(content, one.start, one.bits, is_big_endian=one.is_big_endian)
-        chosen &= np.any([(counts >= max(low, 0)) & (counts <= max(high, 0)) for low, high in one.ranges], axis=0)
+    for selection in where:
+        counts = counts_of(selection, content)
+        chosen &= np.any([(counts >= max(low, 0)) & (counts <= max(high, 0)) for low, high in selection.ranges], axis=0)
     return chosen
-
-
-def _last_byte(start: int, bits: int, *, is_big_endian: bool) -> int:
-    return ((_first_of_big_endian(start) if is_big_endian else start) + bits - 1) // 8
-
-
-def _first_of_big_endian(start: int) -> int:
-    """Return the place of a highest bit, where bits are counted from the highest of the first byte on."""
-    return start - start % 8 + 7 - start % 8

@@ -121,11 +121,11 @@ class Streams:
         length: NDArray[Any],
         content: _Content,
     ) -> None:
-        origin = _origin(bus, identifier & ~int(EXTENDED), message)
+        number = identifier & ~EXTENDED
+        origin = _origin(bus, number, message)
         if message.is_fast:
             time_s, length, content = self.packets.add(origin, time_s, content)
-        ends = [max([signal.last_byte, *(one.last_byte for one in signal.where)]) for signal in message.signals]
-        width = _WORD_BYTES * (max(ends, default=0) // _WORD_BYTES + 1)
+        width = _WORD_BYTES * (message.last_byte // _WORD_BYTES + 1)
         if content.shape[1] < width:
             missing = np.full((len(content), width - content.shape[1]), FILL, dtype=np.uint8)
             content = np.concatenate([content, missing], axis=1)
@@ -133,7 +133,7 @@ class Streams:
             for where in dict.fromkeys(signal.where for signal in message.signals if signal is not message.instance):
                 chosen = rows & selected(where, content) if where else rows
                 if chosen.any():
-                    stream = self._stream(origin, identifier & ~int(EXTENDED), message, instance, where, width)
+                    stream = self._stream(origin, number, message, instance, where, width)
                     self._append(stream, time_s[chosen], length[chosen], content[chosen])
 
     def _stream(
@@ -163,8 +163,8 @@ class Streams:
         stream.count += len(time_s)
         self.spool.append_column(times, time_s)
         self.spool.append_column(lengths, length.astype(np.float64))
-        for place, column in enumerate(words):
-            word = np.ascontiguousarray(content[:, _WORD_BYTES * place : _WORD_BYTES * (place + 1)])
+        for number, column in enumerate(words):
+            word = np.ascontiguousarray(content[:, _WORD_BYTES * number : _WORD_BYTES * (number + 1)])
             # the bytes as they are: the file holds eight of them for each value
             self.spool.append_column(column, word.view(np.float64)[:, 0])
         for signal, tally in stream.tallies.items():

@@ -309,12 +309,12 @@ def _block(messages: list[Any], zero_s: float, bus_of: Callable[[Any], int]) -> 
     width = 8 if length.max() <= 8 else _LONG
     filling = bytes([FILL]) * width
     whole = b"".join((bytes(message.data) + filling)[:width] for message in messages)
-    marks = int(EXTENDED)
     return Frames(
         time_s=np.array([message.timestamp for message in messages]) - zero_s,
         bus=np.array([bus_of(message.channel) for message in messages]),
         identifier=np.array(
-            [message.arbitration_id | (marks if message.is_extended_id else 0) for message in messages], dtype=np.uint64
+            [message.arbitration_id | (EXTENDED if message.is_extended_id else 0) for message in messages],
+            dtype=np.uint64,
         ),
         length=length,
         content=np.frombuffer(whole, dtype=np.uint8).reshape(-1, width),
