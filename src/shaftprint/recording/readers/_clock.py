@@ -1,8 +1,10 @@
 """Finding one uniform clock in a column of times, with holes or jumps in it, or the period of who sends as it likes."""
 
+from collections.abc import Callable, Hashable
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
+from typing import TypeVar
 
 import numpy as np
 
@@ -11,6 +13,7 @@ from shaftprint.errors import RecordingError
 from shaftprint.recording._channel import Channel, ClockJump, Times
 
 _BLOCK = 1_000_000
+_Key = TypeVar("_Key", bound=Hashable)
 
 # Times are printed with few decimals: a step may be off by this part of the mean step, as may be the place
 # of a sample on the uniform grid. A sample that is missing or doubled is off by a whole step.
@@ -55,6 +58,30 @@ class SampleClock:
     """Gives the times of the rows [start, stop) [s], where they say more than the rate."""
     is_uneven: bool = False
     """Whether the times are those of messages, which lie on no clock; the rate is then that of their sender."""
+
+
+def kept_clocks(find: Callable[[_Key], SampleClock]) -> Callable[[_Key], SampleClock]:
+    """Return what finds the clock that channels share once for all of them, or once why there is none.
+
+    Parameters
+    ----------
+    find
+        Gives the clock of a group of channels, or raises a ``RecordingError``.
+    """
+    clocks: dict[_Key, SampleClock | RecordingError] = {}
+
+    def clock_of(key: _Key) -> SampleClock:
+        if key not in clocks:
+            try:
+                clocks[key] = find(key)
+            except RecordingError as error:
+                clocks[key] = error
+        clock = clocks[key]
+        if isinstance(clock, RecordingError):
+            raise clock
+        return clock
+
+    return clock_of
 
 
 def on_clock(channel: Channel, clock: SampleClock) -> Channel:

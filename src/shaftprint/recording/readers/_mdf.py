@@ -14,7 +14,7 @@ from shaftprint.arrays import FloatArray
 from shaftprint.errors import RecordingError
 from shaftprint.recording._channel import Channel
 from shaftprint.recording._recording import Recording
-from shaftprint.recording.readers._clock import SampleClock, clock_of_times, on_clock
+from shaftprint.recording.readers._clock import SampleClock, clock_of_times, kept_clocks, on_clock
 from shaftprint.recording.readers._damage import expect_plausible, told_as_damage
 from shaftprint.recording.readers._extra import library
 from shaftprint.recording.readers._gather import Gathered, unique_names
@@ -143,19 +143,15 @@ def _gather(
     places = _places(file, records)
     named = [(f"group {place.group}", place.described.name) for place in places]
     names = unique_names(named + list(() if taken is None else taken.named))
-    clocks: dict[int, SampleClock | RecordingError] = {}
+
+    def clock(group: int) -> SampleClock:
+        return _clock(path, file, group, rate_hz)
+
+    clock_of = kept_clocks(clock)
     for place, name in zip(places, names[: len(places)], strict=True):
-        if place.group not in clocks:
-            try:
-                clocks[place.group] = _clock(path, file, place.group, rate_hz)
-            except RecordingError as error:
-                clocks[place.group] = error
 
         def make(place: _Place = place, name: str = name) -> Channel:
-            clock = clocks[place.group]
-            if isinstance(clock, RecordingError):
-                raise clock
-            return _channel(path, place, opened, name, clock)
+            return _channel(path, place, opened, name, clock_of(place.group))
 
         gathered.add(name, make)
     if taken is not None:

@@ -1,7 +1,7 @@
 """Channels of the signals in a log of a CAN bus, each at the times of its own messages."""
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
@@ -9,7 +9,7 @@ from shaftprint.errors import RecordingError
 from shaftprint.escape import printable
 from shaftprint.recording._channel import Channel
 from shaftprint.recording._spool import Spool
-from shaftprint.recording.readers._clock import SampleClock, clock_of_times, on_clock
+from shaftprint.recording.readers._clock import SampleClock, clock_of_times, kept_clocks, on_clock
 from shaftprint.recording.readers.can._database import Database
 from shaftprint.recording.readers.can._frames import EXTENDED, FrameLog, pgn_of, sender_of
 from shaftprint.recording.readers.can._messages import Signal
@@ -58,23 +58,23 @@ def decoded(path: Path, log: FrameLog, database: Database) -> Decoded:
     except BaseException:
         spool.close()
         raise
-    places = [(stream, signal) for stream in streams.streams.values() for signal in stream.tallies]
-    clocks: dict[int, SampleClock | RecordingError] = {}
+    signals = [(stream, signal) for stream in streams.streams.values() for signal in stream.tallies]
+    clock_of = kept_clocks(partial(_clock, streams))
     return Decoded(
-        named=tuple(_named(streams, places)),
-        make=tuple(partial(_channel, streams, clocks, stream, signal) for stream, signal in places),
-        left_out=partial(_left_out, streams, places),
+        named=tuple(_named(streams, signals)),
+        make=tuple(partial(_channel, streams, clock_of, stream, signal) for stream, signal in signals),
+        left_out=partial(_left_out, streams, signals),
         close=spool.close,
     )
 
 
-def _named(streams: Streams, places: list[tuple[Stream, Signal]]) -> Iterator[tuple[str, str]]:
+def _named(streams: Streams, signals: list[tuple[Stream, Signal]]) -> Iterator[tuple[str, str]]:
     """Yield group and name of each signal, with the bus and the instance where there are several."""
-    is_one_bus = len({stream.origin.bus for stream, _ in places}) <= 1
+    is_one_bus = len({stream.origin.bus for stream, _ in signals}) <= 1
     instances: dict[str, set[int | None]] = {}
-    for stream, _ in places:
+    for stream, _ in signals:
         instances.setdefault(stream.origin.name, set()).add(stream.instance)
-    for stream, signal in places:
+    for stream, signal in signals:
         bus = "" if is_one_bus else f"{streams.log.name_of(stream.origin.bus)} "
         is_one = len(instances[stream.origin.name]) <= 1
         yield f"{bus}{stream.origin.label}", f"{signal.name}{'' if is_one else f', instance {stream.instance}'}"
@@ -82,37 +82,32 @@ def _named(streams: Streams, places: list[tuple[Stream, Signal]]) -> Iterator[tu
 
 def _channel(
     streams: Streams,
-    clocks: dict[int, SampleClock | RecordingError],
+    clock_of: Callable[[Stream], SampleClock],
     stream: Stream,
     signal: Signal,
     name: str,
 ) -> Channel:
-    tally, rule = stream.tallies[signal], stream.rules[signal]
-    if rule.has_range and tally.outside == tally.total - tally.none_otherwise > 0:
+    tally = stream.tallies[signal]
+    if tally.is_all_outside:
         raise RecordingError(
             f"all {tally.outside} values lie outside the range [{signal.lowest:g}, {signal.highest:g}] of "
             f"{streams.database.name}; correct it there, or write [0|0] for none."
         )
-    clock = clocks.get(id(stream))
-    if clock is None:
-        times = streams.times(stream)
-        try:
-            clock = clock_of_times(streams.path, f"times of {stream.origin.label}", stream.count, times)
-        except RecordingError as error:
-            clock = error
-        clocks[id(stream)] = clock
-    if isinstance(clock, RecordingError):
-        raise clock
+    clock = clock_of(stream)
     channel = Channel(
         name=name,
         unit=plain_unit(signal.unit),
         rate_hz=clock.rate_hz,
         start_s=clock.start_s,
         count=stream.count,
-        source=streams.values(stream, signal, replace(rule, apart=tally.apart)),
+        source=streams.values(stream, signal),
         long_name=_long_name(signal),
     )
     return on_clock(channel, clock)
+
+
+def _clock(streams: Streams, stream: Stream) -> SampleClock:
+    return clock_of_times(streams.path, f"times of {stream.origin.label}", stream.count, streams.times(stream))
 
 
 def _long_name(signal: Signal) -> str:
@@ -121,10 +116,10 @@ def _long_name(signal: Signal) -> str:
     return f"SPN {signal.spn}{': ' if signal.comment else ''}{signal.comment}"[:200]
 
 
-def _left_out(streams: Streams, places: list[tuple[Stream, Signal]], names: tuple[str, ...]) -> dict[str, str]:
+def _left_out(streams: Streams, signals: list[tuple[Stream, Signal]], names: tuple[str, ...]) -> dict[str, str]:
     left_out = dict(streams.database.left_out)
     empty = []
-    for (stream, signal), name in zip(places, names, strict=True):
+    for (stream, signal), name in zip(signals, names, strict=True):
         tally = stream.tallies[signal]
         if tally.is_empty:
             empty.append(name)
@@ -142,10 +137,10 @@ def _left_out(streams: Streams, places: list[tuple[Stream, Signal]], names: tupl
         left_out[f"{streams.log.name_of(bus)} {_in_words(identifier)}"] = (
             f"{number} frames, which {_knower(streams.database)}."
         )
-    rest = listed[_MOST_LISTED:]
-    if rest:
-        left_out[f"{len(rest)} further identifiers"] = (
-            f"{sum(number for _, number in rest)} frames, which {_knower(streams.database)}."
+    further = listed[_MOST_LISTED:]
+    if further:
+        left_out[f"{len(further)} further identifiers"] = (
+            f"{sum(number for _, number in further)} frames, which {_knower(streams.database)}."
         )
     left_out |= {kind: f"{number}, which hold no values." for kind, number in streams.log.others.items()}
     return left_out

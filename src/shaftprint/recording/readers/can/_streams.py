@@ -60,9 +60,7 @@ class Stream:
     instance: int | None
     """Of which engine, gearbox or rudder; None where the message does not say it."""
     tallies: dict[Signal, Tally]
-    """What is seen of each signal."""
-    rules: dict[Signal, Validity]
-    """Which of its counts are values."""
+    """What is seen of each signal, and which of its counts are values."""
     columns: tuple[int, ...]
     """Columns of the temporary file: times, lengths, words of eight bytes."""
     count: int = 0
@@ -148,12 +146,10 @@ class Streams:
         key = (origin, instance, where)
         if key not in self.streams:
             signals = [one for one in message.signals if one.where == where and one is not message.instance]
-            rules = {one: Validity(message=message, signal=one, identifier=identifier) for one in signals}
             self.streams[key] = Stream(
                 origin=origin,
                 instance=instance,
-                tallies={one: Tally(rule) for one, rule in rules.items()},
-                rules=rules,
+                tallies={one: Tally(Validity(message=message, signal=one, identifier=identifier)) for one in signals},
                 columns=tuple(self.spool.add_column(origin.label) for _ in range(2 + width // _WORD_BYTES)),
             )
         return self.streams[key]
@@ -174,8 +170,9 @@ class Streams:
         """Return what gives the times of messages [s]."""
         return self.spool.source(stream.columns[0])
 
-    def values(self, stream: Stream, signal: Signal, rule: Validity) -> Source:
+    def values(self, stream: Stream, signal: Signal) -> Source:
         """Return what gives the values of a signal: not a number where there is none."""
+        rule = stream.tallies[signal].rule
         _, lengths, *words = (self.spool.source(column) for column in stream.columns)
 
         def read(start: int, stop: int) -> FloatArray:

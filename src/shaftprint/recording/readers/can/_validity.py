@@ -2,7 +2,7 @@
 
 from collections import Counter
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -76,6 +76,11 @@ class Validity:
         """Whether the file states a range."""
         return self.signal.lowest > -np.inf or self.signal.highest < np.inf
 
+    @property
+    def outside(self) -> str:
+        """The reason of values that lie outside that range, in words."""
+        return f"outside {self.signal.lowest:g} to {self.signal.highest:g}"
+
     def reasons(self, numbers: NDArray[Any]) -> Iterable[tuple[str, NDArray[np.bool_]]]:
         """Yield why counts are no values and which they are; a count may have several reasons.
 
@@ -90,14 +95,11 @@ class Validity:
         if self.standard:
             yield from self._by_standard(numbers)
         for code in self.apart:
-            yield f"of all others apart ({code})", numbers == code
+            yield _apart_in_words(code), numbers == code
         if self.has_range:
             slack = _ROUNDING * abs(signal.factor)
             values = self.values(numbers)
-            yield (
-                f"outside {signal.lowest:g} to {signal.highest:g}",
-                ~((values >= signal.lowest - slack) & (values <= signal.highest + slack)),
-            )
+            yield self.outside, ~((values >= signal.lowest - slack) & (values <= signal.highest + slack))
 
     def values(self, numbers: NDArray[Any]) -> NDArray[np.float64]:
         """Return counts in the unit of the signal."""
@@ -135,10 +137,10 @@ class Tally:
             The rule so far.
         """
         self._validity = validity
-        self._bits = validity.signal.bits - (1 if validity.signal.is_signed else 0)
+        self._last = (1 << validity.signal.bits - (1 if validity.signal.is_signed else 0)) - 1
         self._counts: Counter[str] = Counter()
         self.total = self.invalid = self.short = 0
-        self._ends = {(1 << self._bits) - 1: 0}
+        self._ends = {self._last: 0}
         if validity.signal.is_signed and validity.standard:
             self._ends[-1] = 0
         self._highest, self._nearest = -np.inf, np.inf
@@ -156,32 +158,41 @@ class Tally:
             none |= new
         self.invalid += int(np.count_nonzero(none))
         if self._is_judged:
-            rest = numbers[~none]
+            inner = numbers[~none]
             for code in self._ends:
-                here = rest == code
-                self._ends[code] += int(np.count_nonzero(here))
-                rest = rest[~here]
-            if rest.size:
-                self._highest = max(self._highest, float(rest.max()))
-                self._nearest = min(self._nearest, float(np.abs(rest.astype(np.float64) + 1.0).min()))
+                is_end = inner == code
+                self._ends[code] += int(np.count_nonzero(is_end))
+                inner = inner[~is_end]
+            if inner.size:
+                self._highest = max(self._highest, float(inner.max()))
+                self._nearest = min(self._nearest, float(np.abs(inner.astype(np.float64) + 1.0).min()))
                 if len(self._levels) < _FEWEST_LEVELS:
-                    self._levels |= set(np.unique(rest[:_JUDGED]).tolist())
+                    self._levels |= set(np.unique(inner[:_JUDGED]).tolist())
 
     @property
     def outside(self) -> int:
         """Values that lie outside the range, and are none for no other reason."""
-        return sum(count for reason, count in self._counts.items() if reason.startswith("outside"))
+        return self._counts[self._validity.outside]
+
+    @property
+    def without_value(self) -> int:
+        """Counts that are no values, for whatever reason."""
+        return self.invalid + self.short + sum(self._ends[code] for code in self.apart)
 
     @property
     def is_empty(self) -> bool:
         """Whether none of the counts is a value, for whatever reason but the range alone."""
-        none = self.invalid + self.short + sum(self._ends[code] for code in self.apart)
-        return none == self.total and not self.outside
+        return self.without_value == self.total and not self.outside
 
     @property
-    def none_otherwise(self) -> int:
-        """Values that are none for another reason."""
-        return self.invalid - self.outside + self.short
+    def is_all_outside(self) -> bool:
+        """Whether none of the counts is a value, and the range is the reason of some."""
+        return self.without_value == self.total and self.outside > 0
+
+    @property
+    def rule(self) -> Validity:
+        """The rule with what the log says of it."""
+        return replace(self._validity, apart=self.apart)
 
     @property
     def _is_judged(self) -> bool:
@@ -193,20 +204,23 @@ class Tally:
     @property
     def apart(self) -> tuple[int, ...]:
         """Counts that stand apart from all others."""
-        if not self._levels and self._ends.get(-1) and not self._ends[(1 << self._bits) - 1]:
+        if not self._levels and self._ends.get(-1) and not self._ends[self._last]:
             # a field that is never filled in, by a sender that knows no sign
             return (-1,)
         if len(self._levels) < _FEWEST_LEVELS:
             return ()
-        end = (1 << self._bits) - 1
-        is_far = {end: self._highest <= (1.0 - _APART) * end, -1: self._nearest >= _NEAREST}
+        is_far = {self._last: self._highest <= (1.0 - _APART) * self._last, -1: self._nearest >= _NEAREST}
         return tuple(code for code, count in self._ends.items() if count and is_far[code])
 
     def counted(self) -> str:
         """Return how many values there are not and why; empty where there are all."""
         parts = [f"{count} {reason}" for reason, count in self._counts.items() if count]
-        parts += [f"{self._ends[code]} of all others apart ({code})" for code in self.apart]
+        parts += [f"{self._ends[code]} {_apart_in_words(code)}" for code in self.apart]
         parts += [f"{self.short} in messages too short for them"] if self.short else []
-        number = self.invalid + self.short + sum(self._ends[code] for code in self.apart)
         by = f" by {self._validity.standard}" if self._validity.standard else ""
-        return f"{number} of {self.total} values are none{by}: {', '.join(parts)}." if number else ""
+        none = self.without_value
+        return f"{none} of {self.total} values are none{by}: {', '.join(parts)}." if none else ""
+
+
+def _apart_in_words(code: int) -> str:
+    return f"of all others apart ({code})"
