@@ -72,15 +72,15 @@ def _date(parts: list[int]) -> datetime | None:
 
 def _blocks(path: Path, file: BinaryIO, log: FrameLog) -> Iterator[Frames]:
     parts: list[bytes] = []
-    together, rest = 0, b""
+    together, cut = 0, b""
     for content in _containers(path, file, log):
         parts.append(content)
         together += len(content)
         if together >= _BLOCK_BYTES:
-            rest = yield from _frames(path, b"".join([rest, *parts]), log)
+            cut = yield from _frames(path, b"".join([cut, *parts]), log)
             parts, together = [], 0
-    rest = yield from _frames(path, b"".join([rest, *parts]), log)
-    log.count("objects at the cut end of the file", int(bool(rest.strip(b"\0"))))
+    cut = yield from _frames(path, b"".join([cut, *parts]), log)
+    log.count("objects at the cut end of the file", int(bool(cut.strip(b"\0"))))
 
 
 def _containers(path: Path, file: BinaryIO, log: FrameLog) -> Iterator[bytes]:
@@ -134,15 +134,15 @@ def _objects(path: Path, data: bytes) -> tuple[NDArray[np.int64], int]:
     place, end, size_of = 0, len(data), _OBJECT.unpack_from
     runs: list[NDArray[np.int64]] = []
     single: list[int] = []
-    most, singles = _FIRST_RUN, 0
+    longest_run, singles = _FIRST_RUN, 0
     while place + _BODY <= end:
         if data[place : place + 4] != _MARK:
-            found = data.find(_MARK, place, place + _FILLING)
-            if found < 0:
+            mark = data.find(_MARK, place, place + _FILLING)
+            if mark < 0:
                 if place + _FILLING + _BODY > end:
                     break
                 raise _damaged(path)
-            place = found
+            place = mark
             continue
         size = size_of(data, place)[3]
         if size < _BODY:
@@ -156,14 +156,14 @@ def _objects(path: Path, data: bytes) -> tuple[NDArray[np.int64], int]:
             place += size
             continue
         # objects of one kind and size stand behind each other: see how many their heads, without the rest, are alike
-        rows = min((end - place) // size, most)
+        rows = min((end - place) // size, longest_run)
         heads = np.frombuffer(data, dtype=np.uint8, count=rows * size, offset=place).reshape(rows, size)
         other = np.flatnonzero((heads[:, : _OBJECT.size] != heads[0, : _OBJECT.size]).any(axis=1))
         alike = int(other[0]) if other.size else rows
         runs += [np.array(single, dtype=np.int64), place + size * np.arange(alike)]
         single = []
         place += size * alike
-        most = most * 2 if alike == rows else _FIRST_RUN
+        longest_run = longest_run * 2 if alike == rows else _FIRST_RUN
         singles = _SINGLES if alike < _SHORT_RUN else 0
     return np.concatenate([*runs, np.array(single, dtype=np.int64)]), place
 

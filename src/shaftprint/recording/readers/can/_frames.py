@@ -1,6 +1,6 @@
 """Frames of a CAN bus as arrays, and what their identifiers say under SAE J1939."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from datetime import datetime
 from typing import Any
@@ -40,8 +40,8 @@ class FrameLog:
     """The frames."""
     kind: str
     """What wrote it, for the name of the format."""
-    bus_names: Mapping[int, str] = field(default_factory=dict)
-    """What the buses are called; those that are missing CAN and their number."""
+    bus_names: dict[int, str] = field(default_factory=dict)
+    """What the buses are called, those that are missing CAN and their number; complete when the blocks are through."""
     began: datetime | None = None
     """Date of second zero, where the log says it."""
     others: dict[str, int] = field(default_factory=dict)

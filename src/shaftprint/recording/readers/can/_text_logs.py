@@ -3,6 +3,7 @@
 import re
 from collections.abc import Callable, Iterator
 from datetime import UTC, datetime, timedelta
+from itertools import chain
 from pathlib import Path
 from typing import Any, TextIO
 
@@ -38,9 +39,10 @@ _CANDUMP = re.compile(r"\(\d+\.\d+\)\s+\S+\s+[0-9A-Fa-f]+#")
 # what candump shows on a terminal, with or without times: (1780308000.25)  can0  0CF00400   [8]  F0 A5 9B
 _SHOWN = re.compile(
     r"\s*(?:\((?P<time>\d+\.\d+)\)\s+)?(?P<bus>[a-z]\w*)\s+(?:[TR]X\s+\S+\s+\S+\s+|[TR]X\s+)?(?P<id>[0-9A-F]{3,8})\s+"
-    r"\[(?P<length>\d+)\]\s+(?P<rest>(?:[0-9A-F]{2}\s*)+|remote request)"
+    r"\[(?P<length>\d+)\]\s+(?P<data>(?:[0-9A-F]{2}\s*)+|remote request)"
 )
 _FIRST_LINES = 12
+_LATER_THAN_ANY_TEST_S = 1e8
 
 
 def kind_of(path: Path, begin: str) -> str:
@@ -85,7 +87,7 @@ def open_text_log(path: Path, kind: str, file: TextIO, library: Any) -> FrameLog
     first = next(messages, None)
     if first is None:
         raise RecordingError(f"{path}: expected frames of a CAN bus, found none.")
-    zero_s, add = 0.0, 1 if kind == "ASC" else 0
+    zero_s, first_bus = 0.0, 1 if kind == "ASC" else 0
     if kind == "TRC" and reader.start_time is not None:
         # PEAK counts days by the clock of the computer, whose zone the file does not state
         zero_s, log.began = reader.start_time.timestamp(), reader.start_time.replace(tzinfo=None)
@@ -94,29 +96,16 @@ def open_text_log(path: Path, kind: str, file: TextIO, library: Any) -> FrameLog
     elif isinstance(lines, _AscLines):
         log.began = lines.began
     buses: dict[str, int] = {}
-    log.bus_names = _Names(buses)
 
     def bus_of(channel: Any) -> int:
-        if isinstance(channel, str):
-            return buses.setdefault(channel, len(buses))
-        return add + int(channel or 0)
+        if not isinstance(channel, str):
+            return first_bus + int(channel or 0)
+        number = buses.setdefault(channel, len(buses))
+        log.bus_names[number] = channel
+        return number
 
-    log.blocks = _blocks(first, messages, log, zero_s, bus_of, lines)
+    log.blocks = _blocks(chain([first], messages), log, zero_s, bus_of, lines)
     return log
-
-
-_LATER_THAN_ANY_TEST_S = 1e8
-
-
-class _Names(dict[int, str]):
-    """Names of buses by their numbers, as they are found."""
-
-    def __init__(self, numbers: dict[str, int]) -> None:
-        super().__init__()
-        self._numbers = numbers
-
-    def get(self, key: int, default: Any = None) -> Any:
-        return next((name for name, number in self._numbers.items() if number == key), default)
 
 
 class _Lines:
@@ -162,9 +151,9 @@ class _CandumpLines(_Lines):
             raise RecordingError(
                 f"{self._path}: expected times in front of the frames, found none; log with candump -L, or -t a."
             )
-        rest = "R" if shown["rest"].startswith("r") else "".join(shown["rest"].split())
+        data = "R" if shown["data"].startswith("r") else "".join(shown["data"].split())
         mark = "##0" if int(shown["length"]) > _CLASSIC else "#"
-        return f"({shown['time']}) {shown['bus']} {shown['id']}{mark}{rest}\n"
+        return f"({shown['time']}) {shown['bus']} {shown['id']}{mark}{data}\n"
 
 
 class _AscLines(_Lines):
@@ -216,14 +205,13 @@ class _AscLines(_Lines):
         trigger, header = self._trigger, self._header
         if trigger is None:
             return
-        is_first = self.rows == 1
         if header is None or trigger < header:
             # whoever wrote the first line did so after the measurement
             zero = trigger
         else:
             since_s = (trigger - header).total_seconds()
             zero = trigger if abs(stamp) < abs(stamp - since_s) else header
-        if is_first:
+        if self.rows == 1:
             self.began = self._header = zero
             return
         if self.began is not None:
@@ -231,34 +219,32 @@ class _AscLines(_Lines):
 
 
 def _date(text: str) -> datetime | None:
-    found = _DATE.match(text.strip())
-    if found is None:
+    date = _DATE.match(text.strip())
+    if date is None:
         return None
-    word = found["month"].lower()
+    word = date["month"].lower()
     # an umlaut in any encoding
     month = 3 if _MARCH.fullmatch(word) else _MONTHS.get(word[:3])
     if month is None:
         return None
-    hour, minute, second = (int(part) for part in found["time"].split(":"))
-    if found["half"]:
-        hour = hour % 12 + (12 if found["half"].lower() == "pm" else 0)
+    hour, minute, second = (int(part) for part in date["time"].split(":"))
+    if date["half"]:
+        hour = hour % 12 + (12 if date["half"].lower() == "pm" else 0)
     try:
-        whole = datetime(int(found["year"]), month, int(found["day"]), hour, minute, second)  # noqa: DTZ001
+        whole = datetime(int(date["year"]), month, int(date["day"]), hour, minute, second)  # noqa: DTZ001
     except ValueError:
         return None
-    return whole + timedelta(seconds=float(f"0.{found['part']}") if found["part"] else 0.0)
+    return whole + timedelta(seconds=float(f"0.{date['part']}") if date["part"] else 0.0)
 
 
 def _expect_version(path: Path, file: TextIO) -> None:
-    found = None
-    place = file.tell()
-    for _ in range(_FIRST_LINES):
-        found = found or _TRC_VERSION.match(file.readline())
-    file.seek(place)
-    if found is not None and found["version"] not in _TRC_VERSIONS:
+    begin = file.tell()
+    version = next(filter(None, (_TRC_VERSION.match(file.readline()) for _ in range(_FIRST_LINES))), None)
+    file.seek(begin)
+    if version is not None and version["version"] not in _TRC_VERSIONS:
         raise RecordingError(
-            f"{path}: expected a TRC file of version {', '.join(_TRC_VERSIONS)}, found {found['version']}; convert it "
-            "with PEAK's converter."
+            f"{path}: expected a TRC file of version {', '.join(_TRC_VERSIONS)}, found {version['version']}; convert "
+            "it with PEAK's converter."
         )
 
 
@@ -278,30 +264,25 @@ def _whole(messages: Iterator[Any], lines: _Lines, log: FrameLog) -> Iterator[An
 
 
 def _blocks(
-    first: Any, messages: Iterator[Any], log: FrameLog, zero_s: float, bus_of: Callable[[Any], int], lines: _Lines
+    messages: Iterator[Any], log: FrameLog, zero_s: float, bus_of: Callable[[Any], int], lines: _Lines
 ) -> Iterator[Frames]:
-    kept: list[Any] = []
+    data_frames: list[Any] = []
     number = 0
-    for message in _after(first, messages):
+    for message in messages:
         number += 1
         if message.is_error_frame:
             log.count("error frames")
         elif message.is_remote_frame:
             log.count("remote frames")
         else:
-            kept.append(message)
-        if len(kept) == _BLOCK_FRAMES:
-            yield _block(kept, zero_s, bus_of)
-            kept = []
-    if kept:
-        yield _block(kept, zero_s, bus_of)
+            data_frames.append(message)
+        if len(data_frames) == _BLOCK_FRAMES:
+            yield _block(data_frames, zero_s, bus_of)
+            data_frames = []
+    if data_frames:
+        yield _block(data_frames, zero_s, bus_of)
     if lines.rows:
         log.count("rows of other kinds than frames", lines.rows - number)
-
-
-def _after(first: Any, messages: Iterator[Any]) -> Iterator[Any]:
-    yield first
-    yield from messages
 
 
 def _block(messages: list[Any], zero_s: float, bus_of: Callable[[Any], int]) -> Frames:
