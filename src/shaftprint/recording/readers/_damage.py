@@ -39,11 +39,15 @@ def told_as_damage(path: Path, what: str) -> Iterator[io.StringIO]:
     except RecordingError:
         raise
     except Exception as error:
-        reason = " ".join(str(error).split())[:200] or type(error).__name__
         raise RecordingError(
-            f"{path}: expected a whole {what} file, found a damaged or truncated one ({reason}); "
+            f"{path}: expected a whole {what} file, found a damaged or truncated one ({short_reason(error)}); "
             "copy it again from the logger."
         ) from None
+
+
+def short_reason(error: Exception) -> str:
+    """Return what a library says of an error, in one line; its type where it says nothing."""
+    return " ".join(str(error).split())[:200] or type(error).__name__
 
 
 def expect_plausible(

@@ -96,11 +96,24 @@ class Gathered:
             return self.channels
         if not self.left_out:
             raise RecordingError(f"{self.path}: expected channels with samples, found none.")
-        reasons = "; ".join(f"{name}: {reason.rstrip('.')}" for name, reason in list(self.left_out.items())[:_SHOWN])
+        reasons = reasons_in_words(self.left_out, most=_SHOWN)
         more = f" and {len(self.left_out) - _SHOWN} more" if len(self.left_out) > _SHOWN else ""
         raise RecordingError(
             f"{self.path}: expected channels on a clock, found none that can be used: {reasons}{more}."
         )
+
+
+def reasons_in_words(left_out: Mapping[str, str], *, most: int) -> str:
+    """Return why the first things were left out, in one line; empty where nothing was.
+
+    Parameters
+    ----------
+    left_out
+        Why, a sentence each, by name.
+    most
+        How many are listed.
+    """
+    return "; ".join(f"{name}: {reason.rstrip('.')}" for name, reason in list(left_out.items())[:most])
 
 
 def unique_names(named: "list[tuple[str, str]]") -> list[str]:

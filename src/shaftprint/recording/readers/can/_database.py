@@ -9,7 +9,9 @@ from typing import Any
 
 from shaftprint.errors import RecordingError
 from shaftprint.escape import printable
+from shaftprint.recording.readers._damage import short_reason
 from shaftprint.recording.readers._extra import library
+from shaftprint.recording.readers._gather import reasons_in_words
 from shaftprint.recording.readers._library_output import quiet
 from shaftprint.recording.readers.can._dbc_lines import lost_lines, whole_messages
 from shaftprint.recording.readers.can._frames import EXTENDED, is_j1939, is_nmea_2000, pgn_of, sender_of
@@ -84,9 +86,8 @@ def read_database(path: Path) -> Database:
             buses = [matrix for matrix in matrices.values() if matrix is not None]
             messages = tuple(message for matrix in buses for message in _messages(matrix, is_dbc=kind == "DBC"))
     except Exception as error:
-        reason = printable(" ".join(str(error).split())[:200]) or type(error).__name__
         raise RecordingError(
-            f"{path}: expected {kind_in_words} file, found one that cannot be read ({reason})"
+            f"{path}: expected {kind_in_words} file, found one that cannot be read ({printable(short_reason(error))})"
             f"{'; export it as DBC' if kind == 'ARXML' else ''}."
         ) from None
     signals_of = {(message.marked_identifier, signal.name) for message in messages for signal in message.signals}
@@ -102,9 +103,11 @@ def read_database(path: Path) -> Database:
                 )
         usable.append(replace(message, signals=tuple(signal for signal in message.signals if signal.can_be_read)))
     if not any(message.signals for message in usable):
-        lost = "; ".join(f"{name}: {reason.removesuffix('.')}" for name, reason in list(unusable.items())[:3])
-        found = f"none in it ({lost})" if lost else "none in it"
-        raise RecordingError(f"{path}: expected {kind_in_words} file with messages and signals, found {found}.")
+        lost = reasons_in_words(unusable, most=3)
+        raise RecordingError(
+            f"{path}: expected {kind_in_words} file with messages and signals, found none in it"
+            f"{f' ({lost})' if lost else ''}."
+        )
     return Database(name=path.name, messages=tuple(usable), left_out=unusable)
 
 

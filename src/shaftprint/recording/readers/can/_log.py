@@ -9,7 +9,7 @@ from shaftprint.errors import RecordingError
 from shaftprint.recording._recording import Recording
 from shaftprint.recording.readers._damage import told_as_damage
 from shaftprint.recording.readers._extra import library
-from shaftprint.recording.readers._gather import Gathered, unique_names
+from shaftprint.recording.readers._gather import Gathered, reasons_in_words, unique_names
 from shaftprint.recording.readers._hints import expect_hints
 from shaftprint.recording.readers._opened import Opened
 from shaftprint.recording.readers._packed import FIRST_BYTES, first_bytes, open_unpacked
@@ -81,16 +81,16 @@ def expect_known(path: Path, taken: Decoded, database: Database) -> None:
     """
     if taken.named:
         return
-    unknown = "; ".join(f"{name}: {reason}" for name, reason in list(taken.left_out(()).items())[:3])
-    found = f" ({unknown.rstrip('.')})" if unknown else ""
+    unknown = reasons_in_words(taken.left_out(()), most=3)
+    in_brackets = f" ({unknown})" if unknown else ""
     if database.name:
         raise RecordingError(
-            f"{path}: expected messages that {database.name} knows, found none of them in the log{found}; take the DBC "
-            "file of this ship."
+            f"{path}: expected messages that {database.name} knows, found none of them in the log{in_brackets}; take "
+            "the DBC file of this ship."
         )
     raise RecordingError(
         f"{path}: expected messages of engine, gearbox or rudder by SAE J1939 or NMEA 2000, found none of them in the "
-        f"log{found}; give the DBC file that says what the frames hold, dbc= (--dbc of shaftprint convert)."
+        f"log{in_brackets}; give the DBC file that says what the frames hold, dbc= (--dbc of shaftprint convert)."
     )
 
 
