@@ -250,6 +250,7 @@ def _channel(path: Path, place: _Place, opened: Opened, name: str, clock: Sample
     is_text = _is_v4(file) and is_text_table(conversion)
     flags = int(getattr(described, "flags", 0))
     has_bits = bool(flags & (_ALL_INVALID | _HAS_INVALIDATION_BITS)) and _is_v4(file)
+    is_all_invalid = has_bits and not flags & _HAS_INVALIDATION_BITS
     first, _ = records.samples(group, index, 0, min(count, 2), raw=True)
     if first.ndim != 1 or first.dtype.kind not in "fiu":
         raise RecordingError(f"{path}, channel {name}: expected one real number a sample, found {_shape(first)}.")
@@ -275,7 +276,7 @@ def _channel(path: Path, place: _Place, opened: Opened, name: str, clock: Sample
                 # a copy: the library's type of numbers carries the conversion, and would apply it again
                 numbers = np.empty(len(values))
                 numbers[:] = values
-            if flags & _ALL_INVALID and has_bits and not flags & _HAS_INVALIDATION_BITS:
+            if is_all_invalid:
                 numbers[:] = np.nan
             elif invalid is not None:
                 numbers[np.asarray(invalid, dtype=bool)] = np.nan

@@ -29,15 +29,14 @@ def holds_frames(group: Any) -> bool:
 
 def holds_no_values(group: Any) -> bool:
     """Return whether raw messages are errors or requests on a CAN bus."""
-    return is_bus_logging(group) and any(name in _names(group) for name in _OTHERS)
+    return bool(_event_kind(group))
 
 
 def frames_of(file: Any, records: MdfRecords) -> FrameLog:
     """Return the frames of an open file, group by group."""
     log = FrameLog(blocks=iter(()), kind="MDF")
     for group in file.groups:
-        if holds_no_values(group):
-            kind = next(kind for name, kind in _OTHERS.items() if name in _names(group))
+        if kind := _event_kind(group):
             log.count(kind, int(group.channel_group.cycles_nr))
     log.blocks = _blocks(file, records)
     return log
@@ -47,16 +46,16 @@ def _blocks(file: Any, records: MdfRecords) -> Iterator[Frames]:
     for number, group in enumerate(file.groups):
         if not holds_frames(group):
             continue
-        places = _names(group)
+        indices = _names(group)
         count = int(group.channel_group.cycles_nr)
         for start in range(0, count, _BLOCK_FRAMES):
             stop = min(start + _BLOCK_FRAMES, count)
-            yield _block(file, records, number, places, start, stop)
+            yield _block(file, records, number, indices, start, stop)
 
 
-def _block(file: Any, records: MdfRecords, group: int, places: dict[str, int], start: int, stop: int) -> Frames:
+def _block(file: Any, records: MdfRecords, group: int, indices: dict[str, int], start: int, stop: int) -> Frames:
     def field(name: str) -> NDArray[Any] | None:
-        index = places.get(f"{_DATA}.{name}")
+        index = indices.get(f"{_DATA}.{name}")
         return None if index is None else records.samples(group, index, start, stop, raw=False)[0]
 
     def numbers(name: str) -> NDArray[np.int64] | None:
@@ -89,6 +88,12 @@ def _block(file: Any, records: MdfRecords, group: int, places: dict[str, int], s
         length=length,
         content=whole,
     )
+
+
+def _event_kind(group: Any) -> str:
+    """Return which events without values the raw messages of a group are; empty of other groups."""
+    names = _names(group) if is_bus_logging(group) else {}
+    return next((kind for name, kind in _OTHERS.items() if name in names), "")
 
 
 def _names(group: Any) -> dict[str, int]:

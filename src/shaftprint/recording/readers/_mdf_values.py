@@ -77,8 +77,7 @@ def unit_of(conversion: Any) -> str:
     if conversion is None:
         return ""
     inner = getattr(conversion, "referenced_blocks", None) or {}
-    own = getattr(conversion, "unit", "") or ""
-    return own or next(
+    return getattr(conversion, "unit", "") or next(
         (unit for block in inner.values() if not isinstance(block, bytes) and (unit := unit_of(block))), ""
     )
 

@@ -54,12 +54,12 @@ class CountRule:
         if "_FillValue" not in numbers and unwritten is not None:
             fills.append(np.asarray(unwritten))
         bounds = [-np.inf, np.inf]
-        for key, places in (("valid_range", (0, 1)), ("valid_min", (0,)), ("valid_max", (1,))):
-            if key in numbers and numbers[key].size == len(places):
-                for place, bound in zip(places, numbers[key], strict=True):
-                    in_unit = _is_in_unit(numbers[key], dtype, scale, offset)
+        for key, sides in (("valid_range", (0, 1)), ("valid_min", (0,)), ("valid_max", (1,))):
+            if key in numbers and numbers[key].size == len(sides):
+                in_unit = _is_in_unit(numbers[key], dtype, scale, offset)
+                for side, bound in zip(sides, numbers[key], strict=True):
                     # the lowest value has the highest count where the scale is negative
-                    at = 1 - place if in_unit and scale < 0.0 else place
+                    at = 1 - side if in_unit and scale < 0.0 else side
                     bounds[at] = (float(bound) - offset) / scale if in_unit else _wrapped(float(bound), wrap)
         return cls(
             scale=scale,
