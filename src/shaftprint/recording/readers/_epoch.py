@@ -6,8 +6,8 @@ from datetime import UTC, datetime, timedelta, timezone
 
 from shaftprint.recording._channel import Channel
 
-# three years: no test lasts that long
-_LATER_THAN_ANY_TEST_S = 1e8
+LATER_THAN_ANY_TEST_S = 1e8
+"""Three years: a test that begins so long after the zero of its clock begins at a date [s]."""
 _LATEST_S = 4e9
 _REFERENCE = re.compile(
     r"(\d{1,4})-(\d\d?)-(\d\d?)(?:[T ]+(\d\d?):(\d\d?)(?::(\d\d?(?:\.\d*)?))?)?\s*(?:Z|UTC|GMT|([+-])(\d\d?):?(\d\d)?)?"
@@ -29,7 +29,7 @@ def from_second_zero(
     reference_s
         Date of the zero of those that are left as they are, in seconds since 1970.
     """
-    starts = [channel.start_s for channel in channels.values() if channel.start_s > _LATER_THAN_ANY_TEST_S]
+    starts = [channel.start_s for channel in channels.values() if channel.start_s > LATER_THAN_ANY_TEST_S]
     zero = datetime(1970, 1, 1, tzinfo=UTC if has_zone else None)
     if not starts:
         return dict(channels), None if reference_s is None else zero + timedelta(seconds=reference_s)
@@ -78,7 +78,7 @@ def from_its_zero(
     """
     starts = [channel.start_s for channel in channels.values()]
     first, last = min(starts), max(channel.start_s + channel.duration_s for channel in channels.values())
-    if first > _LATER_THAN_ANY_TEST_S:
+    if first > LATER_THAN_ANY_TEST_S:
         return from_second_zero(channels)
     if last > 0.0:
         return dict(channels), began

@@ -19,6 +19,7 @@ from shaftprint.recording._channel import Channel
 from shaftprint.recording._recording import Recording
 from shaftprint.recording._spool import Spool
 from shaftprint.recording.readers._clock import Hole, SampleClock, clock_of_times, on_clock
+from shaftprint.recording.readers._epoch import LATER_THAN_ANY_TEST_S
 from shaftprint.recording.readers._gather import Gathered
 from shaftprint.recording.readers._hints import rate_hint
 from shaftprint.recording.readers._printed_rate import rate_of_step
@@ -35,8 +36,6 @@ _COMMENT = "comment"
 _TITLE = b"X_Value"
 _DATE = re.compile(r"(\d{4})[/.-](\d\d?)[/.-](\d\d?)")
 _TIME = re.compile(r"(\d\d?):(\d\d):(\d\d)(?:[.,](\d+))?")
-# seconds since 1904 are no seconds of a test
-_LATER_THAN_ANY_TEST_S = 1e8
 _RATES_AGREE = 1e-4
 # Steps within a segment, and distances of two, to this part of a step; a hole is whole samples long to less than that.
 # One that is so many times as long as all rows is kept as a jump.
@@ -304,7 +303,8 @@ def _seconds(
             seconds = _number(_of(segment.head, "X0", place)) + np.arange(segment.count) / rate
         else:
             seconds = np.array(printed[row : row + segment.count])
-        if not pieces and abs(seconds[0]) > _LATER_THAN_ANY_TEST_S:
+        # seconds since 1904 are no seconds of a test
+        if not pieces and abs(seconds[0]) > LATER_THAN_ANY_TEST_S:
             zero_s = float(seconds[0])
         seconds = seconds - zero_s
         if pieces and not seconds[0] > end_s:

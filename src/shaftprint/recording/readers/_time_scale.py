@@ -15,7 +15,7 @@ import numpy as np
 from shaftprint.errors import RecordingError
 from shaftprint.recording._channel import Times
 from shaftprint.recording.readers._clock import SampleClock, clock_of_times
-from shaftprint.recording.readers._epoch import reference_s
+from shaftprint.recording.readers._epoch import LATER_THAN_ANY_TEST_S, reference_s
 from shaftprint.recording.readers._units import seconds_in
 
 TIME_NAMES = (
@@ -31,8 +31,6 @@ _SINCE = re.compile(r"\s*(\w+)\s+since\s+(.+)", re.IGNORECASE)
 _UNITS = "s, ms, us, ns, min, h or days"
 
 _FIRST = 1001
-# A test that begins so long after the zero of its clock begins at a date [s].
-_LATER_THAN_ANY_TEST_S = 1e8
 # Days step by less than this down to 0.6 Hz; seconds that do are those of 50 kHz and more.
 _DAY_STEP, _MAY_BE_DAYS = 2e-5, 1e4
 # No line is sampled faster than this, or slower for a whole file [Hz].
@@ -203,7 +201,7 @@ def _since(where: str, date: str, first: float, second: float) -> TimeScale:
         return TimeScale(second=second)
     if at_s is None:
         raise RecordingError(f'{where}: expected times since a date such as 2026-03-05 09:00, found "{date[:40]}".')
-    if abs(first) * second <= _LATER_THAN_ANY_TEST_S:
+    if abs(first) * second <= LATER_THAN_ANY_TEST_S:
         return TimeScale(second=second, reference_s=at_s)
     return TimeScale(second=second, zero=first, since_1970_s=at_s + first * second)
 
@@ -217,7 +215,7 @@ def _in_unit(where: str, first: float, second: float, unit: str, *, is_asked: bo
     for zero in (_SINCE_1970, _SINCE_1904):
         if zero.lowest <= first * second <= zero.highest:
             return _scale(zero, first, second=second)
-    if abs(first) * second > _LATER_THAN_ANY_TEST_S and not is_asked:
+    if abs(first) * second > LATER_THAN_ANY_TEST_S and not is_asked:
         raise RecordingError(
             f"{where}: expected times in {unit}, found {first:g}, which is neither a moment of a test nor a date; "
             f"state the unit, time_unit= (--time-unit {_UNITS})."
@@ -238,7 +236,7 @@ def _by_size(where: str, first: float, step: float, *, is_whole: bool) -> TimeSc
             return _scale(zero, first)
     is_counter = is_whole and step >= _COUNTED
     is_too_small = 0.0 < step < 1.0 / FASTEST_HZ or (abs(first) >= _MAY_BE_DAYS and 0.0 < step <= _DAY_STEP)
-    if is_counter or is_too_small or step > 1.0 / SLOWEST_HZ or abs(first) > _LATER_THAN_ANY_TEST_S:
+    if is_counter or is_too_small or step > 1.0 / SLOWEST_HZ or abs(first) > LATER_THAN_ANY_TEST_S:
         raise RecordingError(
             f"{where}: expected seconds, found {first:.9g} with steps of {step:.4g} and no unit; milliseconds, "
             "microseconds or days? State the unit in the title, time [ms], or with time_unit= (--time-unit ms; "

@@ -10,6 +10,7 @@ from typing import Any, TextIO
 import numpy as np
 
 from shaftprint.errors import RecordingError
+from shaftprint.recording.readers._epoch import LATER_THAN_ANY_TEST_S
 from shaftprint.recording.readers.can._frames import EXTENDED, FILL, FrameLog, Frames
 
 _BLOCK_FRAMES = 1 << 16
@@ -42,7 +43,6 @@ _SHOWN = re.compile(
     r"\[(?P<length>\d+)\]\s+(?P<data>(?:[0-9A-F]{2}\s*)+|remote request)"
 )
 _FIRST_LINES = 12
-_LATER_THAN_ANY_TEST_S = 1e8
 
 
 def kind_of(path: Path, begin: str) -> str:
@@ -91,7 +91,7 @@ def open_text_log(path: Path, kind: str, file: TextIO, library: Any) -> FrameLog
     if kind == "TRC" and reader.start_time is not None:
         # PEAK counts days by the clock of the computer, whose zone the file does not state
         zero_s, log.began = reader.start_time.timestamp(), reader.start_time.replace(tzinfo=None)
-    elif kind == "candump" and first.timestamp > _LATER_THAN_ANY_TEST_S:
+    elif kind == "candump" and first.timestamp > LATER_THAN_ANY_TEST_S:
         zero_s, log.began = first.timestamp, datetime.fromtimestamp(first.timestamp, UTC)
     elif isinstance(lines, _AscLines):
         log.began = lines.began
