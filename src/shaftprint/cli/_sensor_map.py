@@ -153,8 +153,8 @@ def proposed_sensors(seen: Sequence[Seen]) -> list[str]:
 
 def _number(channel: Channel) -> int | None:
     """Return the number of a J1939 signal (SPN), as a DBC file gave it; None of other channels."""
-    found = _SPN.match(channel.long_name)
-    return None if found is None else int(found[1])
+    spn = _SPN.match(channel.long_name)
+    return None if spn is None else int(spn[1])
 
 
 def _uses_by_number(seen: Sequence[Seen]) -> dict[str, Use | None]:

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from shaftprint.recording._channel import Source
 from shaftprint.recording._recording import Recording
+from shaftprint.recording.readers._attributes import numbers_among, plain
 from shaftprint.recording.readers._damage import expect_plausible, told_as_damage
 from shaftprint.recording.readers._hints import rate_hint
 from shaftprint.recording.readers._netcdf_values import CountRule, never_written
@@ -48,7 +49,7 @@ def read(path: Path, **hints: object) -> Recording:
                 for name, variable in file.variables.items()
                 if len(variable.shape) == 1 and int(variable.shape[0]) > 1 and variable.typecode() in "hifdb"
             ]
-            scalars = {"": _numbers(vars(file)["_attributes"])}
+            scalars = {"": numbers_among(vars(file)["_attributes"])}
             gathered = gather_vectors(path, vectors, scalars, rate_hz=rate, time_unit=unit)
             return gathered.recording_from_second_zero(NAME, opened.close)
     except BaseException:
@@ -57,7 +58,7 @@ def read(path: Path, **hints: object) -> Recording:
 
 
 def _vector(path: Path, name: str, variable: Any, opened: Opened) -> Vector:
-    attributes = {key: _plain(value) for key, value in variable._attributes.items()}
+    attributes = {key: plain(value) for key, value in variable._attributes.items()}
     count, size = int(variable.shape[0]), path.stat().st_size
     expect_plausible(path, name, samples=count, sample_bytes=1, stored_bytes=size, is_packed=False)
     axis = str(variable.dimensions[0])
@@ -80,15 +81,3 @@ def _source(name: str, variable: Any, opened: Opened, rule: CountRule) -> Source
         return rule.values(np.array(variable.data[start:stop]))
 
     return read_samples
-
-
-def _numbers(attributes: Any) -> dict[str, float]:
-    plain = {name.lower(): _plain(value) for name, value in attributes.items()}
-    return {name: float(value) for name, value in plain.items() if isinstance(value, int | float)}
-
-
-def _plain(value: Any) -> object:
-    if isinstance(value, bytes):
-        return value.decode("utf-8", "replace")
-    array = np.asarray(value)
-    return float(array.ravel()[0]) if array.size == 1 and array.dtype.kind in "fiu" else str(value)
