@@ -8,7 +8,7 @@ from shaftprint.bench import composed, equipped, read_records
 from shaftprint.bench._assumed_yielding import assumed_yielding
 from shaftprint.catalogue import shipped_structure
 from shaftprint.drive import load_drive
-from shaftprint.errors import RecordingError, SettingsError
+from shaftprint.errors import RecordingError, SettingsError, StructureError
 from shaftprint.simulation import simulate
 
 # LOADED-MOTOR once more, of blocks: L di/dt = u - R i - K_m omega and J domega/dt = K_m i - d omega - friction - T_L.
@@ -123,6 +123,13 @@ def test_by_how_much_friction_yields_is_assumed_where_nobody_said_that_it_is_kno
     known = equipped(load_drive(written(MOTOR + '\n[[known]]\nname = "theta_y"\nvalue = 2e-4\n')))
     freed = equipped(load_drive(written(MOTOR + '\n[[searched]]\nname = "theta_y"\nlower = 1e-5\nupper = 1e-2\n')))
     assert assumed_yielding(known) == assumed_yielding(freed) == {}
+
+
+def test_a_yielding_of_zero_stays_zero_beside_a_parameter_of_that_name(written):
+    text = (BLOCKS + ROWS).replace("yielding = 5e-4", "yielding = 0.0")
+    drive = composed(load_drive(written(text.replace('"d"', '"friction_yielding"'))))
+    with pytest.raises(StructureError, match="no steady running"):
+        simulate(drive, drive.vector({}), np.arange(50) / 50.0, {"u": np.ones(50), "T_L": np.zeros(50)})
 
 
 @pytest.mark.parametrize(

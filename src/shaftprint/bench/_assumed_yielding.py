@@ -7,7 +7,7 @@ more than what noise leaves uncertain.
 """
 
 from shaftprint.bench._equipped import EquippedDrive
-from shaftprint.bench._parts import yielding_of
+from shaftprint.bench._held_yielding import YIELDING, yielding_of
 from shaftprint.catalogue import DRIVES
 
 # Of the assumed number, one standard deviation.
@@ -19,7 +19,7 @@ SHIPPED_YIELDING = "theta_y"
 def assumed_yielding(one: EquippedDrive) -> dict[str, float]:
     """Return the standard deviation of each yielding that is held at a number which nobody stated to be known."""
     stated = {known.name for known in one.drive.known}
-    names = {yielding_of(block) for block in one.drive.blocks if block.kind.endswith("friction")}
+    names = {yielding_of(block) for block in one.drive.blocks if YIELDING in block.parameters}
     names |= {SHIPPED_YIELDING} if one.structure.name in DRIVES else set()
     return {
         p.name: ASSUMED * p.value

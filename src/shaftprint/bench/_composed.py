@@ -5,7 +5,8 @@ from dataclasses import replace
 from functools import reduce
 from typing import Any
 
-from shaftprint.bench._parts import PARTS, YIELDING, Given, yielding_of
+from shaftprint.bench._held_yielding import held_yielding, states_yielding, with_named_yielding
+from shaftprint.bench._parts import PARTS, Coefficients
 from shaftprint.drive import Block, Drive
 from shaftprint.errors import SettingsError
 from shaftprint.models import Diagram, Flow, Formula, Parameter, Structure, number
@@ -24,17 +25,17 @@ def composed(drive: Drive) -> Structure:
     inputs = tuple(one.name for one in drive.inputs)
     outputs = tuple(one.name for one in drive.outputs)
     _expect_wiring(drive, inputs, outputs)
-    used = {name for block in drive.blocks for name in block.names}
-    _expect_parameters(drive, used)
+    _expect_parameters(drive)
+    blocks = [with_named_yielding(block) if states_yielding(block) else block for block in drive.blocks]
     parameters = (
         *(Parameter(one.name, one.unit, one.lower, one.upper, one.value, one.meaning) for one in drive.parameters),
-        *(_held_yielding(block) for block in drive.blocks if _is_number(block, YIELDING)),
+        *(held_yielding(block) for block in drive.blocks if states_yielding(block)),
     )
 
     def equations(flow: Flow, first: Formula, _: Any) -> dict[str, Formula]:
         signals = {name: first if name == inputs[0] else flow.input(name) for name in inputs}
-        signals |= {block.output: flow.unknown() for block in drive.blocks}
-        for block in drive.blocks:
+        signals |= {block.output: flow.unknown() for block in blocks}
+        for block in blocks:
             value = _made(flow, block, _into(block, signals))
             flow.close(signals[block.output], value, f"drive {drive.name}, block {block.output}")
         return {name: signals[name] for name in outputs}
@@ -52,35 +53,23 @@ def composed(drive: Drive) -> Structure:
     )
 
 
-def _is_number(block: Block, key: str) -> bool:
-    value = block.parameters.get(key)
-    return value is not None and not isinstance(value, str) and value > 0.0
-
-
-def _held_yielding(block: Block) -> Parameter:
-    """Return a number as a held parameter, so that what rests on it can be told."""
-    value = float(block.parameters[YIELDING])
-    meaning = f"by how much {block.output} yields where it holds, in units of its speed times seconds"
-    return Parameter(yielding_of(block), "-", 0.0, 2.0 * value, value, meaning, held=True)
-
-
 def _into(block: Block, signals: Mapping[str, Formula]) -> Formula:
     """Return what goes into a block: its inputs added, those of a product multiplied."""
-    of = [-signals[name[1:]] if name.startswith("-") else signals[name] for name in block.inputs]
+    terms = [-signals[name[1:]] if name.startswith("-") else signals[name] for name in block.inputs]
     if block.kind == "product":
-        return reduce(lambda left, right: left * right, of)
-    return reduce(lambda left, right: left + right, of, number(0.0))
+        return reduce(lambda left, right: left * right, terms)
+    return reduce(lambda left, right: left + right, terms, number(0.0))
 
 
 def _made(flow: Flow, block: Block, into: Formula) -> Formula:
     """Return what comes out of a block; its states are called after it."""
-    asked, part = PARTS[block.kind]
+    usual_values, part = PARTS[block.kind]
     first = len(flow.states)
-    value = part(flow, into, Given(flow, block, asked))
-    for place, state in enumerate(flow.states[first:], start=first):
+    value = part(flow, into, Coefficients(flow, block, usual_values))
+    for index, state in enumerate(flow.states[first:], start=first):
         # the output itself is what a user knows at the start; what is behind it says what it is
         name = block.output if state is value else f"{block.output} {state.name}"
-        flow.states[place] = replace(state, name=name)
+        flow.states[index] = replace(state, name=name)
     return value
 
 
@@ -92,13 +81,13 @@ def _expect_wiring(drive: Drive, inputs: tuple[str, ...], outputs: tuple[str, ..
             f"drive {drive.name}, blocks: expected another name for the output {both[0]} of a block, which is an input "
             "of the drive."
         )
-    known = (*inputs, *made)
+    sources = (*inputs, *made)
     for block in drive.blocks:
         for name in block.inputs:
-            if name.removeprefix("-") not in known:
+            if name.removeprefix("-") not in sources:
                 raise SettingsError(
-                    f"drive {drive.name}, block {block.output}, inputs: expected a signal, one of {', '.join(known)}, "
-                    f"found {name}.{meant(name, known)}"
+                    f"drive {drive.name}, block {block.output}, inputs: expected a signal, one of "
+                    f"{', '.join(sources)}, found {name}.{meant(name, sources)}"
                 )
     missing = [name for name in outputs if name not in made]
     if missing:
@@ -108,17 +97,18 @@ def _expect_wiring(drive: Drive, inputs: tuple[str, ...], outputs: tuple[str, ..
         )
 
 
-def _expect_parameters(drive: Drive, used: set[str]) -> None:
+def _expect_parameters(drive: Drive) -> None:
     stated = [one.name for one in drive.parameters]
     for block in drive.blocks:
-        asked = PARTS[block.kind][0]
+        usual_values = PARTS[block.kind][0]
         for key in block.parameters:
-            if key not in asked:
+            if key not in usual_values:
                 raise SettingsError(
-                    f"drive {drive.name}, block {block.output}, parameters: expected {_listed(asked)} of {block.kind}, "
-                    f"found {key}.{meant(key, asked)}"
+                    f"drive {drive.name}, block {block.output}, parameters: expected "
+                    f"{', '.join(usual_values) or 'no parameters'} of {block.kind}, found {key}."
+                    f"{meant(key, usual_values)}"
                 )
-        for key, usual in asked.items():
+        for key, usual in usual_values.items():
             if usual is None and key not in block.parameters:
                 raise SettingsError(
                     f"drive {drive.name}, block {block.output}, parameters: expected {key}, the name of a parameter or "
@@ -126,17 +116,14 @@ def _expect_parameters(drive: Drive, used: set[str]) -> None:
                 )
         for value in block.names:
             if value not in stated:
-                known = ", ".join(stated) or "of which there is none"
+                listed = ", ".join(stated) or "of which there is none"
                 raise SettingsError(
                     f"drive {drive.name}, block {block.output}, parameters: expected a number or one of "
-                    f"[[parameters]], {known}, found {value!r}.{meant(value, stated)}"
+                    f"[[parameters]], {listed}, found {value!r}.{meant(value, stated)}"
                 )
+    used = {name for block in drive.blocks for name in block.names}
     idle = [name for name in stated if name not in used]
     if idle:
         raise SettingsError(
             f"drive {drive.name}, parameters: expected each to stand in a block, found {idle[0]} in none."
         )
-
-
-def _listed(asked: Mapping[str, float | str | None]) -> str:
-    return ", ".join(asked) or "no parameters"

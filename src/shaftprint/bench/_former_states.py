@@ -19,12 +19,12 @@ def start_by_names_of_today(drive: Drive, names: Sequence[str]) -> dict[str, flo
     """
     today = _former_names(drive, names)
     gains = {block.output: block.parameters.get("gain", 1.0) for block in drive.blocks if "lag" in block.kind}
-    known = {}
+    start = {}
     for state in drive.start:
         name, output = today.get(state.name, (state.name, ""))
         is_same = state.value == 0.0 or gains.get(output, 1.0) == 1.0
-        known[state.name if state.name in names or not is_same else name] = state.value
-    return known
+        start[state.name if state.name in names or not is_same else name] = state.value
+    return start
 
 
 def _former_names(drive: Drive, names: Sequence[str]) -> dict[str, tuple[str, str]]:
@@ -33,7 +33,7 @@ def _former_names(drive: Drive, names: Sequence[str]) -> dict[str, tuple[str, st
     former: dict[str, tuple[str, str]] = {}
     words: list[str] = []
     for name in names:
-        output = max((one for one in blocks if f"{name} ".startswith(f"{one} ")), key=len, default="")
+        output = max((block for block in blocks if f"{name} ".startswith(f"{block} ")), key=len, default="")
         if not output:
             continue
         kind = blocks[output].kind

@@ -30,33 +30,20 @@ Usual: TypeAlias = float | str | None
 """Usual value of a parameter: a number, the name of another parameter that it then equals, or none."""
 
 
-# By how much what friction holds yields.
-YIELDING = "yielding"
-
-
-def yielding_of(block: Block) -> str:
-    """Return the parameter that says by how much what a block holds yields."""
-    value = block.parameters.get(YIELDING)
-    return value if isinstance(value, str) else f"{block.output}_{YIELDING}"
-
-
 @dataclass(frozen=True, slots=True, eq=False)
-class Given:
+class Coefficients:
     """What the row of a block says, as numbers of the equations."""
 
     flow: Flow
     block: Block
-    asked: Mapping[str, Usual]
+    usual_values: Mapping[str, Usual]
 
     def __getitem__(self, key: str) -> Number:
         """Return a parameter of the block, or its usual value."""
-        if key == YIELDING and yielding_of(self.block) in self.flow.parameters:
-            # a number is a held parameter too
-            return self.flow.parameter(yielding_of(self.block))
         value = self.block.parameters.get(key)
         if value is not None:
             return self.number(value)
-        usual = self.asked[key]
+        usual = self.usual_values[key]
         return self[usual] if isinstance(usual, str) else number(usual or 0.0)
 
     def number(self, value: str | float) -> Number:
@@ -64,42 +51,42 @@ class Given:
         return self.flow.parameter(value) if isinstance(value, str) else number(value)
 
 
-Part: TypeAlias = Callable[[Flow, Formula, Given], Formula]
+Part: TypeAlias = Callable[[Flow, Formula, Coefficients], Formula]
 
 
-def _integrator(flow: Flow, signal: Formula, p: Given) -> Formula:
+def _integrator(flow: Flow, signal: Formula, p: Coefficients) -> Formula:
     state = flow.state("integral")
     flow.rate(state, signal * p["gain"])
     return state
 
 
-def _pi(flow: Flow, signal: Formula, p: Given) -> Formula:
+def _pi(flow: Flow, signal: Formula, p: Coefficients) -> Formula:
     state = flow.state("integral")
     flow.rate(state, signal * p["integral"])
     return signal * p["proportional"] + state
 
 
-def _inertia(flow: Flow, signal: Formula, p: Given) -> Formula:
+def _inertia(flow: Flow, signal: Formula, p: Coefficients) -> Formula:
     state = flow.state("motion")
     flow.rate(state, signal / p["inertia"])
     return state
 
 
-def _power(flow: Flow, signal: Formula, p: Given) -> Formula:
+def _power(flow: Flow, signal: Formula, p: Coefficients) -> Formula:
     return raised(signal, p.block.exponent or 1.0, keeps_sign=p.block.keeps_sign)
 
 
-def _ratio(flow: Flow, signal: Formula, p: Given) -> Formula:
+def _ratio(flow: Flow, signal: Formula, p: Coefficients) -> Formula:
     top, bottom = ([p.number(value) for value in values or ()] for values in (p.block.numerator, p.block.denominator))
     return realised(flow, signal, (coefficients(top), coefficients(bottom)), "state")
 
 
-def _coulomb(flow: Flow, speed: Formula, p: Given) -> Formula:
+def _coulomb(flow: Flow, speed: Formula, p: Coefficients) -> Formula:
     size, sided = _sizes(p)
     return sided(coulomb_friction(flow, speed, size, yielding=p["yielding"], within_s=p["within"]))
 
 
-def _stribeck(flow: Flow, speed: Formula, p: Given) -> Formula:
+def _stribeck(flow: Flow, speed: Formula, p: Coefficients) -> Formula:
     size, sided = _sizes(p)
     return sided(
         stribeck_friction(
@@ -114,7 +101,7 @@ def _stribeck(flow: Flow, speed: Formula, p: Given) -> Formula:
     )
 
 
-def _sizes(p: Given) -> tuple[Number, Callable[[Formula], Formula]]:
+def _sizes(p: Coefficients) -> tuple[Number, Callable[[Formula], Formula]]:
     """Return the size for the law of friction, and what makes two sizes of what the law gives."""
     if "size-backward" not in p.block.parameters:
         return p["size"], lambda friction: friction
