@@ -1,8 +1,8 @@
 """Run an FMU of somebody else, in a process that may end with it: ``python _fmu_child.py FOLDER``.
 
 The folder holds ``job.json`` and the set point ``set_point.npy`` [rev/s]; ``outputs.npy``, speed [rev/s] and torque
-[N m], or the sentence ``problem.txt`` is written into it. It imports nothing of shaftprint but its units, so that the
-process begins at once.
+[N m], or the sentence ``problem.txt`` is written into it. It imports little of shaftprint, its units and types of
+arrays, so that the process begins at once.
 """
 
 import json
@@ -39,21 +39,27 @@ def _factor(description: Any, role: str, name: str, unit: str) -> float:
     if role == "set_point" and by_name[name].causality != "input":
         raise ForeignError(f"expected an input for set_point, found {name}, a {by_name[name].causality}")
     declared = unit or getattr(by_name[name], "unit", None) or getattr(by_name[name].declaredType, "unit", None) or ""
-    known = ROLES[role]
-    if plain_unit(declared) in known:
-        return known[plain_unit(declared)]
+    factors = ROLES[role]
+    if plain_unit(declared) in factors:
+        return factors[plain_unit(declared)]
     base = "N m" if role == "torque" else "rad/s"
-    for one in description.unitDefinitions:
-        powers = {power: getattr(one.baseUnit, power, 0) or 0 for power in POWERS}
-        if one.name == declared and not unit and one.baseUnit is not None:
-            factor, offset = float(one.baseUnit.factor or 1.0), float(one.baseUnit.offset or 0.0)
-            if {power: n for power, n in powers.items() if n} == BASES[base] and offset == 0.0:
-                return factor * known[base]
+    factor = None if unit else _factor_to_base(description, declared, base)
+    if factor is not None:
+        return factor * factors[base]
     found = f"the unit {declared!r}" if declared else "no unit"
     raise ForeignError(
-        f"expected {role} in {', '.join(known)}, found {found} at {name}; "
+        f"expected {role} in {', '.join(factors)}, found {found} at {name}; "
         f"say it with --model-variable '{role}={name} [UNIT]'"
     )
+
+
+def _factor_to_base(description: Any, unit: str, base: str) -> float | None:
+    """Return what a unit is in one of ``BASES`` by its definition in the FMU; None where it says nothing of that."""
+    definition = next((one.baseUnit for one in description.unitDefinitions if one.name == unit), None)
+    if definition is None or float(definition.offset or 0.0) != 0.0:
+        return None
+    powers = {power: getattr(definition, power) for power in POWERS if getattr(definition, power, None)}
+    return float(definition.factor or 1.0) if powers == BASES[base] else None
 
 
 def run(job: dict[str, Any], set_point_rev_s: FloatArray) -> FloatArray:
@@ -69,8 +75,8 @@ def run(job: dict[str, Any], set_point_rev_s: FloatArray) -> FloatArray:
     names = {role: name for role, (name, _) in variables.items()}
     factors = {role: _factor(description, role, name, unit) for role, (name, unit) in variables.items()}
     step_s = 1.0 / job["rate_hz"]
-    before = math.ceil(job["before_s"] * job["rate_hz"])
-    level = np.concatenate([np.full(before, set_point_rev_s[0]), set_point_rev_s]) / factors["set_point"]
+    samples_before = math.ceil(job["before_s"] * job["rate_hz"])
+    level = np.concatenate([np.full(samples_before, set_point_rev_s[0]), set_point_rev_s]) / factors["set_point"]
     held = np.append(0.5 * (level[1:] + level[:-1]), level[-1])
     time = np.arange(level.size) * step_s
     rows = fmpy.simulate_fmu(
@@ -85,10 +91,12 @@ def run(job: dict[str, Any], set_point_rev_s: FloatArray) -> FloatArray:
         output=[names["speed"], names["torque"]],
         fmi_type="CoSimulation",
     )
-    found = np.stack([np.asarray(rows[names[role]], dtype=float) * factors[role] for role in ("speed", "torque")])
-    if found.shape != (2, level.size) or not np.all(np.isfinite(found)):
-        raise ForeignError(f"expected {level.size} finite rows, found {found.shape[1]}, not all of them finite numbers")
-    return np.asarray(found[:, before:])
+    outputs = np.stack([np.asarray(rows[names[role]], dtype=float) * factors[role] for role in ("speed", "torque")])
+    if outputs.shape != (2, level.size) or not np.all(np.isfinite(outputs)):
+        raise ForeignError(
+            f"expected {level.size} finite rows, found {outputs.shape[1]}, not all of them finite numbers"
+        )
+    return np.asarray(outputs[:, samples_before:])
 
 
 def main() -> None:

@@ -75,15 +75,15 @@ class ForeignModel:
         """
         point = self.working_point
         speed_rev_s = (1.0 + set_point) * point.engine_speed_rev_s
-        found = self._run(speed_rev_s, rate_hz)
-        ratio = found[0, 0] / speed_rev_s[0]
+        outputs = self._run(speed_rev_s, rate_hz)
+        ratio = outputs[0, 0] / speed_rev_s[0]
         if not abs(ratio - 1.0) <= FARTHEST:
             raise self._error(
                 f"expected the engine's speed near its set point before the record, found {ratio:.3g} times that; "
                 "name the variable of the engine's speed and its unit with --model-variable"
             )
         scale = np.array([[point.engine_speed_rev_s], [point.shaft_torque_nm]])
-        return found / scale - 1.0, np.empty((0, 2, set_point.size))
+        return outputs / scale - 1.0, np.empty((0, 2, set_point.size))
 
     def _run(self, set_point_rev_s: FloatArray, rate_hz: float) -> FloatArray:
         if importlib.util.find_spec("fmpy") is None:
