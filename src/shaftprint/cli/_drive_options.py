@@ -48,8 +48,14 @@ def expect_not_given(*options: str) -> None:
     """
     given = [name for name in options if is_given(name)]
     if given:
-        titles = {"legs": "leg", "records": "record", "names": "structure", "load_percent": "load-repeatability"}
-        titles |= {"foreign": "model", "variables": "model-variable"}
+        titles = {
+            "legs": "leg",
+            "records": "record",
+            "names": "structure",
+            "load_percent": "load-repeatability",
+            "foreign": "model",
+            "variables": "model-variable",
+        }
         title = titles.get(given[0], given[0]).replace("_", "-")
         raise click.UsageError(f"--{title} is for ships; leave it out beside --drive.")
 

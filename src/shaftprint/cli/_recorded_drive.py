@@ -17,7 +17,8 @@ _INPUTS = (
     "set", "setpoint", "soll", "sollwert", "demand", "command", "cmd", "reference", "ref", "target", "input", "u", "in",
     "pwm", "duty", "voltage", "spannung",
 )  # fmt: skip
-_MOST = 200_000
+_MOST_SAMPLES = 200_000
+# Bounds of a gain, as multiples of its first value.
 _SPAN = 100.0
 
 
@@ -42,7 +43,7 @@ def write_recorded_drive(recording: Path, file: Path) -> None:
                 f"{recording}: expected an input and an output on one clock, found {', '.join(opened.channels)}; put "
                 "them into one file with `shaftprint convert` or `shaftprint merge`."
             )
-        values = {one.name: one.values(0, min(one.count, _MOST)) for one in alike}
+        values = {one.name: one.values(0, min(one.count, _MOST_SAMPLES)) for one in alike}
         moved = next((one for one in alike if _is_named_as_input(one.name)), None)
         moved = moved or max(alike, key=lambda one: _still(values[one.name]))
         text = _text(recording, moved, [one for one in alike if one is not moved], values)

@@ -25,13 +25,13 @@ def place_of_binary(command: Sequence[str], folder: Path) -> Path | None:
     folder
         The sources.
     """
-    kept = private_folder("fmu")
-    if kept is None:
+    cache = private_folder("fmu")
+    if cache is None:
         return None
     parts = [*command]
     for path in sorted(folder.glob("*.[ch]")):
         parts += [path.name, path.read_text(encoding="utf-8")]
-    return kept / hashlib.sha256("\0".join(parts).encode()).hexdigest()
+    return cache / hashlib.sha256("\0".join(parts).encode()).hexdigest()
 
 
 def keep_binary(binary: Path, place: Path) -> None:

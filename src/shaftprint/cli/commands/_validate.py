@@ -120,8 +120,16 @@ def command(
     held against other records of the drive.
     """
     if drive_file is not None:
-        expect_not_given("foreign", "variables", "records", "used", "allow_in_sample")
-        expect_not_given("linear_torque", "thesis_sets", "output")
+        expect_not_given(
+            "foreign",
+            "variables",
+            "records",
+            "used",
+            "allow_in_sample",
+            "linear_torque",
+            "thesis_sets",
+            "output",
+        )
         validate_on_the_bench(recordings, drive_file, fingerprint, structure, no_progress=no_progress)
         return
     if foreign is None and variables:
