@@ -4,7 +4,7 @@ from collections.abc import Callable, Hashable
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
-from typing import TypeVar
+from typing import Self, TypeVar
 
 import numpy as np
 
@@ -58,6 +58,15 @@ class SampleClock:
     """Gives the times of the rows [start, stop) [s], where they say more than the rate."""
     is_uneven: bool = False
     """Whether the times are those of messages, which lie on no clock; the rate is then that of their sender."""
+
+    def later_by(self, seconds: float) -> Self:
+        """Return the same clock with all times later by some seconds."""
+        stamps = self.stamps
+        return replace(
+            self,
+            start_s=seconds + self.start_s,
+            stamps=None if stamps is None else lambda start, stop: seconds + stamps(start, stop),
+        )
 
 
 def kept_clocks(find: Callable[[_Key], SampleClock]) -> Callable[[_Key], SampleClock]:

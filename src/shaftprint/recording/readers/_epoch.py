@@ -4,6 +4,10 @@ import re
 from collections.abc import Mapping
 from datetime import UTC, datetime, timedelta, timezone
 
+import numpy as np
+from numpy.typing import NDArray
+
+from shaftprint.arrays import FloatArray
 from shaftprint.recording._channel import Channel
 
 LATER_THAN_ANY_TEST_S = 1e8
@@ -42,6 +46,11 @@ def from_second_zero(
         for name, channel in channels.items()
     }
     return moved, began
+
+
+def seconds_from(first: np.datetime64, times: "np.datetime64 | NDArray[np.datetime64]") -> FloatArray:
+    """Return seconds since a first date, shape as the dates."""
+    return np.asarray((times - first) / np.timedelta64(1, "us") * 1e-6, dtype=np.float64)
 
 
 def reference_s(text: str) -> float | None:

@@ -1,6 +1,6 @@
 """The channels of one file under names of their own, and why others are left out."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from datetime import datetime
 from pathlib import Path
@@ -125,13 +125,21 @@ def unique_names(named: "list[tuple[str, str]]") -> list[str]:
         Group and name of every channel.
     """
     plain = [printable(name.replace("/", "|")) or "unnamed" for _, name in named]
-    names_so_far: list[str] = []
-    for (group, _), name in zip(named, plain, strict=True):
-        candidate = name if plain.count(name) == 1 else f"{printable(group.replace('/', '|'))}.{name}"
-        number = 2
-        unique = candidate
-        while unique in names_so_far:
-            unique = f"{candidate} ({number})"
+    return told_apart(
+        [
+            name if plain.count(name) == 1 else f"{printable(group.replace('/', '|'))}.{name}"
+            for (group, _), name in zip(named, plain, strict=True)
+        ]
+    )
+
+
+def told_apart(names: Sequence[str]) -> list[str]:
+    """Return names of which each stands once; those that come again get a number."""
+    unique: list[str] = []
+    for name in names:
+        number, candidate = 2, name
+        while candidate and candidate in unique:
+            candidate = f"{name} ({number})"
             number += 1
-        names_so_far.append(unique)
-    return names_so_far
+        unique.append(candidate)
+    return unique

@@ -3,7 +3,7 @@
 import io
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from datetime import datetime
 from functools import partial
 from itertools import pairwise
@@ -15,25 +15,24 @@ import numpy as np
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import RecordingError
 from shaftprint.escape import printable
-from shaftprint.recording._channel import Channel
+from shaftprint.recording._channel import Channel, Source
 from shaftprint.recording._recording import Recording
 from shaftprint.recording._spool import Spool
 from shaftprint.recording.readers._clock import Hole, SampleClock, clock_of_times, on_clock
 from shaftprint.recording.readers._epoch import LATER_THAN_ANY_TEST_S
-from shaftprint.recording.readers._gather import Gathered
+from shaftprint.recording.readers._gather import Gathered, told_apart
 from shaftprint.recording.readers._hints import rate_hint
 from shaftprint.recording.readers._printed_rate import rate_of_step
-from shaftprint.recording.readers.csv import Header, Unpacked, told_apart, unpack
+from shaftprint.recording.readers.csv import LONGEST_LINE, Header, Unpacked, unpack
 from shaftprint.units import plain_unit
 
 NAME = "LabVIEW LVM"
 
 _MARK = b"LabVIEW Measurement"
 _END_OF_HEAD, _SPECIAL, _END_OF_SPECIAL = "***End_of_Header***", "***Start_Special***", "***End_Special***"
-_LONGEST_LINE = 1_000_000
 _SEPARATORS = {"tab": "\t", "comma": ",", "semicolon": ";", "space": " "}
 _COMMENT = "comment"
-_TITLE = b"X_Value"
+_TIMES = "X_Value"
 _DATE = re.compile(r"(\d{4})[/.-](\d\d?)[/.-](\d\d?)")
 _TIME = re.compile(r"(\d\d?):(\d\d):(\d\d)(?:[.,](\d+))?")
 _RATES_AGREE = 1e-4
@@ -52,7 +51,6 @@ class _Segment:
     begin: int
     end: int = 0
     count: int = 0
-    columns: dict[int, FloatArray] = field(default_factory=dict)
 
 
 def is_mine(path: Path) -> bool:
@@ -74,24 +72,24 @@ def read(path: Path, **hints: object) -> Recording:
     """
     rate_hz = rate_hint(path, hints)
     with path.open("rb") as file:
-        general, segments = _scanned(path, file)
+        general, separator, segments = _scanned(path, file)
         if not segments:
             raise RecordingError(f"{path}: expected segments with titles X_Value ..., found none.")
         spool = Spool(path, [])
         try:
-            return _recording(path, file, general, segments, spool, rate_hz)
+            return _recording(path, file, general, separator, segments, spool, rate_hz)
         except BaseException:
             spool.close()
             raise
 
 
-def _scanned(path: Path, file: IO[bytes]) -> tuple[dict[str, list[str]], list[_Segment]]:
-    """Return the general head, and where the segments are."""
+def _scanned(path: Path, file: IO[bytes]) -> tuple[dict[str, list[str]], str, list[_Segment]]:
+    """Return the general head, what separates columns, and where the segments are."""
     general: dict[str, list[str]] = {}
     head: dict[str, list[str]] = {}
     segments: list[_Segment] = []
     separator, in_head, in_special, position, number = "\t", True, False, 0, 0
-    while raw := file.readline(_LONGEST_LINE):
+    while raw := file.readline(LONGEST_LINE):
         number += 1
         position += len(raw)
         is_row = raw[:1] in b"\t,;-+.0123456789" or not raw.strip()
@@ -101,31 +99,28 @@ def _scanned(path: Path, file: IO[bytes]) -> tuple[dict[str, list[str]], list[_S
         fields = [one.strip() for one in line.split(separator)]
         if in_special or line.startswith(_SPECIAL):
             in_special = not line.startswith(_END_OF_SPECIAL)
-        elif raw.startswith(_TITLE):
-            if segments and not segments[-1].end:
-                segments[-1].end = position - len(raw)
-            segments.append(
-                _Segment(
-                    head=head or (segments[-1].head if segments else {}), titles=fields, line=number, begin=position
-                )
-            )
+        elif raw.startswith(_TIMES.encode()):
+            _end_last(segments, position - len(raw))
+            head = head or (segments[-1].head if segments else {})
+            segments.append(_Segment(head=head, titles=fields, line=number, begin=position))
             head, in_head = {}, False
         elif line.startswith(_END_OF_HEAD):
             general = general or head
             head = {} if head is general else head
         elif fields[0]:
-            if segments and not segments[-1].end:
-                segments[-1].end = position - len(raw)
+            _end_last(segments, position - len(raw))
             in_head = True
             head[fields[0]] = fields[1:]
             if line.startswith("Separator") and not general:
                 separator = _SEPARATORS.get(re.split(r"[\t,; ]", line.strip("\t,; "))[-1].lower(), "\t")
+    _end_last(segments, position)
+    return general, separator, segments
+
+
+def _end_last(segments: Sequence[_Segment], position: int) -> None:
+    """Note where the last segment ends, unless that is known."""
     if segments and not segments[-1].end:
         segments[-1].end = position
-    for one in segments:
-        one.head = one.head if one.titles else general
-    general["Separator"] = [separator]
-    return general, segments
 
 
 def _decoded(raw: bytes) -> str:
@@ -138,53 +133,53 @@ def _decoded(raw: bytes) -> str:
 def _recording(
     path: Path,
     file: IO[bytes],
-    general: dict[str, list[str]],
+    general: Mapping[str, list[str]],
+    separator: str,
     segments: list[_Segment],
     spool: Spool,
-    rate_hz: float | None,
+    hint_hz: float | None,
 ) -> Recording:
-    separator = general["Separator"][0]
     titles = segments[0].titles
-    if any(segment.titles != titles for segment in segments):
-        other = next(segment for segment in segments if segment.titles != titles)
+    other = next((segment for segment in segments if segment.titles != titles), None)
+    if other is not None:
         raise RecordingError(
             f"{path}, line {other.line}: expected the titles of the first segment, found others; save each group of "
             "channels in a file of its own."
         )
-    decimal = (general.get("Decimal_Separator") or [""])[0] or _decimal(file, segments[0], separator)
-    gathered = Gathered(path=path)
-    remarks: list[str] = []
-    width = len(titles)
-    values = [place for place in range(width) if titles[place].lower() not in ("x_value", _COMMENT, "")]
-    times = [place for place in range(width) if titles[place] == "X_Value"]
-    places = sorted([*values, *times])
+    values = [place for place, title in enumerate(titles) if title.lower() not in ("x_value", _COMMENT, "")]
+    places = sorted([*values, *(place for place, title in enumerate(titles) if title == _TIMES)])
     header = Header(
         delimiter=separator,
-        decimal=decimal,
+        decimal=(general.get("Decimal_Separator") or [""])[0] or _decimal(file, segments[0], separator),
         names=tuple(f"{titles[place]} {place}" for place in places),
         units=("",) * len(places),
         places=tuple(places),
-        width=width,
+        width=len(titles),
         lines=0,
         time_column=None,
         time_unit=None,
     )
-    for place in places:
-        spool.add_column(titles[place])
+    gathered = Gathered(path=path)
+    columns = {place: spool.add_column(titles[place]) for place in places}
     wordy: dict[int, str] = {}
     for segment in segments:
         done = _rows(path, file, segment, header, spool)
         segment.count = done.count
-        remarks += done.remarks
+        gathered.remarks.extend(done.remarks)
         wordy = {places[header.names.index(name)]: reason for name, reason in done.left_out.items()} | wordy
-    began = _moment(segments[0].head, values[0] if values else 1)
     _note_comments(gathered, file, segments[0], separator)
+    source = _Source(
+        path=path,
+        segments=tuple(segments),
+        sources={place: spool.source(column) for place, column in columns.items()},
+        wordy=wordy,
+        hint_hz=hint_hz,
+        remarks=gathered.remarks,
+    )
     names = told_apart([printable(titles[place].replace("/", "|")) for place in values])
     for place, name in zip(values, names, strict=True):
-        make = partial(_channel, path, place, name, segments, spool, places, times, wordy, rate_hz, remarks)
-        gathered.add(name, make)
-    recording = gathered.recording(NAME, spool.close, began)
-    return replace(recording, remarks=tuple(dict.fromkeys([*recording.remarks, *remarks])))
+        gathered.add(name, partial(source.channel, place, name))
+    return gathered.recording(NAME, spool.close, _moment(segments[0].head, values[0] if values else 1))
 
 
 def _decimal(file: IO[bytes], segment: _Segment, separator: str) -> str:
@@ -230,128 +225,124 @@ def _note_comments(gathered: Gathered, file: IO[bytes], segment: _Segment, separ
             return
 
 
-def _channel(
-    path: Path,
-    place: int,
-    name: str,
-    segments: Sequence[_Segment],
-    spool: Spool,
-    places: Sequence[int],
-    times: Sequence[int],
-    wordy: Mapping[int, str],
-    hint_hz: float | None,
-    remarks: list[str],
-) -> Channel:
-    """Return a channel with its segments one behind the other, each at its time."""
-    source = spool.source(places.index(place))
-    count = sum(segment.count for segment in segments)
-    own = max((time for time in times if time < place), default=None)
-    for read in (place, own):
-        if read is not None and read in wordy:
-            raise RecordingError(wordy[read])
-    printed = None if own is None else spool.source(places.index(own))(0, count)
-    printed = printed if printed is not None and np.isfinite(printed).any() else None
-    filled = np.flatnonzero(np.isfinite(source(0, count) if printed is None else printed))
-    if not filled.size or not np.isfinite(source(0, count)).any():
-        raise RecordingError("it has no value in any row")
-    last = int(filled[-1]) + 1
-    steps = [rate_of_step(_of(segment.head, "Delta_X", place)) for segment in segments]
-    rate_hz = hint_hz or steps[0]
-    if printed is None and rate_hz is None:
-        raise RecordingError("expected times or a Delta_X, found neither; pass sample_rate_hz= (--sample-rate)")
-    if printed is None and any(step is not None and step != steps[0] for step in steps):
-        raise RecordingError("expected one Delta_X for all segments, found several")
-    pieces = _seconds(segments, place, printed, rate_hz, path, remarks)
-    clock = _clock(path, name, pieces, last, rate_hz, remarks)
-    exact = rate_hz if rate_hz is not None and abs(clock.rate_hz / rate_hz - 1.0) < _RATES_AGREE else clock.rate_hz
-    if hint_hz is not None and exact != hint_hz:
-        raise RecordingError(
-            f"expected one sample rate, found {clock.rate_hz:g} Hz in its times and {hint_hz:g} Hz in the hint"
-        )
-    if printed is None and hint_hz is None and rate_hz is not None:
-        step = _of(segments[0].head, "Delta_X", place)
-        if abs(rate_hz * float(step.replace(",", ".")) - 1.0) > 1e-9:
-            remarks.append(f"The rate of {rate_hz:g} Hz is the roundest one whose step is printed as {step} (Delta_X).")
-    channel = Channel(
-        name=name,
-        unit=plain_unit(_of(segments[0].head, "Y_Unit_Label", place)),
-        rate_hz=exact,
-        start_s=clock.start_s,
-        count=last,
-        source=source,
-    )
-    return on_clock(channel, replace(clock, rate_hz=exact))
+@dataclass(frozen=True, kw_only=True, slots=True)
+class _Source:
+    """The unpacked segments of a file while its channels are gathered."""
 
+    path: Path
+    segments: Sequence[_Segment]
+    sources: Mapping[int, Source]
+    """What gives the rows of each column of the file."""
+    wordy: Mapping[int, str]
+    """Why columns are no numbers."""
+    hint_hz: float | None
+    remarks: list[str]
 
-def _seconds(
-    segments: Sequence[_Segment],
-    place: int,
-    printed: FloatArray | None,
-    rate_hz: float | None,
-    path: Path,
-    remarks: list[str],
-) -> list[FloatArray]:
-    """Return the times of the rows of every segment from the date of the first on [s]."""
-    pieces: list[FloatArray] = []
-    first = _moment(segments[0].head, place)
-    row, end_s, zero_s = 0, -np.inf, 0.0
-    for segment in segments:
-        if not segment.count:
-            continue
-        if printed is None:
-            rate = rate_hz or 1.0
-            seconds = _number(_of(segment.head, "X0", place)) + np.arange(segment.count) / rate
-        else:
-            seconds = np.array(printed[row : row + segment.count])
-        # seconds since 1904 are no seconds of a test
-        if not pieces and abs(seconds[0]) > LATER_THAN_ANY_TEST_S:
-            zero_s = float(seconds[0])
-        seconds = seconds - zero_s
-        if pieces and not seconds[0] > end_s:
-            # its times begin anew: those of its head say when
-            when = _moment(segment.head, place)
-            passed = (when - first).total_seconds() if when is not None and first is not None else 0.0
-            step = 1.0 / rate_hz if rate_hz else float(np.median(np.diff(seconds))) if seconds.size > 1 else 0.0
-            shift = passed if seconds[0] + passed > end_s else end_s + step - float(seconds[0])
-            if shift != passed:
-                remarks.append(
-                    f"Line {segment.line}: the head of the segment does not say when it begins; it was put right "
-                    "behind the one before."
+    def channel(self, place: int, name: str) -> Channel:
+        """Return a channel with its segments one behind the other, each at its time."""
+        head = self.segments[0].head
+        titles = self.segments[0].titles
+        times_place = max((before for before in range(place) if titles[before] == _TIMES), default=None)
+        for column in (place, times_place):
+            if column is not None and column in self.wordy:
+                raise RecordingError(self.wordy[column])
+        count = sum(segment.count for segment in self.segments)
+        has_value = np.isfinite(self.sources[place](0, count))
+        printed = None if times_place is None else self.sources[times_place](0, count)
+        printed = printed if printed is not None and np.isfinite(printed).any() else None
+        if not has_value.any():
+            raise RecordingError("it has no value in any row")
+        last = int(np.flatnonzero(has_value if printed is None else np.isfinite(printed))[-1]) + 1
+        rates = [rate_of_step(_of(segment.head, "Delta_X", place)) for segment in self.segments]
+        rate_hz = self.hint_hz or rates[0]
+        if printed is None and rate_hz is None:
+            raise RecordingError("expected times or a Delta_X, found neither; pass sample_rate_hz= (--sample-rate)")
+        if printed is None and any(rate is not None and rate != rates[0] for rate in rates):
+            raise RecordingError("expected one Delta_X for all segments, found several")
+        pieces = self._seconds(place, printed, rate_hz)
+        clock = self._clock(name, pieces, last, rate_hz)
+        exact = rate_hz if rate_hz is not None and abs(clock.rate_hz / rate_hz - 1.0) < _RATES_AGREE else clock.rate_hz
+        if self.hint_hz is not None and exact != self.hint_hz:
+            raise RecordingError(
+                f"expected one sample rate, found {clock.rate_hz:g} Hz in its times and {self.hint_hz:g} Hz in the hint"
+            )
+        if printed is None and self.hint_hz is None and rate_hz is not None:
+            step = _of(head, "Delta_X", place)
+            if abs(rate_hz * float(step.replace(",", ".")) - 1.0) > 1e-9:
+                self.remarks.append(
+                    f"The rate of {rate_hz:g} Hz is the roundest one whose step is printed as {step} (Delta_X)."
                 )
-            seconds = seconds + shift
-        pieces.append(seconds)
-        end_s = float(np.nanmax(seconds)) if np.isfinite(seconds).any() else end_s
-        row += segment.count
-    return pieces
-
-
-def _clock(
-    path: Path, name: str, pieces: Sequence[FloatArray], count: int, rate_hz: float | None, remarks: list[str]
-) -> SampleClock:
-    """Return the clock of some segments: with holes where whole samples are missing between them, else with jumps."""
-    seconds = np.concatenate(pieces)[:count]
-    step = 1.0 / rate_hz if rate_hz else 0.0
-    is_known = step > 0.0 and all(np.all(np.abs(np.diff(piece) - step) < _HALF * step) for piece in pieces)
-    if len(pieces) == 1 or not is_known or rate_hz is None:
-        return clock_of_times(path, f"the times of {name}", count, lambda start, stop: seconds[start:stop])
-    holes, row, longest_s = [], 0, 0.0
-    for before, after in pairwise(pieces):
-        row += before.size
-        gap = float(after[0] - before[-1]) * rate_hz - 1.0
-        if abs(gap) < _HALF:
-            continue
-        missing = round(gap)
-        longest_s = max(longest_s, gap / rate_hz)
-        is_hole = 0 < missing < _LONGEST_HOLE * count and abs(gap - missing) <= _WHOLE
-        holes.append(
-            Hole(row=row, missing=missing, jump_s=0.0) if is_hole else Hole(row=row, missing=0, jump_s=gap / rate_hz)
+        channel = Channel(
+            name=name,
+            unit=plain_unit(_of(head, "Y_Unit_Label", place)),
+            rate_hz=exact,
+            start_s=clock.start_s,
+            count=last,
+            source=self.sources[place],
         )
-    if holes:
-        remarks.append(
-            f"{len(pieces)} segments, up to {longest_s:.6g} s apart; whole samples that are missing between two are "
-            "no numbers, other distances are kept as jumps of the clock."
-        )
-    return SampleClock(rate_hz=rate_hz, start_s=float(seconds[0]), holes=tuple(holes))
+        return on_clock(channel, replace(clock, rate_hz=exact))
+
+    def _seconds(self, place: int, printed: FloatArray | None, rate_hz: float | None) -> list[FloatArray]:
+        """Return the times of the rows of every segment from the date of the first on [s]."""
+        pieces: list[FloatArray] = []
+        first = _moment(self.segments[0].head, place)
+        row, end_s, zero_s = 0, -np.inf, 0.0
+        for segment in self.segments:
+            if not segment.count:
+                continue
+            if printed is None:
+                rate = rate_hz or 1.0
+                seconds = _number(_of(segment.head, "X0", place)) + np.arange(segment.count) / rate
+            else:
+                seconds = np.array(printed[row : row + segment.count])
+            # seconds since 1904 are no seconds of a test
+            if not pieces and abs(seconds[0]) > LATER_THAN_ANY_TEST_S:
+                zero_s = float(seconds[0])
+            seconds = seconds - zero_s
+            if pieces and not seconds[0] > end_s:
+                # its times begin anew: those of its head say when
+                when = _moment(segment.head, place)
+                passed = (when - first).total_seconds() if when is not None and first is not None else 0.0
+                step = 1.0 / rate_hz if rate_hz else float(np.median(np.diff(seconds))) if seconds.size > 1 else 0.0
+                shift = passed if seconds[0] + passed > end_s else end_s + step - float(seconds[0])
+                if shift != passed:
+                    self.remarks.append(
+                        f"Line {segment.line}: the head of the segment does not say when it begins; it was put right "
+                        "behind the one before."
+                    )
+                seconds = seconds + shift
+            pieces.append(seconds)
+            end_s = float(np.nanmax(seconds)) if np.isfinite(seconds).any() else end_s
+            row += segment.count
+        return pieces
+
+    def _clock(self, name: str, pieces: Sequence[FloatArray], count: int, rate_hz: float | None) -> SampleClock:
+        """Return the clock of all segments: with holes where whole samples are missing between, else with jumps."""
+        seconds = np.concatenate(pieces)[:count]
+        step = 1.0 / rate_hz if rate_hz else 0.0
+        is_known = step > 0.0 and all(np.all(np.abs(np.diff(piece) - step) < _HALF * step) for piece in pieces)
+        if len(pieces) == 1 or not is_known or rate_hz is None:
+            return clock_of_times(self.path, f"the times of {name}", count, lambda start, stop: seconds[start:stop])
+        holes, row, longest_s = [], 0, 0.0
+        for before, after in pairwise(pieces):
+            row += before.size
+            gap = float(after[0] - before[-1]) * rate_hz - 1.0
+            if abs(gap) < _HALF:
+                continue
+            missing = round(gap)
+            longest_s = max(longest_s, gap / rate_hz)
+            is_hole = 0 < missing < _LONGEST_HOLE * count and abs(gap - missing) <= _WHOLE
+            holes.append(
+                Hole(row=row, missing=missing, jump_s=0.0)
+                if is_hole
+                else Hole(row=row, missing=0, jump_s=gap / rate_hz)
+            )
+        if holes:
+            self.remarks.append(
+                f"{len(pieces)} segments, up to {longest_s:.6g} s apart; whole samples that are missing between two "
+                "are no numbers, other distances are kept as jumps of the clock."
+            )
+        return SampleClock(rate_hz=rate_hz, start_s=float(seconds[0]), holes=tuple(holes))
 
 
 def _of(head: dict[str, list[str]], key: str, place: int) -> str:
@@ -372,9 +363,9 @@ def _moment(head: dict[str, list[str]], place: int) -> datetime | None:
     if date is None or time is None:
         return None
     try:
-        second = np.datetime64(
-            f"{date[1]}-{int(date[2]):02}-{int(date[3]):02}T{int(time[1]):02}:{time[2]}:{time[3]}", "us"
-        )
-        return (second + np.timedelta64(int(f"{time[4] or '0':.6}".ljust(6, "0")), "us")).item()
+        year, month, day = map(int, date.groups())
+        hour, minute, second = map(int, time.groups()[:3])
+        microsecond = int((time[4] or "")[:6].ljust(6, "0"))
+        return datetime(year, month, day, hour, minute, second, microsecond)  # noqa: DTZ001 - the file says no zone
     except ValueError:
         return None

@@ -106,13 +106,7 @@ class TimeScale:
 
     def clock(self, path: Path, name: str, count: int, read: Times) -> SampleClock:
         """Return the clock of a column of such numbers, as `clock_of_times`; its start counts from 1970 with them."""
-        clock, since_s = clock_of_times(path, name, count, self.reading(read)), self.since_1970_s
-        stamps = clock.stamps
-        return replace(
-            clock,
-            start_s=since_s + clock.start_s,
-            stamps=None if stamps is None else lambda start, stop: since_s + stamps(start, stop),
-        )
+        return clock_of_times(path, name, count, self.reading(read)).later_by(self.since_1970_s)
 
 
 def unit_in_name(name: str) -> str | None:

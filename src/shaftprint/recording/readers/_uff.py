@@ -2,7 +2,6 @@
 
 from collections import Counter
 from collections.abc import Mapping
-from dataclasses import replace
 from datetime import datetime
 from functools import partial
 from pathlib import Path
@@ -62,15 +61,13 @@ def read(path: Path, **hints: object) -> Recording:
     sets = [one for one in (read_sets if isinstance(read_sets, list) else [read_sets]) if one]
     functions = [one for one in sets if one.get("type") == _FUNCTION]
     gathered = Gathered(path=path)
-    remarks: list[str] = []
     names = unique_names([("", _name(one, number)) for number, one in enumerate(functions, start=1)])
     for one, name in zip(functions, names, strict=True):
-        gathered.add(name, partial(_channel, path, one, name, rate_hz, remarks))
+        gathered.add(name, partial(_channel, path, one, name, rate_hz, gathered.remarks))
     for kind, count in Counter(int(one.get("type", 0)) for one in sets if one not in functions).items():
         gathered.left_out[f"data sets {kind}"] = f"{count} of them, which hold no functions"
     began = next((date for one in functions if (date := _date(one)) is not None), None)
-    recording = gathered.recording(NAME, lambda: None, began)
-    return replace(recording, remarks=(*recording.remarks, *dict.fromkeys(remarks)))
+    return gathered.recording(NAME, lambda: None, began)
 
 
 def _name(one: Mapping[str, Any], number: int) -> str:

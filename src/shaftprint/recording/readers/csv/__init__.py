@@ -2,7 +2,6 @@
 
 from shaftprint.recording.readers.csv._csv import NAME, is_mine, read
 from shaftprint.recording.readers.csv._header import Header
-from shaftprint.recording.readers.csv._rows import Unpacked, unpack
-from shaftprint.recording.readers.csv._titles import told_apart
+from shaftprint.recording.readers.csv._rows import LONGEST_LINE, Unpacked, unpack
 
-__all__ = ["NAME", "Header", "Unpacked", "is_mine", "read", "told_apart", "unpack"]
+__all__ = ["LONGEST_LINE", "NAME", "Header", "Unpacked", "is_mine", "read", "unpack"]

@@ -6,7 +6,6 @@ from pathlib import Path
 
 import numpy as np
 
-from shaftprint.arrays import FloatArray
 from shaftprint.errors import RecordingError
 
 _ISO = re.compile(
@@ -70,9 +69,3 @@ def _minutes(zone: str) -> int:
         return 0
     digits = zone[1:].replace(":", "")
     return (-1 if zone[0] == "-" else 1) * (60 * int(digits[:2]) + int(digits[2:] or 0))
-
-
-def seconds_from(first: np.datetime64, times: "np.ndarray[tuple[int], np.dtype[np.datetime64]]") -> FloatArray:
-    """Return seconds since a first date, shape as the dates."""
-    passed: FloatArray = (times - first) / np.timedelta64(1, "us") * 1e-6
-    return passed

@@ -8,8 +8,7 @@ from shaftprint.recording.readers.csv._dates import is_date
 from shaftprint.recording.readers.csv._day_times import is_day_time
 
 WHITE_SPACE = " "
-MARKS = (";", "\t", ",", "|")
-DELIMITERS = (*MARKS, WHITE_SPACE)
+DELIMITERS = (";", "\t", ",", "|", WHITE_SPACE)
 
 NUMBER, DATE, DAY_TIME, GAP, TEXT = "n", "d", "c", "g", "t"
 """Kinds of a field, a letter each; a mark for no value and an empty field are of one kind."""

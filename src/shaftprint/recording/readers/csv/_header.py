@@ -6,13 +6,13 @@ from pathlib import Path
 
 from shaftprint.errors import RecordingError
 from shaftprint.escape import printable
+from shaftprint.recording.readers._gather import told_apart
 from shaftprint.recording.readers.csv._fields import (
     DATE,
     DAY_TIME,
     GAP,
     NUMBER,
     TEXT,
-    WHITE_SPACE,
     is_number,
     split_row,
 )
@@ -20,7 +20,7 @@ from shaftprint.recording.readers.csv._head_facts import HeadFacts, head_facts, 
 from shaftprint.recording.readers.csv._table import Table, find_table
 from shaftprint.recording.readers.csv._time_columns import TimeColumns, expect_no_words_as_times, time_columns
 from shaftprint.recording.readers.csv._time_titles import is_time_title
-from shaftprint.recording.readers.csv._titles import counts_rows, name_and_unit, titles_and_units, told_apart
+from shaftprint.recording.readers.csv._titles import counts_rows, name_and_unit, titles_and_units
 from shaftprint.units import plain_unit
 
 # Titles of a column that counts the rows.
@@ -324,6 +324,3 @@ def _remarks(path: Path, times: TimeColumns, facts: HeadFacts, *, has_rate: bool
     if times.place is None and facts.rate_hz is not None and not has_rate:
         return (f'The rate of {facts.rate_hz:g} Hz is that of "{facts.source}" above the rows.',)
     return ()
-
-
-__all__ = ["WHITE_SPACE", "Header", "looks_like_a_table", "read_header"]

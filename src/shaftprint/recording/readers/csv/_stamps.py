@@ -9,7 +9,8 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import RecordingError
-from shaftprint.recording.readers.csv._dates import dates, has_offset, is_date, seconds_from
+from shaftprint.recording.readers._epoch import seconds_from
+from shaftprint.recording.readers.csv._dates import dates, has_offset, is_date
 from shaftprint.recording.readers.csv._day_times import day_times_s, is_day_time, over_midnight
 from shaftprint.recording.readers.csv._header import Header
 

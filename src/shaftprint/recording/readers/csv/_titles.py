@@ -167,15 +167,3 @@ def name_and_unit(title: str) -> tuple[str, str]:
     if behind is not None and behind["unit"].strip() not in _LETTER_UNITS and is_unit(behind["unit"]):
         return behind["name"].strip(), plain_unit(behind["unit"])
     return text, ""
-
-
-def told_apart(names: Sequence[str]) -> list[str]:
-    """Return names of which each stands once; those that come again get a number."""
-    unique: list[str] = []
-    for name in names:
-        number, candidate = 2, name
-        while candidate and candidate in unique:
-            candidate = f"{name} ({number})"
-            number += 1
-        unique.append(candidate)
-    return unique

@@ -14,6 +14,7 @@ import numpy as np
 
 from shaftprint.errors import RecordingError
 from shaftprint.recording.readers._clock import Hole
+from shaftprint.recording.readers._epoch import seconds_from
 
 # LabVIEW counts from 1904 and writes that where it knows no date.
 _NO_DATE = np.datetime64("1905-01-01")
@@ -61,7 +62,7 @@ class Part:
         start = self.start_time
         if start is None or began is None:
             return self.offset_s
-        return self.offset_s + float((start - began) / np.timedelta64(1, "us")) * 1e-6
+        return self.offset_s + float(seconds_from(began, start))
 
 
 @dataclass(kw_only=True, slots=True)

@@ -1,7 +1,7 @@
 """NI TDMS files of LabVIEW and DAQmx: each channel with its waveform properties or a channel of times."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from datetime import UTC, datetime
 from functools import partial
 from pathlib import Path
@@ -16,6 +16,7 @@ from shaftprint.recording._channel import Channel
 from shaftprint.recording._recording import Recording
 from shaftprint.recording.readers._clock import SampleClock, clock_of_times, on_clock
 from shaftprint.recording.readers._damage import expect_plausible, told_as_damage
+from shaftprint.recording.readers._epoch import seconds_from
 from shaftprint.recording.readers._extra import library
 from shaftprint.recording.readers._gather import Gathered, unique_names
 from shaftprint.recording.readers._hints import rate_hint
@@ -137,8 +138,7 @@ class _Source:
                 first = np.asarray(time.read_data(0, 1))[0]
 
                 def seconds(start: int, stop: int) -> FloatArray:
-                    dates = np.asarray(time.read_data(start, stop - start))
-                    return np.asarray((dates - first) / np.timedelta64(1, "us") * 1e-6, dtype=np.float64)
+                    return seconds_from(first, np.asarray(time.read_data(start, stop - start)))
 
                 clock = clock_of_times(self.path, name, len(time), seconds)
                 return _Group(time=time, clock=clock, began=first)
@@ -171,7 +171,7 @@ class _Source:
         of_times = group if isinstance(group, _Group) and len(group.time) == rows else None
         if step_s is not None:
             by_waveform = float(f"{1.0 / step_s:.12g}")
-            if of_times is None or self._agree(by_waveform, of_times.clock.rate_hz):
+            if of_times is None or abs(by_waveform / of_times.clock.rate_hz - 1.0) <= _RATE_AGREEMENT:
                 holes, remark = holes_between(parts, step_s, rows, self.interleaved)
                 self.gathered.remarks.extend([f"channel {name}: {remark}."] if remark else [])
                 return SampleClock(rate_hz=by_waveform, start_s=parts[0].start_s(began), holes=holes)
@@ -185,10 +185,9 @@ class _Source:
                 "is 1 s, which LabVIEW writes where nothing is known."
             )
         if of_times is not None:
-            since = 0.0 if of_times.began is None else float((of_times.began - began) / np.timedelta64(1, "us")) * 1e-6
-            clock, stamps = of_times.clock, of_times.clock.stamps
-            moved = None if stamps is None else lambda start, stop: since + stamps(start, stop)
-            return replace(clock, start_s=since + clock.start_s, stamps=moved)
+            if began is None or of_times.began is None:
+                return of_times.clock
+            return of_times.clock.later_by(float(seconds_from(began, of_times.began)))
         if self.rate_hz is not None:
             return SampleClock(rate_hz=self.rate_hz, start_s=0.0)
         if isinstance(group, RecordingError):
@@ -198,9 +197,6 @@ class _Source:
             "give the sample rate (--sample-rate), and how many signals a channel holds where they stand sample by "
             "sample (--interleaved)."
         )
-
-    def _agree(self, rate_hz: float, other_hz: float) -> bool:
-        return abs(rate_hz / other_hz - 1.0) <= _RATE_AGREEMENT
 
     def _channel(
         self,
