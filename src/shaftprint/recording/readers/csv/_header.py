@@ -79,6 +79,15 @@ class Header:
         """Whether times are dates or times of day."""
         return bool(self.stamps)
 
+    @property
+    def stamp_texts(self) -> tuple[int, ...]:
+        """Columns of the file that hold the dates and times of day among the stamps, without the milliseconds."""
+        return tuple(place for place in self.stamps if place != self.milliseconds)
+
+    def pointed(self, field: str) -> str:
+        """Return a field with a decimal point in place of the file's decimal sign."""
+        return field.replace(",", ".") if self.decimal == "," else field
+
 
 def looks_like_a_table(lines: Sequence[str]) -> bool:
     """Return whether text has rows of numbers below each other, at least two in a row."""

@@ -140,7 +140,7 @@ class _Unpacking:
     def _texts(self) -> list[int]:
         """Return the columns of the file that are kept as text."""
         beside = [] if self.header.dates_beside is None else [self.header.dates_beside]
-        return [*(place for place in self.header.stamps if place != self.header.milliseconds), *beside]
+        return [*self.header.stamp_texts, *beside]
 
     @property
     def _numbers(self) -> list[int]:
@@ -181,7 +181,7 @@ class _Unpacking:
             return None
         read = letters.tobytes()
         for target, row, begin, end in odd[:strange].tolist():
-            value = number(self._pointed(read[begin:end].decode("utf-8", "replace").strip()))
+            value = number(self.header.pointed(read[begin:end].decode("utf-8", "replace").strip()))
             if value is None:
                 return None
             numbers[target, row] = value
@@ -227,7 +227,7 @@ class _Unpacking:
         """Return the numbers of a column; nothing where it holds words, with which it is left out."""
         header = self.header
         fields = [row[place] for row in rows]
-        numbers = [number(self._pointed(one)) for one in fields]
+        numbers = [number(self.header.pointed(one)) for one in fields]
         wrong = [row for row, one in enumerate(numbers) if one is None]
         if not wrong:
             return np.array(numbers, dtype=np.float64)
@@ -246,7 +246,7 @@ class _Unpacking:
 
     def _is_cut(self, line: str, fields: Sequence[str]) -> bool:
         """Return whether the last line, which has no end, has lost the end of its last number."""
-        if any(number(self._pointed(one)) is None for place, one in enumerate(fields) if place in self._numbers):
+        if any(number(self.header.pointed(one)) is None for place, one in enumerate(fields) if place in self._numbers):
             return True
         usual = {
             self._behind_the_sign(one)
@@ -258,13 +258,10 @@ class _Unpacking:
     def _has_time(self, fields: Sequence[str]) -> bool:
         header = self.header
         if header.stamps:
-            return all(is_stamp(fields[place]) for place in header.stamps if place != header.milliseconds)
-        return (
-            header.time_column is None or number(self._pointed(fields[header.places[header.time_column]])) is not None
-        )
-
-    def _pointed(self, text: str) -> str:
-        return text.replace(",", ".") if self.header.decimal == "," else text
+            return all(is_stamp(fields[place]) for place in header.stamp_texts)
+        if header.time_column is None:
+            return True
+        return number(header.pointed(fields[header.places[header.time_column]])) is not None
 
     def _behind_the_sign(self, line: str) -> int:
         """Return how many letters the last field of a line has behind its decimal sign."""

@@ -50,10 +50,8 @@ class Stamps:
             If a stamp is no date or no time of day.
         """
         header = self._header
-        places = [place for place in header.stamps if place != header.milliseconds]
-        texts = [
-            " ".join(parts).strip().strip('"') for parts in zip(*(columns[place] for place in places), strict=True)
-        ]
+        parts = (columns[place] for place in header.stamp_texts)
+        texts = [" ".join(of_row).strip().strip('"') for of_row in zip(*parts, strict=True)]
         milliseconds = (
             0.0 if header.milliseconds is None else np.asarray(columns[header.milliseconds], dtype=np.float64)
         )

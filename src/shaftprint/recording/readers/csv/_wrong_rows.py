@@ -42,7 +42,7 @@ def _mistakes(line: int, fields: Sequence[str], header: Header) -> list[str]:
         ]
     mistakes = []
     for column, (name, place) in enumerate(zip(header.names, header.places, strict=True)):
-        field = fields[place].replace(",", ".") if header.decimal == "," else fields[place]
+        field = header.pointed(fields[place])
         if is_stamp(field) if place in header.stamps else number(field) is not None:
             continue
         expected = "seconds or a date such as 2026-11-22 10:00:00" if column == header.time_column else "a number"
