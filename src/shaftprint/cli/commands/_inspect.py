@@ -235,6 +235,11 @@ def _jumps(opened: Recording) -> list[str]:
         f"{abs(jump_s):.4g} s. The samples go on one by one; what follows is on another clock."
         for (at_s, jump_s), names in channels.items()
     ]
+    return _first_of(sentences)
+
+
+def _first_of(sentences: list[str]) -> list[str]:
+    """Return the first sentences, and how many there are more."""
     more = [f"{len(sentences) - _MOST_GAPS} more"] if len(sentences) > _MOST_GAPS else []
     return [*sentences[:_MOST_GAPS], *more]
 
@@ -262,8 +267,7 @@ def _print_sensors(reports: Sequence[ChannelReport]) -> None:
     print_table(Table(title="Sensors of the vessel file", columns=columns, rows=tuple(map(_sensor_row, reports))))
     gaps = [gap.sentence for report in reports for gap in report.gaps]
     if gaps:
-        more = [f"{len(gaps) - _MOST_GAPS} more"] if len(gaps) > _MOST_GAPS else []
-        print_findings("Gaps, which cost the windows that they touch", [*gaps[:_MOST_GAPS], *more])
+        print_findings("Gaps, which cost the windows that they touch", _first_of(gaps))
 
 
 def _sensor_row(report: ChannelReport) -> tuple[str, ...]:

@@ -15,5 +15,5 @@ def seconds_in(text: str) -> float | None:
     unit = plain_unit(text)
     word = unit.lower()
     # M and S stand for other things than minutes and seconds; only words are the same in capitals
-    known = _SECONDS.get(unit)
-    return known if known is not None or len(word) < 3 else _SECONDS.get(word, _SECONDS.get(word.removesuffix("s")))
+    seconds = _SECONDS.get(unit)
+    return seconds if seconds is not None or len(word) < 3 else _SECONDS.get(word, _SECONDS.get(word.removesuffix("s")))

@@ -46,5 +46,5 @@ def remedy(path: Path) -> str:
         if begin.startswith(mark):
             return words
     ending = path.suffix.lower()
-    known = next((words for endings, words in _BY_ENDING.items() if ending in endings), None)
-    return known or "export it as CSV, MATLAB or MDF 4 from the program that wrote it"
+    by_ending = next((words for endings, words in _BY_ENDING.items() if ending in endings), None)
+    return by_ending or "export it as CSV, MATLAB or MDF 4 from the program that wrote it"

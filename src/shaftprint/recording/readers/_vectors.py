@@ -137,19 +137,19 @@ def _clock(
     clock_of: Callable[[Vector], SampleClock],
 ) -> SampleClock:
     """Take the clock from the nearest place that says one, and refuse places that disagree."""
-    rates: dict[str, float] = {}
-    starts: list[float] = []
     of_times = None if time is None else clock_of(time)
-    if time is not None and of_times is not None:
-        if of_times.is_uneven:
-            return of_times
-        rates[time.name], starts = of_times.rate_hz, [of_times.start_s]
+    if of_times is not None and of_times.is_uneven:
+        return of_times
     attributes = {key.lower(): value for key, value in vector.attributes.items() if isinstance(value, int | float)}
-    for source in (attributes, scalars.get(vector.group, {}), scalars.get("", {})):
-        stated = _said(path, source)
-        if stated and (not rates or set(rates) == {getattr(time, "name", "")}):
-            rates |= stated
+    of_file = scalars.get("", {})
+    stated: dict[str, float] = {}
+    starts = [] if of_times is None else [of_times.start_s]
+    for source in (attributes, scalars.get(vector.group, {}), of_file):
+        rates_here = _stated_rates(path, source)
+        if rates_here and not stated:
+            stated = rates_here
             starts += [float(source[key]) for key in _STARTS if key in source]
+    rates = {**({} if time is None or of_times is None else {time.name: of_times.rate_hz}), **stated}
     if hint_hz is not None:
         rates["the hint sample_rate_hz"] = hint_hz
     if not rates:
@@ -161,14 +161,14 @@ def _clock(
     if not all(abs(other - rate) <= _RATE_AGREEMENT * abs(rate) for other in rates.values()):
         listed = ", ".join(f"{name} {value:g} Hz" for name, value in rates.items())
         raise RecordingError(f"{path}: expected one sample rate, found {listed}.")
-    starts += [float(group[key]) for group in (scalars.get("", {}),) for key in _STARTS if key in group]
+    starts += [float(of_file[key]) for key in _STARTS if key in of_file]
     start_s = starts[0] if starts else 0.0
     if of_times is None:
         return SampleClock(rate_hz=rate, start_s=start_s)
     return replace(of_times, rate_hz=rate, start_s=start_s)
 
 
-def _said(path: Path, source: Mapping[str, object]) -> dict[str, float]:
+def _stated_rates(path: Path, source: Mapping[str, object]) -> dict[str, float]:
     """Return what a group of numbers says of the rate, by the name under which it says it."""
     rates = {key: float(value) for key, value in source.items() if key in _RATES and isinstance(value, int | float)}
     if len(rates) > 1:
@@ -186,9 +186,9 @@ def _time_of(path: Path, vector: Vector, vectors: Sequence[Vector], times: Seque
             if other.count == vector.count and (other in times or _counts_time(other)):
                 return other
         return None
-    own = f"{vector.name}_time".lower()
+    its_time = f"{vector.name}_time".lower()
     any_time = {other.name.lower() for other in times if unit_in_name(other.name) is not None}
-    for names in ((own,), any_time):
+    for names in ((its_time,), any_time):
         candidates = [other for other in _nearest(vector, times, names) if other.count == vector.count]
         if len(candidates) > 1:
             raise RecordingError(

@@ -52,10 +52,10 @@ def edge_channels(
     columns = [column for column in range(len(header.names)) if column != header.time_column]
     changes = []
     for column in columns:
-        found = _changes(spool, column, count)
-        if found is None:
+        rows = _changes(spool, column, count)
+        if rows is None:
             return None
-        changes.append(found)
+        changes.append(rows)
     times_alone = not columns
     if not times_alone and not _are_edges(path, header, read, count, changes):
         return None

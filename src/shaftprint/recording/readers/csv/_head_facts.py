@@ -73,11 +73,18 @@ def head_facts(lines: Sequence[str], delimiter: str) -> HeadFacts:
     return HeadFacts(rate_hz=rate_hz, start_s=start_s, source=source)
 
 
+def plain_key(text: str) -> str:
+    """Return what a field says as programs write it in several ways: small letters, single spaces, no underscores."""
+    return " ".join(text.replace("_", " ").lower().split())
+
+
 def is_fact(field: str) -> bool:
     """Return whether a field beside titles is none, but the name or the value of what is said of the clock."""
     written = _PAIR.fullmatch(field)
-    key = " ".join((written["key"] if written is not None else field).replace("_", " ").lower().split())
-    return key in (*_RATES, *_STEPS, *_STARTS) or _VALUE.fullmatch(field) is not None
+    return (
+        plain_key(written["key"] if written is not None else field) in (*_RATES, *_STEPS, *_STARTS)
+        or _VALUE.fullmatch(field) is not None
+    )
 
 
 def _pairs(lines: Sequence[str], delimiter: str) -> list[tuple[str, str, str]]:
@@ -99,6 +106,5 @@ def _pairs(lines: Sequence[str], delimiter: str) -> list[tuple[str, str, str]]:
             unit = key["unit"] or (
                 row[place + 2] if candidates and value == candidates[0] and len(row) > place + 2 else ""
             )
-            plain = " ".join(key["key"].replace("_", " ").lower().split())
-            pairs.append((plain, unit.strip(" []()"), value.strip()))
+            pairs.append((plain_key(key["key"]), unit.strip(" []()"), value.strip()))
     return pairs

@@ -51,9 +51,9 @@ def find_table(lines: Sequence[str], *, delimiter: str | None = None, width: int
     """
     best: tuple[float, Table] | None = None
     for candidate in (delimiter,) if delimiter else DELIMITERS:
-        found = _table(lines, candidate, width)
-        if found is not None and (best is None or found[0] > best[0]):
-            best = found
+        sized = _table(lines, candidate, width)
+        if sized is not None and (best is None or sized[0] > best[0]):
+            best = sized
     return None if best is None else best[1]
 
 
@@ -68,6 +68,7 @@ class _Run:
 
 
 def _table(lines: Sequence[str], delimiter: str, width: int) -> tuple[float, Table] | None:
+    """Return the largest table with a delimiter, and how large it is."""
     runs = [run for run in _runs(lines, delimiter, width) if not width or len(run.kinds) == width]
     # rows that are apart by a damaged one, or by titles that come again, are of one table
     tables = [[other for other in runs if _are_alike(run, other)] for run in runs]

@@ -14,14 +14,15 @@ _MORE = (
 )  # fmt: skip
 # A program names the clock behind the word: Time  1 - default sample rate, Time (Formatted).
 _WITH_MORE = re.compile(r"(time|zeit)\b[^\[(]*([\[(].*[\])])?", re.IGNORECASE)
-_WITH_UNIT = re.compile(r"(?P<name>.*\S)\s*[\[(][^\])]*[\])]")
+IN_BRACKETS = re.compile(r"(?P<name>.*\S)\s*[\[(](?P<unit>[^\])]*)[\])]")
+"""A title with its unit in brackets."""
 MILLISECONDS = ("ms", "msec", "millisec", "millisecond", "milliseconds", "millitm", "millisekunden", "ms.")
 """Titles, in small letters, of a column that goes on where dates end at the second."""
 
 
 def is_time_title(title: str) -> bool:
     """Return whether a title, with its unit or without, is that of times."""
-    match = _WITH_UNIT.fullmatch(title.strip())
+    match = IN_BRACKETS.fullmatch(title.strip())
     name = match["name"].strip() if match is not None else title.strip()
     return name.lower() in _MORE or unit_in_name(name) is not None or unit_in_name(title.strip()) is not None
 

@@ -5,15 +5,14 @@ from collections.abc import Sequence
 
 from shaftprint.escape import csv_cell_text, printable
 from shaftprint.recording.readers._units import seconds_in
-from shaftprint.recording.readers.csv._fields import WHITE_SPACE, is_number, split_row
-from shaftprint.recording.readers.csv._head_facts import is_fact
+from shaftprint.recording.readers.csv._fields import GAP, WHITE_SPACE, is_number, split_row
+from shaftprint.recording.readers.csv._head_facts import is_fact, plain_key
 from shaftprint.recording.readers.csv._table import Table
-from shaftprint.recording.readers.csv._time_titles import begins_as_time, is_time_title
+from shaftprint.recording.readers.csv._time_titles import IN_BRACKETS, begins_as_time, is_time_title
 from shaftprint.units import plain_unit
 
 # a title with its unit behind it, where white space stands between columns
 _SPACED_TITLE = re.compile(r"\S+(?:\s*[\[(][^\])]*[\])])?")
-_IN_BRACKETS = re.compile(r"(?P<name>.*\S)\s*[\[(](?P<unit>[^\])]*)[\])]")
 _BEHIND_A_WORD = re.compile(r"(?P<name>.*?)\s*(?:\bin\b|/|,)\s*(?P<unit>\S+(?: m)?)")
 # What stands in brackets behind a variable of a co-simulation: its number, its type and what it is.
 _OF_A_VARIABLE = re.compile(
@@ -70,7 +69,7 @@ def _named_rows(above: Sequence[str], table: Table) -> tuple[list[str], list[str
         key, *fields = _fields(line, table) or [""]
         word, _, first = key.partition("=")
         fields = [one for one in ([first] if first else []) + fields if one]
-        rows.setdefault(" ".join(word.lower().replace("_", " ").split()), fields)
+        rows.setdefault(plain_key(word), fields)
     names = next((rows[key] for key in _NAMES if len(rows.get(key, [])) >= table.width - 1 > 0), None)
     if names is None or len(names) > table.width:
         return None
@@ -101,17 +100,16 @@ def _are_units(row: Sequence[str], above: Sequence[str]) -> bool:
         return False
     bracketed = [field for field in row if field[:1] in "[(" and field[-1:] in "])"]
     words = [field for place, field in enumerate(row) if field and place != time and not is_number(field)]
-    known = [field for field in words if field in bracketed or is_unit(field)]
+    units = [field for field in words if field in bracketed or _is_unit(field)]
     of_time = row[time].strip("[]() ")
-    may_be_time = (
-        seconds_in(of_time) is not None or of_time in ("", "-") or _TIME_FORMATS.fullmatch(of_time) is not None
-    )
-    if seconds_in(of_time) is not None and not is_time_title(row[time]):
+    is_of_time = seconds_in(of_time) is not None
+    if is_of_time and not is_time_title(row[time]):
         return True
-    return (may_be_time or bool(known)) and 2 * len(known) >= len(words) > 0
+    may_be_time = is_of_time or of_time in ("", "-") or _TIME_FORMATS.fullmatch(of_time) is not None
+    return (may_be_time or bool(units)) and 2 * len(units) >= len(words) > 0
 
 
-def is_unit(text: str) -> bool:
+def _is_unit(text: str) -> bool:
     """Return whether a word is a unit."""
     plain = text.strip("[]() ")
     return plain_unit(plain) != plain or plain in _UNITS or plain in _LETTER_UNITS
@@ -139,7 +137,7 @@ def _as_wide(fields: list[str], table: Table) -> list[str] | None:
         fields = fields[:-1]
     if len(fields) == width + 1 and fields[-1].lower() in _REMARKS:
         fields = fields[:-1]
-    if len(fields) < width and not set(table.kinds[len(fields) :]) - {"g"} and len(fields) > 1:
+    if len(fields) < width and not set(table.kinds[len(fields) :]) - {GAP} and len(fields) > 1:
         fields = _padded(fields, table)
     if len(fields) == width - 1 and counts_rows([row[0] for row in table.rows]):
         fields = ["", *fields]
@@ -159,11 +157,11 @@ def counts_rows(fields: Sequence[str]) -> bool:
 def name_and_unit(title: str) -> tuple[str, str]:
     """Return the name and the unit of a title that may hold both."""
     text = printable(title).strip()
-    match = _IN_BRACKETS.fullmatch(text)
+    match = IN_BRACKETS.fullmatch(text)
     if match is not None:
         inside = match["unit"].strip()
         return match["name"].strip(), "" if _OF_A_VARIABLE.fullmatch(inside) else plain_unit(inside)
     behind = _BEHIND_A_WORD.fullmatch(text)
-    if behind is not None and behind["unit"].strip() not in _LETTER_UNITS and is_unit(behind["unit"]):
+    if behind is not None and behind["unit"].strip() not in _LETTER_UNITS and _is_unit(behind["unit"]):
         return behind["name"].strip(), plain_unit(behind["unit"])
     return text, ""

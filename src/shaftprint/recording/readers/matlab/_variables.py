@@ -45,8 +45,8 @@ class MatVariables:
             self.left_out[name] = matrix_reason(name.rpartition("/")[2], shape)
             return
         for number, title in enumerate(self.titles):
-            found = _TITLE.fullmatch(title.strip())
-            plain, unit = (title.strip(), None) if found is None else (found[1], found[2])
+            match = _TITLE.fullmatch(title.strip())
+            plain, unit = (title.strip(), None) if match is None else (match[1], match[2])
             self.vectors.append(
                 Vector(
                     name=plain,

@@ -33,26 +33,26 @@ class Part:
 
     first: int
     """Its first sample."""
-    told: dict[str, Any]
-    """What is known of its clock, unit and scale."""
+    properties: dict[str, Any]
+    """What the file says of its clock, unit and scale."""
 
     @property
     def start_time(self) -> np.datetime64 | None:
         """Its date, where there is one."""
-        start = self.told.get("wf_start_time")
+        start = self.properties.get("wf_start_time")
         is_date = isinstance(start, np.datetime64) and not np.isnat(start) and start > _NO_DATE
         return start if is_date else None
 
     @property
     def offset_s(self) -> float:
         """How much later than its date it begins [s]."""
-        offset = self.told.get("wf_start_offset", 0.0)
+        offset = self.properties.get("wf_start_offset", 0.0)
         return float(offset) if isinstance(offset, int | float) and np.isfinite(offset) else 0.0
 
     @property
     def increment_s(self) -> float | None:
         """Time from one sample to the next [s]; None where none is given."""
-        increment = self.told.get("wf_increment")
+        increment = self.properties.get("wf_increment")
         if not isinstance(increment, int | float) or not (np.isfinite(increment) and increment > 0.0):
             return None
         return float(increment)
@@ -66,28 +66,30 @@ class Part:
 
 
 @dataclass(kw_only=True, slots=True)
-class _Told:
+class _ChannelParts:
     """What has been read so far of one channel."""
 
     parts: list[Part] = field(default_factory=list)
     count: int = 0
-    known: dict[str, Any] = field(default_factory=dict)
+    properties: dict[str, Any] = field(default_factory=dict)
 
-    def learn(self, told: Mapping[str, Any], samples: int) -> None:
+    def learn(self, properties: Mapping[str, Any], samples: int) -> None:
         """Take in one segment."""
-        self.known |= told
+        self.properties |= properties
         if samples:
-            is_new = not self.parts or any(self.parts[-1].told.get(key) != value for key, value in told.items())
+            is_new = not self.parts or any(
+                self.parts[-1].properties.get(key) != value for key, value in properties.items()
+            )
             if is_new:
-                self.parts.append(Part(first=self.count, told=dict(self.known)))
+                self.parts.append(Part(first=self.count, properties=dict(self.properties)))
             self.count += samples
         elif len(self.parts) == 1:
             # properties that are written behind the samples are those of the channel
-            self.parts[0].told.update(told)
+            self.parts[0].properties.update(properties)
         else:
             for part in self.parts:
-                for key, value in told.items():
-                    part.told.setdefault(key, value)
+                for key, value in properties.items():
+                    part.properties.setdefault(key, value)
 
 
 def parts_of(nptdms: Any, raw: Any) -> dict[str, list[Part]]:
@@ -102,20 +104,20 @@ def parts_of(nptdms: Any, raw: Any) -> dict[str, list[Part]]:
     """
     raw.seek(0)
     reader = nptdms.reader.TdmsReader(raw)
-    told: list[Mapping[str, list[tuple[str, Any]]]] = []
+    of_segments: list[Mapping[str, list[tuple[str, Any]]]] = []
     update = reader._update_object_properties
 
     def listen(properties: Any) -> None:
-        told.append(properties or {})
+        of_segments.append(properties or {})
         update(properties)
 
     reader._update_object_properties = listen
     reader.read_metadata()
-    channels: dict[str, _Told] = {}
-    for segment, properties in zip(reader._segments, told, strict=True):
+    channels: dict[str, _ChannelParts] = {}
+    for segment, properties in zip(reader._segments, of_segments, strict=True):
         samples = {one.path: nptdms.reader._number_of_segment_values(one, segment) for one in segment.ordered_objects}
         for path in dict.fromkeys((*properties, *samples)):
-            channel = channels.setdefault(path, _Told())
+            channel = channels.setdefault(path, _ChannelParts())
             channel.learn(
                 {key: _plain(value) for key, value in properties.get(path, ()) if _is_of_interest(key)},
                 samples.get(path, 0),
@@ -141,13 +143,13 @@ def expect_one_scale(path: Path, name: str, parts: list[Part]) -> None:
         If it does; the message says where.
     """
     for before, part in pairwise(parts):
-        keys = [key for key in {**before.told, **part.told} if key not in _CLOCK]
-        changed = next((key for key in keys if before.told.get(key) != part.told.get(key)), None)
+        keys = [key for key in {**before.properties, **part.properties} if key not in _CLOCK]
+        changed = next((key for key in keys if before.properties.get(key) != part.properties.get(key)), None)
         if changed is not None:
+            old, new = (str(one.properties.get(changed))[:30] for one in (before, part))
             raise RecordingError(
-                f"{path}, channel {name}: expected one unit and scale, found {changed} changed from "
-                f"{str(before.told.get(changed))[:30]} to {str(part.told.get(changed))[:30]} at sample {part.first}, "
-                "where the logger was started anew; save each start as a file of its own."
+                f"{path}, channel {name}: expected one unit and scale, found {changed} changed from {old} to {new} at "
+                f"sample {part.first}, where the logger was started anew; save each start as a file of its own."
             )
 
 
@@ -211,7 +213,7 @@ def holes_between(parts: list[Part], step_s: float, count: int, interleaved: int
     return tuple(holes), ""
 
 
-def expect_known_scale(path: Path, name: str, channel: Any, *told: Mapping[str, Any]) -> None:
+def expect_known_scale(path: Path, name: str, channel: Any, *properties: Mapping[str, Any]) -> None:
     """Refuse a channel whose scale the library does not know, and would leave out.
 
     Parameters
@@ -220,7 +222,7 @@ def expect_known_scale(path: Path, name: str, channel: Any, *told: Mapping[str, 
         For messages.
     channel
         The channel.
-    told
+    properties
         Properties of the channel, its group and the file: the first that state a scale hold.
 
     Raises
@@ -228,7 +230,7 @@ def expect_known_scale(path: Path, name: str, channel: Any, *told: Mapping[str, 
     RecordingError
         If it is so, or if the channel holds raw counts of DAQmx without a scale.
     """
-    stated = next((one for one in told if one.get("NI_Number_Of_Scales")), {})
+    stated = next((one for one in properties if one.get("NI_Number_Of_Scales")), {})
     kinds = [str(value) for key, value in stated.items() if key.endswith("_Scale_Type")]
     if kinds and stated.get("NI_Scaling_Status", "unscaled") != "scaled" and channel._scaling is None:
         raise RecordingError(

@@ -120,8 +120,8 @@ class _Source:
             if isinstance(group, _Group) and channel is group.time:
                 continue
             for part in range(self.interleaved):
-                own_name = name if self.interleaved == 1 else f"{name} {part + 1}"
-                self.gathered.add(own_name, partial(self._channel, channel, own_name, group, began, part))
+                signal_name = name if self.interleaved == 1 else f"{name} {part + 1}"
+                self.gathered.add(signal_name, partial(self._channel, channel, signal_name, group, began, part))
         has_zone = all(scale.has_zone for scale in self.gathered.scales)
         date = None if began is None else began.astype("datetime64[us]").item()
         if isinstance(date, datetime):
@@ -206,8 +206,8 @@ class _Source:
         began: np.datetime64 | None,
         part: int,
     ) -> Channel:
-        group_told = self.file[channel.group_name].properties
-        expect_known_scale(self.path, name, channel, channel.properties, group_told, self.file.properties)
+        of_group = self.file[channel.group_name].properties
+        expect_known_scale(self.path, name, channel, channel.properties, of_group, self.file.properties)
         expect_one_scale(self.path, name, self.parts.get(channel.path, []))
         clock = self._clock(channel, name, group, began)
         return _channel(self.path, name, channel, clock, self.opened, part, self.interleaved)
