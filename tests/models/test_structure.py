@@ -369,14 +369,23 @@ def test_two_records_with_delays_of_their_own_share_the_rest():
     assert fit.p_value > 0.01
 
 
-def test_a_parameter_in_equations_is_not_renamed():
-    drive = Diagram(
-        name="drive",
-        input="u",
-        outputs=("y",),
-        equations=lambda flow, u, p: {"y": p.K_p * u},
-        of=(parameter("K_p"),),
-    )
-    limited = of(**drive.ports())
-    with pytest.raises(StructureError, match="stands in equations, in which a parameter cannot be renamed"):
-        limited.renamed(K_p="K_p_2")
+def driven(equations):
+    """Return a structure of two outputs that share equations with the parameter ``K_p``."""
+    drive = Diagram(name="drive", input="u", outputs=("y", "z"), equations=equations, of=(parameter("K_p"),))
+    return of(**drive.ports())
+
+
+def test_a_parameter_in_equations_is_renamed_once_for_all_their_outputs():
+    limited = driven(lambda flow, u, p: {"y": p.K_p * u, "z": 2.0 * u})
+    twice = limited.renamed(K_p="K_p (a)").renamed(**{"K_p (a)": "K_p (b)"})
+    assert twice.names == ("K_p (b)",)
+    assert twice.response(twice.vector({"K_p (b)": 3.0}), S)[:, 0] == pytest.approx([3.0, 2.0])
+    assert limited.response(limited.vector({"K_p": 5.0}), S)[0, 0] == pytest.approx(5.0)
+    assert len({id(block.diagram) for block in twice.blocks}) == 1
+
+
+def test_a_parameter_that_equations_ask_for_by_name_is_not_renamed():
+    limited = driven(lambda flow, u, p: {"y": flow.parameter("K_p") * u, "z": u})
+    renamed = limited.renamed(K_p="K_p_2")
+    with pytest.raises(StructureError, match="expected a parameter K_p, found K_p_2"):
+        renamed.response(renamed.vector({}), S)

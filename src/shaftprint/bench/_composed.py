@@ -32,11 +32,11 @@ def composed(drive: Drive) -> Structure:
         *(held_yielding(block) for block in drive.blocks if states_yielding(block)),
     )
 
-    def equations(flow: Flow, first: Formula, _: Any) -> dict[str, Formula]:
+    def equations(flow: Flow, first: Formula, p: Any) -> dict[str, Formula]:
         signals = {name: first if name == inputs[0] else flow.input(name) for name in inputs}
         signals |= {block.output: flow.unknown() for block in blocks}
         for block in blocks:
-            value = _made(flow, block, _into(block, signals))
+            value = _made(flow, block, _into(block, signals), vars(p))
             flow.close(signals[block.output], value, f"drive {drive.name}, block {block.output}")
         return {name: signals[name] for name in outputs}
 
@@ -61,11 +61,11 @@ def _into(block: Block, signals: Mapping[str, Formula]) -> Formula:
     return reduce(lambda left, right: left + right, terms, number(0.0))
 
 
-def _made(flow: Flow, block: Block, into: Formula) -> Formula:
+def _made(flow: Flow, block: Block, into: Formula, parameters: Mapping[str, Formula]) -> Formula:
     """Return what comes out of a block; its states are called after it."""
     usual_values, part = PARTS[block.kind]
     first = len(flow.states)
-    value = part(flow, into, Coefficients(flow, block, usual_values))
+    value = part(flow, into, Coefficients(parameters, block, usual_values))
     for index, state in enumerate(flow.states[first:], start=first):
         # the output itself is what a user knows at the start; what is behind it says what it is
         name = block.output if state is value else f"{block.output} {state.name}"

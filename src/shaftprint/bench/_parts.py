@@ -34,7 +34,7 @@ Usual: TypeAlias = float | str | None
 class Coefficients:
     """What the row of a block says, as numbers of the equations."""
 
-    flow: Flow
+    parameters: Mapping[str, Formula]
     block: Block
     usual_values: Mapping[str, Usual]
 
@@ -48,7 +48,7 @@ class Coefficients:
 
     def number(self, value: str | float) -> Number:
         """Return a parameter of the file, or a number."""
-        return self.flow.parameter(value) if isinstance(value, str) else number(value)
+        return self.parameters[value] if isinstance(value, str) else number(value)
 
 
 Part: TypeAlias = Callable[[Flow, Formula, Coefficients], Formula]

@@ -6,7 +6,7 @@ from the others are ``port(output, source)``, which in time add nothing to it.
 """
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -44,6 +44,8 @@ class Diagram:
     """Its parameters."""
     further: tuple[str, ...] = ()
     """Names of inputs of the structure that the equations ask for besides the signal that goes in."""
+    called: Mapping[str, str] = field(default_factory=dict)
+    """Names of today of parameters that the equations know by another name."""
     _small: dict[frozenset[str], SmallSignal] = field(default_factory=dict, repr=False)
     """Linear equations, by the parameters that are held at zero; made when first asked for."""
 
@@ -75,6 +77,13 @@ class Diagram:
         """Return the blocks that go to one output, by the input that each comes from."""
         return {source: self.port(output, "" if source == self.input else source) for source in self.inputs}
 
+    def renamed(self, names: Mapping[str, str]) -> "Diagram":
+        """Return the diagram with other names for some parameters, which its equations ask for by ``p`` as before."""
+        called = {former: names.get(today, today) for former, today in self.called.items()}
+        called |= {p.name: names[p.name] for p in self.of if p.name in names and p.name not in self.called.values()}
+        of = tuple(replace(p, name=names.get(p.name, p.name)) for p in self.of)
+        return replace(self, of=of, called=called, _small={})
+
     def signals(self, flow: Flow, signal: Formula) -> Mapping[str, Formula]:
         """Return the outputs for a signal, adding the equations to a flow.
 
@@ -83,7 +92,8 @@ class Diagram:
         StructureError
             If the equations do not give the outputs.
         """
-        parameters = SimpleNamespace(**{p.name: flow.parameter(p.name) for p in self.of})
+        former = {today: name for name, today in self.called.items()}
+        parameters = SimpleNamespace(**{former.get(p.name, p.name): flow.parameter(p.name) for p in self.of})
         signals = self.equations(flow, signal, parameters)
         if set(signals) != set(self.outputs):
             raise StructureError(

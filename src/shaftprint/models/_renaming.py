@@ -3,6 +3,7 @@
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import fields, is_dataclass, replace
+from typing import Protocol, runtime_checkable
 
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import StructureError
@@ -13,12 +14,22 @@ from shaftprint.models._parameter import Parameter
 from shaftprint.models._tied_parameter import Tie
 
 
+@runtime_checkable
+class HasNames(Protocol):
+    """Equations that several blocks share, which know their parameters under other names."""
+
+    def renamed(self, names: Mapping[str, str]) -> "HasNames":
+        """Return them with other names."""
+        ...
+
+
 class Renaming:
     """The parts of a structure with other parameter names; what expressions share stays shared."""
 
     def __init__(self, names: Mapping[str, str]) -> None:
         self._names = names
         self._done: dict[int, tuple[Expression, Expression]] = {}
+        self._shared: dict[int, tuple[HasNames, HasNames]] = {}
 
     def parameter(self, one: Parameter) -> Parameter:
         """Return a parameter under its new name, if it has one."""
@@ -50,7 +61,7 @@ class Renaming:
         Raises
         ------
         StructureError
-            If a parameter stands in the equations of a diagram, or in a block that is no dataclass.
+            If a parameter stands in a block that is no dataclass.
         """
         if id(expression) not in self._done:
             # the expression is kept with its answer, so that its identity is not given to another
@@ -77,6 +88,10 @@ class Renaming:
             return self.parameter(value)
         if isinstance(value, Expression):
             return self.of(value)
+        if isinstance(value, HasNames):
+            if id(value) not in self._shared:
+                self._shared[id(value)] = value, value.renamed(self._names)
+            return self._shared[id(value)][1]
         if isinstance(value, tuple):
             return tuple(self._value(item) for item in value)
         return value

@@ -191,7 +191,8 @@ class Structure(Shown):
         Raises
         ------
         StructureError
-            If a name is not a parameter, a new one is there already, or a parameter stands in equations of a diagram.
+            If a name is not a parameter, a new one is there already, or a parameter stands in a block that is no
+            dataclass.
         """
         self._expect_names(names)
         expect_new_names(self.name, self.names, names.values())

@@ -73,7 +73,18 @@ class Flow:
         return cls(parameters=parameters, inputs=inputs or {})
 
     def parameter(self, name: str) -> Formula:
-        """Return a parameter."""
+        """Return a parameter.
+
+        Raises
+        ------
+        StructureError
+            If there is none of that name.
+        """
+        if name not in self.parameters:
+            raise StructureError(
+                f"expected a parameter {name}, found {', '.join(self.parameters) or 'none'}; one that equations ask "
+                "for by its name, and not of what they are given, cannot be called otherwise."
+            )
         return self.parameters[name]
 
     def input(self, name: str) -> Formula:
