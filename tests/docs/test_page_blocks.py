@@ -154,10 +154,12 @@ def test_the_users_of_the_page_on_the_server_can_be_read(tmp_path):
 
 
 def test_the_drives_of_their_page_have_structures():
-    texts = (text for kind, text in blocks("docs/drives.md") if kind == "toml")
-    loaded, fan = (equipped(Drive.model_validate(tomllib.loads(text))) for text in texts)
+    first, second, rows = (tomllib.loads(text) for kind, text in blocks("docs/drives.md") if kind == "toml")
+    loaded, fan, apart = (equipped(Drive.model_validate(one)) for one in (first, second, first | rows))
     assert (loaded.structure.name, loaded.priors["R"].std) == ("LOADED-MOTOR", 0.05)
     assert fan.structure.names == ("K", "T")
+    (row,) = apart.drive.per_record
+    assert (row.label("brass_step"), row.label("steel_chirp, slow"), row.label("bare")) == ("brass", "steel", "bare")
 
 
 def test_json_loads():

@@ -15,7 +15,8 @@ from shaftprint.bench._equipped import EquippedDrive, equipped
 from shaftprint.bench._fingerprint import drive_fingerprint, identified_drive
 from shaftprint.bench._fit import STARTS, DriveFit, drive_settings, drive_time_settings, identify_drive
 from shaftprint.bench._kept import kept_drive
-from shaftprint.bench._predict import noise_words, planned_noise, predict_drive
+from shaftprint.bench._per_record import all_parameters, free_parameters, with_structures
+from shaftprint.bench._predict import noise_words, planned_noise, predict_drive, values_in
 from shaftprint.bench._records import read_records
 from shaftprint.bench._structures import TimeCandidate, TimeComparison, TimeRatio, compare_in_time, without
 from shaftprint.bench._validate import ValidatedRecord, identified_from, validate_drive
@@ -29,6 +30,7 @@ __all__ = [
     "TimeComparison",
     "TimeRatio",
     "ValidatedRecord",
+    "all_parameters",
     "compare_in_time",
     "composed",
     "drive_differences",
@@ -36,6 +38,7 @@ __all__ = [
     "drive_settings",
     "drive_time_settings",
     "equipped",
+    "free_parameters",
     "identified_drive",
     "identified_from",
     "identify_drive",
@@ -45,5 +48,7 @@ __all__ = [
     "predict_drive",
     "read_records",
     "validate_drive",
+    "values_in",
+    "with_structures",
     "without",
 ]

@@ -58,6 +58,12 @@ def equipped(drive: Drive, *, own: Structure | None = None) -> EquippedDrive:
     for one in drive.searched:
         _expect_parameter(drive, structure, "searched", one.name)
         structure = structure.free_between(**{one.name: (one.lower, one.upper)})
+    for row in drive.per_record:
+        if _expect_parameter(drive, structure, "per_record", row.name).held:
+            raise SettingsError(
+                f"drive {drive.name}, per_record: expected a free parameter, found {row.name}, which is held; free it "
+                "with [[searched]], or leave it out of [[known]]."
+            )
     wanted = {one.name: units.get(one.name, one.unit) for one in drive.signals}
     return EquippedDrive(
         drive=drive,

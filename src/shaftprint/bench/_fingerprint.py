@@ -1,7 +1,8 @@
 """From a fit of a drive to the record that is kept, and back to a model."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from datetime import datetime
+from types import MappingProxyType
 
 import numpy as np
 
@@ -10,6 +11,7 @@ from shaftprint.arguments import refusing_none
 from shaftprint.arrays import frozen_float
 from shaftprint.bench._equipped import EquippedDrive
 from shaftprint.bench._fit import DriveFit
+from shaftprint.bench._per_record import base_name, record_structure
 from shaftprint.errors import FingerprintError
 from shaftprint.fingerprint import DriveFingerprint, DriveRecord, IdentifiedModel, NoiseOfRecord, Quantity, SourceFile
 from shaftprint.identify.fit import Estimate
@@ -29,9 +31,9 @@ def drive_fingerprint(fit: DriveFit, *, sources: Sequence[SourceFile], now: date
         Time of making, with time zone.
     """
     identification, one = fit.identification, fit.equipped
-    structure = one.structure
-    meanings = {item.name: item.meaning for item in structure.parameters}
-    meanings |= {item.name: item.meaning for item in structure.combinations}
+    structure, parameters = one.structure, identification.objective.parameters
+    meanings = {item.name: item.meaning for item in parameters}
+    meanings |= {item.name: item.meaning for item in identification.objective.combinations}
     return DriveFingerprint(
         shaftprint_version=shaftprint.__version__,
         created=now,
@@ -41,7 +43,7 @@ def drive_fingerprint(fit: DriveFit, *, sources: Sequence[SourceFile], now: date
         inputs={name: one.units[name] for name in structure.inputs},
         outputs={name: one.units[name] for name in structure.outputs},
         parameters=tuple(_quantity(fit, estimate, meanings) for estimate in identification.parameters),
-        held={p.name: p.value for p in structure.parameters if p.held},
+        held={p.name: p.value for p in parameters if p.held},
         priors=dict(identification.settings.priors),
         covariance=tuple(tuple(row) for row in identification.covariance.tolist()),
         combinations=tuple(_quantity(fit, estimate, meanings) for estimate in identification.combinations),
@@ -95,7 +97,13 @@ def _record(part: RecordFit, recording: str) -> DriveRecord:
     )
 
 
-def identified_drive(fingerprint: DriveFingerprint, one: EquippedDrive) -> IdentifiedModel:
+def identified_drive(
+    fingerprint: DriveFingerprint,
+    one: EquippedDrive,
+    *,
+    record: str | None = None,
+    beside: Mapping[str, float] = MappingProxyType({}),
+) -> IdentifiedModel:
     """Return the model that the fingerprint of a drive describes.
 
     Parameters
@@ -104,14 +112,29 @@ def identified_drive(fingerprint: DriveFingerprint, one: EquippedDrive) -> Ident
         A saved fingerprint.
     one
         The drive, whose structure it names.
+    record
+        The record whose own values it has; where none is named, the drive file states what differs between records.
+    beside
+        Own values of the record that the fingerprint does not have; they are held.
 
     Raises
     ------
     FingerprintError
-        If the structure has another name or other parameters than the fingerprint.
+        If the structure has another name or other parameters than the fingerprint, or a parameter several values.
     """
-    structure = one.structure
-    named = fingerprint.values
+    structure = one.structure if record is None else record_structure(one, record)
+    kept, bases = fingerprint.values, set(one.structure.names)
+    of_others = {name for name in kept if name not in structure.names and base_name(name) in bases}
+    stated = {p.name: p.value for p in structure.parameters if p.held and p.name not in kept} if of_others else {}
+    several = {base_name(name) for name in of_others} - set(kept) - set(stated)
+    if record is None and several:
+        name = min(several)
+        found = ", ".join(one for one in kept if base_name(one) == name)
+        raise FingerprintError(
+            f"fingerprint of {fingerprint.drive}: expected one value of {name}, found {found}; state that of the model "
+            "with [[known]] in the drive file, in place of [[per_record]]."
+        )
+    named = {name: value for name, value in kept.items() if name not in of_others} | stated | dict(beside)
     apart = sorted(set(structure.names) ^ set(named))
     if apart or structure.name != fingerprint.structure:
         what = f"a difference in {', '.join(apart)}" if apart else f"structure {structure.name}"
@@ -119,23 +142,17 @@ def identified_drive(fingerprint: DriveFingerprint, one: EquippedDrive) -> Ident
             f"fingerprint of {fingerprint.drive}: expected the parameters of structure {fingerprint.structure}, found "
             f"{what}; name the drive file that it was identified with."
         )
+    held = {name: value for name, value in fingerprint.held.items() if name in named} | stated | dict(beside)
+    free = [name for name in structure.names if name not in held]
     return IdentifiedModel(
-        structure=_held_as_then(structure, fingerprint),
+        structure=_held_as_then(structure, held, free),
         values=frozen_float([named[name] for name in structure.names]),
-        covariance=frozen_float(fingerprint.covariance_of(_free_in_order(structure, fingerprint))),
+        covariance=frozen_float(fingerprint.covariance_of(free)),
     )
 
 
-def _free_in_order(structure: Structure, fingerprint: DriveFingerprint) -> list[str]:
-    free = {quantity.name for quantity in fingerprint.parameters}
-    return [name for name in structure.names if name in free]
-
-
-def _held_as_then(structure: Structure, fingerprint: DriveFingerprint) -> Structure:
+def _held_as_then(structure: Structure, held: Mapping[str, float], free: Sequence[str]) -> Structure:
     """Return the structure with what was held then held at its value, and the rest free."""
     bounds = {p.name: (p.lower, p.upper) for p in structure.parameters}
-    wide = {
-        name: (min(bounds[name][0], value), max(bounds[name][1], value)) for name, value in fingerprint.held.items()
-    }
-    free = {name: bounds[name] for name in _free_in_order(structure, fingerprint)}
-    return structure.free_between(**wide, **free).held_at(**fingerprint.held)
+    wide = {name: (min(bounds[name][0], value), max(bounds[name][1], value)) for name, value in held.items()}
+    return structure.free_between(**wide, **{name: bounds[name] for name in free}).held_at(**held)

@@ -11,13 +11,14 @@ from shaftprint.bench._assumed_yielding import assumed_yielding
 from shaftprint.bench._equipped import EquippedDrive
 from shaftprint.bench._former_states import start_by_names_of_today
 from shaftprint.bench._hold import input_way
+from shaftprint.bench._per_record import free_parameters, idle_labels, own_priors
 from shaftprint.bench._record_reasons import REQUIREMENTS, held_outputs, large_offsets, starts_in_motion
 from shaftprint.bench._search import AGREE, search_drive
 from shaftprint.errors import IdentificationError, SettingsError, StructureError
 from shaftprint.identify import Identification, LatinHypercube, Prior, Settings, Verdict, assess, profile
 from shaftprint.identify.search import Draw, GivenStarts
 from shaftprint.identify.uncertainty import Interval
-from shaftprint.models import Structure
+from shaftprint.models import Parameter, Structure
 from shaftprint.notebook import Shown, Summary, shortened
 from shaftprint.reasons import Reason
 from shaftprint.simulation import Trace, equilibrium, state_names
@@ -93,7 +94,8 @@ def identify_drive(
     SettingsError
         If the start is known of a state that the equations do not have.
     """
-    settings = drive_settings(one.structure, {**one.priors, **(priors or {})}, starts)
+    known = own_priors(one, records, {**one.priors, **(priors or {})})
+    settings = drive_settings(free_parameters(one, records), known, starts)
     time = drive_time_settings(one, records)
     searched = search_drive(one, records, settings, time, rng=rng)
     way = input_way(one, searched.fit, records, settings=settings, time=time)
@@ -112,7 +114,11 @@ def identify_drive(
         *large_offsets(one, fit),
     )
     verdict = assess(
-        fit, profile=profiled, requirements=REQUIREMENTS, reasons=reasons, assumptions=(*remarks, *way.assumptions)
+        fit,
+        profile=profiled,
+        requirements=REQUIREMENTS,
+        reasons=reasons,
+        assumptions=(*remarks, *way.assumptions, *idle_labels(one, records)),
     )
     return DriveFit(
         equipped=one,
@@ -156,9 +162,9 @@ def _alone(agreeing: int, starts: int) -> tuple[Reason, ...]:
     )
 
 
-def drive_settings(structure: Structure, priors: Mapping[str, Prior], starts: int) -> Settings:
+def drive_settings(free: Sequence[Parameter], priors: Mapping[str, Prior], starts: int) -> Settings:
     """Return how a drive is searched: from the usual values first, and by magnitude between wide bounds."""
-    usual = np.array([[p.value for p in structure.free]])
+    usual = np.array([[p.value for p in free]])
     return Settings(priors=dict(priors), starts=starts, draw=GivenStarts(usual, ByMagnitude()))
 
 

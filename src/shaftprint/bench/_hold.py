@@ -11,6 +11,7 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.bench._equipped import EquippedDrive
+from shaftprint.bench._per_record import free_parameters, with_structures
 from shaftprint.errors import IdentificationError
 from shaftprint.identify import Identification, Settings
 from shaftprint.identify.search import GivenStarts
@@ -96,9 +97,9 @@ def _fitted_otherwise(
     one: EquippedDrive, fit: Identification, records: Sequence[Record], *, settings: Settings, time: TimeSettings
 ) -> Identification:
     """Return the fit, from its optimum, with inputs that go the other way."""
-    turned = [(one.structure, replace(record, hold=not record.hold)) for record in records]
+    turned = with_structures(one, [replace(record, hold=not record.hold) for record in records])
     values = {p.name: p.value for p in fit.parameters}
-    given = np.array([[values[p.name] for p in one.structure.free]])
+    given = np.array([[values[p.name] for p in free_parameters(one, records)]])
     settings = replace(settings, starts=1, draw=GivenStarts(given))
     return identify_in_time(turned, rng=np.random.default_rng(0), settings=settings, time=time, start=values)
 

@@ -17,6 +17,7 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray, IntArray
 from shaftprint.bench._equipped import EquippedDrive
+from shaftprint.bench._per_record import free_parameters, own_names, with_structures
 from shaftprint.catalogue import DRIVES
 from shaftprint.identify import Identification, Prior, Settings, identify_jointly
 from shaftprint.identify.fit import Cluster, optima_of
@@ -138,17 +139,18 @@ class _White:
         time: TimeSettings,
         rng: np.random.Generator,
     ) -> None:
-        self.terms = [output_error(one.structure, record, settings=time) for record in records]
+        pairs = with_structures(one, records)
+        self.terms = [output_error(structure, record, settings=time) for structure, record in pairs]
         self.settings, self.rng = settings, rng
-        self.parameters = one.structure.free
-        rubs = _friction_names(one)
+        self.parameters = free_parameters(one, records)
+        rubs = own_names(one, _friction_names(one), records)
         self.friction = [i for i, p in enumerate(self.parameters) if p.name in rubs and p.lower == 0.0]
         self._released: FloatArray | None = None
 
     def made(self, starts: Sequence[FloatArray]) -> _Ends:
         """Return where given starts end; those at which the simulation runs away end nowhere."""
         theta = np.array(starts).reshape(-1, len(self.parameters))
-        theta = theta[np.all([term.evaluable(theta) for term in self.terms], axis=0)] if theta.size else theta
+        theta = self._evaluable(theta) if theta.size else theta
         if not theta.size:
             return _Ends(theta=theta, cost=np.empty(0), starts=np.empty(0, dtype=np.int64))
         return self.ends(len(theta), theta)
@@ -180,7 +182,7 @@ class _White:
         theta[:, self.friction] = 0.0
         rubs = [self.parameters[i] for i in self.friction]
         nothing = {p.name: Prior(0.0, HELD * p.upper) for p in rubs}
-        theta = theta[np.all([term.evaluable(theta) for term in self.terms], axis=0)]
+        theta = self._evaluable(theta)
         if not theta.size:
             return []
         fit = self._fit(len(theta), theta, nothing)
@@ -216,6 +218,12 @@ class _White:
         order = np.argsort(cost, kind="stable")[:MIRRORED]
         return [signs[row] * best for row in order if cost[row] <= FOLLOWED * ends.cost.min()]
 
+    def _evaluable(self, theta: FloatArray) -> FloatArray:
+        """Return the starts at which no simulation runs away."""
+        names = [parameter.name for parameter in self.parameters]
+        stays = [term.evaluable(theta[:, [names.index(p.name) for p in term.structure.free]]) for term in self.terms]
+        return np.asarray(theta[np.all(stays, axis=0)])
+
     def _fit(
         self, count: int, theta: FloatArray | None, priors: Mapping[str, Prior] = MappingProxyType({})
     ) -> Identification:
@@ -248,10 +256,8 @@ def _coloured(
     fine = replace(settings, tolerance=TOLERANCE, starts=1 + followed.cost.size, draw=GivenStarts(followed.theta))
     best = followed.best
     for _ in range(ROUNDS):
-        first = {p.name: float(value) for p, value in zip(one.structure.free, best, strict=True)}
-        fit = identify_in_time(
-            [(one.structure, record) for record in records], rng=rng, settings=fine, time=time, start=first
-        )
+        first = {p.name: float(value) for p, value in zip(free_parameters(one, records), best, strict=True)}
+        fit = identify_in_time(with_structures(one, records), rng=rng, settings=fine, time=time, start=first)
         won = next(cluster for cluster in fit.clusters if np.array_equal(cluster.values, fit.values))
         if 0 in won.which:
             break

@@ -17,13 +17,14 @@ from shaftprint.arguments import refusing_none
 from shaftprint.arrays import FloatArray
 from shaftprint.bench._equipped import EquippedDrive
 from shaftprint.bench._fit import STARTS, drive_settings, drive_time_settings
+from shaftprint.bench._per_record import all_parameters, free_parameters, own_priors, with_structures
 from shaftprint.bench._search import search_drive
 from shaftprint.distributions import chi_square_tail
 from shaftprint.errors import IdentificationError
 from shaftprint.identify import Identification, identify_jointly
 from shaftprint.identify.comparison import expect_comparable
 from shaftprint.identify.search import GivenStarts
-from shaftprint.models import Structure
+from shaftprint.models import Parameter
 from shaftprint.time_domain import OutputError, Record, output_error
 
 # A ratio less likely than this by chance speaks for the larger structure.
@@ -110,7 +111,7 @@ def compare_in_time(
     """
     expect_comparable([one.structure for one in drives])
     # the smaller ones first: what holds them starts from their optima
-    ordered = sorted(drives, key=lambda one: len(one.structure.free))
+    ordered = sorted(drives, key=lambda one: len(free_parameters(one, records)))
     own: list[Identification] = []
     for one, generator in zip(ordered, rng.spawn(len(drives)), strict=True):
         own.append(_own(one, records, own, generator, starts))
@@ -138,29 +139,30 @@ def _own(
     rng: np.random.Generator,
     starts: int,
 ) -> Identification:
-    settings = drive_settings(one.structure, one.priors, starts)
-    held = _held_in(one.structure, smaller)
+    settings = drive_settings(free_parameters(one, records), own_priors(one, records, one.priors), starts)
+    held = _held_in(all_parameters(one, records), smaller)
     return search_drive(one, records, settings, drive_time_settings(one, records), rng=rng, further=held).fit
 
 
-def _held_in(structure: Structure, smaller: Sequence[Identification]) -> list[FloatArray]:
-    """Return the optima of the structures that one holds as its own free parameters."""
+def _held_in(large: Sequence[Parameter], smaller: Sequence[Identification]) -> list[FloatArray]:
+    """Return the optima of the structures that one of these parameters holds, as its own free parameters."""
     values = []
     for fit in smaller:
-        if _extra(fit.structure, structure):
+        if _extra(fit.objective.parameters, large):
             named = fit.objective.named(fit.values)
-            values.append(np.array([float(named[parameter.name]) for parameter in structure.free]))
+            values.append(np.array([float(named[p.name]) for p in large if not p.held]))
     return values
 
 
-def _extra(small: Structure, large: Structure) -> list[str]:
+def _extra(small: Sequence[Parameter], large: Sequence[Parameter]) -> list[str]:
     """Return the parameters that are held in one structure and free in another that holds it; none if it does not."""
-    free = {p.name: p for p in large.free}
-    fixed = {p.name: p.value for p in small.parameters if p.held}
+    free = {p.name: p for p in large if not p.held}
+    fixed = {p.name: p.value for p in small if p.held}
     extra = [name for name in fixed if name in free]
-    others = all(p.name in free for p in small.free) and len(large.free) == len(small.free) + len(extra)
+    left = [p.name for p in small if not p.held]
+    others = all(name in free for name in left) and len(free) == len(left) + len(extra)
     inside = all(free[name].lower <= fixed[name] <= free[name].upper for name in extra)
-    return extra if small.names == large.names and others and inside else []
+    return extra if [p.name for p in small] == [p.name for p in large] and others and inside else []
 
 
 def _left(fit: Identification) -> float:
@@ -186,10 +188,11 @@ def _common(
     noises = [term.whitening for term in best.objective.terms if isinstance(term, OutputError)]
     time = drive_time_settings(one, records)
     terms = [
-        output_error(one.structure, record, settings=time).with_noise(noise)
-        for record, noise in zip(records, noises, strict=True)
+        output_error(structure, record, settings=time).with_noise(noise)
+        for (structure, record), noise in zip(with_structures(one, records), noises, strict=True)
     ]
-    values = np.array([[parameter.value for parameter in own.parameters], *_held_in(one.structure, smaller)])
+    held = _held_in(own.objective.parameters, smaller)
+    values = np.array([[parameter.value for parameter in own.parameters], *held])
     return identify_jointly(
         terms, rng=rng, settings=replace(own.settings, starts=len(values), draw=GivenStarts(values))
     )
@@ -202,8 +205,10 @@ def _hidden(one: EquippedDrive, records: Sequence[Record], fit: Identification) 
         return ()
     time = replace(drive_time_settings(one, records), drift_degree=-1)
     terms = [
-        output_error(one.structure, record, settings=time).with_noise(term.whitening)
-        for record, term in zip(records, fit.objective.terms, strict=True)
+        output_error(structure, record, settings=time)
+        .with_noise(term.whitening)
+        .placed(fit.objective.names, [parameter.name for parameter in fit.parameters])
+        for (structure, record), term in zip(with_structures(one, records), fit.objective.terms, strict=True)
         if isinstance(term, OutputError)
     ]
     values = np.array([[parameter.value for parameter in fit.parameters]])
@@ -218,7 +223,7 @@ def _bic(fit: Identification) -> float:
 
 def _ratio(small: TimeCandidate, large: TimeCandidate) -> TimeRatio | None:
     """Return the test of a structure that another holds with some parameters held; None where it does not."""
-    extra = _extra(small.fit.structure, large.fit.structure)
+    extra = _extra(small.fit.objective.parameters, large.fit.objective.parameters)
     if not extra:
         return None
     statistic = max(2.0 * (small.fit.cost - large.fit.cost), 0.0)
@@ -247,7 +252,7 @@ def _words(
 
 def _beside(other: TimeCandidate, best: TimeCandidate) -> str:
     gap = f"{other.bic - best.bic:.1f}"
-    if _extra(best.fit.structure, other.fit.structure):
+    if _extra(best.fit.objective.parameters, other.fit.objective.parameters):
         return f"{other.name}, which holds it, fits no better than by chance: its criterion is higher by {gap}."
     return f"{other.name} is worse by {gap}."
 

@@ -4,14 +4,25 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
+import numpy as np
+
 from shaftprint.arguments import refusing_none
 from shaftprint.bench._equipped import EquippedDrive
 from shaftprint.bench._fingerprint import identified_drive
 from shaftprint.bench._fit import drive_time_settings
+from shaftprint.bench._per_record import base_name, record_structure
 from shaftprint.errors import IdentificationError
 from shaftprint.fingerprint import DriveFingerprint
-from shaftprint.identify import Requirements
-from shaftprint.time_domain import Record, RecordFit, output_error, with_noise_at
+from shaftprint.identify import Requirements, Settings
+from shaftprint.models import Structure
+from shaftprint.time_domain import (
+    Record,
+    RecordFit,
+    TimeSettings,
+    identify_in_time,
+    output_error,
+    with_noise_at,
+)
 
 Outcome: TypeAlias = Literal["passes", "fails"]
 
@@ -54,7 +65,10 @@ def identified_from(kept: DriveFingerprint, files: Sequence[str], records: Seque
 def validate_drive(
     fingerprint: DriveFingerprint, one: EquippedDrive, records: Sequence[Record]
 ) -> tuple[ValidatedRecord, ...]:
-    """Compare the model of a fingerprint with records; offsets and the start are found with each, nothing else.
+    """Compare the model of a fingerprint with records.
+
+    Offsets and the start are found with each, and parameters with own values in each record where the fingerprint has
+    none of this one; nothing else.
 
     Parameters
     ----------
@@ -72,10 +86,11 @@ def validate_drive(
     IdentificationError
         If the simulation runs away.
     """
-    model = identified_drive(fingerprint, one)
     settings, asked = drive_time_settings(one, records), Requirements()
     validated = []
     for number, record in enumerate(records, start=1):
+        beside = _found_beside(fingerprint, one, record, settings)
+        model = identified_drive(fingerprint, one, record=record.name, beside=beside)
         term = output_error(model.structure, record, settings=settings)
         term = with_noise_at(term, model.values, assumed=settings.assumed)
         part, _ = term.assessed(model.values, number)
@@ -88,3 +103,33 @@ def validate_drive(
         outcome: Outcome = "fails" if large else "passes"
         validated.append(ValidatedRecord(fit=part, missed=missed, outcome=outcome))
     return tuple(validated)
+
+
+def _found_beside(
+    fingerprint: DriveFingerprint, one: EquippedDrive, record: Record, settings: TimeSettings
+) -> dict[str, float]:
+    """Return the record's own values of parameters where a fingerprint has none: what fits beside all else."""
+    kept, structure = fingerprint.values, record_structure(one, record.name)
+    missing = {p.name: base_name(p.name) for p in structure.free if p.name not in kept and "(" in p.name}
+    if not missing:
+        return {}
+    known = {name: value for name, value in kept.items() if name in structure.names}
+    others = [one for one in kept if base_name(one) in missing.values()]
+    started = {
+        name: float(
+            np.median([kept[other] for other in others if base_name(other) == base] or [_usual(structure, name)])
+        )
+        for name, base in missing.items()
+    }
+    fit = identify_in_time(
+        [(structure.held_at(**known), record)],
+        rng=np.random.default_rng(0),
+        settings=Settings(starts=1),
+        time=settings,
+        start=started,
+    )
+    return {p.name: p.value for p in fit.parameters}
+
+
+def _usual(structure: Structure, name: str) -> float:
+    return float(structure.vector({})[structure.names.index(name)])

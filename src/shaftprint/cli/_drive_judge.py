@@ -8,13 +8,17 @@ import numpy as np
 
 from shaftprint.bench import (
     STARTS,
+    all_parameters,
     compare_in_time,
     drive_differences,
+    free_parameters,
     identified_from,
     noise_words,
     predict_drive,
     read_records,
     validate_drive,
+    values_in,
+    with_structures,
     without,
 )
 from shaftprint.cli._drive_options import drive_fingerprint_at, equipped_drive, file_sha256, holding, is_given, kept_one
@@ -89,18 +93,21 @@ def predict_on_the_bench(
     (one,) = equipped_drive(drive_file, names)
     one = holding(one, held)
     kept = None if fingerprint is None else drive_fingerprint_at(fingerprint)
-    at = {name: value for name, value in (kept.values if kept else {}).items() if name in one.structure.names}
-    at |= dict(values)
     stds = _noise(kept) | dict(noise)
     records = read_records(inputs, one, planned=True, hold=kept is not None and kept.inputs_hold)
+    names_of_all = {parameter.name for parameter in all_parameters(one, records)}
+    at = {name: value for name, value in (kept.values if kept else {}).items() if name in names_of_all}
+    at |= dict(values)
     deviations = predict_drive(one, records, noise_std=stds, kept=kept, values=at, priors=priors)
-    complete = {name: p.mean for name, p in one.priors.items()} | at
-    usual = dict(zip(one.structure.names, one.structure.vector(complete).tolist(), strict=True))
+    usual: dict[str, float] = {}
+    for structure, _ in with_structures(one, records):
+        there = values_in(structure, {name: p.mean for name, p in one.priors.items()} | at)
+        usual |= dict(zip(structure.names, structure.vector(there).tolist(), strict=True))
     give("deviations", deviations)
     lost = [name for name, std in deviations.items() if not np.isfinite(std)]
     answer("The records would tell every parameter." if not lost else f"Not told: {', '.join(lost)}.")
     say(noise_words(kept, records))
-    print_table(drive_prediction_table(one.structure, usual, deviations))
+    print_table(drive_prediction_table(free_parameters(one, records), usual, deviations))
 
 
 def _noise(kept: DriveFingerprint | None) -> dict[str, float]:

@@ -11,7 +11,7 @@ parameter           stated    in the unit of the structure's parameter
 
 from shaftprint.drive._blocks import Block, BlockKind, FreeParameter
 from shaftprint.drive._drive import Drive, FitWay, load_drive
-from shaftprint.drive._signals import KnownParameter, SearchedParameter, Signal, StartState, Stretch
+from shaftprint.drive._signals import KnownParameter, PerRecord, SearchedParameter, Signal, StartState, Stretch
 from shaftprint.drive._unit_factors import unit_factor, zero_is_anywhere
 
 __all__ = [
@@ -21,6 +21,7 @@ __all__ = [
     "FitWay",
     "FreeParameter",
     "KnownParameter",
+    "PerRecord",
     "SearchedParameter",
     "Signal",
     "StartState",

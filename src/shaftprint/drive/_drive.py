@@ -8,7 +8,7 @@ from pydantic import Field, model_validator
 
 from shaftprint.arguments import refusing_none
 from shaftprint.drive._blocks import Block, FreeParameter
-from shaftprint.drive._signals import KnownParameter, SearchedParameter, Signal, StartState, Stretch
+from shaftprint.drive._signals import KnownParameter, PerRecord, SearchedParameter, Signal, StartState, Stretch
 from shaftprint.errors import SettingsError
 from shaftprint.notebook import Shown, Summary, shortened
 from shaftprint.settings import Name, PositiveNumber, Settings, read_settings
@@ -43,6 +43,8 @@ class Drive(Shown, Settings):
     """Parameters that are known, exactly or with a standard deviation."""
     searched: tuple[SearchedParameter, ...] = ()
     """Parameters that are free between other bounds than those of the structure, or free although usually held."""
+    per_record: tuple[PerRecord, ...] = ()
+    """Parameters that have a value of their own in each record."""
     start: tuple[StartState, ...] = ()
     """States at the start of every record; those that are not named are zero."""
     records: tuple[Stretch, ...] = ()
@@ -75,6 +77,7 @@ class Drive(Shown, Settings):
         tables: dict[str, list[str]] = {
             "inputs and outputs": [one.name for one in self.signals],
             "known and searched": [*(one.name for one in self.known), *(one.name for one in self.searched)],
+            "per_record": [one.name for one in self.per_record],
             "start": [one.name for one in self.start],
             "records": [one.name for one in self.records],
             "parameters": [one.name for one in self.parameters],

@@ -55,6 +55,37 @@ class SearchedParameter(Settings):
         return self
 
 
+class PerRecord(Settings):
+    """A parameter that has a value of its own in each record, such as the inertia of what was mounted."""
+
+    name: Name
+    """Name of the parameter."""
+    values: dict[Name, Number] = Field(default_factory=dict)
+    """Its value in records where it is known, by record or group, in the unit of the parameter."""
+    groups: dict[Name, tuple[Name, ...]] = Field(default_factory=dict)
+    """Records that share a value, by the name of the group; a file's name without its ending stands for all of it."""
+
+    def label(self, record: str) -> str:
+        """Return what the value of a record is called by: its group, or the record itself."""
+        of = (group for group, members in self.groups.items() if any(_is_of(record, one) for one in members))
+        return next(of, record)
+
+    @model_validator(mode="after")
+    def _each_record_once(self) -> Self:
+        members = [one for group in self.groups.values() for one in group]
+        twice = sorted({one for one in members if members.count(one) > 1})
+        if twice:
+            raise ValueError(f"expected each record in one group, found {', '.join(twice)} in several.")
+        inside = [one for one in self.values if one in members]
+        if inside:
+            raise ValueError(f"expected the value of the group that {inside[0]} is in, found one of its own.")
+        return self
+
+
+def _is_of(record: str, member: str) -> bool:
+    return record == member or record.startswith(f"{member}, ")
+
+
 class StartState(Settings):
     """The value of a state of the equations at the start of every record."""
 

@@ -10,7 +10,7 @@ from shaftprint.plain_table import MEANING, Symbol, Table, numbers, texts
 if TYPE_CHECKING:
     from shaftprint.bench import DriveDifference, TimeComparison, ValidatedRecord
     from shaftprint.fingerprint import DriveFingerprint
-    from shaftprint.models import Structure
+    from shaftprint.models import Parameter
 
 PERCENT = 100.0
 
@@ -108,11 +108,11 @@ def validated_drive_table(records: "Sequence[ValidatedRecord]") -> Table:
 
 
 def drive_prediction_table(
-    structure: "Structure", values: Mapping[str, float], deviations: Mapping[str, float]
+    free: "Sequence[Parameter]", values: Mapping[str, float], deviations: Mapping[str, float]
 ) -> Table:
     """Return the standard deviation that planned records would give of each free parameter."""
     rows = []
-    for parameter in structure.free:
+    for parameter in free:
         value, std = values[parameter.name], deviations[parameter.name]
         share = f"{PERCENT * std / abs(value):.2g}" if value != 0.0 and math.isfinite(std) else "-"
         rows.append(

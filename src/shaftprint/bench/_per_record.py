@@ -1,0 +1,94 @@
+"""Parameters with a value of their own in each record: the same equations, in which they have other names.
+
+``J`` of a record, or of a group of records, ``brass`` is called ``J(brass)``.
+"""
+
+from collections.abc import Mapping, Sequence
+
+from shaftprint.bench._equipped import EquippedDrive
+from shaftprint.drive import PerRecord
+from shaftprint.identify import Prior
+from shaftprint.models import Parameter, Structure
+from shaftprint.time_domain import Record
+
+
+def own_name(name: str, label: str) -> str:
+    """Return what a parameter is called in a record or group."""
+    return f"{name}({label})"
+
+
+def base_name(name: str) -> str:
+    """Return what a parameter is called in the equations."""
+    return name.partition("(")[0]
+
+
+def record_structure(one: EquippedDrive, record: str) -> Structure:
+    """Return the structure of a drive for one of its records."""
+    names, values = {}, {}
+    for row in _rows(one):
+        label = row.label(record)
+        names[row.name] = own_name(row.name, label)
+        if label in row.values:
+            values[names[row.name]] = row.values[label]
+    return one.structure.renamed(**names).held_at(**values) if names else one.structure
+
+
+def with_structures(one: EquippedDrive, records: Sequence[Record]) -> list[tuple[Structure, Record]]:
+    """Return each record with its structure; records of one label share it."""
+    made: dict[tuple[str, ...], Structure] = {}
+    pairs = []
+    for record in records:
+        key = tuple(row.label(record.name) for row in _rows(one))
+        if key not in made:
+            made[key] = record_structure(one, record.name)
+        pairs.append((made[key], record))
+    return pairs
+
+
+def all_parameters(one: EquippedDrive, records: Sequence[Record]) -> tuple[Parameter, ...]:
+    """Return the parameters of all records, each once, in the order of a joint fit."""
+    of_all = (p for structure, _ in with_structures(one, records) for p in structure.parameters)
+    return tuple({parameter.name: parameter for parameter in of_all}.values())
+
+
+def free_parameters(one: EquippedDrive, records: Sequence[Record]) -> tuple[Parameter, ...]:
+    """Return those that a joint fit may change."""
+    return tuple(parameter for parameter in all_parameters(one, records) if not parameter.held)
+
+
+def own_priors(one: EquippedDrive, records: Sequence[Record], priors: Mapping[str, Prior]) -> dict[str, Prior]:
+    """Return priors, that of a parameter with own values for each of them."""
+    rows = {row.name: row for row in _rows(one)}
+    free = {parameter.name for parameter in free_parameters(one, records)}
+    spread: dict[str, Prior] = {}
+    for name, prior in priors.items():
+        if name in rows:
+            labels = dict.fromkeys(rows[name].label(record.name) for record in records)
+            spread |= {own: prior for own in (own_name(name, label) for label in labels) if own in free}
+        else:
+            spread[name] = prior
+    return spread
+
+
+def own_names(one: EquippedDrive, names: set[str], records: Sequence[Record]) -> set[str]:
+    """Return names of parameters, those that have own values by each of their names."""
+    rows = {row.name: row for row in _rows(one)}
+    own = {own_name(name, rows[name].label(record.name)) for name in names & set(rows) for record in records}
+    return (names - set(rows)) | own
+
+
+def idle_labels(one: EquippedDrive, records: Sequence[Record]) -> tuple[str, ...]:
+    """Return, in a sentence each, records that rows of the drive file name and that are not there."""
+    sentences = []
+    for row in _rows(one):
+        labels = {row.label(record.name) for record in records}
+        idle = [name for name in dict.fromkeys([*row.values, *row.groups]) if name not in labels]
+        if idle:
+            sentences.append(f"[[per_record]] {row.name} names {', '.join(idle)}, of which no record was given.")
+    return tuple(sentences)
+
+
+def _rows(one: EquippedDrive) -> list[PerRecord]:
+    """Return the rows whose parameter is free: what is held is held in all records alike."""
+    free = {parameter.name for parameter in one.structure.free}
+    return [row for row in one.drive.per_record if row.name in free]
