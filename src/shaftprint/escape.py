@@ -110,6 +110,12 @@ def csv_cell_text(cell: str) -> str:
     return cell[len(CSV_PREFIX) :] if marked else cell
 
 
+def dbc_text(text: str) -> str:
+    """Return text for a string of a DBC file: letters of ISO 8859-1 without quotation marks and backslashes."""
+    plain = printable(text).replace('"', "'").replace("\\", "/")
+    return plain.encode("latin-1", "replace").decode("latin-1")
+
+
 def html_text(text: str) -> str:
     """Return text for HTML, or for an attribute in quotation marks."""
     return html.escape(printable(text))

@@ -109,3 +109,19 @@ def test_an_existing_file_is_kept_unless_forced(run, tmp_path, logged):
     assert "exists already" in result.stderr
     assert target.read_text() == "mine"
     assert run("convert", logged, "-o", target, "--force").exit_code == 0
+
+
+def test_a_log_of_a_bus_says_what_it_loses_and_is_read_with_the_dbc_file_beside_it(run, tmp_path):
+    source, log = tmp_path / "test.csv", tmp_path / "test.blf"
+    source.write_text("time [s],M_s [V]\n" + "".join(f"{0.01 * row:.2f},{row % 7}\n" for row in range(200)))
+    result = run("convert", source, "-o", log)
+    # 6 V over 64254 steps of 2^-13 V at least
+    assert f"{log}: M_s is rounded to steps of 0.00012207 V, counts of 16 bits." in result.stderr
+    assert "test.blf.dbc beside it says what the frames hold" in result.stderr
+    again = tmp_path / "again.nc"
+    assert run("convert", log, "--dbc", tmp_path / "test.blf.dbc", "-o", again).exit_code == 0
+    with read_recording(again) as recording:
+        assert recording.channel("M_s").values(0, 8).tolist() == [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 0.0]
+    result = run("convert", source, "-o", log, "--format", "lvm")
+    assert result.exit_code == 1
+    assert 'expected one of the endings .lvm, found ".blf"' in result.stderr

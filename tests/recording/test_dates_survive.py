@@ -10,7 +10,7 @@ from shaftprint.recording import (
     RecordingWriter,
     Samples,
     cut,
-    holds_date,
+    held_date,
     read_recording,
     recording_from_arrays,
     write_by_ending,
@@ -37,11 +37,12 @@ def test_the_date_survives(tmp_path, ending, began):
         assert recording.attributes == {}
 
 
-def test_what_holds_a_date(tmp_path):
-    assert [holds_date(tmp_path / f"x{end}", BARE) for end in (".nc", ".mf4", ".tdms", ".csv", ".mat")] == [
-        True, True, False, False, False
-    ]  # fmt: skip
-    assert holds_date(tmp_path / "x.tdms", datetime(2026, 1, 1, tzinfo=UTC))
+def test_what_is_held_of_a_date(tmp_path):
+    dated = [held_date(tmp_path / f"x{end}", BARE) for end in (".nc", ".mf4", ".blf", ".tdms", ".csv", ".mat")]
+    assert dated == [BARE, BARE, BARE, None, None, None]
+    assert held_date(tmp_path / "x.tdms", SUMMER) == datetime(2026, 7, 5, 7, 0, 0, 250_000, tzinfo=UTC)
+    # logs of a bus, LabVIEW's text and universal files know the clock of the place alone
+    assert {held_date(tmp_path / f"x{end}", SUMMER) for end in (".asc", ".lvm", ".uff")} == {BARE}
 
 
 def test_a_date_that_is_none_is_refused(tmp_path):

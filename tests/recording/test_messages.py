@@ -167,7 +167,9 @@ def test_written_and_read_again_the_times_are_the_same(tmp_path, lost, ending):
 def test_formats_with_one_clock_refuse_messages(tmp_path):
     with read_recording(bus_log(tmp_path / "log.mf4", sent(), np.full(2970, 40.0))) as recording:
         for write in (write_csv, write_tdms):
-            with pytest.raises(RecordingError, match=r"found messages at times of their own in X; write \.nc or \.mf4"):
+            with pytest.raises(
+                RecordingError, match=r"found messages at times of their own in X; write \.nc, \.mf4, \.lvm, "
+            ):
                 write(tmp_path / "out", [recording.channel("X")])
 
 

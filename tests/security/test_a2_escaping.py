@@ -19,6 +19,8 @@ import zipfile
 from pathlib import Path
 from xml.etree import ElementTree as ET
 
+import canmatrix
+import canmatrix.formats
 import numpy as np
 import pytest
 from click.testing import CliRunner
@@ -283,6 +285,26 @@ def test_octave_runs_nothing_of_a_name_and_gives_it_back(tmp_path, monkeypatch):
     for place, text in enumerate(NASTY):
         title = text.replace("'id'", f"'touch {ran}'")
         assert bytes.fromhex(said[str(place)]).decode() == seen(title)
+
+
+# DBC
+
+
+@any_text
+def test_dbc_strings_return(text):
+    # letters that the encoding of such files does not have become question marks too
+    plain = escape.dbc_text(text)
+    assert plain == seen(text).replace('"', "'").replace("\\", "/").encode("latin-1", "replace").decode("latin-1")
+    matrix, file = canmatrix.CanMatrix(), io.BytesIO()
+    frame = canmatrix.Frame("A", arbitration_id=canmatrix.ArbitrationId(1), size=8)
+    frame.add_signal(canmatrix.Signal("x", start_bit=0, size=8, unit=plain, comment=plain))
+    frame.add_signal(canmatrix.Signal("after", start_bit=8, size=8))
+    matrix.add_frame(frame)
+    canmatrix.formats.dump(matrix, file, "dbc")
+    (again,) = canmatrix.formats.load(io.BytesIO(file.getvalue()), "dbc").values()
+    (frame,) = again.frames
+    assert [one.name for one in frame.signals] == ["x", "after"]
+    assert (frame.signals[0].unit, frame.signals[0].comment or "") == (plain, plain)
 
 
 # CSV

@@ -9,6 +9,7 @@ import click
 
 from shaftprint.cli._own_structure import TypedName, own_file
 from shaftprint.fingerprint import SourceFile
+from shaftprint.recording import WRITTEN_ENDINGS, WRITTEN_FORMATS
 
 NAMES = "a path, or the name of a shipped one such as"
 
@@ -94,6 +95,29 @@ def reading_options(command: Callable[..., Any]) -> Callable[..., Any]:
         "--interleaved", type=click.IntRange(min=2), help="Signals that each TDMS channel holds, sample by sample."
     )
     return rate(time_unit(columns(delimiter(decimal(encoding(dbc(interleaved(command))))))))
+
+
+def output_options(what: str) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
+    """Return what adds the options ``--output`` and ``--format`` of a recording.
+
+    Parameters
+    ----------
+    what
+        What ``--output`` is, up to its endings.
+    """
+    endings = f"{', '.join(WRITTEN_ENDINGS[:-1])} or {WRITTEN_ENDINGS[-1]}"
+    output = click.option("-o", "--output", required=True, type=click.Path(path_type=Path), help=f"{what}: {endings}.")
+    chosen = click.option(
+        "--format",
+        "chosen_format",
+        type=click.Choice(WRITTEN_FORMATS),
+        help="Format, where the ending stands for several: tdms-appended, or nmea2000 in .blf, .asc or .log.",
+    )
+
+    def add(command: Callable[..., Any]) -> Callable[..., Any]:
+        return output(chosen(command))
+
+    return add
 
 
 def cut_options(command: Callable[..., Any]) -> Callable[..., Any]:

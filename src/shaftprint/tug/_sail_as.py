@@ -24,16 +24,22 @@ def sail_as(
     seed: int,
     overwrite: bool = False,
     progress: Callable[[float], None] | None = None,
+    format: str | None = None,
+    told: Callable[[str], None] | None = None,
 ) -> Truth:
-    """Sail a campaign as ``sail`` does and write its recording in the format that the file's ending says.
+    """Sail a campaign as ``sail`` does and write its recording as another logger does.
 
     Parameters
     ----------
     vessel, campaign, tug, seed, overwrite, progress
         As for ``sail``.
     path
-        Recording to write: .nc, .h5 or .hdf5 (native container), .csv, .mat, .mf4 or .tdms; the truth goes to
-        ``NAME.truth.json`` beside it.
+        Recording to write; its ending is one of ``recording.WRITTEN_ENDINGS``. The truth goes to ``NAME.truth.json``
+        beside it.
+    format
+        One of ``recording.WRITTEN_FORMATS`` where the ending stands for several.
+    told
+        Is told what the format loses, and what was written beside, a sentence each.
 
     Raises
     ------
@@ -44,7 +50,7 @@ def sail_as(
         clocks of their own, or a file cannot be written.
     """
     path = Path(path)
-    expect_known_ending(path)
+    expect_known_ending(path, format=format)
     if path.suffix.lower() in NATIVE_ENDINGS:
         return sail(vessel, campaign, path, tug=tug, seed=seed, overwrite=overwrite, progress=progress)
     for file in (path, truth_path(path)):
@@ -59,7 +65,13 @@ def sail_as(
                 read_recording(native) as recording,
             ):
                 shutil.copyfile(truth_path(native), part)
-                write_by_ending(path, recording.channels.values(), overwrite=overwrite)
+                remarks = write_by_ending(path, recording.channels.values(), overwrite=overwrite, format=format)
     except OSError as error:
         raise RecordingError(f"{path}: the recording cannot be written: {reason(error)}") from None
+    for remark in remarks:
+        (told or _ignore)(remark)
     return truth
+
+
+def _ignore(remark: str) -> None:
+    """Tell nothing."""

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import click
 
-from shaftprint.cli._options import cut_options, hints_of, reading_options
+from shaftprint.cli._options import cut_options, hints_of, output_options, reading_options
 from shaftprint.cli._terminal import answer, echo
 from shaftprint.cli.output import expect_no_input, no_progress_option, progress
 from shaftprint.errors import RecordingError
@@ -15,7 +15,7 @@ from shaftprint.recording import (
     Recording,
     cut,
     expect_known_ending,
-    holds_date,
+    held_date,
     read_recording,
     write_by_ending,
 )
@@ -23,13 +23,7 @@ from shaftprint.recording import (
 
 @click.command("convert")
 @click.argument("recordings", nargs=-1, required=True, metavar="IN...", type=click.Path(path_type=Path))
-@click.option(
-    "-o",
-    "--output",
-    required=True,
-    type=click.Path(path_type=Path),
-    help="File to write (.nc, .h5, .csv, .mat, .mf4, .tdms), or a folder for several inputs, which get .nc there.",
-)
+@output_options("Folder for several inputs, which get .nc there, or file to write")
 @click.option("--channel", "chosen", multiple=True, help="Only this channel; may be given several times.")
 @click.option("--unit", "units", multiple=True, metavar="CHANNEL=UNIT", help="Unit of a channel whose file gives none.")
 @click.option("--force", is_flag=True, help="Replace an existing file.")
@@ -39,6 +33,7 @@ from shaftprint.recording import (
 def command(
     recordings: tuple[Path, ...],
     output: Path,
+    chosen_format: str | None,
     chosen: tuple[str, ...],
     units: tuple[str, ...],
     force: bool,
@@ -61,15 +56,24 @@ def command(
     unit_of = dict(_unit(text) for text in units)
     with progress(hidden=no_progress) as steps:
         for source, target in zip(recordings, targets, strict=True):
-            expect_known_ending(target)
+            expect_known_ending(target, format=chosen_format)
             steps.begin(f"Converting {source.name}")
             with read_recording(source, **hints_of(**said)) as recording:
                 opened = cut(_only(recording, chosen), from_s=from_s, to_s=to_s)
                 channels = [_with_unit(opened, name, unit_of) for name in opened.channels]
-                write_by_ending(target, channels, attributes=opened.attributes, began=opened.began, overwrite=force)
-                left_out = dict(opened.left_out) | _facts_left_out(opened, target)
+                losses = write_by_ending(
+                    target,
+                    channels,
+                    attributes=opened.attributes,
+                    began=opened.began,
+                    overwrite=force,
+                    format=chosen_format,
+                )
+                left_out = dict(opened.left_out) | _facts_left_out(opened, target, chosen_format)
             for remark in recording.remarks:
                 echo(f"{source}: {remark}", err=True)
+            for loss in losses:
+                echo(f"{target}: {loss}", err=True)
             for name, reason in left_out.items():
                 echo(f"{source}: left out {name}: {reason}", err=True)
             answer(f"{target}: {len(channels)} channels of {source}.")
@@ -82,15 +86,17 @@ def _only(recording: Recording, chosen: tuple[str, ...]) -> Recording:
     return replace(recording, channels={name: recording.channel(name) for name in chosen})
 
 
-def _facts_left_out(opened: Recording, target: Path) -> dict[str, str]:
+def _facts_left_out(opened: Recording, target: Path, format: str | None) -> dict[str, str]:
     """Return which facts on the whole recording the target cannot hold, with the reason."""
     if target.suffix.lower() in NATIVE_ENDINGS:
         return {}
     only = "only the native container (.nc) holds it"
     facts = {f"the attribute {name}": only for name in opened.attributes}
     facts |= {f"the jumps of the clock of {name}": only for name, one in opened.channels.items() if one.clock_jumps}
-    if opened.began is not None and not holds_date(target, opened.began):
-        facts["the date of second 0"] = f"{opened.began.isoformat(sep=' ')}: the native container (.nc) holds it"
+    held = held_date(target, opened.began, format=format)
+    if opened.began is not None and held != opened.began:
+        what = "the date of second 0" if held is None else "the offset from UTC of the date of second 0"
+        facts[what] = f"{opened.began.isoformat(sep=' ')}: the native container (.nc) holds it"
     return facts
 
 

@@ -4,9 +4,9 @@ from pathlib import Path
 
 import click
 
-from shaftprint.cli._options import starboard_option
+from shaftprint.cli._options import output_options, starboard_option
 from shaftprint.cli._sail_both import sail_both_lines
-from shaftprint.cli._terminal import answer
+from shaftprint.cli._terminal import answer, echo
 from shaftprint.cli._vessel_file import print_disagreements
 from shaftprint.cli.output import no_progress_option, progress
 from shaftprint.recording import expect_known_ending
@@ -17,19 +17,20 @@ from shaftprint.tug import like_stan_tug_1205, sail_as, truth_path, with_lever_o
 @click.command("sail")
 @click.argument("vessel")
 @click.argument("campaign")
-@click.option(
-    "-o",
-    "--output",
-    required=True,
-    type=click.Path(path_type=Path),
-    help="Recording to write: .nc, .h5, .csv, .mat, .mf4 or .tdms.",
-)
+@output_options("Recording to write")
 @starboard_option
 @click.option("--seed", type=click.IntRange(min=0), default=1, show_default=True, help="Seed of all randomness.")
 @click.option("--force", is_flag=True, help="Replace an existing recording.")
 @no_progress_option
 def command(
-    vessel: str, campaign: str, output: Path, starboard: str | None, seed: int, force: bool, no_progress: bool
+    vessel: str,
+    campaign: str,
+    output: Path,
+    chosen_format: str | None,
+    starboard: str | None,
+    seed: int,
+    force: bool,
+    no_progress: bool,
 ) -> None:
     """Simulate a tug in a campaign and write its raw recording.
 
@@ -37,13 +38,14 @@ def command(
     are those of the Stan Tug 1205, the gains as much smaller as the line has less inertia; at -5 V the lever asks for
     the working speed of the vessel file. With a ship speed in its working point the ship sails free, and the lever asks
     for the working speed at the voltage of the campaign. A campaign that states slope_rpm_per_v is sailed with that
-    lever: at its offset it asks for offset_rpm, or for the working speed. What was put
-    into the recording goes to a file of its own beside it, which nothing that identifies will open. With --starboard
-    both lines of a ship are sailed in one recording; each propeller feels the wash of the other, and both the same sea.
+    lever: at its offset it asks for offset_rpm, or for the working speed. What was put into the recording goes to a
+    file of its own beside it, which nothing that identifies will open. The recording is written as the logger of its
+    ending writes it: what that loses is said, and logs of a CAN bus get a DBC file beside them. With --starboard both
+    lines of a ship are sailed in one recording; each propeller feels the wash of the other, and both the same sea.
     """
     if output.is_dir():
         raise click.ClickException(f"{output}: expected a file for the recording, found a folder; add a file name.")
-    expect_known_ending(output)
+    expect_known_ending(output, format=chosen_format)
     if starboard is not None:
         sail_both_lines(vessel, starboard, campaign, output, seed=seed, force=force, no_progress=no_progress)
         return
@@ -53,6 +55,19 @@ def command(
         steps.begin("Sailing", total=1.0)
         usual = like_stan_tug_1205(trial.vessel, offset_v=trial.campaign.offset_v)
         tug = with_lever_of(usual, trial.vessel, trial.campaign)
-        sail_as(trial.vessel, trial.campaign, output, tug=tug, seed=seed, overwrite=force, progress=steps.reach)
+        remarks: list[str] = []
+        sail_as(
+            trial.vessel,
+            trial.campaign,
+            output,
+            tug=tug,
+            seed=seed,
+            overwrite=force,
+            progress=steps.reach,
+            format=chosen_format,
+            told=remarks.append,
+        )
+    for remark in remarks:
+        echo(f"{output}: {remark}", err=True)
     answer(f"{output}: the raw recording of {trial.campaign.duration_s:g} s.")
     answer(f"{truth_path(output)}: what was put into it.")

@@ -4,6 +4,7 @@ from shaftprint.recording.readers import _hdf5, _lvm, _mdf, _native, _netcdf3, _
 from shaftprint.recording.readers._clock import Hole, clock_of_times, uniform_clock
 from shaftprint.recording.readers._extra import library
 from shaftprint.recording.readers._outside import ReaderFunction, read_outside
+from shaftprint.recording.readers._printed_rate import rate_of_step
 from shaftprint.recording.readers._reader import Reader
 from shaftprint.recording.readers._time_scale import FASTEST_HZ, SLOWEST_HZ
 from shaftprint.recording.readers._unread import remedy
@@ -20,6 +21,7 @@ __all__ = [
     "ReaderFunction",
     "clock_of_times",
     "library",
+    "rate_of_step",
     "read_outside",
     "remedy",
     "uniform_clock",

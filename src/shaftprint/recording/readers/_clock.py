@@ -152,7 +152,7 @@ def clock_of_times(path: Path, name: str, count: int, read: Times) -> SampleCloc
         return messages
     if clock.rate_hz > _FASTEST_SENDER_HZ or off_s <= _JITTER / clock.rate_hz:
         return clock
-    printed_s = _BY_PRINTING * _printed_step(read(0, min(count, 1000))) / np.sqrt(12.0)
+    printed_s = _BY_PRINTING * printed_step(read(0, min(count, 1000))) / np.sqrt(12.0)
     return replace(clock, stamps=read) if off_s > printed_s else clock
 
 
@@ -177,7 +177,7 @@ def _message_clock(count: int, read: Times) -> SampleClock | None:
     return SampleClock(rate_hz=float(f"{near / seconds:.6g}"), start_s=first, stamps=read, is_uneven=True)
 
 
-def _printed_step(times: FloatArray) -> float:
+def printed_step(times: FloatArray) -> float:
     """Return the last decimal with which times are printed [s]; 0 where they have more than six."""
     for decimals in range(_MOST_DECIMALS + 1):
         places = times * 10.0**decimals

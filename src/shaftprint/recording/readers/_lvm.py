@@ -6,11 +6,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from datetime import datetime
 from functools import partial
-from itertools import pairwise
 from pathlib import Path
 from typing import IO
 
 import numpy as np
+from numpy.typing import NDArray
 
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import RecordingError
@@ -18,11 +18,12 @@ from shaftprint.escape import printable
 from shaftprint.recording._channel import Channel, Source
 from shaftprint.recording._recording import Recording
 from shaftprint.recording._spool import Spool
-from shaftprint.recording.readers._clock import Hole, SampleClock, clock_of_times, on_clock
+from shaftprint.recording.readers._clock import on_clock
 from shaftprint.recording.readers._epoch import LATER_THAN_ANY_TEST_S
 from shaftprint.recording.readers._gather import Gathered, told_apart
 from shaftprint.recording.readers._hints import rate_hint
 from shaftprint.recording.readers._printed_rate import rate_of_step
+from shaftprint.recording.readers._segment_clock import clock_of_segments
 from shaftprint.recording.readers.csv import LONGEST_LINE, Header, Unpacked, unpack
 from shaftprint.units import plain_unit
 
@@ -35,10 +36,6 @@ _COMMENT = "comment"
 _TIMES = "X_Value"
 _DATE = re.compile(r"(\d{4})[/.-](\d\d?)[/.-](\d\d?)")
 _TIME = re.compile(r"(\d\d?):(\d\d):(\d\d)(?:[.,](\d+))?")
-_RATES_AGREE = 1e-4
-# Steps within a segment, and distances of two, to this part of a step; a hole is whole samples long to less than that.
-# One that is so many times as long as all rows is kept as a jump.
-_HALF, _WHOLE, _LONGEST_HOLE = 0.5, 0.05, 20
 
 
 @dataclass(slots=True)
@@ -247,21 +244,28 @@ class _Source:
             if column is not None and column in self.wordy:
                 raise RecordingError(self.wordy[column])
         count = sum(segment.count for segment in self.segments)
-        has_value = np.isfinite(self.sources[place](0, count))
+        values = self.sources[place]
+        has_value = np.isfinite(values(0, count))
         printed = None if times_place is None else self.sources[times_place](0, count)
         printed = printed if printed is not None and np.isfinite(printed).any() else None
         if not has_value.any():
             raise RecordingError("it has no value in any row")
-        last = int(np.flatnonzero(has_value if printed is None else np.isfinite(printed))[-1]) + 1
+        filled = self._filled(has_value if printed is None else np.isfinite(printed))
+        rows = np.concatenate([np.arange(first, last) for first, last in filled])
+        last = rows.size
+        if printed is not None:
+            printed = printed[rows]
+        if last < int(rows[-1]) + 1:
+            values = partial(_picked, values, rows)
         rates = [rate_of_step(_of(segment.head, "Delta_X", place)) for segment in self.segments]
         rate_hz = self.hint_hz or rates[0]
         if printed is None and rate_hz is None:
             raise RecordingError("expected times or a Delta_X, found neither; pass sample_rate_hz= (--sample-rate)")
         if printed is None and any(rate is not None and rate != rates[0] for rate in rates):
             raise RecordingError("expected one Delta_X for all segments, found several")
-        pieces = self._seconds(place, printed, rate_hz)
-        clock = self._clock(name, pieces, last, rate_hz)
-        exact = rate_hz if rate_hz is not None and abs(clock.rate_hz / rate_hz - 1.0) < _RATES_AGREE else clock.rate_hz
+        pieces = self._seconds(place, [stop - start for start, stop in filled], printed, rate_hz)
+        clock = clock_of_segments(self.path, name, pieces, rate_hz, self.remarks)
+        exact = clock.rate_hz
         if self.hint_hz is not None and exact != self.hint_hz:
             raise RecordingError(
                 f"expected one sample rate, found {clock.rate_hz:g} Hz in its times and {self.hint_hz:g} Hz in the hint"
@@ -278,23 +282,34 @@ class _Source:
             rate_hz=exact,
             start_s=clock.start_s,
             count=last,
-            source=self.sources[place],
+            source=values,
         )
         return on_clock(channel, replace(clock, rate_hz=exact))
 
-    def _seconds(self, place: int, printed: FloatArray | None, rate_hz: float | None) -> list[FloatArray]:
-        """Return the times of the rows of every segment from the date of the first on [s]."""
+    def _filled(self, is_row: NDArray[np.bool_]) -> list[tuple[int, int]]:
+        """Return first and last of the rows that a channel fills in each segment; one of a lower rate has fewer."""
+        filled, first = [], 0
+        for segment in self.segments:
+            of_segment = np.flatnonzero(is_row[first : first + segment.count])
+            filled.append((first, first + int(of_segment[-1]) + 1 if of_segment.size else first))
+            first += segment.count
+        return filled
+
+    def _seconds(
+        self, place: int, counts: Sequence[int], printed: FloatArray | None, rate_hz: float | None
+    ) -> list[FloatArray]:
+        """Return the times of so many rows of every segment from the date of the first on [s]."""
         pieces: list[FloatArray] = []
         first = _moment(self.segments[0].head, place)
         row, end_s, zero_s = 0, -np.inf, 0.0
-        for segment in self.segments:
-            if not segment.count:
+        for segment, count in zip(self.segments, counts, strict=True):
+            if not count:
                 continue
             if printed is None:
                 rate = rate_hz or 1.0
-                seconds = _number(_of(segment.head, "X0", place)) + np.arange(segment.count) / rate
+                seconds = _number(_of(segment.head, "X0", place)) + np.arange(count) / rate
             else:
-                seconds = np.array(printed[row : row + segment.count])
+                seconds = np.array(printed[row : row + count])
             # seconds since 1904 are no seconds of a test
             if not pieces and abs(seconds[0]) > LATER_THAN_ANY_TEST_S:
                 zero_s = float(seconds[0])
@@ -313,36 +328,17 @@ class _Source:
                 seconds = seconds + shift
             pieces.append(seconds)
             end_s = float(np.nanmax(seconds)) if np.isfinite(seconds).any() else end_s
-            row += segment.count
+            row += count
         return pieces
 
-    def _clock(self, name: str, pieces: Sequence[FloatArray], count: int, rate_hz: float | None) -> SampleClock:
-        """Return the clock of all segments: with holes where whole samples are missing between, else with jumps."""
-        seconds = np.concatenate(pieces)[:count]
-        step = 1.0 / rate_hz if rate_hz else 0.0
-        is_known = step > 0.0 and all(np.all(np.abs(np.diff(piece) - step) < _HALF * step) for piece in pieces)
-        if len(pieces) == 1 or not is_known or rate_hz is None:
-            return clock_of_times(self.path, f"the times of {name}", count, lambda start, stop: seconds[start:stop])
-        holes, row, longest_s = [], 0, 0.0
-        for before, after in pairwise(pieces):
-            row += before.size
-            gap = float(after[0] - before[-1]) * rate_hz - 1.0
-            if abs(gap) < _HALF:
-                continue
-            missing = round(gap)
-            longest_s = max(longest_s, gap / rate_hz)
-            is_hole = 0 < missing < _LONGEST_HOLE * count and abs(gap - missing) <= _WHOLE
-            holes.append(
-                Hole(row=row, missing=missing, jump_s=0.0)
-                if is_hole
-                else Hole(row=row, missing=0, jump_s=gap / rate_hz)
-            )
-        if holes:
-            self.remarks.append(
-                f"{len(pieces)} segments, up to {longest_s:.6g} s apart; whole samples that are missing between two "
-                "are no numbers, other distances are kept as jumps of the clock."
-            )
-        return SampleClock(rate_hz=rate_hz, start_s=float(seconds[0]), holes=tuple(holes))
+
+def _picked(values: Source, rows: NDArray[np.int64], start: int, stop: int) -> FloatArray:
+    """Return the values of some rows of a column."""
+    if start == stop:
+        return values(0, 0)
+    first, last = int(rows[start]), int(rows[stop - 1]) + 1
+    picked: FloatArray = values(first, last)[rows[start:stop] - first]
+    return picked
 
 
 def _of(head: dict[str, list[str]], key: str, place: int) -> str:

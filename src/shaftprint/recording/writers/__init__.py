@@ -1,6 +1,13 @@
 """Recordings for other tools: one file a format; values in the channel's unit instead of counts."""
 
-from shaftprint.recording.writers._by_ending import NATIVE_ENDINGS, expect_known_ending, holds_date, write_by_ending
+from shaftprint.recording.writers._by_ending import (
+    NATIVE_ENDINGS,
+    WRITTEN_ENDINGS,
+    WRITTEN_FORMATS,
+    expect_known_ending,
+    held_date,
+    write_by_ending,
+)
 from shaftprint.recording.writers._csv import write_csv
 from shaftprint.recording.writers._mat_v5 import write_mat_v5
 from shaftprint.recording.writers._mat_v73 import write_mat_v73
@@ -9,8 +16,10 @@ from shaftprint.recording.writers._tdms import write_tdms
 
 __all__ = [
     "NATIVE_ENDINGS",
+    "WRITTEN_ENDINGS",
+    "WRITTEN_FORMATS",
     "expect_known_ending",
-    "holds_date",
+    "held_date",
     "write_by_ending",
     "write_csv",
     "write_mat_v5",

@@ -1,53 +1,99 @@
-"""Writing a recording in the format that the ending of the file's name says."""
+"""Writing a recording in the format that the ending of the file's name says, or its own name."""
 
 from collections.abc import Callable, Iterable, Mapping
-from datetime import datetime
+from dataclasses import dataclass
+from datetime import UTC, datetime
 from pathlib import Path
+from typing import Literal
 
 from shaftprint.errors import RecordingError
 from shaftprint.recording._channel import Channel
 from shaftprint.recording._write import write_recording
+from shaftprint.recording.writers._can_log import write_can_log
 from shaftprint.recording.writers._csv import write_csv
+from shaftprint.recording.writers._lvm import write_lvm
 from shaftprint.recording.writers._mat_v73 import write_mat_v73
 from shaftprint.recording.writers._mdf4 import write_mdf4
-from shaftprint.recording.writers._tdms import write_tdms
+from shaftprint.recording.writers._nmea_2000 import write_nmea_2000
+from shaftprint.recording.writers._tdms import write_tdms, write_tdms_appended
+from shaftprint.recording.writers._uff import write_uff
 
 NATIVE_ENDINGS = (".nc", ".h5", ".hdf5")
 """Endings of the native container."""
 
-_DATED = (".mf4", ".tdms")
-"""Endings of the other formats that hold the date of second 0."""
 
-_WRITERS: dict[str, Callable[..., None]] = {
-    ".csv": write_csv,
-    ".mat": write_mat_v73,
-    ".mf4": write_mdf4,
-    ".tdms": write_tdms,
-}
+@dataclass(frozen=True, kw_only=True, slots=True)
+class _WrittenFormat:
+    """A format that can be written."""
+
+    name: str
+    """Its name, as ``--format`` has it."""
+    endings: tuple[str, ...]
+    """Endings of its files; the first format of an ending is written where no name is given."""
+    write: Callable[..., tuple[str, ...] | None]
+    """Takes path, channels, ``overwrite`` and, where it holds it, ``began``; returns what is lost, a sentence each."""
+    date: Literal["none", "as it is", "in UTC", "without offset"] = "none"
+    """How it holds the date of second 0."""
+    keeps_times: bool = True
+    """Whether samples keep times of their own beside the rate."""
 
 
-def expect_known_ending(path: Path) -> None:
-    """Refuse a file whose ending names no format that can be written.
+_NATIVE = _WrittenFormat(name="native", endings=NATIVE_ENDINGS, write=write_recording, date="as it is")
+
+# One row a format; with its writer that is all that there is to add.
+_FORMATS = (
+    _NATIVE,
+    _WrittenFormat(name="csv", endings=(".csv",), write=write_csv, keeps_times=False),
+    _WrittenFormat(name="mat", endings=(".mat",), write=write_mat_v73, keeps_times=False),
+    _WrittenFormat(name="mdf4", endings=(".mf4",), write=write_mdf4, date="as it is"),
+    _WrittenFormat(name="tdms", endings=(".tdms",), write=write_tdms, date="in UTC", keeps_times=False),
+    _WrittenFormat(
+        name="tdms-appended", endings=(".tdms",), write=write_tdms_appended, date="in UTC", keeps_times=False
+    ),
+    _WrittenFormat(name="lvm", endings=(".lvm",), write=write_lvm, date="without offset"),
+    _WrittenFormat(name="uff", endings=(".uff", ".unv"), write=write_uff, date="without offset"),
+    _WrittenFormat(name="can", endings=(".blf", ".asc", ".log"), write=write_can_log, date="without offset"),
+    _WrittenFormat(name="nmea2000", endings=(".blf", ".asc", ".log"), write=write_nmea_2000, date="without offset"),
+)
+
+WRITTEN_FORMATS = tuple(one.name for one in _FORMATS)
+"""Names of the formats that can be written."""
+WRITTEN_ENDINGS = tuple(dict.fromkeys(ending for one in _FORMATS for ending in one.endings))
+"""Endings of the files that can be written."""
+
+
+def expect_known_ending(path: Path, *, format: str | None = None) -> None:
+    """Refuse a file whose ending names no format that can be written, or another than the one that is asked for.
 
     Raises
     ------
     RecordingError
-        If it does not; the message lists the endings.
+        If it does; the message lists the endings.
     """
-    endings = (*NATIVE_ENDINGS, *_WRITERS)
-    if path.suffix.lower() not in endings:
-        raise RecordingError(
-            f'{path}: expected one of the endings {", ".join(endings)}, found "{path.suffix}"; give the file one of '
-            "them."
-        )
+    _format_of(path, format)
 
 
-def holds_date(path: Path, began: datetime | None) -> bool:
-    """Return whether a file of this ending holds a date of second 0; TDMS has them in UTC alone."""
-    ending = path.suffix.lower()
-    if ending == ".tdms" and began is not None and began.tzinfo is None:
-        return False
-    return ending in (*NATIVE_ENDINGS, *_DATED)
+def _format_of(path: Path, name: str | None) -> _WrittenFormat:
+    named = [one for one in _FORMATS if name in (None, one.name)]
+    fitting = [one for one in named if path.suffix.lower() in one.endings]
+    if fitting:
+        return fitting[0]
+    endings = dict.fromkeys(ending for one in named for ending in one.endings)
+    if not endings:
+        raise RecordingError(f'{path}: expected one of the formats {", ".join(WRITTEN_FORMATS)}, found "{name}".')
+    raise RecordingError(
+        f'{path}: expected one of the endings {", ".join(endings)}, found "{path.suffix}"; give the file one of them.'
+    )
+
+
+def held_date(path: Path, began: datetime | None, *, format: str | None = None) -> datetime | None:
+    """Return what a file of this ending or format holds of a date of second 0: None, or without its offset from UTC."""
+    how = _format_of(path, format).date
+    if began is None or how == "none" or (how == "in UTC" and began.tzinfo is None):
+        return None
+    if how == "in UTC":
+        return began.astimezone(UTC)
+    return began.replace(tzinfo=None) if how == "without offset" else began
 
 
 def write_by_ending(
@@ -57,21 +103,29 @@ def write_by_ending(
     attributes: Mapping[str, str | float] | None = None,
     began: datetime | None = None,
     overwrite: bool = False,
-) -> None:
-    """Write channels as .nc, .h5, .hdf5 (native container), .csv, .mat (version 7.3), .mf4 or .tdms.
+    format: str | None = None,
+) -> tuple[str, ...]:
+    """Write channels in the format of the ending: `WRITTEN_ENDINGS`; .nc, .h5 and .hdf5 are the native container.
 
     Parameters
     ----------
     path
-        The file to write, whole or not at all.
+        The file to write, whole or not at all. Logs of a CAN bus get a DBC file beside them.
     channels
-        Channels of any recording; for .csv and .mat on one clock.
+        Channels of any recording; for .csv and .mat on one clock, for .tdms without messages.
     attributes
         Facts on the whole recording; only the native container holds them.
     began
-        Date of second 0, where it is known; .csv and .mat do not hold it.
+        Date of second 0, where it is known; ``held_date`` says what is held of it.
     overwrite
         Whether a file of that name may be replaced.
+    format
+        One of `WRITTEN_FORMATS` where the ending stands for several, or to be sure.
+
+    Returns
+    -------
+    remarks
+        What was lost on the way, and what was written beside, a sentence each.
 
     Raises
     ------
@@ -79,10 +133,14 @@ def write_by_ending(
         If the ending is of no format, the format cannot hold the channels, or the file cannot be written.
     """
     path = Path(path)
-    expect_known_ending(path)
-    if path.suffix.lower() in NATIVE_ENDINGS:
+    written = _format_of(path, format)
+    if written is _NATIVE:
         write_recording(path, channels, attributes=attributes, began=began, overwrite=overwrite)
-    elif holds_date(path, began):
-        _WRITERS[path.suffix.lower()](path, channels, began=began, overwrite=overwrite)
-    else:
-        _WRITERS[path.suffix.lower()](path, channels, overwrite=overwrite)
+        return ()
+    channels, date = list(channels), held_date(path, began, format=format)
+    dated = {} if date is None else {"began": date}
+    remarks = written.write(path, channels, overwrite=overwrite, **dated) or ()
+    by_rate = [one.name for one in channels if one.stamps is not None and not written.keeps_times]
+    if by_rate:
+        remarks = (*remarks, f"{', '.join(by_rate)}: times of the samples beside their clock are not kept.")
+    return remarks

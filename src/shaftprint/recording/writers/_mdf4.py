@@ -12,6 +12,7 @@ from shaftprint.files import reason, written_whole
 from shaftprint.recording._channel import Channel
 from shaftprint.recording._container import CHUNK_SAMPLES
 from shaftprint.recording.readers import library
+from shaftprint.recording.writers._shared_clock import by_clock
 
 _VERSION = "4.10"
 
@@ -39,18 +40,13 @@ def write_mdf4(
     """
     path = Path(path)
     asammdf = library(path, "asammdf", "MDF")
-    groups: dict[tuple[object, ...], list[Channel]] = {}
-    for number, channel in enumerate(channels):
-        clock = (channel.rate_hz, channel.start_s, channel.count)
-        # times of its own are written for each channel: whether two share theirs would have to be read
-        groups.setdefault(clock if channel.stamps is None else (*clock, number), []).append(channel)
     try:
         with written_whole(path, overwrite=overwrite) as part:
             file = asammdf.MDF(version=_VERSION)
             # not the date of writing: the same recording is to give the same file
             file.start_time = began or datetime(1970, 1, 1, tzinfo=UTC)
             try:
-                for number, group in enumerate(groups.values()):
+                for number, group in enumerate(by_clock(channels)):
                     _append(asammdf, file, number, group)
                 # the library gives every name another ending than its own
                 written = Path(str(file.save(part.with_suffix(".mf4"), overwrite=True)))

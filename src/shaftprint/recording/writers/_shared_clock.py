@@ -1,10 +1,15 @@
 """What formats with clocks, or with a single one, demand of the channels."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
+
+import numpy as np
 
 from shaftprint.errors import RecordingError
 from shaftprint.recording._channel import Channel
+
+# A sample on the border of two parts may be off it by rounding.
+_ROUNDING = 1e-6
 
 
 def on_one_clock(path: Path, channels: Iterable[Channel]) -> tuple[Channel, ...]:
@@ -31,6 +36,40 @@ def on_one_clock(path: Path, channels: Iterable[Channel]) -> tuple[Channel, ...]
     return shared
 
 
+def by_clock(channels: Iterable[Channel]) -> list[list[Channel]]:
+    """Return the channels in groups that share a clock, each with times of its own alone."""
+    groups: dict[tuple[object, ...], list[Channel]] = {}
+    for number, channel in enumerate(channels):
+        clock = (channel.rate_hz, channel.start_s, channel.count)
+        # times of its own are written for each channel: whether two share theirs would have to be read
+        groups.setdefault(clock if channel.stamps is None else (*clock, number), []).append(channel)
+    return list(groups.values())
+
+
+def in_parts(channels: Sequence[Channel], length_s: float) -> Iterator[list[Channel]]:
+    """Yield the channels in parts of so many seconds; those that have begun late or ended are empty there.
+
+    Parameters
+    ----------
+    channels
+        Channels of any recording.
+    length_s
+        Length of each part [s].
+    """
+    stops = [0] * len(channels)
+    while any(stop < one.count for one, stop in zip(channels, stops, strict=True)):
+        starts = stops
+        firsts = (
+            one.time_s(first, first + 1) for one, first in zip(channels, starts, strict=True) if first < one.count
+        )
+        end_s = min(float(first[0]) for first in firsts) + length_s
+        stops = [
+            int(np.clip(np.ceil(one.sample_at(end_s) - _ROUNDING), first, one.count))
+            for one, first in zip(channels, starts, strict=True)
+        ]
+        yield [one.part(first, last) for one, first, last in zip(channels, starts, stops, strict=True)]
+
+
 def expect_no_messages(path: Path, channel: Channel, *, on: str) -> None:
     """Check that a channel lies on a clock, as in a format that keeps no time of each sample.
 
@@ -49,5 +88,5 @@ def expect_no_messages(path: Path, channel: Channel, *, on: str) -> None:
     if channel.is_uneven:
         raise RecordingError(
             f"{path}: expected channels on {on}, found messages at times of their own in {channel.name}; "
-            "write .nc or .mf4, which keep them."
+            "write .nc, .mf4, .lvm, .uff or .blf, which keep them."
         )

@@ -1,7 +1,7 @@
 """NI TDMS files: one group, each channel with waveform properties and counts with a linear scale."""
 
 from collections.abc import Iterable
-from datetime import UTC, datetime
+from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from typing import Any
 
@@ -12,10 +12,11 @@ from shaftprint.files import reason, written_whole
 from shaftprint.recording._channel import Channel
 from shaftprint.recording._container import CHUNK_SAMPLES
 from shaftprint.recording.readers import library
-from shaftprint.recording.writers._shared_clock import expect_no_messages
+from shaftprint.recording.writers._shared_clock import expect_no_messages, in_parts
 
 _GROUP = "recording"
 _NO_SCALE_BEFORE = 0xFFFFFFFF
+_APPENDED_S = 10.0
 
 
 def write_tdms(
@@ -55,6 +56,44 @@ def write_tdms(
         raise RecordingError(f"{path}: the file cannot be written: {reason(error)}") from None
 
 
+def write_tdms_appended(
+    path: str | Path, channels: Iterable[Channel], *, began: datetime | None = None, overwrite: bool = False
+) -> None:
+    """Write channels as a program does that opens the file every ten seconds, appends what it has, and closes it.
+
+    Each part states its start again: by the date where that is known, else by the offset.
+
+    Parameters
+    ----------
+    path, channels, began, overwrite
+        As for ``write_tdms``.
+
+    Raises
+    ------
+    RecordingError
+        As for ``write_tdms``.
+    """
+    path, written = Path(path), list(channels)
+    nptdms = library(path, "nptdms", "TDMS")
+    for channel in written:
+        expect_no_messages(path, channel, on="clocks")
+    try:
+        with written_whole(path, overwrite=overwrite) as part:
+            part.touch()
+            for parts in in_parts(written, _APPENDED_S):
+                with nptdms.TdmsWriter(str(part), mode="a") as writer:
+                    for channel in parts:
+                        if channel.count:
+                            stated = _properties(nptdms.types, channel, began)
+                            if began is not None:
+                                start = began + timedelta(seconds=channel.start_s)
+                                stated |= _start_time(start) | {"wf_start_offset": 0.0}
+                            counts = channel.read(0, channel.count)
+                            writer.write_segment([nptdms.ChannelObject(_GROUP, channel.name, counts, stated)])
+    except OSError as error:
+        raise RecordingError(f"{path}: the file cannot be written: {reason(error)}") from None
+
+
 def _properties(types: Any, channel: Channel, began: datetime | None) -> dict[str, object]:
     properties: dict[str, object] = {
         "wf_increment": 1.0 / channel.rate_hz,
@@ -64,7 +103,7 @@ def _properties(types: Any, channel: Channel, began: datetime | None) -> dict[st
         "description": channel.long_name,
     }
     if began is not None:
-        properties["wf_start_time"] = np.datetime64(began.astimezone(UTC).replace(tzinfo=None), "us")
+        properties |= _start_time(began)
     if channel.read(0, 0).dtype == np.int16 and (channel.scale, channel.offset) != (1.0, 0.0):
         properties |= {
             "NI_Scaling_Status": "unscaled",
@@ -75,3 +114,7 @@ def _properties(types: Any, channel: Channel, began: datetime | None) -> dict[st
             "NI_Scale[0]_Linear_Input_Source": types.Uint32(_NO_SCALE_BEFORE),
         }
     return properties
+
+
+def _start_time(start: datetime) -> dict[str, object]:
+    return {"wf_start_time": np.datetime64(start.astimezone(UTC).replace(tzinfo=None), "us")}

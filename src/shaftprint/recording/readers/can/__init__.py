@@ -2,7 +2,8 @@
 
 from shaftprint.recording.readers.can._channels import Decoded, decoded
 from shaftprint.recording.readers.can._database import Database
-from shaftprint.recording.readers.can._frames import EXTENDED, FILL, FrameLog, Frames
+from shaftprint.recording.readers.can._frames import EXTENDED, FILL, FrameLog, Frames, pgn_of
+from shaftprint.recording.readers.can._known import KNOWN
 from shaftprint.recording.readers.can._log import (
     NAME,
     add_signals,
@@ -12,11 +13,16 @@ from shaftprint.recording.readers.can._log import (
     is_mine,
     read,
 )
+from shaftprint.recording.readers.can._messages import Message as BusMessage
+from shaftprint.recording.readers.can._messages import Signal as BusSignal
 
 __all__ = [
     "EXTENDED",
     "FILL",
+    "KNOWN",
     "NAME",
+    "BusMessage",
+    "BusSignal",
     "Database",
     "Decoded",
     "FrameLog",
@@ -27,5 +33,6 @@ __all__ = [
     "decoded",
     "expect_known",
     "is_mine",
+    "pgn_of",
     "read",
 ]

@@ -43,6 +43,7 @@ _SHOWN = re.compile(
     r"\[(?P<length>\d+)\]\s+(?P<data>(?:[0-9A-F]{2}\s*)+|remote request)"
 )
 _FIRST_LINES = 12
+_EPOCH_YEAR = 1970
 
 
 def kind_of(path: Path, begin: str) -> str:
@@ -230,6 +231,9 @@ def _date(text: str) -> datetime | None:
     hour, minute, second = (int(part) for part in date["time"].split(":"))
     if date["half"]:
         hour = hour % 12 + (12 if date["half"].lower() == "pm" else 0)
+    if int(date["year"]) <= _EPOCH_YEAR:
+        # what programs write that know no date
+        return None
     try:
         whole = datetime(int(date["year"]), month, int(date["day"]), hour, minute, second)  # noqa: DTZ001
     except ValueError:

@@ -1,0 +1,114 @@
+"""Universal files: a data set 58 a channel, in binary, by pyuff."""
+
+import warnings
+from collections.abc import Iterable
+from datetime import datetime
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from shaftprint.errors import RecordingError
+from shaftprint.escape import printable
+from shaftprint.files import reason, written_whole
+from shaftprint.recording._channel import Channel
+from shaftprint.recording.readers import library, rate_of_step
+
+_TIME, _GENERAL = 17, 0
+_LONGEST, _LONGEST_LABEL = 80, 20
+_DATE = "%Y-%m-%d %H:%M:%S"
+
+
+def write_uff(
+    path: str | Path, channels: Iterable[Channel], *, began: datetime | None = None, overwrite: bool = False
+) -> tuple[str, ...]:
+    """Write channels as functions of time, each with its clock, or with the time of each sample.
+
+    The head of a function prints start and step with six digits. Where these do not tell the clock, and where samples
+    are no numbers, which the format does not know, each sample gets its time.
+
+    Parameters
+    ----------
+    path
+        The file to write, whole or not at all.
+    channels
+        Channels of any recording, of two samples at least.
+    began
+        Date of second 0 by the clock of the place, where it is known; the format holds seconds.
+    overwrite
+        Whether a file of that name may be replaced.
+
+    Returns
+    -------
+    remarks
+        What was lost, a sentence each.
+
+    Raises
+    ------
+    RecordingError
+        If pyuff is not installed, a channel has fewer than two numbers, or the file cannot be written.
+    """
+    path = Path(path)
+    pyuff = library(path, "pyuff", "universal")
+    remarks = []
+    if began is not None and began.microsecond:
+        remarks.append("The date of second 0 is cut off at the second.")
+    try:
+        with written_whole(path, overwrite=overwrite) as part, warnings.catch_warnings():
+            # the library leaves binary files to be closed by Python
+            warnings.simplefilter("ignore", ResourceWarning)
+            # the library's "overwrite" leaves seven bytes of a binary file
+            part.touch()
+            for channel in channels:
+                function = _function(path, channel, began)
+                remarks += [f"{channel.name}: {loss}" for loss in _losses(channel)]
+                pyuff.UFF(str(part)).write_sets([function], "add")
+    except OSError as error:
+        raise RecordingError(f"{path}: the file cannot be written: {reason(error)}") from None
+    return tuple(remarks)
+
+
+def _function(path: Path, channel: Channel, began: datetime | None) -> dict[str, Any]:
+    values = channel.values(0, channel.count)
+    is_number = np.isfinite(values)
+    times = channel.stamps_s(0, channel.count)
+    if np.count_nonzero(is_number) < 2:
+        raise RecordingError(f"{path}, channel {channel.name}: expected at least two numbers, found fewer.")
+    start, step = float(f"{channel.start_s:.5e}"), f"{1.0 / channel.rate_hz:.5e}"
+    is_even = channel.stamps is None and start == channel.start_s and rate_of_step(step) == channel.rate_hz
+    return {
+        "type": 58,
+        "binary": 1,
+        "func_type": 1,
+        "rsp_node": 0,
+        "rsp_dir": 0,
+        "ref_node": 0,
+        "ref_dir": 0,
+        "id1": printable(channel.name)[:_LONGEST],
+        "id2": printable(channel.long_name)[:_LONGEST] or "NONE",
+        "id3": "NONE" if began is None else began.strftime(_DATE),
+        "id4": "NONE",
+        "id5": "NONE",
+        "rsp_ent_name": "NONE",
+        "ref_ent_name": "NONE",
+        "abscissa_spacing": int(is_even and bool(is_number.all())),
+        "abscissa_spec_data_type": _TIME,
+        "abscissa_axis_lab": "Time",
+        "abscissa_axis_units_lab": "s",
+        "ordinate_spec_data_type": _GENERAL,
+        "ordinate_axis_lab": printable(channel.long_name)[:_LONGEST_LABEL] or "NONE",
+        "ordinate_axis_units_lab": printable(channel.unit)[:_LONGEST_LABEL] or "NONE",
+        "orddenom_spec_data_type": _GENERAL,
+        "z_axis_spec_data_type": _GENERAL,
+        "x": times[is_number],
+        "data": values[is_number],
+    }
+
+
+def _losses(channel: Channel) -> list[str]:
+    losses = []
+    if len(channel.name) > _LONGEST:
+        losses.append(f"its name is cut off after {_LONGEST} letters.")
+    if len(channel.unit) > _LONGEST_LABEL:
+        losses.append(f"its unit is cut off after {_LONGEST_LABEL} letters.")
+    return losses
