@@ -16,9 +16,9 @@ noise is made white beforehand by its own autoregression; its size is that of th
 from dataclasses import dataclass
 
 import numpy as np
-import scipy
 
 from shaftprint.arrays import BoolArray, FloatArray, IntArray
+from shaftprint.kernels import compiled
 
 # Rate at which torque and speed are compared [Hz]: faster, the shaft twists.
 _RATE_HZ = 20.0
@@ -189,8 +189,20 @@ def _lags(values: FloatArray, rate_hz: float) -> list[FloatArray]:
     lags = []
     for time_s in _LAGS_S:
         share = -np.expm1(-1.0 / (rate_hz * time_s))
-        lags.append(values[0] + scipy.signal.lfilter([share], [1.0, share - 1.0], values - values[0]))
+        behind = np.empty(values.size)
+        _follow(values - values[0], share, behind)
+        lags.append(values[0] + behind)
     return lags
+
+
+# scipy.signal has it as well, and takes a second to load
+@compiled(nogil=True)
+def _follow(values, share: float, behind) -> None:  # type: ignore[no-untyped-def]
+    """Write values behind a lag of first order that was at 0 before them."""
+    keep, last = 1.0 - share, 0.0
+    for k in range(values.size):
+        last = share * values[k] + keep * last
+        behind[k] = last
 
 
 def _motion(set_point: FloatArray, speed: FloatArray, rate_hz: float) -> FloatArray:
@@ -222,11 +234,15 @@ def _whitening(noise: FloatArray, used: BoolArray) -> FloatArray:
     change = np.where(used[1:] & used[:-1], np.diff(noise), 0.0)
     related = np.array([change[: change.size - lag] @ change[lag:] for lag in range(_ORDER + 1)])
     related[0] = 1.000001 * related[0] + np.finfo(np.float64).tiny
-    return np.convolve([1.0, -1.0], np.append(1.0, scipy.linalg.solve_toeplitz(related[:-1], -related[1:])))
+    lags = np.arange(_ORDER)
+    matrix = related[np.abs(lags[:, np.newaxis] - lags)]
+    return np.convolve([1.0, -1.0], np.append(1.0, np.linalg.solve(matrix, -related[1:])))
 
 
 def _filtered(taps: FloatArray, values: FloatArray) -> FloatArray:
-    return np.asarray(scipy.signal.lfilter(taps, [1.0], values - values[:1], axis=0))
+    rows = (values - values[:1]).T
+    filtered = [np.convolve(row, taps)[: row.size] for row in np.atleast_2d(rows)]
+    return np.asarray(filtered[0] if values.ndim == 1 else np.column_stack(filtered))
 
 
 def _variance(noise: FloatArray, pieces: list[slice], whole: BoolArray) -> FloatArray:

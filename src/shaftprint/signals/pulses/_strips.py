@@ -8,9 +8,9 @@ revolution is centred on the interval, so that a constant acceleration cancels.
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from scipy.special import chdtri
 
 from shaftprint.arrays import BoolArray, FloatArray, IntArray, frozen_float
+from shaftprint.distributions import chi_square_quantile
 from shaftprint.errors import SignalError
 from shaftprint.signals._signals import StripAngles
 
@@ -220,7 +220,7 @@ def _shift(reference: _Pattern, found: _Pattern, noise: float) -> int:
         return 0
     variance = noise**2 * (1.0 / reference.turns + 1.0 / found.turns)
     as_counted = np.sum((found.share - reference.share) ** 2 / variance)
-    if as_counted < chdtri(strips, _UNLIKELY):
+    if as_counted < chi_square_quantile(1.0 - _UNLIKELY, strips):
         return 0
     # a stretch counted one too low shows strip k where the reference has strip k + 1
     errors = np.array([np.sum((np.roll(found.share, k) - reference.share) ** 2) for k in range(strips)])
