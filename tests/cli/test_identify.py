@@ -172,4 +172,4 @@ def test_a_fingerprint_alone_has_no_pictures(run, recording, tmp_path):
         tmp_path / "o",
     )
     assert result.exit_code == 2
-    assert "--no-report is for ships, and goes with neither --figures nor --pdf" in " ".join(result.stderr.split())
+    assert "--no-report goes with neither --figures nor --pdf" in " ".join(result.stderr.split())

@@ -102,8 +102,10 @@ def command(
         raise click.UsageError(f"--with {more} is for ships, and for signals of --mode shaftprint: leave it out.")
     if starboard is not None and drive_file is not None:
         raise click.UsageError("--starboard is for ships: leave out --drive.")
-    if no_report and (drive_file is not None or figures or about.pdf):
-        raise click.UsageError("--no-report is for ships, and goes with neither --figures nor --pdf.")
+    if no_report and drive_file is not None:
+        raise click.UsageError("--no-report is for ships, and a drive has a page that is made at once: leave it out.")
+    if no_report and (figures or about.pdf):
+        raise click.UsageError("--no-report goes with neither --figures nor --pdf: leave one of them out.")
     hints = hints_of(**said)
     if drive_file is not None:
         identify_on_the_bench(

@@ -11,6 +11,7 @@ import numpy as np
 from shaftprint.arrays import FloatArray, IntArray
 from shaftprint.errors import RecordingError
 from shaftprint.recording._channel import Channel, ClockJump, Times
+from shaftprint.recording.readers._epoch import LATER_THAN_ANY_TEST_S
 
 _BLOCK = 1_000_000
 _Key = TypeVar("_Key", bound=Hashable)
@@ -21,6 +22,8 @@ _STEP_TOLERANCE = 0.5
 
 # A logger that lost data did so at a few places; times that jump more often are those of messages.
 _MOST_HOLES, _MOST_HOLES_SHARE = 3, 1e-3
+# What is between two pauses longer than all samples; fewer rows are times that are wrong.
+_FEWEST_OF_A_PART = 10
 # A hole is whole samples long to this part of a step, where times are printed exactly.
 _WHOLE = 0.02
 
@@ -271,8 +274,13 @@ def _holes(path: Path, name: str, count: int, read: Times, step: float) -> tuple
         remainder = jump - places * exact
         allowed = _WHOLE * exact + jitter * (2.0 + places / (end - begin))
         holes.append(Hole(row=row, missing=places - 1, jump_s=0.0 if abs(remainder) <= allowed else remainder))
-    if sum(hole.missing for hole in holes) > count:
+    missing = sum(hole.missing for hole in holes)
+    is_pause = bool(np.diff(edges).min() >= _FEWEST_OF_A_PART) and missing * exact <= LATER_THAN_ANY_TEST_S
+    if missing > count and not is_pause:
         raise _not_uniform(path, name, step, float(jumps[np.argmax(jumps)]), int(rows[np.argmax(jumps)]))
+    if missing > count:
+        # a pause longer than all samples is no place of lost data: the clock goes on later
+        return tuple(Hole(row=hole.row, missing=0, jump_s=hole.jump_s + hole.missing * exact) for hole in holes)
     return tuple(holes)
 
 

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shaftprint.errors import RecordingError
+from shaftprint.escape import printable
 from shaftprint.recording._channel import Source
 from shaftprint.recording._recording import Recording
 from shaftprint.recording.readers._attributes import numbers_among, plain
@@ -24,6 +25,8 @@ from shaftprint.recording.readers.hdf5_files import expect_storage, is_hdf5, ope
 NAME = "HDF5 or NetCDF-4"
 
 _MOST_COLUMNS = 64
+_PANDAS = "pandas_type"
+_OCTAVE, _VALUE = "OCTAVE_NEW_FORMAT", "value"
 # whole, real and logical numbers
 _NUMBERS = "fiub"
 _AS_THEY_ARE = CountRule(scale=1.0, offset=0.0)
@@ -49,6 +52,7 @@ def read(path: Path, **hints: object) -> Recording:
     opened = Opened(path, file.close)
     try:
         with told_as_damage(path, NAME):
+            _expect_no_pandas(path, file)
             contents = _Contents(scalars={"": numbers_among(file.attrs)})
             _walk(path, file, "", opened, contents, depth=0)
             gathered = gather_vectors(
@@ -58,6 +62,16 @@ def read(path: Path, **hints: object) -> Recording:
     except BaseException:
         opened.close()
         raise
+
+
+def _expect_no_pandas(path: Path, file: Any) -> None:
+    """Refuse tables of pandas, whose columns stand in blocks with the names apart."""
+    name = next((key for key, item in file.items() if isinstance(item, h5py.Group) and _PANDAS in item.attrs), None)
+    if name is not None:
+        raise RecordingError(
+            f'{path}: expected vectors, found a table of pandas, "{printable(name)}"; write it as CSV, '
+            f"pandas.read_hdf(FILE, {printable(name)!r}).to_csv(...)."
+        )
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -73,6 +87,9 @@ def _walk(path: Path, group: Any, name: str, opened: Opened, contents: _Contents
     """Collect the vectors and numbers of a group and of those in it; links may make circles, so to a depth only."""
     for key, item in group.items():
         inside = f"{name}/{key}" if name else key
+        if isinstance(item, h5py.Group) and _OCTAVE in item.attrs and _VALUE in item:
+            # Octave keeps a variable as a group of its type and its value
+            item = item[_VALUE]
         if isinstance(item, h5py.Group) and depth < 8:
             contents.scalars[inside] = numbers_among(item.attrs)
             _walk(path, item, inside, opened, contents, depth=depth + 1)

@@ -22,6 +22,7 @@ from shaftprint.recording.readers._clock import on_clock
 from shaftprint.recording.readers._epoch import LATER_THAN_ANY_TEST_S
 from shaftprint.recording.readers._gather import Gathered, told_apart
 from shaftprint.recording.readers._hints import rate_hint
+from shaftprint.recording.readers._packed import CANNOT_BE_UNPACKED, damaged_gzip, first_bytes, open_unpacked
 from shaftprint.recording.readers._printed_rate import rate_of_step
 from shaftprint.recording.readers._segment_clock import clock_of_segments
 from shaftprint.recording.readers.csv import LONGEST_LINE, Header, Unpacked, unpack
@@ -52,8 +53,7 @@ class _Segment:
 
 def is_mine(path: Path) -> bool:
     """Return whether the file begins as LabVIEW's text does."""
-    with path.open("rb") as file:
-        return file.read(len(_MARK)) == _MARK
+    return (first_bytes(path) or b"").startswith(_MARK)
 
 
 def read(path: Path, **hints: object) -> Recording:
@@ -68,16 +68,19 @@ def read(path: Path, **hints: object) -> Recording:
         If a head or a row cannot be used.
     """
     rate_hz = rate_hint(path, hints)
-    with path.open("rb") as file:
-        general, separator, segments = _scanned(path, file)
-        if not segments:
-            raise RecordingError(f"{path}: expected segments with titles X_Value ..., found none.")
-        spool = Spool(path, [])
-        try:
-            return _recording(path, file, general, separator, segments, spool, rate_hz)
-        except BaseException:
-            spool.close()
-            raise
+    try:
+        with open_unpacked(path) as file:
+            general, separator, segments = _scanned(path, file)
+            if not segments:
+                raise RecordingError(f"{path}: expected segments with titles X_Value ..., found none.")
+            spool = Spool(path, [])
+            try:
+                return _recording(path, file, general, separator, segments, spool, rate_hz)
+            except BaseException:
+                spool.close()
+                raise
+    except CANNOT_BE_UNPACKED as error:
+        raise damaged_gzip(path, error) from None
 
 
 def _scanned(path: Path, file: IO[bytes]) -> tuple[dict[str, list[str]], str, list[_Segment]]:

@@ -22,7 +22,7 @@ from shaftprint.recording.readers._hints import rate_hint
 from shaftprint.recording.readers._library_output import quiet, remarks
 from shaftprint.recording.readers._mdf_frames import frames_of, holds_frames, holds_no_values, is_bus_logging
 from shaftprint.recording.readers._mdf_records import MdfRecords, expect_in_record
-from shaftprint.recording.readers._mdf_values import is_text_table, numbers_of, unit_of
+from shaftprint.recording.readers._mdf_values import by_formula, is_library_s, numbers_of, unit_of
 from shaftprint.recording.readers._opened import Opened
 from shaftprint.recording.readers.can import Database, Decoded, add_signals, database_of, decoded, expect_known
 from shaftprint.units import plain_unit
@@ -36,6 +36,7 @@ _MASTERS = (2, 3)
 _TIME = 1
 _LINEAR = 1
 _ALL_INVALID, _HAS_INVALIDATION_BITS = 1, 2
+_UNDATED, _UNDATED_TOO = 1970, datetime(1980, 1, 1)  # noqa: DTZ001 - the file has no zone
 # MDF 3, block CC: tables of texts
 _TEXTS_OF_MDF_3 = (11, 12)
 
@@ -77,12 +78,24 @@ def read(path: Path, **hints: object) -> Recording:
         with told_as_damage(path, NAME):
             gathered = _gather(path, file, opened, rate, database, closing)
             gathered.left_out.update(remarks(said, "asammdf"))
-            began = file.start_time
-            is_dated = isinstance(began, datetime) and began.year > 1970
-            return gathered.recording_from_its_zero(f"{NAME} {file.version}", opened.close, began if is_dated else None)
+            return gathered.recording_from_its_zero(f"{NAME} {file.version}", opened.close, _date(file))
     except BaseException:
         opened.close()
         raise
+
+
+def _date(file: Any) -> datetime | None:
+    """Return the date of second 0; None where the head has none.
+
+    Before version 3.20 the head has a date and a time of the place alone; the library takes them for those of this
+    computer. What stands there where a writer was given none is the first moment of 1970 or 1980.
+    """
+    date = file.start_time
+    if not isinstance(date, datetime) or date.year <= _UNDATED or date.replace(tzinfo=None) == _UNDATED_TOO:
+        return None
+    if _is_v4(file) or int(getattr(file.header, "abs_time", None) or 0):
+        return date
+    return date.astimezone().replace(tzinfo=None)
 
 
 def _close(file: Any) -> None:
@@ -247,7 +260,8 @@ def _channel(path: Path, place: _Place, opened: Opened, name: str, clock: Sample
     conversion = described.conversion
     kind = -1 if conversion is None else int(conversion.conversion_type)
     scale, offset = 1.0, 0.0
-    is_text = _is_v4(file) and is_text_table(conversion)
+    is_ours = not is_library_s(conversion, is_v4=_is_v4(file))
+    values_of = numbers_of if _is_v4(file) else by_formula
     flags = int(getattr(described, "flags", 0))
     has_bits = bool(flags & (_ALL_INVALID | _HAS_INVALIDATION_BITS)) and _is_v4(file)
     is_all_invalid = has_bits and not flags & _HAS_INVALIDATION_BITS
@@ -261,7 +275,7 @@ def _channel(path: Path, place: _Place, opened: Opened, name: str, clock: Sample
         scale, offset = (scale, offset) if is_counts else (1.0, 0.0)
     elif conversion is not None:
         is_counts = False
-    raw = is_counts or is_text or (not _is_v4(file) and kind in _TEXTS_OF_MDF_3)
+    raw = is_counts or is_ours or (not _is_v4(file) and kind in _TEXTS_OF_MDF_3)
 
     def source(start: int, stop: int) -> NDArray[Any]:
         with opened.reading(name), told_as_damage(path, NAME):
@@ -270,8 +284,8 @@ def _channel(path: Path, place: _Place, opened: Opened, name: str, clock: Sample
                 raise RecordingError(f"{path}, channel {name}: samples [{start}, {stop}) are missing; is the file cut?")
             if is_counts:
                 return np.ascontiguousarray(values, dtype=np.int16)
-            if is_text:
-                numbers = numbers_of(conversion, values)
+            if is_ours:
+                numbers = values_of(conversion, values)
             else:
                 # a copy: the library's type of numbers carries the conversion, and would apply it again
                 numbers = np.empty(len(values))

@@ -1,5 +1,7 @@
 """What the conversion of an MDF 4 channel makes of its counts: numbers, and none where it gives a text."""
 
+import importlib
+import re
 from typing import Any
 
 import numpy as np
@@ -7,17 +9,62 @@ from numpy.typing import NDArray
 
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import RecordingError
+from shaftprint.escape import printable
 from shaftprint.recording.readers._no_value import codes_without_value
 
 # ASAM MDF 4.1, block CC: types of a conversion.
-_VALUE_TO_TEXT, _RANGE_TO_TEXT = 7, 8
+_FORMULA, _RANGES, _VALUE_TO_TEXT, _RANGE_TO_TEXT = 3, 6, 7, 8
+# ASAM MDF 3, block CC.
+_FORMULA_OF_MDF_3 = 10
+_WHOLE, _LONGEST_FORMULA = re.compile(r"(?<![\w.])\d+(?![\w.])"), 1000
 # Numbers of states are small; larger ones belong to a quantity.
 _LARGEST_STATE = 64
 
 
-def is_text_table(conversion: Any) -> bool:
-    """Return whether a conversion of MDF 4 gives texts for some or all of its counts."""
-    return conversion is not None and int(conversion.conversion_type) >= _VALUE_TO_TEXT
+def is_library_s(conversion: Any, *, is_v4: bool) -> bool:
+    """Return whether the library makes numbers of the counts of a conversion as the standard has it.
+
+    It takes a formula of whole counts in their own width, where 2 * X overflows, and passes the counts on where it
+    cannot work a formula out; of whole counts in a table of ranges it finds none.
+    """
+    kind = -1 if conversion is None else int(conversion.conversion_type)
+    return kind not in (_FORMULA, _RANGES, _VALUE_TO_TEXT, _RANGE_TO_TEXT) if is_v4 else kind != _FORMULA_OF_MDF_3
+
+
+def by_formula(conversion: Any, counts: NDArray[Any]) -> FloatArray:
+    """Return the values of counts by the formula of a conversion.
+
+    Raises
+    ------
+    RecordingError
+        If it cannot be worked out.
+    """
+    numexpr = importlib.import_module("numexpr")
+    text = str(conversion.formula).strip(" \t\r\n\0")
+    counted = counts.astype(np.float64)
+    try:
+        if len(text) > _LONGEST_FORMULA:
+            raise ValueError("too long")
+        # powers of whole numbers would be worked out to the last digit, however many there are
+        names = {"X": counted, "X1": counted, "x": counted, "x1": counted}
+        values = numexpr.evaluate(_WHOLE.sub(r"\g<0>.0", text), local_dict=names, global_dict={})
+    except (ArithmeticError, ValueError, KeyError, TypeError, SyntaxError, AttributeError, NameError) as error:
+        shown = printable(text)[:80]
+        raise RecordingError(
+            f'expected a formula that can be worked out, found "{shown}" ({printable(str(error))[:80]}); '
+            "export the channel as numbers."
+        ) from None
+    return np.broadcast_to(np.asarray(values, dtype=np.float64), counts.shape).copy()
+
+
+def _by_ranges(conversion: Any, counts: NDArray[Any]) -> FloatArray:
+    """Return the values of a table of ranges, whose upper ends belong to them for whole counts only."""
+    values = np.full(len(counts), float(conversion.default))
+    for place in reversed(range((int(conversion.val_param_nr) - 1) // 3)):
+        lower, upper = conversion[f"lower_{place}"], conversion[f"upper_{place}"]
+        below = counts < upper if counts.dtype.kind == "f" else counts <= upper
+        values[(counts >= lower) & below] = conversion[f"phys_{place}"]
+    return values
 
 
 def numbers_of(conversion: Any, counts: NDArray[Any]) -> FloatArray:
@@ -38,10 +85,14 @@ def numbers_of(conversion: Any, counts: NDArray[Any]) -> FloatArray:
         If it turns texts into something, or bits into texts.
     """
     values = np.empty(len(counts))
-    if not is_text_table(conversion):
+    kind = -1 if conversion is None else int(conversion.conversion_type)
+    if kind == _FORMULA:
+        return by_formula(conversion, counts)
+    if kind == _RANGES:
+        return _by_ranges(conversion, counts)
+    if kind < _VALUE_TO_TEXT:
         values[:] = counts if conversion is None else conversion.convert(counts)
         return values
-    kind = int(conversion.conversion_type)
     if kind not in (_VALUE_TO_TEXT, _RANGE_TO_TEXT):
         raise RecordingError("expected a conversion that gives numbers, found one of texts or of bits to texts.")
     entries = _entries(conversion, kind)

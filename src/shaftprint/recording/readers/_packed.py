@@ -5,6 +5,8 @@ import zlib
 from pathlib import Path
 from typing import BinaryIO, cast
 
+from shaftprint.errors import RecordingError
+
 _GZIP = b"\x1f\x8b"
 FIRST_BYTES = 4096
 """So many bytes tell of which format a text is."""
@@ -19,6 +21,11 @@ def open_unpacked(path: Path) -> BinaryIO:
         return file
     file.close()
     return cast("BinaryIO", gzip.open(path, "rb"))
+
+
+def damaged_gzip(path: Path, error: Exception) -> RecordingError:
+    """Return the error of a file that cannot be unpacked."""
+    return RecordingError(f"{path}: expected a whole gzip file, found a damaged or truncated one ({error}).")
 
 
 def first_bytes(path: Path) -> bytes | None:

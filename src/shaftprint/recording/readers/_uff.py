@@ -1,5 +1,6 @@
 """Universal files (.uff, .unv) with time data in data sets 58 and 58b, as programs of modal analysis export them."""
 
+import re
 from collections import Counter
 from collections.abc import Mapping
 from datetime import datetime
@@ -23,6 +24,11 @@ from shaftprint.units import plain_unit
 NAME = "universal file (UFF 58)"
 
 _MARK = b"    -1"
+# the head of binary data with kind, number and spacing of the samples, and what stands behind these
+_BINARY_HEAD = re.compile(
+    rb"^    58b[^\n]*\n(?:[^\n]*\n){6}[ ]*(\d+)[ ]+(\d+)[ ]+(\d+)[^\n]*\n(?:[^\n]*\n){4}", re.MULTILINE
+)
+_WIDTHS, _END = {2: 4, 4: 8, 5: 8, 6: 16}, re.compile(rb"\s*    -1")
 _FUNCTION, _TIME_RESPONSE, _OF_TIME, _COMPLEX = 58, (0, 1), (0, 17), (5, 6)
 _DIRECTIONS = {0: "", 1: "+X", 2: "+Y", 3: "+Z", 4: "+RX", 5: "+RY", 6: "+RZ"}
 _DATES = ("%d-%b-%y %H:%M:%S", "%d-%b-%Y %H:%M:%S", "%Y-%m-%d %H:%M:%S", "%d.%m.%Y %H:%M:%S")
@@ -56,6 +62,7 @@ def read(path: Path, **hints: object) -> Recording:
     """
     rate_hz = rate_hint(path, hints)
     pyuff = library(path, "pyuff", "universal")
+    _expect_bytes_of_binary(path)
     with told_as_damage(path, "universal"):
         read_sets = pyuff.UFF(str(path)).read_sets()
     sets = [one for one in (read_sets if isinstance(read_sets, list) else [read_sets]) if one]
@@ -68,6 +75,27 @@ def read(path: Path, **hints: object) -> Recording:
         gathered.left_out[f"data sets {kind}"] = f"{count} of them, which hold no functions"
     began = next((date for one in functions if (date := _date(one)) is not None), None)
     return gathered.recording(NAME, lambda: None, began)
+
+
+def _expect_bytes_of_binary(path: Path) -> None:
+    """Refuse binary data sets of another size than their heads say: their numbers would be read in the wrong width.
+
+    Raises
+    ------
+    RecordingError
+        If there is one.
+    """
+    content = path.read_bytes()
+    for head in _BINARY_HEAD.finditer(content):
+        kind, count, is_even = (int(head[place]) for place in (1, 2, 3))
+        width = _WIDTHS.get(kind, _WIDTHS[4])
+        # times beside the values in either width
+        sizes = [count * width] if is_even else [count * (width + of_time) for of_time in (8, 4)]
+        if not any(_END.match(content, head.end() + size) for size in sizes):
+            raise RecordingError(
+                f"{path}: expected {sizes[0]} bytes of samples, as the head of a data set 58b says, found others; the "
+                "file is damaged, or its writer put numbers of another width into it: export it again as text (58)."
+            )
 
 
 def _name(one: Mapping[str, Any], number: int) -> str:
@@ -91,7 +119,7 @@ def _channel(path: Path, one: Mapping[str, Any], name: str, hint_hz: float | Non
     if kind not in _TIME_RESPONSE or of not in _OF_TIME:
         raise RecordingError(f"expected a function of time, found {_FUNCTIONS.get(kind, f'type {kind} over {of}')}")
     if int(one.get("ord_data_type", 4)) in _COMPLEX or np.iscomplexobj(one["data"]):
-        raise RecordingError("expected real numbers, found complex ones")
+        raise RecordingError("expected real numbers, found complex ones; export the functions of time")
     # what is behind the last sample of binary data is the end of the line
     values = np.asarray(one["data"], dtype=np.float64)[: int(one.get("num_pts") or len(one["data"]))]
     if values.size < int(one.get("num_pts") or 0):

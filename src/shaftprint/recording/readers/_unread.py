@@ -2,22 +2,49 @@
 
 from pathlib import Path
 
-_TABLE = "save the sheet as CSV"
+from shaftprint.recording.readers._packed import first_bytes
+
+_TABLE, _TO_CSV = "save the sheet as CSV", ".to_csv(...)"
+_ARCHIVE = "it is an archive: unpack it"
+_OCTAVE = "in Octave save -v7 FILE.mat"
+_SQLITE, _ZIP = b"SQLite format 3", b"PK\x03\x04"
 _BY_BYTES = {
-    b"SQLite format 3": "it is an SQLite database: export the table as CSV (sqlite3 -header -csv)",
+    _SQLITE: "it is an SQLite database: export the table as CSV (sqlite3 -header -csv)",
     b"PAR1": "it is a Parquet table: write it as CSV, pandas.read_parquet(FILE).to_csv(...)",
     b"\xd0\xcf\x11\xe0": f"it is an Office document: {_TABLE}",
-    b"Rar!": "it is an archive: unpack it",
-    b"7z\xbc\xaf": "it is an archive: unpack it",
+    b"ARROW1": f"it is an Arrow or Feather table: write it as CSV, pandas.read_feather(FILE){_TO_CSV}",
+    b"FEA1": f"it is a Feather table: write it as CSV, pandas.read_feather(FILE){_TO_CSV}",
+    b"ORC": f"it is an ORC table: write it as CSV, pandas.read_orc(FILE){_TO_CSV}",
+    b"\x93NUMPY": "it is an array of NumPy: scipy.io.savemat writes it with its fs or t, numpy.savetxt as text",
+    b"<stata_dta>": f"it is a table of Stata: write it as CSV, pandas.read_stata(FILE){_TO_CSV}",
+    b"\x80\x04\x95": "it is a pickle, which is never opened here: write the values as CSV in the program that made it",
+    b"\x80\x05\x95": "it is a pickle, which is never opened here: write the values as CSV in the program that made it",
+    b"CDF\x05": "it is a netCDF file with 64-bit data: nccopy -k nc4 FILE NEW.nc",
+    b"# Octave": f"it is Octave's text: {_OCTAVE}",
+    b"# Created by Octave": f"it is Octave's text: {_OCTAVE}",
+    b"Octave-1-": f"it is Octave's binary form: {_OCTAVE}",
+    b"<?xml": "it is XML: write the values as CSV",
+    b"<html": "it is a page: save its table as CSV",
+    b"<table": "it is a page: save its table as CSV",
+    b"{": "it is JSON, as of a result or the truth beside a simulated recording: name the file of the logger, or write "
+    "its values as CSV",
+    b"Rar!": _ARCHIVE,
+    b"7z\xbc\xaf": _ARCHIVE,
     b"ULog": "it is a PX4 log: ulog2csv of the package pyulog writes CSV",
     b"\x89MCAP": "it is a ROS log: PlotJuggler exports it as CSV",
     b"#ROSBAG": "it is a ROS log: PlotJuggler exports it as CSV",
     b"RIFF": "it is a sound file: scipy.io.wavfile reads it, scipy.io.savemat writes the samples with fs",
 }
+# names of what is in an archive
+_BY_NAMES = {
+    b"[Content_Types].xml": f"it is a spreadsheet: {_TABLE}",
+    b"docProps/": f"it is a spreadsheet: {_TABLE}",
+    b"opendocument.spreadsheet": f"it is a spreadsheet: {_TABLE}",
+    b".npy": "it holds arrays of NumPy: scipy.io.savemat writes them with their fs or t",
+}
 _BY_ENDING = {
     (".xlsx", ".xlsm", ".xls", ".ods"): f"it is a spreadsheet: {_TABLE}",
-    (".json",): "JSON, as of a result or the truth beside a simulated recording: name the file of the logger",
-    (".zip",): "it is an archive: unpack it",
+    (".zip",): _ARCHIVE,
     (".tdm", ".tdx"): "National Instruments' TDM: in DIAdem or LabVIEW save it as TDMS",
     (".lms", ".ldsf", ".sdf"): "Simcenter Testlab: export time data as MATLAB or as UFF 58",
     (".raw",): "imc: in FAMOS or imc STUDIO export it as MATLAB, ASCII or MDF 4",
@@ -40,11 +67,22 @@ _BY_ENDING = {
 
 def remedy(path: Path) -> str:
     """Return how to come by a file that is read, from the first bytes and the ending of one that is not."""
-    with path.open("rb") as file:
-        begin = file.read(16)
+    begin = first_bytes(path) or b""
+    ending = path.suffix.lower()
+    by_ending = next((words for endings, words in _BY_ENDING.items() if ending in endings), None)
+    if begin.startswith(_SQLITE) and b"arbitration_id" in begin:
+        return "it holds the frames of a CAN bus: can_logconvert FILE log.blf makes a log of them, which is read"
+    if begin.startswith(_ZIP):
+        return next((words for mark, words in _BY_NAMES.items() if mark in begin), by_ending or _ARCHIVE)
+    if _every_second_is_nul(begin):
+        return "it is text in UTF-16 without its mark: save it as UTF-8"
     for mark, words in _BY_BYTES.items():
         if begin.startswith(mark):
             return words
-    ending = path.suffix.lower()
-    by_ending = next((words for endings, words in _BY_ENDING.items() if ending in endings), None)
     return by_ending or "export it as CSV, MATLAB or MDF 4 from the program that wrote it"
+
+
+def _every_second_is_nul(begin: bytes) -> bool:
+    """Return whether bytes are letters of two bytes each, as Windows stores ASCII in."""
+    odd, even = begin[1:-1:2], begin[:-1:2]
+    return any(ours and not any(ours) and all(others) for ours, others in ((odd, even[: len(odd)]), (even, odd)))

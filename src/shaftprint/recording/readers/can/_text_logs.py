@@ -14,6 +14,7 @@ from shaftprint.recording.readers._epoch import LATER_THAN_ANY_TEST_S
 from shaftprint.recording.readers.can._frames import EXTENDED, FILL, FrameLog, Frames
 
 _BLOCK_FRAMES = 1 << 16
+_FIGURES = 3
 _CLASSIC, _LONG = 8, 64
 
 _MONTHS = {
@@ -238,7 +239,9 @@ def _date(text: str) -> datetime | None:
         whole = datetime(int(date["year"]), month, int(date["day"]), hour, minute, second)  # noqa: DTZ001
     except ValueError:
         return None
-    return whole + timedelta(seconds=float(f"0.{date['part']}") if date["part"] else 0.0)
+    part = date["part"] or ""
+    # python-can writes milliseconds without leading zeros, 5 for 0.005 s; all others write three figures or more
+    return whole + timedelta(seconds=1e-3 * int(part) if 0 < len(part) < _FIGURES else float(f"0.{part or 0}"))
 
 
 def _expect_version(path: Path, file: TextIO) -> None:

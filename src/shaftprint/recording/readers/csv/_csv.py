@@ -18,8 +18,9 @@ from shaftprint.recording._recording import Recording, sha256_of
 from shaftprint.recording._spool import Spool
 from shaftprint.recording.readers import _uff, can
 from shaftprint.recording.readers._clock import SampleClock, clock_of_times, on_clock
+from shaftprint.recording.readers._gather import reasons_in_words
 from shaftprint.recording.readers._hints import rate_hint
-from shaftprint.recording.readers._packed import CANNOT_BE_UNPACKED, first_bytes, open_unpacked
+from shaftprint.recording.readers._packed import CANNOT_BE_UNPACKED, damaged_gzip, first_bytes, open_unpacked
 from shaftprint.recording.readers._time_scale import TimeScale, expect_time_unit, time_scale
 from shaftprint.recording.readers.csv._dates import dates, has_offset, is_date
 from shaftprint.recording.readers.csv._edge_list import edge_channels
@@ -30,15 +31,20 @@ NAME = "CSV"
 
 _ENDINGS = (".csv", ".tsv", ".txt", ".asc", ".lvm")
 _UTF_16 = (b"\xff\xfe", b"\xfe\xff")
+# the first two bytes of a mark are those of UTF-16
+_UTF_32 = (b"\xff\xfe\0\0", b"\0\0\xfe\xff")
 # text with a grammar of its own
 _LABVIEW = b"LabVIEW Measurement"
+_FRAMES = b"timestamp,arbitration_id,extended,remote,error,dlc,data"
 # no row of a table begins so; a fingerprint or the truth of a simulated recording does
 _JSON = b"{"
 _WINDOWS = "cp1252"
+# when clocks are changed for summer time
+_HOUR_S, _SUNDAY, _BEFORE = 3600.0, 6, 4
 _SEEN = 65_536
 # printed times are rounded
 _RATE_AGREEMENT = 1e-3
-_FIRST_ROWS = 1000
+_FIRST_ROWS, _SHOWN = 1000, 5
 # A stamp to the second that so many rows have tells their rate, where the caller does not.
 _STAMPS = 5_000
 
@@ -53,7 +59,7 @@ def is_mine(path: Path) -> bool:
     if begin.startswith((_LABVIEW, _JSON)) or can.begins_as_log(path, begin) or _uff.is_mine(path):
         return False
     # a logger that lost its supply leaves NUL bytes behind its rows
-    if b"\0" in begin.rstrip(b"\0") and not begin.startswith(_UTF_16):
+    if b"\0" in begin.rstrip(b"\0") and not begin.startswith((*_UTF_16, *_UTF_32)):
         return False
     if name.suffix.lower() in _ENDINGS:
         return True
@@ -74,6 +80,11 @@ def read(path: Path, **hints: object) -> Recording:
     RecordingError
         If header, a row or the clock cannot be used.
     """
+    if (first_bytes(path) or b"").startswith(_FRAMES):
+        raise RecordingError(
+            f"{path}: expected columns of values, found the frames of a CAN bus, as python-can writes them into a CSV "
+            "file; make a log of them, can_logconvert FILE log.blf, and give that with its DBC file (--dbc)."
+        )
     texts = ("columns", "delimiter", "decimal", "encoding", "time_unit")
     rate_hz = rate_hint(path, hints, dict.fromkeys(texts, str))
     time_unit = expect_time_unit(path, hints.get("time_unit"))
@@ -105,9 +116,7 @@ def read(path: Path, **hints: object) -> Recording:
             f"{path}: expected text in {encoding}, found {error}; pass encoding= (--encoding, such as cp1252)."
         ) from None
     except CANNOT_BE_UNPACKED as error:
-        raise RecordingError(
-            f"{path}: expected a whole gzip file, found a damaged or truncated one ({error})."
-        ) from None
+        raise damaged_gzip(path, error) from None
 
 
 @contextlib.contextmanager
@@ -155,6 +164,8 @@ def _encoding(path: Path) -> tuple[str, str]:
             begin = b"".join(islice(iter(lambda: file.readline(LONGEST_LINE), b""), _FIRST_ROWS))
     except CANNOT_BE_UNPACKED:
         return "utf-8-sig", ""
+    if begin[:4] in _UTF_32:
+        return "utf-32", ""
     if begin[:2] in _UTF_16:
         return "utf-16", ""
     try:
@@ -202,7 +213,23 @@ def _clock(
         raise RecordingError(
             f"{path}: expected one sample rate, found {clock.rate_hz:g} Hz in {name} and {rate_hz:g} Hz in the hint."
         )
-    return clock, ""
+    return clock, _change_of_hour(name, clock, read, done)
+
+
+def _change_of_hour(name: str, clock: SampleClock, read: Times, done: Unpacked) -> str:
+    """Return what has to be said where dates without an offset jump by an hour as clocks do in spring and autumn."""
+    began = None if done.stamps is None else done.stamps.began
+    for hole in clock.holes:
+        off_s = hole.missing / clock.rate_hz + hole.jump_s
+        if began is None or began.tzinfo is not None or abs(abs(off_s) - _HOUR_S) > 2.0 / clock.rate_hz:
+            continue
+        at = began + timedelta(seconds=float(read(hole.row - 1, hole.row)[0]))
+        if at.weekday() == _SUNDAY and at.hour < _BEFORE:
+            return (
+                f"{name}: the times jump by an hour behind {at.isoformat(sep=' ', timespec='seconds')}, as clocks do "
+                "that change to or from summer time; write them in UTC or with their offset."
+            )
+    return ""
 
 
 def _rows_of_a_stamp(read: Times, count: int) -> int:
@@ -225,7 +252,11 @@ def _recording(
     left_out |= {name: "it has no value in any row" for name in done.empty if name in channels}
     channels = {name: channel for name, channel in channels.items() if name not in left_out}
     if not channels:
-        raise RecordingError(f"{path}: expected a channel with numbers, found none in {done.count} rows.")
+        reasons = reasons_in_words(left_out, most=_SHOWN)
+        raise RecordingError(
+            f"{path}: expected a channel with numbers, found none in {done.count} rows: {reasons} (numbers from 9.9e37 "
+            "on stand for an overload)."
+        )
     recording = Recording(
         path=path,
         sha256=sha256,

@@ -1,4 +1,4 @@
-"""Dates in text files: ISO 8601, or day.month.year with dots."""
+"""Dates in text files: ISO 8601, day.month.year with dots, or with the name of the month; with AM and PM."""
 
 import re
 from collections.abc import Sequence
@@ -8,17 +8,42 @@ import numpy as np
 
 from shaftprint.errors import RecordingError
 
-_ISO = re.compile(
-    r"(?P<year>\d{4})[-/](?P<month>\d\d?)[-/](?P<day>\d\d?)"
-    r"(?P<rest>([T ]\d\d?:\d\d(:\d\d([.,]\d+)?)?)?\s?(Z|[+-]\d\d(:?\d\d)?)?)"
+_CLOCK = r"(?P<clock>\d\d?:\d\d(?::\d\d(?:[.,]\d+)?)?)(?:\s?(?P<half>[AaPp][Mm]))?"
+_ZONED = r"(?:\s?(?P<zone>Z|[+-]\d\d(?::?\d\d)?))?"
+_ISO = re.compile(rf"(?P<year>\d{{4}})[-/](?P<month>\d\d?)[-/](?P<day>\d\d?)(?:[T ]+{_CLOCK})?{_ZONED}")
+# 20260305T090000.5, ISO 8601 without separators
+_BASIC = re.compile(
+    rf"(?P<year>\d{{4}})(?P<month>\d\d)(?P<day>\d\d)T(?P<clock>\d{{4}}(?:\d\d(?:[.,]\d+)?)?)(?P<half>){_ZONED}"
 )
-_DOTTED = re.compile(r"(\d\d?)\.(\d\d?)\.(\d{4})[T ](\d\d?:\d\d(:\d\d([.,]\d+)?)?)")
+# 21.11.2026 and 21.11.26, 21-Nov-2026 (MATLAB's datestr), 21 Nov 2026
+_DAY_FIRST = re.compile(
+    r"(?P<day>\d\d?)(?:\.(?P<month>\d\d?)\.|[-. /](?P<name>[A-Za-z]{3})[a-z]*\.?[-. /])(?P<year>\d{4}|\d\d)[T ]+"
+    rf"{_CLOCK}{_ZONED}"
+)
+_FORMS = (_ISO, _DAY_FIRST, _BASIC)
+_MONTHS = {
+    name: number
+    for number, names in enumerate(
+        ("jan", "feb", "mar mrt", "apr", "may mai mei", "jun", "jul", "aug", "sep", "oct okt", "nov", "dec dez"),
+        start=1,
+    )
+    for name in names.split()
+}
 _ZONE = re.compile(r"\s?(Z|[+-]\d\d(?::?\d\d)?)$")
+# which of the first two is the day, nobody can tell
+AMBIGUOUS = re.compile(r"\d\d?([/-])\d\d?\1\d{2,4}([T ,].*)?")
+"""A date of which day and month cannot be told apart."""
+
+
+def _parts(text: str) -> re.Match[str] | None:
+    match = next((found for form in _FORMS if (found := form.fullmatch(text)) is not None), None)
+    name = match["name"] if match is not None and match.re is _DAY_FIRST else None
+    return None if name is not None and name.lower() not in _MONTHS else match
 
 
 def is_date(text: str) -> bool:
     """Return whether a field is a date with or without a time of day."""
-    return _ISO.fullmatch(text) is not None or _DOTTED.fullmatch(text) is not None
+    return _parts(text) is not None
 
 
 def has_offset(text: str) -> bool:
@@ -36,20 +61,14 @@ def dates(path: Path, texts: Sequence[str]) -> "np.ndarray[tuple[int], np.dtype[
     """
     iso_texts, offsets = [], []
     for text in texts:
-        dotted, iso = _DOTTED.fullmatch(text), _ISO.fullmatch(text)
-        if dotted is not None:
-            day, month, year, rest = dotted[1], dotted[2], dotted[3], dotted[4]
-        elif iso is not None:
-            year, month, day, rest = iso["year"], iso["month"], iso["day"], iso["rest"] or ""
-        else:
+        parts = _parts(text)
+        if parts is None:
             raise RecordingError(
                 f'{path}: expected dates such as 2026-11-21T12:00:00.5 or 21.11.2026 12:00:00, found "{text[:40]}".'
             )
-        zone = _ZONE.search(rest)
-        offsets.append(None if zone is None else _minutes(zone[1]))
-        clock = _ZONE.sub("", rest).lstrip("T ").replace(",", ".")
-        hour, colon, more = clock.partition(":")
-        iso_texts.append(f"{year}-{int(month):02}-{int(day):02}" + (f"T{int(hour):02}:{more}" if colon else ""))
+        zone = parts["zone"]
+        offsets.append(None if zone is None else _minutes(zone))
+        iso_texts.append(_in_iso(parts))
     try:
         local = np.array(iso_texts, dtype="datetime64[us]")
     except ValueError as error:
@@ -61,6 +80,22 @@ def dates(path: Path, texts: Sequence[str]) -> "np.ndarray[tuple[int], np.dtype[
         raise RecordingError(f'{path}: expected dates with an offset from UTC throughout, found "{bare[:40]}".')
     in_utc: np.ndarray[tuple[int], np.dtype[np.datetime64]] = local - np.array(offsets, dtype="timedelta64[m]")
     return in_utc
+
+
+def _in_iso(parts: re.Match[str]) -> str:
+    """Return the parts of a date in the order of ISO 8601."""
+    month = parts["month"] or str(_MONTHS[parts["name"].lower()])
+    year = parts["year"] if len(parts["year"]) > 2 else f"20{parts['year']}"
+    day = f"{year}-{int(month):02}-{int(parts['day']):02}"
+    clock = (parts["clock"] or "").replace(",", ".")
+    if not clock:
+        return day
+    if parts.re is _BASIC:
+        clock = ":".join(part for part in (clock[:2], clock[2:4], clock[4:]) if part)
+    hour, _, more = clock.partition(":")
+    if parts["half"]:
+        hour = str(int(hour) % 12 + (12 if parts["half"].lower() == "pm" else 0))
+    return f"{day}T{int(hour):02}:{more}"
 
 
 def _minutes(zone: str) -> int:

@@ -25,7 +25,10 @@ OVERLOAD = 9.89e37
 # printed by programs of Windows, with as many figures as were asked for: 1.#INF00, -1.#IND, 1.#QNAN
 _WINDOWS = re.compile(r"[+-]?1[.,]#[a-z]+0*", re.IGNORECASE)
 _DASHES = re.compile(r"[-*_.]*|[+-]?\*+|[+-]?-{2,}")
-_NUMBER = re.compile(r"[+-]?(\d+([.,]\d*)?|[.,]\d+)([eE][+-]?\d+)?|[+-]?(nan|inf(inity)?)", re.IGNORECASE)
+# thousands in groups, 1.234,5 or 1,234.5: two signs, of which the last is the decimal one
+_GROUPED = r"[+-]?\d{1,3}(\.\d{3})+,\d+|[+-]?\d{1,3}(,\d{3})+\.\d+"
+_NUMBER = re.compile(rf"[+-]?(\d+([.,]\d*)?|[.,]\d+)([eE][+-]?\d+)?|[+-]?(nan|inf(inity)?)|{_GROUPED}", re.IGNORECASE)
+_IN_GROUPS = {",": re.compile(r"[+-]?\d{1,3}(\.\d{3})+(,\d*)?"), ".": re.compile(r"[+-]?\d{1,3}(,\d{3})+\.\d+")}
 _PLAIN = re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?|[+-]?(nan|inf(inity)?)", re.IGNORECASE)
 _LONGEST = 120_000
 
@@ -40,6 +43,28 @@ def split_row(line: str, delimiter: str) -> list[str]:
         plain = re.sub(r"[\t ]+", " ", plain.strip())
     (fields,) = csv.reader([plain], delimiter=delimiter, skipinitialspace=True)
     return [field.strip().strip('"').strip() for field in fields]
+
+
+def with_point(field: str, decimal: str) -> str:
+    """Return a field with a decimal point in place of a decimal sign, and without what groups thousands."""
+    if _IN_GROUPS[decimal].fullmatch(field) is not None:
+        field = field.replace("." if decimal == "," else ",", "")
+    return field.replace(",", ".") if decimal == "," else field
+
+
+def decimal_sign(fields: Iterable[str]) -> str | None:
+    """Return the decimal sign of some numbers: a point where there is none; None where both may be."""
+    grouped, plain = set(), set()
+    for field in fields:
+        signs = [letter for letter in field if letter in ".,"]
+        if len(set(signs)) == 2:
+            grouped.add(signs[-1])
+        elif len(signs) == 1:
+            plain.add(signs[0])
+    if len(grouped) == 1:
+        # a lone sign of the other kind groups thousands
+        return grouped.pop()
+    return None if grouped or len(plain) > 1 else (plain or {"."}).pop()
 
 
 def is_number(field: str) -> bool:

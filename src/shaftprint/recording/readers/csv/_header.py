@@ -13,8 +13,10 @@ from shaftprint.recording.readers.csv._fields import (
     GAP,
     NUMBER,
     TEXT,
+    decimal_sign,
     is_number,
     split_row,
+    with_point,
 )
 from shaftprint.recording.readers.csv._head_facts import HeadFacts, head_facts, is_fact
 from shaftprint.recording.readers.csv._table import Table, find_table
@@ -86,7 +88,7 @@ class Header:
 
     def pointed(self, field: str) -> str:
         """Return a field with a decimal point in place of the file's decimal sign."""
-        return field.replace(",", ".") if self.decimal == "," else field
+        return with_point(field, self.decimal)
 
 
 def looks_like_a_table(lines: Sequence[str]) -> bool:
@@ -310,14 +312,13 @@ def _is_counter(place: int, name: str, fields: Sequence[str]) -> bool:
 
 def _decimal(path: Path, table: Table, places: Sequence[int]) -> str:
     fields = [row[place] for row in table.rows for place in places if is_number(row[place])]
-    commas = any("," in field for field in fields)
-    points = any("." in field for field in fields)
-    if commas and points:
+    sign = decimal_sign(fields)
+    if sign is None:
         raise RecordingError(
             f"{path}: expected a decimal point or a decimal comma, found both in the first rows; pass "
             "decimal= (--decimal)."
         )
-    return "," if commas else "."
+    return sign
 
 
 def _expect_other_delimiter(path: Path, table: Table, decimal: str) -> None:

@@ -16,6 +16,7 @@ from shaftprint.escape import printable
 from shaftprint.recording._spool import Spool
 from shaftprint.recording.readers.csv._fields import is_gap, number, split_row
 from shaftprint.recording.readers.csv._header import Header
+from shaftprint.recording.readers.csv._marks import Marks
 from shaftprint.recording.readers.csv._stamps import Stamps, is_stamp
 from shaftprint.recording.readers.csv._wrong_rows import LONGEST, wrong_rows
 
@@ -87,6 +88,7 @@ class _Unpacking:
         self.path, self.header, self.spool = path, header, spool
         self.done = Unpacked(stamps=Stamps(path, header) if header.dated else None)
         self.has_value = dict.fromkeys(header.places, False)
+        self.marks = [Marks() for _ in header.places]
         self.mistakes: list[tuple[int, list[str]]] = []
         self.damaged: list[int] = []
         self.nul = 0
@@ -132,7 +134,9 @@ class _Unpacking:
             if header.names[column] in self.done.left_out:
                 continue
             values = np.asarray(columns[place], dtype=np.float64)
-            self.has_value[place] = self.has_value[place] or bool(np.isfinite(values).any())
+            if np.isfinite(values).any():
+                self.has_value[place] = True
+                self.marks[column].take(values)
             self.spool.append_column(column, values)
         self.done.count += rows
 
@@ -297,6 +301,9 @@ class _Unpacking:
             done.remarks.append(f"Line {self.damaged[0]}{more}: damaged or cut off, and left out.")
         if self.nul:
             done.remarks.append(f"{self.nul} NUL bytes between or behind the rows were left out.")
+        for column, name in enumerate(header.names):
+            if column != header.time_column and (sentence := self.marks[column].sentence(name)):
+                done.remarks.append(sentence)
         channels = [name for column, name in enumerate(header.names) if column != header.time_column]
         done.empty = [
             name

@@ -9,6 +9,7 @@ from shaftprint.errors import RecordingError
 from shaftprint.escape import printable
 from shaftprint.recording.readers._time_scale import is_capital, unit_in_name
 from shaftprint.recording.readers._units import seconds_in
+from shaftprint.recording.readers.csv._dates import AMBIGUOUS
 from shaftprint.recording.readers.csv._fields import DATE, DAY_TIME, GAP, NUMBER, TEXT, is_number
 from shaftprint.recording.readers.csv._table import Table
 from shaftprint.recording.readers.csv._time_titles import MILLISECONDS, begins_as_time, is_time_title
@@ -45,10 +46,17 @@ def expect_no_words_as_times(path: Path, table: Table, names: Sequence[str]) -> 
     """
     for place, name in enumerate(names):
         if table.kinds[place] == TEXT and is_time_title(name):
+            field = table.rows[0][place]
             raise RecordingError(
                 f"{path}, line {table.first + 1}, column {place + 1} ({name}): expected seconds or a date such as "
-                f'2026-11-22 10:00:00, found "{printable(table.rows[0][place])[:_LONGEST]}".'
+                f'2026-11-22 10:00:00, found "{printable(field)[:_LONGEST]}"{_instead(field)}.'
             )
+
+
+def _instead(field: str) -> str:
+    """Return what to do about a date that is none."""
+    which = ", of which day and month cannot be told apart" if AMBIGUOUS.fullmatch(field) else ""
+    return f"{which}; write the dates as in ISO 8601, or pass the rate of the rows, sample_rate_hz= (--sample-rate)"
 
 
 def time_columns(table: Table, names: Sequence[str], units: Sequence[str], *, has_rate: bool) -> TimeColumns:

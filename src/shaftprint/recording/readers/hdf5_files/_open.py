@@ -14,14 +14,19 @@ from shaftprint.recording.readers.hdf5_files import _probe
 from shaftprint.recording.readers.hdf5_files._references import outside_of, stored_outside
 
 _SIGNATURE = b"\x89HDF\r\n\x1a\n"
+# A user may keep bytes of his own in front, 512 or a power of two times that.
+_USER_BLOCKS, _MATLAB = (512, 1024, 2048, 4096), b"MATLAB "
+_LARGEST_USER_BLOCK = _USER_BLOCKS[-1]
 # Blocks are unpacked whole; ours and MATLAB's have up to a few MB.
 _LARGEST_BLOCK = 1 << 28
 
 
 def is_hdf5(path: Path) -> bool:
-    """Return whether the file begins as HDF5."""
+    """Return whether the file begins as HDF5, behind a block of the user's or not; MATLAB's is another format."""
     with path.open("rb") as file:
-        return file.read(len(_SIGNATURE)) == _SIGNATURE
+        begin = file.read(_LARGEST_USER_BLOCK + len(_SIGNATURE))
+    at = next((at for at in (0, *_USER_BLOCKS) if begin[at : at + len(_SIGNATURE)] == _SIGNATURE), None)
+    return at == 0 or (at is not None and not begin.startswith(_MATLAB))
 
 
 def open_hdf5(path: Path, what: str, *, is_whole: bool = False) -> Any:
