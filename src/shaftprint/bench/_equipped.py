@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from types import MappingProxyType
 
 from shaftprint.bench._composed import composed
-from shaftprint.catalogue import DRIVES, SIGNAL_UNITS, shipped_structure
+from shaftprint.catalogue import DRIVES, SIGNAL_UNITS, along_a_line, shipped_structure, unit_along
 from shaftprint.drive import Drive, KnownParameter, Signal, unit_factor
 from shaftprint.errors import SettingsError
 from shaftprint.identify import Prior
@@ -53,6 +53,8 @@ def equipped(drive: Drive, *, own: Structure | None = None) -> EquippedDrive:
     units = SIGNAL_UNITS if structure.name in DRIVES else {}
     _expect_signals(drive, structure)
     structure = structure.of_outputs(*(one.name for one in drive.outputs))
+    if units and _goes_straight(drive, units):
+        structure, units = along_a_line(structure), {name: unit_along(unit) for name, unit in units.items()}
     for known in drive.known:
         structure = _with_known(drive, structure, known)
     for one in drive.searched:
@@ -95,6 +97,28 @@ def _structure(drive: Drive, own: Structure | None) -> Structure:
             f"file of your own comes with the command, --structure FILE.py:NAME.{meant(drive.structure, DRIVES)}"
         )
     return shipped_structure(drive.structure)
+
+
+def _goes_straight(drive: Drive, units: Mapping[str, str]) -> bool:
+    """Return whether the signals of a shipped structure are ways and forces, in place of angles and torques.
+
+    Raises
+    ------
+    SettingsError
+        If some are and others are not.
+    """
+    turning = {one.name: one for one in drive.signals if unit_along(units[one.name]) != units[one.name]}
+    straight = {
+        name: one.unit for name, one in turning.items() if unit_factor(one.unit, unit_along(units[name])) is not None
+    }
+    others = {name: one.unit for name, one in turning.items() if name not in straight}
+    if straight and others:
+        (one, unit), (other, of_other) = next(iter(straight.items())), next(iter(others.items()))
+        raise SettingsError(
+            f"drive {drive.name}: expected ways and forces, or angles and torques, of all signals, found {one} in "
+            f"{unit} and {other} in {of_other}; convert one of them, by the pinion or screw between, in the recording."
+        )
+    return bool(straight)
 
 
 def _expect_signals(drive: Drive, structure: Structure) -> None:

@@ -23,6 +23,7 @@ from shaftprint.catalogue._known_propeller import (
 )
 from shaftprint.catalogue._limited import limited
 from shaftprint.catalogue._limited_governor import AHEAD_S, GovernorSymbol, limited_governor
+from shaftprint.catalogue._linear_drives import along_a_line, unit_along
 from shaftprint.catalogue._pitch import pitched_with_rack
 from shaftprint.catalogue._roles import ROLES, ShipRole
 from shaftprint.catalogue._sailing import sailing_with_rack
@@ -58,6 +59,7 @@ __all__ = [
     "SailingSpeed",
     "SailingTorque",
     "ShipRole",
+    "along_a_line",
     "crash_stop",
     "expect_roles",
     "gauge_governor",
@@ -75,6 +77,7 @@ __all__ = [
     "structure",
     "thesis_families",
     "two_mass_line",
+    "unit_along",
     "with_bend",
     "with_known_propeller",
 ]
