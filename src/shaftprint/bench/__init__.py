@@ -18,14 +18,17 @@ from shaftprint.bench._kept import kept_drive
 from shaftprint.bench._per_record import all_parameters, free_parameters, with_structures
 from shaftprint.bench._predict import noise_words, planned_noise, predict_drive, values_in
 from shaftprint.bench._records import read_records
+from shaftprint.bench._responses import RESPONSE_STARTS, ResponseFile, identify_responses, read_responses
 from shaftprint.bench._structures import TimeCandidate, TimeComparison, TimeRatio, compare_in_time, without
 from shaftprint.bench._validate import ValidatedRecord, identified_from, validate_drive
 
 __all__ = [
+    "RESPONSE_STARTS",
     "STARTS",
     "DriveDifference",
     "DriveFit",
     "EquippedDrive",
+    "ResponseFile",
     "TimeCandidate",
     "TimeComparison",
     "TimeRatio",
@@ -42,11 +45,13 @@ __all__ = [
     "identified_drive",
     "identified_from",
     "identify_drive",
+    "identify_responses",
     "kept_drive",
     "noise_words",
     "planned_noise",
     "predict_drive",
     "read_records",
+    "read_responses",
     "validate_drive",
     "values_in",
     "with_structures",

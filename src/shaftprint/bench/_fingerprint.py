@@ -13,7 +13,15 @@ from shaftprint.bench._equipped import EquippedDrive
 from shaftprint.bench._fit import DriveFit
 from shaftprint.bench._per_record import base_name, record_structure
 from shaftprint.errors import FingerprintError
-from shaftprint.fingerprint import DriveFingerprint, DriveRecord, IdentifiedModel, NoiseOfRecord, Quantity, SourceFile
+from shaftprint.fingerprint import (
+    DriveFingerprint,
+    DriveRecord,
+    DriveResponse,
+    IdentifiedModel,
+    NoiseOfRecord,
+    Quantity,
+    SourceFile,
+)
 from shaftprint.identify.fit import Estimate
 from shaftprint.models import Structure
 from shaftprint.time_domain import RecordFit
@@ -48,6 +56,7 @@ def drive_fingerprint(fit: DriveFit, *, sources: Sequence[SourceFile], now: date
         covariance=tuple(tuple(row) for row in identification.covariance.tolist()),
         combinations=tuple(_quantity(fit, estimate, meanings) for estimate in identification.combinations),
         records=_records(fit, sources),
+        responses=_responses(fit),
         p_value=identification.p_value,
         starts=identification.settings.starts,
         starts_at_optimum=fit.agreeing,
@@ -67,6 +76,20 @@ def _quantity(fit: DriveFit, estimate: Estimate, meanings: dict[str, str]) -> Qu
         interval_open=(False, False) if interval is None else (interval.lower_open, interval.upper_open),
         at_bound=estimate.at_bound,
         meaning=meanings[estimate.name],
+    )
+
+
+def _responses(fit: DriveFit) -> tuple[DriveResponse, ...]:
+    return tuple(
+        DriveResponse(
+            name=name,
+            lines=int(part.fitted.sum()),
+            lowest_hz=float(part.response.frequency_hz[part.fitted].min()),
+            highest_hz=float(part.response.frequency_hz[part.fitted].max()),
+            fit_percent=dict(part.fit_percent),
+            fit_ceiling=dict(part.fit_ceiling),
+        )
+        for name, part in zip(fit.responses, fit.identification.experiments, strict=True)
     )
 
 

@@ -52,6 +52,8 @@ class DriveFit(Shown):
     """Whether inputs hold from sample to sample; else they go straight."""
     agreeing: int
     """How many starts of the search ended at the optimum."""
+    responses: tuple[str, ...] = ()
+    """Names of frequency responses, where it is a fit to these."""
 
     def summary(self) -> Summary:
         """Return the verdict, and which numbers may be used."""
@@ -107,7 +109,7 @@ def identify_drive(
     remarks = [remark for record in records for remark in record.remarks]
     in_motion = tuple(starts_in_motion(one, fit))
     reasons = (
-        *_alone(agreeing, fit.settings.starts),
+        *alone(agreeing, fit.settings.starts),
         *held_outputs(one, records),
         *way.reasons,
         *in_motion,
@@ -146,7 +148,7 @@ def _without_what_follows(verdict: Verdict, in_motion: Sequence[Reason]) -> Verd
     )
 
 
-def _alone(agreeing: int, starts: int) -> tuple[Reason, ...]:
+def alone(agreeing: int, starts: int) -> tuple[Reason, ...]:
     """Return that nobody knows whether an optimum is the only one, where too few starts ended there."""
     if agreeing >= AGREE:
         return ()

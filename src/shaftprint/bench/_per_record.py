@@ -4,12 +4,24 @@
 """
 
 from collections.abc import Mapping, Sequence
+from typing import Protocol, TypeVar
 
 from shaftprint.bench._equipped import EquippedDrive
 from shaftprint.drive import PerRecord
 from shaftprint.identify import Prior
 from shaftprint.models import Parameter, Structure
-from shaftprint.time_domain import Record
+
+
+class Named(Protocol):
+    """A record, or whatever else stands in for one."""
+
+    @property
+    def name(self) -> str:
+        """What it is called."""
+        ...
+
+
+OfName = TypeVar("OfName", bound=Named)
 
 
 def own_name(name: str, label: str) -> str:
@@ -33,10 +45,10 @@ def record_structure(one: EquippedDrive, record: str) -> Structure:
     return one.structure.renamed(**names).held_at(**values) if names else one.structure
 
 
-def with_structures(one: EquippedDrive, records: Sequence[Record]) -> list[tuple[Structure, Record]]:
+def with_structures(one: EquippedDrive, records: Sequence[OfName]) -> list[tuple[Structure, OfName]]:
     """Return each record with its structure; records of one label share it."""
     made: dict[tuple[str, ...], Structure] = {}
-    pairs = []
+    pairs: list[tuple[Structure, OfName]] = []
     for record in records:
         key = tuple(row.label(record.name) for row in _rows(one))
         if key not in made:
@@ -45,18 +57,18 @@ def with_structures(one: EquippedDrive, records: Sequence[Record]) -> list[tuple
     return pairs
 
 
-def all_parameters(one: EquippedDrive, records: Sequence[Record]) -> tuple[Parameter, ...]:
+def all_parameters(one: EquippedDrive, records: Sequence[Named]) -> tuple[Parameter, ...]:
     """Return the parameters of all records, each once, in the order of a joint fit."""
     of_all = (p for structure, _ in with_structures(one, records) for p in structure.parameters)
     return tuple({parameter.name: parameter for parameter in of_all}.values())
 
 
-def free_parameters(one: EquippedDrive, records: Sequence[Record]) -> tuple[Parameter, ...]:
+def free_parameters(one: EquippedDrive, records: Sequence[Named]) -> tuple[Parameter, ...]:
     """Return those that a joint fit may change."""
     return tuple(parameter for parameter in all_parameters(one, records) if not parameter.held)
 
 
-def own_priors(one: EquippedDrive, records: Sequence[Record], priors: Mapping[str, Prior]) -> dict[str, Prior]:
+def own_priors(one: EquippedDrive, records: Sequence[Named], priors: Mapping[str, Prior]) -> dict[str, Prior]:
     """Return priors, that of a parameter with own values for each of them."""
     rows = {row.name: row for row in _rows(one)}
     free = {parameter.name for parameter in free_parameters(one, records)}
@@ -70,14 +82,14 @@ def own_priors(one: EquippedDrive, records: Sequence[Record], priors: Mapping[st
     return spread
 
 
-def own_names(one: EquippedDrive, names: set[str], records: Sequence[Record]) -> set[str]:
+def own_names(one: EquippedDrive, names: set[str], records: Sequence[Named]) -> set[str]:
     """Return names of parameters, those that have own values by each of their names."""
     rows = {row.name: row for row in _rows(one)}
     own = {own_name(name, rows[name].label(record.name)) for name in names & set(rows) for record in records}
     return (names - set(rows)) | own
 
 
-def idle_labels(one: EquippedDrive, records: Sequence[Record]) -> tuple[str, ...]:
+def idle_labels(one: EquippedDrive, records: Sequence[Named]) -> tuple[str, ...]:
     """Return, in a sentence each, records that rows of the drive file name and that are not there."""
     sentences = []
     for row in _rows(one):

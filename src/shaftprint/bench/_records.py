@@ -43,6 +43,11 @@ def read_records(
         If a file cannot be read, a channel is missing or in another unit, the channels have different clocks, an input
         is not finite, or a stretch is not in the file.
     """
+    if one.drive.responses:
+        raise RecordingError(
+            f"drive {one.drive.name}: expected a drive file of records in time, found [[responses]], which only "
+            "`identify` takes."
+        )
     records = []
     for path in paths:
         with read_recording(path, **hints) as recording:
@@ -62,7 +67,7 @@ def read_records(
 
 
 def _channel(recording: Recording, signal: Signal, path: Path) -> Channel:
-    channel = recording.channel(signal.channel)
+    channel = recording.channel(signal.channel or signal.name)
     if channel.unit not in ("", signal.unit) and unit_factor(channel.unit, signal.unit) != 1.0:
         raise RecordingError(
             f'{path}, channel "{signal.channel}": expected the unit {signal.unit} of the drive file, found '

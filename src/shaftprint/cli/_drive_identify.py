@@ -7,16 +7,26 @@ from typing import Any
 
 import numpy as np
 
-from shaftprint.bench import STARTS, DriveFit, drive_fingerprint, identify_drive, read_records
+from shaftprint.bench import (
+    RESPONSE_STARTS,
+    STARTS,
+    DriveFit,
+    EquippedDrive,
+    drive_fingerprint,
+    identify_drive,
+    identify_responses,
+    read_records,
+    read_responses,
+)
 from shaftprint.cli._drive_options import drive_sources, equipped_drive, expect_not_given, is_given
 from shaftprint.cli._fit_options import FitOptions
 from shaftprint.cli._own_structure import TypedName
 from shaftprint.cli._results import print_paths
 from shaftprint.cli._terminal import print_findings, say
-from shaftprint.cli.output import FINGERPRINT, give, output_folder, print_tables, progress
+from shaftprint.cli.output import FINGERPRINT, Steps, give, output_folder, print_tables, progress
 from shaftprint.fingerprint import DriveFingerprint, write_drive_fingerprint
 from shaftprint.report import render_drive
-from shaftprint.tables import drive_assumed_table, drive_record_table, quantity_table
+from shaftprint.tables import drive_assumed_table, drive_record_table, drive_response_table, quantity_table
 
 
 def identify_on_the_bench(
@@ -36,20 +46,28 @@ def identify_on_the_bench(
     (one,) = equipped_drive(drive_file, names if is_given("names") else (), options)
     with output_folder(output, of="identify", force=force) as folder:
         with progress(hidden=no_progress) as steps:
-            steps.begin("Reading the records")
-            records = read_records(recordings, one, **hints)
-            steps.begin("Fitting the records")
-            fit = identify_drive(
-                one,
-                records,
-                rng=np.random.default_rng(options.seed),
-                starts=options.starts if is_given("starts") else STARTS,
-            )
+            fit = _fitted(one, recordings, options, steps, hints)
         sources = drive_sources(recordings, drive_file, names if is_given("names") else ())
         fingerprint = drive_fingerprint(fit, sources=sources, now=datetime.now(UTC))
         print_drive(fingerprint)
         _write(folder, fit, fingerprint, pictures=pictures, no_progress=no_progress)
     print_paths(output)
+
+
+def _fitted(
+    one: EquippedDrive, paths: Sequence[Path], options: FitOptions, steps: Steps, hints: Mapping[str, Any]
+) -> DriveFit:
+    """Return the fit to records, or to frequency responses where the drive file says that the files hold these."""
+    rng, starts = np.random.default_rng(options.seed), options.starts if is_given("starts") else None
+    if one.drive.responses:
+        steps.begin("Reading the responses")
+        responses = read_responses(paths, one)
+        steps.begin("Fitting the responses")
+        return identify_responses(one, responses, rng=rng, starts=starts or RESPONSE_STARTS)
+    steps.begin("Reading the records")
+    records = read_records(paths, one, **hints)
+    steps.begin("Fitting the records")
+    return identify_drive(one, records, rng=rng, starts=starts or STARTS)
 
 
 def _write(folder: Path, fit: DriveFit, fingerprint: DriveFingerprint, *, pictures: bool, no_progress: bool) -> None:
@@ -70,7 +88,7 @@ def print_drive(fingerprint: DriveFingerprint) -> None:
     tables = [quantity_table("Identified parameters", fingerprint.parameters)]
     if fingerprint.combinations:
         tables.append(quantity_table("Combinations of parameters", fingerprint.combinations))
-    tables.append(drive_record_table(fingerprint))
+    tables.append(drive_response_table(fingerprint) if fingerprint.responses else drive_record_table(fingerprint))
     if fingerprint.priors or fingerprint.held:
         tables.append(drive_assumed_table(fingerprint))
     print_tables(tables)

@@ -11,6 +11,7 @@ parameter           stated    in the unit of the structure's parameter
 
 from shaftprint.drive._blocks import Block, BlockKind, FreeParameter
 from shaftprint.drive._drive import Drive, FitWay, load_drive
+from shaftprint.drive._responses import ResponseColumns
 from shaftprint.drive._signals import KnownParameter, PerRecord, SearchedParameter, Signal, StartState, Stretch
 from shaftprint.drive._unit_factors import unit_factor, zero_is_anywhere
 
@@ -22,6 +23,7 @@ __all__ = [
     "FreeParameter",
     "KnownParameter",
     "PerRecord",
+    "ResponseColumns",
     "SearchedParameter",
     "Signal",
     "StartState",

@@ -8,6 +8,7 @@ from pydantic import Field, model_validator
 
 from shaftprint.arguments import refusing_none
 from shaftprint.drive._blocks import Block, FreeParameter
+from shaftprint.drive._responses import ResponseColumns
 from shaftprint.drive._signals import KnownParameter, PerRecord, SearchedParameter, Signal, StartState, Stretch
 from shaftprint.errors import SettingsError
 from shaftprint.notebook import Shown, Summary, shortened
@@ -49,6 +50,8 @@ class Drive(Shown, Settings):
     """States at the start of every record; those that are not named are zero."""
     records: tuple[Stretch, ...] = ()
     """Parts of each recording that are records; the whole recording where none is named."""
+    responses: tuple[ResponseColumns, ...] = ()
+    """Columns of files that hold frequency responses in place of records."""
     blocks: tuple[Block, ...] = ()
     """Blocks that make the structure."""
     parameters: tuple[FreeParameter, ...] = ()
@@ -60,8 +63,8 @@ class Drive(Shown, Settings):
         """Return structure, signals and what is known."""
         facts = {
             "structure": self.structure or ("composed of blocks" if self.blocks else "given with the command"),
-            "inputs": shortened(f"{one.name} from {one.channel} [{one.unit}]" for one in self.inputs),
-            "outputs": shortened(f"{one.name} from {one.channel} [{one.unit}]" for one in self.outputs),
+            "inputs": shortened(map(_signal_words, self.inputs)),
+            "outputs": shortened(map(_signal_words, self.outputs)),
             "known": shortened(f"{one.name} = {one.value:g} ± {one.std:g}" for one in self.known),
             "records": shortened(one.name for one in self.records),
         }
@@ -102,9 +105,35 @@ class Drive(Shown, Settings):
             )
         if bool(self.start) != (self.fit.start == "known"):
             errors.append('expected [[start]] and fit.start = "known" together, found one of them alone.')
+        errors += self._faults_of_responses() if self.responses else self._faults_of_channels()
         if errors:
             raise ValueError(" ".join(errors))
         return self
+
+    def _faults_of_channels(self) -> list[str]:
+        missing = [one.name for one in self.signals if one.channel is None]
+        return [f"expected the channel of {missing[0]}, found none."] if missing else []
+
+    def _faults_of_responses(self) -> list[str]:
+        only = self.inputs[0].name if len(self.inputs) == 1 else None
+        rows = [(one.output, one.input or only) for one in self.responses]
+        wanted = [(out.name, into.name) for out in self.outputs for into in self.inputs]
+        errors = [
+            f"expected one row of [[responses]] from {into} to {out}, found {rows.count((out, into))}."
+            for out, into in wanted
+            if rows.count((out, into)) != 1
+        ]
+        foreign = [row for row in rows if row not in wanted]
+        if foreign:
+            errors.append(f"expected responses from inputs to outputs, found {foreign[0][1]} to {foreign[0][0]}.")
+        if self.records or self.start:
+            errors.append("expected no [[records]] and no [[start]] beside [[responses]].")
+        return errors
+
+
+def _signal_words(signal: Signal) -> str:
+    source = f" from {signal.channel}" if signal.channel is not None else ""
+    return f"{signal.name}{source} [{signal.unit}]"
 
 
 def _twice(names: Sequence[str]) -> list[str]:

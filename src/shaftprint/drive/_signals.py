@@ -14,8 +14,8 @@ class Signal(Settings):
 
     name: Name
     """What the structure calls it, such as ``omega``."""
-    channel: Name
-    """Name of the channel in the recording."""
+    channel: Name | None = None
+    """Name of the channel in the recording; not needed where the files hold frequency responses."""
     unit: Name
     """Unit of the channel."""
     meaning: Text = ""

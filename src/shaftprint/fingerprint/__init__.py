@@ -18,6 +18,7 @@ from shaftprint.fingerprint._conditions import WATER, Conditions, ShipIdentity
 from shaftprint.fingerprint._drive_fingerprint import (
     DriveFingerprint,
     DriveRecord,
+    DriveResponse,
     NoiseOfRecord,
     drive_fingerprint_content,
     is_of_a_drive,
@@ -55,6 +56,7 @@ __all__ = [
     "Conditions",
     "DriveFingerprint",
     "DriveRecord",
+    "DriveResponse",
     "FieldValue",
     "Fingerprint",
     "FoundBy",

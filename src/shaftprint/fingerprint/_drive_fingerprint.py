@@ -19,7 +19,7 @@ from shaftprint.identify import Prior, Verdict
 from shaftprint.notebook import Shown, Summary, shortened
 from shaftprint.publication import complete
 
-DRIVE_SCHEMA: Final = "drive 1.1"
+DRIVE_SCHEMA: Final = "drive 1.2"
 """Version of the layout of a drive's fingerprint."""
 
 
@@ -65,12 +65,29 @@ class DriveRecord(FrozenRecord):
         return self.recording == recording and self.from_s < to_s and from_s < self.to_s
 
 
+class DriveResponse(FrozenRecord):
+    """How well one frequency response is explained."""
+
+    name: str
+    """Name of its file."""
+    lines: int
+    """How many lines were fitted."""
+    lowest_hz: float
+    """Lowest of them [Hz]."""
+    highest_hz: float
+    """Highest of them [Hz]."""
+    fit_percent: dict[str, float]
+    """FitPercent of each output (thesis eq. 2.41)."""
+    fit_ceiling: dict[str, float]
+    """FitPercent that the stated deviations allow."""
+
+
 class DriveFingerprint(Shown, FrozenRecord):
     """Parameters of one drive with uncertainty, and how well its records are explained."""
 
     kind: Literal["drive"] = "drive"
     """Tells it from the fingerprint of a ship."""
-    schema_version: Literal["drive 1.0", "drive 1.1"] = DRIVE_SCHEMA
+    schema_version: Literal["drive 1.0", "drive 1.1", "drive 1.2"] = DRIVE_SCHEMA
     """Version of this record's layout."""
     shaftprint_version: str
     """Version of shaftprint that made it."""
@@ -98,6 +115,8 @@ class DriveFingerprint(Shown, FrozenRecord):
     """Combinations of parameters."""
     records: tuple[DriveRecord, ...]
     """The records that were fitted."""
+    responses: tuple[DriveResponse, ...] = ()
+    """The frequency responses that were fitted in place of records."""
     p_value: float | None
     """Probability that a right structure fits as badly as this or worse; None where there is nothing to test."""
     starts: int
@@ -114,7 +133,7 @@ class DriveFingerprint(Shown, FrozenRecord):
         verdict = self.verdict
         facts = {
             "structure": self.structure,
-            "records": shortened(one.name for one in self.records),
+            "records": shortened([*(one.name for one in self.records), *(one.name for one in self.responses)]),
             "made": f"{self.created:%Y-%m-%d %H:%M %Z}, shaftprint {self.shaftprint_version}",
             "verdict": verdict.reason,
             "known well enough": f"{len(verdict.trusted)} of {len(verdict.trusted) + len(verdict.not_trusted)}: "

@@ -12,7 +12,14 @@ from shaftprint.fingerprint import DriveFingerprint, drive_fingerprint_content
 from shaftprint.report._page import Page, write_page
 from shaftprint.report.figures import SimulatedSignal, simulation_chart
 from shaftprint.report.sections import Picture, Section, picture_name
-from shaftprint.tables import Table, drive_assumed_table, drive_record_table, quantity_table, texts
+from shaftprint.tables import (
+    Table,
+    drive_assumed_table,
+    drive_record_table,
+    drive_response_table,
+    quantity_table,
+    texts,
+)
 from shaftprint.time_domain import RecordFit
 
 if TYPE_CHECKING:
@@ -56,7 +63,7 @@ def render_drive(
     """
     page = Page(
         title=f"Fingerprint of {fingerprint.drive}",
-        subtitle=f"Structure {fingerprint.structure}, {len(fingerprint.records)} records",
+        subtitle=f"Structure {fingerprint.structure}, {_counted(fingerprint)}",
         created=fingerprint.created,
         version=fingerprint.shaftprint_version,
         sections=(_verdict(fingerprint), _numbers(fingerprint), _records(fit, fingerprint), _assumed(fingerprint)),
@@ -68,6 +75,11 @@ def render_drive(
         fingerprint_sha256=sha256(drive_fingerprint_content(fingerprint)).hexdigest(),
     )
     return write_page(directory, page, pictures=pictures, overwrite=overwrite, progress=progress)
+
+
+def _counted(fingerprint: DriveFingerprint) -> str:
+    responses = len(fingerprint.responses)
+    return f"{responses} frequency responses" if responses else f"{len(fingerprint.records)} records"
 
 
 def _verdict(fingerprint: DriveFingerprint) -> Section:
@@ -94,6 +106,8 @@ def _records(fit: "DriveFit", fingerprint: DriveFingerprint) -> Section:
         )
         for number, part in enumerate(parts, start=1)
     ]
+    if fingerprint.responses:
+        return Section(key="records", title="Frequency responses", tables=(drive_response_table(fingerprint),))
     return Section(key="records", title="Records", tables=(drive_record_table(fingerprint),), pictures=drawn)
 
 

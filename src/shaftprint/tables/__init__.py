@@ -22,6 +22,7 @@ from shaftprint.tables._drive import (
     drive_difference_table,
     drive_prediction_table,
     drive_record_table,
+    drive_response_table,
     time_comparison_table,
     validated_drive_table,
 )
@@ -87,6 +88,7 @@ __all__ = [
     "drive_difference_table",
     "drive_prediction_table",
     "drive_record_table",
+    "drive_response_table",
     "excerpt_name",
     "expected_inertia_table",
     "expected_text",

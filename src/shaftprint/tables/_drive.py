@@ -42,9 +42,35 @@ def drive_record_table(fingerprint: "DriveFingerprint") -> Table:
         *numbers("length [s]", "rate [Hz]", "FitPercent", "ceiling", "noise", "offset ± std"),
         *texts("unit"),
     )
-    title = f"Records; together p = {'-' if fingerprint.p_value is None else p_value_text(fingerprint.p_value)}"
-    note = f"{NOTE} {fingerprint.starts_at_optimum} of {fingerprint.starts} starts of the search ended at this result."
-    return Table(title=title, columns=columns, rows=tuple(rows), note=note)
+    return Table(title=_together("Records", fingerprint), columns=columns, rows=tuple(rows), note=_note(fingerprint))
+
+
+def drive_response_table(fingerprint: "DriveFingerprint") -> Table:
+    """Return how well each frequency response is explained."""
+    rows = [
+        (
+            one.name,
+            Symbol(output),
+            str(one.lines),
+            f"{one.lowest_hz:.4g} to {one.highest_hz:.4g}",
+            f"{percent:.2f}",
+            f"{one.fit_ceiling[output]:.2f}",
+        )
+        for one in fingerprint.responses
+        for output, percent in one.fit_percent.items()
+    ]
+    columns = (*texts("response", "output"), *numbers("lines", "band [Hz]", "FitPercent", "ceiling"))
+    title = _together("Frequency responses", fingerprint)
+    return Table(title=title, columns=columns, rows=tuple(rows), note=_note(fingerprint))
+
+
+def _together(what: str, fingerprint: "DriveFingerprint") -> str:
+    p_value = "-" if fingerprint.p_value is None else p_value_text(fingerprint.p_value)
+    return f"{what}; together p = {p_value}"
+
+
+def _note(fingerprint: "DriveFingerprint") -> str:
+    return f"{NOTE} {fingerprint.starts_at_optimum} of {fingerprint.starts} starts of the search ended at this result."
 
 
 def drive_assumed_table(fingerprint: "DriveFingerprint") -> Table:
