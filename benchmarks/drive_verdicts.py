@@ -11,6 +11,9 @@ Each record is identified with several seeds of the search. Asked: one verdict o
 numbers, each within 3.9 standard deviations of the truth (one of ten thousand lies further by chance). Each seed
 goes through all records before the next does, outcomes are kept line by line, and a run goes on where the last stopped:
 ``python benchmarks/drive_verdicts.py --records 40 --seeds 10 outcomes.jsonl``, about an hour of processor time.
+
+With ``--wanders 0.5`` one of the three numbers of each record, each in turn, wanders within it by up to half of its
+mean, which is then its truth: what is trusted all the same must be right.
 """
 
 import argparse
@@ -113,14 +116,14 @@ class Drawn:
 
 
 @numba.njit
-def _speed(
-    torque: FloatArray, hold: bool, interval: float, inverse_inertia: float, viscous: float, dry: float, first: float
-) -> FloatArray:
+def _speed(torque: FloatArray, hold: bool, interval: float, numbers: FloatArray, first: float) -> FloatArray:
     """Return the speed at every sample by Coulomb's ideal law, exactly from event to event under a constant input."""
-    lag, speed = 1.0 / (inverse_inertia * viscous), first
+    speed = first
     motion = np.empty(torque.size)
     motion[0] = first
     for k in range(torque.size - 1):
+        inverse_inertia, viscous, dry = numbers[:, k]
+        lag = 1.0 / (inverse_inertia * viscous)
         for part in range(FINER):
             share = 0.0 if hold else (part + 0.5) / FINER
             push = torque[k] + share * (torque[k + 1] - torque[k])
@@ -138,15 +141,17 @@ def _speed(
     return motion
 
 
-def drawn(number: int) -> Drawn:
-    """Return one of the records."""
+def drawn(number: int, wanders: float = 0.0) -> Drawn:
+    """Return one of the records, one of whose numbers wanders by up to a share of its mean."""
     rng = np.random.default_rng([SEED, number])
     shape, rate_hz, samples = SHAPES[number % len(SHAPES)], 100.0, 800
     viscous, lag_s = 10.0 ** rng.uniform(-2.7, -2.0), rng.uniform(0.1, 0.5)
     truth = {"a": 1.0 / (viscous * lag_s), "B": viscous, "T_C": rng.uniform(0.05, 0.3)}
     torque = _torque(shape, samples, truth["T_C"], rng)
     hold, moving = bool(rng.integers(2)), shape != "one way" and bool(rng.integers(2))
-    speed = _speed(torque, hold, 1.0 / rate_hz, truth["a"], truth["B"], truth["T_C"], _first(shape, torque, truth))
+    numbers = np.array(list(truth.values()))[:, None] * np.ones(samples)
+    numbers[number // len(SHAPES) % len(truth)] *= 1.0 + wanders * _walk(samples, number)
+    speed = _speed(torque, hold, 1.0 / rate_hz, numbers, _first(shape, torque, truth))
     if moving:
         torque, speed = torque[150:], speed[150:]
     size = float(np.std(speed))
@@ -154,6 +159,12 @@ def drawn(number: int) -> Drawn:
     omega = speed + rng.uniform(-1.0, 1.0) * size + noise
     record = record_from_arrays(f"record {number}", {"T": torque}, {"omega": omega}, rate_hz=rate_hz, hold=hold)
     return Drawn(shape=shape, truth=truth, hold=hold, moving=moving, zero_std=size, record=record)
+
+
+def _walk(samples: int, number: int) -> FloatArray:
+    """Return a random walk about its mean, its largest deviation 1."""
+    walk = np.cumsum(np.random.default_rng([SEED, number, 1]).standard_normal(samples))
+    return np.asarray((walk - walk.mean()) / np.abs(walk - walk.mean()).max())
 
 
 def _torque(shape: str, samples: int, dry: float, rng: np.random.Generator) -> FloatArray:
@@ -248,6 +259,7 @@ def main() -> None:
     asked.add_argument("outcomes", type=Path)
     asked.add_argument("--records", type=int, default=40)
     asked.add_argument("--seeds", type=int, default=10)
+    asked.add_argument("--wanders", type=float, default=0.0, help="by what share one number of each record wanders")
     given = asked.parse_args()
     lines = given.outcomes.read_text(encoding="utf-8").splitlines() if given.outcomes.exists() else []
     outcomes = [json.loads(line) for line in lines]
@@ -256,7 +268,7 @@ def main() -> None:
         for seed in range(1, 1 + given.seeds):
             for number in range(given.records):
                 if (number, seed) not in done:
-                    outcomes.append(outcome(drawn(number), number, seed, Path(folder)))
+                    outcomes.append(outcome(drawn(number, given.wanders), number, seed, Path(folder)))
                     kept.write(json.dumps(outcomes[-1]) + "\n")
                     kept.flush()
     sys.stdout.write(summary(outcomes) + "\n")

@@ -86,12 +86,34 @@ def fit(*records):
     return identify_in_time(pairs, rng=np.random.default_rng(1), settings=SINGLE, start=START)
 
 
-def test_a_gain_that_changes_within_a_record_is_found_by_its_halves():
-    torque, speed, name = linear_record("jump", np.random.default_rng(3))
-    speed[800:] *= 1.3
-    verdict = assess(fit((torque, speed, name)))
+TIME_S = np.arange(1600) / RATE_HZ
+
+
+@pytest.mark.parametrize(
+    "course",
+    [
+        np.where(TIME_S < 40.0, 1.0, 1.1),
+        1.0 + 0.1 * TIME_S / TIME_S[-1],
+        1.1 - 0.1 * np.exp(-TIME_S / 15.0),
+    ],
+    ids=["jumps", "rises", "warms up"],
+)
+def test_a_gain_that_changes_within_a_record_is_named(course):
+    torque, speed, name = linear_record("moving", np.random.default_rng(3))
+    found = fit((torque, speed * course, name))
+    verdict = assess(found, requirements=Requirements(largest_excess=4.0))
     assert not verdict.trustworthy
-    assert "does not hold in record jump" in verdict.reason
+    assert "does not hold in record moving: K " in verdict.reason
+    assert "does not stay the same from its beginning to its end" in verdict.reason
+
+
+def test_a_gain_that_stays_is_not_said_to_move():
+    found = fit(linear_record("still", np.random.default_rng(3)))
+    (part,) = found.parts
+    asked = [check for check in part.checks if check.kind == "constancy"]
+    assert [check.parameter for check in asked] == ["K", "T"]
+    assert min(check.p_value for check in asked) > 1e-3
+    assert assess(found, requirements=Requirements(largest_excess=4.0)).trustworthy
 
 
 def test_records_that_want_other_gains_contradict_each_other():
@@ -145,6 +167,6 @@ def test_steps_keep_their_levels_and_other_records_lose_their_drift():
 )
 def test_a_difference_fails_by_its_size_or_beside_its_noise(share, excess, p_value, by_size, by_noise):
     """Noise is 1 % of the motion: 0.4 % of it is a contradiction where that is 20 times the noise along it."""
-    check = TermCheck(kind="halves", output="w", share=share, noise=0.01, excess=excess, p_value=p_value)
+    check = TermCheck(kind="constancy", output="w", share=share, noise=0.01, excess=excess, p_value=p_value)
     assert fails(check, Requirements(), among=5) is by_size
     assert fails(check, Requirements(largest_excess=4.0), among=5) is by_noise

@@ -16,6 +16,8 @@ SIGN_WIDTH = 0.05
 REVERSES = 0.02
 # Lags of the inputs through the poles of the noise: a mode has two poles, straight lines between samples one more.
 MODE_LAGS = 6
+# Half turns of a number that moves slowly, within a record.
+SLOW = 5
 # One lag of the impulse response for so many samples.
 SAMPLES_A_LAG = 10
 
@@ -54,6 +56,15 @@ def small_and_large(record: Record, simulated: FloatArray) -> FloatArray:
 def up_and_down(record: Record, simulated: FloatArray) -> FloatArray:
     """Return what motions up may do other than motions down, even in the motion; see ``small_and_large``."""
     return _on_each(_lagged(record, np.abs(_centred(simulated)).T), simulated.shape[1])
+
+
+def slow_course(record: Record) -> FloatArray:
+    """Return courses of a number that moves slowly from the beginning of a record to its end, shape (courses, samples).
+
+    Cosines of half a turn and more: of a random walk, of what warms up, softens or jumps once they hold nearly all.
+    """
+    place = (np.cumsum(record.used) - 0.5) / record.used.sum()
+    return np.asarray(np.cos(np.pi * np.arange(1, SLOW + 1)[:, None] * place))
 
 
 def _centred(simulated: FloatArray) -> FloatArray:

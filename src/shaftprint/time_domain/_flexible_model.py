@@ -17,8 +17,8 @@ keeps the noise of ``_input_response``: more directions would take slow noise wi
 noise that remembers for five seconds would come out an eighth too small.
 """
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -26,7 +26,13 @@ import numpy as np
 from shaftprint.arrays import FloatArray
 from shaftprint.distributions import f_tail
 from shaftprint.identify.likelihood import CheckKind, TermCheck
-from shaftprint.time_domain._flexible_directions import impulse_responses, small_and_large, through_poles, up_and_down
+from shaftprint.time_domain._flexible_directions import (
+    impulse_responses,
+    slow_course,
+    small_and_large,
+    through_poles,
+    up_and_down,
+)
 from shaftprint.time_domain._noise_model import NoiseModel, estimate_noise
 from shaftprint.time_domain._nuisance import left_of, orthonormal, without
 from shaftprint.time_domain._record import Record
@@ -69,6 +75,10 @@ class FlexibleModel:
     """Outputs of the structure without offset and drift, shape (samples, outputs)."""
     slopes: FloatArray
     """Derivatives of these to the free parameters, shape (free, samples, outputs)."""
+    parameters: tuple[str, ...]
+    """Names of the free parameters."""
+    noise: NoiseModel
+    """The noise by which the fit was weighed."""
     nuisance: FloatArray
     """Offsets, drifts and effects of initial states, which are fitted too, shape (columns, samples, outputs)."""
     longest_memory_s: float
@@ -85,7 +95,7 @@ class FlexibleModel:
         plain = self._misfit
         if self._exact:
             return plain
-        flexible = self._difference(self._directions, self._fitted)
+        flexible = self._difference(self._directions, self._fitted, self._noise)
         followed = flexible.size**2 * self._motion
         if flexible.p_value > CHANCE:
             return plain
@@ -98,19 +108,30 @@ class FlexibleModel:
         """The structure against the flexible model, and parts of the record against each other; none without noise."""
         if self._exact:
             return ()
-        half = np.where(np.cumsum(self.record.used) <= 0.5 * self.record.used.sum(), -1.0, 1.0)
         groups: Mapping[CheckKind, FloatArray] = {
             "small and large": small_and_large(self.record, self.simulated),
             "up and down": up_and_down(self.record, self.simulated),
-            "halves": self.slopes * half[:, None],
             "flexible": self._directions,
         }
         checks = [self.along(kind, directions) for kind, directions in groups.items()]
-        return (*checks, self._check("other data", self.slopes, self.nuisance))
+        return (*checks, *self._constancy, self._check("other data", self.slopes, self.nuisance, self._noise))
+
+    @property
+    def _constancy(self) -> Iterator[TermCheck]:
+        """Each number early in the record against the same number late, one by one: what wanders is one of them.
+
+        A number that moves slowly moves the outputs by its slope there; that holds for what moves slower than the
+        outputs forget. It is asked under the noise that the deviations of the numbers rest on: the one beside a
+        flexible model takes colour from its many directions where samples are few, and said of 1 of 8 sound axes that they moved.
+        """
+        course = slow_course(self.record)[:, :, None]
+        for name, slope in zip(self.parameters, self.slopes, strict=True):
+            check = self._check("constancy", slope * course, self._fitted, self.noise)
+            yield replace(check, parameter=name)
 
     def along(self, kind: CheckKind, directions: FloatArray) -> TermCheck:
         """Return how much of what the structure leaves lies along directions, (directions, samples, outputs)."""
-        return self._check(kind, directions, self._fitted)
+        return self._check(kind, directions, self._fitted, self._noise)
 
     @cached_property
     def _unexplained(self) -> FloatArray:
@@ -169,9 +190,9 @@ class FlexibleModel:
         """Return the samples that count, as a filter of white noise would, shape (rows, counted samples, outputs)."""
         return values[:, self.record.used]
 
-    def _check(self, kind: CheckKind, directions: FloatArray, fitted: FloatArray) -> TermCheck:
-        """Return how much of the residuals lies along directions, beside what was fitted."""
-        difference = self._difference(directions, fitted)
+    def _check(self, kind: CheckKind, directions: FloatArray, fitted: FloatArray, noise: NoiseModel) -> TermCheck:
+        """Return how much of the residuals lies along directions, beside what was fitted, under a noise."""
+        difference = self._difference(directions, fitted, noise)
         level = np.sqrt(self.power / np.maximum(self._motion, np.finfo(np.float64).tiny))
         largest = int(np.argmax(difference.size / level))
         return TermCheck(
@@ -183,9 +204,9 @@ class FlexibleModel:
             p_value=difference.p_value,
         )
 
-    def _difference(self, directions: FloatArray, fitted: FloatArray) -> "_Difference":
+    def _difference(self, directions: FloatArray, fitted: FloatArray, noise: NoiseModel) -> "_Difference":
         """Return what directions explain of the residuals beside what was fitted."""
-        white = Whitening(noise=self._noise).whitened
+        white = Whitening(noise=noise).whitened
         target, basis, rows = (
             _flat(white(values, self.record.stretches)) for values in (self.residuals[None], fitted, directions)
         )
@@ -193,7 +214,7 @@ class FlexibleModel:
         unexplained = without(target[0], basis)
         span = Span.of(left_of(rows, basis))
         shares, explained = span.shares(unexplained), span.explained(unexplained)
-        spare = unexplained.size - len(basis) - span.rank - self._noise.coefficients.size
+        spare = unexplained.size - len(basis) - span.rank - noise.coefficients.size
         beyond = max(float(unexplained @ unexplained) - explained, 0.0) / max(spare, 1)
         enough = spare > 0 and span.rank > 0 and beyond > 0.0
         excess = explained / span.rank / beyond if enough else 1.0

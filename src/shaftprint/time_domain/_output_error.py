@@ -194,8 +194,7 @@ class OutputError(WhitenedTerm):
         """
         first = self.simulator.rest(self.structure, values, self.record)
         effects = effects_of(lambda states: self._simulated(values, (), states), first)
-        size = (0, self.record.samples, len(self._names))
-        return np.zeros(size) if effects is None else effects[1]
+        return np.zeros((0, self.record.samples, len(self._names))) if effects is None else effects[1]
 
     def redrawn(self, values: FloatArray, count: int, rng: np.random.Generator) -> RecordRepeats:
         """Return repeats with noise of the same colour."""
@@ -349,6 +348,8 @@ class OutputError(WhitenedTerm):
             residuals=self._compared(measured) - self._compared(self._completed(simulated[0], start)),
             simulated=simulated[0],
             slopes=simulated[1:],
+            parameters=tuple(self.structure.names[column] for column in self.free),
+            noise=self.whitening.noise,
             nuisance=np.concatenate([self._linear(start), *([] if self.assumed is None else [self.assumed])]),
             longest_memory_s=self.longest_memory_s,
         )

@@ -16,9 +16,9 @@ WORDS: Mapping[CheckKind, tuple[str, str]] = {
         "motions up and motions down do not follow the same numbers",
         "look for what acts in one direction only, and fit a structure that has it",
     ),
-    "halves": (
-        "its first and second half do not follow the same numbers",
-        "look for what changed in between, and fit the halves apart",
+    "constancy": (
+        "does not stay the same from its beginning to its end",
+        "look for what warms up, softens, wears or wanders meanwhile, and fit parts of it apart",
     ),
     "other data": ("it does not follow the numbers of the other data", "fit it alone and look for what differs"),
     "flexible": (
@@ -48,6 +48,10 @@ def contradicting_data(evidence: Evidence) -> str:
     last = ("flexible", "other data") if alone else ("flexible",)
     part, check = max(failures, key=lambda failure: (failure[1].kind not in last, failure[1].share))
     what, cure = WEIGHED if check.kind == "other data" and alone else WORDS[check.kind]
+    if check.kind == "constancy":
+        # numbers that act alike, such as dry and viscous friction, all seem to move where one of them does
+        moving = [(other.excess, other.parameter) for its, other in failures if its is part and other.parameter]
+        what = f"{' or '.join(name for _, name in sorted(moving, reverse=True))} {what}"
     return (
         f"The structure {evidence.identification.objective.name} does not hold in {part.name}: {what}, which is "
         f"{100.0 * check.share:.2g} % of the motion of {check.output} where the noise is {100.0 * check.noise:.2g} % "

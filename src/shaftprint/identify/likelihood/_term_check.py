@@ -3,9 +3,9 @@
 from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
-CheckKind: TypeAlias = Literal["small and large", "up and down", "halves", "other data", "flexible", "start"]
-"""What is compared: small motions with large ones, motions up with motions down, the first half of the data with the
-second, these data with the others, the structure with a flexible model, its start with other states."""
+CheckKind: TypeAlias = Literal["small and large", "up and down", "constancy", "other data", "flexible", "start"]
+"""What is compared: small motions with large ones, motions up with motions down, a number early with the same number
+late, these data with the others, the structure with a flexible model, its start with other states."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -25,3 +25,5 @@ class TermCheck:
     average if the structure holds."""
     p_value: float
     """Probability of a difference that large or larger if the structure holds."""
+    parameter: str = ""
+    """The number whose constancy is asked; none of the others."""
