@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from shaftprint.catalogue import structure
-from shaftprint.identify import Prior, Settings, identify, identify_jointly
+from shaftprint.identify import Prior, Settings, assess, identify, identify_jointly
 from shaftprint.identify.judgement import suspects_of
 from shaftprint.models import Delay, Gain, Parameter, Structure
 from shaftprint.spectra import FrequencyResponse
@@ -206,3 +206,23 @@ def test_a_joint_fit_is_asked_as_a_whole(data):
     assert together.words == alone.words
     assert together.estimate == pytest.approx(alone.estimate, rel=1e-3)
     assert together.std == pytest.approx(alone.std / np.sqrt(2.0), rel=1e-3)
+
+
+@pytest.mark.parametrize(("scatter", "kinds"), [(0.0, ["prior", "misfit", "suspect"]), (0.3, ["misfit", "prior", "suspect"])])
+def test_a_misfit_that_no_linear_cause_explains_comes_before_the_priors_that_it_pulls(scatter, kinds):
+    """A gain of 1.1 where 1 is assumed; as a limit bends large lines, every second one is 0.3 too small."""
+    gain = Parameter("k", "-", 0.1, 5.0, 1.0, "test")
+    own = Structure(name="own", title="", input="u", outputs={"y": Gain(gain)})
+    frequency = np.geomspace(0.1, 2.0, 12)
+    response = FrequencyResponse(
+        frequency_hz=frequency,
+        response=(1.1 + 0.5 * scatter * (-1.0) ** np.arange(12) + 0j)[None, None],
+        covariance=np.tile(1e-4 * np.eye(2), (12, 1, 1)),
+        inputs=("u",),
+        outputs=("y",),
+    )
+    settings = Settings(priors={"k": Prior(1.0, 0.01)})
+    verdict = assess(identify(own, response, rng=np.random.default_rng(1), settings=settings))
+    assert [reason.kind for reason in verdict.reasons] == kinds
+    said = "such as a limit of torque or rack or of their rate, play or dry friction" in verdict.reasons[-1].sentence
+    assert said == (scatter > 0.0)

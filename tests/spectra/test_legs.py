@@ -1,5 +1,6 @@
 """Legs of known content: a line with an inertia and a quadratic propeller, moved by all lines at once."""
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -273,6 +274,30 @@ def test_a_clock_that_is_a_thousandth_off_is_named():
     reasons = estimate_legs(made_leg(clock_ratio=1e-3), CAMPAIGN)["M1"].response.reasons
     assert [reason.kind for reason in reasons] == ["recording clock"]
     assert "periods of M1 are +0.10 % longer than the campaign file says" in reasons[0].sentence
+
+
+@pytest.mark.parametrize("share", [0.005, -0.002])
+@pytest.mark.parametrize(("channel", "words"), [("n_e", "the speed n_e"), ("M_s", "the shaft torque")])
+def test_a_channel_on_a_clock_of_its_own_is_named(channel, words, share):
+    """What is shown at the time t happened at (1 + share) t: its lines run faster by the share."""
+    signals = made_leg(noise=0.002, rng=np.random.default_rng(5))
+    one = signals.channels[channel]
+    place = np.arange(one.values.size, dtype=np.float64)
+    shown = with_channels(signals, **{channel: replace(one, values=np.interp((1.0 + share) * place, place, one.values))})
+    against = estimate_legs(shown, CAMPAIGN)["M1"].response.reasons
+    (reason,) = (found for found in against if found.kind == "channel clock")
+    assert reason.where == words
+    stated = float(re.search(r"its sines run ([+-][\d.]+) % beside those of the set point", reason.sentence).group(1))
+    assert stated == pytest.approx(100.0 * share, abs=0.02)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_channels_of_one_clock_are_not_in_doubt_in_a_leg(seed):
+    """Lines as faint as the noise, and a load that wanders, among those that tell."""
+    rng = np.random.default_rng(seed)
+    signals = made_leg(noise=0.05 * 4.0**seed / 4.0, wander=0.03, rng=rng)
+    reasons = estimate_legs(signals, CAMPAIGN)["M1"].response.reasons
+    assert not any(reason.kind == "channel clock" for reason in reasons)
 
 
 def test_a_leg_that_was_cut_off_gives_a_response_of_its_whole_periods():

@@ -277,10 +277,6 @@ SHIPS = (
     Case(name="rack whose rate is limited", cause="limit|rate|explain", ship={"rack_rate_limit_per_s": 0.5}),
 )  # fmt: skip
 
-NOT_NAMED = frozenset({"pick-ups sampled 0.5 % too fast", "rack whose rate is limited"})
-"""Nothing of them is trusted, but the cause is not among the first reasons: clocks of channels are looked at in sines
-alone, and three priors that are pulled stand before the misfit."""
-
 CASES_OF_LEGS = (
     *(replace(case, test=TWO_SPEEDS) for case in (*GAUGE, *SPEEDS, *SET_POINTS, *CLOCKS, *GAPS, *FILES, *SHIPS)),
     *(replace(case, test=TWO_SPEEDS, fast=False) for case in CASES if case.both),

@@ -12,13 +12,22 @@ from shaftprint.spectra._shift_check import shift_reasons
 from shaftprint.spectra._spectra import Spectra
 from shaftprint.spectra._speed_ratios import speed_ratios
 from shaftprint.spectra.legs import check_leg, cut_leg, leg_clock_reasons, leg_shape_reasons, measure_leg
-from shaftprint.spectra.lines import LoadDrift, band_of_lines, band_reasons, collect_harmonics, signal_to_noise
+from shaftprint.spectra.lines import (
+    LoadDrift,
+    band_of_lines,
+    band_reasons,
+    channel_clock_reasons,
+    collect_harmonics,
+    offsets_of_lines,
+    signal_to_noise,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from shaftprint.arrays import BoolArray
     from shaftprint.campaign import Campaign, Leg, Multisine
+    from shaftprint.reasons import Reason
     from shaftprint.signals import ExcitationSignal, LegState, Signals, SpeedSignal
     from shaftprint.spectra.legs import LegFinding, LegLines
     from shaftprint.spectra.lines import LineMeasurement
@@ -78,16 +87,39 @@ def estimate_inputs_of_legs(signals: "Signals", campaign: "Campaign") -> dict[st
         As ``estimate_legs``, or if the vessel file names no sensor of what was moved.
     """
     by_name = {leg.name: leg for leg in campaign.legs}
-    found = {}
+    found, of_speed = {}, []
     for state in signals.legs:
         about, leg = signals.about(state.name), by_name[state.name]
         beside = campaign.beside(leg)
         moved = tuple(leg.lines), tuple(sorted(harmonic for one in beside for harmonic in one.lines))
         excitations = {SPEED: leg, **{_symbol_of(one, signals): one for one in beside}}
-        found[state.name] = {
-            symbol: _leg(about, one, state, about.excitations[symbol], moved) for symbol, one in excitations.items()
+        measured = {
+            symbol: _measured(about, one, replace(state, name=one.name), symbol, moved)
+            for symbol, one in excitations.items()
         }
-    return found
+        of_speed.append(measured[SPEED])
+        found[state.name] = {
+            symbol: _leg(about, one, measured[symbol], about.excitations[symbol]) for symbol, one in excitations.items()
+        }
+    against = _channel_clocks(of_speed, signals.engine_speed.name)
+    return {
+        name: {symbol: _with_reasons(one, against) for symbol, one in by_input.items()}
+        for name, by_input in found.items()
+    }
+
+
+def _with_reasons(spectra: Spectra, reasons: "Sequence[Reason]") -> Spectra:
+    response = spectra.response
+    return replace(spectra, response=replace(response, reasons=(*reasons, *response.reasons)))
+
+
+def _channel_clocks(legs: "Sequence[LegLines]", speed: str) -> "tuple[Reason, ...]":
+    """Return what the lines of all legs together say against the clocks of speed and torque."""
+    offsets = [offsets_of_lines(leg.lines, (speed, "M_s")) for leg in legs]
+    if not offsets:
+        return ()
+    offset, std = (np.concatenate(rows) for rows in zip(*offsets, strict=True))
+    return channel_clock_reasons(offset, std, channels=(f"the speed {speed}", "the shaft torque"))
 
 
 def _symbol_of(multisine: "Multisine", signals: "Signals") -> str:
@@ -100,10 +132,9 @@ def _symbol_of(multisine: "Multisine", signals: "Signals") -> str:
     )
 
 
-def _leg(signals: "Signals", leg: "Leg", state: "LegState", moved: "ExcitationSignal", lines_of: "_Lines") -> Spectra:
-    """Return what one input of a leg shows; ``lines_of`` are the harmonics of the speed, and those of all else."""
+def _leg(signals: "Signals", leg: "Leg", measured: "LegLines", moved: "ExcitationSignal") -> Spectra:
+    """Return what one input of a leg shows."""
     sensor = signals.engine_speed
-    measured = _measured(signals, leg, replace(state, name=leg.name), sensor, moved.name, lines_of)
     expected = np.array([leg.lines[harmonic] for harmonic in measured.harmonics]) * abs(moved.per_volt)
     finding = check_leg(measured, expected=expected / moved.reference, moved=moved)
     band = band_of_lines(measured.lines, expected / moved.reference, moved)
@@ -184,11 +215,13 @@ def _measured(
     signals: "Signals",
     leg: "Leg",
     state: "LegState",
-    sensor: "SpeedSignal",
     excitation: str,
     lines_of: "_Lines",
 ) -> "LegLines":
-    """Return the lines of one input of a leg in every channel that answers it."""
+    """Return the lines of one input of a leg in every channel that answers it.
+
+    ``lines_of`` are the harmonics of the speed, and those of all else.
+    """
     highest = _HIGHEST_SHARE_OF_RATE * signals.rate_hz * leg.length_of_period_s
     harmonics = _below(tuple(leg.lines), highest)
     apart = {*signals.excitations, *signals.messages} - {excitation}
@@ -217,7 +250,7 @@ def _measured(
         window,
         harmonics,
         excitation=excitation,
-        speed=sensor.name,
+        speed=signals.engine_speed.name,
         of_speed=_below(lines_of[0], highest),
         beside=_below(lines_of[1], highest),
         orders=signals.orders,

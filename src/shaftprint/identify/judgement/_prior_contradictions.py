@@ -38,6 +38,15 @@ def contradicted_priors(identification: Identification) -> tuple[Reason, ...]:
     )
 
 
+def beyond_priors(identification: Identification) -> bool:
+    """Return whether a misfit is larger than all priors that the data pull would explain, were they let go.
+
+    What is pulled then is pulled by a wrong structure, and says little of the prior.
+    """
+    pulls = sum(distance**2 for _, distance, *_ in _distances(identification) if distance > PULLED)
+    return identification.chi_square - identification.degrees_of_freedom > pulls
+
+
 def strange_priors(identification: Identification) -> tuple[str, ...]:
     """Return a sentence for each parameter that the data pull by 2.5 to 3.5 deviations."""
     return tuple(

@@ -27,6 +27,13 @@ NEARLY = 0.97
 OWN = 1e-4
 # A cause that changes the response by more than itself is not of first order.
 FIRST_ORDER = 1.0
+# A misfit of so many times the noise in which no cause shows is none of a linear structure.
+GROSS = 2.0
+NOT_LINEAR = (
+    "A hint: no delay, lag or scale of a channel would take much of the misfit away; look for what large motions do "
+    "other than small ones, such as a limit of torque or rack or of their rate, play or dry friction (`shaftprint "
+    "limits` looks for limits)."
+)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -99,6 +106,13 @@ def suspects_of(identification: Identification, *, rejected: float = REJECTED) -
         misfit = misfit - (along @ misfit) * along
         basis = np.column_stack([basis, along])
     return tuple(suspects)
+
+
+def is_gross(identification: Identification) -> bool:
+    """Return whether lines alone were fitted, and lie so far from the structure that it is no linear cause."""
+    if not identification.is_likelihood or identification.objective.others:
+        return False
+    return identification.chi_square > GROSS * identification.degrees_of_freedom
 
 
 def _changes(identification: Identification, cause: Cause, size: float) -> float:

@@ -36,9 +36,9 @@ from shaftprint.identify.judgement._fit_reasons import (
 from shaftprint.identify.judgement._hold_out_lines import not_predicted
 from shaftprint.identify.judgement._number_precision import doubts_of
 from shaftprint.identify.judgement._phrases import listed, probability
-from shaftprint.identify.judgement._prior_contradictions import contradicted_priors
+from shaftprint.identify.judgement._prior_contradictions import beyond_priors, contradicted_priors
 from shaftprint.identify.judgement._requirements import Requirements
-from shaftprint.identify.judgement._suspects import Suspect, suspects_of
+from shaftprint.identify.judgement._suspects import NOT_LINEAR, Suspect, is_gross, suspects_of
 from shaftprint.identify.uncertainty import Profile
 from shaftprint.identify.uncertainty import profile as find_profile
 from shaftprint.notebook import Shown, Summary, shortened
@@ -157,7 +157,12 @@ def assess(
     of_data = tuple(reason for part in identification.experiments for reason in part.response.reasons)
     is_explained = any(reason.kind in BEFORE_DRIFT for reason in (*of_data, *reasons))
     drifts = () if is_explained else drift_reasons(identification)
-    every = by_weight((*of_data, *reasons, *drifts, *contradicted_priors(identification), *of_fit, *hints))
+    pulled = contradicted_priors(identification)
+    every = by_weight((*of_data, *reasons, *drifts, *pulled, *of_fit, *hints))
+    if rejected and identification.is_likelihood and beyond_priors(identification):
+        every = _with_misfit_before(pulled, every)
+        if not (of_data or reasons or drifts or hints or explained_share) and is_gross(identification):
+            every = (*every, Reason(kind="suspect", sentence=NOT_LINEAR))
     numbers = (*identification.parameters, *identification.combinations, *further)
     imprecise = doubts_of(identification, numbers, evidence.profile, evidence.requirements)
     doubts = {number.name: clause_of(number, every) or imprecise.get(number.name, "") for number in numbers}
@@ -186,6 +191,14 @@ def assess(
         reasons=every,
         assumptions=tuple(assumptions),
     )
+
+
+def _with_misfit_before(pulled: Sequence[Reason], every: Sequence[Reason]) -> tuple[Reason, ...]:
+    """Return reasons with the misfit before the priors that it pulls."""
+    misfit = next(reason for reason in every if reason.kind == "misfit")
+    others = [reason for reason in every if reason is not misfit]
+    place = next((i for i, reason in enumerate(others) if reason in pulled), every.index(misfit))
+    return (*others[:place], misfit, *others[place:])
 
 
 def _of_fit(evidence: Evidence) -> tuple[Reason, ...]:

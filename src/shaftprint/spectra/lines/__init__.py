@@ -1,7 +1,7 @@
 """Test lines: their windows, the fit of their sines, the noise beside them, what of ship or logger shows in them."""
 
 from shaftprint.spectra.lines._bin_selection import ExactBin, HighestPeak
-from shaftprint.spectra.lines._clock_check import clock_reasons
+from shaftprint.spectra.lines._clock_check import channel_clock_reasons, clock_reasons, offsets_of_lines
 from shaftprint.spectra.lines._cross_term import without_cross_term
 from shaftprint.spectra.lines._harmonics import Harmonics, collect_harmonics
 from shaftprint.spectra.lines._input_band import InputBand, band_of_lines, band_reasons, input_band
@@ -55,6 +55,7 @@ __all__ = [
     "band_reasons",
     "check_frequency_unit",
     "check_set_point",
+    "channel_clock_reasons",
     "clock_reasons",
     "collect_harmonics",
     "cut_messages",
@@ -69,6 +70,7 @@ __all__ = [
     "measure_line",
     "noise_from_neighbours",
     "plan_windows",
+    "offsets_of_lines",
     "residual_spectrum",
     "shape_reasons",
     "signal_to_noise",

@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 # A window with fewer periods does not tell its frequency apart from drift and image.
 _FEWEST_PERIODS = 6
 _FEWEST_LINES = 3
+# A leg with fewer periods does not tell a turn apart from noise.
+_FEWEST_STRETCHES = 3
 # Largest error of a clock that changes no number by more than its deviation; loggers keep to a tenth of it.
 _TOLERANCE = 5e-4
 _DEVIATIONS = 5.0
@@ -61,13 +63,66 @@ def clock_reasons(
     reasons = []
     if recording_ratio is not None and abs(recording_ratio - 1.0) > _TOLERANCE:
         reasons.append(_recording(recording_ratio))
-    for column, name in enumerate(channels):
-        if column:
-            spread = np.hypot(std[:, column], std[:, 0])
-            offset = _weighted(ratio[:, column] / ratio[:, 0] - 1.0, spread)
-            if offset is not None and abs(offset) > _TOLERANCE:
-                reasons.append(_channel(name, offset))
-    return tuple(reasons)
+    offset, spread = ratio[:, 1:] / ratio[:, :1] - 1.0, np.hypot(std[:, 1:], std[:, :1])
+    return (*reasons, *channel_clock_reasons(offset, spread, channels=list(channels)[1:]))
+
+
+def channel_clock_reasons(offset: FloatArray, std: FloatArray, *, channels: Sequence[str]) -> tuple[Reason, ...]:
+    """Return a reason for each channel whose lines all run beside those of what was excited.
+
+    Parameters
+    ----------
+    offset, std
+        By which share each line runs beside, and its standard deviation, shape (lines, channels); not a number where
+        noise may hide it.
+    channels
+        What a reader calls each channel.
+    """
+    means = [_weighted(*one) for one in zip(offset.T, std.T, strict=True)]
+    return tuple(
+        _channel(name, mean)
+        for name, mean in zip(channels, means, strict=True)
+        if mean is not None and abs(mean) > _TOLERANCE
+    )
+
+
+def offsets_of_lines(lines: "Sequence[LineMeasurement]", names: Sequence[str]) -> tuple[FloatArray, FloatArray]:
+    """Return by which share each line of a leg runs beside what was excited, and its deviation, (lines, channels).
+
+    The clock of a channel turns its lines from one period to the next, the fast ones ever more: how many whole turns is
+    what the slower ones say.
+
+    Parameters
+    ----------
+    lines
+        All lines of the leg, ascending, in each of its periods.
+    names
+        The channels.
+    """
+    offset, std = np.full((2, len(lines), len(names)), np.nan)
+    known, so_far = np.zeros((2, len(names)))
+    for row, line in enumerate(lines if lines[0].stretches.shape[1] >= _FEWEST_STRETCHES else ()):
+        offset[row], std[row] = _offsets(line, names, so_far)
+        weight = np.nan_to_num(std[row] ** -2.0)
+        known += weight
+        so_far += np.where(weight > 0.0, weight / np.maximum(known, 1.0) * (offset[row] - so_far), 0.0)
+    return offset, std
+
+
+def _offsets(line: "LineMeasurement", names: Sequence[str], so_far: FloatArray) -> tuple[FloatArray, FloatArray]:
+    rows, periods = line.places(*names), line.stretches.shape[1]
+    harmonic = line.window.periods / periods
+    centred = np.arange(periods) - 0.5 * (periods - 1)
+    turned = line.stretches[rows] * line.excited_stretches.conj()
+    turned = turned * np.exp(-2j * np.pi * harmonic * so_far[:, None] * centred)
+    angle = np.unwrap(np.angle(turned * turned.mean(axis=1, keepdims=True).conj()), axis=1)
+    slope = angle @ centred / (centred @ centred)
+    # of a line that turns, little is left in all periods together
+    size = np.sqrt(np.mean(np.abs(line.stretches[rows]) ** 2, axis=1))
+    share = np.sqrt(line.noise.covariance.diagonal().real[rows]) / np.maximum(size, np.finfo(np.float64).tiny)
+    turn_std = share * np.sqrt(0.5 * periods / (centred @ centred)) / (2.0 * np.pi)
+    std = np.where(share < _FAINT, np.hypot(turn_std, _LEAST_BINS / periods) / harmonic, np.nan)
+    return so_far + slope / (2.0 * np.pi * harmonic), std
 
 
 def _recording(ratio: float) -> Reason:
