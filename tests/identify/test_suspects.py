@@ -208,7 +208,9 @@ def test_a_joint_fit_is_asked_as_a_whole(data):
     assert together.std == pytest.approx(alone.std / np.sqrt(2.0), rel=1e-3)
 
 
-@pytest.mark.parametrize(("scatter", "kinds"), [(0.0, ["prior", "misfit", "suspect"]), (0.3, ["misfit", "prior", "suspect"])])
+@pytest.mark.parametrize(
+    ("scatter", "kinds"), [(0.0, ["prior", "misfit", "suspect"]), (0.3, ["misfit", "prior", "suspect"])]
+)
 def test_a_misfit_that_no_linear_cause_explains_comes_before_the_priors_that_it_pulls(scatter, kinds):
     """A gain of 1.1 where 1 is assumed; as a limit bends large lines, every second one is 0.3 too small."""
     gain = Parameter("k", "-", 0.1, 5.0, 1.0, "test")

@@ -283,7 +283,9 @@ def test_a_channel_on_a_clock_of_its_own_is_named(channel, words, share):
     signals = made_leg(noise=0.002, rng=np.random.default_rng(5))
     one = signals.channels[channel]
     place = np.arange(one.values.size, dtype=np.float64)
-    shown = with_channels(signals, **{channel: replace(one, values=np.interp((1.0 + share) * place, place, one.values))})
+    shown = with_channels(
+        signals, **{channel: replace(one, values=np.interp((1.0 + share) * place, place, one.values))}
+    )
     against = estimate_legs(shown, CAMPAIGN)["M1"].response.reasons
     (reason,) = (found for found in against if found.kind == "channel clock")
     assert reason.where == words

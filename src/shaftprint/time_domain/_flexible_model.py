@@ -122,7 +122,7 @@ class FlexibleModel:
 
         A number that moves slowly moves the outputs by its slope there; that holds for what moves slower than the
         outputs forget. It is asked under the noise that the deviations of the numbers rest on: the one beside a
-        flexible model takes colour from its many directions where samples are few, and said of 1 of 8 sound axes that they moved.
+        flexible model takes colour from its many directions where samples are few, and numbers of sound drives moved.
         """
         course = slow_course(self.record)[:, :, None]
         for name, slope in zip(self.parameters, self.slopes, strict=True):
