@@ -1,5 +1,6 @@
 """``shaftprint sail`` writes a raw recording and its truth."""
 
+import numpy as np
 import pytest
 
 from shaftprint.recording import read_recording
@@ -67,3 +68,25 @@ def test_all_errors_of_a_vessel_file_at_once(run, tmp_path, brief_campaign):
 
 def test_seed_below_zero_is_a_usage_error(run, tmp_path, brief_campaign):
     assert run("sail", "stan-tug-1205", brief_campaign, "-o", tmp_path / "test.nc", "--seed", -1).exit_code == 2
+
+
+@pytest.mark.slow
+def test_a_test_on_a_bus_as_its_logger_writes_it(run, tmp_path, brief_campaign):
+    log = tmp_path / "test.blf"
+    result = run("sail", "stan-tug-1205", brief_campaign, "-o", log, "--messages", "torque=100", "--jitter", 15)
+    assert result.exit_code == 0
+    assert "test.blf.dbc beside it says what the frames hold" in result.stderr
+    with read_recording(log, dbc=tmp_path / "test.blf.dbc") as recording:
+        torque = recording.channel("M_s")
+        assert torque.rate_hz == pytest.approx(100.0, rel=1e-3)
+        # 15 % of 10 ms about the cycle: a step has two of them
+        assert torque.stamps is not None
+        assert np.diff(torque.stamps_s(0, torque.count)).std() == pytest.approx(0.0015 * 2**0.5, rel=0.1)
+        assert recording.channel("U_setpoint").rate_hz == pytest.approx(2000.0)
+
+
+@pytest.mark.parametrize("text", ["speed", "speed=0", "rack=10", "speed=inf"])
+def test_messages_need_a_rate(run, tmp_path, brief_campaign, text):
+    result = run("sail", "stan-tug-1205", brief_campaign, "-o", tmp_path / "x.nc", "--messages", text)
+    assert result.exit_code == 2
+    assert f'expected torque, speed, set-point with a rate, such as speed=50, found "{text}"' in result.stderr

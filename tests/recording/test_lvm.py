@@ -142,3 +142,27 @@ def test_what_cannot_be_used_is_explained(tmp_path):
     two = _segment(ROWS) + "\n" + _segment(ROWS, names=("Other", "Torque"))
     with pytest.raises(RecordingError, match="expected the titles of the first segment, found others"):
         _read(tmp_path, _head() + two)
+
+
+def test_times_that_contradict_a_printed_step_say_the_rate(tmp_path):
+    # 51200 Hz: the step is printed as 0.000020 s, which would be 50000 Hz, in two segments 1 s apart
+    rows = [f"{k / 51200.0:.6f}|{k % 7}|{k % 5}" for k in range(2000)]
+    later = [f"{1.0 + k / 51200.0:.6f}|{k % 7}|{k % 5}" for k in range(2000)]
+    text = _head() + _segment(rows, step="0.000020") + "\n" + _segment(later, step="0.000020", x0="1.0")
+    recording, _ = _read(tmp_path, text)
+    assert recording.channel("Voltage").rate_hz == pytest.approx(51200.0, rel=1e-4)
+
+
+def test_times_that_stray_are_kept_over_segments(tmp_path):
+    strays = np.random.default_rng(2).uniform(-0.002, 0.002, 400)
+    times = np.round(0.02 * np.arange(400) + 0.005 + strays, 6)
+    rows = [f"{time:.6f}|{k}|{k}" for k, time in enumerate(times)]
+    text = _head() + "\n".join(
+        _segment(rows[at : at + 100], step="0.020000", x0=rows[at][:8]) for at in range(0, 400, 100)
+    )
+    path = tmp_path / "log.lvm"
+    path.write_text(text.replace("|", "\t"))
+    with read_recording(path) as recording:
+        channel = recording.channel("Torque")
+        assert np.array_equal(channel.stamps_s(0, 400), times)
+        assert channel.clock_jumps == ()

@@ -220,3 +220,12 @@ def test_a_dbc_file_that_is_there_is_not_replaced(source, tmp_path):
 def test_times_beside_a_clock_that_are_not_kept_are_told(source, tmp_path):
     remarks = write_by_ending(tmp_path / "log.tdms", [source.channel("n_e")])
     assert remarks == ("n_e: times of the samples beside their clock are not kept.",)
+
+
+def test_a_log_without_a_date_has_none(source, tmp_path):
+    for name in ("log.asc", "log.blf", "log.log"):
+        write_by_ending(tmp_path / name, [source.channel("slow")])
+        with read_recording(tmp_path / name, dbc=tmp_path / f"{name}.dbc") as recording:
+            assert (recording.began, recording.channel("slow").start_s) == (None, pytest.approx(0.5))
+        with pytest.raises(RecordingError, match=rf"--dbc {name}\.dbc of"):
+            read_recording(tmp_path / name)

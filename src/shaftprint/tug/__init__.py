@@ -32,6 +32,7 @@ from shaftprint.tug._changes import (
 )
 from shaftprint.tug._coupling import Coupling
 from shaftprint.tug._ideal import IdealSignals, simulate_signals
+from shaftprint.tug._in_messages import MESSAGES, in_messages
 from shaftprint.tug._like_stan_tug import like_stan_tug_1205, with_lever_of
 from shaftprint.tug._linearise import linearised_response
 from shaftprint.tug._linearise_both import linearised_both
@@ -59,6 +60,7 @@ from shaftprint.tug._tug import Tug
 from shaftprint.tug.sensors import Fault
 
 __all__ = [
+    "MESSAGES",
     "Coupling",
     "Fault",
     "IdealSignals",
@@ -78,6 +80,7 @@ __all__ = [
     "Tug",
     "Wear",
     "as_built",
+    "in_messages",
     "in_water",
     "like_stan_tug_1205",
     "linearised_both",

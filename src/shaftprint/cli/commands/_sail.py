@@ -1,5 +1,6 @@
 """``shaftprint sail``: a raw recording of a simulated tug."""
 
+import math
 from pathlib import Path
 
 import click
@@ -11,7 +12,7 @@ from shaftprint.cli._vessel_file import print_disagreements
 from shaftprint.cli.output import no_progress_option, progress
 from shaftprint.recording import expect_known_ending
 from shaftprint.survey import load_trial
-from shaftprint.tug import like_stan_tug_1205, sail_as, truth_path, with_lever_of
+from shaftprint.tug import MESSAGES, in_messages, like_stan_tug_1205, sail_as, truth_path, with_lever_of
 
 
 @click.command("sail")
@@ -20,6 +21,15 @@ from shaftprint.tug import like_stan_tug_1205, sail_as, truth_path, with_lever_o
 @output_options("Recording to write")
 @starboard_option
 @click.option("--seed", type=click.IntRange(min=0), default=1, show_default=True, help="Seed of all randomness.")
+@click.option(
+    "--messages",
+    "rates",
+    multiple=True,
+    metavar="WHAT=HZ",
+    help="What comes over a bus, and how often, such as torque=100, speed=50 and set-point=50; may be repeated.",
+)
+@click.option("--jitter", type=click.FloatRange(0.0, 28.0), default=0.0, help="Of messages, % of their cycle (rms).")
+@click.option("--lost", type=click.FloatRange(0.0, 99.0), default=0.0, help="Messages that are lost [%].")
 @click.option("--force", is_flag=True, help="Replace an existing recording.")
 @no_progress_option
 def command(
@@ -29,6 +39,9 @@ def command(
     chosen_format: str | None,
     starboard: str | None,
     seed: int,
+    rates: tuple[str, ...],
+    jitter: float,
+    lost: float,
     force: bool,
     no_progress: bool,
 ) -> None:
@@ -40,13 +53,17 @@ def command(
     for the working speed at the voltage of the campaign. A campaign that states slope_rpm_per_v is sailed with that
     lever: at its offset it asks for offset_rpm, or for the working speed. What was put into the recording goes to a
     file of its own beside it, which nothing that identifies will open. The recording is written as the logger of its
-    ending writes it: what that loses is said, and logs of a CAN bus get a DBC file beside them. With --starboard both
-    lines of a ship are sailed in one recording; each propeller feels the wash of the other, and both the same sea.
+    ending writes it: what that loses is said, and logs of a CAN bus get a DBC file beside them. With --messages torque,
+    speed in rpm or a set point in % or rpm come over a bus. With --starboard both lines of a ship are sailed in one
+    recording; each propeller feels the wash of the other, and both the same sea.
     """
     if output.is_dir():
         raise click.ClickException(f"{output}: expected a file for the recording, found a folder; add a file name.")
     expect_known_ending(output, format=chosen_format)
+    rates_hz = dict(map(_rate, rates))
     if starboard is not None:
+        if rates_hz or jitter or lost:
+            raise click.UsageError("--messages, --jitter and --lost are for one line: leave out --starboard.")
         sail_both_lines(vessel, starboard, campaign, output, seed=seed, force=force, no_progress=no_progress)
         return
     trial = load_trial(vessel, campaign)
@@ -55,6 +72,7 @@ def command(
         steps.begin("Sailing", total=1.0)
         usual = like_stan_tug_1205(trial.vessel, offset_v=trial.campaign.offset_v)
         tug = with_lever_of(usual, trial.vessel, trial.campaign)
+        tug = in_messages(tug, trial.vessel, rates_hz=rates_hz, jitter=jitter / 100.0, lost=lost / 100.0)
         remarks: list[str] = []
         sail_as(
             trial.vessel,
@@ -71,3 +89,17 @@ def command(
         echo(f"{output}: {remark}", err=True)
     answer(f"{output}: the raw recording of {trial.campaign.duration_s:g} s.")
     answer(f"{truth_path(output)}: what was put into it.")
+
+
+def _rate(text: str) -> tuple[str, float]:
+    """Return what comes in messages, and how often [Hz]."""
+    name, _, rate = text.partition("=")
+    try:
+        rate_hz = float(rate)
+    except ValueError:
+        rate_hz = 0.0
+    if name not in MESSAGES or not 0.0 < rate_hz < math.inf:
+        raise click.UsageError(
+            f'--messages: expected {", ".join(MESSAGES)} with a rate, such as speed=50, found "{text}".'
+        )
+    return name, rate_hz

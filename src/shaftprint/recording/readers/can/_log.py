@@ -88,9 +88,11 @@ def expect_known(path: Path, taken: Decoded, database: Database) -> None:
             f"{path}: expected messages that {database.name} knows, found none of them in the log{in_brackets}; take "
             "the DBC file of this ship."
         )
+    beside = path.with_name(f"{path.name}.dbc")
     raise RecordingError(
         f"{path}: expected messages of engine, gearbox or rudder by SAE J1939 or NMEA 2000, found none of them in the "
-        f"log{in_brackets}; give the DBC file that says what the frames hold, dbc= (--dbc of shaftprint convert)."
+        f"log{in_brackets}; give the DBC file that says what the frames hold, dbc= (--dbc"
+        f"{f' {beside.name}' if beside.is_file() else ''} of shaftprint convert)."
     )
 
 
