@@ -1,7 +1,10 @@
 """``shaftprint sail`` writes a raw recording and its truth."""
 
+from importlib.resources import files
+
 import numpy as np
 import pytest
+import tomlkit
 
 from shaftprint.recording import read_recording
 from shaftprint.settings import write_template
@@ -72,21 +75,25 @@ def test_seed_below_zero_is_a_usage_error(run, tmp_path, brief_campaign):
 
 @pytest.mark.slow
 def test_a_test_on_a_bus_as_its_logger_writes_it(run, tmp_path, brief_campaign):
-    log = tmp_path / "test.blf"
-    result = run("sail", "stan-tug-1205", brief_campaign, "-o", log, "--messages", "torque=100", "--jitter", 15)
+    content = tomlkit.parse((files("shaftprint.vessel") / "shipped" / "stan_tug_1205.toml").read_text())
+    content["sensors"]["speed"] = [{"name": "n_e", "channel": "EngineSpeed", "unit": "rpm", "shaft": "engine"}]
+    vessel, log = tmp_path / "on_a_bus.toml", tmp_path / "test.blf"
+    vessel.write_text(tomlkit.dumps(content))
+    result = run("sail", vessel, brief_campaign, "-o", log, "--messages", "speed=50", "--jitter", 15, "--lost", 2)
     assert result.exit_code == 0
     assert "test.blf.dbc beside it says what the frames hold" in result.stderr
     with read_recording(log, dbc=tmp_path / "test.blf.dbc") as recording:
-        torque = recording.channel("M_s")
-        assert torque.rate_hz == pytest.approx(100.0, rel=1e-3)
-        # 15 % of 10 ms about the cycle: a step has two of them
-        assert torque.stamps is not None
-        assert np.diff(torque.stamps_s(0, torque.count)).std() == pytest.approx(0.0015 * 2**0.5, rel=0.1)
-        assert recording.channel("U_setpoint").rate_hz == pytest.approx(2000.0)
+        speed = recording.channel("EngineSpeed")
+        assert (speed.unit, speed.rate_hz) == ("rpm", pytest.approx(50.0, rel=1e-3))
+        assert speed.count == pytest.approx(0.98 * 50.0 * 30.0, abs=20)
+        # 15 % of 20 ms about the cycle, of which a step has two
+        steps = np.diff(speed.stamps_s(0, speed.count))
+        assert steps[steps < 0.03].std() == pytest.approx(0.003 * 2**0.5, rel=0.1)
+        assert recording.channel("M_s").rate_hz == pytest.approx(2000.0)
 
 
 @pytest.mark.parametrize("text", ["speed", "speed=0", "rack=10", "speed=inf"])
 def test_messages_need_a_rate(run, tmp_path, brief_campaign, text):
     result = run("sail", "stan-tug-1205", brief_campaign, "-o", tmp_path / "x.nc", "--messages", text)
     assert result.exit_code == 2
-    assert f'expected torque, speed, set-point with a rate, such as speed=50, found "{text}"' in result.stderr
+    assert f'expected speed, set-point with a rate, such as speed=50, found "{text}"' in result.stderr
