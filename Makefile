@@ -26,18 +26,19 @@ demo: $(VENV)/run ## Sail the simulated tug and identify it; results in demo/
 demo-fleet: $(VENV)/web ## Eight sister ships over five years in a store; demo-fleet/
 	$(BIN)/shaftprint demo --fleet -o demo-fleet
 
-# each core has a worker of its own; only the tests of the calculating rooms are traced, which doubles their time
+# Each core has a worker of its own. Tracing doubles the time, so only the quick tests of the calculating rooms are traced,
+# and all others run in one go: what a file prepares is then made once for its quick and its slow tests.
 QUICK := not slow and not long and not wrong_recordings
+TRACED := calculating and $(QUICK)
+PYTEST := $(BIN)/python -m pytest -n auto --dist loadfile --no-loadscope-reorder
 test test-slow test-all: export OPENBLAS_NUM_THREADS ?= 1
-test: $(VENV)/test ## Run the tests that a change needs, with the coverage of the calculating rooms
-	$(BIN)/python -m pytest -n auto --dist loadfile -m "$(QUICK)" $(ROOMS:%=tests/%) \
-		$(ROOMS:%=--cov=shaftprint.%) --cov-branch --cov-report=
-	$(BIN)/python -m coverage report --skip-covered --fail-under 95
-	$(BIN)/python -m pytest -n auto --dist loadfile -m "$(QUICK)" $(ROOMS:%=--ignore=tests/%)
+test: $(VENV)/test ## Run the tests that a change needs
+	$(PYTEST) -m "$(QUICK)"
 
-test-slow: test ## Run the slow tests and most wrong recordings too
-	$(BIN)/python -m pytest -n auto --dist loadfile -m "slow and not long"
-	$(BIN)/python -m pytest -n auto --dist worksteal -m "wrong_recordings and not long" tests/wrong_recordings
+test-slow: $(VENV)/test ## Run them, the slow tests and most wrong recordings, with the coverage of the calculating rooms
+	$(PYTEST) -m "$(TRACED)" $(ROOMS:%=tests/%) $(ROOMS:%=--cov=shaftprint.%) --cov-branch --cov-report=
+	$(BIN)/python -m coverage report --skip-covered --fail-under 95
+	$(PYTEST) -m "not long and not ($(TRACED))"
 
 test-all: test-slow ## Run the long searches and Monte Carlos too, as before a release
 	$(BIN)/python -m pytest -n auto --dist worksteal -m long

@@ -5,6 +5,7 @@ import shutil
 import subprocess
 import sys
 import time
+from collections import Counter
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -26,10 +27,43 @@ QUIET = (
 )
 LONGEST_WAIT_S = 1200.0
 ONE_LINE = 10_000
+HERE = Path(__file__).parent
+# the rooms of which the Makefile counts the branches that are tested
+CALCULATING = {"signals", "spectra", "models", "catalogue", "simulation", "identify"}
+# independent tests of some seconds each, which any worker may take
+ONE_BY_ONE = "tests/wrong_recordings/test_wrong_recordings.py"
+DEAR = ("slow", "long")
 
 # Nothing is timed in a test: how fast examples are drawn says what else the machine does.
 settings.register_profile("untimed", deadline=None, suppress_health_check=[HealthCheck.too_slow])
 settings.load_profile("untimed")
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Mark what belongs to the calculating rooms, and put files with many slow tests first, small work last.
+
+    Workers take files in this order (``--no-loadscope-reorder``), so that none has a long one left at the end.
+    """
+    dear = Counter(item.path for item in items if any(item.get_closest_marker(name) for name in DEAR))
+    for item in items:
+        if item.path.relative_to(HERE).parts[0] in CALCULATING:
+            item.add_marker("calculating")
+    items.sort(key=lambda item: (item.nodeid.startswith(ONE_BY_ONE), -dear[item.path]))
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
+    """Keep a file with one worker, which makes what its tests share once, but hand out wrong recordings one by one."""
+    if config.getoption("dist") != "loadfile":
+        return None
+    files = pytest.importorskip("xdist.scheduler").LoadFileScheduling
+
+    class FilesOrTests(files):  # type: ignore[misc, valid-type]
+        def _split_scope(self, nodeid: str) -> str:
+            return nodeid if nodeid.startswith(ONE_BY_ONE) else str(super()._split_scope(nodeid))
+
+    return FilesOrTests(config, log)
 
 
 @pytest.fixture(scope="session", autouse=True)

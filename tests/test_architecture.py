@@ -8,6 +8,7 @@ import pkgutil
 import re
 import subprocess
 import sys
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -52,9 +53,13 @@ def test_fits_need_numpy_only(name):
     assert found.stdout.split() == []
 
 
+@cache
+def tree_of(path):
+    return ast.parse(path.read_text(encoding="utf-8"))
+
+
 def function_level_imports(path):
-    tree = ast.parse(path.read_text(encoding="utf-8"))
-    for function in ast.walk(tree):
+    for function in ast.walk(tree_of(path)):
         if isinstance(function, ast.FunctionDef | ast.AsyncFunctionDef):
             for node in ast.walk(function):
                 names = [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
@@ -62,20 +67,23 @@ def function_level_imports(path):
                 yield from (f"{path.relative_to(SOURCE)}:{node.lineno} {name}" for name in names)
 
 
-@pytest.mark.parametrize("path", FILES, ids=lambda p: p.relative_to(SOURCE).as_posix())
-def test_imports_stand_at_the_top(path):
-    assert list(function_level_imports(path)) == []
+def test_imports_stand_at_the_top():
+    assert [found for path in FILES for found in function_level_imports(path)] == []
 
 
-@pytest.mark.parametrize("path", FILES, ids=lambda p: p.relative_to(SOURCE).as_posix())
-def test_rooms_are_entered_by_their_door(path):
-    """Outside its own room or folder nobody imports a file that starts with ``_``."""
+def imports_past_a_door(path):
+    """Imports of a file that starts with ``_`` from outside its own room or folder."""
     here = ("shaftprint", *path.relative_to(SOURCE).parent.parts)
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+    for node in ast.walk(tree_of(path)):
         if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("shaftprint."):
             parts = node.module.split(".")
             home = next((parts[:i] for i, part in enumerate(parts) if part.startswith("_")), [])
-            assert here[: len(home)] == tuple(home), f"line {node.lineno}: {node.module}"
+            if here[: len(home)] != tuple(home):
+                yield f"{path.relative_to(SOURCE)}:{node.lineno} {node.module}"
+
+
+def test_rooms_are_entered_by_their_door():
+    assert [found for path in FILES for found in imports_past_a_door(path)] == []
 
 
 # ---- names and descriptions ----
@@ -131,11 +139,9 @@ def test_files_in_a_room_are_private(name):
         assert found.name.startswith("_") or found.ispkg
 
 
-@pytest.mark.parametrize("path", FILES, ids=lambda p: p.relative_to(SOURCE).as_posix())
-def test_every_file_is_described_and_short(path):
-    text = path.read_text(encoding="utf-8")
-    assert ast.get_docstring(ast.parse(text))
-    assert text.count("\n") <= 400
+def test_every_file_is_described_and_short():
+    assert [str(path) for path in FILES if not ast.get_docstring(tree_of(path))] == []
+    assert [str(path) for path in FILES if path.read_text(encoding="utf-8").count("\n") > 400] == []
 
 
 # ---- tests ----

@@ -1,7 +1,7 @@
 """The electric machine on the gearbox: from the voltage that asks for its torque to the shaft, behind a lag."""
 
 import numpy as np
-from scipy.signal import lfilter
+import scipy
 
 from shaftprint.arrays import FloatArray
 from shaftprint.campaign import Campaign, setpoint
@@ -57,7 +57,7 @@ class GearedMachine:
         if not self._moves:
             return torque
         half_steps = np.arange(self._count + 1, self._count + 2 * steps + 1, dtype=np.float64)
-        followed, self._state = lfilter(
+        followed, self._state = scipy.signal.lfilter(
             *self._filter, self._asked(self._start_s + self._half_step_s * half_steps), zi=self._state
         )
         torque[0] += self._last

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.signal import lfilter
+import scipy
 
 from shaftprint.arrays import FloatArray
 from shaftprint.tug._pitch_actuation import PitchActuation
@@ -48,7 +48,7 @@ class PitchFeedback:
         """Return the slow noise of the next samples, a first-order process that goes on from the last."""
         step = self._actuation.sensor_wander_rms * math.sqrt(1.0 - self._kept**2)
         wander: FloatArray
-        wander, _ = lfilter(
+        wander, _ = scipy.signal.lfilter(
             [1.0], [1.0, -self._kept], step * self._rng.standard_normal(count), zi=[self._kept * self._wander]
         )
         self._wander = float(wander[-1])
