@@ -3,8 +3,8 @@
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 import scipy
+from numpy.typing import NDArray
 
 from shaftprint.arrays import FloatArray
 from shaftprint.tug._pitch_actuation import PitchActuation
