@@ -1,5 +1,6 @@
 """One short voyage for all tests that want what the program leaves behind."""
 
+import gc
 import os
 import shutil
 import subprocess
@@ -50,6 +51,12 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
         if item.path.relative_to(HERE).parts[0] in CALCULATING:
             item.add_marker("calculating")
     items.sort(key=lambda item: (item.nodeid.startswith(ONE_BY_ONE), -dear[item.path]))
+
+
+def pytest_collection_finish() -> None:
+    """Take the thousands of tests, and all that was imported for them, out of every later search for garbage."""
+    gc.collect()
+    gc.freeze()
 
 
 @pytest.hookimpl(optionalhook=True)

@@ -9,11 +9,17 @@ from shaftprint.tug import sail
 from shaftprint.vessel import load_vessel
 
 
+@pytest.fixture(scope="module")
+def recording(tmp_path_factory):
+    """Five minutes of a ferry with an electric motor."""
+    path = tmp_path_factory.mktemp("ferry") / "ferry.nc"
+    sail(load_vessel("e-ferry-ellen"), load_campaign("5min"), path, seed=1)
+    return path
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize(("asked", "structure"), [({}, "GAUGE-MOTOR"), ({"structure": "GAUGE-CLOSED"}, "GAUGE-CLOSED")])
-def test_a_job_has_the_structure_of_its_line_where_none_was_named(asked, structure, tmp_path):
-    recording = tmp_path / "ferry.nc"
-    sail(load_vessel("e-ferry-ellen"), load_campaign("5min"), recording, seed=1)
+def test_a_job_has_the_structure_of_its_line_where_none_was_named(asked, structure, recording):
     job = job_arguments(
         recording, "e-ferry-ellen", "5min", named="the test", tested_at="2026-03-31T09:30+02:00", **asked
     )
