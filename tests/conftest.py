@@ -31,8 +31,9 @@ ONE_LINE = 10_000
 HERE = Path(__file__).parent
 # the rooms of which the Makefile counts the branches that are tested
 CALCULATING = {"signals", "spectra", "models", "catalogue", "simulation", "identify"}
-# independent tests of some seconds each, which any worker may take
+# independent tests of some seconds each, which any worker may take, and rooms whose files share what is dear to prepare
 ONE_BY_ONE = "tests/wrong_recordings/test_wrong_recordings.py"
+TOGETHER = {"tests/docs", "tests/report", "tests/validation"}
 DEAR = ("slow", "long")
 
 # Nothing is timed in a test: how fast examples are drawn says what else the machine does.
@@ -40,17 +41,24 @@ settings.register_profile("untimed", deadline=None, suppress_health_check=[Healt
 settings.load_profile("untimed")
 
 
+def work_unit(nodeid: str) -> str:
+    """Return what one worker runs as a whole: a file, a room whose files share much, or a test alone."""
+    file = nodeid.partition("::")[0]
+    room = "/".join(file.split("/")[:2])
+    return nodeid if file == ONE_BY_ONE else room if room in TOGETHER else file
+
+
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Mark what belongs to the calculating rooms, and put files with many slow tests first, small work last.
+    """Mark what belongs to the calculating rooms, and put what has many slow tests first, small work last.
 
-    Workers take files in this order (``--no-loadscope-reorder``), so that none has a long one left at the end.
+    Workers take it in this order (``--no-loadscope-reorder``), so that none has long work left at the end.
     """
-    dear = Counter(item.path for item in items if any(item.get_closest_marker(name) for name in DEAR))
+    dear = Counter(work_unit(item.nodeid) for item in items if any(item.get_closest_marker(name) for name in DEAR))
     for item in items:
         if item.path.relative_to(HERE).parts[0] in CALCULATING:
             item.add_marker("calculating")
-    items.sort(key=lambda item: (item.nodeid.startswith(ONE_BY_ONE), -dear[item.path]))
+    items.sort(key=lambda item: (item.nodeid.startswith(ONE_BY_ONE), -dear[work_unit(item.nodeid)]))
 
 
 def pytest_collection_finish() -> None:
@@ -61,16 +69,16 @@ def pytest_collection_finish() -> None:
 
 @pytest.hookimpl(optionalhook=True)
 def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
-    """Keep a file with one worker, which makes what its tests share once, but hand out wrong recordings one by one."""
+    """Give each unit of work to one worker, which makes what its tests share once."""
     if config.getoption("dist") != "loadfile":
         return None
     files = pytest.importorskip("xdist.scheduler").LoadFileScheduling
 
-    class FilesOrTests(files):  # type: ignore[misc, valid-type]
+    class Units(files):  # type: ignore[misc, valid-type]
         def _split_scope(self, nodeid: str) -> str:
-            return nodeid if nodeid.startswith(ONE_BY_ONE) else str(super()._split_scope(nodeid))
+            return work_unit(nodeid)
 
-    return FilesOrTests(config, log)
+    return Units(config, log)
 
 
 @pytest.fixture(scope="session", autouse=True)

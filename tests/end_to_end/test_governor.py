@@ -18,9 +18,7 @@ from shaftprint.vessel import load_vessel
 pytestmark = pytest.mark.slow
 
 
-# Deviations that are stated half as large as they are put a third of the numbers outside their intervals: six ships miss
-# that once in a hundred, by the count and the largest together.
-SHIPS = 6
+SHIPS = 10
 
 
 def drawn_ship(rng):
@@ -66,9 +64,9 @@ def ships(short_campaign, tmp_path_factory):
 
 
 def test_gains_and_latencies_are_inside_their_intervals(ships):
-    """Of 24 numbers one is outside of 95 % intervals, and more than four in six of a thousand runs."""
+    """Of 40 numbers two are outside of 95 % intervals, and more than five in one of a hundred runs."""
     z = np.array([[apart[name] for name in ("K_p", "K_i", "t_sp", "t_rack")] for _, apart in ships])
-    assert np.sum(np.abs(z) > NORMAL_95) <= 4
+    assert np.sum(np.abs(z) > NORMAL_95) <= 5
     assert np.abs(z).max() < 3.5
     assert np.sum(np.abs(z[:, :2]) > NORMAL_95) <= 2
 
