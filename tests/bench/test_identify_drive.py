@@ -22,6 +22,7 @@ def expect_truth(fingerprint, truth, names):
         assert found[name].std < 0.1 * abs(truth[name]), name
 
 
+@pytest.mark.slow
 def test_motor_is_identified_from_several_records(motor):
     folder, result = motor
     fingerprint = read_drive_fingerprint(folder / "result" / "fingerprint.json")

@@ -16,6 +16,7 @@ from shaftprint.simulation import simulate
 CHIRP = {"chirp": bench_truth.motor_tests(seconds=1.6)["chirp"]}
 
 
+@pytest.mark.slow
 def test_heavier_motor_differs_in_its_inertia_alone(motor, heavier, run_program):
     result = run_program("compare", motor[0] / "result", heavier[0] / "result", "--name", "before", "--name", "after")
     assert result.exit_code == 0, result.output
@@ -53,6 +54,7 @@ def test_prediction_is_what_the_identification_then_states(motor, run_program):
             assert found[quantity.name] == pytest.approx(quantity.std, rel=0.2), quantity.name
 
 
+@pytest.mark.slow
 def test_records_want_the_dry_friction(motor, run_program):
     recordings = [motor[0] / "slow.csv", motor[0] / "binary.csv"]
     result = run_program(

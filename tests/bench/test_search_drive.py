@@ -148,6 +148,7 @@ def one_way_record(name, rng, direction):
     return record_from_arrays(name, {"T": torque}, {"omega": omega}, rate_hz=RATE_HZ, hold=True)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("width", [5.0, 1000.0])
 def test_both_signs_are_found_whatever_the_bounds(tmp_path, width):
     """What is folded at zero alike tells the size of a gain, not its sign."""

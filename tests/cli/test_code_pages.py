@@ -66,6 +66,7 @@ def test_tables_have_rules_that_the_code_page_has(demo, code_page, rule):
     assert len(rules) >= 5
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("code_page", CODE_PAGES)
 def test_a_name_that_the_code_page_lacks_ends_nothing(demo, tmp_path, code_page):
     vessel = tmp_path / "vessel.toml"

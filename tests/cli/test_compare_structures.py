@@ -17,6 +17,7 @@ def call(recording):
     return arguments
 
 
+@pytest.mark.slow
 def test_the_gauge_aware_loop_beats_those_of_the_thesis_and_the_output_says_why(run, call):
     result = run(*call("CL3", "gauge-closed", "CL4"))
     assert result.exit_code == 0

@@ -25,6 +25,7 @@ def here(tmp_path, monkeypatch):
     return tmp_path
 
 
+@pytest.mark.slow
 def test_the_ship_stands_when_and_where_its_columns_say(run, here):
     result = run(*STOP, *MOVES, "--between", "0", "60")
     assert result.exit_code == 0, result.output
@@ -47,6 +48,7 @@ def test_the_ship_stands_when_and_where_its_columns_say(run, here):
     assert of_metres > 1.0
 
 
+@pytest.mark.slow
 def test_deviations_are_those_of_other_wakes_and_resistances(run, here):
     run(*STOP, *MOVES, "--between", "0", "40")
     found = columns(here / "stop.csv")
@@ -71,6 +73,7 @@ def test_deviations_are_those_of_other_wakes_and_resistances(run, here):
     np.testing.assert_allclose(found["ship speed std [m/s]"], written, rtol=0.03, atol=2e-3)
 
 
+@pytest.mark.slow
 def test_a_ship_that_still_sails_is_said_to(run, here):
     result = run(*STOP, "--lever", "2:650:neutral", "--between", "0", "20")
     assert result.exit_code == 0, result.output
@@ -80,6 +83,7 @@ def test_a_ship_that_still_sails_is_said_to(run, here):
     assert "at 16 s; a later end of --between shows when it stands." in " ".join(result.output.split())
 
 
+@pytest.mark.slow
 def test_rows_do_not_change_the_answer(run, here):
     def said(*options):
         result = run(*STOP, *MOVES, "--between", "0.3", "40", "--force", *options)
@@ -91,6 +95,7 @@ def test_rows_do_not_change_the_answer(run, here):
     assert few[5] == pytest.approx(many[5], rel=0.2)
 
 
+@pytest.mark.slow
 def test_a_vessel_file_that_contradicts_itself_is_said_to(run, here):
     text = SHIPPED.read_text(encoding="utf-8")
     (here / "ship.toml").write_text(text.replace("resistance_n = 24020.0", "resistance_n = 240200.0"), encoding="utf-8")
@@ -98,6 +103,7 @@ def test_a_vessel_file_that_contradicts_itself_is_said_to(run, here):
     assert "The vessel file contradicts itself" in result.output
 
 
+@pytest.mark.slow
 def test_an_engine_that_is_turned_backwards_is_said_to(run, here):
     result = run(
         *STOP, "--lever", "5:650:neutral", "--lever", "5.5:650:astern", "--set", "tau_up=0.05", "--set", "w=-0.1"

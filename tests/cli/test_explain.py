@@ -1,8 +1,11 @@
 """``shaftprint explain`` without a folder; ``tests/docs`` looks at tables and report, made as the pages show it."""
 
+import pytest
+
 GIVEN = ("--vessel", "stan-tug-1205", "--campaign", "short", "--no-progress")
 
 
+@pytest.mark.slow
 def test_without_a_folder_nothing_is_written(run, recording, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     result = run("explain", recording, *GIVEN)

@@ -340,6 +340,7 @@ def test_a_fault_while_a_file_runs_leaves_the_path_as_it_was(written):
     assert list(sys.path) == before[0]
 
 
+@pytest.mark.slow
 def test_a_structure_in_names_of_ones_own_is_known_by_its_roles(run, recording, written, tmp_path):
     """``J_aft`` in seconds gets kg m2, the vessel file's value, a budget and its place in a comparison."""
     written(LINE)

@@ -20,6 +20,7 @@ def table(result):
     return {row[0]: row for row in rows}
 
 
+@pytest.mark.slow
 def test_the_thesis_campaign_on_the_stan_tug(run):
     result = run("predict", *GIVEN, "--vessel", "stan-tug-1205")
     assert result.exit_code == 0
@@ -52,6 +53,7 @@ def test_with_g_alone_the_delay_in_the_loop_is_not_known(run):
     assert float(rows["K_p / K_i"][2]) == pytest.approx(float(with_tvc["K_p / K_i"][2]), rel=0.1)
 
 
+@pytest.mark.slow
 def test_without_anything_known_the_gains_are_not(run):
     result = run("predict", *GIVEN, "--vessel", "stan-tug-1205", "--free", "g", "--free", "tau_up")
     assert "priors: t_gauge = 0.0 +/- 2.0 ms" in result.output
@@ -75,12 +77,14 @@ def test_open_loop_structures(run):
     assert "From n a test finds the free parameter of OL1: tau_n." in core.output
 
 
+@pytest.mark.slow
 def test_half_the_volts_twice_the_uncertainty(run):
     options = ("predict", *GIVEN, "--vessel", "stan-tug-1205", "--structure", "CL4", "--rpm-per-volt")
     whole, half = (table(run(*options, rpm)) for rpm in ("250", "125"))
     assert float(half["tau_n"][2]) == pytest.approx(2.0 * float(whole["tau_n"][2]), rel=0.05)
 
 
+@pytest.mark.slow
 def test_the_sign_of_the_slope_is_that_of_simulate(run):
     """Of every shipped ship less voltage asks for more speed; for what a test finds it is all the same."""
     options = ("predict", *GIVEN, "--vessel", "stan-tug-1205", "--structure", "CL4", "--rpm-per-volt")
@@ -104,6 +108,7 @@ def test_where_the_test_would_leave_the_limits(run):
     assert re.search(r"lowest speed +6\d\d +600 +rpm +M2", designed.output)
 
 
+@pytest.mark.slow
 def test_noise_of_a_recording(run, recording):
     """The recording was made with the short campaign, so a prediction for the same campaign is what it gives."""
     given = ("--campaign", "short", "--vessel", "stan-tug-1205", "--no-progress")

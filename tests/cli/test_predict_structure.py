@@ -43,6 +43,7 @@ def file_of(folder, *, without="", **changed):
     return path
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("vessel", "campaign", "name"), SHIPS)
 def test_the_structure_is_that_of_identify(run, vessel, campaign, name):
     assert default_structure(load_vessel(vessel), load_campaign(campaign)) == name
@@ -75,6 +76,7 @@ def test_without_a_log_it_is_free_closed(run, tmp_path):
     assert "From n and M_s a test finds" in result.output
 
 
+@pytest.mark.slow
 def test_a_slower_log_tells_less(run, tmp_path):
     options = ("--campaign", "dither")
     fast = predicted(run, "--vessel", "stan-tug-1205-underway", *options)
@@ -91,6 +93,7 @@ def test_both_inputs_have_lines(run):
     assert "What these outputs can tell at all" in result.output
 
 
+@pytest.mark.slow
 def test_a_pitch_that_stands_leaves_its_numbers_unknown(run):
     options = ("--vessel", "nifs-research-vessel", "--campaign", "thesis", "--structure", "GAUGE-PITCH")
     result = run("predict", *options, "--no-progress")

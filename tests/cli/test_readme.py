@@ -27,6 +27,7 @@ def _printed(output):
     return {row[1]: (float(row[2]), float(row[3])) for row in rows if row}
 
 
+@pytest.mark.slow
 def test_python_of_the_readme(beside_demo, capsys):
     blocks = re.findall(r"```python\n(.*?)```", README, flags=re.DOTALL)
     assert len(blocks) == 1
@@ -42,6 +43,7 @@ def test_python_of_the_readme(beside_demo, capsys):
         assert value == pytest.approx(true, abs=3.0 * std)
 
 
+@pytest.mark.slow
 def test_example_of_every_step(beside_demo, capsys):
     runpy.run_path(str(ROOT / "examples" / "identify_recording.py"))
     lines = capsys.readouterr().out.splitlines()

@@ -52,6 +52,7 @@ def quantity(found, kind, name):
     return next(entry for entry in found[kind] if entry["name"] == name)
 
 
+@pytest.mark.slow
 def test_a_step_of_a_lag_by_hand(run, here):
     time = np.arange(0.0, 4.0, 0.01)
     table(here / "u.csv", ("time [s]", "u [V]"), time, np.where(time >= 0.995, 3.0, 1.0))
@@ -82,6 +83,7 @@ late = Structure(
 """
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("rows_a_second", [1000, 200, 100, 20])
 def test_held_values_are_exact_however_far_apart_the_rows(run, here, rows_a_second):
     """Delays that are no multiple of rows or steps, in a loop and before it, by the method of steps."""
@@ -355,6 +357,7 @@ def test_wrong_arguments_beside_a_fingerprint(run, demo, here, arguments, messag
     assert {path.name for path in here.iterdir()} == {"own.py"}
 
 
+@pytest.mark.slow
 def test_several_inputs(run, here):
     own = OWN.replace('input="u", outputs={"y": Gain', 'inputs=("u", "w"), outputs={"y": {"u": Gain')
     own = own.replace("FirstOrderLag(T)})", 'FirstOrderLag(T), "w": Gain(K)}})')

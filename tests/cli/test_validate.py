@@ -32,6 +32,7 @@ def fingerprint(demo):
     return read_fingerprint(demo[0] / "fingerprint.json")
 
 
+@pytest.mark.slow
 def test_identified_in_one_go_with_the_sets_of_the_thesis(run, recording):
     result = run("validate", recording, *GIVEN, "--starts", 20, "--thesis-sets", "--linear-torque")
     assert result.exit_code == 0, result.stderr
@@ -47,6 +48,7 @@ def test_identified_in_one_go_with_the_sets_of_the_thesis(run, recording):
     assert "linear in its speed" in result.output
 
 
+@pytest.mark.slow
 def test_a_failed_validation_is_said_in_words_and_exits_with_0(run, recording):
     # a governor that is three times too weak
     result = run("validate", recording, *GIVEN, "--starts", 20, "--hold", "K_i=1.0", "--hold", "K_p=1.0")

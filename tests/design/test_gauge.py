@@ -162,6 +162,7 @@ def shown_nm(leg, truth):
     return float(np.max(TORQUE * leg.speed_share**2 * (1.0 + m + n**2 + 0.5 * (1.0 + n) ** 2)))
 
 
+@pytest.mark.slow
 def test_a_gauge_that_binds_weakens_its_leg_alone(tug, limits, quick, plan, truth):
     small = planned(tug, replace(limits, gauge=replace(limits.gauge, highest_nm=4500.0)), quick)
     first, second = small.peaks

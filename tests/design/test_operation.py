@@ -179,6 +179,7 @@ def test_shipped_tests_keep_the_limits_of_the_shipped_tug(ship, truth, name):
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "campaign"),
     [

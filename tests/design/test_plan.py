@@ -138,6 +138,7 @@ def test_peaks_are_those_of_a_simulation_in_time(plan, truth, number):
     assert peaks.brake_torque_nm[1] - brake_nm == pytest.approx(swing.max(), rel=1e-2)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("number", [0, 1])
 def test_demand_is_the_rack_of_the_governor(plan, truth, number):
     """The structure with the rack logged, which shows the governor before the delay and the lag of the engine."""
@@ -184,6 +185,7 @@ def test_every_limit_is_kept_and_one_is_reached(plan, limits):
         assert 540.0 < peaks.speed_rpm[0] < peaks.speed_rpm[1] < 1800.0
 
 
+@pytest.mark.slow
 def test_more_room_more_accuracy(tug, limits, quick):
     """With the set point as the only limit that binds, half of it gives twice the deviations: the same optimum."""
     narrow = replace(limits, full_load=((500.0, 1e5),), motoring=((500.0, 1e5),), set_point_rpm=40.0)

@@ -102,6 +102,7 @@ def test_steps_keep_the_limits_in_time(with_stairs, limits, truth):
 # ---- how far a promise reaches ----
 
 
+@pytest.mark.slow
 def test_noise_that_is_known_to_a_factor_makes_deviations_known_to_that_factor(plan):
     """Deviations go with the amplitude of the noise: a tenth of log-normal noises lies above exp(1.28 s)."""
     reached = with_band(plan, noise_spread=0.2, rng=np.random.default_rng(1))

@@ -30,6 +30,7 @@ def test_shortest_test_is_just_long_enough(tug, limits, quick):
     assert not design(within_s=0.8 * plan.duration_s).is_enough
 
 
+@pytest.mark.slow
 def test_shortest_of_what_is_impossible_is_the_longest(tug, limits, quick):
     design = designer(tug, limits, quick, Wish(relative={"t_d": 0.001}))
     plan = shortest(lambda within_s: design(within_s=within_s), longest_s=600.0)
@@ -43,6 +44,7 @@ def test_shortest_without_a_wish_is_refused(tug, limits, quick):
         shortest(lambda within_s: design(within_s=within_s), longest_s=600.0)
 
 
+@pytest.mark.slow
 def test_one_speed_does_not_show_the_gains(tug, limits, quick):
     """At one speed a common factor of gains and inertias is free; a second speed, or one inertia, fixes it."""
     design = designer(tug, limits, quick, Wish(relative={"K_p": 0.03}), speeds=(1.0,))

@@ -34,6 +34,8 @@ WITH_COMMANDS = [page for page in PAGES if commands_of(page)]
 LONG = {"docs/thesis-figures.md", "docs/gallery.md"} | {
     f"docs/tutorials/{name}.md" for name in ("first-fingerprint", "own-structure", "logger-file", "two-loggers", "fmu")
 }
+SLOW = {"docs/planning.md", "docs/command-output.md", "docs/tutorials/recording-to-fingerprint.md"}
+DEAR = {"long": LONG, "slow": SLOW}
 # Kinds of blocks, each with the file that holds them against something.
 CHECKED = dict.fromkeys(PYTHON, "test_pages.py")
 CHECKED |= dict.fromkeys(SHELL, "test_page_commands.py, test_page_programs.py and test_page_output.py")
@@ -59,7 +61,7 @@ def test_what_is_no_line_for_a_shell_is_there(page):
 @pytest.mark.parametrize(
     "page",
     [
-        pytest.param(page, marks=pytest.mark.long) if page in LONG else page
+        pytest.param(page, marks=[getattr(pytest.mark, kind) for kind, pages in DEAR.items() if page in pages])
         for page in WITH_PYTHON
         if page not in OPENED
     ],

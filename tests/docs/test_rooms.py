@@ -4,6 +4,8 @@ import re
 import sys
 from pathlib import Path
 
+import pytest
+
 ROOT = Path(__file__).parents[2]
 sys.path.insert(0, str(ROOT / "docs" / "_extensions"))
 
@@ -12,6 +14,7 @@ from room_diagram import MADE, PAGE, SOURCE, floors, imports, made  # noqa: E402
 CONTRIBUTING = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
 
 
+@pytest.mark.slow
 def test_the_drawing_is_that_of_the_imports():
     (shown,) = MADE.findall(PAGE.read_text(encoding="utf-8"))
     assert shown == made(), "run python docs/_extensions/room_diagram.py"

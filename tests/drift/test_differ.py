@@ -53,6 +53,7 @@ def elastic_fingerprint(**changes):
     return taken(fitted("GAUGE-ELASTIC", values, share=0.002, settings=Settings(starts=20, priors=PRIORS)))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("changes", "cause", "size"),
     [
@@ -98,6 +99,7 @@ def test_a_gain_is_seen_to_have_changed_by_half_of_what_it_is_known_to(before):
     assert best.std < 0.0025
 
 
+@pytest.mark.slow
 def test_more_propeller_torque_is_seen_beyond_the_load_of_the_day(before):
     """K_Q goes with the torque of the working point, known to 0.5 % in each test and to 0.5 % from day to day."""
     point = known_working_point()
@@ -116,6 +118,7 @@ def test_more_propeller_torque_is_seen_beyond_the_load_of_the_day(before):
     assert differ(before, taken(fit, signals=known_signals(heavier)), load_repeatability=0.05).changes == ()
 
 
+@pytest.mark.slow
 def test_an_assumption_that_is_wrong_in_both_tests_cancels():
     """The engine's slope is one and a half deviations from what both vessel files assume."""
     same, weaker = fingerprint(g=0.15), fingerprint(g=0.15, K_p=0.95)

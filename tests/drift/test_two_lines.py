@@ -50,6 +50,7 @@ def deviation(first: Fingerprint, other: Fingerprint, name: str) -> float:
     return float(np.sqrt(pair.covariance[place, place]))
 
 
+@pytest.mark.slow
 def test_two_gauges_in_one_recording_are_two_lines(port: Fingerprint, starboard: Fingerprint) -> None:
     assert are_two_lines(port, starboard)
     assert not are_two_lines(port, port)

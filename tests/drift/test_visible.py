@@ -31,6 +31,7 @@ def test_half_the_noise_sees_half_the_change():
         assert calm[name] == pytest.approx(0.5 * size, rel=1e-3)
 
 
+@pytest.mark.slow
 def test_sizes_are_those_that_a_pair_of_such_tests_states():
     """The size at which four of five scores pass the limit: the deviation of the pair times limit and power."""
     test = taken(fitted("GAUGE-CLOSED", TRUTH, share=0.002, settings=Settings(starts=20, priors=PRIORS)))

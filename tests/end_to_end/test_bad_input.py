@@ -73,6 +73,7 @@ def test_spoilt_recording(spoil, refused, identified, short_campaign, tmp_path, 
     assert refused(path) == str(caught.value)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("share", [0.999, 0.5, 0.01])
 def test_truncated_recording(short_trip, refused, tmp_path, share):
     content = short_trip.path.read_bytes()

@@ -18,7 +18,9 @@ from shaftprint.vessel import load_vessel
 pytestmark = pytest.mark.slow
 
 
-SHIPS = 10
+# Deviations that are stated half as large as they are put a third of the numbers outside their intervals: with seven
+# ships three in a thousand runs miss that, by the count and the largest together.
+SHIPS = 7
 
 
 def drawn_ship(rng):
@@ -64,9 +66,9 @@ def ships(short_campaign, tmp_path_factory):
 
 
 def test_gains_and_latencies_are_inside_their_intervals(ships):
-    """Of 40 numbers two are outside of 95 % intervals, and more than five in one of a hundred runs."""
+    """Of 28 numbers one or two are outside of 95 % intervals, and more than three in five of a hundred runs."""
     z = np.array([[apart[name] for name in ("K_p", "K_i", "t_sp", "t_rack")] for _, apart in ships])
-    assert np.sum(np.abs(z) > NORMAL_95) <= 5
+    assert np.sum(np.abs(z) > NORMAL_95) <= 3
     assert np.abs(z).max() < 3.5
     assert np.sum(np.abs(z[:, :2]) > NORMAL_95) <= 2
 

@@ -100,6 +100,7 @@ def sailed(request, vessel, campaign):
     return tug, estimate_response(signals, campaign)
 
 
+@pytest.mark.slow
 def test_measured_response_is_that_of_the_linearised_tug(sailed, vessel):
     tug, response = sailed
     linear = linearised_response(tug, vessel, response.frequency_hz)

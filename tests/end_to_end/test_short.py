@@ -56,6 +56,7 @@ def test_inertia_slope_and_delay_are_near_the_truth(found, vessel):
     assert total.std < 0.05 * total.value
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("mode", ["shaftprint", "thesis"])
 def test_signals_do_not_depend_on_how_much_is_read_at_a_time(short_trip, vessel, short_campaign, mode):
     with read_recording(short_trip.path) as recording:

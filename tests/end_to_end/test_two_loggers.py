@@ -25,6 +25,7 @@ def loggers(short_trip, second_logger, tmp_path_factory):
     return folder
 
 
+@pytest.mark.slow
 def test_the_map_is_found_within_two_milliseconds(loggers, second_logger, vessel):
     engine, _, propeller = vessel.sensors.speed
     with read_recording(loggers / "bridge.nc") as still, read_recording(loggers / "shaft.nc") as moving:
@@ -59,6 +60,7 @@ def test_the_merged_file_states_the_true_map(merged, second_logger):
     assert clock.alignment.map.drift == pytest.approx(30e-6, abs=3.0 * clock.alignment.map.covariance[1, 1] ** 0.5)
 
 
+@pytest.mark.slow
 def test_a_clock_that_is_known_badly_becomes_a_finding(merged, tmp_path):
     with read_recording(merged) as recording:
         (clock,) = logger_clocks(recording)
@@ -71,6 +73,7 @@ def test_a_clock_that_is_known_badly_becomes_a_finding(merged, tmp_path):
     assert finding.startswith("The clock of shaft.nc is known to 5 ms only: parameters may be off by up to ")
 
 
+@pytest.mark.slow
 def test_the_fingerprint_of_the_merged_recording_is_that_of_one_logger(merged, short_trip, short_campaign, identified):
     one, two = (identified(path, short_campaign).fit for path in (short_trip.path, merged))
     for a, b in zip(one.parameters, two.parameters, strict=True):

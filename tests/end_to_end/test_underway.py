@@ -93,12 +93,14 @@ def test_working_point_is_that_of_the_ship(trip):
     assert signals.working_point.engine_speed_rev_s == pytest.approx(RPM / 60.0, rel=1e-3)
 
 
+@pytest.mark.slow
 def test_shaft_and_log_give_the_combinations(trip, core):
     """Four numbers are all there is; each within 5 %."""
     names = ("tau_dn", "b", "(e - a) / tau_u", "b (2 - a) / tau_u", "(2 - a) / tau_u")
     expect(fitted(structure("FREE-SHIP"), core), with_combinations(trip[2]), names, 0.05)
 
 
+@pytest.mark.slow
 def test_propeller_and_mass_give_wake_resistance_and_thrust_deduction(trip, core, propeller):
     known = with_known_propeller(structure("FREE-SHIP"), propeller, mass_kg=57240.0)
     found = fitted(known, core)
@@ -109,6 +111,7 @@ def test_propeller_and_mass_give_wake_resistance_and_thrust_deduction(trip, core
     assert std < 0.025
 
 
+@pytest.mark.slow
 def test_known_resistance_gives_the_thrust_deduction_sharply(trip, core, propeller):
     truth = trip[2]
     known = with_known_propeller(structure("FREE-SHIP"), propeller, mass_kg=57240.0, resistance_n=truth["R"])
@@ -116,6 +119,7 @@ def test_known_resistance_gives_the_thrust_deduction_sharply(trip, core, propell
     expect(found, truth, ("w", "e", "t"), 0.05)
 
 
+@pytest.mark.slow
 def test_shaft_alone_gives_the_wake_and_little_of_the_ship(trip, core, propeller):
     truth = with_combinations(trip[2])
     found = fitted(with_known_propeller(structure("FREE-CORE"), propeller, mass_kg=57240.0), core.of_outputs("n"))

@@ -34,6 +34,7 @@ def test_the_fan_is_found(defined):
     assert {"fan.svg", "fan_residuals.svg"} <= defined["files"]
 
 
+@pytest.mark.slow
 def test_the_margin_is_that_of_the_true_fan(defined):
     # K_p = 0.3 and K_i = 0.4 around 12 exp(-0.05 s) / (0.8 s + 1), without the hold
     omega = np.linspace(1.0, 200.0, 1_000_000)
@@ -44,6 +45,7 @@ def test_the_margin_is_that_of_the_true_fan(defined):
     assert margin.value == pytest.approx(-1.0 / gain.real[crossing], abs=3.0 * margin.std)
 
 
+@pytest.mark.slow
 def test_the_simulated_loop_ends_where_its_integrator_leads_it(defined):
     answer = defined["answer"].outputs
     assert answer["speed"][-1] == pytest.approx(10.0, abs=1e-3)
@@ -52,21 +54,25 @@ def test_the_simulated_loop_ends_where_its_integrator_leads_it(defined):
     assert answer["voltage"][at] == pytest.approx(0.3 * 10.0, rel=0.02)
 
 
+@pytest.mark.slow
 def test_reset_time_gives_the_integral_gain(defined):
     reset = defined["reset"]
     assert "K_i" not in reset.names
     assert reset.named(reset.vector({"K_p": 0.3, "T_i": 0.75}))["K_i"] == pytest.approx(0.4)
 
 
+@pytest.mark.slow
 def test_a_second_test_that_is_no_other_one_does_not_fit(defined):
     assert defined["both"].chi_square > 10.0 * defined["both"].degrees_of_freedom
 
 
+@pytest.mark.slow
 def test_the_analyser_s_mass_and_spring_come_back(defined):
     found = defined["identify"](defined["suspension"], defined["measured"], rng=np.random.default_rng(1))
     assert [round(found.value(name), 3) for name in ("m", "c", "k")] == [2.0, 3.0, 800.0]
 
 
+@pytest.mark.slow
 def test_own_blocks_of_the_page_mean_what_they_say(defined):
     s = np.array([0.3j, 4.0j])
     wall, lead_lag = defined["wall"], defined["LeadLag"](defined["lead"], defined["lag"])

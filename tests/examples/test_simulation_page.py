@@ -21,6 +21,7 @@ def defined():
     return names
 
 
+@pytest.mark.slow
 def test_the_ship_does_not_turn_slower_than_it_is_asked(defined):
     # the engine cannot brake the line: the speed comes down to what is asked for, and no further
     speed = defined["trace"].outputs["n"]
@@ -28,6 +29,7 @@ def test_the_ship_does_not_turn_slower_than_it_is_asked(defined):
     assert defined["trace"].derivatives["n"].shape == (2, speed.size)
 
 
+@pytest.mark.slow
 def test_a_centred_jump_is_as_exact_as_the_page_says(defined):
     exact, fast = defined["exact"], defined["fast"]
     assert np.abs(fast.outputs["n"][::2] - exact.outputs["n"]).max() < 1e-4
@@ -37,10 +39,12 @@ def test_a_centred_jump_is_as_exact_as_the_page_says(defined):
     assert np.abs(early.outputs["M_s"] - exact.outputs["M_s"]).max() == pytest.approx(0.013, abs=0.001)
 
 
+@pytest.mark.slow
 def test_the_scaling_of_the_thesis_comes_out(defined):
     np.testing.assert_allclose(defined["about"], defined["scaled"], rtol=1e-9)
 
 
+@pytest.mark.slow
 def test_the_motor_runs_up_at_its_limit(defined):
     outputs, time = defined["moved"].outputs, defined["run_s"]
     assert outputs["voltage"].max() == 24.0
@@ -53,6 +57,7 @@ def test_the_motor_runs_up_at_its_limit(defined):
     assert rested.outputs["speed"] == pytest.approx(12.0 * 24.0)
 
 
+@pytest.mark.slow
 def test_small_signals_of_the_motor_are_those_of_its_block_diagram(defined):
     s = 1j * np.array([0.3, 2.0, 20.0])
     forward = (0.5 + 1.0 / s) * 12.0 / (0.4 * s + 1.0)
@@ -61,6 +66,7 @@ def test_small_signals_of_the_motor_are_those_of_its_block_diagram(defined):
     np.testing.assert_allclose(found[0], forward / (1.0 + forward * np.exp(-0.03 * s)), rtol=1e-9)
 
 
+@pytest.mark.slow
 def test_the_digital_unit_counts_in_its_period_and_stops_in_its_deadband(defined):
     outputs, time = defined["settled"].outputs, defined["run_s"]
     jumps = time[1:][np.diff(outputs["voltage"]) != 0.0]

@@ -226,6 +226,7 @@ def test_parameters_are_tuned_during_the_run(fmu, slave):
         assert found[name] == pytest.approx(other[name], rel=1e-9)
 
 
+@pytest.mark.slow
 def test_working_point_scales_inputs_and_outputs(fmu, slave):
     chosen, values = GAUGE
     with slave(fmu(chosen, values)) as own:
@@ -425,6 +426,7 @@ def test_this_system_is_compiled_for_by_default(exported, tmp_path, compile_by):
     assert write_fmu(exported(*TORQUE), tmp_path / "m.fmu").platforms == (host_platform(),)
 
 
+@pytest.mark.slow
 def test_what_was_compiled_is_kept(exported, tmp_path, monkeypatch):
     """The second time a compiler that cannot compile any more is not asked; other sources are compiled."""
     if shutil.which("cc") is None:

@@ -12,6 +12,8 @@ import pytest
 from shaftprint.catalogue import limited
 from shaftprint.export import PLATFORMS, write_fmu
 
+# the first of all compiles for five systems, a minute and more
+pytestmark = pytest.mark.slow
 TORQUE = limited("torque"), {"t_d": 0.0437, "t_sp": 0.1133, "m_max": 1.1}
 CPUS = {"darwin64": 0x01000007, "darwin-arm64": 0x0100000C}
 
@@ -25,7 +27,6 @@ def binary_of(path, system, version):
         return archive.read(name)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("system", PLATFORMS)
 def test_equal_models_give_equal_binaries(exported, zig_fmu, tmp_path, monkeypatch, system):
     """Built in another folder at another time they are the same, and tell no folder of the computer."""
@@ -37,7 +38,6 @@ def test_equal_models_give_equal_binaries(exported, zig_fmu, tmp_path, monkeypat
     assert tempfile.gettempdir().encode() not in content
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("system", ["linux64", "linux-arm64"])
 def test_linux_needs_no_younger_c_library_than_it_says(zig_fmu, system):
     """That of 2012 is enough; Red Hat Enterprise Linux 7 has it."""
@@ -74,7 +74,6 @@ def word(content, at):
     return content[at : content.index(b"\0", at)].decode()
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("version", [2, 3])
 def test_library_for_windows(zig_fmu, declared_functions, version):
     library = binary_of(zig_fmu(*TORQUE, version=version), "win64", version)
@@ -86,7 +85,6 @@ def test_library_for_windows(zig_fmu, declared_functions, version):
     assert word(library, place(name)) == "model.dll"
 
 
-@pytest.mark.slow
 def test_library_for_windows_needs_nothing_that_windows_has_not(zig_fmu):
     """The kernel and the Universal C Runtime, which is part of Windows 10."""
     library = binary_of(zig_fmu(*TORQUE), "win64", 2)
@@ -146,7 +144,6 @@ def exported_symbols(library, listed):
     return names
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("version", [2, 3])
 @pytest.mark.parametrize("system", CPUS)
 def test_library_for_macos(zig_fmu, declared_functions, system, version):

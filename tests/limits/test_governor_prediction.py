@@ -37,6 +37,7 @@ def predicted(sailed, **values):
     return simulate(governor, governor.vector(TRUE | idle | values), time, inputs, longest_step_s=5e-4).outputs["y"]
 
 
+@pytest.mark.slow
 def test_torque_of_a_limited_rack_is_that_of_the_tug(sailed):
     rack_0 = 0.39706613784717726
     y = (1.0 + sailed["M_b"]) / (1.0 + sailed["n"]) ** 2 - 1.0

@@ -176,6 +176,7 @@ def test_temporary_files_are_deleted(tmp_path, monkeypatch):
     assert list(scratch.iterdir()) == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("delimiter", "decimal"), [(",", "."), (";", ","), ("\t", ".")])
 def test_what_is_written_is_read_again(native, tmp_path, counts, delimiter, decimal):
     path = tmp_path / "out.csv"

@@ -249,6 +249,7 @@ def test_a_file_without_its_seal_is_read_after_a_look(native, counts):
         assert np.array_equal(recording.channel("M_s").read(0, 300_000), counts["M_s"])
 
 
+@pytest.mark.slow
 def test_a_heap_that_leads_round_in_circles_is_refused(native):
     content = native.read_bytes()
     # specification of HDF5, III.E: a collection of objects; object 1 begins 16 bytes on, its length 8 bytes further

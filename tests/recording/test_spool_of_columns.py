@@ -49,6 +49,7 @@ def test_a_reader_that_is_killed_leaves_nothing(tmp_path):
     assert list(scratch.iterdir()) == []
 
 
+@pytest.mark.slow
 def test_what_is_far_longer_unpacked_than_packed_is_refused(tmp_path):
     path = tmp_path / "zeros.csv.gz"
     with gzip.open(path, "wt") as file:

@@ -208,6 +208,7 @@ def test_a_picture_has_one_legend_inside_and_no_small_letters():
     assert dict(rcParams) == before
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("suffix", [".svg", ".png", ".pdf"])
 def test_the_same_chart_gives_the_same_file(tmp_path, suffix):
     for name in ("one", "two"):

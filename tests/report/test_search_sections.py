@@ -30,6 +30,7 @@ def cells(table):
 # ---- verdict ----
 
 
+@pytest.mark.slow
 def test_the_verdict_comes_in_words_the_reason_first(fingerprint):
     section = verdict_section(SimpleNamespace(fingerprint=fingerprint))
     assert section.title == "Verdict: the fit is trustworthy"

@@ -200,6 +200,7 @@ class _Strings:
         return [re.sub(r"\\(.)", r"\1", found, flags=re.DOTALL) for found in cls.pattern.findall(text)]
 
 
+@pytest.mark.slow
 @any_text
 def test_modelica_strings_give_every_text_back(text):
     assert _Strings.of(escape.modelica_string(text)) == [seen(text)]

@@ -163,6 +163,7 @@ def test_all_is_synced_before_it_counts(tmp_path, monkeypatch):
 # ---- two at once ----
 
 
+@pytest.mark.slow
 def test_the_second_writer_is_told(tmp_path, monkeypatch):
     monkeypatch.setattr(_lock, "PATIENCE_S", 0.1)
     place = tmp_path / "out"
@@ -182,6 +183,7 @@ def test_the_second_writer_is_told(tmp_path, monkeypatch):
     assert texts(place) == {"index.html": "second"}
 
 
+@pytest.mark.slow
 def test_a_dead_writer_blocks_nobody(tmp_path, monkeypatch):
     monkeypatch.setattr(_lock, "PATIENCE_S", 0.1)
     place = tmp_path / "out"

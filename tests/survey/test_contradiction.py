@@ -44,6 +44,7 @@ def fits(seed, *, settings, **other):
 FREE = Settings(starts=3)
 
 
+@pytest.mark.slow
 def test_one_line_hardly_ever_contradicts_itself():
     said = [bool(contradiction(*fits(seed, settings=FREE))) for seed in range(150)]
     # at most 1 % by the bound, of 150

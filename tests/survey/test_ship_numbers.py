@@ -55,6 +55,7 @@ def silent(**of_log):
     return VESSEL.model_copy(update={"propeller": propeller, "sensors": sensors})
 
 
+@pytest.mark.slow
 def test_the_truth_comes_back_without_noise(fitted):
     numbers = found(fitted, VESSEL)
     # the polynomials of the simulated ship are those of the series to four digits
@@ -64,6 +65,7 @@ def test_the_truth_comes_back_without_noise(fitted):
     assert numbers["R"].expected == pytest.approx(43000.0 * (TRUTH["v_0"] / 5.093) ** 4)
 
 
+@pytest.mark.slow
 def test_a_log_that_may_show_two_per_cent_too_much(fitted):
     """A wake of 0.20 seen through a log 2 % off is 0.216: the propeller sees 0.784 of the speed that is shown."""
     without, with_it = found(fitted, silent()), found(fitted, silent(scale_std_fraction=0.02))

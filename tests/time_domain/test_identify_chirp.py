@@ -173,6 +173,7 @@ def test_estimates_are_those_of_maximum_likelihood_in_time(motion, make_record):
         assert estimates[name].std == pytest.approx(np.sqrt(variance), rel=0.05), name
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("stop_s", "size"), [(1400.0, 0.002), (1500.0, 0.02)])
 def test_a_record_cut_in_motion_gives_the_truth_with_transients_only(make_record, stop_s, size):
     record = make_record(270.0, stop_s, size=size)

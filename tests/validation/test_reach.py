@@ -85,6 +85,7 @@ def judged(rng, reach, *, error=0.0, shape=RINGING, pieces=24, scale=1.0):
     return misfit_of(raw, one, np.zeros((0, 0)), largest_error=0.15, coverage=0.95)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("reach", [SETTLING, SWEPT])
 @pytest.mark.parametrize("pieces", [3, 24])
 def test_p_values_of_the_true_model_are_even(reach, pieces):
@@ -95,6 +96,7 @@ def test_p_values_of_the_true_model_are_even(reach, pieces):
     assert np.mean(p < 0.5) == pytest.approx(0.5, abs=0.1)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("error", [0.5, 1.5])
 def test_intervals_of_the_error_hold_it(error):
     rng = np.random.default_rng(4)
@@ -106,6 +108,7 @@ def test_intervals_of_the_error_hold_it(error):
     assert np.mean(held) == pytest.approx(0.95, abs=0.04)
 
 
+@pytest.mark.slow
 def test_noise_that_lasts_hides_less_of_what_is_over_soon():
     found = {}
     for name, reach in (("everywhere", EVERYWHERE), ("settling", SETTLING)):

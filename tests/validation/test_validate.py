@@ -94,6 +94,7 @@ def test_records_are_those_that_the_fit_has_not_seen(with_limits):
     assert not any(c.excerpt.in_sample for c in with_limits.comparisons)
 
 
+@pytest.mark.slow
 def test_two_volt_steps_demand_more_torque_than_the_engine_has_either_way(with_limits):
     assert with_limits.outcome == "fails"
     found = outcomes(with_limits, "St2")
@@ -105,6 +106,7 @@ def test_two_volt_steps_demand_more_torque_than_the_engine_has_either_way(with_l
     assert any("what a limit of torque or of its rate does" in sentence for sentence in with_limits.sentences)
 
 
+@pytest.mark.slow
 def test_the_chirp_passes_below_where_it_is_clipped(with_limits):
     found = outcomes(with_limits, "C11")
     assert found["up to 1 rad/s"] == "passes"
@@ -113,6 +115,7 @@ def test_the_chirp_passes_below_where_it_is_clipped(with_limits):
     assert found["5 to 10 rad/s"] != "passes"
 
 
+@pytest.mark.slow
 def test_numbers_of_a_clipped_step(with_limits):
     step = with_limits.of("St2", "step at 7900.0")
     numbers = {(number.output, number.name): number for number in step.step_numbers}
@@ -126,6 +129,7 @@ def test_numbers_of_a_clipped_step(with_limits):
     assert all(number.measured_std > 0.0 and number.expected_std > 0.0 for number in (overshoot,))
 
 
+@pytest.mark.slow
 def test_few_pieces_of_noise_prove_little(with_limits):
     # the level of -6 V holds three pieces: Student's t of two degrees of freedom is 4.3, not 1.96
     step = with_limits.of("St1", "step at 7330.0")
@@ -135,6 +139,7 @@ def test_few_pieces_of_noise_prove_little(with_limits):
             assert abs(number.measured - number.expected) > 4.3 * number.measured_std
 
 
+@pytest.mark.slow
 def test_fit_percent_stands_beside_its_ceiling(with_limits):
     good = with_limits.of("C11", "1 to 5")
     for misfit in good.misfits:
@@ -143,6 +148,7 @@ def test_fit_percent_stands_beside_its_ceiling(with_limits):
     assert bad.misfits[0].fit_percent < bad.misfits[0].fit_ceiling - 10.0
 
 
+@pytest.mark.slow
 def test_the_true_delay_leaves_none(with_limits):
     # fits of many seconds of chirp: the delay left over is within three of its deviations
     for delay in with_limits.of("C11", "1 to 5").delays:
@@ -150,11 +156,13 @@ def test_the_true_delay_leaves_none(with_limits):
         assert delay.model_std_s > 0.0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("record", ["C11", "St1", "St2"])
 def test_without_limits_a_quiet_ship_passes_everywhere(quiet_without_limits, record):
     assert set(outcomes(quiet_without_limits, record).values()) == {"passes"}
 
 
+@pytest.mark.slow
 def test_without_limits_the_words_say_so(quiet_without_limits):
     assert quiet_without_limits.outcome == "passes"
     assert quiet_without_limits.failed == ()
@@ -345,6 +353,7 @@ def test_without_a_quiet_stretch_nothing_can_be_said(made, campaign):
         )
 
 
+@pytest.mark.slow
 def test_an_excerpt_that_is_not_there(with_limits):
     with pytest.raises(KeyError, match="St9"):
         with_limits.of("St9", "step")

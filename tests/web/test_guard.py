@@ -223,6 +223,7 @@ def test_refusals_of_a_minute_are_one_line_with_their_number(tmp_path):
     assert [one.get("times") for one in newest] == [None, 2, None]
 
 
+@pytest.mark.slow
 def test_deeds_go_through_files_that_are_put_aside(tmp_path, monkeypatch):
     audit = Audit(path=tmp_path / "audit.jsonl")
     note = "x" * 290

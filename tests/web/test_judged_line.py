@@ -17,6 +17,7 @@ FIRST = datetime(2020, 1, 1, tzinfo=UTC)
 MEMORY = 4 * 2**30
 
 
+@pytest.mark.slow
 def test_fingerprints_that_another_has_taken_the_place_of_are_no_tests(tmp_path):
     """Of 42 recordings, ten of them identified by two versions of the program, the newest 40 are judged together."""
     with create_store(str(tmp_path / "fleet.db")) as store:
