@@ -146,8 +146,10 @@ def test_what_cannot_be_predicted_is_refused(run, options, message):
 
 # ---- sailed: the simulated ship knows nothing of the structures that are predicted ----
 
+# Of half an hour of dither one recording will do: its 17 deviations are 0.94 to 1.22 of what is predicted, so that a
+# prediction half as large again, or two thirds as large, still leaves the bounds.
 SAILED = [
-    ("stan-tug-1205-underway", "dither", (1, 2, 3), ("g", "a", "e", "tau_u", "k_q")),
+    ("stan-tug-1205-underway", "dither", (1,), ("g", "a", "e", "tau_u", "k_q")),
     ("nifs-research-vessel", "pitch", (1, 2, 3, 4, 5), ("g", "k_q")),
 ]
 
