@@ -53,7 +53,7 @@ _EXPECTED = {
 class Settings(BaseModel):
     """Base of every table of a settings file: frozen, and unknown keys are refused."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True)
+    model_config = ConfigDict(extra="forbid", frozen=True, defer_build=True)
 
     def __dir__(self) -> list[str]:
         """Return the words of the field; pydantic's stay out of what a session completes."""

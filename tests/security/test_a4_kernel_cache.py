@@ -158,12 +158,40 @@ import shaftprint, numba
 from numba.core import caching
 for locator in (caching.InTreeCacheLocator, caching.UserWideCacheLocator):
     locator.from_function = classmethod(lambda cls, function, file: None)
-import numpy as np
-import shaftprint.signals, shaftprint.time_domain, shaftprint.tug
-kernels = [value for module in list(sys.modules.values()) if getattr(module, "__name__", "").startswith("shaftprint.")
-           for value in vars(module).values() if isinstance(value, numba.core.registry.CPUDispatcher)]
+import importlib, pkgutil
+for room in ("signals", "time_domain", "tug"):
+    path = importlib.import_module(f"shaftprint.{room}").__path__
+    for found in pkgutil.walk_packages(path, f"shaftprint.{room}."):
+        importlib.import_module(found.name)
+# a function is compiled when it is first called; what would be kept is asked before
+waiting = [value for module in list(sys.modules.values()) if getattr(module, "__name__", "").startswith("shaftprint.")
+           for value in vars(module).values() if type(value).__name__ == "Kernel"]
+kernels = [one.made() for one in waiting]
+assert all(isinstance(kernel, numba.core.registry.CPUDispatcher) for kernel in kernels)
 print(len(kernels), sum(kernel._cache.cache_path is not None for kernel in kernels))
 """
+
+
+WHEN_CALLED = """
+import sys
+from shaftprint.kernels import compiled
+
+@compiled()
+def twice(x):
+    return 2 * x
+
+@compiled()
+def four_times(x):
+    return twice(twice(x))
+
+assert "numba" not in sys.modules
+print(four_times(3), four_times.py_func(4), "numba" in sys.modules)
+"""
+
+
+def test_a_function_is_compiled_when_it_is_first_called():
+    found = subprocess.run([sys.executable, "-c", WHEN_CALLED], capture_output=True, text=True, check=True)
+    assert found.stdout == "12 16 True\n"
 
 
 @pytest.mark.slow

@@ -75,7 +75,7 @@ Row = tuple[Seconds, Seconds]
 class _Entry(BaseModel):
     """One clock map in JSON; fields that are not known are refused."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid", strict=True)
+    model_config = ConfigDict(frozen=True, extra="forbid", strict=True, defer_build=True)
 
     logger: str
     sha256: str

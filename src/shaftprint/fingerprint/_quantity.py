@@ -18,7 +18,7 @@ ENDS_ALIKE: Final = 0.25
 class FrozenRecord(BaseModel):
     """A frozen part of a fingerprint; fields that it does not know are refused."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid", ser_json_inf_nan="strings", strict=False)
+    model_config = ConfigDict(frozen=True, extra="forbid", ser_json_inf_nan="strings", strict=False, defer_build=True)
 
     def __dir__(self) -> list[str]:
         """Return the words of the field; pydantic's stay out of what a session completes."""

@@ -24,7 +24,7 @@ Named = dict[Text, Number]
 class Record(BaseModel):
     """A frozen part of the file; fields that it does not know are refused."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid", ser_json_inf_nan="strings")
+    model_config = ConfigDict(frozen=True, extra="forbid", ser_json_inf_nan="strings", defer_build=True)
 
 
 class ShipRecord(Record):
