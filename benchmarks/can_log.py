@@ -24,8 +24,9 @@ ROOT = Path(__file__).resolve().parent.parent
 # Run as a file, the folder of the benchmarks is on the path, not the one above.
 sys.path.insert(0, str(ROOT))
 
+from benchmarks import monte_carlo_short  # noqa: E402
 from benchmarks.message_log import Estimate, rows  # noqa: E402
-from benchmarks.monte_carlo_short import drawn_noise  # noqa: E402
+from benchmarks.monte_carlo_short import Row, drawn_noise, rows_of, summary  # noqa: E402
 from benchmarks.monte_carlo_tables import write_between_marks  # noqa: E402
 from shaftprint.campaign import load_campaign  # noqa: E402
 from shaftprint.catalogue import structure  # noqa: E402
@@ -34,6 +35,7 @@ from shaftprint.identify import Settings, identify, priors_from_vessel  # noqa: 
 from shaftprint.recording import read_recording  # noqa: E402
 from shaftprint.signals import Signals, prepare_signals  # noqa: E402
 from shaftprint.spectra import estimate_response  # noqa: E402
+from shaftprint.survey import Trial  # noqa: E402
 from shaftprint.tug import Truth, Tug, sail  # noqa: E402
 from shaftprint.vessel import Vessel, load_vessel  # noqa: E402
 
@@ -52,6 +54,16 @@ PEDAL = {
     "message_latency_s": 0.01,
 }
 SPEED = {"name": "n_e", "channel": "EngineSpeed", "shaft": "engine", "unit": "rpm", "latency_s": 0.01}
+# A ship test of which messages alone tell: the demand in rpm, 0.125 rpm a bit, and torque of a telemetry whose values
+# are up to a period old, or means over it; senders whose clocks are this far apart.
+TORQUE_CYCLE_S, APART, DEMAND_STEP_RPM = 0.01, 50e-6, 0.125
+DEMAND = {
+    "channel": "EngineDesiredOperatingSpeed",
+    "unit": "rpm",
+    "v_per_unit": 1.0 / RPM_PER_V,
+    "v_at_zero": -RPM_AT_ZERO_V / RPM_PER_V,
+    "message_latency_s": 0.01,
+}
 # Working point of the truth, by which its numbers are normalised.
 TRUE_SPEED_REV_S, TRUE_TORQUE_NM = 1183.8 / 60.0, 1725.0
 
@@ -89,6 +101,19 @@ CASES: Mapping[str, Case] = {
     ),
     "drawn": Case(name="Pedal, torque and speed from messages, truth and nuisances drawn", speed=True, drawn=True),
 }
+ALL = "all"
+
+
+def _all_messages() -> Vessel:
+    """Return what the vessel file says of a ship of which messages alone tell."""
+    content = load_vessel("stan-tug-1205").model_dump()
+    gauge = content["sensors"]["shaft_torque"]
+    gauge |= {"latency_s": gauge["latency_s"] + 0.5 * TORQUE_CYCLE_S, "latency_std_s": None}
+    content["sensors"] |= {"set_point": DEMAND, "speed": [SPEED]}
+    return Vessel.model_validate(content)
+
+
+ALL_MESSAGES = _all_messages()
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -160,6 +185,50 @@ def ship_of(case: Case, seed: int) -> Ship:
     return Ship(known=known, true=Vessel.model_validate(content), tug=true, scale=scale)
 
 
+def all_messages(seed: int) -> dict[str, Any]:
+    """Sail and identify a ship of which messages alone tell, by all steps of the program; return its numbers."""
+    ship = drawn_in_messages(seed)
+    trial = Trial(vessel=ALL_MESSAGES, campaign=CAMPAIGN)
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "log.nc"
+        truth = sail(ship.vessel, CAMPAIGN, path, tug=ship.tug, seed=seed)
+        found = monte_carlo_short.identified(path, trial, seed)
+    true = monte_carlo_short.true_values(truth, ship, found)
+    late_speed_s = ship.vessel.sensors.speed[0].latency_s - SPEED["latency_s"]
+    late_set_point_s = ship.vessel.sensors.set_point.message_latency_s - DEMAND["message_latency_s"]
+    true["t_gauge"] -= late_speed_s
+    for name in ("t_sp", "t_d + t_sp"):
+        true[name] += late_speed_s - late_set_point_s
+    named = {name: asdict(row) for name, row in rows_of(found, true).items()}
+    return {"seed": seed, "rows": named, "trustworthy": found.verdict.trustworthy,
+        "reasons": [one.sentence for one in found.verdict.reasons]}
+
+
+def drawn_in_messages(seed: int) -> monte_carlo_short.Ship:
+    """Return the ship of a seed, of which messages tell: how old their values are is drawn too."""
+    rng, ship = np.random.default_rng([SEED, seed, 1]), monte_carlo_short.drawn_ship(seed, ALL_MESSAGES)
+    age = 1.0 / np.sqrt(12.0)
+    gauge, stated = ship.vessel.sensors.shaft_torque, ALL_MESSAGES.sensors.shaft_torque
+    latency_s = _late(rng, stated.latency_s, np.hypot(stated.latency_std, TORQUE_CYCLE_S * age))
+    content = ship.vessel.model_dump()
+    content["sensors"]["shaft_torque"] |= {"latency_s": latency_s}
+    content["sensors"]["speed"] = [SPEED | {"latency_s": _late(rng, SPEED["latency_s"], CYCLE_S * age)}]
+    content["sensors"]["set_point"] |= {"message_latency_s": _late(rng, DEMAND["message_latency_s"], CYCLE_S * age)}
+    fast, slow = 1.0 + 0.5 * APART, 1.0 - 0.5 * APART
+    tug = replace(
+        ship.tug,
+        speed_cycle_s=CYCLE_S * slow,
+        set_point_cycle_s=CYCLE_S * slow,
+        torque_cycle_s=TORQUE_CYCLE_S * fast,
+        torque_is_mean=bool(rng.random() < 0.5),
+        set_point_resolution=DEMAND_STEP_RPM,
+        message_jitter=JITTER,
+        messages_lost=LOST,
+        messages_wait=bool(rng.random() < 0.5),
+    )
+    return replace(ship, tug=tug, vessel=Vessel.model_validate(content), late_s=latency_s - stated.latency_s)
+
+
 def _late(rng: np.random.Generator, stated_s: float, std_s: float) -> float:
     return max(0.0, float(rng.normal(stated_s, std_s)))
 
@@ -222,7 +291,7 @@ def outcomes_of(key: str, seeds: range, *, folder: Path | None) -> Iterator[dict
             yield earlier[seed]
             continue
         try:
-            one = outcome(CASES[key], seed)
+            one = all_messages(seed) if key == ALL else outcome(CASES[key], seed)
         except ShaftprintError as error:
             one = {"seed": seed, "refused": str(error)}
         if kept:
@@ -247,6 +316,17 @@ def table(case: Case, outcomes: list[dict[str, Any]]) -> str:
     return text + "\n".join(lines) + f"\n\np-values below 0.05: {100.0 * np.mean(p_values < 0.05):.0f} %.\n"
 
 
+def table_of_all(outcomes: list[dict[str, Any]]) -> str:
+    """Return the table of the ships of which messages alone tell, in Markdown."""
+    tests = [{name: Row(**row) for name, row in one.get("rows", {}).items()} for one in outcomes]
+    trusted = sum(bool(one.get("trustworthy")) for one in outcomes)
+    return (
+        "\n### Torque, speed and demand from messages alone, ships drawn\n\n"
+        + summary(tests, "tests of messages alone")
+        + f"\nTrustworthy: {trusted} of {len(outcomes)}.\n"
+    )
+
+
 def _drawn_row(row: str) -> str:
     """Leave out of a row what means nothing where every test has another truth."""
     cells = row.split("|")
@@ -257,17 +337,19 @@ def main() -> None:
     """Sail and identify the chosen cases."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
     parser.add_argument("--seeds", type=int, default=4, help="tests of each case")
-    parser.add_argument("--case", choices=list(CASES), action="append", help="some cases alone")
+    parser.add_argument("--case", choices=[*CASES, ALL], action="append", help="some cases alone")
     parser.add_argument("--outcomes", type=Path, help="folder in which outcomes of tests are kept")
     parser.add_argument("--write", action="store_true", help=f"put the tables into {DOCUMENT.relative_to(ROOT)}")
     options = parser.parse_args()
     if options.outcomes:
         options.outcomes.mkdir(parents=True, exist_ok=True)
     text = ""
-    for key in options.case or CASES:
-        outcomes = list(outcomes_of(key, range(1, min(options.seeds, CASES[key].most) + 1), folder=options.outcomes))
-        text += table(CASES[key], outcomes)
-        print(table(CASES[key], outcomes), flush=True)
+    for key in options.case or [*CASES, ALL]:
+        most = options.seeds if key == ALL else CASES[key].most
+        outcomes = list(outcomes_of(key, range(1, min(options.seeds, most) + 1), folder=options.outcomes))
+        of_case = table_of_all(outcomes) if key == ALL else table(CASES[key], outcomes)
+        print(of_case, flush=True)
+        text += of_case
     if options.write:
         write_between_marks(DOCUMENT, text, BEGIN, END)
 

@@ -73,6 +73,8 @@ class ChannelSignal:
     """Time for which a value is held until the next [s]; 0 where values are interpolated."""
     join_s: float = 0.0
     """Length of the straight lines from one value to the next [s]; 0 where values are held."""
+    value_rate_hz: float = math.inf
+    """Values a second that a spline joins [Hz]; infinite where the logger samples as fast as the signals."""
 
     @property
     def is_side(self) -> bool:
@@ -86,7 +88,7 @@ class ChannelSignal:
     @property
     def nyquist_hz(self) -> float:
         """Highest frequency that the sensor shows without aliasing [Hz]."""
-        return 0.5 / self.cycle_s if self.cycle_s else math.inf
+        return 0.5 * min(self.value_rate_hz, 1.0 / self.cycle_s if self.cycle_s else math.inf)
 
     @property
     def highest_hz(self) -> float:
@@ -96,12 +98,18 @@ class ChannelSignal:
     def gain(self, frequency_hz: float) -> complex:
         """Return what holding, joining and averaging about their own time make of a sine of amplitude 1.
 
-        ``sinc^2`` of the periods in a straight line; ``sinc`` and half the hold late where values are held; ``sinc`` of
-        the periods in a mean.
+        ``sinc^2`` of the periods in a straight line, that of a spline where it joins the values; ``sinc`` and half the
+        hold late where values are held; ``sinc`` of the periods in a mean.
         """
         held = frequency_hz * self.hold_s
         joined = np.sinc(frequency_hz * self.join_s) ** 2 * np.sinc(held) * np.exp(-1j * np.pi * held)
-        return complex(joined * np.sinc(frequency_hz * self.averaging_s))
+        return complex(joined * np.sinc(frequency_hz * self.averaging_s) * self._splined(frequency_hz))
+
+    def _splined(self, frequency_hz: float) -> float:
+        """Return what a spline through the values shows of a sine of amplitude 1; 1 of an alias."""
+        if math.isinf(self.value_rate_hz) or frequency_hz > self.nyquist_hz:
+            return 1.0
+        return spline_gain(frequency_hz, self.value_rate_hz)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -124,27 +132,18 @@ class ExcitationSignal(ChannelSignal):
     """Unit in which amplitudes are told to the reader."""
     shown_reference: float = 1.0
     """The working point in that unit."""
-    value_rate_hz: float = math.inf
-    """Values a second that a spline joins [Hz]; infinite where the logger samples as fast as the signals."""
     share: float | None = None
     """Of the torque of an electric machine, its mean at the working point over the shaft torque."""
     is_obeyed: bool = False
     """Whether the governor holds each value until the next."""
-
-    @property
-    def nyquist_hz(self) -> float:
-        """Highest frequency that the values show without aliasing [Hz]."""
-        return 0.5 * self.value_rate_hz
 
     def gain(self, frequency_hz: float) -> complex:
         """Return what the spline through the values shows of what the governor follows.
 
         That is the values themselves, or each held until the next: ``sinc`` and half of that time later.
         """
-        if math.isinf(self.value_rate_hz) or frequency_hz > self.nyquist_hz:
-            return 1.0
-        held = frequency_hz / self.value_rate_hz if self.is_obeyed else 0.0
-        return complex(spline_gain(frequency_hz, self.value_rate_hz) / (np.sinc(held) * np.exp(-1j * np.pi * held)))
+        held = frequency_hz / self.value_rate_hz if self.is_obeyed and frequency_hz <= self.nyquist_hz else 0.0
+        return complex(self._splined(frequency_hz) / (np.sinc(held) * np.exp(-1j * np.pi * held)))
 
     @property
     def words(self) -> str:

@@ -7,6 +7,7 @@ import numpy as np
 
 from shaftprint.arguments import refusing_none
 from shaftprint.errors import ResponseError
+from shaftprint.spectra._aliases import alias_remarks
 from shaftprint.spectra._line_responses import response_of_lines
 from shaftprint.spectra._shift_check import shift_reasons
 from shaftprint.spectra._spectra import Spectra
@@ -146,7 +147,7 @@ def _leg(signals: "Signals", leg: "Leg", measured: "LegLines", moved: "Excitatio
             f"{measured.window.state.start_s:g} and {measured.window.state.stop_s:g} s: check that campaign and "
             "recording belong together."
         )
-    remarks, used = _judged(lines, finding, sensor)
+    remarks, used = _judged(lines, finding, signals, sensor, moved)
     missing = leg.periods - measured.window.state.periods
     if missing > 0:
         remarks[leg.name] = f"{measured.window.state.periods} of {leg.periods} periods are in the recording"
@@ -191,17 +192,18 @@ def _load(line: "LineMeasurement", square: complex, sensor: "SpeedSignal") -> co
 
 
 def _judged(
-    lines: "Sequence[LineMeasurement]", finding: "LegFinding", sensor: "SpeedSignal"
+    lines: "Sequence[LineMeasurement]",
+    finding: "LegFinding",
+    signals: "Signals",
+    sensor: "SpeedSignal",
+    moved: "ExcitationSignal",
 ) -> tuple[dict[str, str], "BoolArray"]:
     """Return remarks on lines, and which of them have a clean set point and a speed without aliasing."""
     remarks, used = dict(finding.remarks), np.ones(len(lines), dtype=np.bool_)
     for row, line in enumerate(lines):
         name = line.window.line
-        aliased = line.window.frequency_hz > sensor.nyquist_hz
-        if aliased:
-            alias = f"above {sensor.nyquist_hz:.2f} Hz, half the pulse rate of {sensor.name}: aliased"
-            remarks[name] = "; ".join(part for part in (remarks.get(name), alias) if part)
-        for remark in filter(None, (line.order_remark, *line.message_remarks.values())):
+        aliased = alias_remarks(line.window.frequency_hz, signals, sensor, moved)
+        for remark in filter(None, (*aliased, line.order_remark, *line.message_remarks.values())):
             remarks[name] = "; ".join(part for part in (remarks.get(name), remark) if part)
         used[row] = not aliased and name not in finding.unusable
     return remarks, used

@@ -10,6 +10,7 @@ from shaftprint.arguments import refusing_none
 from shaftprint.errors import ResponseError
 from shaftprint.notebook import Shown
 from shaftprint.reasons import Reason
+from shaftprint.spectra._aliases import alias_remarks
 from shaftprint.spectra._frequency_response import FrequencyResponse
 from shaftprint.spectra._line_responses import response_of_lines
 from shaftprint.spectra._shift_check import shift_reasons
@@ -337,13 +338,8 @@ def _judge(
         frequency = line.window.frequency_hz
         expected = _expected_amplitude(moved, campaign, line)
         finding = check_set_point(line, expected=expected, local_db=local_db, place=row, moved=moved)
-        lines = list(finding.remarks)
-        aliased = frequency > sensor.nyquist_hz
-        if aliased:
-            lines.append(f"above {sensor.nyquist_hz:.2f} Hz, half the pulse rate of {sensor.name}: aliased")
-        if frequency > moved.nyquist_hz:
-            aliased = True
-            lines.append(f"above {moved.nyquist_hz:.2f} Hz, half the rate of the {moved.words}'s messages: aliased")
+        aliased = alias_remarks(frequency, signals, sensor, moved)
+        lines = [*finding.remarks, *aliased]
         lines += [line.order_remark] if line.order_remark else []
         lines += line.message_remarks.values()
         lines += [

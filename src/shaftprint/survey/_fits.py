@@ -3,6 +3,7 @@
 import copy
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -32,11 +33,42 @@ def priors_of(
     """Return the priors of a structure: those of the vessel file, and what the user states instead or besides."""
     known = priors_from_vessel(structure, vessel, signals.working_point, mode=signals.mode)
     measured = (
-        _from_demand(structure, vessel, signals)
+        _from_messages(known, structure, vessel, signals)
+        | _from_demand(structure, vessel, signals)
         | _from_machine(structure, signals)
         | _from_levels(structure, signals.calibration)
     )
     return known | measured | dict(stated or {})
+
+
+def _from_messages(
+    known: Mapping[str, Prior], structure: Structure, vessel: Vessel, signals: Signals
+) -> dict[str, Prior]:
+    """Return the latency of the torque behind the speed where messages carry either: they do not tell its age.
+
+    A value may be that of the instant at which it is sent, up to a period old, or a mean since the message before: even
+    over a period, its latency has a standard deviation of a twelfth of its square.
+    """
+    gauge, speed = vessel.sensors.shaft_torque, vessel.sensors.speed[0]
+    torque_s = 1.0 / signals.channels["M_s"].value_rate_hz
+    is_spline = not speed.counts_turns and signals.engine_speed.pulse_rate_hz < signals.rate_hz
+    speed_s = 1.0 / signals.engine_speed.pulse_rate_hz if is_spline else 0.0
+    ages = {
+        "age of torque messages": torque_s / math.sqrt(12.0) if gauge.latency_std_s is None else 0.0,
+        "age of speed messages": speed_s / math.sqrt(12.0) if speed.latency_std_s is None else speed.latency_std_s,
+    }
+    sources = {name: std for name, std in ages.items() if std}
+    if not sources:
+        return {}
+    of_torque = (one.name for one in structure.free if one.role == ShipRole.TORQUE_LATENCY and one.name in known)
+    return {
+        name: replace(
+            known[name],
+            std=math.hypot(known[name].std, *sources.values()),
+            sources={**known[name].sources, **sources},
+        )
+        for name in of_torque
+    }
 
 
 def _from_demand(structure: Structure, vessel: Vessel, signals: Signals) -> dict[str, Prior]:

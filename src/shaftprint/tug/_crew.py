@@ -32,6 +32,7 @@ from shaftprint.tug.sensors import (
     Helm,
     HelmMessages,
     MachineTorque,
+    MessageTimes,
     PickUp,
     PitchFeedback,
     PitchLever,
@@ -39,6 +40,7 @@ from shaftprint.tug.sensors import (
     SpeedMessages,
     SpeedMeter,
     TorqueGauge,
+    TorqueMessages,
 )
 from shaftprint.vessel import SAMPLES_A_TOOTH, SpeedSensor, Vessel
 
@@ -46,7 +48,7 @@ RATE_HZ = 2000.0
 """Sample rate where the vessel file names no logger [Hz]."""
 
 # What sends messages.
-SENDERS = (ControlUnit, DemandMessages, HelmMessages, SpeedMessages)
+SENDERS = (ControlUnit, DemandMessages, HelmMessages, SpeedMessages, TorqueMessages)
 
 
 class _Sensor(Protocol):
@@ -80,11 +82,11 @@ class Crew:
                 f"found a duration of {campaign.duration_s:g} s."
             )
         self._expect_fast_logger()
-        # bus, log, pitch, demand, feedback and machine come last: without them the others draw the same numbers
-        process, torque, set_point, *speeds, bus, log, pitch, demand, feedback, machine = (
+        # from bus on they come last: without them the others draw the same numbers
+        process, torque, set_point, *speeds, bus, log, pitch, demand, feedback, machine, of_torque = (
             np.random.default_rng(child)
             for child in np.random.SeedSequence(seed if line is None else (seed, line)).spawn(
-                9 + len(vessel.sensors.speed)
+                10 + len(vessel.sensors.speed)
             )
         )
         duration_s = campaign.duration_s
@@ -92,7 +94,8 @@ class Crew:
         first = equilibrium(plant, Demand(tug, vessel, campaign, start_s=0.0, step_s=1.0 / self._rate_hz).first)
         load = plant.propeller_nm_s2
         self.process = process
-        self._gauge = TorqueGauge(
+        cycle_s = tug.torque_cycle_s
+        gauge = TorqueGauge(
             tug.noise,
             vessel,
             load_nm_s2=load,
@@ -101,7 +104,12 @@ class Crew:
             duration_s=duration_s,
             rate_hz=self._rate_hz,
             rng=torque,
+            averaging_s=cycle_s - 1.0 / self._rate_hz if cycle_s is not None and tug.torque_is_mean else 0.0,
         )
+        self._gauge: TorqueGauge | TorqueMessages = gauge
+        if cycle_s is not None:
+            times = MessageTimes(Bus.of(tug), cycle_s=cycle_s, rng=of_torque)
+            self._gauge = TorqueMessages(gauge, times, is_mean=tug.torque_is_mean, rate_hz=self._rate_hz)
         self._helm = self._stand_by_helm(set_point)
         self._speeds = [
             self._stand_by_shaft(sensor, rng) for sensor, rng in zip(vessel.sensors.speed, speeds, strict=True)
@@ -266,10 +274,10 @@ class Crew:
         writer.declare(
             sensors.shaft_torque.channel,
             unit=sensors.shaft_torque.unit,
-            rate_hz=self._rate_hz,
             scale=self._gauge.scale,
             offset=self._gauge.offset,
             long_name="torque telemetry of the propeller shaft",
+            **self._clock_of(self._gauge),
         )
         names = {
             "set point of the pitch of the propeller": self._lever,

@@ -142,6 +142,10 @@ class Tug:
     samples the voltage."""
     set_point_resolution: float = 0.4
     """Step of the set point in those messages, in the unit of the channel; 0.4 % of a pedal in SAE J1939-71."""
+    torque_cycle_s: float | None = None
+    """Time from one message to the next with the shaft torque [s]; ``None``: the logger samples its telemetry."""
+    torque_is_mean: bool = True
+    """Whether each of those messages holds the mean since the one before, not the torque of one instant."""
     message_jitter: float = 0.0
     """Standard deviation of the time of a message on the CAN bus about its cycle, over the cycle; evenly spread, below
     0.28. Messages with jitter or losses are recorded with times of their own."""

@@ -69,6 +69,9 @@ class SpeedSensor(Settings):
     given, one turn if the angle stays within it, else it goes on."""
     latency_s: NotNegativeNumber = 0.0
     """Time by which a speed is late, that of an instrument or its filter [s]; none for pulses."""
+    latency_std_s: NotNegativeNumber | None = None
+    """Standard deviation of that time where the speed comes in messages [s]; where not stated, that of values which are
+    up to a message old."""
     edge: Literal["rising", "falling"] = "rising"
     """Which edge of a pulse marks the angle of the strip."""
     pulse_width_deg: PositiveNumber | None = None
@@ -151,6 +154,7 @@ class SpeedSensor(Settings):
                 ("counts_per_revolution", self.counts_per_revolution, self.unit == "counts"),
                 ("rolls_over_at", self.rolls_over_at, self.gives_angle),
                 ("latency_s", self.latency_s or None, not self.gives_pulses),
+                ("latency_std_s", self.latency_std_s, not self.gives_pulses),
             )
             if value is not None and not fits
         ]

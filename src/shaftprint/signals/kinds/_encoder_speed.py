@@ -19,6 +19,7 @@ from shaftprint.signals.kinds._angle_range import angle_range, range_of_small_st
 from shaftprint.signals.kinds._kind import Source
 from shaftprint.signals.kinds._message_reading import read_messages
 from shaftprint.signals.kinds._speed_reading import LONGEST_GAP_VALUES, REACH_VALUES, SpeedReading
+from shaftprint.signals.kinds._splined_messages import comes_in_messages
 from shaftprint.signals.pulses import spline_speed
 from shaftprint.units import rev_s_from_rpm, rpm_from_rev_s
 from shaftprint.vessel import SpeedSensor
@@ -53,7 +54,7 @@ def read_encoder(source: Source[SpeedSensor], clock: "Clock") -> SpeedReading:
     whole = range_of_small_steps(channel, sensor, turns_hz)
     values_hz = _values_hz(channel, sensor, clock, turns_hz)
     latency_s = clock.latency_s(sensor.latency_s)
-    if channel.is_uneven or channel.rate_hz < clock.rate_hz:
+    if comes_in_messages(channel, clock):
         reading = _splined(channel, sensor, whole, clock, latency_s)
     else:
         turning = _turning(channel, sensor, whole)

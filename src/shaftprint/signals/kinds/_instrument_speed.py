@@ -18,7 +18,7 @@ from shaftprint.signals.conditioning import FaultLimits, Reading, conditioned, f
 from shaftprint.signals.kinds._current_loop import alive_counts
 from shaftprint.signals.kinds._message_reading import read_messages
 from shaftprint.signals.kinds._speed_reading import LONGEST_GAP_VALUES, REACH_VALUES, SpeedReading
-from shaftprint.signals.kinds._splined_messages import no_numbers, splined
+from shaftprint.signals.kinds._splined_messages import comes_in_messages, no_numbers, splined
 from shaftprint.vessel import LIVE_ZERO_MA, SpeedSensor
 
 if TYPE_CHECKING:
@@ -51,7 +51,7 @@ def read_instrument(
         If the channel holds no numbers, or a speed below zero throughout.
     """
     latency_s = clock.latency_s(sensor.latency_s)
-    if channel.rate_hz >= clock.rate_hz and not channel.is_uneven:
+    if not comes_in_messages(channel, clock):
         reading = conditioned(
             channel,
             instrument_limits(channel, sensor),

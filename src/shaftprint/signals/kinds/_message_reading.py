@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shaftprint.arrays import FloatArray
+from shaftprint.arrays import BoolArray, FloatArray
 from shaftprint.recording import Messages, messages_of, stamped_values
 from shaftprint.signals._gaps import Gap
 from shaftprint.signals.conditioning import Reading
@@ -32,7 +32,9 @@ class MessageReading(Reading):
         return time_s, self.values[first]
 
 
-def read_messages(channel: "Channel", *, lowest: float = -np.inf, highest: float = np.inf) -> MessageReading:
+def read_messages(
+    channel: "Channel", *, lowest: float = -np.inf, highest: float = np.inf, wrong: BoolArray | None = None
+) -> MessageReading:
     """Return the messages of a channel that hold a value, with the holes between them.
 
     Parameters
@@ -41,10 +43,14 @@ def read_messages(channel: "Channel", *, lowest: float = -np.inf, highest: float
         A channel with ``stamps``.
     lowest, highest
         Smallest and largest value [unit]: what is beyond says that there is none.
+    wrong
+        Which messages do not count beside those, shape (messages,).
     """
     time_s, values = stamped_values(channel, count=channel.count)
     # written so that what is not a number counts as missing
     is_value = (values >= lowest) & (values <= highest) & np.isfinite(values)
+    if wrong is not None:
+        is_value &= ~wrong
     values, time_s = values[is_value], time_s[is_value]
     messages = messages_of(time_s, values, period_s=1.0 / channel.rate_hz)
     gaps = tuple(

@@ -16,7 +16,7 @@ from shaftprint.signals._channels import middle_of
 from shaftprint.signals.conditioning import FaultLimits, Reading, conditioned, fault_limits
 from shaftprint.signals.kinds._kind import ChannelKind, Source, SteadyState
 from shaftprint.signals.kinds._message_reading import read_messages
-from shaftprint.signals.kinds._splined_messages import splined
+from shaftprint.signals.kinds._splined_messages import comes_in_messages, splined
 from shaftprint.units import rpm_from_rev_s
 from shaftprint.vessel import SetPointSensor
 
@@ -101,7 +101,7 @@ def read_set_point(channel: "Channel", sensor: SetPointSensor, clock: "Clock", *
             f"channel {channel.name}: expected a set point in {sensor.unit}, found {middle:.4g}; "
             f'unit = "{unit}"{line} in sensors.set_point would fit.'
         )
-    if channel.is_uneven or channel.rate_hz < clock.rate_hz:
+    if comes_in_messages(channel, clock):
         return _read_messages(channel, sensor, clock)
     reading = read_voltage(channel, clock)
     return replace(reading, values=sensor.volts(reading.values))

@@ -19,6 +19,11 @@ if TYPE_CHECKING:
 _FEWEST_MESSAGES = 4
 
 
+def comes_in_messages(channel: "Channel", clock: "Clock") -> bool:
+    """Return whether a spline has to join the values of a channel: they are slower than the grid, or on no clock."""
+    return channel.is_uneven or channel.rate_hz < clock.rate_hz
+
+
 def splined(messages: MessageReading, channel: "Channel", clock: "Clock", latency_s: float) -> MessageReading:
     """Return messages with their values on the grid, in the unit of the channel, and what their holes cost there.
 

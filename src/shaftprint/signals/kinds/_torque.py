@@ -1,5 +1,6 @@
 """Shaft torque from the gauge: unit, zero, known latency, dropouts, and whether the gauge is alive."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
@@ -16,6 +17,9 @@ from shaftprint.signals._signals import Repair
 from shaftprint.signals.conditioning import FaultLimits, Reading, conditioned, fault_limits
 from shaftprint.signals.kinds._current_loop import alive_counts
 from shaftprint.signals.kinds._kind import ChannelKind, Source, SteadyState
+from shaftprint.signals.kinds._message_reading import MessageReading
+from shaftprint.signals.kinds._splined_messages import comes_in_messages
+from shaftprint.signals.kinds._torque_messages import torque_messages
 from shaftprint.vessel import LIVE_ZERO_MA, ShaftTorqueSensor
 
 if TYPE_CHECKING:
@@ -43,6 +47,7 @@ class ShaftTorque(ChannelKind[ShaftTorqueSensor]):
     """Torque of the propeller shaft at its gauge [N m]."""
 
     sensor, name, use, needed = "shaft_torque", "M_s", "shaft torque", True
+    takes_messages = True
 
     def limits(self, source: Source[ShaftTorqueSensor]) -> FaultLimits:
         """Return the limits of the gauge."""
@@ -53,14 +58,18 @@ class ShaftTorque(ChannelKind[ShaftTorqueSensor]):
         channel = source.channel
         expect_unit(channel, source.vessel)
         latency_s = clock.latency_s(source.sensor.latency_s)
-        reading = conditioned(
-            channel,
-            self.limits(source),
-            clock.grid(channel, latency_s),
-            mode=clock.mode,
-            block_samples=clock.block_samples(channel),
-            advance=clock.advance,
-        )
+        reading: Reading
+        if comes_in_messages(channel, clock):
+            reading = torque_messages(source, self.limits(source), clock, latency_s)
+        else:
+            reading = conditioned(
+                channel,
+                self.limits(source),
+                clock.grid(channel, latency_s),
+                mode=clock.mode,
+                block_samples=clock.block_samples(channel),
+                advance=clock.advance,
+            )
         gaps = tuple(gap.earlier(latency_s) for gap in reading.gaps)
         return replace(reading, values=source.vessel.driving_torque_nm(reading.values), gaps=gaps)
 
@@ -76,6 +85,7 @@ class ShaftTorque(ChannelKind[ShaftTorqueSensor]):
             values=frozen_float(reading.values),
             reference=steady.working_point.shaft_torque_nm,
             reference_std=steady.working_point.shaft_torque_std_nm,
+            value_rate_hz=source.channel.rate_hz if isinstance(reading, MessageReading) else math.inf,
         )
 
 

@@ -3,12 +3,12 @@
 Each takes the stretches of a voyage of ``shaftprint.tug.plant`` in order and gives the counts of its channel.
 """
 
-from shaftprint.tug.sensors._bus import Bus
+from shaftprint.tug.sensors._bus import Bus, MessageTimes
 from shaftprint.tug.sensors._control_unit import LOWEST_PERCENT, ControlUnit
 from shaftprint.tug.sensors._demand_messages import DemandMessages
 from shaftprint.tug.sensors._encoder import Encoder
 from shaftprint.tug.sensors._faults import Fault, draw_dropouts, draw_times
-from shaftprint.tug.sensors._gauge import TorqueGauge, shaft_orders
+from shaftprint.tug.sensors._gauge import TorqueGauge, TorqueMessages, shaft_orders
 from shaftprint.tug.sensors._helm import PITCH_INPUT, Helm, HelmMessages, PitchLever
 from shaftprint.tug.sensors._log import SpeedLog
 from shaftprint.tug.sensors._machine_torque import MachineTorque
@@ -28,6 +28,7 @@ __all__ = [
     "Helm",
     "HelmMessages",
     "MachineTorque",
+    "MessageTimes",
     "PickUp",
     "PitchFeedback",
     "PitchLever",
@@ -35,6 +36,7 @@ __all__ = [
     "SpeedMessages",
     "SpeedMeter",
     "TorqueGauge",
+    "TorqueMessages",
     "draw_dropouts",
     "draw_times",
     "shaft_orders",

@@ -10,6 +10,7 @@ from shaftprint.arrays import FloatArray, IntArray
 from shaftprint.kernels import compiled
 from shaftprint.tug._noise import Noise
 from shaftprint.tug.plant import Stretch
+from shaftprint.tug.sensors._bus import MessageStream, MessageTimes
 from shaftprint.tug.sensors._faults import Fault, draw_dropouts, draw_spikes
 from shaftprint.vessel import Vessel
 
@@ -119,6 +120,7 @@ class TorqueGauge:
         duration_s: float,
         rate_hz: float,
         rng: np.random.Generator,
+        averaging_s: float = 0.0,
     ) -> None:
         sensor = vessel.sensors.shaft_torque
         self._rng = rng
@@ -130,8 +132,9 @@ class TorqueGauge:
         """Value of no count in the unit of the channel."""
         orders = shaft_orders(noise, vessel)
         smoothing = 1.0 - math.exp(-2.0 * math.pi * LOW_PASS_HZ / rate_hz)
-        # the latency of the vessel file is that of the whole telemetry: the filter's own delay is a part of it
-        delay = max(0.0, sensor.latency_s * rate_hz - (1.0 - smoothing) / smoothing)
+        # the latency of the vessel file is that of the whole telemetry: the delays of its filter and mean are parts of it
+        later_s = sensor.latency_s - 0.5 * averaging_s
+        delay = max(0.0, later_s * rate_hz - (1.0 - smoothing) / smoothing)
         self._telemetry = _Telemetry(
             delay=delay,
             smoothing=smoothing,
@@ -189,6 +192,41 @@ class TorqueGauge:
             )
             for start, stop, holds in drops
         ]
+
+
+class TorqueMessages:
+    """Stream of the raw counts of a torque that its telemetry sends message by message."""
+
+    def __init__(self, gauge: TorqueGauge, times: MessageTimes, *, is_mean: bool, rate_hz: float) -> None:
+        self.channel, self.scale, self.offset = gauge.channel, gauge.scale, gauge.offset
+        self.times = times
+        """When its messages come."""
+        self._gauge = gauge
+        self._stream = MessageStream(times, latency_s=0.0, rate_hz=rate_hz)
+        self._tail: FloatArray = np.empty(0)
+        self._length = max(round(times.cycle_s * rate_hz), 1) if is_mean else 1
+        self._first: float | None = None
+
+    def next(self, stretch: Stretch) -> NDArray[np.int16]:
+        """Return the counts of the messages of the next stretch, shape (messages,)."""
+        return self.messages(stretch)[0]
+
+    def messages(self, stretch: Stretch) -> tuple[NDArray[np.int16], FloatArray]:
+        """Return counts and times [s] of the messages of the next stretch, each of shape (messages,)."""
+        counts = self._gauge.next(stretch).astype(np.float64)
+        # before the start the line ran steadily
+        self._first = float(counts[0]) if self._first is None else self._first
+        if not self._tail.size:
+            self._tail = np.full(self._length - 1, self._first)
+        longer = np.concatenate([self._tail, counts])
+        self._tail = longer[longer.size - (self._length - 1) :]
+        means = np.lib.stride_tricks.sliding_window_view(longer, self._length).mean(axis=1)
+        shown, time_s = self._stream.next(means, first=self._first)
+        return np.rint(shown).clip(-32768, 32767).astype(np.int16), time_s
+
+    def faults(self) -> list[Fault]:
+        """Return the faults of the whole recording."""
+        return self._gauge.faults()
 
 
 def shaft_orders(noise: Noise, vessel: Vessel) -> dict[float, float]:

@@ -1,0 +1,70 @@
+"""Shaft torque that a telemetry sends in messages: what cannot be true is left out, the others are joined.
+
+What a sender does between two messages is not told by them: a value may be that of the instant at which it is sent,
+older by up to a period, or the mean since the one before. The latency of the vessel file is to hold all of it; where
+that states no deviation, `with_message_latencies` counts a period's worth.
+"""
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from shaftprint.arrays import BoolArray
+from shaftprint.signals._channels import blocks
+from shaftprint.signals.conditioning import FaultLimits, Patcher, flagged
+from shaftprint.signals.kinds._kind import Source
+from shaftprint.signals.kinds._message_reading import MessageReading, read_messages
+from shaftprint.signals.kinds._splined_messages import splined
+from shaftprint.vessel import ShaftTorqueSensor
+
+if TYPE_CHECKING:
+    from shaftprint.recording import Channel
+    from shaftprint.signals._clock import Clock
+    from shaftprint.signals._signals import Repair
+
+
+def torque_messages(
+    source: Source[ShaftTorqueSensor], limits: FaultLimits, clock: "Clock", latency_s: float
+) -> MessageReading:
+    """Return the torque of messages, or of samples slower than the grid, on the grid [unit of the channel].
+
+    Parameters
+    ----------
+    source
+        The channel.
+    limits
+        What counts as a fault of it.
+    clock
+        The grid.
+    latency_s
+        Time by which the values are late [s].
+
+    Raises
+    ------
+    SignalError
+        If there are too few.
+    """
+    channel = source.channel
+    wrong, repairs = _faults(channel, limits, clock)
+    messages = read_messages(channel, wrong=wrong)
+    reading = splined(messages, channel, clock, latency_s)
+    return replace(reading, repairs=repairs, findings=messages.findings if channel.is_uneven else ())
+
+
+def _faults(channel: "Channel", limits: FaultLimits, clock: "Clock") -> "tuple[BoolArray, list[Repair]]":
+    """Return which values cannot be true, shape (messages,), and what they are, at the times of their messages."""
+    raw = np.concatenate(list(blocks(channel, clock.block_samples(channel), clock.advance)))
+    found: list[Repair] = []
+    patcher = Patcher(channel=channel, limits=limits, repairs=found)
+    patched = np.concatenate(list(patcher.patched(flagged([raw], limits))))
+    wrong: BoolArray = ~(patched == raw)
+    for gap in patcher.gaps:
+        wrong[_place(channel, gap.start_s) : _place(channel, gap.stop_s)] = True
+    stamps_s = channel.stamps_s(0, channel.count)
+    return wrong, [replace(one, time_s=float(stamps_s[_place(channel, one.time_s)])) for one in found]
+
+
+def _place(channel: "Channel", by_rate_s: float) -> int:
+    """Return which message a time means that was counted by the rate alone."""
+    return round((by_rate_s - channel.start_s) * channel.rate_hz)

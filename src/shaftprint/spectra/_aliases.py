@@ -1,0 +1,32 @@
+"""Lines that are too fast for the pulses or messages of a channel."""
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from shaftprint.signals import ExcitationSignal, Signals, SpeedSignal
+
+
+def alias_remarks(
+    frequency_hz: float, signals: "Signals", sensor: "SpeedSignal", moved: "ExcitationSignal"
+) -> list[str]:
+    """Return what set point, speed and torque cannot show of a line; nothing where each of them can.
+
+    Parameters
+    ----------
+    frequency_hz
+        Frequency of the line [Hz].
+    signals
+        The prepared recording, whose shaft torque may come in messages.
+    sensor, moved
+        The speed and what was moved.
+    """
+    whose = {
+        f"half the pulse rate of {sensor.name}": sensor,
+        f"half the rate of the {moved.words}'s messages": moved,
+        "half the rate of the shaft torque's messages": signals.channels["M_s"],
+    }
+    return [
+        f"above {one.nyquist_hz:.2f} Hz, {limit}: aliased"
+        for limit, one in whose.items()
+        if frequency_hz > one.nyquist_hz
+    ]
