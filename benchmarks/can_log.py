@@ -200,15 +200,19 @@ def all_messages(seed: int) -> dict[str, Any]:
     for name in ("t_sp", "t_d + t_sp"):
         true[name] += late_speed_s - late_set_point_s
     named = {name: asdict(row) for name, row in rows_of(found, true).items()}
-    return {"seed": seed, "rows": named, "trustworthy": found.verdict.trustworthy,
-        "reasons": [one.sentence for one in found.verdict.reasons]}
+    return {
+        "seed": seed,
+        "rows": named,
+        "trustworthy": found.verdict.trustworthy,
+        "reasons": [one.sentence for one in found.verdict.reasons],
+    }
 
 
 def drawn_in_messages(seed: int) -> monte_carlo_short.Ship:
     """Return the ship of a seed, of which messages tell: how old their values are is drawn too."""
     rng, ship = np.random.default_rng([SEED, seed, 1]), monte_carlo_short.drawn_ship(seed, ALL_MESSAGES)
     age = 1.0 / np.sqrt(12.0)
-    gauge, stated = ship.vessel.sensors.shaft_torque, ALL_MESSAGES.sensors.shaft_torque
+    stated = ALL_MESSAGES.sensors.shaft_torque
     latency_s = _late(rng, stated.latency_s, np.hypot(stated.latency_std, TORQUE_CYCLE_S * age))
     content = ship.vessel.model_dump()
     content["sensors"]["shaft_torque"] |= {"latency_s": latency_s}

@@ -16,7 +16,7 @@ from shaftprint.signals._channel_signals import ChannelSignal, SpeedSignal
 from shaftprint.signals._channels import find_channel
 from shaftprint.signals._clock import Mode, clock_of
 from shaftprint.signals._demand import delay_of_demand
-from shaftprint.signals._gaps import Coverage
+from shaftprint.signals._gaps import Coverage, bridge
 from shaftprint.signals._leg_steady_state import samples_of_legs, steady_state_of_legs, stopped_generators
 from shaftprint.signals._orders import tracked_orders
 from shaftprint.signals._rates import expect_one_rate
@@ -28,6 +28,7 @@ from shaftprint.signals.excitation import (
     expect_campaign,
     find_step_delays,
     found_tests,
+    joined_about_lines,
     left_out,
     take_out_steps,
 )
@@ -120,7 +121,7 @@ def prepare_signals(
 
 def _prepared(recording: "Recording", vessel: "Vessel", campaign: Campaign, readings: Readings) -> Signals:
     """Return the signals of what was read; its set point becomes a speed in place."""
-    clock = readings.clock
+    readings, clock = _about_lines(readings, campaign), readings.clock
     reasons = [
         *expect_one_rate(recording, logger_channels(readings.sources)),
         *readings.reasons,
@@ -316,15 +317,32 @@ def _signals_by_name(readings: Readings, steady: SteadyState) -> tuple[dict[str,
     return signals, tuple(absent)
 
 
+def _about_lines(readings: Readings, campaign: Campaign) -> Readings:
+    """Return readings whose messages are joined about the lines of a campaign instead of by a spline alone."""
+    if readings.clock.mode == "thesis":
+        return readings
+    by_name = dict(readings.by_name)
+    for name, reading in readings.by_name.items():
+        joined = reading.sent and joined_about_lines(reading.sent, campaign, readings.clock)
+        if joined:
+            sent, values = joined
+            bridge(values, reading.gaps, start_s=readings.clock.start_s, rate_hz=readings.clock.rate_hz)
+            by_name[name] = replace(reading, sent=sent, values=values)
+    return replace(readings, by_name=by_name)
+
+
 def _without_steps_in_place(readings: Readings, campaign: Campaign) -> None:
     """Take out of a set point what the steps of its messages make of the sines of a campaign."""
     reading, clock = readings.by_name["n_set"], readings.clock
     if clock.mode == "thesis" or not isinstance(reading, SetPointMessages) or not reading.step_v:
         return
+    sent = reading.sent
+    if sent is None:
+        return
     take_out_steps(
         reading.values,
-        reading.time_s,
-        reading.shown_v,
+        sent.time_s,
+        sent.values,
         campaign.of_input(),
         step_v=reading.step_v,
         rate_hz=clock.rate_hz,

@@ -1,6 +1,6 @@
 """What is done to a channel before it is a signal: outliers, repairs, decimation, and the thesis' own way."""
 
-from shaftprint.signals.conditioning._condition import Reading, conditioned
+from shaftprint.signals.conditioning._condition import Reading, SentValues, conditioned
 from shaftprint.signals.conditioning._cut_off import CutOff
 from shaftprint.signals.conditioning._decimate import SampleGrid, decimated, filter_grid, low_pass_taps
 from shaftprint.signals.conditioning._outliers import (
@@ -31,6 +31,7 @@ __all__ = [
     "RunTally",
     "Runs",
     "SampleGrid",
+    "SentValues",
     "conditioned",
     "decimated",
     "fault_limits",

@@ -1,8 +1,8 @@
 """A continuous channel from raw counts to its unit on the grid: faults replaced, rate lowered."""
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Literal, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,6 +22,18 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class SentValues:
+    """Messages that a spline has joined."""
+
+    time_s: FloatArray
+    """When their values were taken [s], ascending, shape (messages,)."""
+    values: FloatArray
+    """The values, in the unit of those on the grid, shape (messages,)."""
+    rate_hz: float
+    """Messages a second, as a rule [Hz]."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Reading:
     """A channel that was read: on the grid, but for one with a clock of its own."""
 
@@ -33,6 +45,14 @@ class Reading:
     """What is missing, in order of time."""
     findings: tuple[str, ...] = ()
     """What the reader should know."""
+    sent: SentValues | None = None
+    """The messages that were joined; None of samples at a rate."""
+
+    def of(self, quantity: Callable[[FloatArray], FloatArray], *, earlier_s: float = 0.0) -> Self:
+        """Return what the values mean, and the gaps so much earlier [s]."""
+        sent = self.sent and replace(self.sent, values=quantity(self.sent.values))
+        gaps = tuple(gap.earlier(earlier_s) for gap in self.gaps)
+        return replace(self, values=quantity(self.values), gaps=gaps, sent=sent)
 
 
 def conditioned(

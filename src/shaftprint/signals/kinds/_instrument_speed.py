@@ -62,20 +62,21 @@ def read_instrument(
         )
     else:
         reading = _splined(channel, sensor, clock, latency_s)
-    speed = engine_over_shaft * sensor.speed_rev_s(reading.values)
-    if astern and speed.mean() < 0.0:
-        speed = -speed
-    if not speed.mean() > 0.0:
+    shown = reading.of(sensor.speed_rev_s, earlier_s=latency_s)
+    ahead = -1.0 if astern and shown.values.mean() < 0.0 else 1.0
+    shown = shown.of(lambda speed: ahead * engine_over_shaft * speed)
+    mean_rpm = 60.0 * float(shown.values.mean())
+    if not mean_rpm > 0.0:
         raise SignalError(
-            f"channel {channel.name}: expected a speed ahead, found a mean of {60.0 * speed.mean():.4g} rpm at the "
+            f"channel {channel.name}: expected a speed ahead, found a mean of {mean_rpm:.4g} rpm at the "
             "engine; correct unit, rpm_per_unit and rpm_at_zero in the vessel file, or the sign of the channel, or "
             'state direction = "astern" of its working point where the shaft turned so.'
         )
-    gaps = (gap.earlier(latency_s) for gap in reading.gaps)
     return SpeedReading(
-        values=speed,
-        repairs=reading.repairs,
-        gaps=tuple(gaps),
+        values=shown.values,
+        repairs=shown.repairs,
+        gaps=shown.gaps,
+        sent=shown.sent,
         name=sensor.name,
         channel=channel.name,
         pulse_rate_hz=channel.rate_hz,

@@ -9,7 +9,7 @@ import math
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from shaftprint.arrays import FloatArray, frozen_float
+from shaftprint.arrays import frozen_float
 from shaftprint.errors import SignalError
 from shaftprint.signals._channel_signals import ChannelRole, ExcitationSignal
 from shaftprint.signals._channels import middle_of
@@ -30,12 +30,8 @@ _HIGHEST_PERCENT = 101.0
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class SetPointMessages(Reading):
-    """A set point that came in messages, on the grid and as it came."""
+    """A set point that came in messages, in volts of the campaign [V]."""
 
-    time_s: FloatArray
-    """When each message showed its value [s], ascending, shape (messages,)."""
-    shown_v: FloatArray
-    """The values, in volts of the campaign [V], shape (messages,)."""
     step_v: float
     """Step of the values [V]; 0 where they have none, or are what the governor obeys."""
 
@@ -113,15 +109,13 @@ def _read_messages(channel: "Channel", sensor: SetPointSensor, clock: "Clock") -
     highest = _HIGHEST_PERCENT if sensor.unit == "%" else math.inf
     came = read_messages(channel, highest=highest)
     on_grid = splined(came, channel, clock, latency_s)
-    time_s, shown = came.for_spline(latency_s=latency_s)
-    gaps = (replace(gap, start_s=gap.start_s - latency_s, stop_s=gap.stop_s - latency_s) for gap in on_grid.gaps)
+    in_volts = on_grid.of(sensor.volts, earlier_s=latency_s)
     return SetPointMessages(
-        values=sensor.volts(on_grid.values),
+        values=in_volts.values,
         repairs=(),
-        gaps=tuple(gaps),
+        gaps=in_volts.gaps,
         findings=came.findings if channel.is_uneven else (),
-        time_s=time_s,
-        shown_v=sensor.volts(shown),
+        sent=in_volts.sent,
         step_v=0.0 if sensor.is_obeyed else abs(sensor.slope_v) * came.messages.step,
     )
 

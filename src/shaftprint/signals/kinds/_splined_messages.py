@@ -8,6 +8,7 @@ import scipy
 
 from shaftprint.errors import SignalError
 from shaftprint.signals._gaps import bridge
+from shaftprint.signals.conditioning import SentValues
 from shaftprint.signals.kinds._message_reading import MessageReading
 from shaftprint.signals.kinds._speed_reading import REACH_VALUES
 
@@ -50,7 +51,8 @@ def splined(messages: MessageReading, channel: "Channel", clock: "Clock", latenc
     on_grid = scipy.interpolate.CubicSpline(time_s, values)(grid_s.clip(time_s[0], time_s[-1]))
     gaps = tuple(replace(gap, reach_s=REACH_VALUES / channel.rate_hz) for gap in messages.gaps)
     bridge(on_grid, gaps, start_s=clock.start_s + latency_s, rate_hz=clock.rate_hz)
-    return replace(messages, values=on_grid, gaps=gaps)
+    sent = SentValues(time_s=time_s, values=values, rate_hz=channel.rate_hz)
+    return replace(messages, values=on_grid, gaps=gaps, sent=sent)
 
 
 def no_numbers(channel: "Channel") -> SignalError:

@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -70,8 +69,7 @@ class ShaftTorque(ChannelKind[ShaftTorqueSensor]):
                 block_samples=clock.block_samples(channel),
                 advance=clock.advance,
             )
-        gaps = tuple(gap.earlier(latency_s) for gap in reading.gaps)
-        return replace(reading, values=source.vessel.driving_torque_nm(reading.values), gaps=gaps)
+        return reading.of(source.vessel.driving_torque_nm, earlier_s=latency_s)
 
     def judge(self, source: Source[ShaftTorqueSensor], reading: Reading) -> tuple[str, ...]:
         """Return a finding where crests are cut off; too many are refused."""

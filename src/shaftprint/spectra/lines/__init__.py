@@ -10,7 +10,7 @@ from shaftprint.spectra.lines._line_fit import LineFit, SineMethod, WindowSample
 from shaftprint.spectra.lines._line_measurement import LineMeasurement, measure_line, strongest_frequency_hz
 from shaftprint.spectra.lines._load_drift import LoadDrift, load_drift
 from shaftprint.spectra.lines._message_line import MessageLine, cut_messages
-from shaftprint.spectra.lines._message_times import times_of_course, times_of_values
+from shaftprint.spectra.lines._message_times import times_of_values
 from shaftprint.spectra.lines._modulation import without_modulation
 from shaftprint.spectra.lines._noise import (
     LineNoise,
@@ -75,7 +75,6 @@ __all__ = [
     "shape_reasons",
     "signal_to_noise",
     "strongest_frequency_hz",
-    "times_of_course",
     "times_of_values",
     "whole_period_window",
     "window_slice",

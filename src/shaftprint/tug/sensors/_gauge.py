@@ -132,7 +132,7 @@ class TorqueGauge:
         """Value of no count in the unit of the channel."""
         orders = shaft_orders(noise, vessel)
         smoothing = 1.0 - math.exp(-2.0 * math.pi * LOW_PASS_HZ / rate_hz)
-        # the latency of the vessel file is that of the whole telemetry: the delays of its filter and mean are parts of it
+        # the latency of the vessel file is that of the whole telemetry: those of its filter and mean are parts of it
         later_s = sensor.latency_s - 0.5 * averaging_s
         delay = max(0.0, later_s * rate_hz - (1.0 - smoothing) / smoothing)
         self._telemetry = _Telemetry(
