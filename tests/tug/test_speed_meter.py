@@ -98,3 +98,26 @@ def test_a_control_unit_reports_its_demand_in_messages(vessel, ask, sine, quiet,
     volts = -5.0 + 0.6 * np.sin(2.0 * np.pi * 0.5 * (time_s[inside] - late_s)) + tug.set_point_offset_v
     assert values[inside] == pytest.approx(-250.97 * volts - 83.467, abs=0.08)
     assert values / 0.125 == pytest.approx(np.rint(values / 0.125), abs=1e-9)
+
+
+@pytest.mark.parametrize("is_mean", [False, True])
+def test_a_telemetry_sends_the_torque_in_messages(vessel, ask, sine, quiet, tmp_path, is_mean):
+    """Late by the latency of the vessel file in all, of which a mean over 20 ms is 10 ms."""
+    campaign, late_s = ask(21.0, sines=[sine(0.5, 0.6)]), 0.015
+    content = vessel.model_dump()
+    content["sensors"]["shaft_torque"] |= {"latency_s": late_s, "resolution_nm": None}
+    ship = Vessel.model_validate(content)
+    tug = Tug(noise=quiet, torque_cycle_s=0.02, torque_is_mean=is_mean, message_jitter=0.15, messages_lost=0.05)
+    sail(ship, campaign, tmp_path / "x.nc", tug=tug, seed=1)
+    gauge = ship.sensors.shaft_torque
+    with read_recording(tmp_path / "x.nc") as recording:
+        channel = recording.channels[gauge.channel]
+        time_s = channel.time_s(0, channel.count)
+        shown = gauge.torque_nm(channel.values(0, channel.count))
+    assert channel.is_uneven
+    assert channel.count == pytest.approx(0.95 * 21.0 / 0.02, rel=0.02)
+    true = simulate_signals(ship, campaign, tug=tug, rate_hz=2000.0)
+    late = np.interp(time_s - late_s, true.time_s, true.shaft_torque_nm)
+    moving = time_s > 2.0
+    # a tenth of a period of 0.5 Hz is 200 ms: 0.1 ms moves the torque by 3e-4 of its swing
+    assert np.abs((shown - late)[moving]).max() < 0.003 * np.ptp(late)

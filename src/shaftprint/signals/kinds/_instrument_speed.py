@@ -18,7 +18,7 @@ from shaftprint.signals.conditioning import FaultLimits, Reading, conditioned, f
 from shaftprint.signals.kinds._current_loop import alive_counts
 from shaftprint.signals.kinds._message_reading import read_messages
 from shaftprint.signals.kinds._speed_reading import LONGEST_GAP_VALUES, REACH_VALUES, SpeedReading
-from shaftprint.signals.kinds._splined_messages import comes_in_messages, no_numbers, splined
+from shaftprint.signals.kinds._splined_messages import comes_in_messages, no_numbers, splined, unknown_age
 from shaftprint.vessel import LIVE_ZERO_MA, SpeedSensor
 
 if TYPE_CHECKING:
@@ -62,6 +62,9 @@ def read_instrument(
         )
     else:
         reading = _splined(channel, sensor, clock, latency_s)
+        if sensor.latency_std_s is None:
+            age = unknown_age(channel, field="latency_std_s of its sensors.speed")
+            reading = replace(reading, findings=(*reading.findings, age))
     shown = reading.of(sensor.speed_rev_s, earlier_s=latency_s)
     ahead = -1.0 if astern and shown.values.mean() < 0.0 else 1.0
     shown = shown.of(lambda speed: ahead * engine_over_shaft * speed)

@@ -1,5 +1,6 @@
 """Messages at times of their own on the common grid, joined by a cubic spline."""
 
+import math
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -11,6 +12,7 @@ from shaftprint.signals._gaps import bridge
 from shaftprint.signals.conditioning import SentValues
 from shaftprint.signals.kinds._message_reading import MessageReading
 from shaftprint.signals.kinds._speed_reading import REACH_VALUES
+from shaftprint.units import MILLI
 
 if TYPE_CHECKING:
     from shaftprint.recording import Channel
@@ -53,6 +55,24 @@ def splined(messages: MessageReading, channel: "Channel", clock: "Clock", latenc
     bridge(on_grid, gaps, start_s=clock.start_s + latency_s, rate_hz=clock.rate_hz)
     sent = SentValues(time_s=time_s, values=values, rate_hz=channel.rate_hz)
     return replace(messages, values=on_grid, gaps=gaps, sent=sent)
+
+
+def unknown_age(channel: "Channel", *, field: str) -> str:
+    """Return what is assumed of messages whose age the vessel file does not limit.
+
+    Parameters
+    ----------
+    channel
+        Where they come from.
+    field
+        Where the vessel file would.
+    """
+    period_ms = MILLI / channel.rate_hz
+    return (
+        f"Values of channel {channel.name} may be up to a message of {period_ms:.3g} ms old, or means since the one "
+        f"before: {period_ms / math.sqrt(12.0):.2g} ms are counted beside their latency; state {field} where it is "
+        "known better."
+    )
 
 
 def no_numbers(channel: "Channel") -> SignalError:

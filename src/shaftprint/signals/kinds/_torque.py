@@ -73,7 +73,7 @@ class ShaftTorque(ChannelKind[ShaftTorqueSensor]):
 
     def judge(self, source: Source[ShaftTorqueSensor], reading: Reading) -> tuple[str, ...]:
         """Return a finding where crests are cut off; too many are refused."""
-        return judge_saturation(source.channel, reading.repairs)
+        return *reading.findings, *judge_saturation(source.channel, reading.repairs)
 
     def signal(self, source: Source[ShaftTorqueSensor], reading: Reading, steady: SteadyState) -> ChannelSignal:
         """Return the torque over that of the working point."""

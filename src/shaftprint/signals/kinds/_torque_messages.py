@@ -15,7 +15,7 @@ from shaftprint.signals._channels import blocks
 from shaftprint.signals.conditioning import FaultLimits, Patcher, flagged
 from shaftprint.signals.kinds._kind import Source
 from shaftprint.signals.kinds._message_reading import MessageReading, read_messages
-from shaftprint.signals.kinds._splined_messages import splined
+from shaftprint.signals.kinds._splined_messages import splined, unknown_age
 from shaftprint.vessel import ShaftTorqueSensor
 
 if TYPE_CHECKING:
@@ -49,7 +49,9 @@ def torque_messages(
     wrong, repairs = _faults(channel, limits, clock)
     messages = read_messages(channel, wrong=wrong)
     reading = splined(messages, channel, clock, latency_s)
-    return replace(reading, repairs=repairs, findings=messages.findings if channel.is_uneven else ())
+    age = (unknown_age(channel, field="sensors.shaft_torque.latency_std_s"),)
+    findings = messages.findings if channel.is_uneven else ()
+    return replace(reading, repairs=repairs, findings=findings + (age if source.sensor.latency_std_s is None else ()))
 
 
 def _faults(channel: "Channel", limits: FaultLimits, clock: "Clock") -> "tuple[BoolArray, list[Repair]]":
