@@ -32,7 +32,6 @@ from shaftprint.signals._describe_recording import describe_set_point
 from shaftprint.signals._gaps import Coverage, Gap
 from shaftprint.signals._held_samples import HeldSamples, held_samples
 from shaftprint.signals._inspect import ChannelReport, PulseReport, channel_reports, inspect_channels
-from shaftprint.signals._message_times import times_of_course
 from shaftprint.signals._moved_beside import EXCITATIONS, MovedBeside, moved_beside
 from shaftprint.signals._orders import TrackedOrder, tracked_orders
 from shaftprint.signals._prepare import find_tests, prepare_signals
@@ -89,6 +88,5 @@ __all__ = [
     "proposed_campaign",
     "read_channels",
     "scale_reasons",
-    "times_of_course",
     "tracked_orders",
 ]

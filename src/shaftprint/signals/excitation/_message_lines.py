@@ -16,8 +16,8 @@ import scipy
 
 from shaftprint.arrays import BoolArray, ComplexArray, FloatArray
 from shaftprint.campaign import Campaign
+from shaftprint.sender_cycle import behind_cycle, is_late_by
 from shaftprint.signals._channel_signals import HIGHEST_SHARE_OF_RATE, spline_gain
-from shaftprint.signals._message_times import behind_cycle, is_late_by
 from shaftprint.signals.conditioning import SentValues
 
 if TYPE_CHECKING:

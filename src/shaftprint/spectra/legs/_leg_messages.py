@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shaftprint.arrays import ComplexArray, FloatArray, IntArray
-from shaftprint.signals import times_of_course
+from shaftprint.sender_cycle import times_of_course
 
 if TYPE_CHECKING:
     from shaftprint.signals import MessageSignal

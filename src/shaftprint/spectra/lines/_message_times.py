@@ -3,7 +3,7 @@
 import numpy as np
 
 from shaftprint.arrays import FloatArray
-from shaftprint.signals import times_of_course
+from shaftprint.sender_cycle import times_of_course
 from shaftprint.spectra.lines._line_fit import LineFit
 
 
