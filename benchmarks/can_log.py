@@ -41,6 +41,7 @@ from shaftprint.vessel import Vessel, load_vessel  # noqa: E402
 
 DOCUMENT = ROOT / "docs" / "can-log.md"
 BEGIN, END = "<!-- table of benchmarks/can_log.py: begin -->", "<!-- table of benchmarks/can_log.py: end -->"
+ALONE = tuple(f"<!-- messages alone, of benchmarks/can_log.py: {end} -->" for end in ("begin", "end"))
 SEED = 16
 ECU, CAMPAIGN, SHIP = structure("GAUGE-ECU"), load_campaign("short"), load_vessel("stan-tug-1205-ecu")
 CYCLE_S, JITTER, LOST = 0.02, 0.15, 0.01
@@ -347,15 +348,17 @@ def main() -> None:
     options = parser.parse_args()
     if options.outcomes:
         options.outcomes.mkdir(parents=True, exist_ok=True)
-    text = ""
+    text, alone = "", ""
     for key in options.case or [*CASES, ALL]:
         most = options.seeds if key == ALL else CASES[key].most
         outcomes = list(outcomes_of(key, range(1, min(options.seeds, most) + 1), folder=options.outcomes))
         of_case = table_of_all(outcomes) if key == ALL else table(CASES[key], outcomes)
         print(of_case, flush=True)
-        text += of_case
-    if options.write:
+        text, alone = (text, of_case) if key == ALL else (text + of_case, alone)
+    if options.write and text:
         write_between_marks(DOCUMENT, text, BEGIN, END)
+    if options.write and alone:
+        write_between_marks(DOCUMENT, alone, *ALONE)
 
 
 if __name__ == "__main__":

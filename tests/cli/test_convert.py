@@ -125,3 +125,20 @@ def test_a_log_of_a_bus_says_what_it_loses_and_is_read_with_the_dbc_file_beside_
     result = run("convert", source, "-o", log, "--format", "lvm")
     assert result.exit_code == 1
     assert 'expected one of the endings .lvm, found ".blf"' in result.stderr
+
+
+def test_all_channels_go_to_one_rate(run, tmp_path, logged):
+    path = tmp_path / "even.csv"
+    result = run("convert", logged, "-o", path, "--channel", "M_s", "--channel", "U", "--rate", 40.0, "--unit", "U=V")
+    assert result.exit_code == 0, result.output
+    with read_recording(path) as recording:
+        torque, voltage = recording.channel("M_s"), recording.channel("U")
+        assert (torque.rate_hz, torque.count) == (40.0, voltage.count)
+        time = torque.time_s(0, torque.count)
+        inside = (time > 1.0) & (time < 9.0)
+        # the torque is a line, 0.5 of -500 to 499 less 3, the voltage a sine
+        assert torque.values(0, torque.count)[inside] == pytest.approx((50.0 * time - 253.0)[inside], abs=1e-2)
+        assert voltage.values(0, voltage.count)[inside] == pytest.approx(np.sin(time[inside]), abs=1e-3)
+    refused = run("convert", logged, "-o", tmp_path / "x.nc", "--rate", 0)
+    assert refused.exit_code == 1
+    assert "--rate: expected a positive rate in Hz, found 0." in refused.output

@@ -43,7 +43,7 @@ class InputWay:
 
 def jump_within_a_sample(record: Record) -> bool:
     """Return whether some input jumps from one sample to the next."""
-    return any(_jumps(values) for values in record.inputs.values())
+    return any(jumps(values) for values in record.inputs.values())
 
 
 def input_way(
@@ -88,7 +88,8 @@ def input_way(
     return InputWay(fit=fit, hold=hold)
 
 
-def _jumps(values: FloatArray) -> bool:
+def jumps(values: FloatArray) -> bool:
+    """Return whether a signal jumps from one sample to the next."""
     changes = np.diff(values)
     return bool(np.sum(np.diff(changes) ** 2) > JUMPS * np.sum(changes**2))
 

@@ -9,12 +9,16 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.bench._equipped import EquippedDrive
+from shaftprint.bench._hold import jumps
 from shaftprint.bench._wrapped import turn_of, unwrapped
 from shaftprint.drive import Signal, Stretch, unit_factor
 from shaftprint.errors import RecordingError
-from shaftprint.recording import Channel, Recording, read_recording
+from shaftprint.recording import Channel, Recording, judge_messages, read_recording
+from shaftprint.signals import at_rate
 from shaftprint.time_domain import Record, record_from_arrays
 
+# Uneven channels whose rates differ by less come from one sender, or from senders of one kind.
+_SAME_SENDER = 1.2
 FEWEST = 20
 """Least number of samples of a record."""
 
@@ -55,9 +59,10 @@ def read_records(
                 signal.name: _channel(recording, signal, path)
                 for signal in (one.drive.inputs if planned else one.drive.signals)
             }
+            channels, moved = _on_one_rate(recording, channels, one)
             _expect_one_clock(channels, path)
             of_file = [_record(path, channels, one, stretch, hold) for stretch in one.drive.records or (None,)]
-            taken = tuple(f"in {path.name} {remark}" for remark in recording.remarks)
+            taken = tuple(f"in {path.name} {remark}" for remark in (*recording.remarks, *moved))
             records += [replace(record, remarks=(*record.remarks, *taken)) for record in of_file]
     names = [record.name for record in records]
     twice = next((name for name in names if names.count(name) > 1), None)
@@ -73,12 +78,26 @@ def _channel(recording: Recording, signal: Signal, path: Path) -> Channel:
             f'{path}, channel "{signal.channel}": expected the unit {signal.unit} of the drive file, found '
             f"{channel.unit}; correct unit of {signal.name} there."
         )
-    if channel.is_uneven:
-        raise RecordingError(
-            f'{path}, channel "{signal.channel}": expected samples at one rate, found messages at times of their own; '
-            "resample the file."
-        )
     return channel
+
+
+def _on_one_rate(
+    recording: Recording, channels: dict[str, Channel], one: EquippedDrive
+) -> tuple[dict[str, Channel], tuple[str, ...]]:
+    """Return uneven channels at the rate of the slowest, inputs by straight lines, and what was done."""
+    uneven = [channel for channel in channels.values() if channel.is_uneven]
+    rate_hz = min(channel.rate_hz for channel in channels.values())
+    if not uneven or any(channel.rate_hz > _SAME_SENDER * rate_hz for channel in channels.values()):
+        return channels, ()
+    inputs = {signal.name: channels[signal.name].values(0, channels[signal.name].count) for signal in one.drive.inputs}
+    jumping = [name for name, values in inputs.items() if jumps(values[np.isfinite(values)])]
+    moved = at_rate(replace(recording, channels=channels), rate_hz, straight=jumping)
+    ways = " and ".join(jumping)
+    remark = (
+        f"the samples of {uneven[0].name} have times of their own ({judge_messages(uneven[0]).sentence}): all were put "
+        f"on {rate_hz:.6g} Hz by a spline{f', {ways} by straight lines' if jumping else ''}."
+    )
+    return dict(moved.channels), (remark,)
 
 
 def _expect_one_clock(channels: dict[str, Channel], path: Path) -> None:
@@ -90,7 +109,8 @@ def _expect_one_clock(channels: dict[str, Channel], path: Path) -> None:
             raise RecordingError(
                 f"{path}: expected one clock for the channels of a drive, found {first.name} with {first.count} "
                 f"samples at {first.rate_hz:g} Hz from {first.start_s:g} s and {other.name} with {other.count} at "
-                f"{other.rate_hz:g} Hz from {other.start_s:g} s; resample the file."
+                f"{other.rate_hz:g} Hz from {other.start_s:g} s; put them on one: shaftprint convert --rate "
+                f"{min(first.rate_hz, other.rate_hz):.4g}."
             )
 
 

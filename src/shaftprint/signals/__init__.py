@@ -16,6 +16,7 @@ deviation             1        ``(x - x_0) / x_0`` from the working point
 ===================== ======== ====================================================================
 """
 
+from shaftprint.signals._at_rate import at_rate
 from shaftprint.signals._channel_readings import ChannelReadings, read_channels
 from shaftprint.signals._channel_signals import (
     HIGHEST_SHARE_OF_RATE,
@@ -74,6 +75,7 @@ __all__ = [
     "StripAngles",
     "TrackedOrder",
     "WorkingPoint",
+    "at_rate",
     "channel_reports",
     "common_shift_s",
     "content_of",

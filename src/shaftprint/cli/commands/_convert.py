@@ -19,6 +19,7 @@ from shaftprint.recording import (
     read_recording,
     write_by_ending,
 )
+from shaftprint.signals import at_rate
 
 
 @click.command("convert")
@@ -26,6 +27,12 @@ from shaftprint.recording import (
 @output_options("Folder for several inputs, which get .nc there, or file to write")
 @click.option("--channel", "chosen", multiple=True, help="Only this channel; may be given several times.")
 @click.option("--unit", "units", multiple=True, metavar="CHANNEL=UNIT", help="Unit of a channel whose file gives none.")
+@click.option(
+    "--rate",
+    "rate_hz",
+    type=float,
+    help="Rate for all channels [Hz]: faster ones are filtered, slower and uneven ones splined. Not for pulses.",
+)
 @click.option("--force", is_flag=True, help="Replace an existing file.")
 @cut_options
 @reading_options
@@ -36,6 +43,7 @@ def command(
     chosen_format: str | None,
     chosen: tuple[str, ...],
     units: tuple[str, ...],
+    rate_hz: float | None,
     force: bool,
     from_s: float | None,
     to_s: float | None,
@@ -60,6 +68,7 @@ def command(
             steps.begin(f"Converting {source.name}")
             with read_recording(source, **hints_of(**said)) as recording:
                 opened = cut(_only(recording, chosen), from_s=from_s, to_s=to_s)
+                opened = opened if rate_hz is None else at_rate(opened, rate_hz)
                 channels = [_with_unit(opened, name, unit_of) for name in opened.channels]
                 losses = write_by_ending(
                     target,
