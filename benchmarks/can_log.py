@@ -54,11 +54,11 @@ PEDAL = {
     "v_at_zero": (IDLE_RPM - RPM_AT_ZERO_V) / RPM_PER_V,
     "message_latency_s": 0.01,
 }
-SPEED = {"name": "n_e", "channel": "EngineSpeed", "shaft": "engine", "unit": "rpm", "latency_s": 0.01}
+SPEED: dict[str, Any] = {"name": "n_e", "channel": "EngineSpeed", "shaft": "engine", "unit": "rpm", "latency_s": 0.01}
 # A ship test of which messages alone tell: the demand in rpm, 0.125 rpm a bit, and torque of a telemetry whose values
 # are up to a period old, or means over it; senders whose clocks are this far apart.
 TORQUE_CYCLE_S, APART, DEMAND_STEP_RPM = 0.01, 50e-6, 0.125
-DEMAND = {
+DEMAND: dict[str, Any] = {
     "channel": "EngineDesiredOperatingSpeed",
     "unit": "rpm",
     "v_per_unit": 1.0 / RPM_PER_V,
