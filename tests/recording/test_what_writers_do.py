@@ -11,6 +11,7 @@ import nptdms
 import numpy as np
 import pytest
 import pyuff
+import scipy.io
 
 from shaftprint.errors import RecordingError
 from shaftprint.recording import read_recording
@@ -99,6 +100,26 @@ def test_binary_numbers_of_another_width_than_their_head_says_are_refused(tmp_pa
     for uneven in (False, True):
         path = _universal(tmp_path / f"double{uneven}.uff", 4, uneven=uneven)
         assert np.array_equal(_values(path, "torque"), np.sin(CLOCK))
+
+
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning", "ignore::ResourceWarning")
+def test_a_data_set_without_an_end_is_said(tmp_path):
+    path = _universal(tmp_path / "log.uff", 4)
+    whole = path.read_bytes()
+    path.write_bytes(whole + whole[:-1000])
+    with read_recording(path) as recording:
+        assert list(recording.channels) == ["torque"]
+        assert "The last data set has no end: the file is cut off" in recording.remarks[0]
+
+
+def test_outputs_of_simulink_have_their_times(tmp_path):
+    path = tmp_path / "out.mat"
+    outputs = np.stack([np.sin(CLOCK), np.cos(CLOCK)], axis=1)
+    scipy.io.savemat(path, {"tout": CLOCK, "yout": outputs, "n": np.sin(CLOCK)})
+    with read_recording(path, columns="M_s [N m],u") as recording:
+        assert list(recording.channels) == ["M_s", "u", "n"]
+        assert {one.rate_hz for one in recording.channels.values()} == {100.0}
+        assert np.array_equal(recording.channel("u").values(0, 200), np.cos(CLOCK))
 
 
 def test_a_date_whose_milliseconds_have_no_zeros_in_front(tmp_path):

@@ -62,12 +62,14 @@ def read(path: Path, **hints: object) -> Recording:
     """
     rate_hz = rate_hint(path, hints)
     pyuff = library(path, "pyuff", "universal")
-    _expect_bytes_of_binary(path)
+    is_cut = _is_cut(path)
     with told_as_damage(path, "universal"):
         read_sets = pyuff.UFF(str(path)).read_sets()
     sets = [one for one in (read_sets if isinstance(read_sets, list) else [read_sets]) if one]
     functions = [one for one in sets if one.get("type") == _FUNCTION]
     gathered = Gathered(path=path)
+    if is_cut:
+        gathered.remarks.append("The last data set has no end: the file is cut off, and what was in it is left out.")
     names = unique_names([("", _name(one, number)) for number, one in enumerate(functions, start=1)])
     for one, name in zip(functions, names, strict=True):
         gathered.add(name, partial(_channel, path, one, name, rate_hz, gathered.remarks))
@@ -77,8 +79,10 @@ def read(path: Path, **hints: object) -> Recording:
     return gathered.recording(NAME, lambda: None, began)
 
 
-def _expect_bytes_of_binary(path: Path) -> None:
-    """Refuse binary data sets of another size than their heads say: their numbers would be read in the wrong width.
+def _is_cut(path: Path) -> bool:
+    """Return whether the last data set has no end, which the library passes over.
+
+    Binary data sets of another size than their heads say are refused: their numbers would be read in the wrong width.
 
     Raises
     ------
@@ -86,16 +90,20 @@ def _expect_bytes_of_binary(path: Path) -> None:
         If there is one.
     """
     content = path.read_bytes()
+    is_cut = not content.rstrip().endswith(_MARK)
     for head in _BINARY_HEAD.finditer(content):
         kind, count, is_even = (int(head[place]) for place in (1, 2, 3))
         width = _WIDTHS.get(kind, _WIDTHS[4])
         # times beside the values in either width
         sizes = [count * width] if is_even else [count * (width + of_time) for of_time in (8, 4)]
+        if is_cut and head.end() + min(sizes) > len(content):
+            break
         if not any(_END.match(content, head.end() + size) for size in sizes):
             raise RecordingError(
                 f"{path}: expected {sizes[0]} bytes of samples, as the head of a data set 58b says, found others; the "
                 "file is damaged, or its writer put numbers of another width into it: export it again as text (58)."
             )
+    return is_cut
 
 
 def _name(one: Mapping[str, Any], number: int) -> str:

@@ -7,8 +7,10 @@ from pathlib import Path
 
 from shaftprint.recording._channel import Source
 from shaftprint.recording.readers._gather import Gathered
+from shaftprint.recording.readers._time_scale import unit_in_name
 from shaftprint.recording.readers._vectors import Vector, gather_vectors
 
+_TIMES_OF_SIMULINK = "tout"
 _UNIT = "_unit"
 _INSTALL = 'pip install "shaftprint[readers]"'
 _TITLE = re.compile(r"(.*?)\s*\[(.*)\]")
@@ -148,6 +150,12 @@ def gather_variables(path: Path, variables: MatVariables, *, rate_hz: float | No
         replace(vector, attributes={**vector.attributes, **_unit(vector, variables.texts)})
         for vector in variables.vectors
     ]
+    if not any(unit_in_name(vector.name) is not None for vector in named if not vector.group):
+        # the times of Simulink's outputs
+        named = [
+            replace(vector, name="time") if (vector.group, vector.name) == ("", _TIMES_OF_SIMULINK) else vector
+            for vector in named
+        ]
     scalars: Mapping[str, Mapping[str, float]] = {
         group: {name.lower(): value for name, value in numbers.items()} for group, numbers in variables.scalars.items()
     }

@@ -1,0 +1,149 @@
+"""Damaged copies of real files: cut off, bits turned, blocks swapped or zeroed, in head and data.
+
+Files are read by a program of their own under limits of memory and time, so that a crash or a hang ends that program.
+A difference from the truth of which nothing is said is counted apart: where the bytes lie in a compressed stream or
+below a checksum it must not be; what changes a raw number nobody can see.
+"""
+
+import json
+import os
+import resource
+import signal as alarms
+import subprocess
+import sys
+import traceback
+from collections import Counter
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+
+from benchmarks.real_writers._families import FAMILIES, written
+from benchmarks.real_writers._truth import Answer, Family, Options, answer
+from shaftprint.errors import RecordingError
+
+WAYS = ("cut", "bits", "swapped", "zeros")
+MOST_ADDRESSES, LONGEST_S, ORIGINALS = 6_000_000_000, 20, 24
+OUTCOMES = ("refused", "said", "unharmed", "raw", "protected", "traceback", "hang")
+"""``raw`` and ``protected`` are differences of which nothing is said."""
+
+
+def damaged(content: bytes, rng: np.random.Generator, way: str, *, in_head: bool) -> bytes:
+    """Return a damaged copy."""
+    size = len(content)
+    limit = max(min(size, 600), 1) if in_head else size
+    at = int(rng.integers(limit))
+    new = bytearray(content)
+    length = min(int(2 ** rng.uniform(0, 9)), max(size // 4, 1))
+    match way:
+        case "cut":
+            return bytes(new[: at if in_head else int(size * rng.uniform(0.3, 1.0))])
+        case "bits":
+            for _ in range(int(rng.integers(1, 5))):
+                new[int(rng.integers(limit))] ^= 1 << int(rng.integers(8))
+        case "swapped":
+            other = int(rng.integers(size))
+            first, second = new[at : at + length], new[other : other + length]
+            width = min(len(first), len(second))
+            if abs(at - other) >= width:
+                new[at : at + width], new[other : other + width] = second[:width], first[:width]
+        case _:
+            new[at : at + length] = bytes(len(new[at : at + length]))
+    return bytes(new)
+
+
+def is_protected(options: Options) -> bool:
+    """Return whether the samples of a file stand in a compressed stream or below a checksum."""
+    layout = options.get("layout")
+    of_layout = isinstance(layout, Mapping) and bool({"compression", "fletcher32"} & set(layout))
+    form = str(options.get("form", ""))
+    return (
+        of_layout
+        or any(options.get(key) for key in ("zlib", "compressed", "compression"))
+        or str(options.get("suffix", "")).endswith((".gz", ".blf"))
+        or (bool(options.get("object")) and options.get("container", "v7") == "v7")
+        or form == "-v7"
+        or "-zip" in form
+    )
+
+
+def outcome(whole: Answer, now: Answer, options: Options) -> str:
+    """Return which of the outcomes a damaged copy has, by the answer to the whole file and to the copy."""
+    if now.refused:
+        return "refused"
+    if now.wrong == whole.wrong and now.left_out.keys() == whole.left_out.keys():
+        return "unharmed"
+    # places without a value are counted by inspect and named in the findings
+    if any("without value" in word for word in set(now.wrong) - set(whole.wrong)):
+        return "said"
+    if set(now.said) - set(whole.said) or now.left_out.keys() - whole.left_out.keys():
+        return "said"
+    of_values = all(": value" in word for word in set(now.wrong) - set(whole.wrong))
+    return "protected" if is_protected(options) and of_values else "raw"
+
+
+def read_all(family: Family, folder: Path, first: int) -> None:
+    """Read the damaged copies of a family from one number on; print the outcome of each."""
+    resource.setrlimit(resource.RLIMIT_AS, (MOST_ADDRESSES, MOST_ADDRESSES))
+    alarms.signal(alarms.SIGALRM, alarms.SIG_DFL)
+    originals = [
+        (path, options, truth, path.read_bytes(), answer(path, truth))
+        for path, options, truth in written(family, folder, ORIGINALS, spread=True)
+    ]
+    usable = [one for one in originals if not one[4].refused and not one[4].wrong]
+    for number in range(first, family.damaged):
+        rng = np.random.default_rng((7, number))
+        path, options, truth, content, whole = usable[number % len(usable)]
+        way, in_head = WAYS[number // 2 % len(WAYS)], bool(number % 2)
+        copy = path.with_name(f"damaged_{path.name}")
+        copy.write_bytes(damaged(content, rng, way, in_head=in_head))
+        alarms.alarm(LONGEST_S)
+        words: tuple[str, ...] = ()
+        try:
+            now = answer(copy, truth)
+            result, words = outcome(whole, now, options), now.wrong
+        except RecordingError:
+            result = "refused"
+        except Exception:
+            result, words = "traceback", tuple(traceback.format_exc().splitlines()[-6:])
+        alarms.alarm(0)
+        line = {"number": number, "outcome": result, "way": way, "in_head": in_head, "words": words[:3]}
+        sys.stdout.write(json.dumps({**line, "options": str(dict(options))}) + "\n")
+        sys.stdout.flush()
+
+
+def damage_table(folder: Path, only: tuple[str, ...]) -> list[str]:
+    """Read damaged copies of all families; return the rows of the table."""
+    rows = []
+    total: Counter[str] = Counter()
+    for family in FAMILIES:
+        if not family.damaged or (only and family.name not in only):
+            continue
+        counts: Counter[str] = Counter()
+        first = 0
+        while first < family.damaged:
+            program = [sys.executable, "-m", "benchmarks.real_writers._damage", str(folder), family.name, str(first)]
+            done = subprocess.run(program, capture_output=True, text=True, check=False, env=os.environ)
+            lines = [json.loads(line) for line in done.stdout.splitlines() if line.startswith("{")]
+            for line in lines:
+                counts[line["outcome"]] += 1
+                if line["outcome"] in ("protected", "traceback", "hang"):
+                    print(f"{family.name} {line}")
+            first = lines[-1]["number"] + 1 if lines else first
+            if first < family.damaged:
+                # whatever ended the program did so at this copy
+                print(f"{family.name}: the program ended at {first} ({done.returncode}): {done.stderr[-300:]}")
+                counts["hang"] += 1
+                first += 1
+            (folder / f"damaged_{family.name.replace(' ', '_')}.jsonl").write_text(done.stdout)
+        total += counts
+        rows.append(_row(family.name, counts))
+    return [*rows, _row("all", total)]
+
+
+def _row(name: str, counts: Counter[str]) -> str:
+    return f"| {name} | {sum(counts.values())} | " + " | ".join(str(counts[one]) for one in OUTCOMES) + " |"
+
+
+if __name__ == "__main__":
+    read_all(next(one for one in FAMILIES if one.name == sys.argv[2]), Path(sys.argv[1]), int(sys.argv[3]))
