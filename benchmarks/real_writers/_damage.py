@@ -57,6 +57,8 @@ def is_protected(options: Options) -> bool:
     layout = options.get("layout")
     of_layout = isinstance(layout, Mapping) and bool({"compression", "fletcher32"} & set(layout))
     form = str(options.get("form", ""))
+    if options.get("scipy"):
+        return False
     return (
         of_layout
         or any(options.get(key) for key in ("zlib", "compressed", "compression"))

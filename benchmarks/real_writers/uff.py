@@ -104,6 +104,6 @@ FAMILY = Family(
     extremes=EXTREMES,
     drawn=drawn,
     files=30,
-    damaged=150,
+    damaged=250,
     protects="number of values in the head",
 )
