@@ -173,6 +173,16 @@ def test_hdf5_of_octave(tmp_path):
         assert recording.channel("n").rate_hz == 100.0
 
 
+def test_a_name_that_leads_nowhere_is_told(tmp_path):
+    # what HDF5 cannot open, as in a damaged file, its library passes over
+    path = tmp_path / "log.h5"
+    with h5py.File(path, "w") as file:
+        file["time"], file["n"], file["ghost"] = CLOCK, np.sin(CLOCK), h5py.SoftLink("/nowhere")
+    with read_recording(path) as recording:
+        assert list(recording.channels) == ["n"]
+        assert "cannot be opened: the file is damaged there" in recording.left_out["ghost"]
+
+
 def test_a_table_of_pandas_is_told(tmp_path):
     path = tmp_path / "log.h5"
     with h5py.File(path, "w") as file:

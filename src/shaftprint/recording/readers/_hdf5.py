@@ -20,7 +20,7 @@ from shaftprint.recording.readers._netcdf_values import CountRule, never_written
 from shaftprint.recording.readers._opened import Opened
 from shaftprint.recording.readers._time_scale import expect_time_unit
 from shaftprint.recording.readers._vectors import Vector, gather_vectors
-from shaftprint.recording.readers.hdf5_files import expect_storage, is_hdf5, open_hdf5
+from shaftprint.recording.readers.hdf5_files import CANNOT_BE_OPENED, expect_storage, is_hdf5, open_hdf5
 
 NAME = "HDF5 or NetCDF-4"
 
@@ -90,6 +90,8 @@ def _walk(path: Path, group: Any, name: str, opened: Opened, contents: _Contents
         if isinstance(item, h5py.Group) and _OCTAVE in item.attrs and _VALUE in item:
             # Octave keeps a variable as a group of its type and its value
             item = item[_VALUE]
+        if item is None:
+            contents.left_out[inside] = CANNOT_BE_OPENED
         if isinstance(item, h5py.Group) and depth < 8:
             contents.scalars[inside] = numbers_among(item.attrs)
             _walk(path, item, inside, opened, contents, depth=depth + 1)

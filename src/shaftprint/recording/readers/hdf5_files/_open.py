@@ -13,6 +13,8 @@ from shaftprint.recording.readers._damage import expect_plausible, told_as_damag
 from shaftprint.recording.readers.hdf5_files import _probe
 from shaftprint.recording.readers.hdf5_files._references import outside_of, stored_outside
 
+CANNOT_BE_OPENED = "it cannot be opened: the file is damaged there, or holds a link to nothing."
+"""Why what the library passes over, though its name is there, is left out."""
 _SIGNATURE = b"\x89HDF\r\n\x1a\n"
 # A user may keep bytes of his own in front, 512 or a power of two times that.
 _USER_BLOCKS, _MATLAB = (512, 1024, 2048, 4096), b"MATLAB "

@@ -15,7 +15,7 @@ from shaftprint.recording.readers._hints import rate_hint
 from shaftprint.recording.readers._opened import Opened
 from shaftprint.recording.readers._time_scale import expect_time_unit
 from shaftprint.recording.readers._vectors import Vector
-from shaftprint.recording.readers.hdf5_files import expect_storage, open_hdf5
+from shaftprint.recording.readers.hdf5_files import CANNOT_BE_OPENED, expect_storage, open_hdf5
 from shaftprint.recording.readers.matlab._objects import keep_objects
 from shaftprint.recording.readers.matlab._variables import (
     MatVariables,
@@ -81,6 +81,9 @@ def _survey(
 ) -> None:
     for key, item in group.items():
         inside = f"{name}/{key}" if name else key
+        if item is None:
+            variables.left_out[inside] = CANNOT_BE_OPENED
+            continue
         kind = bytes(np.bytes_(item.attrs.get("MATLAB_class", b"")))
         if key.startswith("#") or "MATLAB_empty" in item.attrs:
             continue
