@@ -1,5 +1,6 @@
 """Opening HDF5 files without hanging on damaged ones."""
 
+import math
 import os
 import subprocess
 import sys
@@ -86,6 +87,12 @@ def expect_storage(path: Path, name: str, dataset: Any) -> None:
     # up to 64 kB may lie in the header, and count as stored in no block
     stored = int(dataset.id.get_storage_size()) + 64
     expect_plausible(path, name, samples=dataset.size, sample_bytes=sample_bytes, stored_bytes=stored)
+    most = math.prod(-(-size // length) for size, length in zip(dataset.shape, dataset.chunks or (), strict=False))
+    if dataset.chunks is not None and dataset.id.get_num_chunks() > most:
+        raise RecordingError(
+            f"{path}, channel {name}: expected at most {most} blocks of samples, found {dataset.id.get_num_chunks()}; "
+            "the file is damaged, copy it again from the logger."
+        )
     block = sample_bytes
     for length in dataset.chunks or ():
         block *= length
