@@ -26,7 +26,7 @@ _BY_BYTES = {
     b"<?xml": "it is XML: write the values as CSV",
     b"<html": "it is a page: save its table as CSV",
     b"<table": "it is a page: save its table as CSV",
-    b"{": "it is JSON, as of a result or the truth beside a simulated recording: name the file of the logger, or write "
+    b"{": "JSON, as of a result or the truth beside a simulated recording: name the file of the logger, or write "
     "its values as CSV",
     b"Rar!": _ARCHIVE,
     b"7z\xbc\xaf": _ARCHIVE,
