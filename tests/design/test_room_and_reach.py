@@ -22,6 +22,7 @@ from shaftprint.design import (
 from shaftprint.design.motion import SIGNALS, Bound
 from shaftprint.design.plan import STAIRS, Timetable, predicted_accuracy
 from shaftprint.design.planning import with_band
+from shaftprint.design.planning._band import _estimated_variance
 from shaftprint.design.search import Uses
 from shaftprint.identify import STAN_TUG_NOISE
 from shaftprint.vessel import load_vessel
@@ -104,13 +105,28 @@ def test_steps_keep_the_limits_in_time(with_stairs, limits, truth):
 
 @pytest.mark.slow
 def test_noise_that_is_known_to_a_factor_makes_deviations_known_to_that_factor(plan):
-    """Deviations go with the amplitude of the noise: a tenth of log-normal noises lies above exp(1.28 s)."""
+    """Deviations go with the amplitude of the noise: a tenth of log-normal noises lies above exp(1.28 s).
+
+    That it is estimated beside few lines, and deviations are stated at what was found, makes them less sure.
+    """
     reached = with_band(plan, noise_spread=0.2, rng=np.random.default_rng(1))
     for name in ("K_p", "tau_dn", "k_q"):
         low, high = reached.band.deviations[name]
-        assert low == pytest.approx(np.exp(-0.2 * 1.2816), rel=0.03)
-        assert high == pytest.approx(np.exp(0.2 * 1.2816), rel=0.03)
+        assert np.exp(-0.32 * 1.2816) < low < np.exp(-0.17 * 1.2816)
+        assert np.exp(0.17 * 1.2816) < high < np.exp(0.32 * 1.2816)
     assert reached.band.seconds is None
+
+
+@pytest.mark.parametrize("freedom", [16.0, 72.0])
+def test_noise_is_estimated_as_well_as_its_degrees_of_freedom_let(freedom):
+    """The variance of f degrees of freedom is known to the root of 2 / f, at every line."""
+    rng = np.random.default_rng(1)
+    drawn = np.log([_estimated_variance(np.full(11, freedom), rng) for _ in range(4000)])
+    assert drawn.std(axis=0) == pytest.approx(np.full(11, np.sqrt(2.0 / freedom)), rel=0.05)
+    # lines that stand beside each other share their bins, those far apart none
+    correlation = np.corrcoef(drawn.T)
+    assert correlation[0, 1] > 0.8
+    assert abs(correlation[0, 10]) < 0.06
 
 
 def test_a_known_ship_in_known_noise_has_no_band(plan):
@@ -146,51 +162,70 @@ def test_noise_that_nobody_recorded_goes_through_the_loop_of_each_ship(plan, tug
 # ---- which ships are possible after a first test ----
 
 
-def first_test(*, std, interval=None):
+def first_test(*, std, interval=None, priors=()):
     """A fingerprint of K_p = 10 at 1.2 times the usual speed and 1.5 times the usual torque."""
     quantity = SimpleNamespace(name="K_p", value=10.0, std=std, interval_95=interval)
     conditions = SimpleNamespace(engine_speed=SimpleNamespace(value=1200.0), shaft_torque=SimpleNamespace(value=1500.0))
-    return SimpleNamespace(parameters=(quantity,), conditions=conditions)
+    return SimpleNamespace(parameters=(quantity,), conditions=conditions, priors=priors)
 
 
-def possible_gain(truth, *, usual, std, interval=None):
-    """Mean and deviation of K_p that follow; the usual one is known to 0.8."""
+def possible_gain(truth, *, usual, std, interval=None, priors=()):
+    """Median and deviation of K_p that follow; the usual one is known to 0.8."""
     found = assumed_ship(structure("GAUGE-CLOSED"), truth | {"K_p": 10.0}, std={"K_p": std})
     before = assumed_ship(structure("GAUGE-CLOSED"), truth | {"K_p": usual}, std={"K_p": 0.8})
     ship = possible_ship(
-        found, first_test(std=std, interval=interval), before, engine_speed_rpm=1000.0, shaft_torque_nm=1000.0
+        found,
+        first_test(std=std, interval=interval, priors=priors),
+        before,
+        engine_speed_rpm=1000.0,
+        shaft_torque_nm=1000.0,
     )
     place = ship.structure.names.index("K_p")
     return ship.values[place], np.sqrt(ship.covariance[place, place])
 
 
 def test_what_was_found_and_what_is_usual_are_weighed_by_their_variances(truth):
-    """At the point of the test a gain is 1.2 / 1.5 of the usual one: 12 +/- 0.8 is 9.6 +/- 0.64, beside 10 +/- 0.64."""
-    mean, std = possible_gain(truth, usual=12.0, std=0.64)
-    assert mean == pytest.approx(9.8)
-    assert std == pytest.approx(0.64 / np.sqrt(2.0))
+    """At the point of the test a gain is 1.2 / 1.5 of the usual one: 12 +/- 0.8 is 9.6 to a fifteenth, beside 10."""
+    median, std = possible_gain(truth, usual=12.0, std=10.0 * 0.64 / 9.6)
+    assert median == pytest.approx(np.sqrt(10.0 * 9.6))
+    assert std / median == pytest.approx(0.64 / 9.6 / np.sqrt(2.0))
 
 
 def test_a_ship_that_is_no_usual_one_is_as_it_was_found(truth):
     assert possible_gain(truth, usual=6.0, std=0.64) == pytest.approx((10.0, 0.64))
 
 
-def test_an_interval_wider_than_its_deviation_says_counts(truth):
-    """7 to 15 is 11 +/- 2.04, where the likelihood at its bottom says 10 +/- 0.1."""
-    weights = np.array([1.0 / (4.0 / 1.959964) ** 2, 1.0 / 0.64**2])
-    mean, std = possible_gain(truth, usual=12.0, std=0.1, interval=(7.0, 15.0))
-    assert mean == pytest.approx(weights @ [11.0, 9.6] / weights.sum())
-    assert std == pytest.approx(weights.sum() ** -0.5)
+def test_the_interval_of_a_gain_counts_in_its_logarithm(truth):
+    """7 to 15 has its middle at the root of 105, where the likelihood at its bottom says 10 +/- 0.1."""
+    of_interval = np.log(15.0 / 7.0) / (2.0 * 1.959964)
+    weights = np.array([of_interval**-2, (0.64 / 9.6) ** -2])
+    median, std = possible_gain(truth, usual=12.0, std=0.1, interval=(7.0, 15.0))
+    assert np.log(median) == pytest.approx(weights @ np.log([np.sqrt(105.0), 9.6]) / weights.sum())
+    assert std / median == pytest.approx(weights.sum() ** -0.5)
+
+
+def test_what_was_a_prior_of_the_fit_is_not_counted_twice(truth):
+    assert possible_gain(truth, usual=12.0, std=0.64, priors={"K_p": None}) == pytest.approx((10.0, 0.64))
+
+
+def test_a_gain_known_to_a_share_is_never_negative(truth):
+    """Half of the ships are above the median, a sixth below it over exp(0.6)."""
+    ship = assumed_ship(structure("GAUGE-CLOSED"), truth | {"K_p": 2.0}, std={"K_p": 1.2})
+    gains = replace(ship, log_normal=("K_p",)).draws(2000, np.random.default_rng(1))[
+        :, ship.structure.names.index("K_p")
+    ]
+    assert gains.min() > 0.0
+    assert np.quantile(gains, [0.1587, 0.5]) == pytest.approx([2.0 * np.exp(-0.6), 2.0], rel=0.1)
 
 
 @pytest.mark.slow
 def test_wishes_need_a_span_of_time(with_stairs):
-    """Twice the variance of the noise needs twice the time in the windows."""
+    """Twice the variance of the noise needs twice the time in the windows; and it is estimated."""
     reached = with_band(with_stairs, noise_spread=0.2, rng=np.random.default_rng(1))
     low, high = reached.band.seconds
     window_s = sum(leg.window_s for leg in reached.legs)
     rest_s = reached.duration_s - window_s
-    assert (high - rest_s) / (low - rest_s) == pytest.approx(np.exp(4.0 * 0.2 * 1.2816), rel=0.1)
+    assert np.exp(4.0 * 0.19 * 1.2816) < (high - rest_s) / (low - rest_s) < np.exp(4.0 * 0.3 * 1.2816)
     said = " ".join(plan_sentences(reached))
     assert f"to {length_words(high)}." in said
 

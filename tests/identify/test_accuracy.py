@@ -18,7 +18,12 @@ from shaftprint.identify import (
     planned_response,
     predict_accuracy,
 )
-from shaftprint.identify.prediction import planned_lines, predict_intervals, predict_joint_accuracy
+from shaftprint.identify.prediction import (
+    planned_lines,
+    predict_intervals,
+    predict_joint_accuracy,
+    predict_joint_deviations,
+)
 from shaftprint.models import Combination, Delay, Parameter, SecondOrderLag, Structure
 
 TRUTH = {
@@ -153,6 +158,17 @@ def test_second_working_point_breaks_the_common_factor(planned):
     assert [e.name for e in alone.parameters if np.isinf(e.std)] == ["K_p", "K_i", "tau_up", "g"]
     assert all(np.isfinite(e.std) for e in both.parameters)
     assert both.estimate("g").std < 0.05
+
+
+@pytest.mark.parametrize("name", ["BENCHMARK", "GAUGE-CLOSED"])
+def test_deviations_alone_are_those_of_the_whole(planned, name):
+    """Also where a factor is not known and its product is."""
+    pairs = [(structure(name), planned)]
+    values = TRUTH if name == "GAUGE-CLOSED" else {}
+    whole = predict_joint_accuracy(pairs, values=values)
+    alone, covariance = predict_joint_deviations(pairs, values=values, priors={})
+    assert alone == pytest.approx({one.name: one.std for one in whole.numbers}, rel=1e-6)
+    assert covariance == pytest.approx(whole.covariance, rel=1e-6)
 
 
 def test_latency_of_the_set_point_makes_the_delay_in_the_loop_known(thesis, planned):

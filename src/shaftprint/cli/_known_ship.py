@@ -37,6 +37,7 @@ from shaftprint.survey import (
     NOISE_SPREAD,
     RECORDED_SPREAD,
     at_speeds,
+    continued_below,
     expected_of_ship,
     load_trial,
     measure,
@@ -135,7 +136,8 @@ def knowledge_of(stated: Stated, *, steps: Steps, within_s: float | None = None)
     point = stated_working_point(stated.vessel)
     expected = _known(options, expected_from_vessel(structure, stated.vessel, point))
     ship = _ship(stated, structure, expected)
-    levels, spread, source = _noise(stated, recorded, ship)
+    possible = _possible(stated, structure, expected, ship)
+    levels, spread, source = _noise(stated, recorded, possible or ship)
     noise = {share: noise_at(levels, share * point_rpm) for share in speeds}
     priors = _known(options, priors_from_vessel(structure, stated.vessel, point))
     return Knowledge(
@@ -146,7 +148,7 @@ def knowledge_of(stated: Stated, *, steps: Steps, within_s: float | None = None)
         noise={share: level.of_outputs(*outputs) for share, level in noise.items()},
         noise_spread=spread,
         noise_is_assumed=recorded is None and not (stated.first_test is not None and stated.first_test.noise),
-        possible=_possible(stated, structure, expected, ship),
+        possible=possible,
         noise_source=source,
         priors=priors,
         remarks=(*_remarks(stated), *_first_test(stated, recorded, limits, within_s)),
@@ -240,17 +242,23 @@ def _noise(
 ) -> tuple[Mapping[float, NoiseLevels], float, str]:
     """Return the noise by engine speed [rpm], how far it may be from that, and where it is from.
 
-    It is that of the recording, else of the first test, else what is usual on ships of the kind.
+    It is that of the recording, else of the first test, below their slowest line with the shape that is usual on ships
+    of the kind; else what is usual.
     """
+    point_rpm = stated.vessel.working_point.engine_speed_rpm
+    assumed = noise_of_unknown_ship(stated.vessel, ship.structure, ship.by_name)
+    usual = {share * point_rpm: level for share, level in assumed.legs.items()}
     if recorded is not None:
-        return recorded.noise, RECORDED_SPREAD, f"noise of {Path(str(stated.options.noise_from)).name}"
+        return (
+            continued_below(recorded.noise, usual),
+            RECORDED_SPREAD,
+            f"noise of {Path(str(stated.options.noise_from)).name}",
+        )
     first_test = stated.first_test
     if first_test is not None and first_test.noise:
         source = f"noise of the first test, {first_test.conditions.campaign}"
-        return first_test.noise_at_speeds, RECORDED_SPREAD, source
-    point_rpm = stated.vessel.working_point.engine_speed_rpm
-    assumed = noise_of_unknown_ship(stated.vessel, ship.structure, ship.by_name)
-    return {share * point_rpm: level for share, level in assumed.legs.items()}, NOISE_SPREAD, assumed.words
+        return continued_below(first_test.noise_at_speeds, usual), RECORDED_SPREAD, source
+    return usual, NOISE_SPREAD, assumed.words
 
 
 def _line(stated: Stated, recorded: _Recorded | None) -> SetPointLine:

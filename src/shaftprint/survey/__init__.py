@@ -10,6 +10,7 @@ from shaftprint.survey._assumed_noise import (
     RECORDED_SPREAD,
     AssumedNoise,
     assumed_noise,
+    continued_below,
     noise_of_unknown_ship,
 )
 from shaftprint.survey._both_shafts import SurveyOfBoth, load_trials_of_both, run_both
@@ -58,6 +59,7 @@ __all__ = [
     "assumed_noise",
     "at_speeds",
     "comparisons_of",
+    "continued_below",
     "contradiction",
     "default_structure",
     "expect_limitable",

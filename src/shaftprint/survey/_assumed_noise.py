@@ -4,9 +4,11 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
+import numpy as np
+
 from shaftprint.campaign import Campaign
 from shaftprint.distributions import NORMAL_95
-from shaftprint.identify import STAN_TUG_NOISE, STAN_TUG_NOISE_AT_SPEEDS, NoiseLevels
+from shaftprint.identify import STAN_TUG_NOISE, STAN_TUG_NOISE_AT_SPEEDS, NoiseLevels, noise_at
 from shaftprint.identify.prediction import (
     COMBINATOR_NOISE,
     PITCH_NOISE,
@@ -26,8 +28,11 @@ MIDDLE_DENSITY = math.sqrt(_LEAST_DENSITY * _MOST_DENSITY)
 """Density of the noise of a usual ship over that of the simulated one."""
 NOISE_SPREAD = 0.25 * math.log(_MOST_DENSITY / _LEAST_DENSITY) / NORMAL_95
 """Standard deviation of the logarithm of the amplitude of that noise."""
-RECORDED_SPREAD = 0.1
-"""The same of the noise of a recording of the ship: it is known from few samples, and of another hour."""
+RECORDED_SPREAD = 0.15
+"""The same of the noise of a recording of the ship, which is known from few samples and of another hour: so far are
+stated deviations from those that follow from it at the true values."""
+# Slowest lines of a recording, at whose mean level the noise below them begins.
+_MEETING_LINES = 3
 _LOG, _PITCH = "v_s", "theta_set"
 
 
@@ -104,6 +109,47 @@ def noise_of_unknown_ship(vessel: Vessel, structure: Structure, values: Mapping[
         assumed,
         legs={share: level.times(MIDDLE_DENSITY) for share, level in legs.items()},
         words=f"{assumed.words}, which may have {_LEAST_DENSITY:g} to {_MOST_DENSITY:g} times its density",
+    )
+
+
+def continued_below(
+    recorded: Mapping[float, NoiseLevels], usual: Mapping[float, NoiseLevels]
+) -> dict[float, NoiseLevels]:
+    """Return recorded noise with what is usual below its slowest line, where a short test has seen nothing.
+
+    What is usual has there the level at which it meets the slowest recorded lines, output by output: the speed is held
+    by its governor and the torque wanders, so that neither stays as it was at that line.
+
+    Parameters
+    ----------
+    recorded
+        Noise of a recording, by engine speed.
+    usual
+        Noise of a ship of the kind, such as ``noise_of_unknown_ship`` states, by the same speed; where it has not the
+        same outputs nothing is continued.
+    """
+    return {
+        speed: _continued(levels, noise_at(usual, speed))
+        if usual and set(levels.outputs) <= set(next(iter(usual.values())).outputs)
+        else levels
+        for speed, levels in recorded.items()
+    }
+
+
+def _continued(levels: NoiseLevels, usual: NoiseLevels) -> NoiseLevels:
+    usual = usual.of_outputs(*levels.outputs)
+    slower = usual.frequency_hz[usual.frequency_hz < levels.frequency_hz[0]]
+    if not slower.size:
+        return levels
+    shared = levels.frequency_hz[:_MEETING_LINES]
+    seen, expected = (
+        np.diagonal(one, axis1=1, axis2=2).real for one in (levels.density[:_MEETING_LINES], usual.at(shared))
+    )
+    scale = np.exp(0.5 * np.mean(np.log(seen / expected), axis=0))
+    return replace(
+        levels,
+        frequency_hz=np.concatenate([slower, levels.frequency_hz]),
+        density=np.concatenate([usual.at(slower) * np.outer(scale, scale), levels.density]),
     )
 
 

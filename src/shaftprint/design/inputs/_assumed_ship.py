@@ -6,7 +6,7 @@ ships that are possible.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -55,6 +55,9 @@ class AssumedShip(Shown):
     """Assumed values of all parameters, shape (parameters,)."""
     covariance: FloatArray
     """Their covariance; zero for what is taken as exact, shape (parameters, parameters)."""
+    log_normal: tuple[str, ...] = ()
+    """Parameters whose logarithm is normally distributed: the values are medians, the covariance is that of the
+    logarithms times the values."""
 
     @property
     def by_name(self) -> dict[str, float]:
@@ -71,7 +74,7 @@ class AssumedShip(Shown):
         usual, known = assumed_ship(structure, self.by_name), slice(self.values.size)
         covariance = usual.covariance.copy()
         covariance[known, known] = self.covariance
-        return AssumedShip(structure=structure, values=usual.values, covariance=frozen_float(covariance))
+        return replace(usual, covariance=frozen_float(covariance), log_normal=self.log_normal)
 
     def draws(self, count: int, rng: np.random.Generator, *, gain_margin: float = 1.0) -> FloatArray:
         """Return possible ships, with a stable loop and within the bounds, the assumed one first.
@@ -107,9 +110,7 @@ class AssumedShip(Shown):
         rows, drawn = self.values[None, :], 0
         while rows.shape[0] < count and drawn < _DRAWN_FOR_ONE * count:
             more = count - rows.shape[0]
-            inside = np.clip(
-                rng.multivariate_normal(self.values, self.covariance, size=more, method="eigh"), lower, upper
-            )
+            inside = np.clip(self._drawn(more, rng), lower, upper)
             quiet = stable_rows(self.structure, self.with_gains(inside, gain_margin))
             rows, drawn = np.concatenate([rows, inside[quiet]]), drawn + more
         if rows.shape[0] < count:
@@ -117,6 +118,14 @@ class AssumedShip(Shown):
                 f"assumed ship {self.structure.name}: expected mostly stable loops within the stated uncertainty, "
                 f"found {rows.shape[0] - 1} of {drawn}; state it more narrowly, or sail a short test first."
             )
+        return rows
+
+    def _drawn(self, count: int, rng: np.random.Generator) -> FloatArray:
+        """Return values from the distribution, within no bounds, shape (count, parameters)."""
+        rows = rng.multivariate_normal(self.values, self.covariance, size=count, method="eigh")
+        places = [self.structure.names.index(name) for name in self.log_normal]
+        middle = self.values[places]
+        rows[:, places] = middle * np.exp(rows[:, places] / middle - 1.0)
         return rows
 
     def with_gains(self, rows: FloatArray, factor: float) -> FloatArray:

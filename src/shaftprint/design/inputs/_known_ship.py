@@ -5,9 +5,11 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from shaftprint.arrays import FloatArray, frozen_float
-from shaftprint.design.inputs._assumed_ship import GAINS, AssumedShip, assumed_ship
+from shaftprint.catalogue import ShipRole
+from shaftprint.design.inputs._assumed_ship import GAINS, RELATIVE_SPREAD, AssumedShip, assumed_ship
 from shaftprint.distributions import NORMAL_95
 from shaftprint.fingerprint import identified_model
 from shaftprint.models import stable_rows
@@ -24,8 +26,8 @@ if TYPE_CHECKING:
 _GAIN_MARGIN, _LEAST_SHARE, _SHARES = 1.6, 0.02, 60
 # So many standard deviations from the usual is no usual ship.
 _OTHER_SHIP = 3.0
-# By so much an interval is wider than the standard deviation says before the likelihood is no parabola.
-_BENT = 1.25
+# What is positive and known to a share, so that its logarithm is normal; a delay may be zero.
+_POSITIVE = frozenset(RELATIVE_SPREAD) - {ShipRole.LOOP_DELAY}
 
 
 def ship_before_test(
@@ -102,10 +104,11 @@ def possible_ship(
 ) -> AssumedShip:
     """Return which ships the next test may be sailed on: as a first one has found them, and as ships usually are.
 
-    Both are normal distributions, of one ship. A weak test leaves governor and lag open by more than ships differ, and
-    may end at a bound: where the interval that follows the likelihood is wider than the standard deviation lets expect,
-    its middle and width count. A number that is then more than three standard deviations from the usual is as it was
-    found: that ship is another.
+    A weak test leaves governor and lag open by more than ships differ, and may end at a bound: middle and width of a
+    number are those of its interval, which follows the likelihood. What is found and what is usual are then two
+    distributions of one ship, normal for what may be zero and for the rest in the logarithm, in which a gain known to
+    a third has its interval about its middle. What was a prior of the fit is not counted twice. A number that is more
+    than three standard deviations from the usual is as it was found: that ship is another.
 
     Parameters
     ----------
@@ -118,37 +121,61 @@ def possible_ship(
     engine_speed_rpm, shaft_torque_nm
         The working point at which the usual numbers are normalised.
     """
-    conditions, names = fingerprint.conditions, found.structure.names
+    conditions, names, roles = fingerprint.conditions, found.structure.names, found.structure.roles
     share = (conditions.engine_speed.value / engine_speed_rpm) / (conditions.shaft_torque.value / shaft_torque_nm)
-    over_torque = {name for name, role in found.structure.roles.items() if role.over_torque}
+    over_torque = {name for name, role in roles.items() if role.over_torque}
     factor = np.array([share if name in over_torque else 1.0 for name in names])
     usual_std = factor * np.array([np.sqrt(np.diag(usual.covariance))[usual.structure.names.index(n)] for n in names])
     usual_value = factor * np.array([usual.by_name[name] for name in names])
-    middle, widened = _widened(found, fingerprint)
-    open_ = np.flatnonzero(np.diag(widened) > 0.0)
-    block = np.ix_(open_, open_)
-    covariance, spread, away = widened[block], usual_std[open_] ** 2, (middle - usual_value)[open_]
-    says = (spread > 0.0) & (away**2 <= _OTHER_SHIP**2 * (spread + np.diag(covariance)))
+    positive = [
+        name in roles and roles[name] in _POSITIVE and value > 0.0 and other > 0.0
+        for name, value, other in zip(names, found.values.tolist(), usual_value.tolist(), strict=True)
+    ]
+    middle, wide = _as_wide_as_intervals(found, fingerprint, np.array(positive))
+    # from here on deviations of what is positive are those of the logarithm
+    usual_unit = np.where(positive, usual_value, 1.0)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        away = np.where(positive, np.log(middle / usual_value), middle - usual_value)
+    open_ = np.flatnonzero(np.diag(wide) > 0.0)
+    covariance, spread, away = wide[np.ix_(open_, open_)], (usual_std / usual_unit)[open_] ** 2, away[open_]
+    is_prior = np.array([name in fingerprint.priors for name in names])[open_]
+    says = ~is_prior & (spread > 0.0) & (away**2 <= _OTHER_SHIP**2 * (spread + np.diag(covariance)))
     before = np.diag(np.where(says, 1.0 / np.where(says, spread, 1.0), 0.0))
-    together = np.zeros_like(widened)
-    together[block] = np.linalg.inv(np.linalg.inv(covariance) + before)
-    values = middle.copy()
-    values[open_] -= together[block] @ before @ away
+    together, moved = np.zeros_like(wide), np.zeros(middle.size)
+    together[np.ix_(open_, open_)] = np.linalg.inv(np.linalg.inv(covariance) + before)
+    moved[open_] = -together[np.ix_(open_, open_)] @ before @ away
+    values = np.where(positive, middle * np.exp(np.where(positive, moved, 0.0)), middle + moved)
     bounds = np.array([(p.lower, p.upper) for p in found.structure.parameters]).T
-    return replace(found, values=frozen_float(np.clip(values, *bounds)), covariance=frozen_float(together))
+    values = np.clip(values, *bounds)
+    unit = np.where(positive, values, 1.0)
+    return replace(
+        found,
+        values=frozen_float(values),
+        covariance=frozen_float(together * unit[:, None] * unit[None, :]),
+        log_normal=tuple(name for name, is_positive in zip(names, positive, strict=True) if is_positive),
+    )
 
 
-def _widened(found: AssumedShip, fingerprint: "Fingerprint") -> tuple[FloatArray, FloatArray]:
-    """Return values and covariance of a ship that are as wide as the intervals of its fingerprint."""
+def _as_wide_as_intervals(
+    found: AssumedShip, fingerprint: "Fingerprint", positive: NDArray[np.bool_]
+) -> tuple[FloatArray, FloatArray]:
+    """Return middle and covariance of a ship by the intervals of its fingerprint.
+
+    Of what is positive the middle is that of the logarithm, and the covariance that of the logarithm.
+    """
     values, covariance = found.values.copy(), found.covariance.copy()
     intervals = {one.name: one.interval_95 for one in fingerprint.parameters if one.interval_95 is not None}
     for place, name in enumerate(found.structure.names):
         low, high = intervals.get(name, (0.0, 0.0))
-        std, half = float(np.sqrt(covariance[place, place])), 0.5 * (high - low) / NORMAL_95
-        if np.isfinite(half) and half > _BENT * std > 0.0:
-            values[place] = 0.5 * (low + high)
-            covariance[place] *= half / std
-            covariance[:, place] *= half / std
+        std = float(np.sqrt(covariance[place, place]))
+        wide = std / values[place] if positive[place] else std
+        if std > 0.0 and np.isfinite([low, high]).all() and (low > 0.0 or not positive[place]) and high > low:
+            ends = np.log([low, high]) if positive[place] else np.array([low, high])
+            wide = 0.5 * float(ends[1] - ends[0]) / NORMAL_95
+            values[place] = np.exp(ends.mean()) if positive[place] else ends.mean()
+        if std > 0.0:
+            covariance[place] *= wide / std
+            covariance[:, place] *= wide / std
     return values, covariance
 
 

@@ -174,17 +174,8 @@ def predicted_accuracy(
     values: Mapping[str, float],
     priors: Mapping[str, Prior],
     earlier: Sequence[SailedTest] = (),
-    degrees_of_freedom: Sequence[FloatArray] | None = None,
 ) -> Accuracy:
-    """Return how well the legs and earlier tests together would find the parameters.
-
-    Parameters
-    ----------
-    degrees_of_freedom
-        Of the noise beside the lines of each leg, see ``noise_freedom``: it costs accuracy that a fit has to estimate
-        it there. Known noise where they are not given.
-    """
-    of_legs: Sequence[FloatArray | None] = degrees_of_freedom or [None] * len(legs)
+    """Return how well the legs and earlier tests together would find the parameters, in noise that is known."""
     pairs = [
         (
             structure,
@@ -193,10 +184,9 @@ def predicted_accuracy(
                 noise=level,
                 amplitude=np.abs(leg.amplitudes),
                 duration_s=leg.window_s,
-                degrees_of_freedom=freedom,
             ),
         )
-        for structure, leg, level, freedom in zip(structures, legs, noise, of_legs, strict=True)
+        for structure, leg, level in zip(structures, legs, noise, strict=True)
     ]
     return predict_joint_accuracy([*pairs, *earlier], values=values, priors=priors)
 

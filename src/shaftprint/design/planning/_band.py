@@ -7,13 +7,16 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.design.inputs import AssumedShip
-from shaftprint.design.plan import HELD, Band, Plan, noise_freedom, predicted_accuracy
+from shaftprint.design.plan import HELD, Band, Plan, noise_freedom
 from shaftprint.distributions import deviations_passed
 from shaftprint.errors import DesignError
-from shaftprint.identify.prediction import noise_of_line
+from shaftprint.identify.prediction import noise_of_line, planned_lines, predict_joint_deviations
+from shaftprint.models import Structure, stable_rows
 
 # Possible ships, and noises, that are looked at.
-_DRAWS = 24
+_DRAWS = 64
+# Lines that share most of the bins beside them.
+_SHARED_LINES = 4
 # A governor whose line would hunt with gains so many times as large has been set to others before any test.
 _LEAST_GAIN_MARGIN = 1.3
 
@@ -51,7 +54,7 @@ def with_band(
     factors = np.exp(noise_spread * rng.permutation(_normal_quantiles(_DRAWS)))
     freedom = noise_freedom(plan.legs)
     rows = [
-        _deviations(plan, ship, float(factor), noise_is_assumed=noise_is_assumed, freedom=freedom)
+        _deviations(plan, ship, float(factor), freedom, rng, noise_is_assumed=noise_is_assumed)
         for ship, factor in zip(ships, factors, strict=True)
     ]
     here = {one.name: one.std for one in plan.predicted.numbers}
@@ -92,8 +95,15 @@ def _seconds(plan: Plan, deviations: dict[str, FloatArray]) -> tuple[float, floa
 
 
 def _deviations(
-    plan: Plan, ship: FloatArray, factor: float, *, noise_is_assumed: bool, freedom: Sequence[FloatArray]
+    plan: Plan,
+    ship: FloatArray,
+    factor: float,
+    freedom: Sequence[FloatArray],
+    rng: np.random.Generator,
+    *,
+    noise_is_assumed: bool,
 ) -> dict[str, float]:
+    """Return what a fit might state on one possible ship, in one possible noise."""
     values = dict(zip(plan.ship.structure.names, ship.tolist(), strict=True))
     noise = [level.times(factor**2) for level in plan.noise]
     if noise_is_assumed:
@@ -101,16 +111,62 @@ def _deviations(
             noise_of_line(level, structure, measured_at=plan.ship.by_name, values=values)
             for structure, level in zip(plan.structures, noise, strict=True)
         ]
-    accuracy = predicted_accuracy(
-        plan.structures,
-        plan.legs,
-        noise,
-        values=values,
-        priors=plan.priors,
-        earlier=plan.earlier,
-        degrees_of_freedom=freedom,
-    )
-    return {one.name: one.std for one in accuracy.numbers}
+    pairs = [
+        (
+            structure,
+            planned_lines(
+                leg.frequency_hz,
+                noise=level,
+                amplitude=np.abs(leg.amplitudes),
+                duration_s=leg.window_s / _estimated_variance(of_leg, rng),
+                degrees_of_freedom=of_leg,
+            ),
+        )
+        for structure, leg, level, of_leg in zip(plan.structures, plan.legs, noise, freedom, strict=True)
+    ]
+    every = [*pairs, *plan.earlier]
+    deviations, covariance = predict_joint_deviations(every, values=values, priors=plan.priors)
+    free = list(deviations)[: len(covariance)]
+    found = _estimate(plan.ship.structure, ship, free, covariance, rng)
+    if found is None:
+        return deviations
+    stated, _ = predict_joint_deviations(every, values=found, priors=plan.priors)
+    return stated
+
+
+def _estimate(
+    structure: Structure, ship: FloatArray, free: Sequence[str], covariance: FloatArray, rng: np.random.Generator
+) -> dict[str, float] | None:
+    """Return what a test might find, at which its fit states deviations; None where it may find anything.
+
+    Parameters
+    ----------
+    free, covariance
+        Names of the free parameters, and their covariance, shape (free, free).
+    """
+    if not np.isfinite(covariance).all():
+        return None
+    places, found = [structure.names.index(name) for name in free], ship.copy()
+    found[places] = rng.multivariate_normal(ship[places], covariance, method="eigh")
+    bounds = np.array([(p.lower, p.upper) for p in structure.parameters]).T
+    found = np.clip(found, *bounds)
+    is_stable = bool(stable_rows(structure, found[None, :]).all())
+    return dict(zip(structure.names, found.tolist(), strict=True)) if is_stable else None
+
+
+def _estimated_variance(freedom: FloatArray, rng: np.random.Generator) -> FloatArray:
+    """Return an estimate of the noise beside each line, over what it is, shape (lines,).
+
+    Lines that stand near to each other share most of the bins from which it is estimated.
+    """
+    count = freedom.size
+    apart = np.arange(0.0, count + _SHARED_LINES, _SHARED_LINES)
+    of_stretches = rng.standard_normal(apart.size)
+    near = np.interp(np.arange(count), apart, of_stretches)
+    # between two independent numbers the deviation of a straight line is smaller than theirs
+    share = np.interp(np.arange(count) % _SHARED_LINES, [0.0, _SHARED_LINES], [0.0, 1.0])
+    near /= np.hypot(share, 1.0 - share)
+    return np.asarray(np.exp(np.sqrt(2.0 / freedom) * near))
 
 
 def _normal_quantiles(count: int) -> FloatArray:

@@ -1,6 +1,11 @@
 """What a test can find, before it is made: from the equations alone, or from its plan and the noise."""
 
-from shaftprint.identify.prediction._accuracy import Accuracy, predict_accuracy, predict_joint_accuracy
+from shaftprint.identify.prediction._accuracy import (
+    Accuracy,
+    predict_accuracy,
+    predict_joint_accuracy,
+    predict_joint_deviations,
+)
 from shaftprint.identify.prediction._combinator_noise import COMBINATOR_NOISE
 from shaftprint.identify.prediction._formulas import unit_of
 from shaftprint.identify.prediction._identifiability import Identifiability, identifiability
@@ -51,6 +56,7 @@ __all__ = [
     "predict_accuracy",
     "predict_intervals",
     "predict_joint_accuracy",
+    "predict_joint_deviations",
     "predict_joint_intervals",
     "stated_noise",
     "unit_of",
