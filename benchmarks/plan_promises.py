@@ -4,7 +4,7 @@ For every seed a ship is drawn as in ``scouted_tests``, its set-point line bends
 of all its noise is 0.5 to 3 times the simulated tug's. All ships sail the test that is planned from the card. Those of
 ``--scouted`` sail the first test of two legs of 45 s too, after which the promise of the same test is told anew. Those
 of ``--continued`` besides sail a test of twelve minutes that is planned after the first. Stated deviations are held
-against promised ones. Run ``python benchmarks/plan_promises.py --ships 24 --scouted 18 --continued 0 --outcomes
+against promised ones. Run ``python benchmarks/plan_promises.py --ships 24 --scouted 24 --continued 0 --outcomes
 build/promises --write``: ten seconds of processor time a ship, five more for one with a first test, a minute and a half
 more for one that is continued. Ships that the folder holds are not sailed again.
 """
