@@ -189,7 +189,10 @@ def test_after_a_first_test_its_numbers_noise_and_line_are_taken(run, demo, tmp_
     place = test.plan.ship.structure.names.index("tau_dn")
     assert test.plan.ship.by_name["tau_dn"] == first.quantity("tau_dn").value
     assert test.plan.ship.covariance[place, place] == pytest.approx(first.quantity("tau_dn").std ** 2)
-    assert test.plan.noise[0].frequency_hz[0] == first.noise[0].frequency_hz[0]
+    # below the slowest line of the first test the noise is that which is usual
+    recorded, planned = first.noise[0].frequency_hz, test.plan.noise[0].frequency_hz
+    assert set(recorded) <= set(planned)
+    assert planned[0] < recorded[0]
     # one sample in a hundred of the tug's orders and noise is above 0.49 of the load
     assert first.torque_ripple == pytest.approx(0.49, abs=0.05)
     assert test.plan.limits.gauge.ripple == first.torque_ripple
