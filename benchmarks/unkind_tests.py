@@ -94,13 +94,22 @@ def play_delay_s(play_v: float, campaign: Campaign) -> float:
 
 
 def true_values(truth: Truth, ship: Ship, signals: Signals, campaign: Campaign) -> dict[str, float]:
-    """Return the truth of the numbers of the line at the working point of the first leg, as its gauge shows it."""
+    """Return the truth of the numbers of the line at the working point of the first leg, as its gauge shows it.
+
+    What is divided by the torque is that of the ship at its mean load, as the fingerprint says: how far the load of the
+    leg lay from it is counted in the deviations.
+    """
     zero_nm = truth.physical["torque_zero_offset_nm"]
     of_gauge = monte_carlo_recordings.Ship(
         tug=ship.tug, vessel=ship.vessel, scale=ship.scale, zero_nm=zero_nm, late_s=ship.late_s
     )
-    known = leg_outcomes.true_values(truth, signals, of_gauge)
-    speed_rpm, tug = 60.0 * signals.working_point.engine_speed_rev_s, ship.tug
+    point, tug = signals.working_point, ship.tug
+    speed_rpm = 60.0 * point.engine_speed_rev_s
+    at_mean_load = truth.shaft_torque_nm * ship.scale * (speed_rpm / truth.engine_speed_rpm) ** 2
+    usual = replace(point, shaft_torque_nm=at_mean_load + ship.scale * zero_nm * point.zero_share)
+    of_load = leg_outcomes.true_values(truth, replace(signals, working_point=usual), of_gauge)
+    # the exponent of the law is that of the torque that was shown
+    known = of_load | {"k_q": leg_outcomes.true_values(truth, signals, of_gauge)["k_q"]}
     # slope over the speed of a line whose slope goes with the volts: s^2 = s_0^2 + 2 s_0 b (n - n_0)
     at_first, bend = tug.set_point_slope_rpm_per_v, tug.set_point_slope_rpm_per_v * tug.set_point_bend_per_v
     square = at_first**2 + 2.0 * bend * (speed_rpm - truth.engine_speed_rpm)

@@ -5,7 +5,9 @@ has to stand still: ``n_0`` is the mean speed and ``M_0`` the torque at ``n_0`` 
 the square of the speed (``normalisation.mean_load``). The load of the leg is 1 by definition. Several levels give the
 line from volts to speed; a single leg gives it by its slow lines, at which the speed follows the set point.
 
-The standard deviation of a mean is that of the coefficients beside it: below the first line there is nothing but noise.
+The standard deviation of the mean speed is that of the coefficients beside it: below the first line there is nothing
+but noise. That of the mean load is found through its wander, which grows towards zero: of one that takes 10 to 100 s
+the coefficients beside zero told a third in legs of five minutes.
 """
 
 from collections.abc import Sequence
@@ -22,6 +24,7 @@ from shaftprint.signals._working_points import LegState, WorkingPoint
 from shaftprint.signals.levels._dc_scale import LowLines, zero_frequency_ratio
 from shaftprint.signals.levels._leg_periods import LegPeriods, between_lines
 from shaftprint.signals.levels._steady import SteadyStretch
+from shaftprint.signals.levels._wander import fit_through_wander
 from shaftprint.units import rpm_from_rev_s
 
 if TYPE_CHECKING:
@@ -33,6 +36,8 @@ _SAME_LEVEL_V = 0.05
 # (see _dc_scale.py), which the structures find as the scale of the set point.
 _LARGEST_DEPARTURE, _MOST_LINES, _FEWEST_LINES = 0.4, 9, 3
 _LEAST_STD = 2e-3
+# Means of the load are this long [s], and shorter where there would be fewer.
+_BLOCK_S, _FEWEST_BLOCKS = 10.0, 12
 # Deviation of a slope that rests on the slowest line alone, at which the speed may lag already.
 _ROUGH_STD = 0.05
 
@@ -87,7 +92,7 @@ def leg_state(samples: LegSamples) -> LegState:
     duration_s = periods.periods * periods.period_s
     torque = mean_load(of_propeller, square, duration_s=duration_s)
     speed_std = _std_of_mean(samples.speed_rev_s, periods.periods)
-    load_std = _std_of_mean(samples.torque_nm / (torque * square), periods.periods)
+    load_std = _std_of_load(samples.torque_nm / (torque * square), periods)
     point = WorkingPoint(
         engine_speed_rev_s=speed,
         shaft_torque_nm=torque,
@@ -165,6 +170,20 @@ def calibration_of_legs(legs: Sequence[LegSamples], states: Sequence[LegState], 
 
 def _std_of_mean(values: FloatArray, periods: int) -> float:
     return float(np.sqrt(np.mean(np.abs(between_lines(values, periods)) ** 2)))
+
+
+def _std_of_load(load: FloatArray, periods: LegPeriods) -> float:
+    """Return how far the mean load of a leg may be from that of the ship, from what its periods do not repeat."""
+    spectrum = np.fft.rfft(load)
+    spectrum[periods.periods :: periods.periods] = 0.0
+    wander = np.fft.irfft(spectrum, load.size)
+    duration_s = periods.periods * periods.period_s
+    count = max(round(duration_s / _BLOCK_S), _FEWEST_BLOCKS)
+    borders = np.round(np.arange(count + 1) * load.size / count).astype(np.int64)
+    means = np.add.reduceat(wander, borders[:-1]) / np.diff(borders)
+    border_s = borders * (duration_s / load.size)
+    line = fit_through_wander(means, np.ones((count, 1)), border_s[:-1], border_s[1:])
+    return float(line.std[0])
 
 
 def _slope_of_slow_lines(samples: LegSamples, channel: str) -> tuple[float, float]:
