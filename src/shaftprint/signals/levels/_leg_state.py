@@ -181,7 +181,7 @@ def _std_of_load(load: FloatArray, periods: LegPeriods) -> float:
     count = max(round(duration_s / _BLOCK_S), _FEWEST_BLOCKS)
     borders = np.round(np.arange(count + 1) * load.size / count).astype(np.int64)
     means = np.add.reduceat(wander, borders[:-1]) / np.diff(borders)
-    border_s = borders * (duration_s / load.size)
+    border_s = np.asarray(borders * (duration_s / load.size), dtype=np.float64)
     line = fit_through_wander(means, np.ones((count, 1)), border_s[:-1], border_s[1:])
     return float(line.std[0])
 
