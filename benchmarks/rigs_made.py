@@ -95,7 +95,7 @@ def shaft_behind_loggers(rng: Generator) -> Twin:
     inputs = {
         "impulse": np.where((time_s > 1.0) & (time_s < 1.03), 12.0, 0.0),
         "step": np.where(time_s > 1.0, 5.0, 0.0),
-        "ice": np.where(time_s > 0.5, 4.0 * np.abs(np.sin(TWO_PI * 4.3 * time_s)) + levels(rng, samples, 60), 0.0),
+        "ice": np.where(time_s > 0.5, np.abs(np.sin(TWO_PI * 4.3 * time_s)) + 6.0 * levels(rng, samples, 60), 0.0),
     }
     line = transfer([truth["K"] * truth["w"] ** 2], [1.0, 2.0 * truth["z"] * truth["w"], truth["w"] ** 2])
     files = {

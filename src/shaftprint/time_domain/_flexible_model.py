@@ -33,6 +33,7 @@ from shaftprint.time_domain._flexible_directions import (
     through_poles,
     up_and_down,
 )
+from shaftprint.time_domain._input_response import filled
 from shaftprint.time_domain._noise_model import NoiseModel, estimate_noise
 from shaftprint.time_domain._nuisance import left_of, orthonormal, without
 from shaftprint.time_domain._record import Record
@@ -153,11 +154,14 @@ class FlexibleModel:
 
     def _noise_beside(self, directions: FloatArray, weight: NoiseModel | None) -> NoiseModel:
         """Return the noise of what directions leave under the weight of another noise."""
-        span, unexplained = self._beside(directions, weight)
-        size = int(self.record.used.sum()) * len(self.names)
-        right_in_size = np.sqrt(size / max(size - span.rank, 1)) * unexplained
+        _, unexplained = self._beside(directions, weight)
+        every, used = np.concatenate([self._fitted, directions]), self.record.used
+        noise = np.zeros(unexplained.shape)
+        for output in range(len(self.names)):
+            basis = orthonormal(every[:, used, output])
+            noise[used, output] = filled(self.residuals[used, output], unexplained[used, output], basis)
         order = round(self.longest_memory_s * self.record.rate_hz)
-        return estimate_noise(right_in_size, self.record.stretches, max_order=order)
+        return estimate_noise(noise, self.record.stretches, max_order=order)
 
     @cached_property
     def _fitted(self) -> FloatArray:

@@ -17,6 +17,8 @@ from shaftprint.time_domain._record import Record
 MEMORY_S, MOST_LAGS = 3.0, 60
 # Directions in which the inputs move less than this share of the largest are not excited: a sine has two.
 EXCITED = 1e-3
+# What lies along directions is no more than noise up to so many times what noise gives there on average.
+BY_CHANCE = 1.5
 
 
 def delayed_inputs(record: Record, *, most: int = MOST_LAGS, longest_s: float = MEMORY_S) -> FloatArray:
@@ -48,8 +50,30 @@ def excited(record: Record) -> FloatArray:
 
 
 def noise_of(residuals: FloatArray, record: Record) -> FloatArray:
-    """Return residuals without what the inputs explain, shape (samples, outputs), right in size on average."""
-    basis = excited(record)
-    kept = residuals * record.used[:, None]
-    spare = max(int(record.used.sum()) - basis.shape[0], 1)
-    return np.asarray((kept - basis.T @ (basis @ kept)) * np.sqrt(record.used.sum() / spare))
+    """Return residuals without what the inputs explain beyond noise, shape (samples, outputs)."""
+    used, basis = record.used, excited(record)[:, record.used]
+    noise = np.zeros(residuals.shape)
+    noise[used] = np.stack([filled(one, one - basis.T @ (basis @ one), basis) for one in residuals[used].T], axis=1)
+    return noise
+
+
+def filled(residuals: FloatArray, left: FloatArray, basis: FloatArray) -> FloatArray:
+    """Return what directions leave of residuals with noise along them, as much as others have on average.
+
+    With none there, the noise of a short record would seem to have a gap at the frequencies of its inputs, and a right
+    structure would be refused. What the residuals have there stays where it is no more than noise; where it is more,
+    signs at random stand for it, which have no colour of their own.
+
+    Parameters
+    ----------
+    residuals, left
+        Shape (samples,).
+    basis
+        Orthonormal directions, shape (directions, samples).
+    """
+    level = float(left @ left) / max(residuals.size - len(basis), 1)
+    taken = residuals - left
+    if float(taken @ taken) <= BY_CHANCE * level * len(basis):
+        return residuals
+    signs = np.random.default_rng(0).choice([-1.0, 1.0], size=len(basis))
+    return np.asarray(left + np.sqrt(level) * (signs @ basis))
