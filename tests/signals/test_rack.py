@@ -208,11 +208,9 @@ def test_messages_that_cannot_be_used_are_refused(make, sensor, message):
 def test_messages_in_place_of_samples_are_refused(ship, vessel, campaign):
     recording = ship.recording()
     times = 0.02 * np.arange(12_500) + 0.004 * np.sin(np.arange(12_500.0))
-    bus = replace(came(np.zeros(times.size), times), name="M_s", unit="V")
-    recording = replace(recording, channels=dict(recording.channels) | {"M_s": bus})
-    with pytest.raises(
-        SignalError, match=r"channel M_s: expected samples at one rate for the .*torque.*, found a message"
-    ):
+    bus = replace(came(np.zeros(times.size), times), name="PTM_1", unit="V")
+    recording = replace(recording, channels=dict(recording.channels) | {"PTM_1": bus})
+    with pytest.raises(SignalError, match=r"channel PTM_1: expected samples at one rate for the .*, found a message"):
         prepare_signals(recording, vessel, campaign)
 
 
