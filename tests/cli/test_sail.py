@@ -79,7 +79,8 @@ def test_a_test_on_a_bus_as_its_logger_writes_it(run, tmp_path, brief_campaign):
     content["sensors"]["speed"] = [{"name": "n_e", "channel": "EngineSpeed", "unit": "rpm", "shaft": "engine"}]
     vessel, log = tmp_path / "on_a_bus.toml", tmp_path / "test.blf"
     vessel.write_text(tomlkit.dumps(content))
-    result = run("sail", vessel, brief_campaign, "-o", log, "--messages", "speed=50", "--jitter", 15, "--lost", 2)
+    result = run("sail", vessel, brief_campaign, "-o", log, "--messages", "speed=50", "--messages", "torque=100",
+                 "--jitter", 15, "--lost", 2)  # fmt: skip
     assert result.exit_code == 0
     assert "test.blf.dbc beside it says what the frames hold" in result.stderr
     with read_recording(log, dbc=tmp_path / "test.blf.dbc") as recording:
@@ -89,11 +90,13 @@ def test_a_test_on_a_bus_as_its_logger_writes_it(run, tmp_path, brief_campaign):
         # 15 % of 20 ms about the cycle, of which a step has two
         steps = np.diff(speed.stamps_s(0, speed.count))
         assert steps[steps < 0.03].std() == pytest.approx(0.003 * 2**0.5, rel=0.1)
-        assert recording.channel("M_s").rate_hz == pytest.approx(2000.0)
+        torque = recording.channel("M_s")
+        assert torque.rate_hz == pytest.approx(100.0, rel=1e-3)
+        assert torque.count == pytest.approx(0.98 * 100.0 * 30.0, abs=30)
 
 
 @pytest.mark.parametrize("text", ["speed", "speed=0", "rack=10", "speed=inf"])
 def test_messages_need_a_rate(run, tmp_path, brief_campaign, text):
     result = run("sail", "stan-tug-1205", brief_campaign, "-o", tmp_path / "x.nc", "--messages", text)
     assert result.exit_code == 2
-    assert f'expected speed, set-point with a rate, such as speed=50, found "{text}"' in result.stderr
+    assert f'expected torque, speed, set-point with a rate, such as speed=50, found "{text}"' in result.stderr

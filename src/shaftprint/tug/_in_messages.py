@@ -1,4 +1,4 @@
-"""A tug whose speed or set point come over a bus: message by message, early or late, some of them lost."""
+"""A tug whose torque, speed or set point come over a bus: message by message, early or late, some of them lost."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -8,7 +8,7 @@ from shaftprint.errors import SettingsError
 from shaftprint.tug._tug import Tug
 from shaftprint.vessel import Vessel
 
-MESSAGES: Final = ("speed", "set-point")
+MESSAGES: Final = ("torque", "speed", "set-point")
 """What may come in messages."""
 # Steps of a set point on a bus by its unit: SAE J1939-71, pedal (SPN 91) and desired speed (SPN 515).
 _STEPS = {"%": 0.4, "rpm": 0.125}

@@ -26,7 +26,7 @@ from shaftprint.tug import MESSAGES, in_messages, like_stan_tug_1205, sail_as, t
     "rates",
     multiple=True,
     metavar="WHAT=HZ",
-    help="What comes over a bus, and how often, speed=50 or set-point=50; may be repeated.",
+    help="What comes over a bus, and how often: torque=100, speed=50 or set-point=50; may be repeated.",
 )
 @click.option("--jitter", type=click.FloatRange(0.0, 28.0), default=0.0, help="Of messages, % of their cycle (rms).")
 @click.option("--lost", type=click.FloatRange(0.0, 99.0), default=0.0, help="Messages that are lost [%].")
@@ -53,9 +53,9 @@ def command(
     for the working speed at the voltage of the campaign. A campaign that states slope_rpm_per_v is sailed with that
     lever: at its offset it asks for offset_rpm, or for the working speed. What was put into the recording goes to a
     file of its own beside it, which nothing that identifies will open. The recording is written as the logger of its
-    ending writes it: what that loses is said, and logs of a CAN bus get a DBC file beside them. With --messages a
-    speed in rpm or a set point in % or rpm come over a bus. With --starboard both lines of a ship are sailed in one
-    recording; each propeller feels the wash of the other, and both the same sea.
+    ending writes it: what that loses is said, and logs of a CAN bus get a DBC file beside them. With --messages the
+    shaft torque, a speed in rpm or a set point in % or rpm come over a bus. With --starboard both lines of a ship are
+    sailed in one recording; each propeller feels the wash of the other, and both the same sea.
     """
     if output.is_dir():
         raise click.ClickException(f"{output}: expected a file for the recording, found a folder; add a file name.")
