@@ -32,6 +32,7 @@ from shaftprint import reasons as reasons
 from shaftprint import recording as recording
 from shaftprint import rehearsal as rehearsal
 from shaftprint import report as report
+from shaftprint import sender_cycle as sender_cycle
 from shaftprint import settings as settings
 from shaftprint import signals as signals
 from shaftprint import simulation as simulation

@@ -46,7 +46,8 @@ def callables(room):
         if inspect.isfunction(value):
             found[name] = value
             continue
-        for member, inner in vars(value).items():
+        # models of settings are built when they are first looked at
+        for member, inner in dict(vars(value)).items():
             function = getattr(inner, "__func__", inner)
             # what carries out a contract is described there
             contract = any(hasattr(base, member) for base in value.__mro__[1:])

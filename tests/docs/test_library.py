@@ -21,6 +21,7 @@ LIBRARY = (ROOT / "docs" / "library.md").read_text(encoding="utf-8")
 INNER = {
     *("arguments", "arrays", "digits", "distributions", "escape", "files"),
     *("kernels", "markup", "memory", "normalisation", "notebook", "plain_table", "publication", "reasons"),
+    "sender_cycle",
     *("spelling", "zones"),
 }
 

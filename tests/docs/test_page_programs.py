@@ -130,7 +130,8 @@ def test_benchmark_takes_its_options(words, monkeypatch):
     if (ROOT / name).is_file():
         source, run = ROOT / name, lambda: runpy.run_path(str(ROOT / name), run_name="__main__")
     else:
-        found = importlib.util.find_spec(name if name != "benchmarks" else "benchmarks.__main__")
+        folder = (ROOT / name.replace(".", "/")).is_dir()
+        found = importlib.util.find_spec(f"{name}.__main__" if folder else name)
         assert found is not None, name
         source, run = ROOT / found.origin, lambda: runpy.run_module(name, run_name="__main__", alter_sys=True)
     if not any(parser in source.read_text(encoding="utf-8") for parser in PARSERS):
