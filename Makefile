@@ -36,7 +36,7 @@ test: $(VENV)/test ## Run the tests that a change needs
 	$(PYTEST) -m "$(QUICK)"
 
 test-slow: $(VENV)/test ## Run them, the slow tests and most wrong recordings, with the coverage of the calculating rooms
-	$(PYTEST) -m "$(TRACED)" $(ROOMS:%=tests/%) $(ROOMS:%=--cov=shaftprint.%) --cov-branch --cov-report=
+	$(PYTEST) -m "$(TRACED)" $(ROOMS:%=tests/%) $(ROOMS:%=--cov=shaftprint.%) --cov-report=
 	$(BIN)/python -m coverage report --skip-covered --fail-under 95
 	$(PYTEST) -m "not long and not ($(TRACED))"
 

@@ -2,6 +2,7 @@
 
 import gc
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -29,8 +30,9 @@ QUIET = (
 LONGEST_WAIT_S = 1200.0
 ONE_LINE = 10_000
 HERE = Path(__file__).parent
-# the rooms of which the Makefile counts the branches that are tested
-CALCULATING = {"signals", "spectra", "models", "catalogue", "simulation", "identify"}
+# the rooms of which the Makefile counts the branches that are tested stand there
+(ROOMS,) = re.findall(r"^ROOMS := (.+)$", (HERE.parent / "Makefile").read_text(encoding="utf-8"), re.MULTILINE)
+CALCULATING = set(ROOMS.split())
 # independent tests of some seconds each, which any worker may take, and rooms whose files share what is dear to prepare
 ONE_BY_ONE = "tests/wrong_recordings/test_wrong_recordings.py"
 TOGETHER = {"tests/docs", "tests/report", "tests/validation"}
