@@ -4,17 +4,16 @@ import heapq
 import io
 import math
 from collections.abc import Iterator, Sequence
-from contextlib import ExitStack
 from datetime import UTC, datetime
 from decimal import Decimal
 from pathlib import Path
 from typing import Any
 
-from shaftprint.errors import RecordingError
 from shaftprint.escape import dbc_text
-from shaftprint.files import reason, written_whole
+from shaftprint.files import written_whole
 from shaftprint.recording.readers import library
 from shaftprint.recording.writers._bus_messages import Frame, Sent, first_time_s
+from shaftprint.recording.writers._refused import told_as_refused
 
 _KIND = "CAN log"
 _NO_DATE = datetime(1970, 1, 1)  # noqa: DTZ001 - logs state no zone
@@ -51,14 +50,13 @@ def write_bus_log(path: Path, sent: Sequence[Sent], *, began: datetime | None, o
         remarks.append(f"Second 0 is the first frame, {first_s + later_s:.6g} s later, as candump has dates alone.")
     merged = heapq.merge(*(one.frames() for one in sent))
     frames = ((time_s + later_s, identifier, data) for time_s, identifier, data in merged)
-    try:
-        with ExitStack() as stack:
-            dbc = stack.enter_context(written_whole(dbc_path(path), overwrite=overwrite))
-            dbc.write_bytes(_dbc(canmatrix, sent))
-            part = stack.enter_context(written_whole(path, overwrite=overwrite))
-            _WRITERS[path.suffix.lower()](can, part, frames, began)
-    except OSError as error:
-        raise RecordingError(f"{path}: the file cannot be written: {reason(error)}") from None
+    with (
+        told_as_refused(path),
+        written_whole(dbc_path(path), overwrite=overwrite) as dbc,
+        written_whole(path, overwrite=overwrite) as part,
+    ):
+        dbc.write_bytes(_dbc(canmatrix, sent))
+        _WRITERS[path.suffix.lower()](can, part, frames, began)
     remarks.append(f"{dbc_path(path).name} beside it says what the frames hold; read the log with it (--dbc).")
     return tuple(remarks)
 

@@ -7,8 +7,9 @@ import numpy as np
 
 from shaftprint.errors import RecordingError
 from shaftprint.escape import csv_cell
-from shaftprint.files import reason, written_whole
+from shaftprint.files import written_whole
 from shaftprint.recording._channel import Channel
+from shaftprint.recording.writers._refused import told_as_refused
 from shaftprint.recording.writers._shared_clock import on_one_clock
 
 _BLOCK = 16_384
@@ -50,19 +51,20 @@ def write_csv(
     written = on_one_clock(path, channels)
     titles = ["time [s]", *(csv_cell(f"{channel.name} [{channel.unit}]") for channel in written)]
     _expect_readable(path, titles, delimiter, decimal)
-    try:
-        with written_whole(path, overwrite=overwrite) as part, part.open("w", encoding="utf-8", newline="\n") as file:
-            file.write(delimiter.join(titles) + "\n")
-            row = delimiter.join([_FORMAT] * len(titles)) + "\n"
-            for start in range(0, written[0].count, _BLOCK):
-                stop = min(start + _BLOCK, written[0].count)
-                columns = [written[0].time_s(start, stop), *(channel.values(start, stop) for channel in written)]
-                block = np.column_stack(columns)
-                # one formatting of the whole block: 1.9 times as fast as numpy.savetxt
-                text = row * len(block) % tuple(block.ravel().tolist())
-                file.write(text if decimal == "." else text.replace(".", decimal))
-    except OSError as error:
-        raise RecordingError(f"{path}: the file cannot be written: {reason(error)}") from None
+    with (
+        told_as_refused(path),
+        written_whole(path, overwrite=overwrite) as part,
+        part.open("w", encoding="utf-8", newline="\n") as file,
+    ):
+        file.write(delimiter.join(titles) + "\n")
+        row = delimiter.join([_FORMAT] * len(titles)) + "\n"
+        for start in range(0, written[0].count, _BLOCK):
+            stop = min(start + _BLOCK, written[0].count)
+            columns = [written[0].time_s(start, stop), *(channel.values(start, stop) for channel in written)]
+            block = np.column_stack(columns)
+            # one formatting of the whole block: 1.9 times as fast as numpy.savetxt
+            text = row * len(block) % tuple(block.ravel().tolist())
+            file.write(text if decimal == "." else text.replace(".", decimal))
 
 
 def _expect_readable(path: Path, titles: Sequence[str], delimiter: str, decimal: str) -> None:

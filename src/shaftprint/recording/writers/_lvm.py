@@ -10,8 +10,9 @@ import numpy as np
 
 from shaftprint.errors import RecordingError
 from shaftprint.escape import printable
-from shaftprint.files import reason, written_whole
+from shaftprint.files import written_whole
 from shaftprint.recording._channel import Channel
+from shaftprint.recording.writers._refused import told_as_refused
 from shaftprint.recording.writers._shared_clock import by_clock, in_parts
 
 _SEGMENT_S = 10.0
@@ -52,13 +53,14 @@ def write_lvm(
     if taken is not None:
         raise RecordingError(f'{path}: expected names of channels other than X_Value and Comment, found "{taken}".')
     is_one = len(by_clock(written)) == 1
-    try:
-        with written_whole(path, overwrite=overwrite) as part, part.open("w", encoding="utf-8", newline="\n") as file:
-            file.write(_head(began, is_one=is_one))
-            for segment in in_parts(written, _SEGMENT_S):
-                _write_segment(file, segment, began, is_one=is_one)
-    except OSError as error:
-        raise RecordingError(f"{path}: the file cannot be written: {reason(error)}") from None
+    with (
+        told_as_refused(path),
+        written_whole(path, overwrite=overwrite) as part,
+        part.open("w", encoding="utf-8", newline="\n") as file,
+    ):
+        file.write(_head(began, is_one=is_one))
+        for segment in in_parts(written, _SEGMENT_S):
+            _write_segment(file, segment, began, is_one=is_one)
     return (_ROUNDED,)
 
 

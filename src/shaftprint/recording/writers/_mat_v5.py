@@ -7,9 +7,10 @@ from typing import Any, BinaryIO
 import scipy
 
 from shaftprint.errors import RecordingError
-from shaftprint.files import reason, written_whole
+from shaftprint.files import written_whole
 from shaftprint.recording._channel import Channel
 from shaftprint.recording.writers._mat_names import expect_matlab_names
+from shaftprint.recording.writers._refused import told_as_refused
 from shaftprint.recording.writers._shared_clock import on_one_clock
 
 _LARGEST_BYTES = 2**31
@@ -40,14 +41,11 @@ def write_mat_v5(path: str | Path, channels: Iterable[Channel], *, overwrite: bo
         raise RecordingError(
             f"{path}: expected vectors below 2 GiB for this version, found {written[0].count} samples; use v7.3."
         )
-    try:
-        with written_whole(path, overwrite=overwrite) as part, part.open("wb") as file:
-            _append(file, {"sample_rate_hz": written[0].rate_hz, "start_s": written[0].start_s})
-            for channel in written:
-                values = channel.values(0, channel.count)
-                _append(file, {channel.name: values, f"{channel.name}_unit": channel.unit})
-    except OSError as error:
-        raise RecordingError(f"{path}: the file cannot be written: {reason(error)}") from None
+    with told_as_refused(path), written_whole(path, overwrite=overwrite) as part, part.open("wb") as file:
+        _append(file, {"sample_rate_hz": written[0].rate_hz, "start_s": written[0].start_s})
+        for channel in written:
+            values = channel.values(0, channel.count)
+            _append(file, {channel.name: values, f"{channel.name}_unit": channel.unit})
 
 
 def _append(file: BinaryIO, variables: dict[str, Any]) -> None:

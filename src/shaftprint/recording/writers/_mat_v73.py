@@ -8,12 +8,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from shaftprint.errors import RecordingError
-from shaftprint.files import reason, written_whole
+from shaftprint.files import written_whole
 from shaftprint.recording._channel import Channel
 from shaftprint.recording._container import CHUNK_SAMPLES
 from shaftprint.recording._hdf5_output import Hdf5Output
 from shaftprint.recording.writers._mat_names import expect_matlab_names
+from shaftprint.recording.writers._refused import told_as_refused
 from shaftprint.recording.writers._shared_clock import on_one_clock
 
 _USERBLOCK_BYTES = 512
@@ -43,21 +43,18 @@ def write_mat_v73(path: str | Path, channels: Iterable[Channel], *, overwrite: b
     path = Path(path)
     written = on_one_clock(path, channels)
     expect_matlab_names(path, (channel.name for channel in written))
-    try:
-        with written_whole(path, overwrite=overwrite) as part:
-            with contextlib.closing(Hdf5Output(part, userblock_size=_USERBLOCK_BYTES)) as output:
+    with told_as_refused(path), written_whole(path, overwrite=overwrite) as part:
+        with contextlib.closing(Hdf5Output(part, userblock_size=_USERBLOCK_BYTES)) as output:
+            with output.calls():
+                _write_scalar(output.file, "sample_rate_hz", written[0].rate_hz)
+                _write_scalar(output.file, "start_s", written[0].start_s)
+            for channel in written:
+                _write_vector(output, channel)
                 with output.calls():
-                    _write_scalar(output.file, "sample_rate_hz", written[0].rate_hz)
-                    _write_scalar(output.file, "start_s", written[0].start_s)
-                for channel in written:
-                    _write_vector(output, channel)
-                    with output.calls():
-                        _write_text(output.file, f"{channel.name}_unit", channel.unit)
-            with part.open("r+b") as raw:
-                text = b"MATLAB 7.3 MAT-file, written by shaftprint"
-                raw.write(text.ljust(_TEXT_BYTES) + _HEADER_END)
-    except OSError as error:
-        raise RecordingError(f"{path}: the file cannot be written: {reason(error)}") from None
+                    _write_text(output.file, f"{channel.name}_unit", channel.unit)
+        with part.open("r+b") as raw:
+            text = b"MATLAB 7.3 MAT-file, written by shaftprint"
+            raw.write(text.ljust(_TEXT_BYTES) + _HEADER_END)
 
 
 def _write_scalar(file: Any, name: str, value: float) -> None:

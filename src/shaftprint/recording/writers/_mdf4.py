@@ -7,11 +7,11 @@ from typing import Any
 
 import numpy as np
 
-from shaftprint.errors import RecordingError
-from shaftprint.files import reason, written_whole
+from shaftprint.files import written_whole
 from shaftprint.recording._channel import Channel
 from shaftprint.recording._container import CHUNK_SAMPLES
 from shaftprint.recording.readers import library
+from shaftprint.recording.writers._refused import told_as_refused
 from shaftprint.recording.writers._shared_clock import by_clock
 
 _VERSION = "4.10"
@@ -40,21 +40,18 @@ def write_mdf4(
     """
     path = Path(path)
     asammdf = library(path, "asammdf", "MDF")
-    try:
-        with written_whole(path, overwrite=overwrite) as part:
-            file = asammdf.MDF(version=_VERSION)
-            # not the date of writing: the same recording is to give the same file
-            file.start_time = began or datetime(1970, 1, 1, tzinfo=UTC)
-            try:
-                for number, group in enumerate(by_clock(channels)):
-                    _append(asammdf, file, number, group)
-                # the library gives every name another ending than its own
-                written = Path(str(file.save(part.with_suffix(".mf4"), overwrite=True)))
-            finally:
-                file.close()
-            written.replace(part)
-    except OSError as error:
-        raise RecordingError(f"{path}: the file cannot be written: {reason(error)}") from None
+    with told_as_refused(path), written_whole(path, overwrite=overwrite) as part:
+        file = asammdf.MDF(version=_VERSION)
+        # not the date of writing: the same recording is to give the same file
+        file.start_time = began or datetime(1970, 1, 1, tzinfo=UTC)
+        try:
+            for number, group in enumerate(by_clock(channels)):
+                _append(asammdf, file, number, group)
+            # the library gives every name another ending than its own
+            written = Path(str(file.save(part.with_suffix(".mf4"), overwrite=True)))
+        finally:
+            file.close()
+        written.replace(part)
 
 
 def _append(asammdf: Any, file: Any, number: int, group: list[Channel]) -> None:

@@ -7,11 +7,11 @@ from typing import Any
 
 import numpy as np
 
-from shaftprint.errors import RecordingError
-from shaftprint.files import reason, written_whole
+from shaftprint.files import written_whole
 from shaftprint.recording._channel import Channel
 from shaftprint.recording._container import CHUNK_SAMPLES
 from shaftprint.recording.readers import library
+from shaftprint.recording.writers._refused import told_as_refused
 from shaftprint.recording.writers._shared_clock import expect_no_messages, in_parts
 
 _GROUP = "recording"
@@ -42,18 +42,19 @@ def write_tdms(
     """
     path = Path(path)
     nptdms = library(path, "nptdms", "TDMS")
-    try:
-        with written_whole(path, overwrite=overwrite) as part, nptdms.TdmsWriter(str(part)) as writer:
-            for channel in channels:
-                expect_no_messages(path, channel, on="clocks")
-                properties = _properties(nptdms.types, channel, began)
-                # an empty channel is one segment without samples
-                for start in range(0, max(channel.count, 1), CHUNK_SAMPLES):
-                    counts = channel.read(start, min(start + CHUNK_SAMPLES, channel.count))
-                    stated = properties if start == 0 else None
-                    writer.write_segment([nptdms.ChannelObject(_GROUP, channel.name, counts, stated)])
-    except OSError as error:
-        raise RecordingError(f"{path}: the file cannot be written: {reason(error)}") from None
+    with (
+        told_as_refused(path),
+        written_whole(path, overwrite=overwrite) as part,
+        nptdms.TdmsWriter(str(part)) as writer,
+    ):
+        for channel in channels:
+            expect_no_messages(path, channel, on="clocks")
+            properties = _properties(nptdms.types, channel, began)
+            # an empty channel is one segment without samples
+            for start in range(0, max(channel.count, 1), CHUNK_SAMPLES):
+                counts = channel.read(start, min(start + CHUNK_SAMPLES, channel.count))
+                stated = properties if start == 0 else None
+                writer.write_segment([nptdms.ChannelObject(_GROUP, channel.name, counts, stated)])
 
 
 def write_tdms_appended(
@@ -77,21 +78,19 @@ def write_tdms_appended(
     nptdms = library(path, "nptdms", "TDMS")
     for channel in written:
         expect_no_messages(path, channel, on="clocks")
-    try:
-        with written_whole(path, overwrite=overwrite) as part:
-            part.touch()
-            for parts in in_parts(written, _APPENDED_S):
-                with nptdms.TdmsWriter(str(part), mode="a") as writer:
-                    for channel in parts:
-                        if channel.count:
-                            stated = _properties(nptdms.types, channel, began)
-                            if began is not None:
-                                start = began + timedelta(seconds=channel.start_s)
-                                stated |= _start_time(start) | {"wf_start_offset": 0.0}
-                            counts = channel.read(0, channel.count)
-                            writer.write_segment([nptdms.ChannelObject(_GROUP, channel.name, counts, stated)])
-    except OSError as error:
-        raise RecordingError(f"{path}: the file cannot be written: {reason(error)}") from None
+    with told_as_refused(path), written_whole(path, overwrite=overwrite) as part:
+        part.touch()
+        for parts in in_parts(written, _APPENDED_S):
+            with nptdms.TdmsWriter(str(part), mode="a") as writer:
+                for channel in parts:
+                    if not channel.count:
+                        continue
+                    stated = _properties(nptdms.types, channel, began)
+                    if began is not None:
+                        start = began + timedelta(seconds=channel.start_s)
+                        stated |= _start_time(start) | {"wf_start_offset": 0.0}
+                    counts = channel.read(0, channel.count)
+                    writer.write_segment([nptdms.ChannelObject(_GROUP, channel.name, counts, stated)])
 
 
 def _properties(types: Any, channel: Channel, began: datetime | None) -> dict[str, object]:

@@ -10,9 +10,10 @@ import numpy as np
 
 from shaftprint.errors import RecordingError
 from shaftprint.escape import printable
-from shaftprint.files import reason, written_whole
+from shaftprint.files import written_whole
 from shaftprint.recording._channel import Channel
 from shaftprint.recording.readers import library, rate_of_step
+from shaftprint.recording.writers._refused import told_as_refused
 
 _TIME, _GENERAL = 17, 0
 _LONGEST, _LONGEST_LABEL = 80, 20
@@ -53,18 +54,15 @@ def write_uff(
     remarks = []
     if began is not None and began.microsecond:
         remarks.append("The date of second 0 is cut off at the second.")
-    try:
-        with written_whole(path, overwrite=overwrite) as part, warnings.catch_warnings():
-            # the library leaves binary files to be closed by Python
-            warnings.simplefilter("ignore", ResourceWarning)
-            # the library's "overwrite" leaves seven bytes of a binary file
-            part.touch()
-            for channel in channels:
-                function = _function(path, channel, began)
-                remarks += [f"{channel.name}: {loss}" for loss in _losses(channel)]
-                pyuff.UFF(str(part)).write_sets([function], "add")
-    except OSError as error:
-        raise RecordingError(f"{path}: the file cannot be written: {reason(error)}") from None
+    with told_as_refused(path), written_whole(path, overwrite=overwrite) as part, warnings.catch_warnings():
+        # the library leaves binary files to be closed by Python
+        warnings.simplefilter("ignore", ResourceWarning)
+        # the library's "overwrite" leaves seven bytes of a binary file
+        part.touch()
+        for channel in channels:
+            function = _function(path, channel, began)
+            remarks += [f"{channel.name}: {loss}" for loss in _losses(channel)]
+            pyuff.UFF(str(part)).write_sets([function], "add")
     return tuple(remarks)
 
 
