@@ -12,6 +12,7 @@ from typing import Any
 from shaftprint.escape import dbc_text
 from shaftprint.files import written_whole
 from shaftprint.recording.readers import library
+from shaftprint.recording.readers.can import dbc_path
 from shaftprint.recording.writers._bus_messages import Frame, Sent, first_time_s
 from shaftprint.recording.writers._refused import told_as_refused
 
@@ -19,11 +20,6 @@ _KIND = "CAN log"
 _NO_DATE = datetime(1970, 1, 1)  # noqa: DTZ001 - logs state no zone
 # Times are cut off, not rounded, at the nanosecond.
 _HALF_NANOSECOND = 5e-10
-
-
-def dbc_path(path: Path) -> Path:
-    """Return the DBC file beside a log."""
-    return path.with_name(f"{path.name}.dbc")
 
 
 def write_bus_log(path: Path, sent: Sequence[Sent], *, began: datetime | None, overwrite: bool) -> tuple[str, ...]:

@@ -88,12 +88,17 @@ def expect_known(path: Path, taken: Decoded, database: Database) -> None:
             f"{path}: expected messages that {database.name} knows, found none of them in the log{in_brackets}; take "
             "the DBC file of this ship."
         )
-    beside = path.with_name(f"{path.name}.dbc")
+    beside = dbc_path(path)
     raise RecordingError(
         f"{path}: expected messages of engine, gearbox or rudder by SAE J1939 or NMEA 2000, found none of them in the "
         f"log{in_brackets}; give the DBC file that says what the frames hold, dbc= (--dbc"
         f"{f' {beside.name}' if beside.is_file() else ''} of shaftprint convert)."
     )
+
+
+def dbc_path(path: Path) -> Path:
+    """Return the DBC file that is written beside a log."""
+    return path.with_name(f"{path.name}.dbc")
 
 
 def add_signals(gathered: Gathered, taken: Decoded, names: list[str]) -> None:
