@@ -3,6 +3,7 @@
 from shaftprint.recording.readers import _hdf5, _lvm, _mdf, _native, _netcdf3, _uff, can, csv, dewesoft, matlab, tdms
 from shaftprint.recording.readers._clock import Hole, clock_of_times, uniform_clock
 from shaftprint.recording.readers._extra import library
+from shaftprint.recording.readers._gather import told_apart
 from shaftprint.recording.readers._outside import ReaderFunction, read_outside
 from shaftprint.recording.readers._printed_rate import rate_of_step
 from shaftprint.recording.readers._reader import Reader
@@ -24,5 +25,6 @@ __all__ = [
     "rate_of_step",
     "read_outside",
     "remedy",
+    "told_apart",
     "uniform_clock",
 ]

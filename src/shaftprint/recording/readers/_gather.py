@@ -133,13 +133,25 @@ def unique_names(named: "list[tuple[str, str]]") -> list[str]:
     )
 
 
-def told_apart(names: Sequence[str]) -> list[str]:
-    """Return names of which each stands once; those that come again get a number."""
+def _in_brackets(name: str, number: int) -> str:
+    return f"{name} ({number})"
+
+
+def told_apart(names: Sequence[str], *, numbered: Callable[[str, int], str] = _in_brackets) -> list[str]:
+    """Return names of which each stands once; those that come again get a number.
+
+    Parameters
+    ----------
+    names
+        The names; empty ones stay so.
+    numbered
+        Returns a name with a number.
+    """
     unique: list[str] = []
     for name in names:
         number, candidate = 2, name
         while candidate and candidate in unique:
-            candidate = f"{name} ({number})"
+            candidate = numbered(name, number)
             number += 1
         unique.append(candidate)
     return unique

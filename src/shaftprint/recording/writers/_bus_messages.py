@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from shaftprint.arrays import FloatArray
 from shaftprint.recording._channel import Channel
 from shaftprint.recording._container import CHUNK_SAMPLES
+from shaftprint.recording.readers import told_apart
 from shaftprint.recording.readers.can import FILL
 from shaftprint.recording.readers.can import BusMessage as Message
 from shaftprint.recording.readers.can import BusSignal as Signal
@@ -185,18 +186,20 @@ def rounding_of(channel: Channel, signal: Signal) -> str:
     return f"{channel.name} is rounded to steps of {signal.factor:.6g}{unit}, counts of {signal.bits} bits."
 
 
-def names_in_messages(channels: Sequence[Channel]) -> list[str]:
-    """Return names of signals: letters, digits and underscores, 32 at most, each once."""
-    names: list[str] = []
-    for channel in channels:
-        plain = _NOT_IN_NAMES.sub("_", channel.name)[:_LONGEST_NAME] or "_"
-        plain = f"_{plain}"[:_LONGEST_NAME] if plain[0].isdigit() else plain
-        name, number = plain, 2
-        while name in names:
-            ending = f"_{number}"
-            name, number = plain[: _LONGEST_NAME - len(ending)] + ending, number + 1
-        names.append(name)
-    return names
+def names_in_messages(channels: Sequence[Channel]) -> dict[Channel, str]:
+    """Return the name of each channel's signal: letters, digits and underscores, 32 at most, each once."""
+    names = told_apart([_plain_name(channel.name) for channel in channels], numbered=_numbered)
+    return dict(zip(channels, names, strict=True))
+
+
+def _plain_name(name: str) -> str:
+    plain = _NOT_IN_NAMES.sub("_", name)[:_LONGEST_NAME] or "_"
+    return f"_{plain}"[:_LONGEST_NAME] if plain[0].isdigit() else plain
+
+
+def _numbered(name: str, number: int) -> str:
+    ending = f"_{number}"
+    return name[: _LONGEST_NAME - len(ending)] + ending
 
 
 def first_time_s(sent: Iterable[Sent]) -> float:

@@ -46,12 +46,12 @@ def write_can_log(
         If python-can or canmatrix is not installed, there are too many channels, or a file cannot be written.
     """
     path, channels = Path(path), list(channels)
-    names = dict(zip(map(id, channels), names_in_messages(channels), strict=True))
+    names = names_in_messages(channels)
     sent: list[Sent] = []
     for group in by_clock(channels):
         for first in range(0, len(group), _FRAME_BYTES * 8 // BITS):
             some = group[first : first + _FRAME_BYTES * 8 // BITS]
-            sent.append(own_message(path, some, [names[id(one)] for one in some], number=len(sent)))
+            sent.append(own_message(path, some, [names[one] for one in some], number=len(sent)))
     remarks = write_bus_log(path, sent, began=began, overwrite=overwrite)
     return (*losses_of(sent), *remarks)
 

@@ -128,17 +128,17 @@ def write_nmea_2000(
         As from ``write_can_log``.
     """
     path, channels = Path(path), list(channels)
-    names = dict(zip(map(id, channels), names_in_messages(channels), strict=True))
+    names = names_in_messages(channels)
     sent = list(_standard(channels, names))
-    at_standard = {id(channel) for one in sent for channel in one.channels}
-    for number, channel in enumerate(one for one in channels if id(one) not in at_standard):
-        own = own_message(path, [channel], [names[id(channel)]], number=number, begin=len(_MAKER), sender=_SENDER)
-        sent.append(replace(own, fixed=_MAKER, sent_s=_times([channel], _RAPID_S)))
+    at_standard = {channel for one in sent for channel in one.channels}
+    for number, channel in enumerate(one for one in channels if one not in at_standard):
+        message = own_message(path, [channel], [names[channel]], number=number, begin=len(_MAKER), sender=_SENDER)
+        sent.append(replace(message, fixed=_MAKER, sent_s=_times([channel], _RAPID_S)))
     remarks = write_bus_log(path, sent, began=began, overwrite=overwrite)
     return (*losses_of(sent), *_rarer(sent), *remarks)
 
 
-def _standard(channels: list[Channel], names: Mapping[int, str]) -> Iterator[Sent]:
+def _standard(channels: list[Channel], names: Mapping[Channel, str]) -> Iterator[Sent]:
     """Yield the messages of the standard, each field with the first channel that stands there."""
     for message in KNOWN:
         places = [place for place in _PLACES if place.group == pgn_of(message.identifier)]
@@ -149,7 +149,7 @@ def _standard(channels: list[Channel], names: Mapping[int, str]) -> Iterator[Sen
         signals = tuple(
             replace(
                 fields[place.field],
-                name=names[id(channel)],
+                name=names[channel],
                 unit=channel.unit,
                 factor=fields[place.field].factor / place.units[channel.unit],
                 comment=channel.long_name,
