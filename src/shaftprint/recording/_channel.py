@@ -81,6 +81,11 @@ class Channel:
             raise RecordingError(f"channel {self.name}: expected the times of its messages, found none.")
 
     @property
+    def holds_counts(self) -> bool:
+        """Whether the samples are counts of 16 bits, as a logger takes them; others are values."""
+        return self.read(0, 0).dtype == np.int16
+
+    @property
     def duration_s(self) -> float:
         """Length of the channel [s], each sample counted with its period."""
         if self.is_uneven and self.count:

@@ -4,8 +4,6 @@ from collections.abc import Iterable, Mapping
 from datetime import datetime
 from pathlib import Path
 
-import numpy as np
-
 from shaftprint.recording._channel import Channel
 from shaftprint.recording._container import CHUNK_SAMPLES
 from shaftprint.recording._writer import RecordingWriter
@@ -42,7 +40,6 @@ def write_recording(
     written = list(channels)
     with RecordingWriter(path, attributes=attributes, began=began, overwrite=overwrite) as writer:
         for channel in written:
-            is_counts = channel.read(0, 0).dtype == np.int16
             writer.declare(
                 channel.name,
                 unit=channel.unit,
@@ -51,7 +48,7 @@ def write_recording(
                 scale=channel.scale,
                 offset=channel.offset,
                 long_name=channel.long_name,
-                dtype="int16" if is_counts else "float64",
+                dtype="int16" if channel.holds_counts else "float64",
                 times="by rate" if channel.stamps is None else "uneven" if channel.is_uneven else "beside the rate",
                 clock_jumps=channel.clock_jumps,
                 is_of_edges=channel.is_of_edges,

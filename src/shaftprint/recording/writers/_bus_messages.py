@@ -71,11 +71,15 @@ class Sent:
                 else:
                     yield time, identifier, data
 
+    def times_s(self, start: int, stop: int) -> FloatArray:
+        """Return when the messages [start, stop) are sent [s], shape (stop - start,)."""
+        return self.channels[0].stamps_s(start, stop) if self.sent_s is None else self.sent_s[start:stop]
+
     def _block(self, start: int, stop: int) -> tuple[FloatArray, NDArray[np.uint8]]:
         content = np.full((stop - start, self.length), FILL, dtype=np.uint8)
         for place, value in self.fixed.items():
             content[:, place] = value
-        time_s = self.channels[0].stamps_s(start, stop) if self.sent_s is None else self.sent_s[start:stop]
+        time_s = self.times_s(start, stop)
         for signal, channel in zip(self.message.signals, self.channels, strict=True):
             if self.sent_s is None:
                 counts = counts_of(channel, signal, start, stop)
@@ -107,13 +111,17 @@ def blocks_of(channel: Channel) -> Iterator[tuple[int, int]]:
 
 def counts_of(channel: Channel, signal: Signal, start: int, stop: int) -> NDArray[np.int64]:
     """Return the samples [start, stop) of a channel as counts of a signal; none beyond its counts."""
-    counts = channel.read(start, stop)
-    if counts.dtype == np.int16 and (channel.scale, channel.offset) == (signal.factor, signal.offset):
-        return counts.astype(np.int64)
+    if _are_its_counts(channel, signal):
+        return channel.read(start, stop).astype(np.int64)
     last = _last_count(signal)
     exact = np.rint((channel.values(start, stop) - signal.offset) / signal.factor)
     is_value = (exact >= (-last - 1 if signal.is_signed else 0)) & (exact <= last)
     return np.where(is_value, exact, none_of(signal)).astype(np.int64)
+
+
+def _are_its_counts(channel: Channel, signal: Signal) -> bool:
+    """Return whether the counts of a channel are those of the signal."""
+    return channel.holds_counts and (channel.scale, channel.offset) == (signal.factor, signal.offset)
 
 
 def none_of(signal: Signal) -> int:
@@ -141,7 +149,7 @@ def own_signal(channel: Channel, name: str, *, start: int) -> Signal:
     start
         First bit.
     """
-    is_counts = channel.read(0, 0).dtype == np.int16
+    is_counts = channel.holds_counts
     lowest_count, highest_count = (_INT16.min, _INT16.max) if is_counts else (0, _LAST_VALUE)
     factor, offset = (channel.scale, channel.offset) if is_counts else _step_of(channel)
     ends = (offset + factor * lowest_count, offset + factor * highest_count)
@@ -180,7 +188,7 @@ def _step_of(channel: Channel) -> tuple[float, float]:
 
 def rounding_of(channel: Channel, signal: Signal) -> str:
     """Return in a sentence what a channel loses as a signal; empty where it loses nothing."""
-    if channel.read(0, 0).dtype == np.int16 and (channel.scale, channel.offset) == (signal.factor, signal.offset):
+    if _are_its_counts(channel, signal):
         return ""
     unit = f" {channel.unit}" if channel.unit else ""
     return f"{channel.name} is rounded to steps of {signal.factor:.6g}{unit}, counts of {signal.bits} bits."
@@ -204,16 +212,12 @@ def _numbered(name: str, number: int) -> str:
 
 def first_time_s(sent: Iterable[Sent]) -> float:
     """Return the time of the first frame [s]; 0 without any."""
-    firsts = (next(one.frames(), None) for one in sent)
-    return min((first[0] for first in firsts if first is not None), default=0.0)
+    return min((float(one.times_s(0, 1)[0]) for one in sent if one.count), default=0.0)
 
 
 def _packet(time_s: float, identifier: int, data: bytes, number: int) -> Iterator[Frame]:
     """Yield the frames of a fast packet of NMEA 2000: 6 bytes behind their number, then 7 in each."""
     mark = number % 8 << 5
-    parts = [bytes([mark, len(data)]) + data[:6]]
-    parts += [
-        bytes([mark | place + 1]) + data[6 + 7 * place : 13 + 7 * place] for place in range(-(-len(data[6:]) // 7))
-    ]
-    for place, part in enumerate(parts):
-        yield time_s + _FRAME_S * place, identifier, part.ljust(8, bytes([FILL]))
+    contents = [bytes([len(data)]) + data[:6], *(data[first : first + 7] for first in range(6, len(data), 7))]
+    for place, content in enumerate(contents):
+        yield time_s + _FRAME_S * place, identifier, (bytes([mark | place]) + content).ljust(8, bytes([FILL]))

@@ -103,7 +103,7 @@ def _properties(types: Any, channel: Channel, began: datetime | None) -> dict[st
     }
     if began is not None:
         properties |= _start_time(began)
-    if channel.read(0, 0).dtype == np.int16 and (channel.scale, channel.offset) != (1.0, 0.0):
+    if channel.holds_counts and (channel.scale, channel.offset) != (1.0, 0.0):
         properties |= {
             "NI_Scaling_Status": "unscaled",
             "NI_Number_Of_Scales": types.Uint32(1),
