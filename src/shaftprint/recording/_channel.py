@@ -1,5 +1,6 @@
 """One channel of a logger file on its own clock, read on request."""
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from typing import Any, Self, TypeAlias, cast
@@ -167,6 +168,10 @@ class Channel:
         if not self.is_uneven:
             return (time_s - self.start_s) * self.rate_hz
         return float(np.searchsorted(self.stamps_s(0, self.count), time_s - _ROUNDING / self.rate_hz))
+
+    def samples_before(self, time_s: float) -> int:
+        """Return the number of samples before a time; a sample at it is not before."""
+        return math.ceil(self.sample_at(time_s) - _ROUNDING)
 
     def _by_rate_s(self, start: int, stop: int) -> FloatArray:
         return self.start_s + np.arange(start, stop) / self.rate_hz

@@ -55,8 +55,8 @@ def _expect_within(recording: Recording, from_s: float | None, to_s: float | Non
 
 
 def _cut_channel(recording: Recording, channel: Channel, from_s: float | None, to_s: float | None) -> Channel:
-    first = 0 if from_s is None else max(_samples_before(channel, from_s), 0)
-    last = channel.count if to_s is None else min(_samples_before(channel, to_s), channel.count)
+    first = 0 if from_s is None else max(channel.samples_before(from_s), 0)
+    last = channel.count if to_s is None else min(channel.samples_before(to_s), channel.count)
     if first >= last:
         raise RecordingError(
             f"{recording.path}, channel {channel.name}: expected samples in the stretch, found it recorded from "
@@ -64,8 +64,3 @@ def _cut_channel(recording: Recording, channel: Channel, from_s: float | None, t
             "the channel out."
         )
     return channel.part(first, last)
-
-
-def _samples_before(channel: Channel, time_s: float) -> int:
-    """Return the number of samples before a time; a sample at it is not before."""
-    return math.ceil(channel.sample_at(time_s) - _ROUNDING)

@@ -3,13 +3,8 @@
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
-import numpy as np
-
 from shaftprint.errors import RecordingError
 from shaftprint.recording._channel import Channel
-
-# A sample on the border of two parts may be off it by rounding.
-_ROUNDING = 1e-6
 
 
 def on_one_clock(path: Path, channels: Iterable[Channel]) -> tuple[Channel, ...]:
@@ -64,8 +59,7 @@ def in_parts(channels: Sequence[Channel], length_s: float) -> Iterator[list[Chan
         )
         end_s = min(float(first[0]) for first in firsts) + length_s
         stops = [
-            int(np.clip(np.ceil(one.sample_at(end_s) - _ROUNDING), first, one.count))
-            for one, first in zip(channels, starts, strict=True)
+            min(max(one.samples_before(end_s), first), one.count) for one, first in zip(channels, starts, strict=True)
         ]
         yield [one.part(first, last) for one, first, last in zip(channels, starts, stops, strict=True)]
 
