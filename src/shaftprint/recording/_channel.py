@@ -1,7 +1,7 @@
 """One channel of a logger file on its own clock, read on request."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 from typing import Any, Self, TypeAlias, cast
 
@@ -106,6 +106,11 @@ class Channel:
                 f"channel {self.name}: expected samples within [0, {self.count}), found [{start}, {stop})."
             )
         return self.source(start, stop)
+
+    def blocks(self, samples: int) -> Iterator[tuple[int, int]]:
+        """Yield first and last of its samples in blocks of so many; the last block may be shorter."""
+        for start in range(0, self.count, samples):
+            yield start, min(start + samples, self.count)
 
     def values(self, start: int, stop: int) -> FloatArray:
         """Return the samples [start, stop) in the channel's unit, shape (stop - start,).

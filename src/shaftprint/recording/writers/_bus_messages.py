@@ -103,12 +103,6 @@ def _newest(channel: Channel, signal: Signal, time_s: FloatArray) -> NDArray[np.
     return np.where(rows < 0, none_of(signal), counts[np.clip(rows, first, last) - first])
 
 
-def blocks_of(channel: Channel) -> Iterator[tuple[int, int]]:
-    """Yield first and last of the samples of a channel, block by block."""
-    for start in range(0, channel.count, CHUNK_SAMPLES):
-        yield start, min(start + CHUNK_SAMPLES, channel.count)
-
-
 def counts_of(channel: Channel, signal: Signal, start: int, stop: int) -> NDArray[np.int64]:
     """Return the samples [start, stop) of a channel as counts of a signal; none beyond its counts."""
     if _are_its_counts(channel, signal):
@@ -171,8 +165,8 @@ def own_signal(channel: Channel, name: str, *, start: int) -> Signal:
 def _step_of(channel: Channel) -> tuple[float, float]:
     """Return the value of a count, and that of count zero."""
     lowest, highest = np.inf, -np.inf
-    for ends in blocks_of(channel):
-        values = channel.values(*ends)
+    for block in channel.blocks(CHUNK_SAMPLES):
+        values = channel.values(*block)
         values = values[np.isfinite(values)]
         if values.size:
             lowest, highest = min(lowest, float(values.min())), max(highest, float(values.max()))

@@ -74,8 +74,7 @@ def _write_vector(output: Hdf5Output, channel: Channel) -> None:
             shuffle=True,
         )
         _mark(dataset, "double")
-    for start in range(0, channel.count, CHUNK_SAMPLES):
-        stop = min(start + CHUNK_SAMPLES, channel.count)
+    for start, stop in channel.blocks(CHUNK_SAMPLES):
         values = channel.values(start, stop)
         with output.calls():
             dataset[0, start:stop] = values

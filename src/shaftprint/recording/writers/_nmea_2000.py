@@ -11,12 +11,12 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.recording._channel import Channel
+from shaftprint.recording._container import CHUNK_SAMPLES
 from shaftprint.recording.readers.can import KNOWN, pgn_of
 from shaftprint.recording.readers.can import BusSignal as Signal
 from shaftprint.recording.writers._bus_log import write_bus_log
 from shaftprint.recording.writers._bus_messages import (
     Sent,
-    blocks_of,
     counts_of,
     names_in_messages,
     none_of,
@@ -196,7 +196,7 @@ def _rarer(sent: Sequence[Sent]) -> Iterator[str]:
 def _beyond(channel: Channel, signal: Signal) -> int:
     """Return how many values have no count."""
     beyond = 0
-    for ends in blocks_of(channel):
-        is_none = counts_of(channel, signal, *ends) == none_of(signal)
-        beyond += int(np.count_nonzero(is_none & np.isfinite(channel.values(*ends))))
+    for block in channel.blocks(CHUNK_SAMPLES):
+        is_none = counts_of(channel, signal, *block) == none_of(signal)
+        beyond += int(np.count_nonzero(is_none & np.isfinite(channel.values(*block))))
     return beyond
