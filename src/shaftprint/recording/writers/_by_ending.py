@@ -31,7 +31,9 @@ class _WrittenFormat:
     endings: tuple[str, ...]
     """Endings of its files; the first format of an ending is written where no name is given."""
     write: Callable[..., tuple[str, ...] | None]
-    """Takes path, channels, ``overwrite`` and, where it holds it, ``began``; returns what is lost, a sentence each."""
+    """Takes path, channels, ``overwrite`` and, where it holds it, ``began``; returns what is lost, a sentence each.
+
+    ``write_by_ending`` describes these for all of them; a writer says what is special to it."""
     date: Literal["none", "as it is", "in UTC", "without offset"] = "none"
     """How it holds the date of second 0."""
     keeps_times: bool = True

@@ -22,28 +22,11 @@ def write_can_log(
 ) -> tuple[str, ...]:
     """Write channels, each on its own clock or at its own times, as BLF, ASC or candump, with a DBC file beside it.
 
-    Four channels of one clock share a frame, each with 16 bits.
+    Four channels of one clock share a frame, each with 16 bits: counts of 16 bits stay what they are, other values are
+    rounded to such.
 
-    Parameters
-    ----------
-    path
-        The file to write, whole or not at all; its ending is .blf, .asc or .log. The DBC file is ``NAME.dbc``.
-    channels
-        Channels of any recording; counts of 16 bits stay what they are, other values are rounded to such.
-    began
-        Date of second 0 by the clock of the place, where it is known.
-    overwrite
-        Whether files of these names may be replaced.
-
-    Returns
-    -------
-    remarks
-        What was lost, a sentence each.
-
-    Raises
-    ------
-    RecordingError
-        If python-can or canmatrix is not installed, there are too many channels, or a file cannot be written.
+    Parameters, what is returned and errors are those of ``write_by_ending``; the date is by the clock of the place.
+    python-can and canmatrix have to be installed, and there are groups for so many messages only.
     """
     path, channels = Path(path), list(channels)
     names = names_in_messages(channels)

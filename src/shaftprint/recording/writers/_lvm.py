@@ -25,26 +25,8 @@ def write_lvm(
 ) -> tuple[str, ...]:
     """Write channels as .lvm: one column of times where they share a clock, else times before each channel.
 
-    Parameters
-    ----------
-    path
-        The file to write, whole or not at all.
-    channels
-        Channels of any recording, at their own times too.
-    began
-        Date of second 0 by the clock of the place, where it is known.
-    overwrite
-        Whether a file of that name may be replaced.
-
-    Returns
-    -------
-    remarks
-        What was lost, a sentence each.
-
-    Raises
-    ------
-    RecordingError
-        If there is no channel, a name means something else in such a file, or the file cannot be written.
+    Parameters, what is returned and errors are those of ``write_by_ending``; the date is by the clock of the place.
+    There has to be a channel, and none may be called what means something else in such a file.
     """
     path, written = Path(path), list(channels)
     if not written:

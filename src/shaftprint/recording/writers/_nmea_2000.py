@@ -112,20 +112,7 @@ def write_nmea_2000(
     128259), with its steps and periods; other channels in groups of the maker, 10 times a second at most. What comes
     faster in the recording is not filtered, as gateways do not: the newest value is sent.
 
-    Parameters
-    ----------
-    path, channels, began, overwrite
-        As for ``write_can_log``.
-
-    Returns
-    -------
-    remarks
-        What was lost, a sentence each.
-
-    Raises
-    ------
-    RecordingError
-        As from ``write_can_log``.
+    Parameters, what is returned and errors are those of ``write_can_log``.
     """
     path, channels = Path(path), list(channels)
     names = names_in_messages(channels)

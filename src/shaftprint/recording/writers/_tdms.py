@@ -62,17 +62,8 @@ def write_tdms_appended(
 ) -> None:
     """Write channels as a program does that opens the file every ten seconds, appends what it has, and closes it.
 
-    Each part states its start again: by the date where that is known, else by the offset.
-
-    Parameters
-    ----------
-    path, channels, began, overwrite
-        As for ``write_tdms``.
-
-    Raises
-    ------
-    RecordingError
-        As for ``write_tdms``.
+    Each part states its start again: by the date where that is known, else by the offset. Parameters and errors are
+    those of ``write_tdms``.
     """
     path, written = Path(path), list(channels)
     nptdms = library(path, "nptdms", "TDMS")

@@ -28,26 +28,8 @@ def write_uff(
     The head of a function prints start and step with six digits. Where these do not tell the clock, and where samples
     are no numbers, which the format does not know, each sample gets its time.
 
-    Parameters
-    ----------
-    path
-        The file to write, whole or not at all.
-    channels
-        Channels of any recording, of two samples at least.
-    began
-        Date of second 0 by the clock of the place, where it is known; the format holds seconds.
-    overwrite
-        Whether a file of that name may be replaced.
-
-    Returns
-    -------
-    remarks
-        What was lost, a sentence each.
-
-    Raises
-    ------
-    RecordingError
-        If pyuff is not installed, a channel has fewer than two numbers, or the file cannot be written.
+    Parameters, what is returned and errors are those of ``write_by_ending``; the date is by the clock of the place, to
+    the second. pyuff has to be installed, and each channel to have two numbers.
     """
     path = Path(path)
     pyuff = library(path, "pyuff", "universal")
