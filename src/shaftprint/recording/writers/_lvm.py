@@ -13,7 +13,7 @@ from shaftprint.escape import printable
 from shaftprint.files import written_whole
 from shaftprint.recording._channel import Channel
 from shaftprint.recording.writers._refused import told_as_refused
-from shaftprint.recording.writers._shared_clock import by_clock, in_parts
+from shaftprint.recording.writers._shared_clock import by_clock, expect_channels, in_parts
 
 _SEGMENT_S = 10.0
 _TAKEN = ("x_value", "comment", "")
@@ -29,8 +29,7 @@ def write_lvm(
     There has to be a channel, and none may be called what means something else in such a file.
     """
     path, written = Path(path), list(channels)
-    if not written:
-        raise RecordingError(f"{path}: expected at least one channel to write, found none.")
+    expect_channels(path, written)
     taken = next((one.name for one in written if one.name.lower() in _TAKEN), None)
     if taken is not None:
         raise RecordingError(f'{path}: expected names of channels other than X_Value and Comment, found "{taken}".')
@@ -61,8 +60,8 @@ def _write_segment(file: TextIO, channels: list[Channel], began: datetime | None
     head: dict[str, list[str]] = {"Samples": [str(one.count) for one in channels]}
     if began is not None:
         # the first sample that is taken in a segment dates it
-        at = [began + timedelta(seconds=one.start_s) for one in channels]
-        head |= {"Date": [f"{one:%Y/%m/%d}" for one in at], "Time": [f"{one:%H:%M:%S.%f}" for one in at]}
+        dates = [began + timedelta(seconds=one.start_s) for one in channels]
+        head |= {"Date": [f"{one:%Y/%m/%d}" for one in dates], "Time": [f"{one:%H:%M:%S.%f}" for one in dates]}
     head |= {
         "Y_Unit_Label": [printable(one.unit) for one in channels],
         "X_Dimension": ["Time" for _ in channels],

@@ -7,6 +7,18 @@ from shaftprint.errors import RecordingError
 from shaftprint.recording._channel import Channel
 
 
+def expect_channels(path: Path, channels: Sequence[Channel]) -> None:
+    """Check that there is a channel.
+
+    Raises
+    ------
+    RecordingError
+        If there is none.
+    """
+    if not channels:
+        raise RecordingError(f"{path}: expected at least one channel to write, found none.")
+
+
 def on_one_clock(path: Path, channels: Iterable[Channel]) -> tuple[Channel, ...]:
     """Return the channels if all have the same rate, start and number of samples.
 
@@ -16,8 +28,7 @@ def on_one_clock(path: Path, channels: Iterable[Channel]) -> tuple[Channel, ...]
         If there is no channel or their clocks differ.
     """
     shared = tuple(channels)
-    if not shared:
-        raise RecordingError(f"{path}: expected at least one channel to write, found none.")
+    expect_channels(path, shared)
     for channel in shared:
         expect_no_messages(path, channel, on="one clock")
     clocks = {(channel.rate_hz, channel.start_s, channel.count) for channel in shared}
