@@ -255,10 +255,9 @@ class _Source:
             raise RecordingError("it has no value in any row")
         filled = self._filled(has_value if printed is None else np.isfinite(printed))
         rows = np.concatenate([np.arange(first, last) for first, last in filled])
-        last = rows.size
         if printed is not None:
             printed = printed[rows]
-        if last < int(rows[-1]) + 1:
+        if rows.size < int(rows[-1]) + 1:
             values = partial(_picked, values, rows)
         rates = [rate_of_step(_of(segment.head, "Delta_X", place)) for segment in self.segments]
         rate_hz = self.hint_hz or rates[0]
@@ -268,8 +267,7 @@ class _Source:
             raise RecordingError("expected one Delta_X for all segments, found several")
         pieces = self._seconds(place, [stop - start for start, stop in filled], printed, rate_hz)
         clock = clock_of_segments(self.path, name, pieces, rate_hz, self.remarks)
-        exact = clock.rate_hz
-        if self.hint_hz is not None and exact != self.hint_hz:
+        if self.hint_hz is not None and clock.rate_hz != self.hint_hz:
             raise RecordingError(
                 f"expected one sample rate, found {clock.rate_hz:g} Hz in its times and {self.hint_hz:g} Hz in the hint"
             )
@@ -282,12 +280,12 @@ class _Source:
         channel = Channel(
             name=name,
             unit=plain_unit(_of(head, "Y_Unit_Label", place)),
-            rate_hz=exact,
+            rate_hz=clock.rate_hz,
             start_s=clock.start_s,
-            count=last,
+            count=rows.size,
             source=values,
         )
-        return on_clock(channel, replace(clock, rate_hz=exact))
+        return on_clock(channel, clock)
 
     def _filled(self, is_row: NDArray[np.bool_]) -> list[tuple[int, int]]:
         """Return first and last of the rows that a channel fills in each segment; one of a lower rate has fewer."""
