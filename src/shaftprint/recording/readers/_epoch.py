@@ -16,7 +16,8 @@ _LATEST_S = 4e9
 _REFERENCE = re.compile(
     r"(\d{1,4})-(\d\d?)-(\d\d?)(?:[T ]+(\d\d?):(\d\d?)(?::(\d\d?(?:\.\d*)?))?)?\s*(?:Z|UTC|GMT|([+-])(\d\d?):?(\d\d)?)?"
 )
-_UNDATED = 1970
+UNDATED_YEAR = 1970
+"""The year that programs write which know no date; earlier ones are none either."""
 
 
 def from_second_zero(
@@ -104,4 +105,4 @@ def _date_of(began: datetime, first_s: float) -> datetime | None:
     except OverflowError:
         return None
     # times that begin at zero, put before a date, come to 1970: a date that nobody knows
-    return date if date.year > _UNDATED else None
+    return date if date.year > UNDATED_YEAR else None

@@ -16,6 +16,7 @@ from shaftprint.recording._channel import Channel
 from shaftprint.recording._recording import Recording
 from shaftprint.recording.readers._clock import SampleClock, clock_of_times, kept_clocks, on_clock
 from shaftprint.recording.readers._damage import expect_plausible, told_as_damage
+from shaftprint.recording.readers._epoch import UNDATED_YEAR
 from shaftprint.recording.readers._extra import library
 from shaftprint.recording.readers._gather import Gathered, unique_names
 from shaftprint.recording.readers._hints import rate_hint
@@ -36,7 +37,7 @@ _MASTERS = (2, 3)
 _TIME = 1
 _LINEAR = 1
 _ALL_INVALID, _HAS_INVALIDATION_BITS = 1, 2
-_UNDATED, _UNDATED_TOO = 1970, datetime(1980, 1, 1)  # noqa: DTZ001 - the file has no zone
+_UNDATED_TOO = datetime(1980, 1, 1)  # noqa: DTZ001 - the file has no zone
 # MDF 3, block CC: tables of texts
 _TEXTS_OF_MDF_3 = (11, 12)
 
@@ -91,7 +92,7 @@ def _date(file: Any) -> datetime | None:
     computer. What stands there where a writer was given none is the first moment of 1970 or 1980.
     """
     date = file.start_time
-    if not isinstance(date, datetime) or date.year <= _UNDATED or date.replace(tzinfo=None) == _UNDATED_TOO:
+    if not isinstance(date, datetime) or date.year <= UNDATED_YEAR or date.replace(tzinfo=None) == _UNDATED_TOO:
         return None
     if _is_v4(file) or int(getattr(file.header, "abs_time", None) or 0):
         return date

@@ -10,7 +10,7 @@ from typing import Any, TextIO
 import numpy as np
 
 from shaftprint.errors import RecordingError
-from shaftprint.recording.readers._epoch import LATER_THAN_ANY_TEST_S
+from shaftprint.recording.readers._epoch import LATER_THAN_ANY_TEST_S, UNDATED_YEAR
 from shaftprint.recording.readers.can._frames import EXTENDED, FILL, FrameLog, Frames
 
 _BLOCK_FRAMES = 1 << 16
@@ -44,7 +44,6 @@ _SHOWN = re.compile(
     r"\[(?P<length>\d+)\]\s+(?P<data>(?:[0-9A-F]{2}\s*)+|remote request)"
 )
 _FIRST_LINES = 12
-_EPOCH_YEAR = 1970
 
 
 def kind_of(path: Path, begin: str) -> str:
@@ -232,8 +231,7 @@ def _date(text: str) -> datetime | None:
     hour, minute, second = (int(part) for part in date["time"].split(":"))
     if date["half"]:
         hour = hour % 12 + (12 if date["half"].lower() == "pm" else 0)
-    if int(date["year"]) <= _EPOCH_YEAR:
-        # what programs write that know no date
+    if int(date["year"]) <= UNDATED_YEAR:
         return None
     try:
         whole = datetime(int(date["year"]), month, int(date["day"]), hour, minute, second)  # noqa: DTZ001
