@@ -69,6 +69,17 @@ def test_a_formula_that_nobody_can_work_out_is_no_channel(tmp_path, formula):
         read_recording(file)
 
 
+def test_bits_that_have_texts_are_no_numbers(tmp_path):
+    words = [
+        {"val_0": 0, "text_0": f"{name} off", "val_1": bit, "text_1": f"{name} on"}
+        for name, bit in (("a", 1), ("b", 2))
+    ]
+    bits = {"mask_0": 1, "text_0": words[0], "mask_1": 2, "text_1": words[1]}
+    file = _mdf(tmp_path / "log.mf4", (np.arange(50) % 4).astype(np.uint8), bits)
+    with pytest.raises(RecordingError, match="expected a conversion that gives numbers, found one of texts or of bits"):
+        read_recording(file)
+
+
 def test_a_date_of_mdf_3_has_no_zone_and_that_of_nobody_is_none(tmp_path):
     counts = np.arange(50, dtype=np.int16)
     with read_recording(_mdf(tmp_path / "a.mdf", counts, None, version="3.30")) as recording:

@@ -23,7 +23,7 @@ from shaftprint.recording.readers._hints import rate_hint
 from shaftprint.recording.readers._library_output import quiet, remarks
 from shaftprint.recording.readers._mdf_frames import frames_of, holds_frames, holds_no_values, is_bus_logging
 from shaftprint.recording.readers._mdf_records import MdfRecords, expect_in_record
-from shaftprint.recording.readers._mdf_values import by_formula, is_library_s, numbers_of, unit_of
+from shaftprint.recording.readers._mdf_values import by_formula, is_worked_out_here, numbers_of, unit_of
 from shaftprint.recording.readers._opened import Opened
 from shaftprint.recording.readers.can import Database, Decoded, add_signals, database_of, decoded, expect_known
 from shaftprint.units import plain_unit
@@ -261,7 +261,7 @@ def _channel(path: Path, place: _Place, opened: Opened, name: str, clock: Sample
     conversion = described.conversion
     kind = -1 if conversion is None else int(conversion.conversion_type)
     scale, offset = 1.0, 0.0
-    is_ours = not is_library_s(conversion, is_v4=_is_v4(file))
+    is_ours = is_worked_out_here(conversion, is_v4=_is_v4(file))
     values_of = numbers_of if _is_v4(file) else by_formula
     flags = int(getattr(described, "flags", 0))
     has_bits = bool(flags & (_ALL_INVALID | _HAS_INVALIDATION_BITS)) and _is_v4(file)

@@ -21,14 +21,16 @@ _WHOLE, _LONGEST_FORMULA = re.compile(r"(?<![\w.])\d+(?![\w.])"), 1000
 _LARGEST_STATE = 64
 
 
-def is_library_s(conversion: Any, *, is_v4: bool) -> bool:
-    """Return whether the library makes numbers of the counts of a conversion as the standard has it.
+def is_worked_out_here(conversion: Any, *, is_v4: bool) -> bool:
+    """Return whether the numbers of a conversion are worked out here, not by the library.
 
-    It takes a formula of whole counts in their own width, where 2 * X overflows, and passes the counts on where it
-    cannot work a formula out; of whole counts in a table of ranges it finds none.
+    The library takes a formula of whole counts in their own width, where 2 * X overflows, and passes the counts on
+    where it cannot work a formula out; of whole counts in a table of ranges it finds none, and of others makes texts.
     """
     kind = -1 if conversion is None else int(conversion.conversion_type)
-    return kind not in (_FORMULA, _RANGES, _VALUE_TO_TEXT, _RANGE_TO_TEXT) if is_v4 else kind != _FORMULA_OF_MDF_3
+    if not is_v4:
+        return kind == _FORMULA_OF_MDF_3
+    return kind in (_FORMULA, _RANGES) or kind >= _VALUE_TO_TEXT
 
 
 def by_formula(conversion: Any, counts: NDArray[Any]) -> FloatArray:
