@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
-from shaftprint.bench import equipped, read_records, read_responses
+from shaftprint.bench import equipped, identify_responses, read_records, read_responses
 from shaftprint.cli import shaftprint
 from shaftprint.drive import load_drive
 from shaftprint.errors import RecordingError, SettingsError
@@ -97,6 +97,17 @@ def test_numbers_of_a_line_are_found_from_two_responses(drive, tmp_path):
     assert kept["records"] == []
     assert "Verdict: trustworthy" in result.output
     assert "Frequency responses; together p" in result.output
+
+
+def test_more_starts_than_are_drawn_by_themselves_are_all_used(drive, tmp_path):
+    hertz = np.geomspace(0.5, 20.0, 12)
+    columns = (hertz, 20.0 * np.log10(np.abs(lag(hertz))), np.degrees(np.angle(lag(hertz))), 0.01 * np.abs(lag(hertz)))
+    one = equipped(load_drive(drive(POLAR)))
+    files = read_responses([file_of(tmp_path, "data", ("f", "gain", "phase", "std"), *columns)], one)
+    found = identify_responses(one, files, rng=np.random.default_rng(3), starts=25)
+    assert found.identification.settings.starts == 25
+    values = {number.name: number.value for number in found.identification.parameters}
+    assert values == pytest.approx({"K": GAIN, "T": TIME_S, "t_d": DELAY_S}, rel=1e-3)
 
 
 def test_columns_are_read_in_their_units(drive, tmp_path):

@@ -14,11 +14,10 @@ from shaftprint.arrays import ComplexArray, FloatArray
 from shaftprint.bench._equipped import EquippedDrive
 from shaftprint.bench._fit import DriveFit, alone, drive_settings
 from shaftprint.bench._per_record import free_parameters, idle_labels, own_priors, with_structures
-from shaftprint.bench._search import AGREE, MOST
+from shaftprint.bench._search import AGREE, MOST, agreeing_starts
 from shaftprint.drive import ResponseColumns
 from shaftprint.errors import IdentificationError, RecordingError, ResponseError
 from shaftprint.identify import assess, identify_jointly, profile
-from shaftprint.identify.fit import optima_of
 from shaftprint.spectra import FrequencyResponse, circular_covariance, coherence_covariance
 from shaftprint.spelling import meant
 
@@ -74,11 +73,10 @@ def identify_responses(
     """
     pairs = [(structure, file.response) for structure, file in with_structures(one, files)]
     free, known = free_parameters(one, files), own_priors(one, files, one.priors)
-    agreeing = 0
-    while agreeing < AGREE and starts <= MOST:
-        fit = identify_jointly(pairs, rng=rng, settings=drive_settings(free, known, starts))
-        agreeing = sum(optimum.starts for optimum in optima_of(fit) if optimum.connected)
+    fit = identify_jointly(pairs, rng=rng, settings=drive_settings(free, known, starts))
+    while (agreeing := agreeing_starts(fit)) < AGREE and 2 * starts <= MOST:
         starts *= 2
+        fit = identify_jointly(pairs, rng=rng, settings=drive_settings(free, known, starts))
     profiled = profile(fit)
     remarks = (remark for file in files for remark in file.remarks)
     verdict = assess(

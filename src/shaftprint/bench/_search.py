@@ -271,7 +271,12 @@ def _coloured(
         settings=replace(settings, starts=total),
         clusters=tuple(replace(c, stable=bool(is_stable)) for c, is_stable in zip(counted, stable, strict=True)),
     )
-    return Searched(fit=fit, agreeing=sum(optimum.starts for optimum in optima_of(fit) if optimum.connected))
+    return Searched(fit=fit, agreeing=agreeing_starts(fit))
+
+
+def agreeing_starts(fit: Identification) -> int:
+    """Return how many starts ended at the optimum or in one valley with it."""
+    return sum(optimum.starts for optimum in optima_of(fit) if optimum.connected)
 
 
 def _counted(cluster: Cluster, followed: _Ends) -> Cluster:
