@@ -9,6 +9,7 @@ from typing import Protocol, TypeVar
 from shaftprint.bench._equipped import EquippedDrive
 from shaftprint.drive import PerRecord
 from shaftprint.identify import Prior
+from shaftprint.identify.likelihood import united_parameters
 from shaftprint.models import Parameter, Structure
 
 
@@ -59,8 +60,7 @@ def with_structures(one: EquippedDrive, records: Sequence[OfName]) -> list[tuple
 
 def all_parameters(one: EquippedDrive, records: Sequence[Named]) -> tuple[Parameter, ...]:
     """Return the parameters of all records, each once, in the order of a joint fit."""
-    of_all = (p for structure, _ in with_structures(one, records) for p in structure.parameters)
-    return tuple({parameter.name: parameter for parameter in of_all}.values())
+    return united_parameters([structure for structure, _ in with_structures(one, records)])
 
 
 def free_parameters(one: EquippedDrive, records: Sequence[Named]) -> tuple[Parameter, ...]:
@@ -70,23 +70,28 @@ def free_parameters(one: EquippedDrive, records: Sequence[Named]) -> tuple[Param
 
 def own_priors(one: EquippedDrive, records: Sequence[Named], priors: Mapping[str, Prior]) -> dict[str, Prior]:
     """Return priors, that of a parameter with own values for each of them."""
-    rows = {row.name: row for row in _rows(one)}
+    called = _names_in_records(one, records)
     free = {parameter.name for parameter in free_parameters(one, records)}
-    spread: dict[str, Prior] = {}
-    for name, prior in priors.items():
-        if name in rows:
-            labels = dict.fromkeys(rows[name].label(record.name) for record in records)
-            spread |= {own: prior for own in (own_name(name, label) for label in labels) if own in free}
-        else:
-            spread[name] = prior
-    return spread
+    return {
+        name: prior
+        for base, prior in priors.items()
+        for name in called.get(base, [base])
+        if name in free or base not in called
+    }
 
 
 def own_names(one: EquippedDrive, names: set[str], records: Sequence[Named]) -> set[str]:
     """Return names of parameters, those that have own values by each of their names."""
-    rows = {row.name: row for row in _rows(one)}
-    own = {own_name(name, rows[name].label(record.name)) for name in names & set(rows) for record in records}
-    return (names - set(rows)) | own
+    called = _names_in_records(one, records)
+    return {name for base in names for name in called.get(base, [base])}
+
+
+def _names_in_records(one: EquippedDrive, records: Sequence[Named]) -> dict[str, list[str]]:
+    """Return what each parameter with own values is called in the records, each name once."""
+    return {
+        row.name: list(dict.fromkeys(own_name(row.name, row.label(record.name)) for record in records))
+        for row in _rows(one)
+    }
 
 
 def idle_labels(one: EquippedDrive, records: Sequence[Named]) -> tuple[str, ...]:

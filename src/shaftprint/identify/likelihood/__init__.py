@@ -18,6 +18,7 @@ from shaftprint.identify.likelihood._prior import PRIOR_OF, Prior
 from shaftprint.identify.likelihood._tails import estimated_tails, excess_freedom, student_tails
 from shaftprint.identify.likelihood._term import FittedTerm, Repeats, Term, TermTest, WhitenedTerm
 from shaftprint.identify.likelihood._term_check import CheckKind, TermCheck
+from shaftprint.identify.likelihood._united_parameters import united_parameters
 from shaftprint.identify.likelihood._weighting import MaximumLikelihood, StudentT, Unweighted, Weighting
 from shaftprint.identify.likelihood._wishart import estimated_shapes
 
@@ -58,5 +59,6 @@ __all__ = [
     "priors_from_vessel",
     "stated_by_vessel",
     "student_tails",
+    "united_parameters",
     "with_load",
 ]
