@@ -44,8 +44,8 @@ class Diagram:
     """Its parameters."""
     further: tuple[str, ...] = ()
     """Names of inputs of the structure that the equations ask for besides the signal that goes in."""
-    called: Mapping[str, str] = field(default_factory=dict)
-    """Names of today of parameters that the equations know by another name."""
+    asked_as: Mapping[str, str] = field(default_factory=dict)
+    """What the equations call parameters that have been renamed, by their name of today."""
     _small: dict[frozenset[str], SmallSignal] = field(default_factory=dict, repr=False)
     """Linear equations, by the parameters that are held at zero; made when first asked for."""
 
@@ -79,10 +79,9 @@ class Diagram:
 
     def renamed(self, names: Mapping[str, str]) -> "Diagram":
         """Return the diagram with other names for some parameters, which its equations ask for by ``p`` as before."""
-        called = {former: names.get(today, today) for former, today in self.called.items()}
-        called |= {p.name: names[p.name] for p in self.of if p.name in names and p.name not in self.called.values()}
         of = tuple(replace(p, name=names.get(p.name, p.name)) for p in self.of)
-        return replace(self, of=of, called=called, _small={})
+        asked_as = {names.get(p.name, p.name): self.asked_as.get(p.name, p.name) for p in self.of}
+        return replace(self, of=of, asked_as=asked_as, _small={})
 
     def signals(self, flow: Flow, signal: Formula) -> Mapping[str, Formula]:
         """Return the outputs for a signal, adding the equations to a flow.
@@ -92,8 +91,7 @@ class Diagram:
         StructureError
             If the equations do not give the outputs.
         """
-        former = {today: name for name, today in self.called.items()}
-        parameters = SimpleNamespace(**{former.get(p.name, p.name): flow.parameter(p.name) for p in self.of})
+        parameters = SimpleNamespace(**{self.asked_as.get(p.name, p.name): flow.parameter(p.name) for p in self.of})
         signals = self.equations(flow, signal, parameters)
         if set(signals) != set(self.outputs):
             raise StructureError(
