@@ -11,7 +11,7 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.bench._equipped import EquippedDrive
-from shaftprint.bench._per_record import free_parameters, with_structures
+from shaftprint.bench._per_record import with_structures
 from shaftprint.errors import IdentificationError
 from shaftprint.identify import Identification, Settings
 from shaftprint.identify.search import GivenStarts
@@ -100,8 +100,7 @@ def _fitted_otherwise(
     """Return the fit, from its optimum, with inputs that go the other way."""
     turned = with_structures(one, [replace(record, hold=not record.hold) for record in records])
     values = {p.name: p.value for p in fit.parameters}
-    given = np.array([[values[p.name] for p in free_parameters(one, records)]])
-    settings = replace(settings, starts=1, draw=GivenStarts(given))
+    settings = replace(settings, starts=1, draw=GivenStarts(np.array([list(values.values())])))
     return identify_in_time(turned, rng=np.random.default_rng(0), settings=settings, time=time, start=values)
 
 

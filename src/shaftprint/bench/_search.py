@@ -139,10 +139,13 @@ class _White:
         time: TimeSettings,
         rng: np.random.Generator,
     ) -> None:
-        pairs = with_structures(one, records)
-        self.terms = [output_error(structure, record, settings=time) for structure, record in pairs]
         self.settings, self.rng = settings, rng
         self.parameters = free_parameters(one, records)
+        names = [parameter.name for parameter in self.parameters]
+        self.terms = [
+            output_error(structure, record, settings=time).placed(names, names)
+            for structure, record in with_structures(one, records)
+        ]
         rubs = own_names(one, _friction_names(one), records)
         self.friction = [i for i, p in enumerate(self.parameters) if p.name in rubs and p.lower == 0.0]
         self._released: FloatArray | None = None
@@ -220,9 +223,7 @@ class _White:
 
     def _evaluable(self, theta: FloatArray) -> FloatArray:
         """Return the starts at which no simulation runs away."""
-        names = [parameter.name for parameter in self.parameters]
-        stays = [term.evaluable(theta[:, [names.index(p.name) for p in term.structure.free]]) for term in self.terms]
-        return np.asarray(theta[np.all(stays, axis=0)])
+        return np.asarray(theta[np.all([term.evaluable(theta[:, term.columns]) for term in self.terms], axis=0)])
 
     def _fit(
         self, count: int, theta: FloatArray | None, priors: Mapping[str, Prior] = MappingProxyType({})

@@ -14,7 +14,6 @@ from shaftprint.bench._per_record import base_name, record_structure
 from shaftprint.errors import IdentificationError
 from shaftprint.fingerprint import DriveFingerprint
 from shaftprint.identify import Requirements, Settings
-from shaftprint.models import Structure
 from shaftprint.time_domain import (
     Record,
     RecordFit,
@@ -110,26 +109,17 @@ def _found_beside(
 ) -> dict[str, float]:
     """Return the record's own values of parameters where a fingerprint has none: what fits beside all else."""
     kept, structure = fingerprint.values, record_structure(one, record.name)
-    missing = {p.name: base_name(p.name) for p in structure.free if p.name not in kept and "(" in p.name}
+    missing = [p for p in structure.free if p.name not in kept and "(" in p.name]
     if not missing:
         return {}
-    known = {name: value for name, value in kept.items() if name in structure.names}
-    others = [one for one in kept if base_name(one) in missing.values()]
-    started = {
-        name: float(
-            np.median([kept[other] for other in others if base_name(other) == base] or [_usual(structure, name)])
-        )
-        for name, base in missing.items()
+    of_others = {
+        p.name: [value for name, value in kept.items() if base_name(name) == base_name(p.name)] for p in missing
     }
     fit = identify_in_time(
-        [(structure.held_at(**known), record)],
+        [(structure.held_at(**{name: value for name, value in kept.items() if name in structure.names}), record)],
         rng=np.random.default_rng(0),
         settings=Settings(starts=1),
         time=settings,
-        start=started,
+        start={p.name: float(np.median(of_others[p.name] or [p.value])) for p in missing},
     )
     return {p.name: p.value for p in fit.parameters}
-
-
-def _usual(structure: Structure, name: str) -> float:
-    return float(structure.vector({})[structure.names.index(name)])
