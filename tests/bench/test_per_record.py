@@ -1,5 +1,7 @@
 """Parameters that have a value of their own in each record, or in each group of records."""
 
+from functools import partial
+
 import numpy as np
 import pytest
 from tests.bench import drawn_lags
@@ -11,12 +13,14 @@ from shaftprint.bench import (
     equipped,
     identified_drive,
     predict_drive,
+    predicted_at,
     read_records,
     validate_drive,
     with_structures,
 )
 from shaftprint.drive import load_drive
-from shaftprint.errors import FingerprintError, SettingsError
+from shaftprint.errors import FingerprintError, SettingsError, StructureError
+from shaftprint.identify import Prior
 
 INTERVAL = 0.05
 TIMES_S = {"brass": 0.2, "steel_1": 0.5, "steel_2": 0.5, "known": 0.35}
@@ -85,6 +89,21 @@ def test_planned_records_tell_their_own_values_apart(tmp_path, monkeypatch):
     assert alone["K"] < 0.6 * predict_drive(one, records[:1], noise_std={"y": 0.5}, values={"T": 0.3})["K"]
     groups = [structure for structure, _ in with_structures(one, records)]
     assert groups[1] is groups[2]
+
+
+def test_a_stated_value_stands_for_those_of_all_records_before_what_is_known(tmp_path):
+    path = tmp_path / "drive.toml"
+    path.write_text(LAG_TOML + OWN + '[[known]]\nname = "T"\nvalue = 0.9\nstd = 0.1\n', encoding="utf-8")
+    one = equipped(load_drive(path))
+    plans = [written(tmp_path, name, {"u": np.arange(40.0) % 7.0}, INTERVAL) for name in ("brass", "steel_1", "known")]
+    records = read_records(plans, one, planned=True)
+    assumed = partial(predicted_at, one, records, priors={"K": Prior(90.0, 5.0)})
+    assert assumed(values={}) == {"K": 90.0, "T(brass)": 0.9, "T(steel)": 0.9, "T(known)": 0.35}
+    assert assumed(values={"T(steel)": 0.4})["T(steel)"] == 0.4
+    stated = assumed(values={"K": 70.0, "T": 0.3, "T(steel)": 0.4})
+    assert (stated["K"], stated["T(brass)"], stated["T(steel)"]) == (70.0, 0.3, 0.4)
+    with pytest.raises(StructureError, match="T_1"):
+        assumed(values={"T_1": 1.0})
 
 
 def test_what_is_held_has_no_own_values(tmp_path):

@@ -16,7 +16,7 @@ from shaftprint.bench._fingerprint import drive_fingerprint, identified_drive
 from shaftprint.bench._fit import STARTS, DriveFit, drive_settings, drive_time_settings, identify_drive
 from shaftprint.bench._kept import kept_drive
 from shaftprint.bench._per_record import all_parameters, free_parameters, with_structures
-from shaftprint.bench._predict import noise_words, planned_noise, predict_drive, values_in
+from shaftprint.bench._predict import noise_words, planned_noise, predict_drive, predicted_at
 from shaftprint.bench._records import read_records
 from shaftprint.bench._responses import RESPONSE_STARTS, ResponseFile, identify_responses, read_responses
 from shaftprint.bench._structures import TimeCandidate, TimeComparison, TimeRatio, compare_in_time, without
@@ -50,10 +50,10 @@ __all__ = [
     "noise_words",
     "planned_noise",
     "predict_drive",
+    "predicted_at",
     "read_records",
     "read_responses",
     "validate_drive",
-    "values_in",
     "with_structures",
     "without",
 ]

@@ -14,7 +14,6 @@ from shaftprint.bench._per_record import all_parameters, base_name, free_paramet
 from shaftprint.errors import IdentificationError
 from shaftprint.fingerprint import DriveFingerprint, DriveRecord
 from shaftprint.identify import Prior
-from shaftprint.models import Structure
 from shaftprint.time_domain import NoiseModel, Record, Whitening, output_error
 
 # Rates of a plan and of a record are one but for rounding.
@@ -59,45 +58,49 @@ def predict_drive(
         raise IdentificationError(
             f"prediction: expected the noise of {missing[0]}, a positive standard deviation of one sample, found none."
         )
-    pairs, known = with_structures(one, records), own_priors(one, records, {**one.priors, **(priors or {})})
-    at = {**{name: p.mean for name, p in known.items()}, **(values or {})}
-    _expect_parameters(one, records, at)
+    at = predicted_at(one, records, values=values or {}, priors=priors or {})
     settings = drive_time_settings(one, records)
     names = [parameter.name for parameter in free_parameters(one, records)]
     information = np.zeros((len(names), len(names)))
-    for of_record, record in pairs:
+    for of_record, record in with_structures(one, records):
         term = output_error(of_record, _as_noise(record, noise_std), settings=settings)
         noise = planned_noise(kept, tuple(structure.outputs), noise_std=noise_std, rate_hz=record.rate_hz)
         term = term.with_noise(Whitening(noise=noise))
-        rows = term.rows(of_record.vector(values_in(of_record, at)))
+        rows = term.rows(np.array([at[name] for name in of_record.names]))
         if rows is None:
             raise IdentificationError(
                 f"prediction: the simulation of {structure.name} runs away under {record.name}; state other values."
             )
         places = [names.index(parameter.name) for parameter in of_record.free]
         information[np.ix_(places, places)] += rows[1:] @ rows[1:].T
-    for name, prior in known.items():
+    for name, prior in own_priors(one, records, {**one.priors, **(priors or {})}).items():
         information[names.index(name), names.index(name)] += 1.0 / prior.std**2
     return dict(zip(names, _deviations(information).tolist(), strict=True))
 
 
-def values_in(structure: Structure, values: Mapping[str, float]) -> dict[str, float]:
-    """Return those of some values that a record's structure has; one of all records stands for the record's own."""
-    base = {name: base_name(name) for name in structure.names}
-    own = {name: values[base[name]] for name in structure.names if base[name] in values}
-    return own | {name: value for name, value in values.items() if name in structure.names}
+def predicted_at(
+    one: EquippedDrive, records: Sequence[Record], *, values: Mapping[str, float], priors: Mapping[str, Prior]
+) -> dict[str, float]:
+    """Return every parameter at which records are predicted: as stated, else as known, else as usual.
 
-
-def _expect_parameters(one: EquippedDrive, records: Sequence[Record], values: Mapping[str, float]) -> None:
-    """Refuse values of what no record has.
+    Parameters
+    ----------
+    values
+        What is stated; that of a parameter with own values stands for all of them that are not stated themselves.
+    priors
+        What is known beside the drive file.
 
     Raises
     ------
     StructureError
-        If there is one.
+        If no record has one of them.
     """
-    own = {parameter.name for parameter in all_parameters(one, records)}
-    one.structure.vector({name: value for name, value in values.items() if name not in own})
+    known = own_priors(one, records, {**one.priors, **priors})
+    means = {name: prior.mean for name, prior in known.items()}
+    usual = {parameter.name: parameter.value for parameter in all_parameters(one, records)}
+    # refuses what is in no record
+    one.structure.vector({name: value for name, value in {**means, **values}.items() if name not in usual})
+    return {name: values.get(name, values.get(base_name(name), value)) for name, value in (usual | means).items()}
 
 
 def coloured_record(kept: DriveFingerprint | None, rate_hz: float) -> DriveRecord | None:

@@ -15,10 +15,9 @@ from shaftprint.bench import (
     identified_from,
     noise_words,
     predict_drive,
+    predicted_at,
     read_records,
     validate_drive,
-    values_in,
-    with_structures,
     without,
 )
 from shaftprint.cli._drive_options import drive_fingerprint_at, equipped_drive, file_sha256, holding, is_given, kept_one
@@ -99,15 +98,12 @@ def predict_on_the_bench(
     at = {name: value for name, value in (kept.values if kept else {}).items() if name in names_of_all}
     at |= dict(values)
     deviations = predict_drive(one, records, noise_std=stds, kept=kept, values=at, priors=priors)
-    usual: dict[str, float] = {}
-    for structure, _ in with_structures(one, records):
-        there = values_in(structure, {name: p.mean for name, p in one.priors.items()} | at)
-        usual |= dict(zip(structure.names, structure.vector(there).tolist(), strict=True))
     give("deviations", deviations)
     lost = [name for name, std in deviations.items() if not np.isfinite(std)]
     answer("The records would tell every parameter." if not lost else f"Not told: {', '.join(lost)}.")
     say(noise_words(kept, records))
-    print_table(drive_prediction_table(free_parameters(one, records), usual, deviations))
+    assumed = predicted_at(one, records, values=at, priors=priors)
+    print_table(drive_prediction_table(free_parameters(one, records), assumed, deviations))
 
 
 def _noise(kept: DriveFingerprint | None) -> dict[str, float]:
