@@ -53,9 +53,7 @@ class DriveText:
 
     def block(self, output: str, kind: str, inputs: Sequence[str] = (), **row: object) -> "DriveText":
         """Add a block; what is no key of its row is a parameter."""
-        shape = {
-            key: row.pop(key) for key in ("exponent", "keeps_sign", "points", "numerator", "denominator") if key in row
-        }
+        shape = {key: row.pop(key) for key in _SHAPES if key in row}
         parameters = {key.replace("_", "-"): value for key, value in row.items()}
         self.kinds[kind] = None
         entries: dict[str, object] = {"output": output, "kind": kind} | ({"inputs": list(inputs)} if inputs else {})
