@@ -23,8 +23,9 @@ class Requirements:
     lowest_p_value: float = 0.01
     """Probability below which a fit is rejected, and a line where it is that of the worst of all lines."""
     largest_contradiction: float = 0.05
-    """Largest root mean square, over that of the motion, by which small and large motions of a record, up and down, its
-    halves, other data or a flexible model may differ from the structure: half of what a FitPercent of 90 % leaves."""
+    """Largest root mean square, over that of the motion, by which small and large motions of a record, up and down, a
+    number early and late, other data or a flexible model may differ from the structure: half of what a FitPercent of
+    90 % leaves."""
     visible_share: float = 0.25
     """Least size of such a difference over that of the noise: noise that is no autoregression, such as a shaft order,
     gives differences of a tenth of it that look significant."""
