@@ -107,16 +107,14 @@ def _goes_straight(drive: Drive, units: Mapping[str, str]) -> bool:
     SettingsError
         If some are and others are not.
     """
-    turning = {one.name: one for one in drive.signals if unit_along(units[one.name]) != units[one.name]}
-    straight = {
-        name: one.unit for name, one in turning.items() if unit_factor(one.unit, unit_along(units[name])) is not None
-    }
-    others = {name: one.unit for name, one in turning.items() if name not in straight}
+    turning = [one for one in drive.signals if unit_along(units[one.name]) != units[one.name]]
+    straight = [one for one in turning if unit_factor(one.unit, unit_along(units[one.name])) is not None]
+    others = [one for one in turning if one not in straight]
     if straight and others:
-        (one, unit), (other, of_other) = next(iter(straight.items())), next(iter(others.items()))
         raise SettingsError(
-            f"drive {drive.name}: expected ways and forces, or angles and torques, of all signals, found {one} in "
-            f"{unit} and {other} in {of_other}; convert one of them, by the pinion or screw between, in the recording."
+            f"drive {drive.name}: expected ways and forces, or angles and torques, of all signals, found "
+            f"{straight[0].name} in {straight[0].unit} and {others[0].name} in {others[0].unit}; convert one of them, "
+            "by the pinion or screw between, in the recording."
         )
     return bool(straight)
 

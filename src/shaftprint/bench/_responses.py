@@ -103,8 +103,8 @@ def _read(path: Path, one: EquippedDrive) -> ResponseFile:
     if len(frequencies) > 1:
         raise RecordingError(f"{path}: expected one column of frequencies for all responses, found {len(frequencies)}.")
     hertz = columns[rows[0].frequency] / (2.0 * math.pi if rows[0].frequency_unit == "rad/s" else 1.0)
-    whole = np.all([np.isfinite(column) for column in columns.values()], axis=0) & (hertz > 0.0)
-    order = np.flatnonzero(whole)[np.argsort(hertz[whole], kind="stable")]
+    usable = np.all([np.isfinite(column) for column in columns.values()], axis=0) & (hertz > 0.0)
+    order = np.flatnonzero(usable)[np.argsort(hertz[usable], kind="stable")]
     if order.size < FEWEST:
         raise RecordingError(
             f"{path}: expected {FEWEST} lines or more with numbers in every column, found {order.size}."
@@ -131,9 +131,9 @@ def _read(path: Path, one: EquippedDrive) -> ResponseFile:
         )
     except ResponseError as error:
         raise RecordingError(f"{path}: {error}") from None
-    left = hertz.size - order.size
-    remark = f"in {path.name} {left} of {hertz.size} lines, in which something is no number, are left out."
-    return ResponseFile(name=path.stem, response=response, remarks=(remark,) if left else ())
+    lost = hertz.size - order.size
+    remark = f"in {path.name} {lost} of {hertz.size} lines, in which something is no number, are left out."
+    return ResponseFile(name=path.stem, response=response, remarks=(remark,) if lost else ())
 
 
 def _values(row: ResponseColumns, columns: Mapping[str, FloatArray]) -> ComplexArray:
@@ -160,8 +160,8 @@ def _columns(path: Path, names: Sequence[str]) -> dict[str, FloatArray]:
     except (OSError, UnicodeDecodeError) as error:
         raise RecordingError(f"{path}: expected a text table of a frequency response, found {error}.") from None
     lines = [line for line in text.splitlines() if line.strip() and not line.startswith("#")]
-    mark = max(",;\t", key=(lines[0] if lines else "").count)
-    table = list(csv.reader(lines, delimiter=mark))
+    delimiter = max(",;\t", key=(lines[0] if lines else "").count)
+    table = list(csv.reader(lines, delimiter=delimiter))
     titles = [title.strip() for title in table[0]] if table else []
     for name in names:
         if titles.count(name) != 1:
@@ -169,8 +169,8 @@ def _columns(path: Path, names: Sequence[str]) -> dict[str, FloatArray]:
     return {name: np.array([_number(row, titles.index(name)) for row in table[1:]]) for name in names}
 
 
-def _number(row: Sequence[str], place: int) -> float:
+def _number(row: Sequence[str], column: int) -> float:
     try:
-        return float(row[place])
+        return float(row[column])
     except (IndexError, ValueError):
         return math.nan

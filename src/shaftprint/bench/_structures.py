@@ -159,8 +159,8 @@ def _extra(small: Sequence[Parameter], large: Sequence[Parameter]) -> list[str]:
     free = {p.name: p for p in large if not p.held}
     fixed = {p.name: p.value for p in small if p.held}
     extra = [name for name in fixed if name in free]
-    left = [p.name for p in small if not p.held]
-    others = all(name in free for name in left) and len(free) == len(left) + len(extra)
+    free_in_small = [p.name for p in small if not p.held]
+    others = all(name in free for name in free_in_small) and len(free) == len(free_in_small) + len(extra)
     inside = all(free[name].lower <= fixed[name] <= free[name].upper for name in extra)
     return extra if [p.name for p in small] == [p.name for p in large] and others and inside else []
 

@@ -67,8 +67,8 @@ class PerRecord(Settings):
 
     def label(self, record: str) -> str:
         """Return what the value of a record is called by: its group, or the record itself."""
-        of = (group for group, members in self.groups.items() if any(_is_of(record, one) for one in members))
-        return next(of, record)
+        groups = (name for name, members in self.groups.items() if any(_is_of(record, member) for member in members))
+        return next(groups, record)
 
     @model_validator(mode="after")
     def _each_record_once(self) -> Self:

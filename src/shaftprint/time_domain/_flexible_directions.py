@@ -63,8 +63,8 @@ def slow_course(record: Record) -> FloatArray:
 
     Cosines of half a turn and more: of a random walk, of what warms up, softens or jumps once they hold nearly all.
     """
-    place = (np.cumsum(record.used) - 0.5) / record.used.sum()
-    return np.asarray(np.cos(np.pi * np.arange(1, SLOW + 1)[:, None] * place))
+    share_over = (np.cumsum(record.used) - 0.5) / record.used.sum()
+    return np.asarray(np.cos(np.pi * np.arange(1, SLOW + 1)[:, None] * share_over))
 
 
 def _centred(simulated: FloatArray) -> FloatArray:

@@ -53,11 +53,12 @@ def noise_of(residuals: FloatArray, record: Record) -> FloatArray:
     """Return residuals without what the inputs explain beyond noise, shape (samples, outputs)."""
     used, basis = record.used, excited(record)[:, record.used]
     noise = np.zeros(residuals.shape)
-    noise[used] = np.stack([filled(one, one - basis.T @ (basis @ one), basis) for one in residuals[used].T], axis=1)
+    for output, of_output in enumerate(residuals[used].T):
+        noise[used, output] = filled(of_output, of_output - basis.T @ (basis @ of_output), basis)
     return noise
 
 
-def filled(residuals: FloatArray, left: FloatArray, basis: FloatArray) -> FloatArray:
+def filled(residuals: FloatArray, unexplained: FloatArray, basis: FloatArray) -> FloatArray:
     """Return what directions leave of residuals with noise along them, as much as others have on average.
 
     With none there, the noise of a short record would seem to have a gap at the frequencies of its inputs, and a right
@@ -66,14 +67,14 @@ def filled(residuals: FloatArray, left: FloatArray, basis: FloatArray) -> FloatA
 
     Parameters
     ----------
-    residuals, left
+    residuals, unexplained
         Shape (samples,).
     basis
         Orthonormal directions, shape (directions, samples).
     """
-    level = float(left @ left) / max(residuals.size - len(basis), 1)
-    taken = residuals - left
-    if float(taken @ taken) <= BY_CHANCE * level * len(basis):
+    level = float(unexplained @ unexplained) / max(residuals.size - len(basis), 1)
+    explained = residuals - unexplained
+    if float(explained @ explained) <= BY_CHANCE * level * len(basis):
         return residuals
     signs = np.random.default_rng(0).choice([-1.0, 1.0], size=len(basis))
-    return np.asarray(left + np.sqrt(level) * (signs @ basis))
+    return np.asarray(unexplained + np.sqrt(level) * (signs @ basis))
