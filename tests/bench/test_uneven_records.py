@@ -2,51 +2,16 @@
 
 import numpy as np
 import pytest
+from tests.bench.drawn_lags import LAG_TOML
 
 from shaftprint.bench import equipped, read_records
 from shaftprint.drive import load_drive
 from shaftprint.errors import RecordingError
 
-TOML = """\
-name = "lag"
-
-[[inputs]]
-name = "u"
-channel = "u"
-unit = "V"
-
-[[outputs]]
-name = "y"
-channel = "y"
-unit = "rad/s"
-
-[[blocks]]
-output = "y"
-kind = "first-order-lag"
-inputs = ["u"]
-parameters = { gain = "K", time = "T" }
-
-[[parameters]]
-name = "K"
-unit = "rad/s/V"
-lower = 0.1
-upper = 10.0
-value = 1.0
-meaning = "gain"
-
-[[parameters]]
-name = "T"
-unit = "s"
-lower = 0.01
-upper = 10.0
-value = 0.3
-meaning = "time constant"
-"""
-
 
 @pytest.fixture
 def read(tmp_path):
-    (tmp_path / "drive.toml").write_text(TOML)
+    (tmp_path / "drive.toml").write_text(LAG_TOML)
 
     def records(time, u, y):
         rows = np.column_stack([time, u, y])

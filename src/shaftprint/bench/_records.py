@@ -64,11 +64,21 @@ def read_records(
             of_file = [_record(path, channels, one, stretch, hold) for stretch in one.drive.records or (None,)]
             taken = tuple(f"in {path.name} {remark}" for remark in (*recording.remarks, *moved))
             records += [replace(record, remarks=(*record.remarks, *taken)) for record in of_file]
-    names = [record.name for record in records]
+    expect_different_names("records", [record.name for record in records])
+    return tuple(records)
+
+
+def expect_different_names(what: str, names: Sequence[str]) -> None:
+    """Refuse records or responses of which two have one name.
+
+    Raises
+    ------
+    RecordingError
+        If there are two.
+    """
     twice = next((name for name in names if names.count(name) > 1), None)
     if twice is not None:
-        raise RecordingError(f"records: expected a name for each, found {twice} twice; give the files different names.")
-    return tuple(records)
+        raise RecordingError(f"{what}: expected a name for each, found {twice} twice; give the files different names.")
 
 
 def _channel(recording: Recording, signal: Signal, path: Path) -> Channel:

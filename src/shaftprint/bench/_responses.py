@@ -14,6 +14,7 @@ from shaftprint.arrays import ComplexArray, FloatArray
 from shaftprint.bench._equipped import EquippedDrive
 from shaftprint.bench._fit import DriveFit, alone, drive_settings
 from shaftprint.bench._per_record import free_parameters, idle_labels, own_priors, with_structures
+from shaftprint.bench._records import expect_different_names
 from shaftprint.bench._search import AGREE, MOST, agreeing_starts
 from shaftprint.drive import ResponseColumns
 from shaftprint.errors import IdentificationError, RecordingError, ResponseError
@@ -48,10 +49,7 @@ def read_responses(paths: Sequence[Path], one: EquippedDrive) -> tuple[ResponseF
         If a file cannot be read or lacks a column, or fewer than three lines are left.
     """
     files = tuple(_read(path, one) for path in paths)
-    names = [file.name for file in files]
-    twice = next((name for name in names if names.count(name) > 1), None)
-    if twice is not None:
-        raise RecordingError(f"responses: expected a name for each, found {twice} twice; give the files other names.")
+    expect_different_names("responses", [file.name for file in files])
     return files
 
 
