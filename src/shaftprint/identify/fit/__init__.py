@@ -1,6 +1,6 @@
 """The verb and what it found: values, covariance, test of fit, other optima, the cost along a parameter."""
 
-from shaftprint.identify.fit._covariance import estimate_covariance, known_covariance, variance_along
+from shaftprint.identify.fit._covariance import estimate_covariance, known_covariance, known_variance, variance_along
 from shaftprint.identify.fit._fit_of import fit_of
 from shaftprint.identify.fit._fit_test import FitTest
 from shaftprint.identify.fit._identification import Cluster, Estimate, Identification
@@ -36,6 +36,7 @@ __all__ = [
     "is_passed_over",
     "is_rival",
     "known_covariance",
+    "known_variance",
     "optima_of",
     "part_tests",
     "pick_up_values",

@@ -43,7 +43,11 @@ def variance_along(objective: Objective, theta: FloatArray, slopes: FloatArray, 
     expected
         See ``estimate_covariance``.
     """
-    covariance, information = known_covariance(objective, theta, expected=expected)
+    return known_variance(slopes, *known_covariance(objective, theta, expected=expected))
+
+
+def known_variance(slopes: FloatArray, covariance: FloatArray, information: PseudoInverse) -> float:
+    """Return ``variance_along`` from what ``known_covariance`` gives, which serves many functions."""
     return float(slopes @ covariance @ slopes) if information.knows(slopes) else float(np.inf)
 
 

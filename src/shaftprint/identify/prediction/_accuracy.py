@@ -14,7 +14,7 @@ import numpy as np
 from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.digits import stated
 from shaftprint.errors import IdentificationError
-from shaftprint.identify.fit import Estimate, estimate_covariance, known_covariance, variance_along
+from shaftprint.identify.fit import Estimate, PseudoInverse, known_covariance, known_variance
 from shaftprint.identify.likelihood import Objective, Prior
 from shaftprint.identify.prediction._inseparable_groups import Group, inseparable_groups
 from shaftprint.identify.prediction._planned_objective import assumed_values, planned_objective, value_and_slopes
@@ -196,7 +196,7 @@ def predict_joint_deviations(
     values: Mapping[str, float],
     priors: Mapping[str, Prior],
 ) -> tuple[dict[str, float], FloatArray]:
-    """Return the deviations of ``predict_joint_accuracy`` alone, with a twentieth of its work, and the covariance.
+    """Return the deviations of ``predict_joint_accuracy`` and the covariance, without groups that it cannot separate.
 
     Parameters
     ----------
@@ -211,11 +211,10 @@ def predict_joint_deviations(
     objective = planned_objective(pairs, priors)
     theta = assumed_values(objective, values)[list(objective.free)]
     covariance, information = known_covariance(objective, theta, expected=True)
-    deviations = {}
-    for combination in objective.combinations:
-        value, slopes = value_and_slopes(objective, theta, combination)
-        told = np.isfinite(value) and bool(np.all(np.isfinite(slopes))) and information.knows(slopes)
-        deviations[combination.name] = float(np.sqrt(slopes @ covariance @ slopes)) if told else np.inf
+    deviations = {
+        combination.name: _derived(objective, theta, combination, covariance, information).std
+        for combination in objective.combinations
+    }
     covariance[information.lost, information.lost] = np.inf
     of_parameters = np.sqrt(np.diag(covariance)).tolist()
     names = [parameter.name for parameter in objective.free_parameters]
@@ -232,7 +231,9 @@ def _predicted(
     objective = planned_objective(pairs, priors, lines)
     assumed = assumed_values(objective, values)
     theta = assumed[list(objective.free)]
-    covariance = estimate_covariance(objective, theta, expected=True)
+    within, information = known_covariance(objective, theta, expected=True)
+    covariance = within.copy()
+    covariance[information.lost, information.lost] = np.inf
     parameters = tuple(
         Estimate(name=p.name, unit=p.unit, value=float(value), std=float(np.sqrt(variance)))
         for p, value, variance in zip(objective.free_parameters, theta, np.diag(covariance), strict=True)
@@ -240,7 +241,7 @@ def _predicted(
     named = {c.name: c for c in (*objective.combinations, *combinations)}
 
     def estimate(combination: Combination) -> Estimate:
-        return _derived(objective, theta, combination)
+        return _derived(objective, theta, combination, within, information)
 
     return Accuracy(
         objective=objective,
@@ -253,9 +254,15 @@ def _predicted(
     )
 
 
-def _derived(objective: Objective, theta: FloatArray, combination: Combination) -> Estimate:
+def _derived(
+    objective: Objective,
+    theta: FloatArray,
+    combination: Combination,
+    covariance: FloatArray,
+    information: PseudoInverse,
+) -> Estimate:
     """Return a combination with its standard deviation to first order; infinite where it cannot be formed."""
     value, slopes = value_and_slopes(objective, theta, combination)
     finite = np.isfinite(value) and bool(np.all(np.isfinite(slopes)))
-    variance = variance_along(objective, theta, slopes, expected=True) if finite else np.inf
+    variance = known_variance(slopes, covariance, information) if finite else np.inf
     return Estimate(name=combination.name, unit=combination.unit, value=value, std=float(np.sqrt(variance)))
