@@ -377,9 +377,7 @@ def test_load_and_fuel_rate_become_the_rack_by_the_speed(way):
     kind = KINDS["X"]
     source = Source(kind=kind, name="X", channel=channel, sensor=sensor, vessel=vessel)
     clock = SimpleNamespace(
-        start_s=0.0,
-        rate_hz=200.0,
-        count=grid_s.size,
+        time_s=grid_s,
         latency_s=lambda stated_s: stated_s,
         block_samples=lambda _: BLOCK,
     )

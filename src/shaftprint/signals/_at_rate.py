@@ -11,8 +11,10 @@ import scipy
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import SignalError
 from shaftprint.recording import stamped_values
-from shaftprint.signals._channels import DEFAULT_BLOCK_SAMPLES, blocks
-from shaftprint.signals.conditioning import SampleGrid, decimated
+from shaftprint.signals._channels import blocks
+from shaftprint.signals._clock import Clock
+from shaftprint.signals.conditioning import decimated
+from shaftprint.signals.kinds import comes_in_messages
 
 if TYPE_CHECKING:
     from shaftprint.recording import Channel, Recording
@@ -56,32 +58,31 @@ def at_rate(recording: "Recording", rate_hz: float, *, straight: Collection[str]
             f"{recording.path}: expected channels with a time in common, found the latest to start at {start_s:g} s "
             f"and the earliest to end at {stop_s:g} s; choose some of them (--channel)."
         )
-    moved = {
-        name: _at_rate(one, rate_hz, start_s, count, straight=name in straight)
-        for name, one in recording.channels.items()
-    }
+    clock = Clock(
+        start_s=start_s, rate_hz=rate_hz, count=count, mode="shaftprint", chunk_s=None, advance=lambda samples: None
+    )
+    moved = {name: _at_rate(channel, clock, straight=name in straight) for name, channel in recording.channels.items()}
     return replace(recording, channels=moved)
 
 
-def _at_rate(channel: "Channel", rate_hz: float, start_s: float, count: int, *, straight: bool) -> "Channel":
-    if channel.is_uneven or channel.rate_hz < rate_hz:
-        values = _joined(channel, start_s + np.arange(count) / rate_hz, straight=straight)
+def _at_rate(channel: "Channel", clock: Clock, *, straight: bool) -> "Channel":
+    if comes_in_messages(channel, clock):
+        values = _joined(channel, clock.time_s, straight=straight)
     else:
-        step = channel.rate_hz / rate_hz
-        grid = SampleGrid(first=(start_s - channel.start_s) * channel.rate_hz, step=step, count=count)
-        samples = (block.astype(np.float64) for block in blocks(channel, DEFAULT_BLOCK_SAMPLES))
-        same = grid.on_samples and step == 1.0
+        grid = clock.grid(channel)
+        samples = (block.astype(np.float64) for block in blocks(channel, clock.block_samples(channel)))
+        is_same_clock = grid.on_samples and grid.step == 1.0
         values = (
-            np.concatenate(list(samples))[round(grid.first) :][:count]
-            if same
+            np.concatenate(list(samples))[round(grid.first) :][: grid.count]
+            if is_same_clock
             else decimated(samples, grid, channel=channel.name)
         )
         values = values * channel.scale + channel.offset
     return replace(
         channel,
-        rate_hz=rate_hz,
-        start_s=start_s,
-        count=count,
+        rate_hz=clock.rate_hz,
+        start_s=clock.start_s,
+        count=clock.count,
         source=lambda start, stop: values[start:stop],
         scale=1.0,
         offset=0.0,
@@ -102,8 +103,9 @@ def _joined(channel: "Channel", grid_s: FloatArray, *, straight: bool) -> FloatA
             f"channel {channel.name}: expected {_FEWEST} numbers or more, found {time_s.size}; leave it out "
             "(--channel)."
         )
-    spline = scipy.interpolate.CubicSpline(time_s, values)
-    joined: FloatArray = np.interp(grid_s, time_s, values) if straight else spline(grid_s)
+    joined: FloatArray = (
+        np.interp(grid_s, time_s, values) if straight else scipy.interpolate.CubicSpline(time_s, values)(grid_s)
+    )
     after = np.searchsorted(time_s, grid_s, side="left").clip(1, time_s.size - 1)
     is_between = np.diff(time_s)[after - 1] <= _LONGEST_STEP / channel.rate_hz
     is_inside = (grid_s >= time_s[0]) & (grid_s <= time_s[-1])

@@ -5,6 +5,9 @@ from dataclasses import dataclass
 from threading import Lock
 from typing import TYPE_CHECKING, Literal, TypeAlias
 
+import numpy as np
+
+from shaftprint.arrays import FloatArray
 from shaftprint.signals._channels import DEFAULT_BLOCK_SAMPLES, Advance
 from shaftprint.signals.conditioning import SampleGrid
 
@@ -33,6 +36,11 @@ class Clock:
     """How much of a channel is read at a time [s]."""
     advance: Advance
     """Is told how many samples have been read."""
+
+    @property
+    def time_s(self) -> FloatArray:
+        """Time of each sample [s], shape (count,)."""
+        return self.start_s + np.arange(self.count) / self.rate_hz
 
     def latency_s(self, stated_s: float) -> float:
         """Return how much of a stated latency is taken off [s]: the thesis' way leaves it in."""

@@ -10,6 +10,7 @@ from shaftprint.signals.kinds._rack import rack_signal, read_rack
 from shaftprint.signals.kinds._set_point import SetPointMessages, read_set_point
 from shaftprint.signals.kinds._ship_speed import read_ship_speed, ship_speed_signal
 from shaftprint.signals.kinds._speed_reading import SpeedReading
+from shaftprint.signals.kinds._splined_messages import comes_in_messages
 from shaftprint.signals.kinds._torque import expect_moving_torque, expect_one_sign
 
 __all__ = [
@@ -22,6 +23,7 @@ __all__ = [
     "Source",
     "SpeedReading",
     "SteadyState",
+    "comes_in_messages",
     "compare_speeds",
     "expect_moving_torque",
     "expect_one_sign",

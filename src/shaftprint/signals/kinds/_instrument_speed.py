@@ -104,14 +104,13 @@ def _splined(channel: "Channel", sensor: SpeedSensor, clock: "Clock", latency_s:
     limits = instrument_limits(channel, sensor)
     if channel.stamps is not None:
         return _splined_messages(channel, limits, clock, latency_s)
-    grid_s = clock.start_s + np.arange(clock.count) / clock.rate_hz
     counts = np.concatenate([part.astype(np.float64) for part in blocks(channel, clock.block_samples(channel))])
     missing = np.isnan(counts) | (counts <= limits.lowest) | (counts >= limits.highest)
     if missing.all():
         raise no_numbers(channel)
     values = joined(np.where(missing, np.nan, counts)) * channel.scale + channel.offset
     time_s = channel.start_s - latency_s + np.arange(values.size) / channel.rate_hz
-    on_grid = scipy.interpolate.CubicSpline(time_s, values)(grid_s.clip(time_s[0], time_s[-1]))
+    on_grid = scipy.interpolate.CubicSpline(time_s, values)(clock.time_s.clip(time_s[0], time_s[-1]))
     reach_s = REACH_VALUES / channel.rate_hz
     gaps = gaps_of_missing(channel, missing, longest=LONGEST_GAP_VALUES, reach_s=reach_s)
     bridge(on_grid, gaps, start_s=clock.start_s + latency_s, rate_hz=clock.rate_hz)

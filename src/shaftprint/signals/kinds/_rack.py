@@ -57,9 +57,7 @@ class Rack(ChannelKind[RackSensor]):
         torque_nm = find_working_point(steady.stretches).shaft_torque_nm
 
         def share(time_s: FloatArray) -> FloatArray:
-            clock = steady.clock
-            grid_s = clock.start_s + np.arange(clock.count) / clock.rate_hz
-            speed_rpm = rpm_from_rev_s(np.interp(time_s, grid_s, steady.speed_rev_s))
+            speed_rpm = rpm_from_rev_s(np.interp(time_s, steady.clock.time_s, steady.speed_rev_s))
             return source.sensor.share(speed_rpm, source.vessel.machine)
 
         return rack_signal(

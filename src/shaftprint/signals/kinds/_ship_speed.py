@@ -90,7 +90,7 @@ def read_ship_speed(channel: "Channel", sensor: ShipSpeedSensor, clock: "Clock",
         raise SignalError(
             f"channel {channel.name}: expected numbers, found none; take [sensors.ship_speed] out of the vessel file."
         )
-    grid = clock.start_s + np.arange(clock.count) / clock.rate_hz
+    grid = clock.time_s
     margin = latency_s + 2.0 * sensor.cycle_s
     if grid[0] < time[0] - margin or grid[-1] > time[-1] + margin:
         raise SignalError(

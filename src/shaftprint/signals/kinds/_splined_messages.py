@@ -4,7 +4,6 @@ import math
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-import numpy as np
 import scipy
 
 from shaftprint.errors import SignalError
@@ -49,8 +48,7 @@ def splined(messages: MessageReading, channel: "Channel", clock: "Clock", latenc
     time_s, values = messages.for_spline(latency_s=latency_s)
     if time_s.size < _FEWEST_MESSAGES:
         raise no_numbers(channel)
-    grid_s = clock.start_s + np.arange(clock.count) / clock.rate_hz
-    on_grid = scipy.interpolate.CubicSpline(time_s, values)(grid_s.clip(time_s[0], time_s[-1]))
+    on_grid = scipy.interpolate.CubicSpline(time_s, values)(clock.time_s.clip(time_s[0], time_s[-1]))
     gaps = tuple(replace(gap, reach_s=REACH_VALUES / channel.rate_hz) for gap in messages.gaps)
     bridge(on_grid, gaps, start_s=clock.start_s + latency_s, rate_hz=clock.rate_hz)
     sent = SentValues(time_s=time_s, values=values, rate_hz=channel.rate_hz)
