@@ -8,7 +8,7 @@ wait is told by the same lines.
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -39,6 +39,8 @@ class _Window:
     stop_s: float
     omega_rad_s: FloatArray
     """Their frequencies, shape (lines,)."""
+    inside: BoolArray
+    """Which messages lie in it, shape (messages,)."""
 
 
 def joined_about_lines(sent: SentValues, campaign: Campaign, clock: "Clock") -> "tuple[SentValues, FloatArray] | None":
@@ -57,76 +59,75 @@ def joined_about_lines(sent: SentValues, campaign: Campaign, clock: "Clock") -> 
     -------
     None where the spline through the messages is as good.
     """
-    every = ((window, _inside(window, sent)) for window in _windows(campaign, sent.rate_hz))
-    windows = [(window, inside) for window, inside in every if inside.any()]
+    windows = list(_windows(campaign, sent))
     if not windows:
         return None
-    time_s = _times_of_values(sent, windows)
-    fastest_hz = max(float(window.omega_rad_s.max()) for window, _ in windows) / (2.0 * np.pi)
-    if time_s is sent.time_s and fastest_hz < _SLOW * sent.rate_hz:
+    fastest_hz = max(float(window.omega_rad_s.max()) for window in windows) / (2.0 * np.pi)
+    is_slow = fastest_hz < _SLOW * sent.rate_hz
+    late_s = behind_cycle(sent.time_s, sent.rate_hz)
+    if is_slow and late_s is None:
         return None
-    grid_s = clock.start_s + np.arange(clock.count) / clock.rate_hz
-    left, lines = sent.values.copy(), np.zeros(grid_s.size)
+    time_s = sent.time_s
+    fits = [_fitted(window, time_s, sent.values) for window in windows]
+    if late_s is not None and _is_late(late_s, sent, windows, fits):
+        time_s = time_s - late_s
+        fits = [_fitted(window, time_s, sent.values) for window in windows]
+    elif is_slow:
+        return None
+    grid_s = clock.time_s
+    without_lines, lines = sent.values.copy(), np.zeros(grid_s.size)
     reach_s = _REACH / sent.rate_hz
-    for window, inside in windows:
-        amplitude, _ = _fitted(window, time_s[inside], sent.values[inside])
-        shown = np.array([spline_gain(float(one) / (2.0 * np.pi), sent.rate_hz) for one in window.omega_rad_s])
-        for times, course, factor in ((time_s, left, -1.0), (grid_s, lines, shown)):
+    for window, (amplitude, _) in zip(windows, fits, strict=True):
+        shown = np.array([spline_gain(float(omega) / (2.0 * np.pi), sent.rate_hz) for omega in window.omega_rad_s])
+        for times, course, factor in ((time_s, without_lines, -1.0), (grid_s, lines, shown)):
             part = slice(*np.searchsorted(times, [window.start_s - reach_s, window.stop_s + reach_s]))
             course[part] += _course(window, factor * amplitude, times[part])
-    spline = scipy.interpolate.CubicSpline(time_s, left)
+    spline = scipy.interpolate.CubicSpline(time_s, without_lines)
     values: FloatArray = lines + spline(grid_s.clip(time_s[0], time_s[-1]))
-    return SentValues(time_s=time_s, values=sent.values, rate_hz=sent.rate_hz), values
+    return replace(sent, time_s=time_s), values
 
 
-def _windows(campaign: Campaign, rate_hz: float) -> Iterator[_Window]:
-    """Yield what is measured of a campaign, as far as the messages are fast enough for it."""
+def _windows(campaign: Campaign, sent: SentValues) -> Iterator[_Window]:
+    """Yield what is measured of a campaign, as far as the messages are fast enough for it and not too few."""
     stretches = [(sine.settled_s, sine.window_stop_s, {sine.frequency_hz}) for sine in campaign.sines]
     for leg in campaign.legs:
         harmonics = {harmonic for one in (leg, *campaign.beside(leg)) for harmonic in one.lines}
         stretches.append((leg.settled_s, leg.window_stop_s, {k / leg.length_of_period_s for k in harmonics}))
     for start_s, stop_s, every_hz in stretches:
-        shown_hz = sorted(one for one in every_hz if one < HIGHEST_SHARE_OF_RATE * rate_hz)
-        if shown_hz:
-            yield _Window(start_s=start_s, stop_s=stop_s, omega_rad_s=2.0 * np.pi * np.array(shown_hz))
+        shown_hz = sorted(line_hz for line_hz in every_hz if line_hz < HIGHEST_SHARE_OF_RATE * sent.rate_hz)
+        inside = (sent.time_s >= start_s) & (sent.time_s < stop_s)
+        if shown_hz and np.count_nonzero(inside) >= _FEWEST_A_NUMBER * (2 + 2 * len(shown_hz)):
+            omega_rad_s = 2.0 * np.pi * np.array(shown_hz)
+            yield _Window(start_s=start_s, stop_s=stop_s, omega_rad_s=omega_rad_s, inside=inside)
 
 
-def _inside(window: _Window, sent: SentValues) -> BoolArray:
-    """Return which messages lie in a window; none where they are too few for its lines."""
-    inside: BoolArray = (sent.time_s >= window.start_s) & (sent.time_s < window.stop_s)
-    enough = np.count_nonzero(inside) >= _FEWEST_A_NUMBER * (2 + 2 * window.omega_rad_s.size)
-    return inside if enough else np.zeros_like(inside)
-
-
-def _times_of_values(sent: SentValues, windows: list[tuple[_Window, BoolArray]]) -> FloatArray:
-    """Return when the values were taken: at the times of their messages, unless the lines say that these were late."""
-    late_s = behind_cycle(sent.time_s, sent.rate_hz)
-    if late_s is None:
-        return sent.time_s
+def _is_late(
+    late_s: FloatArray, sent: SentValues, windows: list[_Window], fits: list[tuple[ComplexArray, FloatArray]]
+) -> bool:
+    """Return whether lines that were fitted at the times of the messages say that these were late."""
     late, residuals, slopes = [], [], []
-    for window, inside in windows:
-        amplitude, residual = _fitted(window, sent.time_s[inside], sent.values[inside])
-        late.append(late_s[inside])
+    for window, (amplitude, residual) in zip(windows, fits, strict=True):
+        late.append(late_s[window.inside])
         residuals.append(residual)
-        slopes.append(_course(window, 1j * window.omega_rad_s * amplitude, sent.time_s[inside]))
-    is_late = is_late_by(np.concatenate(late), np.concatenate(residuals), np.concatenate(slopes))
-    return sent.time_s - late_s if is_late else sent.time_s
+        slopes.append(_course(window, 1j * window.omega_rad_s * amplitude, sent.time_s[window.inside]))
+    return is_late_by(np.concatenate(late), np.concatenate(residuals), np.concatenate(slopes))
 
 
 def _fitted(window: _Window, time_s: FloatArray, values: FloatArray) -> tuple[ComplexArray, FloatArray]:
-    """Return the complex amplitudes of the lines, shape (lines,), and what is left of the values."""
+    """Return the complex amplitudes of the lines, shape (lines,), and what is left of the values in the window."""
+    time_s, values = time_s[window.inside], values[window.inside]
     turned = np.outer(time_s - window.start_s, window.omega_rad_s)
     middle_s = 0.5 * (window.start_s + window.stop_s)
     design = np.column_stack([np.ones(time_s.size), time_s - middle_s, np.cos(turned), np.sin(turned)])
     # the lines are nearly orthogonal: normal equations lose nothing
-    found = scipy.linalg.solve(design.T @ design, design.T @ values, assume_a="pos")
-    cosine, sinus = found[2:].reshape(2, -1)
-    return cosine - 1j * sinus, values - design @ found
+    numbers = scipy.linalg.solve(design.T @ design, design.T @ values, assume_a="pos")
+    cosine, sinus = numbers[2:].reshape(2, -1)
+    return cosine - 1j * sinus, values - design @ numbers
 
 
 def _course(window: _Window, amplitude: ComplexArray, time_s: FloatArray) -> FloatArray:
     """Return what the lines are at some times, shape of ``time_s``."""
     course = np.zeros(time_s.size)
-    for one, omega_rad_s in zip(amplitude, window.omega_rad_s, strict=True):
-        course += (one * np.exp(1j * omega_rad_s * (time_s - window.start_s))).real
+    for height, omega_rad_s in zip(amplitude, window.omega_rad_s, strict=True):
+        course += (height * np.exp(1j * omega_rad_s * (time_s - window.start_s))).real
     return course
