@@ -334,10 +334,8 @@ def _about_lines(readings: Readings, campaign: Campaign) -> Readings:
 def _without_steps_in_place(readings: Readings, campaign: Campaign) -> None:
     """Take out of a set point what the steps of its messages make of the sines of a campaign."""
     reading, clock = readings.by_name["n_set"], readings.clock
-    if clock.mode == "thesis" or not isinstance(reading, SetPointMessages) or not reading.step_v:
-        return
     sent = reading.sent
-    if sent is None:
+    if clock.mode == "thesis" or sent is None or not isinstance(reading, SetPointMessages) or not reading.step_v:
         return
     take_out_steps(
         reading.values,

@@ -1,5 +1,6 @@
 """A continuous channel from raw counts to its unit on the grid: faults replaced, rate lowered."""
 
+import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal, Self
@@ -47,6 +48,11 @@ class Reading:
     """What the reader should know."""
     sent: SentValues | None = None
     """The messages that were joined; None of samples at a rate."""
+
+    @property
+    def value_rate_hz(self) -> float:
+        """Values a second that a spline has joined [Hz]; infinite of samples at a rate."""
+        return math.inf if self.sent is None else self.sent.rate_hz
 
     def of(self, quantity: Callable[[FloatArray], FloatArray], *, earlier_s: float = 0.0) -> Self:
         """Return what the values mean, and the gaps so much earlier [s]."""

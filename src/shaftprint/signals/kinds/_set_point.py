@@ -55,7 +55,6 @@ class SetPoint(ChannelKind[SetPointSensor]):
 
     def signal(self, source: Source[SetPointSensor], reading: Reading, steady: SteadyState) -> ExcitationSignal:
         """Return the set point, whose values have become a speed by its line."""
-        is_message = isinstance(reading, SetPointMessages)
         calibration, scale, speed_rev_s = steady.calibration, steady.scale, steady.working_point.engine_speed_rev_s
         return ExcitationSignal(
             name=self.name,
@@ -67,8 +66,8 @@ class SetPoint(ChannelKind[SetPointSensor]):
             scale_std=scale.std / scale.value,
             shown_unit="rpm",
             shown_reference=rpm_from_rev_s(speed_rev_s),
-            value_rate_hz=source.channel.rate_hz if is_message else math.inf,
-            is_obeyed=is_message and source.sensor.is_obeyed,
+            value_rate_hz=reading.value_rate_hz,
+            is_obeyed=isinstance(reading, SetPointMessages) and source.sensor.is_obeyed,
         )
 
 

@@ -1,6 +1,5 @@
 """Shaft torque from the gauge: unit, zero, known latency, dropouts, and whether the gauge is alive."""
 
-import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
@@ -16,7 +15,6 @@ from shaftprint.signals._signals import Repair
 from shaftprint.signals.conditioning import FaultLimits, Reading, conditioned, fault_limits
 from shaftprint.signals.kinds._current_loop import alive_counts
 from shaftprint.signals.kinds._kind import ChannelKind, Source, SteadyState
-from shaftprint.signals.kinds._message_reading import MessageReading
 from shaftprint.signals.kinds._splined_messages import comes_in_messages
 from shaftprint.signals.kinds._torque_messages import torque_messages
 from shaftprint.vessel import LIVE_ZERO_MA, ShaftTorqueSensor
@@ -83,7 +81,7 @@ class ShaftTorque(ChannelKind[ShaftTorqueSensor]):
             values=frozen_float(reading.values),
             reference=steady.working_point.shaft_torque_nm,
             reference_std=steady.working_point.shaft_torque_std_nm,
-            value_rate_hz=source.channel.rate_hz if isinstance(reading, MessageReading) else math.inf,
+            value_rate_hz=reading.value_rate_hz,
         )
 
 
