@@ -2,7 +2,7 @@
 
 What a sender does between two messages is not told by them: a value may be that of the instant at which it is sent,
 older by up to a period, or the mean since the one before. The latency of the vessel file is to hold all of it; where
-that states no deviation, `with_message_latencies` counts a period's worth.
+that states no deviation, `survey.priors_of` counts a period's worth.
 """
 
 from dataclasses import replace
@@ -57,16 +57,17 @@ def torque_messages(
 def _faults(channel: "Channel", limits: FaultLimits, clock: "Clock") -> "tuple[BoolArray, list[Repair]]":
     """Return which values cannot be true, shape (messages,), and what they are, at the times of their messages."""
     raw = np.concatenate(list(blocks(channel, clock.block_samples(channel), clock.advance)))
-    found: list[Repair] = []
-    patcher = Patcher(channel=channel, limits=limits, repairs=found)
+    repairs: list[Repair] = []
+    patcher = Patcher(channel=channel, limits=limits, repairs=repairs)
     patched = np.concatenate(list(patcher.patched(flagged([raw], limits))))
     wrong: BoolArray = ~(patched == raw)
     for gap in patcher.gaps:
-        wrong[_place(channel, gap.start_s) : _place(channel, gap.stop_s)] = True
+        wrong[_message_at(channel, gap.start_s) : _message_at(channel, gap.stop_s)] = True
     stamps_s = channel.stamps_s(0, channel.count)
-    return wrong, [replace(one, time_s=float(stamps_s[_place(channel, one.time_s)])) for one in found]
+    at_stamps = [replace(repair, time_s=float(stamps_s[_message_at(channel, repair.time_s)])) for repair in repairs]
+    return wrong, at_stamps
 
 
-def _place(channel: "Channel", by_rate_s: float) -> int:
+def _message_at(channel: "Channel", by_rate_s: float) -> int:
     """Return which message a time means that was counted by the rate alone."""
     return round((by_rate_s - channel.start_s) * channel.rate_hz)
