@@ -105,12 +105,10 @@ class AssumedShip(Shown):
             )
         if self.is_exact:
             return self.values[None, :]
-        lower = np.array([p.lower for p in self.structure.parameters])
-        upper = np.array([p.upper for p in self.structure.parameters])
         rows, drawn = self.values[None, :], 0
         while rows.shape[0] < count and drawn < _DRAWN_FOR_ONE * count:
             more = count - rows.shape[0]
-            inside = np.clip(self._drawn(more, rng), lower, upper)
+            inside = self.within_bounds(self._drawn(more, rng))
             quiet = stable_rows(self.structure, self.with_gains(inside, gain_margin))
             rows, drawn = np.concatenate([rows, inside[quiet]]), drawn + more
         if rows.shape[0] < count:
@@ -127,6 +125,11 @@ class AssumedShip(Shown):
         middle = self.values[places]
         rows[:, places] = middle * np.exp(rows[:, places] / middle - 1.0)
         return rows
+
+    def within_bounds(self, rows: FloatArray) -> FloatArray:
+        """Return parameter values, each moved to the next bound where it is beyond, shape (..., parameters)."""
+        lower, upper = np.array([(p.lower, p.upper) for p in self.structure.parameters]).T
+        return np.clip(rows, lower, upper)
 
     def with_gains(self, rows: FloatArray, factor: float) -> FloatArray:
         """Return parameter values with so many times the gains of the governor, shape (rows, parameters)."""

@@ -5,9 +5,8 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
-from shaftprint.arrays import FloatArray, frozen_float
+from shaftprint.arrays import BoolArray, FloatArray, frozen_float
 from shaftprint.catalogue import ShipRole
 from shaftprint.design.inputs._assumed_ship import GAINS, RELATIVE_SPREAD, AssumedShip, assumed_ship
 from shaftprint.distributions import NORMAL_95
@@ -127,37 +126,35 @@ def possible_ship(
     factor = np.array([share if name in over_torque else 1.0 for name in names])
     usual_std = factor * np.array([np.sqrt(np.diag(usual.covariance))[usual.structure.names.index(n)] for n in names])
     usual_value = factor * np.array([usual.by_name[name] for name in names])
-    positive = [
-        name in roles and roles[name] in _POSITIVE and value > 0.0 and other > 0.0
-        for name, value, other in zip(names, found.values.tolist(), usual_value.tolist(), strict=True)
-    ]
-    middle, wide = _as_wide_as_intervals(found, fingerprint, np.array(positive))
+    has_positive_role = np.array([roles.get(name) in _POSITIVE for name in names])
+    positive = has_positive_role & (found.values > 0.0) & (usual_value > 0.0)
+    middle, wide = _as_wide_as_intervals(found, fingerprint, positive)
     # from here on deviations of what is positive are those of the logarithm
     usual_unit = np.where(positive, usual_value, 1.0)
     with np.errstate(invalid="ignore", divide="ignore"):
         away = np.where(positive, np.log(middle / usual_value), middle - usual_value)
     open_ = np.flatnonzero(np.diag(wide) > 0.0)
-    covariance, spread, away = wide[np.ix_(open_, open_)], (usual_std / usual_unit)[open_] ** 2, away[open_]
+    block = np.ix_(open_, open_)
+    covariance, spread, away = wide[block], (usual_std / usual_unit)[open_] ** 2, away[open_]
     is_prior = np.array([name in fingerprint.priors for name in names])[open_]
     says = ~is_prior & (spread > 0.0) & (away**2 <= _OTHER_SHIP**2 * (spread + np.diag(covariance)))
     before = np.diag(np.where(says, 1.0 / np.where(says, spread, 1.0), 0.0))
     together, moved = np.zeros_like(wide), np.zeros(middle.size)
-    together[np.ix_(open_, open_)] = np.linalg.inv(np.linalg.inv(covariance) + before)
-    moved[open_] = -together[np.ix_(open_, open_)] @ before @ away
+    together[block] = np.linalg.inv(np.linalg.inv(covariance) + before)
+    moved[open_] = -together[block] @ before @ away
     values = np.where(positive, middle * np.exp(np.where(positive, moved, 0.0)), middle + moved)
-    bounds = np.array([(p.lower, p.upper) for p in found.structure.parameters]).T
-    values = np.clip(values, *bounds)
+    values = found.within_bounds(values)
     unit = np.where(positive, values, 1.0)
     return replace(
         found,
         values=frozen_float(values),
         covariance=frozen_float(together * unit[:, None] * unit[None, :]),
-        log_normal=tuple(name for name, is_positive in zip(names, positive, strict=True) if is_positive),
+        log_normal=tuple(names[place] for place in np.flatnonzero(positive)),
     )
 
 
 def _as_wide_as_intervals(
-    found: AssumedShip, fingerprint: "Fingerprint", positive: NDArray[np.bool_]
+    found: AssumedShip, fingerprint: "Fingerprint", positive: BoolArray
 ) -> tuple[FloatArray, FloatArray]:
     """Return middle and covariance of a ship by the intervals of its fingerprint.
 
@@ -168,14 +165,15 @@ def _as_wide_as_intervals(
     for place, name in enumerate(found.structure.names):
         low, high = intervals.get(name, (0.0, 0.0))
         std = float(np.sqrt(covariance[place, place]))
+        if not std > 0.0:
+            continue
         wide = std / values[place] if positive[place] else std
-        if std > 0.0 and np.isfinite([low, high]).all() and (low > 0.0 or not positive[place]) and high > low:
+        if np.isfinite([low, high]).all() and high > low and (low > 0.0 or not positive[place]):
             ends = np.log([low, high]) if positive[place] else np.array([low, high])
             wide = 0.5 * float(ends[1] - ends[0]) / NORMAL_95
             values[place] = np.exp(ends.mean()) if positive[place] else ends.mean()
-        if std > 0.0:
-            covariance[place] *= wide / std
-            covariance[:, place] *= wide / std
+        covariance[place] *= wide / std
+        covariance[:, place] *= wide / std
     return values, covariance
 
 

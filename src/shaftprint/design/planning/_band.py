@@ -11,7 +11,7 @@ from shaftprint.design.plan import HELD, Band, Plan, noise_freedom
 from shaftprint.distributions import deviations_passed
 from shaftprint.errors import DesignError
 from shaftprint.identify.prediction import noise_of_line, planned_lines, predict_joint_deviations
-from shaftprint.models import Structure, stable_rows
+from shaftprint.models import stable_rows
 
 # Possible ships, and noises, that are looked at.
 _DRAWS = 64
@@ -127,31 +127,33 @@ def _deviations(
     every = [*pairs, *plan.earlier]
     deviations, covariance = predict_joint_deviations(every, values=values, priors=plan.priors)
     free = list(deviations)[: len(covariance)]
-    found = _estimate(plan.ship.structure, ship, free, covariance, rng)
-    if found is None:
+    estimate = _estimate(plan.ship, ship, free, covariance, rng)
+    if estimate is None:
         return deviations
-    stated, _ = predict_joint_deviations(every, values=found, priors=plan.priors)
+    stated, _ = predict_joint_deviations(every, values=estimate, priors=plan.priors)
     return stated
 
 
 def _estimate(
-    structure: Structure, ship: FloatArray, free: Sequence[str], covariance: FloatArray, rng: np.random.Generator
+    assumed: AssumedShip, ship: FloatArray, free: Sequence[str], covariance: FloatArray, rng: np.random.Generator
 ) -> dict[str, float] | None:
     """Return what a test might find, at which its fit states deviations; None where it may find anything.
 
     Parameters
     ----------
+    assumed, ship
+        The ship of the plan, and the values of a possible one, shape (parameters,).
     free, covariance
         Names of the free parameters, and their covariance, shape (free, free).
     """
     if not np.isfinite(covariance).all():
         return None
-    places, found = [structure.names.index(name) for name in free], ship.copy()
-    found[places] = rng.multivariate_normal(ship[places], covariance, method="eigh")
-    bounds = np.array([(p.lower, p.upper) for p in structure.parameters]).T
-    found = np.clip(found, *bounds)
-    is_stable = bool(stable_rows(structure, found[None, :]).all())
-    return dict(zip(structure.names, found.tolist(), strict=True)) if is_stable else None
+    structure, values = assumed.structure, ship.copy()
+    places = [structure.names.index(name) for name in free]
+    values[places] = rng.multivariate_normal(ship[places], covariance, method="eigh")
+    values = assumed.within_bounds(values)
+    is_stable = bool(stable_rows(structure, values[None, :]).all())
+    return dict(zip(structure.names, values.tolist(), strict=True)) if is_stable else None
 
 
 def _estimated_variance(freedom: FloatArray, rng: np.random.Generator) -> FloatArray:
