@@ -20,13 +20,13 @@ def alias_remarks(
     sensor, moved
         The speed and what was moved.
     """
-    whose = {
+    by_limit = {
         f"half the pulse rate of {sensor.name}": sensor,
         f"half the rate of the {moved.words}'s messages": moved,
         "half the rate of the shaft torque's messages": signals.channels["M_s"],
     }
     return [
-        f"above {one.nyquist_hz:.2f} Hz, {limit}: aliased"
-        for limit, one in whose.items()
-        if frequency_hz > one.nyquist_hz
+        f"above {channel.nyquist_hz:.2f} Hz, {limit}: aliased"
+        for limit, channel in by_limit.items()
+        if frequency_hz > channel.nyquist_hz
     ]

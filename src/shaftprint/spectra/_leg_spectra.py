@@ -147,7 +147,7 @@ def _leg(signals: "Signals", leg: "Leg", measured: "LegLines", moved: "Excitatio
             f"{measured.window.state.start_s:g} and {measured.window.state.stop_s:g} s: check that campaign and "
             "recording belong together."
         )
-    remarks, used = _judged(lines, finding, signals, sensor, moved)
+    remarks, used = _judged(lines, finding, signals, moved)
     missing = leg.periods - measured.window.state.periods
     if missing > 0:
         remarks[leg.name] = f"{measured.window.state.periods} of {leg.periods} periods are in the recording"
@@ -195,14 +195,13 @@ def _judged(
     lines: "Sequence[LineMeasurement]",
     finding: "LegFinding",
     signals: "Signals",
-    sensor: "SpeedSignal",
     moved: "ExcitationSignal",
 ) -> tuple[dict[str, str], "BoolArray"]:
     """Return remarks on lines, and which of them have a clean set point and a speed without aliasing."""
     remarks, used = dict(finding.remarks), np.ones(len(lines), dtype=np.bool_)
     for row, line in enumerate(lines):
         name = line.window.line
-        aliased = alias_remarks(line.window.frequency_hz, signals, sensor, moved)
+        aliased = alias_remarks(line.window.frequency_hz, signals, signals.engine_speed, moved)
         for remark in filter(None, (*aliased, line.order_remark, *line.message_remarks.values())):
             remarks[name] = "; ".join(part for part in (remarks.get(name), remark) if part)
         used[row] = not aliased and name not in finding.unusable

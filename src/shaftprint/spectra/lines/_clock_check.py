@@ -100,12 +100,14 @@ def offsets_of_lines(lines: "Sequence[LineMeasurement]", names: Sequence[str]) -
         The channels.
     """
     offset, std = np.full((2, len(lines), len(names)), np.nan)
-    known, so_far = np.zeros((2, len(names)))
-    for row, line in enumerate(lines if lines[0].stretches.shape[1] >= _FEWEST_STRETCHES else ()):
+    if lines[0].stretches.shape[1] < _FEWEST_STRETCHES:
+        return offset, std
+    weights, so_far = np.zeros((2, len(names)))
+    for row, line in enumerate(lines):
         offset[row], std[row] = _offsets(line, names, so_far)
         weight = np.nan_to_num(std[row] ** -2.0)
-        known += weight
-        so_far += np.where(weight > 0.0, weight / np.maximum(known, 1.0) * (offset[row] - so_far), 0.0)
+        weights += weight
+        so_far += np.where(weight > 0.0, weight / np.maximum(weights, 1.0) * (offset[row] - so_far), 0.0)
     return offset, std
 
 
