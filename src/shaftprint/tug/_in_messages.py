@@ -6,12 +6,13 @@ from typing import Any, Final
 
 from shaftprint.errors import SettingsError
 from shaftprint.tug._tug import Tug
+from shaftprint.tug.sensors._speed_meter import SPEED_STEP_RPM
 from shaftprint.vessel import Vessel
 
 MESSAGES: Final = ("torque", "speed", "set-point")
 """What may come in messages."""
 # Steps of a set point on a bus by its unit: SAE J1939-71, pedal (SPN 91) and desired speed (SPN 515).
-_STEPS = {"%": 0.4, "rpm": 0.125}
+_STEPS = {"%": 0.4, "rpm": SPEED_STEP_RPM}
 
 
 def in_messages(

@@ -68,10 +68,7 @@ def sail_as(
                 remarks = write_by_ending(path, recording.channels.values(), overwrite=overwrite, format=format)
     except OSError as error:
         raise RecordingError(f"{path}: the recording cannot be written: {reason(error)}") from None
-    for remark in remarks:
-        (told or _ignore)(remark)
+    if told is not None:
+        for remark in remarks:
+            told(remark)
     return truth
-
-
-def _ignore(remark: str) -> None:
-    """Tell nothing."""

@@ -214,9 +214,9 @@ class TorqueMessages:
     def messages(self, stretch: Stretch) -> tuple[NDArray[np.int16], FloatArray]:
         """Return counts and times [s] of the messages of the next stretch, each of shape (messages,)."""
         counts = self._gauge.next(stretch).astype(np.float64)
-        # before the start the line ran steadily
-        self._first = float(counts[0]) if self._first is None else self._first
-        if not self._tail.size:
+        if self._first is None:
+            # before the start the line ran steadily
+            self._first = float(counts[0])
             self._tail = np.full(self._length - 1, self._first)
         longer = np.concatenate([self._tail, counts])
         self._tail = longer[longer.size - (self._length - 1) :]
