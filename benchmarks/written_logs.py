@@ -18,14 +18,14 @@ from typing import Any
 
 import numpy as np
 
-from benchmarks.can_log import ALL_MESSAGES, CYCLE_S, DEMAND_STEP_RPM, JITTER, LOST, TORQUE_CYCLE_S
+from benchmarks.can_log import ALL_MESSAGES, CYCLE_S, JITTER, LOST, TORQUE_CYCLE_S
 from benchmarks.kept_outcomes import kept
 from benchmarks.monte_carlo_tables import write_between_marks
 from shaftprint.campaign import load_campaign
 from shaftprint.errors import ShaftprintError
 from shaftprint.recording import read_recording, write_by_ending
 from shaftprint.survey import run
-from shaftprint.tug import Noise, Tug, sail
+from shaftprint.tug import Noise, Tug, in_messages, sail
 from shaftprint.vessel import Vessel, load_vessel
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -67,15 +67,13 @@ TESTS: Mapping[str, Test] = {
     "bus": Test(
         name="Messages of a bus",
         vessel=ALL_MESSAGES,
-        tug=Tug(
-            speed_cycle_s=CYCLE_S,
-            set_point_cycle_s=CYCLE_S,
-            torque_cycle_s=TORQUE_CYCLE_S,
-            set_point_resolution=DEMAND_STEP_RPM,
-            message_jitter=JITTER,
-            messages_lost=LOST,
+        tug=in_messages(
             # a log of 10 Hz would not show one, and keep a line that the others lose
-            noise=Noise(torque_dropout_interval_s=0.0),
+            Tug(noise=Noise(torque_dropout_interval_s=0.0)),
+            ALL_MESSAGES,
+            rates_hz={"torque": 1.0 / TORQUE_CYCLE_S, "speed": 1.0 / CYCLE_S, "set-point": 1.0 / CYCLE_S},
+            jitter=JITTER,
+            lost=LOST,
         ),
         forms=(
             ("native", ".nc"),
