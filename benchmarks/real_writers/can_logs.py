@@ -55,6 +55,14 @@ def _dbc(path: Path, layout: str, identifier: int, *, mode: str) -> list[tuple[s
     return described
 
 
+def _raw(one: Any, wave: float, mode: str) -> float:
+    """Return the number that a signal sends."""
+    if mode == "float":
+        return float(np.float32(wave))
+    top = 2 ** (one.length - 1) - 1 if one.is_signed else 2**one.length - 2
+    return int(np.clip(wave if one.is_signed else abs(wave), -top, top))
+
+
 def write(path: Path, rng: np.random.Generator, options: Options) -> Truth:
     """Write one file and the DBC file beside it."""
     import cantools
@@ -82,21 +90,12 @@ def write(path: Path, rng: np.random.Generator, options: Options) -> Truth:
             for name, factor, offset in described:
                 if mode == "multiplexed" and name[0] == "S" and int(name[1]) != k % 2:
                     continue
-                one = message.get_signal_by_name(name)
-                if name == "Which":
-                    raw: float = k % 2
-                elif mode == "float":
-                    raw = float(np.float32(waves[name][k]))
-                else:
-                    top = 2 ** (one.length - 1) - 1 if one.is_signed else 2**one.length - 2
-                    raw = int(
-                        np.clip(abs(waves[name][k]) * (1 if not one.is_signed else np.sign(waves[name][k])), -top, top)
-                    )
+                raw = k % 2 if name == "Which" else _raw(message.get_signal_by_name(name), waves[name][k], mode)
                 value = raw * factor + offset
                 content[name] = value
                 values[name].append(value)
                 at[name].append(float(times[k]))
-            data = message.encode(content, strict=False, scaling=True, padding=bool(options.get("padding", False)))
+            data = message.encode(content, strict=False, scaling=True)
             frame = can.Message(
                 timestamp=float(first + times[k]),
                 arbitration_id=identifier,

@@ -34,7 +34,7 @@ def write(path: Path, rng: np.random.Generator, options: Options) -> Truth:
             kind = np.dtype([("time", "<f8"), ("M_s", ">f4"), ("n", "<i2")])
             rows = np.zeros(count, dtype=kind)
             rows["time"], rows["M_s"], rows["n"] = times, signal(rng, count), counts(rng, count, "i2")
-            folder.create_dataset("log", data=rows, **{k: v for k, v in layout.items() if k != "scaleoffset"})
+            folder.create_dataset("log", data=rows, **layout)
             return Truth(
                 channels={name: TrueChannel(times_s=times, values=rows[name].astype(float)) for name in ("M_s", "n")}
             )

@@ -1,7 +1,8 @@
 """MATLAB files by SciPy (4 to 7), h5py (7.3 as MATLAB lays it out) and mat-io (timetables, tables, durations)."""
 
 import warnings
-from datetime import datetime
+from dataclasses import replace
+from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
@@ -65,13 +66,8 @@ def write(path: Path, rng: np.random.Generator, options: Options) -> Truth:
             # 5 March 2026, 9:00
             values["time"] = 740046.375 + times / 86400.0
             began = datetime.fromisoformat("2026-03-05T09:00")
-            wanted = {
-                k: TrueChannel(times_s=v.times_s, values=v.values, unit=v.unit, time_rounding_s=2e-4)
-                for k, v in wanted.items()
-            }
+            wanted = {name: replace(one, time_rounding_s=2e-4) for name, one in wanted.items()}
         case "epoch":
-            from datetime import UTC
-
             values["time"] = 1772701200.0 + times
             began = datetime(2026, 3, 5, 9, tzinfo=UTC)
     if options.get("text"):

@@ -26,7 +26,7 @@ CONVERSIONS = (
 ZONES = (None, UTC, timezone(timedelta(hours=2)), timezone(timedelta(hours=-9, minutes=-30)))
 
 
-def _converted(kind: str, raw: Any, *, version: str) -> tuple[dict[str, Any] | None, Any]:
+def _converted(kind: str, raw: Any) -> tuple[dict[str, Any] | None, Any]:
     """Return the writer's conversion and its values."""
     x = raw.astype(np.float64)
     if kind == "linear":
@@ -104,7 +104,7 @@ def write(path: Path, rng: np.random.Generator, options: Options) -> Truth:
                     and raw.dtype.kind != "f"
                 ):
                     raw = (raw >> raw.dtype.type(16)).astype(raw.dtype)
-                conversion, values = _converted(how, raw, version=version)
+                conversion, values = _converted(how, raw)
                 raw = raw.astype(raw.dtype.newbyteorder(str(options.get("order", "<"))))
                 bits = None
                 if is_v4 and options.get("invalid"):

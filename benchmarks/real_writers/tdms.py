@@ -68,7 +68,7 @@ def write(path: Path, rng: np.random.Generator, options: Options) -> Truth:
             begin_s = part * (each / rate + pause)
             for group, name, raw, said, _, _ in described:
                 said = {**said, "unit_string": "N*m" if options.get("star") else "Nm"}
-                if clock in ("wf", "wf_local"):
+                if clock == "wf":
                     said |= {"wf_increment": 1.0 / rate, "wf_start_offset": float(options.get("offset", 0.0))}
                     if options.get("dated"):
                         said |= {"wf_start_time": first + np.timedelta64(round(begin_s * 1e6), "us")}

@@ -1,6 +1,7 @@
 """Text by pandas, csv, NumPy, pyarrow and FMPy."""
 
 import csv
+from dataclasses import replace
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
@@ -79,7 +80,21 @@ def write(path: Path, rng: np.random.Generator, options: Options) -> Truth:
     if options.get("words"):
         data["state"] = ["run" if k % 2 else "stop" for k in range(count)]
     frame = pd.DataFrame(data)
-    encoding, decimal = str(options.get("encoding", "utf-8")), str(options.get("decimal", "."))
+    encoding = str(options.get("encoding", "utf-8"))
+    _save(frame, path, by, encoding, options)
+    if by == "numpy":
+        channels = {name: replace(one, time_rounding_s=0.0) for name, one in channels.items()}
+    if options.get("units_row"):
+        lines = path.read_text(encoding=encoding).split("\n")
+        sep = str(options.get("sep", ","))
+        lines.insert(1, sep.join(["s"] + ["Nm"] * len(channels)))
+        path.write_text("\n".join(lines), encoding=encoding)
+        channels = {name: replace(one, unit="N m") for name, one in channels.items()}
+    return Truth(channels=channels, began=began, others=("state",))
+
+
+def _save(frame: pd.DataFrame, path: Path, by: str, encoding: str, options: Options) -> None:
+    """Let a library write a table."""
     if by == "arrow":
         import pyarrow as pa
         import pyarrow.csv
@@ -94,35 +109,20 @@ def write(path: Path, rng: np.random.Generator, options: Options) -> Truth:
     elif by == "numpy":
         header = str(options.get("sep", " ")).join(name.replace(" ", "") for name in frame.columns)
         np.savetxt(path, frame.to_numpy(), header=header, delimiter=str(options.get("sep", " ")))
-        channels = {
-            name: TrueChannel(times_s=one.times_s, values=one.values, unit=one.unit) for name, one in channels.items()
-        }
     else:
         frame.to_csv(
             path,
             sep=str(options.get("sep", ",")),
-            decimal=decimal,
+            decimal=str(options.get("decimal", ".")),
             index=bool(options.get("index", False)),
             quoting=int(options.get("quoting", csv.QUOTE_MINIMAL)),
             encoding=encoding,
-            date_format=None if options.get("clock") in ("utc", "zone") else stamp,
+            date_format=None if options.get("clock") in ("utc", "zone") else str(options.get("stamp", DATES[0])),
             lineterminator=str(options.get("line", "\n")),
-            float_format=digits,
+            float_format=options.get("float_format"),
             na_rep=str(options.get("na", "")),
             compression=options.get("compression"),
         )
-    if options.get("units_row"):
-        lines = path.read_text(encoding=encoding).split("\n")
-        sep = str(options.get("sep", ","))
-        lines.insert(1, sep.join(["s"] + ["Nm"] * len(channels)))
-        path.write_text("\n".join(lines), encoding=encoding)
-        channels = {
-            k: TrueChannel(
-                times_s=v.times_s, values=v.values, unit="N m", rounding=v.rounding, time_rounding_s=v.time_rounding_s
-            )
-            for k, v in channels.items()
-        }
-    return Truth(channels=channels, began=began, others=("state",))
 
 
 def _by_fmpy(path: Path, rng: np.random.Generator, times: Any) -> Truth:

@@ -14,7 +14,7 @@ def write(path: Path, rng: np.random.Generator, options: Options) -> Truth:
     channels: dict[str, TrueChannel] = {}
     rate, count = float(options.get("rate", 100.0)), int(options.get("count", 301))
     data_type, is_binary = int(options.get("type", 4)), bool(options.get("binary", False))
-    uneven = bool(options.get("uneven", False))
+    is_single, uneven = data_type in (2, 5), bool(options.get("uneven", False))
     start = float(options.get("start", 0.0))
     times = grid(count, rate, start)
     if uneven:
@@ -24,9 +24,6 @@ def write(path: Path, rng: np.random.Generator, options: Options) -> Truth:
         name = f"Response {number}"
         values = signal(rng, count)
         complex_part: Any = values + 1j * values if data_type >= 5 else values
-        if data_type in (2, 5):
-            # the writer puts doubles under a head of singles, where it is given doubles
-            single = np.complex64 if data_type == 5 else np.float32
         said = pyuff.prepare_58(
             binary=1 if is_binary else 0,
             id1=name,
@@ -54,14 +51,16 @@ def write(path: Path, rng: np.random.Generator, options: Options) -> Truth:
             data=complex_part,
             x=times,
         )
-        if data_type in (2, 5):
+        if is_single:
+            # the writer puts doubles under a head of singles, where it is given doubles
+            single = np.complex64 if data_type == 5 else np.float32
             said["data"], said["x"] = complex_part.astype(single), times.astype(np.float32)
         # "overwrite" leaves no set of its own in a binary file
-        file.write_sets(said, "add", force_double=data_type in (4, 6))
+        file.write_sets(said, "add", force_double=not is_single)
         # text has six or twelve digits, single precision seven
-        rounding = 6e-7 * 100.0 if data_type in (2, 5) else 6e-12 * 100.0
+        rounding = 6e-7 * 100.0 if is_single else 6e-12 * 100.0
         if is_binary:
-            rounding = 1e-5 if data_type in (2, 5) else 0.0
+            rounding = 1e-5 if is_single else 0.0
         channels[name] = TrueChannel(
             times_s=times,
             values=values,

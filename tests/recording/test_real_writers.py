@@ -1,5 +1,6 @@
 """One file a family of the benchmark of real writers; ``python -m benchmarks.real_writers DIR`` makes them all."""
 
+import numpy as np
 import pytest
 from benchmarks.real_writers._damage import WAYS, damaged
 from benchmarks.real_writers._families import FAMILIES, write_one
@@ -45,8 +46,6 @@ def test_what_is_not_read_is_refused(tmp_path, number):
 
 @pytest.mark.parametrize("way", WAYS)
 def test_a_damaged_copy_ends_in_an_answer(tmp_path, way):
-    import numpy as np
-
     path, _, truth = _file("MATLAB", 0, tmp_path)
     copy = tmp_path / "copy.mat"
     copy.write_bytes(damaged(path.read_bytes(), np.random.default_rng(3), way, in_head=True))
