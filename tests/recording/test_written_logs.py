@@ -39,6 +39,12 @@ def source(tmp_path):
         yield recording
 
 
+def _made(tmp_path, *samples):
+    path = tmp_path / "source.csv"
+    path.write_text("x")
+    return recording_from_arrays(path, samples, format="test")
+
+
 @pytest.mark.parametrize(
     ("name", "step_of_slow", "step_of_time"),
     # 4 kN over 64255 counts: steps of 2^-13 kN; LabVIEW, ASC and candump print microseconds, the last since 1970
@@ -107,10 +113,8 @@ def test_messages_of_nmea_2000(source, tmp_path):
 
 
 def test_a_fast_packet_of_nmea_2000(tmp_path):
-    path = tmp_path / "source.csv"
-    path.write_text("x")
     torque = Samples(name="percent torque", values=np.arange(120.0) % 100.0, unit="%", rate_hz=10.0)
-    with recording_from_arrays(path, [torque], format="test") as recording:
+    with _made(tmp_path, torque) as recording:
         write_by_ending(tmp_path / "log.blf", recording.channels.values(), format="nmea2000")
     with can.BLFReader(tmp_path / "log.blf") as reader:
         frames = [bytes(one.data) for one in reader]
@@ -127,10 +131,8 @@ def test_a_fast_packet_of_nmea_2000(tmp_path):
 
 
 def test_values_beyond_a_field_are_told(tmp_path):
-    path = tmp_path / "source.csv"
-    path.write_text("x")
     torque = Samples(name="percent torque", values=np.array([50.0, 130.0, 90.0] * 40), unit="%", rate_hz=2.0)
-    with recording_from_arrays(path, [torque], format="test") as recording:
+    with _made(tmp_path, torque) as recording:
         remarks = write_by_ending(tmp_path / "log.blf", recording.channels.values(), format="nmea2000")
     # a signed byte, of which three counts are none: up to 124 %
     assert "40 values of percent torque are beyond what PGN_127489 holds." in remarks
@@ -153,11 +155,9 @@ def test_a_tdms_file_that_is_opened_and_closed_again(source, tmp_path):
 
 
 def test_the_text_that_labview_would_write(tmp_path):
-    path = tmp_path / "source.csv"
-    path.write_text("x")
     fast = Samples(name="M_s", values=np.arange(24.0), unit="V", rate_hz=2.0)
     slow = Samples(name="T", values=np.array([20.0, 21.0, 22.0]), unit="degC", rate_hz=0.25, start_s=1.0)
-    with recording_from_arrays(path, [fast, slow], format="test") as recording:
+    with _made(tmp_path, fast, slow) as recording:
         write_by_ending(tmp_path / "log.lvm", recording.channels.values(), began=BEGAN)
     lines = (tmp_path / "log.lvm").read_text().splitlines()
     assert lines[:2] == ["LabVIEW Measurement", "Writer_Version\t2"]
@@ -193,13 +193,11 @@ def test_an_ending_of_another_format_is_refused(source, tmp_path, name, format, 
 
 
 def test_times_before_second_0_and_strange_names_are_told(tmp_path):
-    path = tmp_path / "source.csv"
-    path.write_text("x")
     names = ("shaft torque [port]", "shaft torque (port)", "2nd")
     channels = [
         Samples(name=name, values=np.arange(200.0), unit='N"m\n', rate_hz=100.0, start_s=-0.5) for name in names
     ]
-    with recording_from_arrays(path, channels, format="test") as recording:
+    with _made(tmp_path, *channels) as recording:
         remarks = write_by_ending(tmp_path / "log.blf", recording.channels.values())
     assert "Times begin 1 s later, since a log of a bus has none before second 0." in remarks
     assert "shaft torque (port) is called shaft_torque__port__2." in remarks
