@@ -6,6 +6,9 @@ from pathlib import Path
 from shaftprint.errors import RecordingError
 from shaftprint.recording._channel import Channel
 
+# Times of messages that are looked through at once.
+_LOOKED_THROUGH = 4096
+
 
 def expect_channels(path: Path, channels: Sequence[Channel]) -> None:
     """Check that there is a channel.
@@ -69,10 +72,20 @@ def in_parts(channels: Sequence[Channel], length_s: float) -> Iterator[list[Chan
             one.time_s(first, first + 1) for one, first in zip(channels, starts, strict=True) if first < one.count
         )
         end_s = min(float(first[0]) for first in firsts) + length_s
-        stops = [
-            min(max(one.samples_before(end_s), first), one.count) for one, first in zip(channels, starts, strict=True)
-        ]
+        stops = [_stop_of(one, first, end_s) for one, first in zip(channels, starts, strict=True)]
         yield [one.part(first, last) for one, first, last in zip(channels, starts, stops, strict=True)]
+
+
+def _stop_of(channel: Channel, first: int, end_s: float) -> int:
+    """Return the number of the first sample, from one on, that is not before a time."""
+    if not channel.is_uneven:
+        return min(max(channel.samples_before(end_s), first), channel.count)
+    # times of messages are read up to there: all of them again in each part would be the square of their number
+    for start, stop in channel.part(first, channel.count).blocks(_LOOKED_THROUGH):
+        before = channel.part(first + start, first + stop).samples_before(end_s)
+        if before < stop - start:
+            return first + start + before
+    return channel.count
 
 
 def expect_no_messages(path: Path, channel: Channel, *, on: str) -> None:
