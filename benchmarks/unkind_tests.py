@@ -1,11 +1,11 @@
 """Planned tests on ships that are less kind than their plan: what is trusted, held against the truth.
 
 Every test has a truth of its own, drawn as in ``monte_carlo_short.py``, and beside it what that leaves out: the line of
-the lever bends by 0.3 % per volt (standard deviation), has play, and comes to the control unit in steps; the noise of the ship is 0.5
-to 3 times as dense as that of the tug for which the test was planned; and the ship surges in half of the tests. Each
-recording goes through ``shaftprint identify`` with the vessel file as it is, and every number of the fingerprint is
-held against the truth at the working point of its leg. Run ``python benchmarks/unkind_tests.py --case 12 --tests 200
---write``; a test takes about fifteen seconds of one core, and outcomes that are kept are not sailed again.
+the lever bends by 0.3 % per volt (standard deviation), has play, and comes to the control unit in steps; the noise of
+the ship is 0.5 to 3 times as dense as that of the tug for which the test was planned; and the ship surges in half of
+the tests. Each recording goes through ``shaftprint identify`` with the vessel file as it is, and every number of the
+fingerprint is held against the truth at the working point of its leg. Run ``python benchmarks/unkind_tests.py --case 12
+--tests 200 --write``; a test takes about fifteen seconds of one core, and outcomes that are kept are not sailed again.
 """
 
 import argparse
