@@ -28,7 +28,7 @@ from shaftprint.cli._demo_truth import fingerprint_truth
 from shaftprint.errors import ShaftprintError
 from shaftprint.fingerprint import physical_quantities
 from shaftprint.fingerprint._findings import findings_of
-from shaftprint.identify.uncertainty import Budget
+from shaftprint.identify import Budget
 from shaftprint.signals import Signals
 from shaftprint.survey import Survey, run
 from shaftprint.tug import Truth, sail

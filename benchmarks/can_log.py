@@ -24,20 +24,20 @@ ROOT = Path(__file__).resolve().parent.parent
 # Run as a file, the folder of the benchmarks is on the path, not the one above.
 sys.path.insert(0, str(ROOT))
 
-from benchmarks import monte_carlo_short  # noqa: E402
-from benchmarks.message_log import Estimate, rows  # noqa: E402
-from benchmarks.monte_carlo_short import Row, drawn_noise, rows_of, summary  # noqa: E402
-from benchmarks.monte_carlo_tables import write_between_marks  # noqa: E402
-from shaftprint.campaign import load_campaign  # noqa: E402
-from shaftprint.catalogue import structure  # noqa: E402
-from shaftprint.errors import ShaftprintError  # noqa: E402
-from shaftprint.identify import Settings, identify, priors_from_vessel  # noqa: E402
-from shaftprint.recording import read_recording  # noqa: E402
-from shaftprint.signals import Signals, prepare_signals  # noqa: E402
-from shaftprint.spectra import estimate_response  # noqa: E402
-from shaftprint.survey import Trial  # noqa: E402
-from shaftprint.tug import Truth, Tug, sail  # noqa: E402
-from shaftprint.vessel import Vessel, load_vessel  # noqa: E402
+from benchmarks import monte_carlo_short
+from benchmarks.message_log import Estimate, rows
+from benchmarks.monte_carlo_short import Row, drawn_noise, rows_of, summary
+from benchmarks.monte_carlo_tables import write_between_marks
+from shaftprint.campaign import load_campaign
+from shaftprint.catalogue import structure
+from shaftprint.errors import ShaftprintError
+from shaftprint.identify import Settings, identify, priors_from_vessel
+from shaftprint.recording import read_recording
+from shaftprint.signals import Signals, prepare_signals
+from shaftprint.spectra import estimate_response
+from shaftprint.survey import Trial
+from shaftprint.tug import Truth, Tug, sail
+from shaftprint.vessel import Vessel, load_vessel
 
 DOCUMENT = ROOT / "docs" / "can-log.md"
 BEGIN, END = "<!-- table of benchmarks/can_log.py: begin -->", "<!-- table of benchmarks/can_log.py: end -->"

@@ -15,22 +15,14 @@ from scipy.optimize import minimize
 from shaftprint.arrays import ComplexArray, FloatArray
 from shaftprint.campaign import load_campaign
 from shaftprint.catalogue import structure
-from shaftprint.design import (
-    AssumedShip,
-    Brief,
-    Effort,
-    Limits,
-    Plan,
-    Timetable,
-    Wish,
-    assumed_ship,
-    best_plan,
-    limits_from_vessel,
-    no_worse_than,
-    plan_of_lines,
-)
-from shaftprint.identify import STAN_TUG_NOISE, Prior, planned_response, predict_accuracy
-from shaftprint.identify.prediction import Accuracy, planned_lines
+from shaftprint.design import Effort, Limits, Plan, Wish, assumed_ship, limits_from_vessel, no_worse_than
+from shaftprint.design.inputs._assumed_ship import AssumedShip
+from shaftprint.design.plan._timetable import Timetable
+from shaftprint.design.planning._brief import Brief
+from shaftprint.design.planning._design import best_plan
+from shaftprint.design.planning._finish import plan_of_lines
+from shaftprint.identify import STAN_TUG_NOISE, Prior, planned_lines, planned_response, predict_accuracy
+from shaftprint.identify.prediction._accuracy import Accuracy
 from shaftprint.vessel import load_vessel
 
 # The simulated tug, normalised at its working point (docs/accuracy.md).

@@ -31,12 +31,14 @@ from shaftprint.catalogue import structure
 from shaftprint.cli._demo_truth import fingerprint_truth
 from shaftprint.errors import ShaftprintError
 from shaftprint.fingerprint import Fingerprint
-from shaftprint.identify.likelihood import PRIOR_OF_G
+from shaftprint.identify.likelihood._known import PRIOR_OF_G
 from shaftprint.signals import Signals
-from shaftprint.survey import Survey, fingerprint_of, run
-from shaftprint.torsion import line_coupling
+from shaftprint.survey import Survey, run
+from shaftprint.survey._survey import fingerprint_of
+from shaftprint.torsion._coupling import line_coupling
 from shaftprint.tug import Coupling, Truth, sail
-from shaftprint.vessel import ShaftLink, SpeedSensor, Vessel, load_vessel
+from shaftprint.vessel import SpeedSensor, Vessel, load_vessel
+from shaftprint.vessel._links import ShaftLink
 
 ELASTIC, RIGID = "GAUGE-ELASTIC", "GAUGE-CLOSED"
 SEED = 18

@@ -11,8 +11,8 @@ from benchmarks.scipy_loop import CLOSED_FORMS, best_of
 from benchmarks.thesis_case import FAMILY, FREQUENCY_HZ, Case, case
 from benchmarks.timing import Spread, cpu_seconds, print_table, run_process
 from shaftprint.arrays import ComplexArray
-from shaftprint.identify import Identification, LatinHypercube, Settings, Uniform, identify
-from shaftprint.identify.search import Draw
+from shaftprint.identify import Draw, Identification, Settings, Uniform, identify
+from shaftprint.identify.search._starts import LatinHypercube
 
 STARTS = 50
 SAME_COST = 1e-6

@@ -24,15 +24,16 @@ ROOT = Path(__file__).resolve().parent.parent
 # Run as a file, the folder of the benchmarks is on the path, not the one above.
 sys.path.insert(0, str(ROOT))
 
-from benchmarks.faulty_tests_tables import Refusal, generator_table, governor_table  # noqa: E402
-from benchmarks.leg_outcomes import NAME, Outcome, as_planned, outcome, true_values  # noqa: E402
-from benchmarks.legs import put_out  # noqa: E402
-from benchmarks.monte_carlo_tables import write_between_marks  # noqa: E402
-from shaftprint.campaign import Campaign, load_campaign  # noqa: E402
-from shaftprint.catalogue import structure  # noqa: E402
-from shaftprint.identify import Requirements, Settings  # noqa: E402
-from shaftprint.survey import Trial, fit, load_trial, of_legs, priors_of, run  # noqa: E402
-from shaftprint.tug import Truth, Tug, sail  # noqa: E402
+from benchmarks.faulty_tests_tables import Refusal, generator_table, governor_table
+from benchmarks.leg_outcomes import NAME, Outcome, as_planned, outcome, true_values
+from benchmarks.legs import put_out
+from benchmarks.monte_carlo_tables import write_between_marks
+from shaftprint.campaign import Campaign, load_campaign
+from shaftprint.catalogue import structure
+from shaftprint.identify import Requirements, Settings
+from shaftprint.survey import Trial, fit, load_trial, priors_of, run
+from shaftprint.survey._measurement import of_legs
+from shaftprint.tug import Truth, Tug, sail
 
 DOCUMENT = ROOT / "docs" / "legs.md"
 BEGIN, END = (

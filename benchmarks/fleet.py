@@ -29,15 +29,16 @@ ROOT = Path(__file__).resolve().parent.parent
 # Run as a file, the folder of the benchmarks is on the path, not the one above.
 sys.path.insert(0, str(ROOT))
 
-from benchmarks.fleet_peers import cpu_ticks, peers  # noqa: E402
-from benchmarks.monte_carlo_tables import write_between_marks  # noqa: E402
-from benchmarks.store_documents import document  # noqa: E402
-from benchmarks.timing import print_table  # noqa: E402
-from shaftprint.campaign import load_campaign  # noqa: E402
-from shaftprint.fingerprint import fingerprint_document  # noqa: E402
-from shaftprint.fleet import JobArguments, job_arguments, submit, work, work_on_dask  # noqa: E402
-from shaftprint.fleet.computing import survey_of_job  # noqa: E402
-from shaftprint.store import (  # noqa: E402
+from benchmarks.fleet_peers import cpu_ticks, peers
+from benchmarks.monte_carlo_tables import write_between_marks
+from benchmarks.store_documents import document
+from benchmarks.timing import print_table
+from shaftprint.campaign import load_campaign
+from shaftprint.fingerprint._json_file import fingerprint_document
+from shaftprint.fleet import JobArguments, submit, work, work_on_dask
+from shaftprint.fleet._arguments import job_arguments
+from shaftprint.fleet.computing._identify import survey_of_job
+from shaftprint.store import (
     Job,
     JobRequest,
     add_document,
@@ -51,9 +52,9 @@ from shaftprint.store import (  # noqa: E402
     renew,
     retry,
 )
-from shaftprint.store import document as kept_document  # noqa: E402
-from shaftprint.tug import sail  # noqa: E402
-from shaftprint.vessel import load_vessel  # noqa: E402
+from shaftprint.store import document as kept_document
+from shaftprint.tug import sail
+from shaftprint.vessel import load_vessel
 
 DOCUMENT = ROOT / "docs" / "fleet-runs.md"
 BEGIN, END = ("<!-- table of benchmarks/fleet.py: begin -->", "<!-- table of benchmarks/fleet.py: end -->")

@@ -10,9 +10,9 @@ from concurrent.futures import ProcessPoolExecutor
 from multiprocessing import get_context
 from pathlib import Path
 
-from shaftprint.fingerprint import fingerprint_document
+from shaftprint.fingerprint._json_file import fingerprint_document
 from shaftprint.fleet import JobArguments
-from shaftprint.fleet.computing import survey_of_job
+from shaftprint.fleet.computing._identify import survey_of_job
 
 AFTER_S, LIMIT_S = 12.0, 300.0
 

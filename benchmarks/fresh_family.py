@@ -5,7 +5,8 @@ import sys
 import numpy as np
 
 from benchmarks.thesis_case import FAMILY, case
-from shaftprint.identify import LatinHypercube, identify
+from shaftprint.identify import identify
+from shaftprint.identify.search._starts import LatinHypercube
 
 if __name__ == "__main__":
     if sys.argv[1] == "peer":

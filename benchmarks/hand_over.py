@@ -15,10 +15,12 @@ import numpy as np
 from benchmarks.co_simulation import Slave
 from benchmarks.monte_carlo_tables import table, write_between_marks
 from shaftprint.catalogue import ShipRole
-from shaftprint.export import ExportedModel, exported_model, host_platform, write_fmu
+from shaftprint.export import ExportedModel, exported_model, write_fmu
+from shaftprint.export._fmu_build import host_platform
 from shaftprint.simulation import simulate_exactly
-from shaftprint.survey import judged, run, with_limits
-from shaftprint.validation import ExcerptComparison
+from shaftprint.survey import run, with_limits
+from shaftprint.survey._survey import judged
+from shaftprint.validation._validation import ExcerptComparison
 from shaftprint.vessel import load_vessel
 
 DOCUMENT = Path(__file__).parents[1] / "docs" / "nonlinear.md"

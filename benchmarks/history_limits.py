@@ -23,11 +23,13 @@ ROOT = Path(__file__).resolve().parent.parent
 # Run as a file, the folder of the benchmarks is on the path, not the one above.
 sys.path.insert(0, str(ROOT))
 
-from benchmarks.histories import DOCUMENT, SEED  # noqa: E402
-from benchmarks.monte_carlo_tables import write_between_marks  # noqa: E402
-from benchmarks.sailed_histories import SOUND, TESTS  # noqa: E402
-from shaftprint.drift import LOAD_REPEATABILITY, pair_of, whitened  # noqa: E402
-from shaftprint.fingerprint import Fingerprint, read_fingerprint  # noqa: E402
+from benchmarks.histories import DOCUMENT, SEED
+from benchmarks.monte_carlo_tables import write_between_marks
+from benchmarks.sailed_histories import SOUND, TESTS
+from shaftprint.drift._along import whitened
+from shaftprint.drift._differ import LOAD_REPEATABILITY
+from shaftprint.drift._pair import pair_of
+from shaftprint.fingerprint import Fingerprint, read_fingerprint
 
 BEGIN, END = (
     "<!-- table of benchmarks/history_limits.py: begin -->",

@@ -29,7 +29,8 @@ from shaftprint.cli._demo_truth import fingerprint_truth
 from shaftprint.errors import ShaftprintError
 from shaftprint.signals import Signals
 from shaftprint.survey import run
-from shaftprint.tug import ShaftMachineTruth, Truth, like_stan_tug_1205, sail
+from shaftprint.tug import Truth, like_stan_tug_1205, sail
+from shaftprint.tug._shaft_machine import ShaftMachineTruth
 from shaftprint.vessel import Vessel, load_vessel
 
 VESSEL, CAMPAIGN = load_vessel("foss-carolyn-dorothy"), load_campaign("machine")

@@ -27,8 +27,8 @@ from shaftprint.distributions import NORMAL_95
 from shaftprint.errors import ShaftprintError
 from shaftprint.identify import Identification, Settings, identify, profile
 from shaftprint.identify.search._levenberg_marquardt import descend
-from shaftprint.identify.uncertainty import Interval
 from shaftprint.identify.uncertainty._numbers import Numbers, all_numbers
+from shaftprint.identify.uncertainty._profile import Interval
 
 SEED = 34
 STRUCTURES: Mapping[str, Mapping[str, float]] = {

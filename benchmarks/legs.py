@@ -18,10 +18,10 @@ ROOT = Path(__file__).resolve().parent.parent
 # Run as a file, the folder of the benchmarks is on the path, not the one above.
 sys.path.insert(0, str(ROOT))
 
-from benchmarks.leg_outcomes import Outcome, outcome  # noqa: E402
-from shaftprint.campaign import Campaign  # noqa: E402
-from shaftprint.distributions import NORMAL_95  # noqa: E402
-from shaftprint.survey import load_trial  # noqa: E402
+from benchmarks.leg_outcomes import Outcome, outcome
+from shaftprint.campaign import Campaign
+from shaftprint.distributions import NORMAL_95
+from shaftprint.survey import load_trial
 
 LOWEST_P_VALUE = 0.05
 

@@ -22,7 +22,8 @@ from shaftprint.identify import Settings, identify, priors_from_vessel
 from shaftprint.recording import read_recording
 from shaftprint.signals import prepare_signals
 from shaftprint.spectra import estimate_response
-from shaftprint.tug import Tug, sail_as
+from shaftprint.tug import Tug
+from shaftprint.tug._sail_as import sail_as
 from shaftprint.vessel import Vessel, load_vessel
 
 ECU = structure("GAUGE-ECU")

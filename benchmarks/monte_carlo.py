@@ -20,14 +20,14 @@ ROOT = Path(__file__).resolve().parent.parent
 # Run as a file, the folder of the benchmarks is on the path, not the one above.
 sys.path.insert(0, str(ROOT))
 
-from benchmarks import monte_carlo_tables as tables  # noqa: E402
-from benchmarks.monte_carlo_cases import hard_cases  # noqa: E402
-from benchmarks.monte_carlo_outcome import Outcome, Result, together  # noqa: E402
-from benchmarks.monte_carlo_recordings import NAME, sailed  # noqa: E402
-from benchmarks.monte_carlo_responses import linearised, named_cases, simulate  # noqa: E402
-from benchmarks.monte_carlo_search import finds_global_optimum  # noqa: E402
-from shaftprint.identify import MaximumLikelihood, StudentT  # noqa: E402
-from shaftprint.identify.likelihood import Weighting  # noqa: E402
+from benchmarks import monte_carlo_tables as tables
+from benchmarks.monte_carlo_cases import hard_cases
+from benchmarks.monte_carlo_outcome import Outcome, Result, together
+from benchmarks.monte_carlo_recordings import NAME, sailed
+from benchmarks.monte_carlo_responses import linearised, named_cases, simulate
+from benchmarks.monte_carlo_search import finds_global_optimum
+from shaftprint.identify import MaximumLikelihood, StudentT
+from shaftprint.identify.likelihood._weighting import Weighting
 
 DOCUMENT = ROOT / "docs" / "monte-carlo.md"
 ROBUST = ("CL4", "GAUGE-ECU")

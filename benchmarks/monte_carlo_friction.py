@@ -18,7 +18,8 @@ from scipy.signal import lfilter
 from shaftprint.arrays import FloatArray
 from shaftprint.identify import Identification, Settings, assess
 from shaftprint.models import Diagram, FirstOrderLag, Gain, Parameter, Structure, clip
-from shaftprint.time_domain import ExactDelays, Record, TimeSettings, identify_in_time, record_from_arrays
+from shaftprint.time_domain import Record, TimeSettings, identify_in_time, record_from_arrays
+from shaftprint.time_domain._simulator import ExactDelays
 
 RATE_HZ = 20.0
 FINE = 50

@@ -8,8 +8,8 @@ from scipy.stats import kstest
 
 from shaftprint.arrays import FloatArray
 from shaftprint.distributions import NORMAL_95
-from shaftprint.identify.fit import Estimate
-from shaftprint.identify.uncertainty import Interval
+from shaftprint.identify import Estimate
+from shaftprint.identify.uncertainty._profile import Interval
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -15,7 +15,7 @@ from shaftprint.campaign import load_campaign
 from shaftprint.catalogue import structure
 from shaftprint.errors import IdentificationError
 from shaftprint.identify import Identification, Settings, identify, priors_from_vessel, profile
-from shaftprint.identify.likelihood import PRIOR_OF_G
+from shaftprint.identify.likelihood._known import PRIOR_OF_G
 from shaftprint.recording import read_recording
 from shaftprint.signals import Signals, prepare_signals
 from shaftprint.spectra import estimate_response

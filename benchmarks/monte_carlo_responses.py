@@ -10,9 +10,8 @@ from benchmarks.monte_carlo_cases import Case, cases, hard_cases
 from benchmarks.monte_carlo_outcome import Outcome, row_of
 from shaftprint.arrays import ComplexArray, FloatArray
 from shaftprint.distributions import NORMAL_95
-from shaftprint.identify import Identification, Prior, Settings, identify, profile
-from shaftprint.identify.likelihood import Weighting
-from shaftprint.identify.search import Draw
+from shaftprint.identify import Draw, Identification, Prior, Settings, identify, profile
+from shaftprint.identify.likelihood._weighting import Weighting
 from shaftprint.models import Structure
 from shaftprint.spectra import FrequencyResponse
 from shaftprint.spectra._response_covariance import real_covariance, weight_factor

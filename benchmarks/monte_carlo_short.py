@@ -23,23 +23,24 @@ ROOT = Path(__file__).resolve().parent.parent
 # Run as a file, the folder of the benchmarks is on the path, not the one above.
 sys.path.insert(0, str(ROOT))
 
-from benchmarks.monte_carlo_tables import table, write_between_marks  # noqa: E402
-from shaftprint.catalogue import structure  # noqa: E402
-from shaftprint.distributions import NORMAL_95  # noqa: E402
-from shaftprint.errors import ShaftprintError  # noqa: E402
-from shaftprint.fingerprint import Fingerprint, Quantity  # noqa: E402
-from shaftprint.identify import Settings  # noqa: E402
-from shaftprint.identify.likelihood import PRIOR_OF_G  # noqa: E402
-from shaftprint.models import margins  # noqa: E402
-from shaftprint.survey import Trial, fingerprint_of, fit, load_trial, measure, priors_of  # noqa: E402
-from shaftprint.tug import (  # noqa: E402
+from benchmarks.monte_carlo_tables import table, write_between_marks
+from shaftprint.catalogue import structure
+from shaftprint.distributions import NORMAL_95
+from shaftprint.errors import ShaftprintError
+from shaftprint.fingerprint import Fingerprint, Quantity
+from shaftprint.identify import Settings
+from shaftprint.identify.likelihood._known import PRIOR_OF_G
+from shaftprint.models import margins
+from shaftprint.survey import Trial, fit, load_trial, measure, priors_of
+from shaftprint.survey._survey import fingerprint_of
+from shaftprint.tug import (
     Noise,
     Truth,
     Tug,
     normalised_truth,
     sail,
 )
-from shaftprint.vessel import Vessel  # noqa: E402
+from shaftprint.vessel import Vessel
 
 DOCUMENT = ROOT / "docs" / "monte-carlo.md"
 BEGIN = "<!-- table of benchmarks/monte_carlo_short.py: begin -->"

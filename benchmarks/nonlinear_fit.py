@@ -19,7 +19,9 @@ from shaftprint.identify import Identification, Settings, identify, priors_from_
 from shaftprint.recording import read_recording
 from shaftprint.signals import Signals, prepare_signals
 from shaftprint.spectra import estimate_response
-from shaftprint.time_domain import LimitedModel, NonlinearFit, NonlinearSettings, identify_nonlinear, structure_for
+from shaftprint.time_domain import NonlinearSettings, identify_nonlinear, structure_for
+from shaftprint.time_domain.nonlinear._fit import NonlinearFit
+from shaftprint.time_domain.nonlinear._structure import LimitedModel
 from shaftprint.tug import Tug, sail
 from shaftprint.vessel import Vessel, load_vessel
 

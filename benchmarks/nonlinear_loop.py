@@ -15,17 +15,9 @@ from scipy.integrate import solve_ivp
 
 from benchmarks.timing import Spread, cpu_seconds, print_table
 from shaftprint.arrays import FloatArray
-from shaftprint.models import (
-    Diagram,
-    Flow,
-    Formula,
-    Parameter,
-    Structure,
-    clip,
-    limited_pi,
-    quadratic_propeller,
-    second_order_lag,
-)
+from shaftprint.models import Diagram, Parameter, Structure, clip, limited_pi, quadratic_propeller, second_order_lag
+from shaftprint.models.equations._flow import Flow
+from shaftprint.models.equations._formula import Formula
 from shaftprint.simulation import simulate
 
 SAMPLES, RATE_HZ = 300_000, 200.0

@@ -22,7 +22,8 @@ from shaftprint.cli._demo_truth import fingerprint_truth
 from shaftprint.errors import ShaftprintError
 from shaftprint.fingerprint import Quantity
 from shaftprint.signals import Signals
-from shaftprint.survey import run, with_everything
+from shaftprint.survey import run
+from shaftprint.survey._everything import with_everything
 from shaftprint.tug import Truth, Tug, sail
 
 CAMPAIGN = load_campaign("short")

@@ -24,12 +24,14 @@ from shaftprint.campaign import Campaign, load_campaign
 from shaftprint.catalogue import structure
 from shaftprint.cli._demo_truth import fingerprint_truth
 from shaftprint.errors import ShaftprintError
-from shaftprint.identify.likelihood import PRIOR_OF_G
+from shaftprint.identify.likelihood._known import PRIOR_OF_G
 from shaftprint.models import Structure
 from shaftprint.signals import Signals
 from shaftprint.survey import run
-from shaftprint.tug import PitchActuation, Truth, Tug, like_stan_tug_1205, sail, steepened, torque_over_pitch
-from shaftprint.tug.plant import PitchActuator
+from shaftprint.tug import Truth, Tug, like_stan_tug_1205, sail
+from shaftprint.tug._pitch_actuation import PitchActuation
+from shaftprint.tug._pitch_series import steepened, torque_over_pitch
+from shaftprint.tug.plant._pitch import PitchActuator
 from shaftprint.vessel import Vessel, load_vessel
 
 VESSEL, CAMPAIGN = load_vessel("nifs-research-vessel"), load_campaign("pitch")

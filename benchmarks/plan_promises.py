@@ -24,8 +24,8 @@ ROOT = Path(__file__).resolve().parent.parent
 # Run as a file, the folder of the benchmarks is on the path, not the one above.
 sys.path.insert(0, str(ROOT))
 
-from benchmarks.monte_carlo_tables import write_between_marks  # noqa: E402
-from benchmarks.scouted_tests import (  # noqa: E402
+from benchmarks.monte_carlo_tables import write_between_marks
+from benchmarks.scouted_tests import (
     CLOSED,
     MAIN_S,
     MAIN_SEED,
@@ -41,22 +41,18 @@ from benchmarks.scouted_tests import (  # noqa: E402
     knowledge_of,
     planned,
 )
-from shaftprint.design import Knowledge, PlannedTest, possible_ship, ship_before_test  # noqa: E402
-from shaftprint.design.plan import predicted_accuracy  # noqa: E402
-from shaftprint.design.planning import with_band  # noqa: E402
-from shaftprint.errors import ShaftprintError  # noqa: E402
-from shaftprint.fingerprint import Fingerprint  # noqa: E402
-from shaftprint.identify import noise_at  # noqa: E402
-from shaftprint.identify.fit import Estimate  # noqa: E402
-from shaftprint.models import at_working_point  # noqa: E402
-from shaftprint.survey import (  # noqa: E402
-    NOISE_SPREAD,
-    RECORDED_SPREAD,
-    continued_below,
-    noise_of_unknown_ship,
-    stated_working_point,
-)
-from shaftprint.tug import Tug  # noqa: E402
+from shaftprint.design import PlannedTest
+from shaftprint.design.inputs._knowledge import Knowledge
+from shaftprint.design.inputs._known_ship import possible_ship, ship_before_test
+from shaftprint.design.plan._plan import predicted_accuracy
+from shaftprint.design.planning._band import with_band
+from shaftprint.errors import ShaftprintError
+from shaftprint.fingerprint import Fingerprint
+from shaftprint.identify import Estimate, noise_at
+from shaftprint.models import at_working_point
+from shaftprint.survey._assumed_noise import NOISE_SPREAD, RECORDED_SPREAD, continued_below, noise_of_unknown_ship
+from shaftprint.survey._fits import stated_working_point
+from shaftprint.tug import Tug
 
 DOCUMENT = ROOT / "docs" / "planning.md"
 BEGIN, END = (

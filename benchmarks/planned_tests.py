@@ -22,14 +22,14 @@ ROOT = Path(__file__).resolve().parent.parent
 # Run as a file, the folder of the benchmarks is on the path, not the one above.
 sys.path.insert(0, str(ROOT))
 
-from benchmarks.leg_outcomes import NAME, Outcome, as_planned, outcome  # noqa: E402
-from benchmarks.monte_carlo_recordings import Ship  # noqa: E402
-from benchmarks.monte_carlo_short import between, drawn_noise  # noqa: E402
-from benchmarks.monte_carlo_tables import write_between_marks  # noqa: E402
-from benchmarks.planned_tests_tables import BARS_12, BARS_IDLE_600, case_table, summary  # noqa: E402
-from shaftprint.campaign import Campaign, load_campaign  # noqa: E402
-from shaftprint.catalogue import structure  # noqa: E402
-from shaftprint.design import (  # noqa: E402
+from benchmarks.leg_outcomes import NAME, Outcome, as_planned, outcome
+from benchmarks.monte_carlo_recordings import Ship
+from benchmarks.monte_carlo_short import between, drawn_noise
+from benchmarks.monte_carlo_tables import write_between_marks
+from benchmarks.planned_tests_tables import BARS_12, BARS_IDLE_600, case_table, summary
+from shaftprint.campaign import Campaign, load_campaign
+from shaftprint.catalogue import structure
+from shaftprint.design import (
     Limits,
     Plan,
     assumed_ship,
@@ -38,17 +38,17 @@ from shaftprint.design import (  # noqa: E402
     limits_from_vessel,
     no_worse_than,
 )
-from shaftprint.errors import ShaftprintError  # noqa: E402
-from shaftprint.identify import (  # noqa: E402
+from shaftprint.errors import ShaftprintError
+from shaftprint.identify import (
     STAN_TUG_NOISE,
     STAN_TUG_NOISE_AT_SPEEDS,
     Prior,
     planned_response,
     predict_accuracy,
 )
-from shaftprint.survey import load_trial  # noqa: E402
-from shaftprint.tug import Tug  # noqa: E402
-from shaftprint.vessel import load_vessel  # noqa: E402
+from shaftprint.survey import load_trial
+from shaftprint.tug import Tug
+from shaftprint.vessel import load_vessel
 
 DOCUMENT = ROOT / "docs" / "planned-tests.md"
 BEGIN, END = (

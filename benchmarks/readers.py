@@ -7,7 +7,9 @@ import numpy as np
 
 from benchmarks.timing import Run, Spread, print_table, run_process
 from shaftprint.campaign import load_campaign
-from shaftprint.recording import Channel, read_recording, write_mdf4, write_tdms
+from shaftprint.recording import Channel, read_recording
+from shaftprint.recording.writers._mdf4 import write_mdf4
+from shaftprint.recording.writers._tdms import write_tdms
 from shaftprint.tug import sail
 from shaftprint.vessel import load_vessel
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from shaftprint.campaign import Campaign, setpoint
 from shaftprint.errors import SignalError
-from shaftprint.signals.description import described
+from shaftprint.signals.description._describe import described
 
 PPM = 1e-6
 RATE_HZ = 200.0

@@ -8,8 +8,7 @@ from benchmarks.scipy_loop import CLOSED_FORMS, fit
 from benchmarks.thesis_case import FREQUENCY_HZ, Case, case
 from benchmarks.timing import Spread, cpu_seconds, print_table
 from shaftprint.arrays import ComplexArray, FloatArray
-from shaftprint.identify import Identification, identify
-from shaftprint.identify.fit import refit
+from shaftprint.identify import Identification, identify, refit
 
 REPEATS = 10_000
 # The peer's loop is measured on this many and multiplied.

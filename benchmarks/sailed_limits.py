@@ -6,7 +6,9 @@ import numpy as np
 
 from shaftprint.campaign import Campaign
 from shaftprint.tug import Tug
-from shaftprint.tug.plant import Disturbance, demanded_speed, helm_voltage, voyage
+from shaftprint.tug.plant._demand import demanded_speed, helm_voltage
+from shaftprint.tug.plant._disturbance import Disturbance
+from shaftprint.tug.plant._voyage import voyage
 from shaftprint.units import rpm_from_rev_s
 from shaftprint.vessel import Vessel
 

@@ -22,36 +22,30 @@ ROOT = Path(__file__).resolve().parent.parent
 # Run as a file, the folder of the benchmarks is on the path, not the one above.
 sys.path.insert(0, str(ROOT))
 
-from benchmarks.leg_outcomes import as_planned, true_values  # noqa: E402
-from benchmarks.monte_carlo_short import LEAST_GAIN_MARGIN, gain_margin  # noqa: E402
-from benchmarks.monte_carlo_tables import write_between_marks  # noqa: E402
-from benchmarks.planned_tests import CLOSED as AT_ONE_SPEED  # noqa: E402
-from benchmarks.planned_tests import OFFSET_V, SLOPE_RPM_PER_V, VESSEL  # noqa: E402
-from benchmarks.sailed_limits import SailedLimits, sailed_limits  # noqa: E402
-from benchmarks.scouted_tests_tables import scouted_table  # noqa: E402
-from shaftprint.campaign import Campaign  # noqa: E402
-from shaftprint.design import (  # noqa: E402
-    Knowledge,
-    Leg,
-    PlannedTest,
-    SetPointLine,
-    Wish,
-    assumed_ship,
-    limits_from_vessel,
-    limits_of_fingerprint,
-    line_of_fingerprint,
-    plan_test,
-    ship_before_test,
-    ship_of_fingerprint,
-)
-from shaftprint.errors import ShaftprintError  # noqa: E402
-from shaftprint.fingerprint import Fingerprint  # noqa: E402
-from shaftprint.identify import STAN_TUG_NOISE_AT_SPEEDS as STORED  # noqa: E402
-from shaftprint.identify import Settings, noise_at, priors_from_vessel  # noqa: E402
-from shaftprint.identify.prediction import planned_lines, predict_joint_accuracy  # noqa: E402
-from shaftprint.models import Structure, at_working_point  # noqa: E402
-from shaftprint.survey import Measurement, Survey, Trial, at_speeds, priors_of, run, stated_working_point  # noqa: E402
-from shaftprint.tug import Tug, normalised_truth, sail  # noqa: E402
+from benchmarks.leg_outcomes import as_planned, true_values
+from benchmarks.monte_carlo_short import LEAST_GAIN_MARGIN, gain_margin
+from benchmarks.monte_carlo_tables import write_between_marks
+from benchmarks.planned_tests import CLOSED as AT_ONE_SPEED
+from benchmarks.planned_tests import OFFSET_V, SLOPE_RPM_PER_V, VESSEL
+from benchmarks.sailed_limits import SailedLimits, sailed_limits
+from benchmarks.scouted_tests_tables import scouted_table
+from shaftprint.campaign import Campaign
+from shaftprint.design import PlannedTest, SetPointLine, Wish, assumed_ship, limits_from_vessel
+from shaftprint.design.inputs._knowledge import Knowledge
+from shaftprint.design.inputs._known_ship import limits_of_fingerprint, ship_before_test, ship_of_fingerprint
+from shaftprint.design.inputs._set_point_line import line_of_fingerprint
+from shaftprint.design.plan._leg import Leg
+from shaftprint.design.planning._from_knowledge import plan_test
+from shaftprint.errors import ShaftprintError
+from shaftprint.fingerprint import Fingerprint
+from shaftprint.identify import STAN_TUG_NOISE_AT_SPEEDS as STORED
+from shaftprint.identify import Settings, noise_at, planned_lines, priors_from_vessel
+from shaftprint.identify.prediction._accuracy import predict_joint_accuracy
+from shaftprint.models import Structure, at_working_point
+from shaftprint.survey import Measurement, Survey, Trial, priors_of, run
+from shaftprint.survey._fits import stated_working_point
+from shaftprint.survey._of_vessel import at_speeds
+from shaftprint.tug import Tug, normalised_truth, sail
 
 DOCUMENT = ROOT / "docs" / "planning.md"
 BEGIN, END = (

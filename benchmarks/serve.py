@@ -29,15 +29,15 @@ from urllib.parse import quote, urlencode
 ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT))
 
-from benchmarks.monte_carlo_tables import write_between_marks  # noqa: E402
-from benchmarks.mutations import mutated  # noqa: E402
-from benchmarks.served_fleet import Life, documents  # noqa: E402
-from benchmarks.store import fill, ships  # noqa: E402
-from benchmarks.timing import print_table  # noqa: E402
-from shaftprint.drift import NEWEST_TESTS  # noqa: E402
-from shaftprint.errors import ServerError  # noqa: E402
-from shaftprint.store import add_document, create_store, document, history, open_store  # noqa: E402
-from shaftprint.web.calculator import Calculator  # noqa: E402
+from benchmarks.monte_carlo_tables import write_between_marks
+from benchmarks.mutations import mutated
+from benchmarks.served_fleet import Life, documents
+from benchmarks.store import fill, ships
+from benchmarks.timing import print_table
+from shaftprint.drift._class_numbers import NEWEST_TESTS
+from shaftprint.errors import ServerError
+from shaftprint.store import add_document, create_store, document, history, open_store
+from shaftprint.web.calculator._client import Calculator
 
 DOCUMENT = ROOT / "docs" / "serve.md"
 BEGIN, END = ("<!-- table of benchmarks/serve.py: begin -->", "<!-- table of benchmarks/serve.py: end -->")

@@ -27,13 +27,17 @@ from benchmarks.kept_outcomes import kept
 from benchmarks.leg_outcomes import true_values
 from benchmarks.monte_carlo_recordings import Ship, drawn_gauge
 from benchmarks.monte_carlo_tables import write_between_marks
-from shaftprint.campaign import SIDES, load_campaign_of_both
+from shaftprint.campaign._both_shafts import SIDES, load_campaign_of_both
 from shaftprint.drift import differ
 from shaftprint.errors import ShaftprintError
-from shaftprint.identify.likelihood import PRIOR_OF_G
+from shaftprint.identify.likelihood._known import PRIOR_OF_G
 from shaftprint.report import differences
-from shaftprint.survey import Survey, SurveyOfBoth, load_trials_of_both, run_both
-from shaftprint.tug import SharedWater, Truth, TruthOfBoth, Tug, sail_both, with_inertia, with_load
+from shaftprint.survey import Survey, load_trials_of_both, run_both
+from shaftprint.survey._both_shafts import SurveyOfBoth
+from shaftprint.tug import Truth, Tug
+from shaftprint.tug._changes import with_inertia, with_load
+from shaftprint.tug._sail_both import TruthOfBoth, sail_both
+from shaftprint.tug._shared_water import SharedWater
 from shaftprint.vessel import Vessel, load_vessel
 
 PORT, STARBOARD = "stan-tug-1205", "stan-tug-1205-starboard"

@@ -13,7 +13,8 @@ from pathlib import Path
 
 from benchmarks.planned_tests import OFFSET_V, SLOPE_RPM_PER_V, TRUTH, VESSEL, Case, outcomes_of, planned
 from benchmarks.planned_tests_tables import case_table
-from shaftprint.campaign import Campaign, campaign_text, load_campaign
+from shaftprint.campaign import Campaign, load_campaign
+from shaftprint.campaign._file_text import campaign_text
 from shaftprint.design import campaign_of, limits_from_vessel
 
 SHIPPED = Path(__file__).parent.parent / "src" / "shaftprint" / "campaign" / "shipped"

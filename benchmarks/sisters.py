@@ -24,12 +24,16 @@ ROOT = Path(__file__).resolve().parent.parent
 # Run as a file, the folder of the benchmarks is on the path, not the one above.
 sys.path.insert(0, str(ROOT))
 
-from benchmarks.monte_carlo_tables import write_between_marks  # noqa: E402
-from benchmarks.sailed_fleet import VESSEL, tested  # noqa: E402
-from shaftprint.drift import CAUSES, Cause, DatedTest, Sister, judge_sisters  # noqa: E402
-from shaftprint.fingerprint import Fingerprint, Quantity, read_fingerprint, write_fingerprint  # noqa: E402
-from shaftprint.tug import ShipWork, SimulatedFleet, Tolerances, simulated_fleet, with_works  # noqa: E402
-from shaftprint.vessel import load_vessel  # noqa: E402
+from benchmarks.monte_carlo_tables import write_between_marks
+from benchmarks.sailed_fleet import VESSEL, tested
+from shaftprint.drift import Sister, judge_sisters
+from shaftprint.drift._causes import CAUSES, Cause
+from shaftprint.drift._dated import DatedTest
+from shaftprint.fingerprint import Fingerprint, Quantity, read_fingerprint, write_fingerprint
+from shaftprint.tug import SimulatedFleet, Tolerances
+from shaftprint.tug._simulated_fleet import simulated_fleet
+from shaftprint.tug._simulated_ship import ShipWork, with_works
+from shaftprint.vessel import load_vessel
 
 DOCUMENT = ROOT / "docs" / "watching.md"
 BEGIN, END = ("<!-- tables of benchmarks/sisters.py: begin -->", "<!-- tables of benchmarks/sisters.py: end -->")

@@ -28,17 +28,18 @@ ROOT = Path(__file__).resolve().parent.parent
 # Run as a file, the folder of the benchmarks is on the path, not the one above.
 sys.path.insert(0, str(ROOT))
 
-from benchmarks.monte_carlo_short import drawn_ship  # noqa: E402
-from benchmarks.monte_carlo_tables import table, write_between_marks  # noqa: E402
-from benchmarks.planned_tests import CASES, OFFSET_V, SLOPE_RPM_PER_V, VESSEL, planned, ship_of  # noqa: E402
-from shaftprint.arrays import FloatArray  # noqa: E402
-from shaftprint.campaign import Campaign, load_campaign  # noqa: E402
-from shaftprint.design import campaign_of  # noqa: E402
-from shaftprint.reasons import Reason  # noqa: E402
-from shaftprint.recording import read_recording  # noqa: E402
-from shaftprint.signals import read_channels  # noqa: E402
-from shaftprint.signals.levels import expect_steady_gauge, expect_steady_set_point  # noqa: E402
-from shaftprint.tug import sail  # noqa: E402
+from benchmarks.monte_carlo_short import drawn_ship
+from benchmarks.monte_carlo_tables import table, write_between_marks
+from benchmarks.planned_tests import CASES, OFFSET_V, SLOPE_RPM_PER_V, VESSEL, planned, ship_of
+from shaftprint.arrays import FloatArray
+from shaftprint.campaign import Campaign, load_campaign
+from shaftprint.design import campaign_of
+from shaftprint.reasons import Reason
+from shaftprint.recording import read_recording
+from shaftprint.signals._channel_readings import read_channels
+from shaftprint.signals.levels._set_point_steadiness import expect_steady_set_point
+from shaftprint.signals.levels._steadiness import expect_steady_gauge
+from shaftprint.tug import sail
 
 DOCUMENT = ROOT / "docs" / "decisions" / "0102-gain-within-a-test.md"
 BEGIN, END = (

@@ -19,18 +19,10 @@ from typing import NoReturn
 
 from benchmarks.store_documents import IMO_NUMBER, document
 from benchmarks.timing import print_table
-from shaftprint.store import (
-    Ship,
-    Stated,
-    Store,
-    add_document,
-    check,
-    create_store,
-    history,
-    newest,
-    open_store,
-    record_of,
-)
+from shaftprint.store import Store, add_document, check, create_store, history, newest, open_store
+from shaftprint.store._nouns import Ship
+from shaftprint.store._record import record_of
+from shaftprint.store._stated import Stated
 from shaftprint.vessel import is_imo_number
 
 NOW = datetime(2026, 11, 24, tzinfo=UTC)

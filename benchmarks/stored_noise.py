@@ -17,14 +17,15 @@ import numpy as np
 ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT))
 
-from shaftprint.arrays import ComplexArray, FloatArray  # noqa: E402
-from shaftprint.campaign import Campaign, Multisine, load_campaign  # noqa: E402
-from shaftprint.identify import STAN_TUG_NOISE  # noqa: E402
-from shaftprint.recording import read_recording  # noqa: E402
-from shaftprint.signals import Signals, prepare_signals  # noqa: E402
-from shaftprint.spectra.legs import cut_leg, measure_leg  # noqa: E402
-from shaftprint.tug import sail  # noqa: E402
-from shaftprint.vessel import load_vessel  # noqa: E402
+from shaftprint.arrays import ComplexArray, FloatArray
+from shaftprint.campaign import Campaign, Multisine, load_campaign
+from shaftprint.identify import STAN_TUG_NOISE
+from shaftprint.recording import read_recording
+from shaftprint.signals import Signals, prepare_signals
+from shaftprint.spectra.legs._leg_lines import measure_leg
+from shaftprint.spectra.legs._leg_window import cut_leg
+from shaftprint.tug import sail
+from shaftprint.vessel import load_vessel
 
 SHARES = (1.0, 0.70, 0.85, 1.15)
 SWING = 0.5

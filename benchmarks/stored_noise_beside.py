@@ -19,7 +19,8 @@ import numpy as np
 from shaftprint.arrays import FloatArray
 from shaftprint.campaign import Campaign, Multisine, load_campaign
 from shaftprint.identify import NoiseLevels
-from shaftprint.survey import Measurement, Trial, measure, noise_at_speeds, noise_of_further
+from shaftprint.survey import Measurement, Trial, measure
+from shaftprint.survey._noise import noise_at_speeds, noise_of_further
 from shaftprint.tug import like_stan_tug_1205, sail
 from shaftprint.vessel import Vessel, load_vessel
 

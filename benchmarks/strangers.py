@@ -21,12 +21,13 @@ from urllib.parse import urlencode
 ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT))
 
-from benchmarks.monte_carlo_tables import write_between_marks  # noqa: E402
-from benchmarks.serve import DOCUMENT, Running, begun  # noqa: E402
-from benchmarks.store_documents import IMO_NUMBER, document  # noqa: E402
-from benchmarks.timing import print_table  # noqa: E402
-from shaftprint.store import add_document, check, create_store, export_store, history, open_store  # noqa: E402
-from shaftprint.web import Person, Role, hashed, with_user  # noqa: E402
+from benchmarks.monte_carlo_tables import write_between_marks
+from benchmarks.serve import DOCUMENT, Running, begun
+from benchmarks.store_documents import IMO_NUMBER, document
+from benchmarks.timing import print_table
+from shaftprint.store import add_document, check, create_store, export_store, history, open_store
+from shaftprint.web import Person, hashed, with_user
+from shaftprint.web.access._person import Role
 
 BEGIN, END = ("<!-- table of benchmarks/strangers.py: begin -->", "<!-- table of benchmarks/strangers.py: end -->")
 NAME, PASSWORD = "anna", "a long password of anna"

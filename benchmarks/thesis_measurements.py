@@ -16,15 +16,15 @@ ROOT = Path(__file__).resolve().parent.parent
 # Run as a file, the folder of the benchmarks is on the path, not the one above.
 sys.path.insert(0, str(ROOT))
 
-from benchmarks.monte_carlo_tables import write_between_marks  # noqa: E402
-from benchmarks.thesis_case import FREQUENCY_HZ  # noqa: E402
-from benchmarks.thesis_tables import sailed  # noqa: E402
-from shaftprint.campaign import Campaign  # noqa: E402
-from shaftprint.catalogue import structure  # noqa: E402
-from shaftprint.signals import Signals  # noqa: E402
-from shaftprint.survey import Measurement, load_trial, measure  # noqa: E402
-from shaftprint.units import rpm_from_rev_s  # noqa: E402
-from shaftprint.vessel import Vessel  # noqa: E402
+from benchmarks.monte_carlo_tables import write_between_marks
+from benchmarks.thesis_case import FREQUENCY_HZ
+from benchmarks.thesis_tables import sailed
+from shaftprint.campaign import Campaign
+from shaftprint.catalogue import structure
+from shaftprint.signals import Signals
+from shaftprint.survey import Measurement, load_trial, measure
+from shaftprint.units import rpm_from_rev_s
+from shaftprint.vessel import Vessel
 
 DOCUMENT = ROOT / "docs" / "thesis-tables.md"
 BEGIN = "<!-- tables of benchmarks/thesis_measurements.py: begin -->"

@@ -18,22 +18,15 @@ ROOT = Path(__file__).resolve().parent.parent
 # Run as a file, the folder of the benchmarks is on the path, not the one above.
 sys.path.insert(0, str(ROOT))
 
-from benchmarks.monte_carlo_tables import write_between_marks  # noqa: E402
-from benchmarks.thesis_case import FREQUENCY_HZ  # noqa: E402
-from shaftprint.catalogue import structure  # noqa: E402
-from shaftprint.identify import Identification, Settings, identify  # noqa: E402
-from shaftprint.spectra import FrequencyResponse  # noqa: E402
-from shaftprint.survey import (  # noqa: E402
-    GAUGE,
-    SET_POINT_OFF,
-    ThesisMode,
-    Trial,
-    load_trial,
-    measure,
-    thesis_way,
-    weighted_fits,
-)
-from shaftprint.tug import read_truth, sail, truth_path  # noqa: E402
+from benchmarks.monte_carlo_tables import write_between_marks
+from benchmarks.thesis_case import FREQUENCY_HZ
+from shaftprint.catalogue import structure
+from shaftprint.identify import Identification, Settings, identify
+from shaftprint.spectra import FrequencyResponse
+from shaftprint.survey import GAUGE, ThesisMode, Trial, load_trial, measure
+from shaftprint.survey._thesis_mode import SET_POINT_OFF
+from shaftprint.survey._thesis_way import thesis_way, weighted_fits
+from shaftprint.tug import read_truth, sail, truth_path
 
 DOCUMENT = ROOT / "docs" / "thesis.md"
 BEGIN = "<!-- tables of benchmarks/thesis_tables.py: begin -->"

@@ -20,14 +20,14 @@ ROOT = Path(__file__).resolve().parent.parent
 # Run as a file, the folder of the benchmarks is on the path, not the one above.
 sys.path.insert(0, str(ROOT))
 
-from benchmarks import leg_outcomes, monte_carlo_recordings  # noqa: E402
-from benchmarks.leg_outcomes import NAME, Outcome  # noqa: E402
-from benchmarks.monte_carlo_recordings import Ship, drawn_ship  # noqa: E402
-from benchmarks.monte_carlo_tables import table, write_between_marks  # noqa: E402
-from benchmarks.planned_tests import CLOSED, OFFSET_V, SLOPE_RPM_PER_V, TRUTH, VESSEL  # noqa: E402
-from benchmarks.planned_tests_tables import ABSOLUTE  # noqa: E402
-from shaftprint.campaign import Campaign, load_campaign  # noqa: E402
-from shaftprint.design import (  # noqa: E402
+from benchmarks import leg_outcomes, monte_carlo_recordings
+from benchmarks.leg_outcomes import NAME, Outcome
+from benchmarks.monte_carlo_recordings import Ship, drawn_ship
+from benchmarks.monte_carlo_tables import table, write_between_marks
+from benchmarks.planned_tests import CLOSED, OFFSET_V, SLOPE_RPM_PER_V, TRUTH, VESSEL
+from benchmarks.planned_tests_tables import ABSOLUTE
+from shaftprint.campaign import Campaign, load_campaign
+from shaftprint.design import (
     Plan,
     assumed_ship,
     campaign_of,
@@ -35,9 +35,9 @@ from shaftprint.design import (  # noqa: E402
     limits_from_vessel,
     no_worse_than,
 )
-from shaftprint.distributions import NORMAL_95  # noqa: E402
-from shaftprint.errors import ShaftprintError  # noqa: E402
-from shaftprint.identify import (  # noqa: E402
+from shaftprint.distributions import NORMAL_95
+from shaftprint.errors import ShaftprintError
+from shaftprint.identify import (
     STAN_TUG_NOISE,
     STAN_TUG_NOISE_AT_SPEEDS,
     Settings,
@@ -45,10 +45,11 @@ from shaftprint.identify import (  # noqa: E402
     predict_accuracy,
     priors_from_vessel,
 )
-from shaftprint.identify.prediction import Accuracy  # noqa: E402
-from shaftprint.signals import Signals  # noqa: E402
-from shaftprint.survey import fit, load_trial, measure, priors_of, stated_working_point  # noqa: E402
-from shaftprint.tug import Truth, sail  # noqa: E402
+from shaftprint.identify.prediction._accuracy import Accuracy
+from shaftprint.signals import Signals
+from shaftprint.survey import fit, load_trial, measure, priors_of
+from shaftprint.survey._fits import stated_working_point
+from shaftprint.tug import Truth, sail
 
 DOCUMENT = ROOT / "docs" / "how-short.md"
 BEGIN, END = (

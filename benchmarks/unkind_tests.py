@@ -25,19 +25,19 @@ ROOT = Path(__file__).resolve().parent.parent
 # Run as a file, the folder of the benchmarks is on the path, not the one above.
 sys.path.insert(0, str(ROOT))
 
-from benchmarks import leg_outcomes, monte_carlo_recordings, monte_carlo_short  # noqa: E402
-from benchmarks.kept_outcomes import kept  # noqa: E402
-from benchmarks.monte_carlo_short import Row, Ship, between, drawn_ship, summary  # noqa: E402
-from benchmarks.monte_carlo_tables import write_between_marks  # noqa: E402
-from benchmarks.planned_tests import VESSEL as TUG  # noqa: E402
-from shaftprint.campaign import Campaign  # noqa: E402
-from shaftprint.catalogue import structure  # noqa: E402
-from shaftprint.errors import ShaftprintError  # noqa: E402
-from shaftprint.fingerprint import Fingerprint  # noqa: E402
-from shaftprint.models import margins  # noqa: E402
-from shaftprint.signals import Signals  # noqa: E402
-from shaftprint.survey import Trial, load_trial, run  # noqa: E402
-from shaftprint.tug import Noise, Truth, sail  # noqa: E402
+from benchmarks import leg_outcomes, monte_carlo_recordings, monte_carlo_short
+from benchmarks.kept_outcomes import kept
+from benchmarks.monte_carlo_short import Row, Ship, between, drawn_ship, summary
+from benchmarks.monte_carlo_tables import write_between_marks
+from benchmarks.planned_tests import VESSEL as TUG
+from shaftprint.campaign import Campaign
+from shaftprint.catalogue import structure
+from shaftprint.errors import ShaftprintError
+from shaftprint.fingerprint import Fingerprint
+from shaftprint.models import margins
+from shaftprint.signals import Signals
+from shaftprint.survey import Trial, load_trial, run
+from shaftprint.tug import Noise, Truth, sail
 
 DOCUMENT = ROOT / "docs" / "planned-tests.md"
 SEED = 133

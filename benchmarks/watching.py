@@ -27,28 +27,31 @@ ROOT = Path(__file__).resolve().parent.parent
 # Run as a file, the folder of the benchmarks is on the path, not the one above.
 sys.path.insert(0, str(ROOT))
 
-from benchmarks.monte_carlo_tables import write_between_marks  # noqa: E402
-from shaftprint.catalogue import structure  # noqa: E402
-from shaftprint.distributions import NORMAL_95  # noqa: E402
-from shaftprint.drift import Finding, SizedCause, differ  # noqa: E402
-from shaftprint.fingerprint import GAUGE_ZERO, Fingerprint, read_fingerprint, write_fingerprint  # noqa: E402
-from shaftprint.identify import Settings  # noqa: E402
-from shaftprint.report import Difference, differences  # noqa: E402
-from shaftprint.survey import Trial, fingerprint_of, fit, load_trial, measure, priors_of  # noqa: E402
-from shaftprint.tug import (  # noqa: E402
-    Tug,
+from benchmarks.monte_carlo_tables import write_between_marks
+from shaftprint.catalogue import structure
+from shaftprint.distributions import NORMAL_95
+from shaftprint.drift import Finding, differ
+from shaftprint.drift._finding import SizedCause
+from shaftprint.fingerprint import Fingerprint, read_fingerprint, write_fingerprint
+from shaftprint.fingerprint._physical import GAUGE_ZERO
+from shaftprint.identify import Settings
+from shaftprint.report import differences
+from shaftprint.report.comparison._differences import Difference
+from shaftprint.survey import Trial, fit, load_trial, measure, priors_of
+from shaftprint.survey._survey import fingerprint_of
+from shaftprint.tug import Tug, sail
+from shaftprint.tug._changes import (
     in_water,
     on_another_day,
-    sail,
     sea_water_kg_m3,
     with_delay,
     with_gains,
     with_inertia,
     with_injection,
     with_load,
-    zero_taken,
 )
-from shaftprint.vessel import load_vessel  # noqa: E402
+from shaftprint.tug._simulated_fleet import zero_taken
+from shaftprint.vessel import load_vessel
 
 DOCUMENT = ROOT / "docs" / "watching.md"
 BEGIN, END = ("<!-- tables of benchmarks/watching.py: begin -->", "<!-- tables of benchmarks/watching.py: end -->")

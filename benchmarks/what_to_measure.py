@@ -19,6 +19,7 @@ from shaftprint.campaign import load_campaign
 from shaftprint.catalogue import structure
 from shaftprint.identify import (
     STAN_TUG_NOISE,
+    Draw,
     Identification,
     NoiseLevels,
     Prior,
@@ -26,14 +27,13 @@ from shaftprint.identify import (
     expected_response,
     identify,
     identify_jointly,
-    noise_levels,
+    planned_lines,
     planned_response,
     predict_accuracy,
     priors_from_vessel,
     profile,
 )
-from shaftprint.identify.prediction import planned_lines
-from shaftprint.identify.search import Draw
+from shaftprint.identify.prediction._noise_levels import noise_levels
 from shaftprint.models import Structure
 from shaftprint.recording import read_recording
 from shaftprint.signals import prepare_signals

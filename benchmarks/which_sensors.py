@@ -33,7 +33,8 @@ from shaftprint.recording import read_recording
 from shaftprint.signals import Signals, prepare_signals
 from shaftprint.spectra import FrequencyResponse, estimate_response, estimate_spectra
 from shaftprint.tug import Noise, Tug, sail
-from shaftprint.vessel import Logger, SpeedSensor, Vessel, load_vessel
+from shaftprint.vessel import SpeedSensor, Vessel, load_vessel
+from shaftprint.vessel._sensors import Logger
 
 CAMPAIGN = load_campaign("thesis")
 VESSEL = load_vessel("stan-tug-1205")

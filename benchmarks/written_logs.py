@@ -25,7 +25,8 @@ from shaftprint.campaign import load_campaign
 from shaftprint.errors import ShaftprintError
 from shaftprint.recording import read_recording, write_by_ending
 from shaftprint.survey import run
-from shaftprint.tug import Noise, Tug, in_messages, sail
+from shaftprint.tug import Noise, Tug, sail
+from shaftprint.tug._in_messages import in_messages
 from shaftprint.vessel import Vessel, load_vessel
 
 ROOT = Path(__file__).resolve().parent.parent

@@ -10,7 +10,7 @@ from tests.made_signals import made_channels
 from shaftprint.catalogue import structure
 from shaftprint.fingerprint import SourceFile, take_fingerprint
 from shaftprint.identify import Settings, identify
-from shaftprint.identify.fit import Cluster
+from shaftprint.identify.fit._identification import Cluster
 from shaftprint.signals import Repair, SetPointCalibration, Signals, StripAngles, WorkingPoint
 from shaftprint.spectra import FrequencyResponse, SignalToNoise
 from shaftprint.vessel import load_vessel

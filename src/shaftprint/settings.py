@@ -17,8 +17,8 @@ from pydantic_core import ErrorDetails
 
 from shaftprint.errors import SettingsError
 from shaftprint.files import reason, written_whole
-from shaftprint.notebook import field_words
-from shaftprint.publication import complete
+from shaftprint.notebook._shown import field_words
+from shaftprint.publication._publish import complete
 
 # Larger than anything on a ship in any unit, and small enough that products and squares stay numbers.
 _LARGEST = 1e30

@@ -4,10 +4,11 @@ import numpy as np
 import pytest
 from scipy import signal
 
-from shaftprint.bench import composed
+from shaftprint.bench._composed import composed
 from shaftprint.drive import load_drive
 from shaftprint.errors import SettingsError
-from shaftprint.simulation import linearise, simulate, state_names
+from shaftprint.simulation import linearise, simulate
+from shaftprint.simulation._equilibrium import state_names
 
 T = np.arange(400) * 0.01
 SWING = 2.0 * np.sin(2.0 * np.pi * 0.7 * T)

@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 from tests import bench_truth
 
-from shaftprint.bench import composed, equipped, read_records
+from shaftprint.bench import equipped, read_records
 from shaftprint.bench._assumed_yielding import assumed_yielding
+from shaftprint.bench._composed import composed
 from shaftprint.catalogue import shipped_structure
 from shaftprint.drive import load_drive
 from shaftprint.errors import RecordingError, SettingsError, StructureError

@@ -8,7 +8,8 @@ import pytest
 from tests import bench_truth
 from tests.bench.conftest import SHORT, motor_files
 
-from shaftprint.bench import equipped, identified_drive
+from shaftprint.bench import equipped
+from shaftprint.bench._fingerprint import identified_drive
 from shaftprint.drive import load_drive
 from shaftprint.fingerprint import read_drive_fingerprint
 from shaftprint.simulation import simulate

@@ -3,12 +3,14 @@
 import numpy as np
 import pytest
 
-from shaftprint.bench import EquippedDrive, planned_noise, predict_drive
+from shaftprint.bench._equipped import EquippedDrive
+from shaftprint.bench._predict import planned_noise, predict_drive
 from shaftprint.catalogue import shipped_structure
-from shaftprint.drive import Drive, Signal
-from shaftprint.fingerprint import DriveFingerprint, DriveRecord, NoiseOfRecord
+from shaftprint.drive import Drive
+from shaftprint.drive._signals import Signal
+from shaftprint.fingerprint._drive_fingerprint import DriveFingerprint, DriveRecord, NoiseOfRecord
 from shaftprint.identify import Verdict
-from shaftprint.tables import drive_record_table
+from shaftprint.tables._drive import drive_record_table
 from shaftprint.time_domain import record_from_arrays
 
 POLE, ANEW = 0.9, 0.3

@@ -8,16 +8,11 @@ from tests.bench import drawn_lags
 from tests.bench.drawn_lags import LAG_TOML, identified, levels, written
 from tests.known_fits import NOW
 
-from shaftprint.bench import (
-    drive_fingerprint,
-    equipped,
-    identified_drive,
-    predict_drive,
-    predicted_at,
-    read_records,
-    validate_drive,
-    with_structures,
-)
+from shaftprint.bench import equipped, read_records
+from shaftprint.bench._fingerprint import drive_fingerprint, identified_drive
+from shaftprint.bench._per_record import with_structures
+from shaftprint.bench._predict import predict_drive, predicted_at
+from shaftprint.bench._validate import validate_drive
 from shaftprint.drive import load_drive
 from shaftprint.errors import FingerprintError, SettingsError, StructureError
 from shaftprint.identify import Prior

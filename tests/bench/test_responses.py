@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
-from shaftprint.bench import equipped, identify_responses, read_records, read_responses
+from shaftprint.bench import equipped, read_records
+from shaftprint.bench._responses import identify_responses, read_responses
 from shaftprint.cli import shaftprint
 from shaftprint.drive import load_drive
 from shaftprint.errors import RecordingError, SettingsError

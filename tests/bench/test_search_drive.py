@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from shaftprint.bench import compare_in_time, equipped, identify_drive, without
+from shaftprint.bench import equipped, identify_drive
+from shaftprint.bench._structures import compare_in_time, without
 from shaftprint.drive import load_drive
 from shaftprint.time_domain import record_from_arrays
 

@@ -9,7 +9,8 @@ import pytest
 from scipy.signal import lfilter
 from tests.bench.test_search_drive import ROTOR
 
-from shaftprint.bench import drive_time_settings, equipped
+from shaftprint.bench import equipped
+from shaftprint.bench._fit import drive_time_settings
 from shaftprint.bench._record_reasons import REQUIREMENTS
 from shaftprint.drive import load_drive
 from shaftprint.identify import Settings, assess

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from shaftprint.campaign import Campaign, campaign_text, load_campaign, setpoint
+from shaftprint.campaign import Campaign, load_campaign, setpoint
+from shaftprint.campaign._file_text import campaign_text
 
 PERIOD_S = 20.0
 TIMES = {"start_s": 10.0, "settled_s": 30.0, "stop_s": 110.0, "period_s": PERIOD_S}

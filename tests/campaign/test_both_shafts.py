@@ -5,7 +5,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from shaftprint.campaign import CampaignOfBoth, load_campaign_of_both
+from shaftprint.campaign import CampaignOfBoth
+from shaftprint.campaign._both_shafts import load_campaign_of_both
 from shaftprint.errors import SettingsError
 
 

@@ -5,7 +5,8 @@ from importlib.resources import files
 
 import pytest
 
-from shaftprint.campaign import Campaign, campaign_text, load_campaign
+from shaftprint.campaign import Campaign, load_campaign
+from shaftprint.campaign._file_text import campaign_text
 from shaftprint.settings import shipped_names
 
 

@@ -3,7 +3,8 @@
 import pytest
 from pydantic import ValidationError
 
-from shaftprint.campaign import Campaign, Chirp, Sine, Staircase
+from shaftprint.campaign import Campaign, Sine, Staircase
+from shaftprint.campaign._excitations import Chirp
 
 SINE = {"name": "S1", "frequency_hz": 0.5, "amplitude_v": 0.6, "start_s": 10.0, "settled_s": 20.0, "stop_s": 50.0}
 CHIRP = {

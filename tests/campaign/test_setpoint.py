@@ -5,7 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from shaftprint.campaign import Campaign, Chirp, Sine, Staircase, load_campaign, setpoint
+from shaftprint.campaign import Campaign, Sine, Staircase, load_campaign, setpoint
+from shaftprint.campaign._excitations import Chirp
 
 
 def _campaign(**excitations):

@@ -4,7 +4,10 @@ import math
 
 import pytest
 
-from shaftprint.card import Card, Gauge, Pulses, disagreements, vessel_text, write_vessel
+from shaftprint.card import Card, disagreements
+from shaftprint.card._card import Gauge, Pulses
+from shaftprint.card._vessel_text import vessel_text
+from shaftprint.card._write import write_vessel
 from shaftprint.errors import SettingsError
 from shaftprint.vessel import load_vessel
 

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from tests import bench_truth
 
-from shaftprint.catalogue import DRIVES, SIGNAL_MEANINGS, SIGNAL_UNITS, shipped_structure
+from shaftprint.catalogue import shipped_structure
+from shaftprint.catalogue._drives import DRIVES, SIGNAL_MEANINGS, SIGNAL_UNITS
 from shaftprint.models import check_structure
 from shaftprint.simulation import equilibrium, simulate
 

@@ -7,18 +7,13 @@ from pathlib import Path
 import pytest
 
 import shaftprint
-from shaftprint.catalogue import (
-    ROLES,
-    STRUCTURES,
-    GovernorSymbol,
-    ShipRole,
-    expect_roles,
-    limited,
-    limited_governor,
-    structure,
-)
+from shaftprint.catalogue import STRUCTURES, ShipRole, limited, limited_governor, structure
+from shaftprint.catalogue._limited_governor import GovernorSymbol
+from shaftprint.catalogue._roles import ROLES
+from shaftprint.catalogue._shipped import expect_roles
 from shaftprint.errors import StructureError
-from shaftprint.models import Gain, Parameter, Role, Structure
+from shaftprint.models import Gain, Parameter, Structure
+from shaftprint.models._role import Role
 from shaftprint.normalisation import Normalisation, inertia_time_s
 
 SOURCE = Path(shaftprint.__file__).parent

@@ -5,7 +5,7 @@ from contextlib import contextmanager
 
 import pytest
 
-from shaftprint.cli.output import table_lines
+from shaftprint.cli.output._layout import table_lines
 from shaftprint.digits import plain_letters
 from shaftprint.tables import Symbol, Table
 

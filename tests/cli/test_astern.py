@@ -6,7 +6,7 @@ import json
 import numpy as np
 import pytest
 
-from shaftprint.export import host_platform
+from shaftprint.export._fmu_build import host_platform
 
 pytestmark = pytest.mark.slow
 

@@ -9,7 +9,7 @@ from tests.cli.readable_tables import expect_all_readable, printed_tables
 from shaftprint.errors import ShaftprintError
 from shaftprint.export import exported_model
 from shaftprint.fingerprint import read_fingerprint
-from shaftprint.survey import expect_limitable
+from shaftprint.survey._line_with_limits import expect_limitable
 from shaftprint.vessel import load_vessel
 
 pytestmark = pytest.mark.slow

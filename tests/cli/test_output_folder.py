@@ -5,7 +5,7 @@ from pathlib import Path
 import click
 import pytest
 
-from shaftprint.cli.output import output_folder
+from shaftprint.cli.output._output_folder import output_folder
 
 
 def _write(path, names, *, of="identify", force=False, text="new"):

@@ -2,7 +2,7 @@
 
 import pytest
 
-from shaftprint.cli.output import progress
+from shaftprint.cli.output._progress import progress
 
 
 @pytest.fixture

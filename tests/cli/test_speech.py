@@ -7,7 +7,9 @@ import click
 import pytest
 
 from shaftprint.cli import shaftprint
-from shaftprint.cli.output import print_table, progress, table_json
+from shaftprint.cli.output._json import table_json
+from shaftprint.cli.output._progress import progress
+from shaftprint.cli.output._tables import print_table
 from shaftprint.tables import Table, texts
 
 MOST_PROSE = 80

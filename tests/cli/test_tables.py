@@ -1,6 +1,6 @@
 """Tables on a terminal and in a file."""
 
-from shaftprint.cli.output import print_table, print_tables
+from shaftprint.cli.output._tables import print_table, print_tables
 from shaftprint.tables import Symbol, Table, numbers, texts
 
 

@@ -8,21 +8,13 @@ import pytest
 from scipy.io import loadmat
 
 from shaftprint.campaign import load_campaign, setpoint
-from shaftprint.design import (
-    CAMPAIGN,
-    CSV,
-    GENERATOR,
-    MAT,
-    PLAN,
-    PlannedTest,
-    Rehearsal,
-    Remedy,
-    SetPointLine,
-    read_plan,
-    set_point_samples,
-    write_plan,
-    write_plan_files,
-)
+from shaftprint.design import PlannedTest, SetPointLine, read_plan, write_plan_files
+from shaftprint.design.files._plan_folder import CAMPAIGN
+from shaftprint.design.files._plan_json import PLAN, write_plan
+from shaftprint.design.files._set_point_files import CSV, GENERATOR, MAT
+from shaftprint.design.files._set_point_samples import set_point_samples
+from shaftprint.design.planned_test._rehearsal import Rehearsal
+from shaftprint.design.planned_test._remedies import Remedy
 from shaftprint.errors import DesignError
 
 OFFSET_V, SLOPE = -5.0, -251.0

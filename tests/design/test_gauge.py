@@ -7,17 +7,12 @@ import pytest
 
 from shaftprint.campaign import load_campaign
 from shaftprint.catalogue import structure
-from shaftprint.design import (
-    GaugeRange,
-    Operation,
-    Wish,
-    campaign_of,
-    design_campaign,
-    limit_uses,
-    limits_from_vessel,
-    stated_limits,
-)
-from shaftprint.design.motion import SIGNALS, bounds_of_leg, motion, motion_noise, share_cut_off
+from shaftprint.design import GaugeRange, Wish, campaign_of, design_campaign, limit_uses, limits_from_vessel
+from shaftprint.design.motion._bounds import bounds_of_leg
+from shaftprint.design.motion._gauge import share_cut_off
+from shaftprint.design.motion._motion import SIGNALS, motion, motion_noise
+from shaftprint.design.operation._limit_use import stated_limits
+from shaftprint.design.operation._operation import Operation
 from shaftprint.errors import DesignError, SignalError
 from shaftprint.identify import STAN_TUG_NOISE, NoiseLevels
 from shaftprint.models import at_working_point

@@ -6,10 +6,12 @@ import numpy as np
 import pytest
 
 from shaftprint.catalogue import structure
-from shaftprint.design import GaugeRange, assumed_ship, limits_from_vessel, ship_before_test, usual_speeds
+from shaftprint.design import GaugeRange, assumed_ship, limits_from_vessel
+from shaftprint.design.inputs._known_ship import ship_before_test
+from shaftprint.design.inputs._limits import usual_speeds
 from shaftprint.errors import DesignError, SettingsError
 from shaftprint.identify import Prior
-from shaftprint.models import stable_rows
+from shaftprint.models._nyquist import stable_rows
 from shaftprint.settings import write_template
 from shaftprint.vessel import OperatingLimits, load_vessel
 

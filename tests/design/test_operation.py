@@ -7,14 +7,9 @@ import numpy as np
 import pytest
 
 from shaftprint.campaign import Campaign, load_campaign
-from shaftprint.design import (
-    Operation,
-    expected_operation,
-    limit_uses,
-    limits_from_vessel,
-    recorded_operation,
-    stated_limits,
-)
+from shaftprint.design import expected_operation, limit_uses, limits_from_vessel, recorded_operation
+from shaftprint.design.operation._limit_use import stated_limits
+from shaftprint.design.operation._operation import Operation
 from shaftprint.errors import DesignError
 from shaftprint.tug import Tug, like_stan_tug_1205, normalised_truth, simulate_signals
 from shaftprint.vessel import load_vessel

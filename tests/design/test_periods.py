@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from shaftprint.design.standing import PeriodInformation, missing_periods
+from shaftprint.design.standing._periods import PeriodInformation, missing_periods
 
 
 def information(first, second, *, wish_one, wish_two, before=1e-12):

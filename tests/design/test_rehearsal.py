@@ -5,9 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from shaftprint.design import RehearsedTest, rehearse
+from shaftprint.design import rehearse
+from shaftprint.design.planned_test._rehearsal import RehearsedTest
 from shaftprint.errors import DesignError, IdentificationError
-from shaftprint.identify.fit import Estimate
+from shaftprint.identify import Estimate
 
 
 def sailing(plan, truth, *, errors, stated=1.0, limited=0.0):

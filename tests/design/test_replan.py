@@ -8,9 +8,15 @@ import pytest
 from shaftprint.catalogue import structure
 from shaftprint.design import replan, ship_of_fit
 from shaftprint.errors import DesignError
-from shaftprint.identify import STAN_TUG_NOISE, Settings, expected_response, identify, identify_jointly
-from shaftprint.identify.prediction import planned_lines
-from shaftprint.identify.search import Draw
+from shaftprint.identify import (
+    STAN_TUG_NOISE,
+    Draw,
+    Settings,
+    expected_response,
+    identify,
+    identify_jointly,
+    planned_lines,
+)
 
 pytestmark = pytest.mark.slow
 

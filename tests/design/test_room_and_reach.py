@@ -17,13 +17,14 @@ from shaftprint.design import (
     expected_operation,
     length_words,
     plan_sentences,
-    possible_ship,
 )
-from shaftprint.design.motion import SIGNALS, Bound
-from shaftprint.design.plan import STAIRS, Timetable, predicted_accuracy
-from shaftprint.design.planning import with_band
-from shaftprint.design.planning._band import _estimated_variance
-from shaftprint.design.search import Uses
+from shaftprint.design.inputs._known_ship import possible_ship
+from shaftprint.design.motion._bound import Bound
+from shaftprint.design.motion._motion import SIGNALS
+from shaftprint.design.plan._plan import predicted_accuracy
+from shaftprint.design.plan._timetable import STAIRS, Timetable
+from shaftprint.design.planning._band import _estimated_variance, with_band
+from shaftprint.design.search._uses import Uses
 from shaftprint.identify import STAN_TUG_NOISE
 from shaftprint.vessel import load_vessel
 

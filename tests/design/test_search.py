@@ -3,16 +3,11 @@
 import numpy as np
 import pytest
 
-from shaftprint.design.search import (
-    DeterminantWithFloor,
-    Effort,
-    Possibility,
-    Problem,
-    Uses,
-    WorstWish,
-    random_start,
-    search,
-)
+from shaftprint.design import Effort
+from shaftprint.design.search._criterion import DeterminantWithFloor, WorstWish
+from shaftprint.design.search._problem import Possibility, Problem
+from shaftprint.design.search._search import random_start, search
+from shaftprint.design.search._uses import Uses
 
 ODD = tuple(range(1, 40, 2))
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from shaftprint.design import Timetable
+from shaftprint.design.plan._timetable import Timetable
 from shaftprint.errors import DesignError
 
 # Between 1360 and 920 rpm a ramp of 30 rpm/s takes 14.67 s, and as long back; a hundredth of a second each is spare.

@@ -6,14 +6,11 @@ import numpy as np
 import pytest
 import scipy.stats
 
-from shaftprint.design import (
-    PlannedTest,
-    SetPointLine,
-    abort_card,
-    length_curve,
-    line_worths,
-    planned_motion,
-)
+from shaftprint.design import PlannedTest, SetPointLine
+from shaftprint.design.views._abort_card import abort_card
+from shaftprint.design.views._line_worth import line_worths
+from shaftprint.design.views._other_lengths import length_curve
+from shaftprint.design.views._planned_motion import planned_motion
 
 
 def test_the_lines_together_are_worth_the_number_of_parameters(plan):

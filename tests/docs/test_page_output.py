@@ -9,7 +9,7 @@ from pages import shown
 from shaftprint.catalogue import structure
 from shaftprint.clocks import Alignment, ClockMap, LoggerClock, Stretch
 from shaftprint.fingerprint import ClockInfluence
-from shaftprint.report.sections import clock_sentences
+from shaftprint.report.sections._clocks import clock_sentences
 
 NUMBER = re.compile(r"(?<![\w.])[-−]?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from shaftprint.drift import p_value_of_largest, whitened
+from shaftprint.drift._along import p_value_of_largest, whitened
 
 
 def test_size_along_a_direction_is_the_weighted_mean():

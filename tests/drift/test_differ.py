@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 from tests.known_fits import TRUTH, fitted, known_signals, known_working_point, taken
 
-from shaftprint.drift import differ, finding_sentences, pair_of
+from shaftprint.drift import differ
+from shaftprint.drift._pair import pair_of
+from shaftprint.drift._words import finding_sentences
 from shaftprint.fingerprint import SourceFile
 from shaftprint.identify import Prior, Settings
 from shaftprint.reasons import Reason

@@ -8,19 +8,12 @@ from tests.drift.test_differ import PRIORS
 from tests.drift.test_watch import FIRST, I_ACTION, P_ACTION, QUARTER, doubted, made
 from tests.known_fits import TRUTH, fitted, taken
 
-from shaftprint.drift import (
-    CAUSES,
-    DatedTest,
-    Event,
-    Sister,
-    differ,
-    discoveries,
-    history_of,
-    judge_sisters,
-    sister_of,
-    sister_sentences,
-)
-from shaftprint.fingerprint import BEHIND
+from shaftprint.drift import Event, Sister, differ, history_of, judge_sisters, sister_of
+from shaftprint.drift._causes import CAUSES
+from shaftprint.drift._dated import DatedTest
+from shaftprint.drift._discoveries import discoveries
+from shaftprint.drift._sister_words import sister_sentences
+from shaftprint.fingerprint._vessel_fields import BEHIND
 from shaftprint.identify import Settings
 
 INJECTION = "injection or turbocharger"

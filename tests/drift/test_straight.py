@@ -8,7 +8,8 @@ from tests.drift.test_watch import I_ACTION, P_ACTION, looked_at, made
 from tests.known_fits import TRUTH, fitted, taken
 
 from shaftprint.catalogue import structure
-from shaftprint.fingerprint import JointNumbers, LegRecord, NoiseSpectrum
+from shaftprint.fingerprint._joint_numbers import JointNumbers
+from shaftprint.fingerprint._leg_records import LegRecord, NoiseSpectrum
 from shaftprint.identify import Settings
 from shaftprint.models import at_working_point
 

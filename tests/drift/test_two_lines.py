@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 from tests.known_fits import TRUTH, fitted, taken
 
-from shaftprint.drift import are_two_lines, differ, pair_of, shared_errors
+from shaftprint.drift import differ, shared_errors
+from shaftprint.drift._pair import pair_of
+from shaftprint.drift._shared_errors import are_two_lines
 from shaftprint.fingerprint import Fingerprint, SourceFile, vessel_fields
 from shaftprint.identify import Prior, Settings
 from shaftprint.report import differences

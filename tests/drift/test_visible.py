@@ -6,9 +6,11 @@ from tests.drift.test_differ import PRIORS
 from tests.known_fits import TRUTH, exact_response, fitted, taken
 
 from shaftprint.catalogue import structure
-from shaftprint.drift import differ, p_value_of_largest, pair_of, visible_changes, whitened
-from shaftprint.identify import Settings
-from shaftprint.identify.prediction import predict_accuracy
+from shaftprint.drift import differ
+from shaftprint.drift._along import p_value_of_largest, whitened
+from shaftprint.drift._pair import pair_of
+from shaftprint.drift._visible import visible_changes
+from shaftprint.identify import Settings, predict_accuracy
 
 # Standard normal quantile of four fifths.
 POWER = 0.8416

@@ -4,7 +4,8 @@ import re
 
 import pytest
 
-from shaftprint.drive import load_drive, unit_factor
+from shaftprint.drive import load_drive
+from shaftprint.drive._unit_factors import unit_factor
 from shaftprint.errors import SettingsError
 from shaftprint.settings import write_template
 

@@ -11,20 +11,12 @@ from shaftprint.catalogue import structure
 from shaftprint.errors import StructureError
 from shaftprint.identify import STAN_TUG_NOISE, Settings
 from shaftprint.recording import cut, read_recording, write_recording
-from shaftprint.survey import (
-    apart_reasons,
-    comparisons_of,
-    fingerprint_of,
-    fit,
-    hints_of,
-    leg_tests,
-    legs_alone,
-    load_trial,
-    measure,
-    of_legs,
-    priors_of,
-    run,
-)
+from shaftprint.survey import fit, leg_tests, legs_alone, load_trial, measure, priors_of, run
+from shaftprint.survey._fits import comparisons_of
+from shaftprint.survey._legs_apart import apart_reasons
+from shaftprint.survey._limit_hints import hints_of
+from shaftprint.survey._measurement import of_legs
+from shaftprint.survey._survey import fingerprint_of
 from shaftprint.tug import Noise, Tug, sail
 from shaftprint.vessel import load_vessel
 

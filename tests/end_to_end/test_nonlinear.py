@@ -11,7 +11,9 @@ from shaftprint.identify import Settings, identify, priors_from_vessel
 from shaftprint.recording import read_recording
 from shaftprint.signals import Signals, prepare_signals
 from shaftprint.spectra import estimate_response
-from shaftprint.time_domain import NonlinearFit, NonlinearSettings, RecordFit, identify_nonlinear, structure_for
+from shaftprint.time_domain import NonlinearSettings, identify_nonlinear, structure_for
+from shaftprint.time_domain._record_fit import RecordFit
+from shaftprint.time_domain.nonlinear._fit import NonlinearFit
 from shaftprint.tug import Noise, Truth, Tug, sail
 from shaftprint.validation import validate
 from shaftprint.vessel import Vessel

@@ -5,7 +5,9 @@ import pytest
 
 from shaftprint.recording import read_recording
 from shaftprint.signals import prepare_signals
-from shaftprint.spectra import estimate_spectra, governor_and_engine, measured
+from shaftprint.spectra import estimate_spectra
+from shaftprint.spectra._line_responses import measured
+from shaftprint.spectra._open_loop import governor_and_engine
 from shaftprint.tug import Noise, Tug, linearised_response, sail
 from shaftprint.vessel import Vessel, load_vessel
 

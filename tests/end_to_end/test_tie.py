@@ -11,7 +11,8 @@ import pytest
 
 from shaftprint.catalogue import structure
 from shaftprint.propeller import wageningen_b
-from shaftprint.tug import Coupling, ShaftMachineTruth, Tug, like_stan_tug_1205, linearised_response, normalised_truth
+from shaftprint.tug import Coupling, Tug, like_stan_tug_1205, linearised_response, normalised_truth
+from shaftprint.tug._shaft_machine import ShaftMachineTruth
 from shaftprint.vessel import load_vessel
 
 OMEGA_RAD_S = np.geomspace(0.1, 10.0, 200)

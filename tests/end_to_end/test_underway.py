@@ -13,7 +13,8 @@ from shaftprint.identify import identifiability, identify
 from shaftprint.propeller import ka4_70_in_19a
 from shaftprint.recording import read_recording
 from shaftprint.signals import prepare_signals
-from shaftprint.spectra import estimate_spectra, measured, plant_from_closed_loop
+from shaftprint.spectra import estimate_spectra, plant_from_closed_loop
+from shaftprint.spectra._line_responses import measured
 from shaftprint.tug import Sailing, Tug, sail
 from shaftprint.vessel import Vessel, load_vessel
 

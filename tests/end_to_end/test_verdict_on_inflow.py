@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from shaftprint.catalogue import structure
-from shaftprint.identify import Settings, assess, identify, priors_from_vessel, profile
-from shaftprint.identify.comparison import compare_fits
+from shaftprint.identify import Settings, assess, compare_fits, identify, priors_from_vessel, profile
 from shaftprint.recording import read_recording
 from shaftprint.signals import prepare_signals
 from shaftprint.spectra import estimate_spectra

@@ -11,7 +11,8 @@ import pytest
 
 from shaftprint.drift import differ
 from shaftprint.fingerprint import SourceFile, take_fingerprint
-from shaftprint.report import change_in_words, differences
+from shaftprint.report import differences
+from shaftprint.report.sections._comparison_cover import change_in_words
 from shaftprint.tug import Noise, Tug, sail
 
 pytestmark = pytest.mark.slow

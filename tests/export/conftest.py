@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 from benchmarks.co_simulation import OUTPUTS, SET_POINT, SPEED_RPM, Slave
 
-from shaftprint.export import PLATFORMS, ExportedModel, host_platform, write_fmu
+from shaftprint.export import ExportedModel, write_fmu
+from shaftprint.export._fmu_build import PLATFORMS, host_platform
 
 TORQUE_NM = 1740.0
 

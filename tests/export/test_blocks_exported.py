@@ -5,10 +5,11 @@ import pytest
 from tests.bench.test_blocks import CONSTANT, RATIO, STATIC, laws, text_of
 from tests.export.test_modelica import Reader, flat
 
-from shaftprint.bench import composed
+from shaftprint.bench._composed import composed
 from shaftprint.drive import load_drive
-from shaftprint.export import ExportedModel, host_platform, write_fmu
-from shaftprint.export.modelica import modelica_text
+from shaftprint.export import ExportedModel, write_fmu
+from shaftprint.export._fmu_build import host_platform
+from shaftprint.export.modelica._write import modelica_text
 from shaftprint.simulation import simulate
 
 MOVING = (

@@ -5,8 +5,11 @@ import pytest
 
 from shaftprint.catalogue import STRUCTURES, limited, structure
 from shaftprint.errors import ExportError
-from shaftprint.export.linear import delay_model, without_past_rates
-from shaftprint.models import Parameter, Structure, TorqueBalance, postorder, program_of
+from shaftprint.export.linear._delay_model import delay_model
+from shaftprint.export.linear._past_rates import without_past_rates
+from shaftprint.models import Parameter, Structure, TorqueBalance
+from shaftprint.models._program import program_of
+from shaftprint.models.equations._calculus import postorder
 
 OMEGA = np.geomspace(0.05, 50.0, 61)
 S = 1j * OMEGA

@@ -11,7 +11,8 @@ import pytest
 
 from shaftprint.catalogue import limited, structure
 from shaftprint.errors import ExportError
-from shaftprint.export import PLATFORMS, host_platform, write_fmu
+from shaftprint.export import write_fmu
+from shaftprint.export._fmu_build import PLATFORMS, host_platform
 from shaftprint.models import Parameter
 from shaftprint.simulation import simulate
 

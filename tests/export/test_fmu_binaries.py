@@ -10,7 +10,8 @@ from pathlib import PurePosixPath
 import pytest
 
 from shaftprint.catalogue import limited
-from shaftprint.export import PLATFORMS, write_fmu
+from shaftprint.export import write_fmu
+from shaftprint.export._fmu_build import PLATFORMS
 
 # the first of all compiles for five systems, a minute and more
 pytestmark = pytest.mark.slow

@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 
 from shaftprint.catalogue import limited, structure
-from shaftprint.export import PLATFORMS, host_platform
+from shaftprint.export._fmu_build import PLATFORMS, host_platform
 
 SPEED_RPM, TORQUE_NM = 1183.8, 1740.0
 SET_POINT = "engine_speed_set_point"

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from shaftprint.cli import shaftprint
-from shaftprint.export import PLATFORMS
+from shaftprint.export._fmu_build import PLATFORMS
 
 PAGE = Path(__file__).parents[2].joinpath("docs", "export.md").read_text(encoding="utf-8")
 

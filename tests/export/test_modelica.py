@@ -11,7 +11,8 @@ from shaftprint.catalogue import STRUCTURES, limited, structure
 from shaftprint.errors import ExportError
 from shaftprint.escape import modelica_string
 from shaftprint.export import write_modelica
-from shaftprint.export.modelica import modelica_name, modelica_number, modelica_text
+from shaftprint.export.modelica._expressions import modelica_name, modelica_number
+from shaftprint.export.modelica._write import modelica_text
 from shaftprint.models import Diagram, Parameter, Shaft, Structure, clip, firing_delay, first_order_lag
 from shaftprint.simulation import simulate
 

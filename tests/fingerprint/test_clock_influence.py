@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from shaftprint.clocks import Alignment, ClockMap, LoggerClock
-from shaftprint.fingerprint import clock_findings, clock_influences
+from shaftprint.fingerprint._clock_influence import clock_findings, clock_influences
 from shaftprint.identify import identify
 from shaftprint.spectra import FrequencyResponse
 

@@ -9,8 +9,7 @@ import pytest
 from shaftprint.catalogue import ShipRole
 from shaftprint.fingerprint import Quantity, physical_quantities
 from shaftprint.fingerprint._findings import findings_of
-from shaftprint.identify import Prior, Settings, Unweighted
-from shaftprint.identify.uncertainty import Budget, BudgetRow, budget
+from shaftprint.identify import Budget, BudgetRow, Prior, Settings, Unweighted, budget
 from shaftprint.vessel import load_vessel
 
 NO_BUDGET = Budget(sources=(), rows=())

@@ -6,16 +6,12 @@ import numpy as np
 import pytest
 
 from shaftprint.errors import FingerprintError
-from shaftprint.fingerprint import (
-    LimitNumber,
-    LineWithLimits,
-    Quantity,
-    model_with_limits,
-    read_fingerprint,
-    write_fingerprint,
-)
-from shaftprint.limits import Kind, Levels
-from shaftprint.survey import line_with_limits
+from shaftprint.fingerprint import Quantity, read_fingerprint, write_fingerprint
+from shaftprint.fingerprint._line_with_limits import LimitNumber, LineWithLimits
+from shaftprint.fingerprint._model import model_with_limits
+from shaftprint.limits import Kind
+from shaftprint.limits._levels_beside import Levels
+from shaftprint.survey._line_with_limits import line_with_limits
 
 CURVE = ((-0.5, 0.6), (0.0, 1.0), (0.5, 1.1))
 

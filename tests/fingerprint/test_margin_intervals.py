@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from shaftprint.fingerprint import margin_numbers, margin_quantities
+from shaftprint.fingerprint._margin_numbers import margin_numbers
+from shaftprint.fingerprint._margins import margin_quantities
 from shaftprint.identify import Settings, identify, profile
 from shaftprint.models import Delay, Gain, Integrator, Parameter, Structure, feedback, margins
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from shaftprint.fingerprint import margin_quantities
+from shaftprint.fingerprint._margins import margin_quantities
 from shaftprint.models import margins
 
 SAMPLES = 60

@@ -5,7 +5,8 @@ import pytest
 
 from shaftprint.catalogue import structure
 from shaftprint.errors import FingerprintError
-from shaftprint.fingerprint import Fingerprint, Quantity, identified_model
+from shaftprint.fingerprint import Fingerprint, Quantity
+from shaftprint.fingerprint._model import identified_model
 
 
 @pytest.fixture

@@ -7,8 +7,7 @@ import pytest
 
 from shaftprint.catalogue import structure
 from shaftprint.fingerprint import physical_quantities
-from shaftprint.identify import Prior, Settings, identify, priors_from_vessel
-from shaftprint.identify.fit import refit
+from shaftprint.identify import Prior, Settings, identify, priors_from_vessel, refit
 
 TESTS = 800
 # A standard deviation from so many tests is known to 2.5 %; three of them, and two percent that first order leaves.

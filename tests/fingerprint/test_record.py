@@ -12,7 +12,7 @@ from shaftprint.catalogue import ShipRole
 from shaftprint.errors import FingerprintError
 from shaftprint.fingerprint import Quantity, read_fingerprint, write_fingerprint
 from shaftprint.identify import Prior, Settings, Unweighted
-from shaftprint.vessel import Ship
+from shaftprint.vessel._ship import Ship
 
 NOW = datetime(2026, 3, 14, 9, 30, tzinfo=UTC)
 

@@ -4,8 +4,7 @@ import numpy as np
 
 from shaftprint.catalogue import structure
 from shaftprint.fingerprint._resting import resting_on
-from shaftprint.identify import Prior, Settings, identify
-from shaftprint.identify.uncertainty import profile_intervals
+from shaftprint.identify import Prior, Settings, identify, profile_intervals
 from shaftprint.spectra import FrequencyResponse
 
 GAUGE = structure("GAUGE-CLOSED")

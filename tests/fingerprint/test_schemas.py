@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from shaftprint.errors import FingerprintError
-from shaftprint.fingerprint import LegRecord, NoiseSpectrum, noise_spectra, read_fingerprint, write_fingerprint
+from shaftprint.fingerprint import read_fingerprint, write_fingerprint
+from shaftprint.fingerprint._leg_records import LegRecord, NoiseSpectrum, noise_spectra
 from shaftprint.identify import NoiseLevels
 
 LEGS = (

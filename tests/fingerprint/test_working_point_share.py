@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from shaftprint.catalogue import structure
-from shaftprint.fingerprint import physical_numbers, physical_quantities
+from shaftprint.fingerprint import physical_quantities
+from shaftprint.fingerprint._physical import physical_numbers
 from shaftprint.fingerprint._working_point_share import (
     LOAD_WANDER,
     RACK,
@@ -16,8 +17,7 @@ from shaftprint.fingerprint._working_point_share import (
     widened,
     widened_covariance,
 )
-from shaftprint.identify import Prior, Settings, identify, priors_from_vessel
-from shaftprint.identify.uncertainty import budget
+from shaftprint.identify import Prior, Settings, budget, identify, priors_from_vessel
 
 MORE = 0.01
 

@@ -3,8 +3,8 @@
 import pytest
 
 from shaftprint.campaign import load_campaign
-from shaftprint.fleet import job_arguments
-from shaftprint.fleet.computing import survey_of_job
+from shaftprint.fleet._arguments import job_arguments
+from shaftprint.fleet.computing._identify import survey_of_job
 from shaftprint.tug import sail
 from shaftprint.vessel import load_vessel
 

@@ -6,7 +6,8 @@ from importlib.resources import files
 import pytest
 
 from shaftprint.errors import RecordingError, SettingsError, StructureError
-from shaftprint.fleet import job_arguments, submit
+from shaftprint.fleet import submit
+from shaftprint.fleet._arguments import job_arguments
 from shaftprint.store import job_counts
 
 LATER = datetime.now(UTC) + timedelta(hours=1)

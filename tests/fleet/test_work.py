@@ -16,8 +16,9 @@ import pytest
 
 from shaftprint import __version__
 from shaftprint.errors import SettingsError
-from shaftprint.fingerprint import fingerprint_document
-from shaftprint.fleet import job_arguments, submit, work
+from shaftprint.fingerprint._json_file import fingerprint_document
+from shaftprint.fleet import submit, work
+from shaftprint.fleet._arguments import job_arguments
 from shaftprint.store import JobRequest, claim, document, enqueue, job, job_counts, jobs
 from shaftprint.survey import run as survey_run
 

@@ -15,15 +15,12 @@ from shaftprint.identify import (
     expected_response,
     identify,
     identify_jointly,
+    planned_lines,
     planned_response,
     predict_accuracy,
 )
-from shaftprint.identify.prediction import (
-    planned_lines,
-    predict_intervals,
-    predict_joint_accuracy,
-    predict_joint_deviations,
-)
+from shaftprint.identify.prediction._accuracy import predict_joint_accuracy, predict_joint_deviations
+from shaftprint.identify.prediction._predicted_intervals import predict_intervals
 from shaftprint.models import Combination, Delay, Parameter, SecondOrderLag, Structure
 
 TRUTH = {

@@ -6,7 +6,7 @@ import pytest
 from shaftprint.catalogue import structure
 from shaftprint.errors import IdentificationError
 from shaftprint.identify import Settings, bootstrap, identify, identify_jointly
-from shaftprint.identify.uncertainty import model_band, response_band, step_band
+from shaftprint.identify.uncertainty._band import model_band, response_band, step_band
 from shaftprint.models import Delay, Gain, Parameter, Structure, step_response
 
 BENCHMARK = {"tau_n": 0.4, "K_p": 4.0, "K_i": 5.0, "g": -0.5, "v": 1.0}

@@ -8,7 +8,7 @@ import pytest
 from shaftprint.catalogue import structure
 from shaftprint.errors import IdentificationError
 from shaftprint.identify import Prior, Settings, Unweighted, bootstrap, identify, identify_jointly, profile_intervals
-from shaftprint.identify.likelihood import estimated_shapes
+from shaftprint.identify.likelihood._wishart import estimated_shapes
 from shaftprint.models import Combination, Gain, Parameter, Structure
 
 GAUGE = {"tau_dn": 0.32, "tau_up": 1.016, "k_q": 2.0, "g": 0.0, "v": 1.0, "K_p": 5.7, "K_i": 4.27, "t_d": 0.07}

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import scipy.optimize
 
-from shaftprint.identify.search import bounded_least_squares
+from shaftprint.identify.search._bounded_least_squares import bounded_least_squares
 
 
 @pytest.mark.parametrize("unknowns", [1, 2, 4, 7])

@@ -7,9 +7,7 @@ import pytest
 
 from shaftprint.catalogue import structure
 from shaftprint.errors import IdentificationError
-from shaftprint.identify import Prior, Settings, StudentT, Unweighted, identify, identify_jointly
-from shaftprint.identify.fit import refit
-from shaftprint.identify.uncertainty import budget
+from shaftprint.identify import Prior, Settings, StudentT, Unweighted, budget, identify, identify_jointly, refit
 from shaftprint.models import Combination, Gain, Parameter, Structure
 
 GAUGE = {"tau_dn": 0.32, "tau_up": 1.016, "k_q": 2.0, "g": 0.0, "v": 1.0, "K_p": 5.7, "K_i": 4.27, "t_d": 0.07}

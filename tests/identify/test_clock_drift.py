@@ -8,7 +8,7 @@ from tests.known_fits import FREQUENCY_HZ, TRUTH, noisy_response
 
 from shaftprint.catalogue import structure
 from shaftprint.identify import Prior, Settings, assess, identify
-from shaftprint.identify.judgement import unseen_drift
+from shaftprint.identify.judgement._clock_drift import unseen_drift
 
 PRIORS = {"g": Prior(0.0, 0.1), "tau_up": Prior(1.016, 0.03), "t_gauge": Prior(0.0, 0.002)}
 MIDDLE_S = np.linspace(280.0, 850.0, FREQUENCY_HZ.size)

@@ -7,9 +7,9 @@ import pytest
 
 from shaftprint.catalogue import structure
 from shaftprint.errors import IdentificationError
-from shaftprint.identify import Prior, Settings, Unweighted, compare_structures, identify
-from shaftprint.identify.comparison import HoldOut, compare_fits, comparison_words
-from shaftprint.identify.search import GivenStarts
+from shaftprint.identify import GivenStarts, Prior, Settings, Unweighted, compare_fits, compare_structures, identify
+from shaftprint.identify.comparison._hold_out import HoldOut
+from shaftprint.identify.comparison._sentences import comparison_words
 from shaftprint.models import Gain, Parameter, PIGovernor, Structure
 
 CL3 = {"tau_n": 0.35, "K_p": 1.6, "K_i": 4.4, "omega_n": 9.8, "zeta": 0.5}

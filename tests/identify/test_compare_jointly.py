@@ -7,8 +7,10 @@ import pytest
 
 from shaftprint.catalogue import structure
 from shaftprint.errors import IdentificationError
-from shaftprint.identify import Settings, identify_jointly
-from shaftprint.identify.comparison import compare_fits, compare_jointly, hold_out, nesting
+from shaftprint.identify import Settings, compare_fits, identify_jointly
+from shaftprint.identify.comparison._compare import compare_jointly
+from shaftprint.identify.comparison._hold_out import hold_out
+from shaftprint.identify.comparison._nesting import nesting
 from shaftprint.models import at_working_point
 
 SETTINGS = Settings(starts=12)

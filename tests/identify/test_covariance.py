@@ -5,9 +5,9 @@ import pytest
 
 from shaftprint.catalogue import structure
 from shaftprint.identify import MaximumLikelihood, Prior, Settings, Unweighted, identify
-from shaftprint.identify.fit import estimate_covariance
-from shaftprint.identify.likelihood import build_objective
-from shaftprint.identify.search import descend
+from shaftprint.identify.fit._covariance import estimate_covariance
+from shaftprint.identify.likelihood._build_objective import build_objective
+from shaftprint.identify.search._levenberg_marquardt import descend
 from shaftprint.models import Constant, Gain, Parameter, Structure
 
 REPEATS = 400

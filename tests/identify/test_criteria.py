@@ -7,7 +7,7 @@ import pytest
 
 from shaftprint.catalogue import structure
 from shaftprint.identify import Prior, Settings, StudentT, Unweighted, identify
-from shaftprint.identify.comparison import criteria_of
+from shaftprint.identify.comparison._criteria import criteria_of
 
 
 def fitted(make_response, name, wanted, *, seed=1, noise=0.02, **settings):

@@ -5,7 +5,7 @@ import pytest
 
 from shaftprint.catalogue import structure
 from shaftprint.identify import fit_percent, identify
-from shaftprint.identify.likelihood import fit_ceiling
+from shaftprint.identify.likelihood._fit_percent import fit_ceiling
 
 
 def test_fit_percent_by_hand():

@@ -8,7 +8,7 @@ import scipy.stats
 
 from shaftprint.catalogue import structure
 from shaftprint.identify import Prior, Settings, Unweighted, identify
-from shaftprint.identify.fit import FitTest
+from shaftprint.identify.fit._fit_test import FitTest
 
 
 def rng():

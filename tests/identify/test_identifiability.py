@@ -13,7 +13,7 @@ import pytest
 from shaftprint.catalogue import STRUCTURES, structure
 from shaftprint.errors import StructureError
 from shaftprint.identify import identifiability
-from shaftprint.identify.prediction import unit_of
+from shaftprint.identify.prediction._formulas import unit_of
 from shaftprint.models import (
     Delay,
     FunctionBlock,

@@ -5,8 +5,7 @@ import pytest
 
 from shaftprint.catalogue import structure
 from shaftprint.errors import IdentificationError
-from shaftprint.identify import Settings, Unweighted, identify
-from shaftprint.identify.fit import Estimate
+from shaftprint.identify import Estimate, Settings, Unweighted, identify
 from shaftprint.models import margins
 
 

@@ -8,9 +8,10 @@ import scipy.optimize
 
 from shaftprint.catalogue import structure
 from shaftprint.errors import IdentificationError
-from shaftprint.identify import LatinHypercube, MaximumLikelihood, Prior, Settings, Unweighted, identify
-from shaftprint.identify.search import Draw
-from shaftprint.models import Delay, Parameter, PIGovernor, Sensitivity, Shaft, Structure, unstable_poles
+from shaftprint.identify import Draw, MaximumLikelihood, Prior, Settings, Unweighted, identify
+from shaftprint.identify.search._starts import LatinHypercube
+from shaftprint.models import Delay, Parameter, PIGovernor, Sensitivity, Shaft, Structure
+from shaftprint.models._nyquist import unstable_poles
 
 S1_TO_S16_HZ = np.array(
     [

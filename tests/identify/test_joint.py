@@ -15,9 +15,9 @@ from shaftprint.identify import (
     identify,
     identify_jointly,
     profile_intervals,
+    refit,
 )
-from shaftprint.identify.fit import refit
-from shaftprint.identify.likelihood import build_joint_objective
+from shaftprint.identify.likelihood._build_objective import build_joint_objective
 from shaftprint.models import Constant, Delay, Gain, Parameter, PIGovernor, Sensitivity, Shaft, Structure
 from shaftprint.spectra import FrequencyResponse
 

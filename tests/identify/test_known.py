@@ -6,9 +6,9 @@ from types import SimpleNamespace
 import pytest
 
 from shaftprint.catalogue import structure
-from shaftprint.identify import Prior, expected_from_vessel, priors_from_vessel
-from shaftprint.identify.likelihood import PRIOR_OF_G
-from shaftprint.torsion import line_coupling
+from shaftprint.identify import Prior, priors_from_vessel
+from shaftprint.identify.likelihood._known import PRIOR_OF_G, expected_from_vessel
+from shaftprint.torsion._coupling import line_coupling
 from shaftprint.vessel import load_vessel
 
 

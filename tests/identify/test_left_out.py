@@ -6,7 +6,7 @@ import pytest
 from shaftprint.catalogue import structure
 from shaftprint.errors import IdentificationError
 from shaftprint.identify import Settings, Unweighted, identify
-from shaftprint.identify.comparison import hold_out
+from shaftprint.identify.comparison._hold_out import hold_out
 
 SETTINGS = Settings(starts=6, stability="ignored")
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import scipy.optimize
 
-from shaftprint.identify.search import LARGEST_DAMPING, descend
+from shaftprint.identify.search._levenberg_marquardt import LARGEST_DAMPING, descend
 
 Function = Callable[[np.ndarray], np.ndarray]
 

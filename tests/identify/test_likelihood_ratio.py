@@ -5,9 +5,9 @@ import pytest
 import scipy.stats
 
 from shaftprint.catalogue import structure
-from shaftprint.identify import Prior, Settings, Unweighted, identify
-from shaftprint.identify.comparison import Nesting, likelihood_ratio, nesting
-from shaftprint.identify.fit import refit
+from shaftprint.identify import Prior, Settings, Unweighted, identify, refit
+from shaftprint.identify.comparison._likelihood_ratio import likelihood_ratio
+from shaftprint.identify.comparison._nesting import Nesting, nesting
 from shaftprint.models import Gain, Parameter, PIGovernor, RationalBlock, Structure
 
 LAGGED = {"tau_n": 0.35, "K_p": 1.6, "K_i": 4.4, "t_d": 0.0, "omega_n": 10.0, "zeta": 0.6}

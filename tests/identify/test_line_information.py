@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from shaftprint.catalogue import structure
-from shaftprint.identify import STAN_TUG_NOISE, Prior
-from shaftprint.identify.prediction import line_information, planned_lines, predict_joint_accuracy
+from shaftprint.identify import STAN_TUG_NOISE, Prior, planned_lines
+from shaftprint.identify.prediction._accuracy import predict_joint_accuracy
+from shaftprint.identify.prediction._line_information import line_information
 
 FREQUENCY = np.geomspace(0.02, 3.0, 14)
 

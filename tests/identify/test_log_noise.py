@@ -4,8 +4,10 @@ import numpy as np
 import pytest
 
 from shaftprint.errors import IdentificationError
-from shaftprint.identify.prediction import STAN_TUG_NOISE_UNDERWAY, stated_noise, with_log
-from shaftprint.spectra import NOT_MEASURED_STD
+from shaftprint.identify.prediction._log_noise import with_log
+from shaftprint.identify.prediction._noise_levels import stated_noise
+from shaftprint.identify.prediction._stan_tug_noise_underway import STAN_TUG_NOISE_UNDERWAY
+from shaftprint.spectra._line_responses import NOT_MEASURED_STD
 
 
 def shown(levels, hertz):

@@ -7,7 +7,7 @@ import pytest
 
 from shaftprint.catalogue import structure
 from shaftprint.identify import Settings, Unweighted, identify
-from shaftprint.identify.judgement import explained, misfit_words, worst_lines
+from shaftprint.identify.judgement._misfit import explained, misfit_words, worst_lines
 
 
 def fitted(response, name="CL4", **settings):

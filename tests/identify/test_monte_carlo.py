@@ -7,8 +7,7 @@ import pytest
 from scipy.stats import kstest
 
 from shaftprint.catalogue import structure
-from shaftprint.identify import Prior, Settings, identify, profile_intervals
-from shaftprint.identify.search import Draw
+from shaftprint.identify import Draw, Prior, Settings, identify, profile_intervals
 from shaftprint.spectra import FrequencyResponse
 
 pytestmark = pytest.mark.slow

@@ -5,7 +5,7 @@ import pytest
 
 from shaftprint.catalogue import structure
 from shaftprint.identify import Settings, identify
-from shaftprint.identify.comparison import nesting
+from shaftprint.identify.comparison._nesting import nesting
 from shaftprint.models import Gain, Parameter, PIGovernor, RationalBlock, Structure
 
 SETTINGS = Settings(starts=20)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from shaftprint.arrays import FloatArray, IntArray
-from shaftprint.identify.search import descend
+from shaftprint.identify.search._levenberg_marquardt import descend
 
 
 def test_a_parameter_without_influence_stays_where_it_started_however_long_the_fit_takes() -> None:

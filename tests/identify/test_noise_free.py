@@ -5,7 +5,7 @@ import pytest
 
 from shaftprint.catalogue import structure
 from shaftprint.identify import Prior, Settings, Unweighted, identify
-from shaftprint.identify.likelihood import build_objective
+from shaftprint.identify.likelihood._build_objective import build_objective
 from shaftprint.identify.search._search import _floors
 from shaftprint.spectra import FrequencyResponse
 

@@ -6,7 +6,7 @@ import pytest
 from shaftprint.catalogue import structure
 from shaftprint.errors import IdentificationError
 from shaftprint.identify import MaximumLikelihood, Prior, Settings, Unweighted, identify
-from shaftprint.identify.likelihood import build_objective
+from shaftprint.identify.likelihood._build_objective import build_objective
 
 NOTHING = {"priors": {}, "regularisation": {}}
 

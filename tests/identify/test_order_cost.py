@@ -5,7 +5,7 @@ import pytest
 
 from shaftprint.campaign import Campaign, Sine
 from shaftprint.identify import NoiseLevels, planned_response
-from shaftprint.identify.prediction import common_share
+from shaftprint.identify.prediction._order_cost import common_share
 
 
 def levels(speed_density, *, orders_hz=(5.0,)):

@@ -2,7 +2,7 @@
 
 import pytest
 
-from shaftprint.identify.judgement import listed, number, probability, spans
+from shaftprint.identify.judgement._phrases import listed, number, probability, spans
 
 
 @pytest.mark.parametrize(

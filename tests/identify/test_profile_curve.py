@@ -6,7 +6,7 @@ import pytest
 from shaftprint.catalogue import structure
 from shaftprint.errors import IdentificationError
 from shaftprint.identify import Settings, Unweighted, identify, profile_intervals
-from shaftprint.identify.uncertainty import profile_curve
+from shaftprint.identify.uncertainty._profile_curve import profile_curve
 from shaftprint.models import Combination, Gain, Parameter, Structure
 
 

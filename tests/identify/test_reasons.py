@@ -7,9 +7,8 @@ import numpy as np
 import pytest
 
 from shaftprint.catalogue import ShipRole, structure
-from shaftprint.identify import Prior, Settings, assess, identify, profile
-from shaftprint.identify.fit import Estimate
-from shaftprint.identify.judgement import AFFECTED, by_weight, depends_on
+from shaftprint.identify import Estimate, Prior, Settings, assess, identify, profile
+from shaftprint.identify.judgement._affected_numbers import AFFECTED, by_weight, depends_on
 from shaftprint.reasons import Reason, ReasonKind
 
 LINES_HZ = np.geomspace(0.0044, 3.4, 24)

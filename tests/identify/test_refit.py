@@ -8,8 +8,7 @@ import pytest
 from shaftprint.arrays import ComplexArray
 from shaftprint.catalogue import structure
 from shaftprint.errors import IdentificationError
-from shaftprint.identify import Identification, Prior, Settings, identify
-from shaftprint.identify.fit import refit
+from shaftprint.identify import Identification, Prior, Settings, identify, refit
 from shaftprint.models import Structure
 from shaftprint.spectra import FrequencyResponse
 

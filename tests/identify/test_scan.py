@@ -8,8 +8,8 @@ import scipy.optimize
 
 from shaftprint.catalogue import structure
 from shaftprint.errors import IdentificationError
-from shaftprint.identify import MaximumLikelihood, Prior, Settings, Unweighted, identify
-from shaftprint.identify.fit import scan, scan_response
+from shaftprint.identify import MaximumLikelihood, Prior, Settings, Unweighted, identify, scan
+from shaftprint.identify.fit._scan import scan_response
 from shaftprint.models import Delay, Gain, Parameter, PIGovernor, Structure
 from shaftprint.spectra import FrequencyResponse
 

@@ -6,10 +6,9 @@ import numpy as np
 import pytest
 
 from shaftprint.catalogue import structure
-from shaftprint.identify import Settings, Unweighted, identify
-from shaftprint.identify.fit import Cluster, scan
-from shaftprint.identify.judgement import report_search
-from shaftprint.identify.search import Draw
+from shaftprint.identify import Draw, Settings, Unweighted, identify, scan
+from shaftprint.identify.fit._identification import Cluster
+from shaftprint.identify.judgement._search_report import report_search
 from shaftprint.models import Delay, Gain, Parameter, PIGovernor, Sensitivity, Shaft, Structure
 from shaftprint.spectra import FrequencyResponse
 

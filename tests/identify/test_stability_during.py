@@ -5,8 +5,9 @@ import pytest
 
 from shaftprint.catalogue import structure
 from shaftprint.errors import IdentificationError
-from shaftprint.identify import Settings, identify, identify_jointly
-from shaftprint.identify.search import Descent, Draw, border_minimum, descend, stable_models
+from shaftprint.identify import Draw, Settings, identify, identify_jointly
+from shaftprint.identify.search._levenberg_marquardt import Descent, descend
+from shaftprint.identify.search._stability_border import border_minimum, stable_models
 from shaftprint.models import Delay, Parameter, PIGovernor, Sensitivity, Shaft, Structure, is_stable
 
 DURING = Settings(stability="during")

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from shaftprint.identify import LatinHypercube, Uniform
+from shaftprint.identify import Uniform
+from shaftprint.identify.search._starts import LatinHypercube
 
 LOWER, UPPER = np.array([0.0, -3.0, 7.0]), np.array([5.0, 1.0, 13.0])
 

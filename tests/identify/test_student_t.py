@@ -7,8 +7,8 @@ import pytest
 
 from shaftprint.catalogue import structure
 from shaftprint.errors import IdentificationError
-from shaftprint.identify import MaximumLikelihood, Settings, StudentT, identify, profile_intervals
-from shaftprint.identify.fit import estimate_covariance, refit
+from shaftprint.identify import MaximumLikelihood, Settings, StudentT, identify, profile_intervals, refit
+from shaftprint.identify.fit._covariance import estimate_covariance
 
 REPEATS = 2000
 TRUTHS = {

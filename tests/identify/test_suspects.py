@@ -7,7 +7,7 @@ import pytest
 
 from shaftprint.catalogue import structure
 from shaftprint.identify import Prior, Settings, assess, identify, identify_jointly
-from shaftprint.identify.judgement import suspects_of
+from shaftprint.identify.judgement._suspects import suspects_of
 from shaftprint.models import Delay, Gain, Parameter, Structure
 from shaftprint.spectra import FrequencyResponse
 

@@ -5,7 +5,7 @@ import pytest
 import scipy.stats
 
 from shaftprint.identify import MaximumLikelihood, StudentT, Unweighted
-from shaftprint.identify.likelihood import estimated_tails, student_tails
+from shaftprint.identify.likelihood._tails import estimated_tails, student_tails
 
 FREEDOM = np.array([12.7, 34.6, np.inf])
 RNG_SEED = 5

@@ -8,7 +8,7 @@ import pytest
 from shaftprint.catalogue import structure
 from shaftprint.errors import IdentificationError
 from shaftprint.identify import Prior, Requirements, Settings, identify, profile
-from shaftprint.identify.judgement import doubts_of
+from shaftprint.identify.judgement._number_precision import doubts_of
 from shaftprint.models import Combination, Gain, Parameter, PIGovernor, Structure
 from shaftprint.spectra import FrequencyResponse
 

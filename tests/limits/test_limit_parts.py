@@ -8,13 +8,14 @@ import pytest
 
 from shaftprint.campaign import Campaign
 from shaftprint.catalogue import limited_governor
-from shaftprint.limits import Kind, LimitEstimate, LimitFit, limit_hints
+from shaftprint.limits import Kind, LimitFit, limit_hints
 from shaftprint.limits._identify_limits import LEAST_OFFSET_STD, _offset_std
 from shaftprint.limits._level_profile import LevelInterval
+from shaftprint.limits._limit_fit import LimitEstimate
 from shaftprint.limits._numbers import _doubt, doubt_of_governor
-from shaftprint.limits.prediction import ORDER, innovations
+from shaftprint.limits.prediction._noise_colour import ORDER, innovations
 from shaftprint.spectra import Harmonics
-from shaftprint.time_domain import jumps_in, with_jumps
+from shaftprint.time_domain.nonlinear._drive import jumps_in, with_jumps
 from shaftprint.tug import Tug, simulate_signals
 
 

@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
-from shaftprint.limits.prediction import GovernorTest, explained, sum_of_jumps
-from shaftprint.time_domain import Jump
+from shaftprint.limits.prediction._governor_test import GovernorTest, sum_of_jumps
+from shaftprint.limits.prediction._held_set_point import explained
+from shaftprint.time_domain.nonlinear._drive import Jump
 
 STD_S, MEAN_STD_S = np.full(8, 2e-3), 4e-3
 

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from shaftprint.limits import Kind
-from shaftprint.limits.prediction import GovernorTest, Reach
+from shaftprint.limits.prediction._governor_test import GovernorTest
+from shaftprint.limits.prediction._reach import Reach
 
 EVERY_S = 0.02
 TIME = np.arange(0.0, 600.0, EVERY_S)

@@ -7,8 +7,9 @@ import pytest
 
 from shaftprint.arrays import frozen_bool, frozen_float
 from shaftprint.catalogue import limited_governor
-from shaftprint.limits.prediction import GovernorRecord, PredictionError
-from shaftprint.time_domain import Decimator
+from shaftprint.limits.prediction._prediction_error import PredictionError
+from shaftprint.limits.prediction._set_point import GovernorRecord
+from shaftprint.time_domain._decimator import Decimator
 
 pytestmark = pytest.mark.slow
 FREE = ("K_p", "t_d", "m_max")

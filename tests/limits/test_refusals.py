@@ -4,7 +4,7 @@ import pytest
 
 from shaftprint.campaign import load_campaign
 from shaftprint.errors import SignalError
-from shaftprint.limits.prediction import governor_test
+from shaftprint.limits.prediction._governor_test import governor_test
 
 
 def test_legs_alone_are_refused_before_anything_is_computed():

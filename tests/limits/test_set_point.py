@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
-from shaftprint.limits.prediction import GovernorTest, rate_limited
-from shaftprint.time_domain import Jump
+from shaftprint.limits.prediction._governor_test import GovernorTest
+from shaftprint.limits.prediction._set_point import rate_limited
+from shaftprint.time_domain.nonlinear._drive import Jump
 
 EVERY_S = 0.005
 

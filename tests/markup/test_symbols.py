@@ -1,4 +1,4 @@
-from shaftprint.markup import mathtext
+from shaftprint.markup._symbols import mathtext
 
 
 def test_names_become_symbols():

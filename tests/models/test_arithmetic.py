@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from shaftprint.errors import StructureError
-from shaftprint.models import Constant, Gain, Inverse, Parameter, RationalBlock, Structure, feedback, is_stable, poles
+from shaftprint.models import Constant, Gain, Inverse, Parameter, RationalBlock, Structure, feedback, is_stable
+from shaftprint.models._margins import poles
 
 S = 1j * np.array([0.05, 0.7, 3.0, 19.0])
 A, B = (Parameter(name, "1/s", 0.1, 10.0, 1.0, name) for name in ("a", "b"))

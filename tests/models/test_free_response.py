@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from shaftprint.catalogue import structure
-from shaftprint.models import free_responses
+from shaftprint.models._free_response import free_responses
 
 TRUTH = {"tau_n": 0.39, "K_p": 1.8, "K_i": 4.3, "t_d": 0.12, "omega_n": 9.0, "zeta": 1.2}
 GAUGE = {"tau_dn": 0.32, "tau_up": 1.0, "K_p": 5.7, "K_i": 4.27, "t_d": 0.07, "omega_n": 10.3, "zeta": 0.47}

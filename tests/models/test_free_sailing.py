@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from shaftprint.catalogue import structure
-from shaftprint.models import check_structure, poles
+from shaftprint.models import check_structure
+from shaftprint.models._margins import poles
 
 OMEGA_RAD_S = np.geomspace(1e-3, 30.0, 40)
 # A Stan Tug at 9.9 kn: slopes of Ka4-70 at J 0.494, inertia times of gauge and ship.

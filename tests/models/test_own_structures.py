@@ -23,9 +23,8 @@ from shaftprint.models import (
     feedback,
     is_stable,
     margins,
-    stable_rows,
-    unstable_poles,
 )
+from shaftprint.models._nyquist import stable_rows, unstable_poles
 
 S = 1j * np.array([0.05, 0.7, 3.0, 19.0])
 

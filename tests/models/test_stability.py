@@ -21,11 +21,10 @@ from shaftprint.models import (
     Structure,
     feedback,
     is_stable,
-    loop_gain,
     margins,
-    poles,
-    unstable_poles,
 )
+from shaftprint.models._margins import poles
+from shaftprint.models._nyquist import loop_gain, unstable_poles
 
 CL4 = {"tau_n": 0.329, "K_p": 1.6004, "K_i": 4.4388, "t_d": 0.1161, "omega_n": 9.7705, "zeta": 0.4}
 

@@ -29,9 +29,9 @@ from shaftprint.models import (
     feedback,
     is_stable,
     margins,
-    poles,
-    unstable_poles,
 )
+from shaftprint.models._margins import poles
+from shaftprint.models._nyquist import unstable_poles
 from shaftprint.spectra import FrequencyResponse
 
 S = 1j * np.array([0.1, 1.0, 7.0])

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from shaftprint.errors import StructureError
-from shaftprint.models import Gain, Parameter, Structure, Tabulated, check_structure
+from shaftprint.models import Gain, Parameter, Structure, check_structure
+from shaftprint.models._tabulated import Tabulated
 
 TABLE = Tabulated(np.array([1.0, 2.0, 4.0]), np.array([1.0 + 1.0j, 3.0 - 1.0j, 5.0 + 0.0j]))
 

@@ -8,7 +8,7 @@ import pytest
 
 import shaftprint as sp
 from shaftprint.fingerprint import Fingerprint, Quantity
-from shaftprint.notebook import LabelledData, Variable
+from shaftprint.notebook._labelled import LabelledData, Variable
 from shaftprint.signals import ChannelSignal, MessageSignal, Signals, SpeedSignal
 
 pytest.importorskip("pandas", reason="pandas gets the tables")

@@ -11,7 +11,8 @@ import pytest
 from pydantic import BaseModel
 
 import shaftprint as sp
-from shaftprint.notebook import Shown, Summary
+from shaftprint.notebook._shown import Shown
+from shaftprint.notebook._summary import Summary
 
 HOSTILE = "<script>alert(1)</script>\x1b[2J\nK_p & co"
 for found in pkgutil.iter_modules(sp.__path__):

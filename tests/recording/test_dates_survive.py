@@ -10,12 +10,12 @@ from shaftprint.recording import (
     RecordingWriter,
     Samples,
     cut,
-    held_date,
     read_recording,
     recording_from_arrays,
     write_by_ending,
     write_recording,
 )
+from shaftprint.recording.writers._by_ending import held_date
 
 SUMMER = datetime(2026, 7, 5, 9, 0, 0, 250_000, tzinfo=timezone(timedelta(hours=2)))
 BARE = SUMMER.replace(tzinfo=None)

@@ -13,7 +13,9 @@ import pytest
 import scipy.io
 
 from shaftprint.errors import RecordingError
-from shaftprint.recording import RecordingWriter, read_recording, write_by_ending, write_mdf4, write_tdms
+from shaftprint.recording import RecordingWriter, read_recording, write_by_ending
+from shaftprint.recording.writers._mdf4 import write_mdf4
+from shaftprint.recording.writers._tdms import write_tdms
 
 FAST = 2.0 + np.arange(1000) / 500.0
 SLOW = np.arange(300) / 100.0

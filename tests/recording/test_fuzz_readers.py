@@ -18,7 +18,7 @@ import numpy as np
 import pytest
 
 from shaftprint.errors import RecordingError
-from shaftprint.recording.readers import READERS
+from shaftprint.recording.readers._all import READERS
 
 pytest.importorskip("resource", reason="needs limits of memory, which Windows does not have")
 

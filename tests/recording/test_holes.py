@@ -7,7 +7,7 @@ import pytest
 
 from shaftprint.errors import RecordingError
 from shaftprint.recording import ClockJump, read_recording, write_recording
-from shaftprint.recording.readers import Hole, uniform_clock
+from shaftprint.recording.readers._clock import Hole, uniform_clock
 
 
 def clock_of(times):

@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from shaftprint.recording import Channel, Recording, watch_levels
+from shaftprint.recording import Channel, Recording
+from shaftprint.recording._level_watch import watch_levels
 
 
 @pytest.fixture(autouse=True)

@@ -12,7 +12,8 @@ import scipy.io
 import scipy.sparse
 
 from shaftprint.errors import RecordingError
-from shaftprint.recording import read_recording, write_mat_v5, write_mat_v73
+from shaftprint.recording import read_recording, write_mat_v73
+from shaftprint.recording.writers._mat_v5 import write_mat_v5
 
 TIME = 2.0 + np.arange(1000) / 500.0
 TORQUE = np.sin(TIME)

@@ -5,7 +5,9 @@ from types import SimpleNamespace
 import pytest
 
 from shaftprint.errors import RecordingError
-from shaftprint.recording import READERS, Reader, Recording, read_recording
+from shaftprint.recording import Recording, read_recording
+from shaftprint.recording.readers._all import READERS
+from shaftprint.recording.readers._reader import Reader
 
 
 def _reader(name, *, mine):

@@ -9,7 +9,8 @@ from shaftprint.campaign import load_campaign
 from shaftprint.design import Wish, read_plan, write_plan_files
 from shaftprint.errors import DesignError
 from shaftprint.recording import cut, read_recording, write_recording
-from shaftprint.rehearsal import standing_after, tug_of_plan
+from shaftprint.rehearsal import standing_after
+from shaftprint.rehearsal._simulated_ship import tug_of_plan
 from shaftprint.survey import Trial, measure
 from shaftprint.tug import sail
 

@@ -8,7 +8,8 @@ import pytest
 from shaftprint.catalogue import structure
 from shaftprint.design import PlannedTest, assumed_ship
 from shaftprint.errors import DesignError
-from shaftprint.rehearsal import rehearse_on_tug, simulated_truth, tug_of_plan
+from shaftprint.rehearsal import rehearse_on_tug
+from shaftprint.rehearsal._simulated_ship import simulated_truth, tug_of_plan
 from shaftprint.survey import of_vessel
 from shaftprint.tug import normalised_truth
 from shaftprint.vessel import load_vessel

@@ -9,16 +9,11 @@ from tests.made_signals import made_channels
 from shaftprint.campaign import Campaign, setpoint
 from shaftprint.catalogue import structure
 from shaftprint.fingerprint import SourceFile, take_fingerprint
-from shaftprint.identify import LatinHypercube, Prior, Settings, identify
+from shaftprint.identify import Prior, Settings, identify
+from shaftprint.identify.search._starts import LatinHypercube
 from shaftprint.recording import Channel, Recording
-from shaftprint.signals import (
-    Repair,
-    SetPointCalibration,
-    Signals,
-    StepDelay,
-    StripAngles,
-    WorkingPoint,
-)
+from shaftprint.signals import Repair, SetPointCalibration, Signals, StripAngles, WorkingPoint
+from shaftprint.signals._signals import StepDelay
 from shaftprint.spectra import FrequencyResponse, Harmonics, SignalToNoise, Spectra, open_loop, plan_windows
 from shaftprint.survey import Measurement, Survey, Trial
 from shaftprint.vessel import load_vessel

@@ -1,6 +1,6 @@
 """What a chart holds, for tests of figures."""
 
-from shaftprint.report.charts import as_plain
+from shaftprint.report.charts._text import as_plain
 
 
 def legend(chart):

@@ -6,8 +6,10 @@ from tests.report.marks import legend, mark, marks
 
 from shaftprint.catalogue import structure
 from shaftprint.report import Curve, bode_chart, fit_chart
-from shaftprint.report.charts import Band, Line, Points, as_plain
-from shaftprint.report.figures import measured_phase_deg, normalised_residuals, trace_of
+from shaftprint.report.charts._marks import Band, Line, Points
+from shaftprint.report.charts._text import as_plain
+from shaftprint.report.figures._residuals import normalised_residuals
+from shaftprint.report.figures._traces import measured_phase_deg, trace_of
 
 
 def test_drawn_model_is_the_structure_s_response(identification, response):

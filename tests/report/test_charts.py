@@ -11,27 +11,14 @@ import pytest
 from matplotlib import rcParams
 
 from shaftprint.errors import ReportError
-from shaftprint.report.charts import (
-    Band,
-    Bars,
-    Chart,
-    Fields,
-    Line,
-    Panel,
-    Points,
-    Scale,
-    Straight,
-    Words,
-    chart_json,
-    chart_script,
-    draw,
-    packed,
-    plotly_script,
-    plotly_sheets,
-    plotly_version,
-    quantity,
-    save_chart,
-)
+from shaftprint.report import save_chart
+from shaftprint.report.charts._chart import Chart, Panel, Scale
+from shaftprint.report.charts._marks import Band, Bars, Fields, Line, Points, Straight, Words
+from shaftprint.report.charts._packed import packed
+from shaftprint.report.charts._pictures import draw
+from shaftprint.report.charts._plotly import chart_json, chart_script
+from shaftprint.report.charts._script import plotly_script, plotly_sheets, plotly_version
+from shaftprint.report.charts._text import quantity
 from shaftprint.tables import Symbol
 
 X = np.array([1.0, 10.0, 100.0])

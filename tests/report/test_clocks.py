@@ -9,8 +9,8 @@ from shaftprint.clocks import Alignment, ClockMap, LoggerClock, Stretch, clock_a
 from shaftprint.errors import RecordingError
 from shaftprint.fingerprint import ClockInfluence
 from shaftprint.report import render_report
-from shaftprint.report.sections import clock_sentences
-from shaftprint.tables import clock_map_table
+from shaftprint.report.sections._clocks import clock_sentences
+from shaftprint.tables._recording import clock_map_table
 
 # 1 ms, 2 ppm and a correlation of -0.5
 LINE = ClockMap(offset_s=0.4, drift=30e-6, middle_s=430.0, covariance=np.array([[1e-6, -1e-9], [-1e-9, 4e-12]]))

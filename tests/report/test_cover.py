@@ -10,7 +10,8 @@ import pytest
 
 from shaftprint.fingerprint import Quantity, ShipIdentity
 from shaftprint.reasons import Reason, ReasonKind
-from shaftprint.report.sections import cover_of, summary_section
+from shaftprint.report.sections._results import summary_section
+from shaftprint.report.sections.first_page._cover_of import cover_of
 
 
 def answers(fingerprint, validations=()):

@@ -3,7 +3,8 @@ import pytest
 
 from shaftprint.catalogue import structure
 from shaftprint.errors import StructureError
-from shaftprint.report import Curve, closed_loop_curve, open_loop_curve
+from shaftprint.report import Curve
+from shaftprint.report._curve import closed_loop_curve, open_loop_curve
 
 S = 1j * np.geomspace(0.05, 30.0, 30)
 

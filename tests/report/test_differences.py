@@ -7,8 +7,9 @@ import pytest
 
 from shaftprint.catalogue import ShipRole
 from shaftprint.fingerprint import SourceFile
-from shaftprint.identify.uncertainty import Budget, BudgetRow
-from shaftprint.report import change_in_words, differences
+from shaftprint.identify import Budget, BudgetRow
+from shaftprint.report import differences
+from shaftprint.report.sections._comparison_cover import change_in_words
 
 
 def quantity(fingerprint, **changes):

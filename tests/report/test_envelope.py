@@ -3,7 +3,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from shaftprint.recording import Channel
-from shaftprint.report.figures import channel_envelope, envelope
+from shaftprint.report.figures._envelope import channel_envelope, envelope
 
 
 def test_a_single_spike_among_a_million_samples_stays():

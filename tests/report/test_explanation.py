@@ -10,18 +10,19 @@ from tests.report.marks import mark, names
 from shaftprint.catalogue import structure
 from shaftprint.errors import IdentificationError
 from shaftprint.identify import Settings, Unweighted, identify
-from shaftprint.report import (
+from shaftprint.report import missing_damping_chart
+from shaftprint.report.thesis._explanation import explain_thesis
+from shaftprint.report.thesis._integral_gain import integral_gain
+from shaftprint.report.thesis._words import (
     damping_table,
-    explain_thesis,
     explanation_sentences,
     gain_table,
     inertia_table,
     integral_table,
-    missing_damping_chart,
 )
-from shaftprint.report.thesis import integral_gain
 from shaftprint.spectra import open_loop
-from shaftprint.survey import SET_POINT_OFF, ThesisMode
+from shaftprint.survey import ThesisMode
+from shaftprint.survey._thesis_mode import SET_POINT_OFF
 
 # truth of tests/report/conftest.py
 GOVERNORS = ("OL2", "OL3", "OL4", "OL5")

@@ -4,7 +4,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from shaftprint.report.sections import inertia_section
+from shaftprint.report.sections._inertia import inertia_section
 
 
 @pytest.fixture(scope="module")

@@ -7,7 +7,8 @@ import pytest
 from tests.report.marks import legend, mark
 
 from shaftprint.catalogue import AHEAD_S
-from shaftprint.limits import Kind, LimitEstimate
+from shaftprint.limits import Kind
+from shaftprint.limits._limit_fit import LimitEstimate
 from shaftprint.report import limit_chart
 
 RATE_HZ = 12.5

@@ -5,7 +5,8 @@ import pytest
 from tests.report.marks import legend, mark
 
 from shaftprint.report import mode_chart
-from shaftprint.torsion import LineLink, TorsionalLine, modes, torsional_line
+from shaftprint.torsion import TorsionalLine, modes, torsional_line
+from shaftprint.torsion._line import LineLink
 from shaftprint.vessel import load_vessel
 
 

@@ -6,10 +6,12 @@ from tests.report.marks import legend, mark, marks
 
 from shaftprint.catalogue import structure, thesis_families
 from shaftprint.errors import StructureError
-from shaftprint.models import loop_gain
+from shaftprint.models._nyquist import loop_gain
 from shaftprint.report import Curve, correlation_chart, nyquist_chart, residual_chart, sensitivity_chart
-from shaftprint.report.charts import Fields, Points, as_plain
-from shaftprint.report.figures import line_chi_square, normalised_residuals, parameter_steps
+from shaftprint.report.charts._marks import Fields, Points
+from shaftprint.report.charts._text import as_plain
+from shaftprint.report.figures._residuals import line_chi_square, normalised_residuals
+from shaftprint.report.figures._sensitivity import parameter_steps
 
 
 def test_nyquist_margins_lie_where_they_are_defined(identification):

@@ -7,7 +7,8 @@ from tests.report.marks import marks, names
 from shaftprint.identify import Settings, identify
 from shaftprint.models import Gain, Parameter, RationalBlock, Structure
 from shaftprint.report import Curve, bode_chart, correlation_chart, residual_chart, sensitivity_chart
-from shaftprint.report.charts import Line, Points, as_plain
+from shaftprint.report.charts._marks import Line, Points
+from shaftprint.report.charts._text import as_plain
 from shaftprint.spectra import FrequencyResponse
 
 FREQUENCY_HZ = np.geomspace(0.5, 20.0, 9)

@@ -8,10 +8,11 @@ from types import SimpleNamespace
 import pytest
 
 from shaftprint.errors import ReportError
-from shaftprint.report import render_pdf, render_report
-from shaftprint.report.charts import save_chart
-from shaftprint.report.paper import write_pdf
-from shaftprint.report.sections import cover_of, number_section, stability_section, verdict_section
+from shaftprint.report import render_pdf, render_report, save_chart
+from shaftprint.report.paper._write_pdf import write_pdf
+from shaftprint.report.sections._engineer import number_section, verdict_section
+from shaftprint.report.sections._results import stability_section
+from shaftprint.report.sections.first_page._cover_of import cover_of
 
 pytest.importorskip("reportlab", reason="reportlab writes PDF")
 

@@ -7,7 +7,8 @@ import subprocess
 
 import pytest
 
-from shaftprint.report.charts import plotly_script, quick_script
+from shaftprint.report.charts._quick_script import quick_script
+from shaftprint.report.charts._script import plotly_script
 
 # A bundle in the form of plotly's, small enough to be read: five kinds of traces, one in two steps, and calendars.
 BUNDLE = b"""/** plotly.js v9.9.9 */

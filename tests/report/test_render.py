@@ -15,7 +15,8 @@ from shaftprint.identify import Settings, Unweighted, identify
 from shaftprint.report import _page as page_module
 from shaftprint.report import _render as render_module
 from shaftprint.report import render_report
-from shaftprint.report.sections import stability_section, summary_section, time_section
+from shaftprint.report.sections._measurement import time_section
+from shaftprint.report.sections._results import stability_section, summary_section
 from shaftprint.survey import ThesisMode
 
 VOID = {"meta", "img", "br", "link"}

@@ -7,20 +7,14 @@ import numpy as np
 import pytest
 
 from shaftprint.catalogue import structure
-from shaftprint.identify import Settings, Unweighted, identify
-from shaftprint.identify.comparison import compare_fits
-from shaftprint.identify.fit import scan
+from shaftprint.identify import Settings, Unweighted, compare_fits, identify, scan
 from shaftprint.markup import cell_html
 from shaftprint.reasons import Reason
 from shaftprint.report import scan_chart
-from shaftprint.report.charts import as_plain
-from shaftprint.report.sections import (
-    comparison_section,
-    number_section,
-    search_section,
-    summary_section,
-    verdict_section,
-)
+from shaftprint.report.charts._text import as_plain
+from shaftprint.report.sections._engineer import number_section, verdict_section
+from shaftprint.report.sections._results import summary_section
+from shaftprint.report.sections._search import comparison_section, search_section
 
 
 def cells(table):

@@ -4,10 +4,8 @@ import pytest
 
 from shaftprint.drift import shared_errors
 from shaftprint.fingerprint import SourceFile, vessel_fields
-from shaftprint.identify import Prior
-from shaftprint.identify.uncertainty import Budget, BudgetRow
-from shaftprint.report import vessel_file_sentences
-from shaftprint.report.comparison import vessel_file_table
+from shaftprint.identify import Budget, BudgetRow, Prior
+from shaftprint.report.comparison._vessel_file_words import vessel_file_sentences, vessel_file_table
 from shaftprint.vessel import Vessel
 
 STATED = ("TVC", "gauge scale", "telemetry latency", "prior of g")

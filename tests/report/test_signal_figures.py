@@ -15,8 +15,9 @@ from shaftprint.report import (
     staircase_chart,
     strip_chart,
 )
-from shaftprint.report.charts import Band, Bars, Line, Points, Straight, Words, as_plain
-from shaftprint.report.figures import spread
+from shaftprint.report.charts._marks import Band, Bars, Line, Points, Straight, Words
+from shaftprint.report.charts._text import as_plain
+from shaftprint.report.figures._campaign import spread
 
 
 def test_every_test_of_the_campaign_is_named_above_its_time(recording, vessel, campaign):

@@ -5,7 +5,8 @@ import pytest
 from tests.report.marks import mark, names
 
 from shaftprint.report import SimulatedSignal, simulation_chart
-from shaftprint.report.charts import Band, as_plain
+from shaftprint.report.charts._marks import Band
+from shaftprint.report.charts._text import as_plain
 
 TIME = np.linspace(0.0, 10.0, 5001)
 

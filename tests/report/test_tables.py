@@ -5,23 +5,11 @@ import pytest
 
 from shaftprint.catalogue import structure
 from shaftprint.fingerprint import Quantity
-from shaftprint.markup import sentence_html, symbol_html
-from shaftprint.report.sections import fit_section
-from shaftprint.tables import (
-    Table,
-    calibration_table,
-    combination_table,
-    expected_text,
-    fit_table,
-    limits,
-    parameter_table,
-    repair_table,
-    step_table,
-    strip_table,
-    texts,
-    truth_of_combinations,
-    window_table,
-)
+from shaftprint.markup._html import sentence_html, symbol_html
+from shaftprint.report.sections._results import fit_section
+from shaftprint.tables import Table, limits, parameter_table, texts
+from shaftprint.tables._fingerprint import combination_table, expected_text, fit_table, truth_of_combinations
+from shaftprint.tables._signals import calibration_table, repair_table, step_table, strip_table, window_table
 
 
 def with_parameters(fingerprint, *quantities):

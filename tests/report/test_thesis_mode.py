@@ -3,7 +3,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from shaftprint.report.thesis import calculated_inertia_time_s, thesis_findings, thesis_fit_table
+from shaftprint.report.thesis._thesis_mode import calculated_inertia_time_s, thesis_findings, thesis_fit_table
 from shaftprint.survey import ThesisMode
 
 

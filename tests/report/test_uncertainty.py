@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from shaftprint.report.figures import measured_points
+from shaftprint.report.figures._uncertainty import measured_points
 from shaftprint.spectra import FrequencyResponse
 
 

@@ -6,11 +6,13 @@ import numpy as np
 import pytest
 from tests.report.marks import legend, mark, marks
 
-from shaftprint.identify import profile_intervals
-from shaftprint.identify.uncertainty import Budget, BudgetRow, budget, step_band
+from shaftprint.identify import Budget, BudgetRow, budget, profile_intervals
+from shaftprint.identify.uncertainty._band import step_band
 from shaftprint.report import budget_chart, profile_chart, step_chart
-from shaftprint.report.charts import Band, Bars, Line, as_plain
-from shaftprint.tables import Column, Symbol, budget_table
+from shaftprint.report.charts._marks import Band, Bars, Line
+from shaftprint.report.charts._text import as_plain
+from shaftprint.tables import Column, Symbol
+from shaftprint.tables._fingerprint import budget_table
 
 STATED = Budget(
     sources=("noise of n", "noise of M_s", "TVC", "air"),

@@ -5,8 +5,10 @@ import pytest
 from tests.report.marks import mark, names
 
 from shaftprint.report import validation_chart, validation_summary_chart
-from shaftprint.report.charts import Band, as_plain
-from shaftprint.validation import ValidationSettings, thesis_models, validate
+from shaftprint.report.charts._marks import Band
+from shaftprint.report.charts._text import as_plain
+from shaftprint.validation import ValidationSettings, validate
+from shaftprint.validation._thesis_models import thesis_models
 
 
 @pytest.fixture(scope="module")

@@ -3,7 +3,7 @@
 import sys
 from pathlib import Path
 
-from shaftprint.cli.output import output_folder
+from shaftprint.cli.output._output_folder import output_folder
 
 with output_folder(Path(sys.argv[1]), of="identify", force=False) as staging:
     (staging / "index.html").write_text("first")

@@ -11,9 +11,10 @@ import signal
 import sys
 from pathlib import Path
 
-from shaftprint.cli.output import output_folder
+from shaftprint.cli.output._output_folder import output_folder
 from shaftprint.errors import PublicationError
-from shaftprint.publication import CONTROL_NAMES, complete
+from shaftprint.publication._journal import CONTROL_NAMES
+from shaftprint.publication._publish import complete
 
 MARKER = ".shaftprint"
 NOTES = {"my notes.txt": "mine", "figures/mine.png": "mine"}

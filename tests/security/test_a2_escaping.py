@@ -31,7 +31,7 @@ import shaftprint.cli
 from shaftprint import escape
 from shaftprint.catalogue import structure
 from shaftprint.cli._terminal import echo
-from shaftprint.cli.output import table_lines
+from shaftprint.cli.output._layout import table_lines
 from shaftprint.digits import plain_letters
 from shaftprint.export import ExportedModel, write_fmu, write_matlab, write_modelica, write_osp, write_ssv
 from shaftprint.tables import Table, texts
@@ -472,7 +472,7 @@ def test_html_gives_every_text_back_and_has_no_tag_of_it(text):
 
 @any_text
 def test_tables_of_a_page_give_every_text_back(text):
-    from shaftprint.markup import environment
+    from shaftprint.markup._environment import environment
     from shaftprint.tables import Table, texts
 
     table = Table(title="c", columns=texts("name", "x"), rows=((text, "1"),))

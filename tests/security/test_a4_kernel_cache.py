@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 import shaftprint
-from shaftprint.kernels import cache_folder, private_folder
+from shaftprint.kernels._folder import cache_folder, private_folder
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="owners and modes are those of POSIX")
 

@@ -8,7 +8,7 @@ import pytest
 from click.testing import CliRunner
 
 from shaftprint.cli import shaftprint
-from shaftprint.cli.output import fingerprint_at
+from shaftprint.cli.output._fingerprint_file import fingerprint_at
 from shaftprint.errors import FingerprintError
 from shaftprint.fingerprint import read_fingerprint, write_fingerprint
 

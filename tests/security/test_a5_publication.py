@@ -14,10 +14,11 @@ import pytest
 from click.testing import CliRunner
 
 from shaftprint.cli import shaftprint
-from shaftprint.cli.output import output_folder
+from shaftprint.cli.output._output_folder import output_folder
 from shaftprint.errors import PublicationError, ShaftprintError
 from shaftprint.fingerprint import read_fingerprint
-from shaftprint.publication import _lock, complete, publish, staged
+from shaftprint.publication import _lock
+from shaftprint.publication._publish import complete, publish, staged
 from shaftprint.recording import read_recording
 from shaftprint.vessel import load_vessel
 

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from shaftprint.errors import SignalError
-from shaftprint.signals import contradictions, inspect_channels, prepare_signals
+from shaftprint.signals import inspect_channels, prepare_signals
+from shaftprint.signals._contradictions import contradictions
 from shaftprint.vessel import SpeedSensor, Vessel
 
 

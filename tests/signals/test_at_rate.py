@@ -8,7 +8,7 @@ import pytest
 
 from shaftprint.errors import SignalError
 from shaftprint.recording import Recording
-from shaftprint.signals import at_rate
+from shaftprint.signals._at_rate import at_rate
 
 
 def wave(time_s):

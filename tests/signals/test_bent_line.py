@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from shaftprint.campaign import Campaign, Staircase
-from shaftprint.signals.levels import SteadyStretch, calibrate_through_wander
+from shaftprint.signals.levels._calibrate import calibrate_through_wander
+from shaftprint.signals.levels._steady import SteadyStretch
 
 RATE_HZ, LEVEL_S = 5.0, 60.0
 SLOPE, SPEED = -4.2, 20.0  # rev/s per V at -5 V, and rev/s there

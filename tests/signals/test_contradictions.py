@@ -2,7 +2,8 @@
 
 import pytest
 
-from shaftprint.signals import contradictions, inspect_channels
+from shaftprint.signals import inspect_channels
+from shaftprint.signals._contradictions import contradictions
 
 PICK_UPS = {"PTM_e": "n_e", "PTM_1": "n_e1", "PTM_4": "n_e4"}
 

@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from shaftprint.recording import Channel
-from shaftprint.signals.conditioning import CutOff, FaultLimits, flagged
-from shaftprint.signals.pulses import expect_whole_crests
+from shaftprint.signals.conditioning._cut_off import CutOff
+from shaftprint.signals.conditioning._outliers import FaultLimits, flagged
+from shaftprint.signals.pulses._flat_top import expect_whole_crests
 
 LIMITS = FaultLimits(floor=5_000.0, hold_samples=10, lowest=-np.inf, highest=24_000.0)
 

@@ -2,7 +2,8 @@ import numpy as np
 import pytest
 
 from shaftprint.campaign import Campaign
-from shaftprint.signals.levels import LowLines, dc_scale, low_lines, zero_frequency_ratio
+from shaftprint.signals import dc_scale
+from shaftprint.signals.levels._dc_scale import LowLines, low_lines, zero_frequency_ratio
 
 RATE_HZ = 20.0
 LINES_HZ = (0.0044, 0.0092, 0.0193, 0.0275, 0.0405, 0.06, 0.0848, 0.11)

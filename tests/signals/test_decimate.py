@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 from scipy.signal import freqz, upfirdn
 
 from shaftprint.errors import SignalError
-from shaftprint.signals.conditioning import SampleGrid, decimated, filter_grid, low_pass_taps
+from shaftprint.signals.conditioning._decimate import SampleGrid, decimated, filter_grid, low_pass_taps
 
 RNG = np.random.default_rng(8)
 SIGNAL = RNG.standard_normal(5000)

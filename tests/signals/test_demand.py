@@ -10,7 +10,8 @@ import pytest
 from shaftprint.catalogue import structure
 from shaftprint.errors import SignalError
 from shaftprint.recording import Recording
-from shaftprint.signals import SetPointDelay, WorkingPoint, prepare_signals
+from shaftprint.signals import WorkingPoint, prepare_signals
+from shaftprint.signals._signals import SetPointDelay
 from shaftprint.survey import priors_of
 from shaftprint.vessel import Vessel
 

@@ -6,7 +6,7 @@ from benchmarks.recorded_campaigns import RATE_HZ, Chain, drawn_campaign, drawn_
 
 from shaftprint.campaign import Campaign, load_campaign, setpoint
 from shaftprint.errors import SignalError
-from shaftprint.signals.description import described
+from shaftprint.signals.description._describe import described
 
 
 def grid(campaign):

@@ -5,7 +5,7 @@ import pytest
 from tests.wheel_truth import TEETH, Turning, wheel_pulses
 
 from shaftprint.recording import read_recording
-from shaftprint.signals.kinds import read_pick_up
+from shaftprint.signals.kinds._pick_up import read_pick_up
 from shaftprint.vessel import SpeedSensor
 
 WHEELS = ("24", "60-2", "36-1", "36-2-1", "12+1")

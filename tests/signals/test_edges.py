@@ -4,7 +4,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from shaftprint.errors import SignalError
-from shaftprint.signals.pulses import PulseLevels, find_edges, pulse_levels, scan_edges
+from shaftprint.signals.pulses._edges import PulseLevels, find_edges, pulse_levels, scan_edges
 
 LEVELS = PulseLevels(low=0.0, high=1000.0, noise=1.0, duty=0.1)
 

@@ -9,7 +9,8 @@ from tests.wheel_truth import Turning
 
 from shaftprint.errors import SignalError
 from shaftprint.recording import Recording
-from shaftprint.signals import content_of, prepare_signals, read_channels
+from shaftprint.signals import content_of, prepare_signals
+from shaftprint.signals._channel_readings import read_channels
 from shaftprint.vessel import SpeedSensor, Vessel
 
 # What is shown for one turn, and where it begins again (never, where that is 0), with what the vessel file says.

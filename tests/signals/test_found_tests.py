@@ -5,8 +5,10 @@ import pytest
 
 from shaftprint.campaign import Campaign, load_campaign, setpoint
 from shaftprint.errors import SignalError
-from shaftprint.signals import common_shift_s, proposed_campaign
-from shaftprint.signals.excitation import expect_campaign, found_tests
+from shaftprint.signals import proposed_campaign
+from shaftprint.signals.excitation._found_test import common_shift_s
+from shaftprint.signals.excitation._found_tests import found_tests
+from shaftprint.signals.excitation._match import expect_campaign
 
 RATE_HZ = 200.0
 SHORT = load_campaign("short")

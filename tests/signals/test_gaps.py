@@ -7,9 +7,9 @@ import pytest
 
 from shaftprint.campaign import Campaign, load_campaign
 from shaftprint.recording import ClockJump
-from shaftprint.signals import Coverage, Gap, prepare_signals
-from shaftprint.signals._gaps import bridge, gap_findings, joined, merged, runs_of
-from shaftprint.signals.excitation import left_out
+from shaftprint.signals import Gap, prepare_signals
+from shaftprint.signals._gaps import Coverage, bridge, gap_findings, joined, merged, runs_of
+from shaftprint.signals.excitation._match import left_out
 
 RATE_HZ = 2000.0
 

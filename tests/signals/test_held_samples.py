@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from shaftprint.signals import HeldSamples, held_samples
-from shaftprint.signals.conditioning import RunTally
+from shaftprint.signals._held_samples import HeldSamples, held_samples
+from shaftprint.signals.conditioning._runs import RunTally
 
 RATE_HZ, SECONDS = 2000.0, 100.0
 COUNT = int(RATE_HZ * SECONDS)

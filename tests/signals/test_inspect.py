@@ -3,8 +3,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from shaftprint.recording import watch_levels
-from shaftprint.signals import channel_reports, find_tests, inspect_channels, prepare_signals, read_channels
+from shaftprint.recording._level_watch import watch_levels
+from shaftprint.signals import find_tests, inspect_channels, prepare_signals
+from shaftprint.signals._channel_readings import read_channels
+from shaftprint.signals._inspect import channel_reports
 
 
 def test_what_each_channel_holds(ship, vessel):

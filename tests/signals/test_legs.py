@@ -8,8 +8,11 @@ from scipy.signal import lfilter
 
 from shaftprint.campaign import Multisine
 from shaftprint.errors import SignalError
-from shaftprint.signals import Coverage, Gap
-from shaftprint.signals.levels import LegSamples, calibration_of_legs, leg_periods, leg_state, repeated_periods
+from shaftprint.signals import Gap
+from shaftprint.signals._gaps import Coverage
+from shaftprint.signals.levels._leg_periods import leg_periods
+from shaftprint.signals.levels._leg_state import LegSamples, calibration_of_legs, leg_state
+from shaftprint.signals.levels._repeated_periods import repeated_periods
 
 RATE_HZ = 50.0
 LEG = Multisine(

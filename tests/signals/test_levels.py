@@ -7,16 +7,13 @@ import pytest
 
 from shaftprint.campaign import Campaign, setpoint
 from shaftprint.errors import SignalError
-from shaftprint.signals import deviation
-from shaftprint.signals.excitation import expect_campaign, find_step_delays
-from shaftprint.signals.kinds import compare_speeds, expect_moving_torque
-from shaftprint.signals.levels import (
-    SteadyStretch,
-    calibrate,
-    find_working_point,
-    steady_stretches,
-    stretches_at_working_point,
-)
+from shaftprint.signals import calibrate
+from shaftprint.signals.excitation._match import expect_campaign
+from shaftprint.signals.excitation._steps import find_step_delays
+from shaftprint.signals.kinds._compare import compare_speeds
+from shaftprint.signals.kinds._torque import expect_moving_torque
+from shaftprint.signals.levels._steady import SteadyStretch, steady_stretches
+from shaftprint.signals.levels._working_point import deviation, find_working_point, stretches_at_working_point
 
 RATE_HZ = 50.0
 

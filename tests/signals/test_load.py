@@ -5,8 +5,9 @@ import pytest
 
 from shaftprint.campaign import load_campaign
 from shaftprint.errors import SignalError
-from shaftprint.signals import Coverage, Gap
-from shaftprint.signals.levels import torque_of_mean_load
+from shaftprint.signals import Gap
+from shaftprint.signals._gaps import Coverage
+from shaftprint.signals.levels._load import torque_of_mean_load
 
 RATE_HZ = 20.0
 INERTIA_NM_S2 = 100.0

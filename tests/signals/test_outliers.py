@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from shaftprint.signals.conditioning import (
+from shaftprint.signals.conditioning._outliers import (
     GOOD,
     HOLD,
     RAIL,

@@ -3,7 +3,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from shaftprint.signals.conditioning import FaultLimits, Patcher, flagged
+from shaftprint.signals.conditioning._outliers import FaultLimits, flagged
+from shaftprint.signals.conditioning._patch import Patcher
 
 LIMITS = FaultLimits(floor=50.0, hold_samples=12, lowest=-3000.0, highest=3000.0)
 

@@ -4,7 +4,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from shaftprint.errors import SignalError
-from shaftprint.signals.pulses import number_pulses
+from shaftprint.signals.pulses._pulses import number_pulses
 
 
 def steady(count: int = 60, period: float = 100.0, jitter: float = 0.5, seed: int = 0) -> np.ndarray:

@@ -8,9 +8,10 @@ import pytest
 
 from shaftprint.errors import SignalError
 from shaftprint.recording import Channel
-from shaftprint.signals import WorkingPoint, inspect_channels, prepare_signals
-from shaftprint.signals.kinds import KINDS, Source, SteadyState, rack_signal, read_rack
-from shaftprint.signals.levels import SteadyStretch
+from shaftprint.signals import KINDS, WorkingPoint, inspect_channels, prepare_signals
+from shaftprint.signals.kinds._kind import Source, SteadyState
+from shaftprint.signals.kinds._rack import rack_signal, read_rack
+from shaftprint.signals.levels._steady import SteadyStretch
 from shaftprint.vessel import RackSensor, load_vessel
 
 SENSOR = RackSensor(channel="X_percent", unit="%", cycle_s=0.05, latency_s=0.01, latency_std_s=0.005)

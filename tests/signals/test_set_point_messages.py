@@ -8,7 +8,7 @@ import pytest
 
 from shaftprint.recording import Recording
 from shaftprint.signals import find_tests, prepare_signals
-from shaftprint.signals.excitation import rounding_error, steps_of_sine
+from shaftprint.signals.excitation._quantum import rounding_error, steps_of_sine
 from shaftprint.vessel import Vessel
 
 # A pedal of 0 to 100 %, 0.4 % a bit: 19 mV. The offset of -5 V is shown as -4.991 V.

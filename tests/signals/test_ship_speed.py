@@ -8,8 +8,8 @@ import pytest
 from shaftprint.errors import SignalError
 from shaftprint.recording import Channel
 from shaftprint.signals._clock import Clock
-from shaftprint.signals.kinds import read_ship_speed, ship_speed_signal
-from shaftprint.signals.levels import SteadyStretch
+from shaftprint.signals.kinds._ship_speed import read_ship_speed, ship_speed_signal
+from shaftprint.signals.levels._steady import SteadyStretch
 from shaftprint.vessel import ShipSpeedSensor
 
 CLOCK = Clock(start_s=10.0, rate_hz=50.0, count=2000, mode="shaftprint", chunk_s=None, advance=lambda n: None)

@@ -2,7 +2,8 @@ import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline
 
-from shaftprint.signals.pulses import sample_slopes, solve_slopes, spline_speed
+from shaftprint.signals import spline_speed
+from shaftprint.signals.pulses._speed import sample_slopes, solve_slopes
 
 
 def test_constant_speed_is_constant():

@@ -7,7 +7,9 @@ import numpy as np
 import pytest
 
 from shaftprint.campaign import load_campaign
-from shaftprint.signals import ScaleEvidence, WorkingPoint, scale_reasons
+from shaftprint.signals import WorkingPoint
+from shaftprint.signals._scale_reasons import scale_reasons
+from shaftprint.signals.levels._speed_scale import ScaleEvidence
 from shaftprint.vessel import load_vessel
 
 VESSEL = load_vessel("stan-tug-1205")

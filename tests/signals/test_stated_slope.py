@@ -5,7 +5,7 @@ import pytest
 
 from shaftprint.campaign import load_campaign
 from shaftprint.signals import SetPointCalibration
-from shaftprint.signals.levels import expect_stated_slope
+from shaftprint.signals.levels._working_point import expect_stated_slope
 
 CAMPAIGN = load_campaign("12min")
 

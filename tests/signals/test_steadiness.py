@@ -5,7 +5,8 @@ import pytest
 from scipy.signal import lfilter
 
 from shaftprint.campaign import Campaign
-from shaftprint.signals.levels import expect_steady_gauge, expect_steady_set_point
+from shaftprint.signals.levels._set_point_steadiness import expect_steady_set_point
+from shaftprint.signals.levels._steadiness import expect_steady_gauge
 
 RATE_HZ, PERIOD_S = 50.0, 20.0
 HARMONICS = (1, 3, 7, 13, 21, 31, 43)

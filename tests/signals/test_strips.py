@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 
 from shaftprint.errors import SignalError
-from shaftprint.signals.pulses import find_strips, number_pulses, renumbered, revolutions
+from shaftprint.signals import find_strips
+from shaftprint.signals.pulses._pulses import number_pulses
+from shaftprint.signals.pulses._strips import renumbered, revolutions
 
 # table 3.4 of the thesis, scaled to a whole turn
 TABLE_3_4 = np.array([90.40, 87.24, 90.74, 91.64]) / 360.02

@@ -3,8 +3,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from shaftprint.signals.conditioning import SampleGrid, previous_neighbours, pulse_period_speed
-from shaftprint.signals.pulses import number_pulses
+from shaftprint.signals import pulse_period_speed
+from shaftprint.signals.conditioning._decimate import SampleGrid
+from shaftprint.signals.conditioning._thesis import previous_neighbours
+from shaftprint.signals.pulses._pulses import number_pulses
 
 
 @settings(deadline=None, max_examples=40)

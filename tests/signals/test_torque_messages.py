@@ -10,8 +10,8 @@ from shaftprint.campaign import Campaign
 from shaftprint.recording import Recording
 from shaftprint.signals import prepare_signals
 from shaftprint.signals._clock import Clock
-from shaftprint.signals.conditioning import SentValues
-from shaftprint.signals.excitation import joined_about_lines
+from shaftprint.signals.conditioning._condition import SentValues
+from shaftprint.signals.excitation._message_lines import joined_about_lines
 from shaftprint.vessel import Vessel
 
 

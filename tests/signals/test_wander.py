@@ -5,7 +5,7 @@ import pytest
 
 from shaftprint.campaign import load_campaign
 from shaftprint.errors import SignalError
-from shaftprint.signals.levels import fit_through_wander
+from shaftprint.signals.levels._wander import fit_through_wander
 
 TESTS = 200
 # Expected are 190 of them, 183 or fewer in one of forty runs.

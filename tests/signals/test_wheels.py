@@ -5,9 +5,13 @@ import pytest
 from tests.wheel_truth import CLOSEST, TEETH, Turning, wheel_pulses
 
 from shaftprint.errors import SignalError
-from shaftprint.signals.kinds import read_pick_up
-from shaftprint.signals.pulses import find_strips, number_pulses, number_teeth, revolutions, spline_speed
-from shaftprint.vessel import SpeedSensor, Wheel
+from shaftprint.signals import find_strips, spline_speed
+from shaftprint.signals.kinds._pick_up import read_pick_up
+from shaftprint.signals.pulses._pulses import number_pulses
+from shaftprint.signals.pulses._strips import revolutions
+from shaftprint.signals.pulses._teeth import number_teeth
+from shaftprint.vessel import SpeedSensor
+from shaftprint.vessel._wheel import Wheel
 
 WHEELS = ("60-2", "36-1", "36-2-1", "12+1")
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from shaftprint.catalogue import FourQuadrantPropeller, crash_stop
+from shaftprint.catalogue._crash_stop import FourQuadrantPropeller, crash_stop
 from shaftprint.errors import StructureError
 from shaftprint.propeller import four_quadrants
 from shaftprint.simulation import equilibrium, simulate

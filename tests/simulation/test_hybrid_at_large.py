@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from shaftprint.catalogue import limited_hybrid, structure
+from shaftprint.catalogue import structure
+from shaftprint.catalogue._hybrid_at_large import limited_hybrid
 from shaftprint.errors import StructureError
 from shaftprint.simulation import simulate
 

@@ -7,7 +7,8 @@ from tests.made_signals import made_channels
 
 from shaftprint.campaign import Campaign, Sine
 from shaftprint.signals import SetPointCalibration, Signals, WorkingPoint
-from shaftprint.spectra import Window, WindowSamples
+from shaftprint.spectra.lines._line_fit import WindowSamples
+from shaftprint.spectra.lines._windows import Window
 
 SPEED_REV_S = 20.0
 TORQUE_NM = 1700.0

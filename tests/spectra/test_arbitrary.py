@@ -5,8 +5,9 @@ import pytest
 from scipy.signal import chirp, lfilter
 
 from shaftprint.errors import ResponseError
-from shaftprint.spectra import Arbitrary, response_from_arrays
-from shaftprint.spectra.records import Bands, Transform, is_smooth
+from shaftprint.spectra import response_from_arrays
+from shaftprint.spectra.records._arbitrary import Arbitrary
+from shaftprint.spectra.records._local_polynomial import Bands, Transform, is_smooth
 
 RATE_HZ = 20.0
 

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from shaftprint.spectra.lines import clock_reasons
+from shaftprint.spectra.lines._clock_check import clock_reasons
 
 CHANNELS = {"the set point": "n_set", "the shaft torque": "M_s"}
 # Lines of a quarter of an hour: frequency [Hz], whole periods.

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from shaftprint.errors import ResponseError
-from shaftprint.spectra import FrequencyResponse, WholePeriodSine, open_loop
+from shaftprint.spectra import FrequencyResponse, open_loop
 from shaftprint.spectra._response_covariance import (
     real_covariance,
     real_jacobian,
@@ -12,7 +12,8 @@ from shaftprint.spectra._response_covariance import (
     weight_factor,
     with_common_error,
 )
-from shaftprint.spectra.lines import measure_line
+from shaftprint.spectra.lines._line_measurement import measure_line
+from shaftprint.spectra.lines._sine_fit import WholePeriodSine
 
 REPEATS = 500
 

@@ -5,7 +5,8 @@ import pytest
 from scipy.linalg import expm
 from scipy.signal import lfilter
 
-from shaftprint.spectra import Arbitrary, Periodic, plant_from_closed_loop, response_from_arrays
+from shaftprint.spectra import Periodic, plant_from_closed_loop, response_from_arrays
+from shaftprint.spectra.records._arbitrary import Arbitrary
 
 
 def held(a, b, rate_hz):

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from shaftprint.spectra.lines import band_reasons, drift_of_phases, input_band
+from shaftprint.spectra.lines._input_band import band_reasons, input_band
+from shaftprint.spectra.lines._input_clock import drift_of_phases
 
 HERTZ = np.array([0.02, 0.035, 0.06, 0.15, 0.3, 0.5, 0.8, 1.25, 1.8, 2.4])
 OMEGA = 2.0 * np.pi * HERTZ

@@ -9,7 +9,8 @@ from tests.made_signals import with_channels
 from tests.spectra.test_legs import CAMPAIGN, HARMONICS, PERIOD_S, made_leg, speed_over_set_point
 
 from shaftprint.signals import MessageSignal
-from shaftprint.spectra import estimate_legs, measured
+from shaftprint.spectra._leg_spectra import estimate_legs
+from shaftprint.spectra._line_responses import measured
 
 GAIN, MEAN = 3.0, 0.42
 

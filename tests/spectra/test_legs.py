@@ -8,10 +8,11 @@ import pytest
 from tests.made_signals import made_channels, with_channels
 
 from shaftprint.campaign import Campaign, Multisine
-from shaftprint.signals import LegState, SetPointCalibration, Signals, TrackedOrder, WorkingPoint
-from shaftprint.spectra import estimate_legs
-from shaftprint.spectra.legs import leg_freedom
-from shaftprint.spectra.lines import LineNoise
+from shaftprint.signals import LegState, SetPointCalibration, Signals, WorkingPoint
+from shaftprint.signals._orders import TrackedOrder
+from shaftprint.spectra._leg_spectra import estimate_legs
+from shaftprint.spectra.legs._leg_lines import leg_freedom
+from shaftprint.spectra.lines._noise import LineNoise
 
 SPEED_REV_S, TORQUE_NM, RATE_HZ = 14.0, 830.0, 100.0
 INERTIA_S = 0.27

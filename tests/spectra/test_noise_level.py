@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from shaftprint.spectra.lines import Neighbours, noise_from_neighbours
+from shaftprint.spectra.lines._noise import Neighbours, noise_from_neighbours
 
 REPEATS = 1500
 

@@ -8,16 +8,13 @@ from tests.made_signals import with_channels
 
 from shaftprint.errors import ResponseError
 from shaftprint.signals import Gap, MessageSignal
-from shaftprint.spectra import (
-    ExactBin,
-    FrequencyResponse,
-    estimate_response,
-    estimate_spectra,
-    governor_and_engine,
-    measured,
-    open_loop,
-)
-from shaftprint.spectra.lines import WholePeriodSine, Window, WindowSamples, times_of_values
+from shaftprint.spectra import ExactBin, FrequencyResponse, estimate_response, estimate_spectra, open_loop
+from shaftprint.spectra._line_responses import measured
+from shaftprint.spectra._open_loop import governor_and_engine
+from shaftprint.spectra.lines._line_fit import WindowSamples
+from shaftprint.spectra.lines._message_times import times_of_values
+from shaftprint.spectra.lines._sine_fit import WholePeriodSine
+from shaftprint.spectra.lines._windows import Window
 
 RATE_HZ = 20.0
 AMPLITUDE = 0.12

@@ -5,7 +5,7 @@ import pytest
 
 from shaftprint.errors import ResponseError
 from shaftprint.spectra import Periodic, response_from_arrays
-from shaftprint.spectra.records import read_records
+from shaftprint.spectra.records._records import read_records
 
 U = np.tile(np.random.default_rng(0).standard_normal(100), 4)
 

@@ -1,8 +1,9 @@
 import numpy as np
 import pytest
 
-from shaftprint.spectra import ExactBin, HighestPeak, WholePeriodSine, plan_windows
-from shaftprint.spectra.lines import cut_window
+from shaftprint.spectra import ExactBin, HighestPeak, plan_windows
+from shaftprint.spectra.lines._line_fit import cut_window
+from shaftprint.spectra.lines._sine_fit import WholePeriodSine
 
 METHODS = [WholePeriodSine(), ExactBin(), HighestPeak()]
 

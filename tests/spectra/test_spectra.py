@@ -8,14 +8,8 @@ from tests.made_signals import with_channels
 
 from shaftprint.errors import ResponseError
 from shaftprint.signals import Gap
-from shaftprint.spectra import (
-    ExactBin,
-    FrequencyResponse,
-    HighestPeak,
-    WholePeriodSine,
-    estimate_response,
-    estimate_spectra,
-)
+from shaftprint.spectra import ExactBin, FrequencyResponse, HighestPeak, estimate_response, estimate_spectra
+from shaftprint.spectra.lines._sine_fit import WholePeriodSine
 
 RATE_HZ = 20.0
 # expected amplitude of the set point: 0.6 V of 4 rev/s a volt over 20 rev/s

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from shaftprint.spectra.lines import Neighbours, noise_from_neighbours
+from shaftprint.spectra.lines._noise import Neighbours, noise_from_neighbours
 
 REPEATS, PERIODS, LENGTH, SWING = 1000, 4, 512, 0.3
 BINS = np.array([k for k in range(380, 430) if k % PERIODS])

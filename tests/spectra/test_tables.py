@@ -5,17 +5,13 @@ import pytest
 from scipy.interpolate import CubicSpline
 
 from shaftprint.signals import SpeedSignal
-from shaftprint.spectra import ExactBin, WholePeriodSine
-from shaftprint.spectra.lines import (
-    ShaftRelation,
-    collect_harmonics,
-    load_drift,
-    measure_line,
-    residual_spectrum,
-    signal_to_noise,
-    strongest_frequency_hz,
-    without_modulation,
-)
+from shaftprint.spectra import ExactBin, signal_to_noise
+from shaftprint.spectra.lines._harmonics import collect_harmonics
+from shaftprint.spectra.lines._line_measurement import measure_line, strongest_frequency_hz
+from shaftprint.spectra.lines._load_drift import load_drift
+from shaftprint.spectra.lines._modulation import without_modulation
+from shaftprint.spectra.lines._noise import ShaftRelation, residual_spectrum
+from shaftprint.spectra.lines._sine_fit import WholePeriodSine
 
 UNRELATED = ShaftRelation(speed=1, torque=2, ratio=0.0)
 

@@ -9,7 +9,9 @@ from tests.made_signals import made_channels
 
 from shaftprint.campaign import load_campaign
 from shaftprint.signals import MessageSignal
-from shaftprint.spectra import estimate_spectra, governor_and_engine, measured, open_loop
+from shaftprint.spectra import estimate_spectra, open_loop
+from shaftprint.spectra._line_responses import measured
+from shaftprint.spectra._open_loop import governor_and_engine
 from shaftprint.tug import Tug, linearised_response, simulate_signals
 from shaftprint.vessel import load_vessel
 

@@ -8,8 +8,10 @@ from benchmarks.store_documents import IMO_NUMBER, document
 
 from shaftprint.errors import FingerprintError, StoreError
 from shaftprint.fingerprint import parse_fingerprint, write_fingerprint
-from shaftprint.store import Ship, Stated, add, history, newest
+from shaftprint.store import add, history, newest
 from shaftprint.store import document as kept_document
+from shaftprint.store._nouns import Ship
+from shaftprint.store._stated import Stated
 
 NOW = datetime(2026, 11, 24, 12, 0, tzinfo=UTC)
 NOBODY = {"name": "Meander", "line": "port"}

@@ -9,18 +9,11 @@ import pytest
 from benchmarks.store_documents import IMO_NUMBER
 
 from shaftprint.errors import DatabaseError, StoreError
-from shaftprint.store import (
-    Ship,
-    Stated,
-    check,
-    create_store,
-    export_store,
-    history,
-    import_store,
-    line_history,
-    record_event,
-    withdraw_event,
-)
+from shaftprint.store import check, create_store, export_store, history, import_store, record_event
+from shaftprint.store._event import withdraw_event
+from shaftprint.store._line_history import line_history
+from shaftprint.store._nouns import Ship
+from shaftprint.store._stated import Stated
 
 EXTREME = (
     "0001-01-01T00:00:00+14:00",

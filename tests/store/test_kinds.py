@@ -1,7 +1,7 @@
 import subprocess
 import sys
 
-from shaftprint.drift import EVENTS
+from shaftprint.drift._dated import EVENTS
 from shaftprint.store import KINDS
 
 

@@ -12,15 +12,11 @@ from shaftprint.errors import RecordingError, StoreError
 from shaftprint.store import (
     Job,
     JobRequest,
-    Stated,
     check,
     claim,
-    document_sha256,
     enqueue,
-    file_hashes,
     finish,
     give_back,
-    has_open_jobs,
     history,
     job,
     job_counts,
@@ -31,6 +27,10 @@ from shaftprint.store import (
     retry,
 )
 from shaftprint.store import document as kept_document
+from shaftprint.store._document import document_sha256
+from shaftprint.store._hashes import file_hashes
+from shaftprint.store._ledger import has_open_jobs
+from shaftprint.store._stated import Stated
 
 VERSION = "1.0"
 BEGIN = datetime(2026, 11, 24, 12, 0, tzinfo=UTC)

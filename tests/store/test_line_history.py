@@ -8,7 +8,8 @@ import pytest
 from benchmarks.store_documents import document
 
 from shaftprint.drift import history_of, sister_of
-from shaftprint.store import add_document, line_history, record_event
+from shaftprint.store import add_document, record_event
+from shaftprint.store._line_history import line_history
 
 FIRST = datetime(2020, 1, 1, tzinfo=UTC)
 NEWEST = 3

@@ -14,7 +14,6 @@ from shaftprint.store import (
     check,
     claim,
     create_store,
-    document_sha256,
     enqueue,
     export_store,
     finish,
@@ -27,6 +26,7 @@ from shaftprint.store import (
     refuse,
     retry,
 )
+from shaftprint.store._document import document_sha256
 
 BEGIN = datetime(2026, 11, 24, 12, 0, tzinfo=UTC)
 SENTENCE = "day.nc: expected 0.2 s of the campaign, found «nothing» \N{SNOWMAN}\nlook at it"

@@ -10,17 +10,8 @@ import pytest
 from benchmarks.store_documents import IMO_NUMBER, document
 
 from shaftprint.errors import StoreError
-from shaftprint.store import (
-    Stated,
-    check,
-    create_store,
-    export_store,
-    history,
-    import_store,
-    newest,
-    open_store,
-    record_event,
-)
+from shaftprint.store import check, create_store, export_store, history, import_store, newest, open_store, record_event
+from shaftprint.store._stated import Stated
 
 # letters that databases put in different orders, and zones
 SHIPS = ("Ægir", "aegir", "Aegir", "Zeeland", "_", "ship 10", "ship 9", "Ship")

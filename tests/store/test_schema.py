@@ -11,7 +11,8 @@ from alembic.migration import MigrationContext
 from alembic.script import ScriptDirectory
 
 from shaftprint.errors import StoreError
-from shaftprint.store import check, create_store, database, history, open_store, upgrade_store
+from shaftprint.store import check, create_store, database, history, open_store
+from shaftprint.store._store import upgrade_store
 
 LATER = """
 \"\"\"Another column.\"\"\"

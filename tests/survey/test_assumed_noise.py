@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from shaftprint.identify import NoiseLevels
-from shaftprint.survey import continued_below
+from shaftprint.survey._assumed_noise import continued_below
 
 
 def levels(frequency_hz, speed, torque, outputs=("n", "M_s")):

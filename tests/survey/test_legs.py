@@ -7,10 +7,11 @@ import pytest
 
 from shaftprint.catalogue import shipped_structure, structure
 from shaftprint.identify import identify_jointly, priors_from_vessel
-from shaftprint.identify.fit import part_tests
+from shaftprint.identify.fit._part_tests import part_tests
 from shaftprint.signals import WorkingPoint
 from shaftprint.spectra import FrequencyResponse
-from shaftprint.survey import at_speeds, structure_at
+from shaftprint.survey._legs import structure_at
+from shaftprint.survey._of_vessel import at_speeds
 from shaftprint.vessel import load_vessel
 
 OMEGA = np.geomspace(0.2, 15.0, 25)

@@ -7,7 +7,7 @@ from shaftprint.catalogue import structure
 from shaftprint.errors import StructureError
 from shaftprint.models import Gain, Parameter, Structure
 from shaftprint.spectra import FrequencyResponse
-from shaftprint.survey import response_of, responses_of
+from shaftprint.survey._measurement import response_of, responses_of
 
 S = 2j * np.pi * np.array([0.1, 0.4, 1.5])
 # a governor 3 + 4 / s, an engine 0.9 / (0.1 s + 1) and a line 1 / (1.3 s + 2) with 0.3 s + 2 behind the gauge

@@ -7,7 +7,8 @@ import pytest
 
 from shaftprint.catalogue import structure
 from shaftprint.signals import ChannelSignal, SpeedSignal
-from shaftprint.survey import priors_of, stated_working_point
+from shaftprint.survey import priors_of
+from shaftprint.survey._fits import stated_working_point
 from shaftprint.vessel import Vessel, load_vessel
 
 

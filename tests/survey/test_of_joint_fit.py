@@ -8,7 +8,7 @@ from tests.drift.test_differ import PRIORS
 from tests.known_fits import TRUTH, fitted, taken
 
 from shaftprint.identify import Settings
-from shaftprint.survey import of_joint_fit
+from shaftprint.survey._everything import of_joint_fit
 
 
 @pytest.fixture(scope="module")

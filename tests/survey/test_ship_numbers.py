@@ -8,7 +8,8 @@ import pytest
 from shaftprint.catalogue import shipped_structure
 from shaftprint.identify import Prior, Settings, identify, priors_from_vessel
 from shaftprint.spectra import FrequencyResponse
-from shaftprint.survey import of_vessel, ship_numbers
+from shaftprint.survey import of_vessel
+from shaftprint.survey._ship_numbers import ship_numbers
 from shaftprint.tug import like_stan_tug_1205, normalised_truth
 from shaftprint.vessel import load_vessel
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from shaftprint.spectra import SpeedRatio
+from shaftprint.spectra._speed_ratios import SpeedRatio
 from shaftprint.survey._twist import twist_reasons
 from shaftprint.vessel import load_vessel
 

@@ -9,7 +9,7 @@ import pytest
 
 from shaftprint.catalogue import structure
 from shaftprint.signals import LegState, WorkingPoint
-from shaftprint.survey import Wash, wash_on, wash_sentences
+from shaftprint.survey._wash import Wash, wash_on, wash_sentences
 
 RATE_HZ, PERIOD_S, PERIODS = 200.0, 20.0, 10
 TAU_DN, K_Q, POINT_RPM = 0.3, 1.98, 1200.0

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from shaftprint.recording import Channel, Recording
-from shaftprint.tables import clock_table, level_table
+from shaftprint.tables._recording import clock_table, level_table
 
 
 def channel(name, values, rate_hz=10.0, start_s=0.0):

@@ -6,16 +6,13 @@ import numpy as np
 import pytest
 
 from shaftprint.catalogue import limited
-from shaftprint.time_domain import (
-    Decimator,
-    ExactDelays,
-    NoiseModel,
-    Whitening,
-    output_error,
-    record_from_arrays,
-    simulated_on,
-)
-from shaftprint.time_domain.nonlinear import JumpStretch, jump_stretches, without_jumps
+from shaftprint.time_domain import output_error, record_from_arrays
+from shaftprint.time_domain._decimator import Decimator
+from shaftprint.time_domain._noise_model import NoiseModel
+from shaftprint.time_domain._simulator import ExactDelays
+from shaftprint.time_domain._simulator import on_record as simulated_on
+from shaftprint.time_domain._whitening import Whitening
+from shaftprint.time_domain.nonlinear._jump_resonance import JumpStretch, jump_stretches, without_jumps
 
 RATE = 20.0
 NOISE = 0.01

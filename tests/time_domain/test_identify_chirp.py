@@ -10,8 +10,16 @@ from scipy.signal import firwin, oaconvolve
 from shaftprint.campaign import Campaign, load_campaign
 from shaftprint.catalogue import structure
 from shaftprint.errors import IdentificationError, SignalError
-from shaftprint.identify import Settings, Unweighted, assess, bootstrap, identify, identify_jointly, profile_intervals
-from shaftprint.identify.search import GivenStarts
+from shaftprint.identify import (
+    GivenStarts,
+    Settings,
+    Unweighted,
+    assess,
+    bootstrap,
+    identify,
+    identify_jointly,
+    profile_intervals,
+)
 from shaftprint.spectra import FrequencyResponse
 from shaftprint.time_domain import identify_chirp, record_from_arrays, spectrum_of, spectrum_term
 from shaftprint.time_domain._bands import bands_of

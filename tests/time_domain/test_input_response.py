@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
-from shaftprint.time_domain import estimate_noise, record_from_arrays
+from shaftprint.time_domain import record_from_arrays
 from shaftprint.time_domain._input_response import noise_of
+from shaftprint.time_domain._noise_model import estimate_noise
 
 RATE_HZ, SAMPLES = 100.0, 400
 TIME_S = np.arange(SAMPLES) / RATE_HZ

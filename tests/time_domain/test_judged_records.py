@@ -10,8 +10,8 @@ from benchmarks.monte_carlo_friction import LINEAR, RATE_HZ, RIGHT, Rotor, drawn
 from scipy.signal import TransferFunction, lsim
 
 from shaftprint.identify import Requirements, Settings, assess
-from shaftprint.identify.judgement import fails
-from shaftprint.identify.likelihood import TermCheck
+from shaftprint.identify.judgement._data_contradictions import fails
+from shaftprint.identify.likelihood._term_check import TermCheck
 from shaftprint.time_domain import TimeSettings, identify_in_time, output_error, record_from_arrays
 
 SINGLE = Settings(starts=1)

@@ -12,8 +12,9 @@ from shaftprint.catalogue import limited, structure
 from shaftprint.identify import Settings
 from shaftprint.simulation import simulate_exactly
 from shaftprint.spectra import FrequencyResponse
-from shaftprint.time_domain import identify_in_time, output_error, record_from_arrays, with_noise_at
-from shaftprint.time_domain.nonlinear import with_scatter_of_blocks
+from shaftprint.time_domain import identify_in_time, output_error, record_from_arrays
+from shaftprint.time_domain._identify_in_time import with_noise_at
+from shaftprint.time_domain.nonlinear._covariance import with_scatter_of_blocks
 
 RATE = 20.0
 TRUTH = {

@@ -8,7 +8,9 @@ import pytest
 from shaftprint.catalogue import limited
 from shaftprint.errors import IdentificationError
 from shaftprint.identify import Settings
-from shaftprint.time_domain import ExactDelays, identify_in_time, output_error, record_from_arrays, simulated_on
+from shaftprint.time_domain import identify_in_time, output_error, record_from_arrays
+from shaftprint.time_domain._simulator import ExactDelays
+from shaftprint.time_domain._simulator import on_record as simulated_on
 
 RATE = 20.0
 TIME = np.arange(0.0, 120.01, 1.0 / RATE)

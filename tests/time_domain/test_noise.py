@@ -6,7 +6,9 @@ from scipy.signal import lfilter
 from scipy.special import chdtrc
 
 from shaftprint.errors import IdentificationError
-from shaftprint.time_domain import NoiseModel, Whitening, estimate_noise, white_noise, whiteness_p_value
+from shaftprint.time_domain._noise_model import NoiseModel, estimate_noise, white_noise
+from shaftprint.time_domain._whiteness import whiteness_p_value
+from shaftprint.time_domain._whitening import Whitening
 
 FIRST = np.array([[0.9, 0.1], [-0.3, 0.5]])
 SECOND = np.array([[-0.4, 0.05], [0.1, -0.2]])

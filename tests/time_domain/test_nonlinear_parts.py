@@ -9,11 +9,13 @@ from tests.made_signals import made_channels
 from shaftprint.campaign import Campaign
 from shaftprint.catalogue import limited
 from shaftprint.errors import IdentificationError
-from shaftprint.identify.fit import Estimate
-from shaftprint.identify.search import GivenStarts
+from shaftprint.identify import Estimate, GivenStarts
 from shaftprint.signals import SetPointCalibration, Signals, WorkingPoint
-from shaftprint.time_domain import NonlinearSettings, limit_numbers, record_from_arrays, structure_for, without_orders
-from shaftprint.time_domain.nonlinear import SomeDrawn, limited_sines, with_exact_jumps
+from shaftprint.time_domain import NonlinearSettings, record_from_arrays, structure_for, without_orders
+from shaftprint.time_domain.nonlinear._drive import with_exact_jumps
+from shaftprint.time_domain.nonlinear._limited_sines import limited_sines
+from shaftprint.time_domain.nonlinear._numbers import limit_numbers
+from shaftprint.time_domain.nonlinear._search import SomeDrawn
 from shaftprint.vessel import load_vessel
 
 POINT = WorkingPoint(

@@ -7,23 +7,26 @@ import pytest
 from scipy.signal import lfilter
 
 from shaftprint.errors import IdentificationError, StructureError
-from shaftprint.identify import Settings, Unweighted, assess, bootstrap, identify, identify_jointly, profile
-from shaftprint.identify.comparison import compare_fits
-from shaftprint.identify.fit import refit
-from shaftprint.identify.search import Draw
-from shaftprint.identify.uncertainty import propagation
+from shaftprint.identify import (
+    Draw,
+    Settings,
+    Unweighted,
+    assess,
+    bootstrap,
+    compare_fits,
+    identify,
+    identify_jointly,
+    profile,
+    refit,
+)
+from shaftprint.identify.uncertainty._propagation import propagation
 from shaftprint.models import FirstOrderLag, Gain, Parameter, Structure
 from shaftprint.simulation import Trace
 from shaftprint.spectra import FrequencyResponse
-from shaftprint.time_domain import (
-    NoiseModel,
-    TimeSettings,
-    Whitening,
-    identify_in_time,
-    output_error,
-    record_from_arrays,
-    with_noise_at,
-)
+from shaftprint.time_domain import TimeSettings, identify_in_time, output_error, record_from_arrays
+from shaftprint.time_domain._identify_in_time import with_noise_at
+from shaftprint.time_domain._noise_model import NoiseModel
+from shaftprint.time_domain._whitening import Whitening
 
 RATE = 10.0
 K, T = 1.5, 0.7

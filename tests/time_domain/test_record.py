@@ -9,7 +9,8 @@ from tests.made_signals import made_channels, with_channels
 from shaftprint.campaign import load_campaign
 from shaftprint.errors import SignalError
 from shaftprint.signals import Gap, Repair, SetPointCalibration, Signals, WorkingPoint
-from shaftprint.time_domain import Decimator, record_from_arrays, records_of
+from shaftprint.time_domain import record_from_arrays, records_of
+from shaftprint.time_domain._decimator import Decimator
 
 RATE = 200.0
 

@@ -6,7 +6,7 @@ import pytest
 from shaftprint.identify import Settings
 from shaftprint.models import FirstOrderLag, Gain, Parameter, Structure
 from shaftprint.time_domain import TimeSettings, identify_in_time, record_from_arrays
-from shaftprint.time_domain.nonlinear import with_scatter_of_blocks
+from shaftprint.time_domain.nonlinear._covariance import with_scatter_of_blocks
 
 GAIN = Parameter("k", "-", 0.1, 5.0, 1.0, "gain")
 LAG = Parameter("T", "s", 0.01, 1.0, 0.02, "lag", held=True)

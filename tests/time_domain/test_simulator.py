@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from shaftprint.catalogue import structure
-from shaftprint.time_domain import ExactDelays, TimeSettings, output_error, record_from_arrays
+from shaftprint.time_domain import TimeSettings, output_error, record_from_arrays
+from shaftprint.time_domain._simulator import ExactDelays
 
 RATE, OMEGA = 20.0, 2.0 * np.pi * 0.5
 VALUES = {"tau_n": 0.33, "K_p": 1.6, "K_i": 4.4, "t_d": 0.116, "omega_n": 9.8, "zeta": 0.5}

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from shaftprint.torsion import LineLink, TorsionalLine, torsional_line
+from shaftprint.torsion import TorsionalLine, torsional_line
+from shaftprint.torsion._line import LineLink
 from shaftprint.vessel import load_vessel
 
 

@@ -6,8 +6,11 @@ import numpy as np
 import pytest
 
 from shaftprint.errors import StructureError
-from shaftprint.torsion import forced_response, line_coupling, modes, torsional_line
-from shaftprint.vessel import InertiaRow, ShaftLink
+from shaftprint.torsion import modes, torsional_line
+from shaftprint.torsion._coupling import line_coupling
+from shaftprint.torsion._forced_response import forced_response
+from shaftprint.vessel import InertiaRow
+from shaftprint.vessel._links import ShaftLink
 
 RATIO = 4.0
 # 3 and 0.25 kg m2 on the engine shaft are 48 and 4 kg m2 on that of the propeller, which has 2, 11 and 5

@@ -8,14 +8,9 @@ import pytest
 from shaftprint.catalogue import structure
 from shaftprint.identify import priors_from_vessel
 from shaftprint.signals import WorkingPoint
-from shaftprint.torsion import (
-    Blades,
-    compare_inertia,
-    expected_inertia,
-    schwanecke_kg_m2,
-    strip_theory_kg_m2,
-    water_estimates,
-)
+from shaftprint.torsion import expected_inertia, schwanecke_kg_m2, strip_theory_kg_m2
+from shaftprint.torsion._entrained_water import Blades, water_estimates
+from shaftprint.torsion._expected_inertia import compare_inertia
 
 # 2 pi n_s0 / M_s0 with n_s0 = 1183.8 / 60 / 3.82
 SLOPE = 2.0 * math.pi * 5.16492 / 1725.0

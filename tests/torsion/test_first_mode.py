@@ -7,7 +7,9 @@ from scipy.signal import chirp
 from shaftprint.catalogue import two_mass_line
 from shaftprint.identify import Settings, identify
 from shaftprint.spectra import response_from_arrays
-from shaftprint.torsion import modes, simulate_line, two_masses
+from shaftprint.torsion import modes
+from shaftprint.torsion._trace import simulate_line
+from shaftprint.torsion._two_masses import two_masses
 
 CYLINDERS = tuple(f"Cylinder {number}" for number in range(1, 7))
 RATE_HZ, LENGTH_S = 250.0, 60.0

@@ -8,7 +8,8 @@ import opentorsion
 import pytest
 
 from shaftprint.errors import SettingsError, StructureError
-from shaftprint.torsion import forced_response, modes, torsional_line
+from shaftprint.torsion import modes, torsional_line
+from shaftprint.torsion._forced_response import forced_response
 
 
 def without_losses(line):

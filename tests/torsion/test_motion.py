@@ -8,7 +8,10 @@ import opentorsion
 import pytest
 
 from shaftprint.errors import StructureError
-from shaftprint.torsion import best_damper_nm_s_rad, forced_response, modes, simulate_line
+from shaftprint.torsion import modes
+from shaftprint.torsion._forced_response import forced_response
+from shaftprint.torsion._trace import simulate_line
+from shaftprint.torsion._viscous_damper import best_damper_nm_s_rad
 
 CYLINDERS = tuple(f"Cylinder {number}" for number in range(1, 7))
 SHARED = dict.fromkeys(CYLINDERS, 1.0 / 6.0)

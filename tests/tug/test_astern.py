@@ -10,8 +10,8 @@ import pytest
 
 from shaftprint.errors import SettingsError
 from shaftprint.recording import read_recording
-from shaftprint.tug import Coupling, Noise, Sailing, Tug, normalised_truth, sail, simulate_signals
-from shaftprint.tug.plant import build_plant, equilibrium
+from shaftprint.tug import Coupling, Noise, Sailing, Tug, build_plant, normalised_truth, sail, simulate_signals
+from shaftprint.tug.plant._physics import equilibrium
 from shaftprint.vessel import SpeedSensor, Vessel, load_vessel
 
 Make = Callable[..., Any]

@@ -7,22 +7,18 @@ from typing import Any
 import numpy as np
 import pytest
 
-from shaftprint.campaign import CampaignOfBoth, load_campaign_of_both
+from shaftprint.campaign import CampaignOfBoth
+from shaftprint.campaign._both_shafts import load_campaign_of_both
 from shaftprint.catalogue import structure
 from shaftprint.errors import SettingsError
 from shaftprint.recording import read_recording
-from shaftprint.tug import (
-    Noise,
-    Sailing,
-    SharedWater,
-    Tug,
-    linearised_both,
-    linearised_response,
-    normalised_truth,
-    sail,
-    sail_both,
-)
-from shaftprint.tug.plant import Disturbance, Stretch, sea_and_own, voyage, voyage_of_both
+from shaftprint.tug import Noise, Sailing, Tug, linearised_response, normalised_truth, sail
+from shaftprint.tug._linearise_both import linearised_both
+from shaftprint.tug._sail_both import sail_both
+from shaftprint.tug._shared_water import SharedWater
+from shaftprint.tug.plant._both_lines import sea_and_own, voyage_of_both
+from shaftprint.tug.plant._disturbance import Disturbance
+from shaftprint.tug.plant._voyage import Stretch, voyage
 from shaftprint.vessel import Vessel, load_vessel
 
 STEP_S = 5e-4

@@ -11,8 +11,9 @@ import pytest
 from shaftprint.errors import SettingsError
 from shaftprint.recording import read_recording
 from shaftprint.tug import Noise, Tug, sail, simulate_signals
-from shaftprint.tug.plant import Stretch
-from shaftprint.tug.sensors import Bus, ControlUnit
+from shaftprint.tug.plant._voyage import Stretch
+from shaftprint.tug.sensors._bus import Bus
+from shaftprint.tug.sensors._control_unit import ControlUnit
 from shaftprint.vessel import RackSensor, Vessel, load_vessel
 
 Make = Callable[..., Any]

@@ -11,12 +11,17 @@ from shaftprint.errors import SettingsError
 from shaftprint.tug import (
     Coupling,
     Tug,
+    build_plant,
+    derivatives,
     like_stan_tug_1205,
     linearised_response,
     normalised_truth,
     simulate_signals,
 )
-from shaftprint.tug.plant import ENGINE, SPEED, TWIST, Disturbance, build_plant, derivatives, equilibrium, voyage
+from shaftprint.tug.plant._disturbance import Disturbance
+from shaftprint.tug.plant._physics import equilibrium
+from shaftprint.tug.plant._plant import ENGINE, SPEED, TWIST
+from shaftprint.tug.plant._voyage import voyage
 from shaftprint.vessel import Vessel, load_vessel
 
 Make = Callable[..., Any]

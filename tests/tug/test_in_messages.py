@@ -3,7 +3,8 @@
 import pytest
 
 from shaftprint.errors import SettingsError
-from shaftprint.tug import Tug, in_messages
+from shaftprint.tug import Tug
+from shaftprint.tug._in_messages import in_messages
 from shaftprint.vessel import Vessel
 
 

@@ -8,18 +8,11 @@ import numpy as np
 import pytest
 
 from shaftprint.errors import SettingsError
-from shaftprint.tug import Tug, linearised_response, simulate_signals
-from shaftprint.tug.plant import (
-    RACK,
-    SLIPSTREAM,
-    SPEED,
-    Disturbance,
-    Stretch,
-    build_plant,
-    derivatives,
-    equilibrium,
-    voyage,
-)
+from shaftprint.tug import Tug, build_plant, derivatives, linearised_response, simulate_signals
+from shaftprint.tug.plant._disturbance import Disturbance
+from shaftprint.tug.plant._physics import equilibrium
+from shaftprint.tug.plant._plant import RACK, SLIPSTREAM, SPEED
+from shaftprint.tug.plant._voyage import Stretch, voyage
 from shaftprint.vessel import Vessel
 
 Make = Callable[..., Any]

@@ -4,8 +4,9 @@ import pytest
 
 from shaftprint.campaign import Campaign, Staircase
 from shaftprint.errors import SettingsError
-from shaftprint.tug import like_stan_tug_1205, with_lever_of
-from shaftprint.tug.plant import Demand
+from shaftprint.tug import like_stan_tug_1205
+from shaftprint.tug._like_stan_tug import with_lever_of
+from shaftprint.tug.plant._demand import Demand
 from shaftprint.vessel import load_vessel
 
 VESSEL = load_vessel("stan-tug-1205")

@@ -5,8 +5,8 @@ import pytest
 
 from shaftprint.recording import read_recording
 from shaftprint.tug import Noise, Sailing, Tug, normalised_truth, sail
-from shaftprint.tug.plant import Stretch
-from shaftprint.tug.sensors import SpeedLog
+from shaftprint.tug.plant._voyage import Stretch
+from shaftprint.tug.sensors._log import SpeedLog
 from shaftprint.vessel import ShipSpeedSensor, Vessel
 
 RATE_HZ = 2000.0

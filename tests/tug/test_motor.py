@@ -8,9 +8,17 @@ import numpy as np
 import pytest
 
 from shaftprint.errors import SettingsError
-from shaftprint.tug import Noise, Tug, like_stan_tug_1205, linearised_response, normalised_truth, simulate_signals
-from shaftprint.tug.plant import build_plant, torque_limits
-from shaftprint.tug.sensors import shaft_orders
+from shaftprint.tug import (
+    Noise,
+    Tug,
+    build_plant,
+    like_stan_tug_1205,
+    linearised_response,
+    normalised_truth,
+    simulate_signals,
+)
+from shaftprint.tug.plant._plant import torque_limits
+from shaftprint.tug.sensors._gauge import shaft_orders
 from shaftprint.vessel import Vessel, load_vessel
 
 Make = Callable[..., Any]

@@ -9,7 +9,7 @@ import pytest
 
 from shaftprint.campaign import Sine, load_campaign
 from shaftprint.tug import Noise, Tug, simulate_signals
-from shaftprint.tug.plant import Disturbance
+from shaftprint.tug.plant._disturbance import Disturbance
 from shaftprint.vessel import Vessel
 
 RATE_HZ = 20.0

@@ -4,8 +4,9 @@ from dataclasses import replace
 import pytest
 
 from shaftprint.errors import SettingsError
-from shaftprint.tug import Tug
-from shaftprint.tug.plant import RACK, build_plant, derivatives, equilibrium, shaft_time_constant_s, working_point
+from shaftprint.tug import Tug, build_plant, derivatives
+from shaftprint.tug.plant._physics import equilibrium, shaft_time_constant_s, working_point
+from shaftprint.tug.plant._plant import RACK
 from shaftprint.vessel import Vessel
 
 BRAKE_TORQUE_NM = 465.54  # 1725 / (3.82 * 0.97)

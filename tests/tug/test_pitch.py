@@ -7,16 +7,10 @@ import pytest
 
 from shaftprint.errors import SettingsError
 from shaftprint.propeller import ka4_70_in_19a, wageningen_b
-from shaftprint.tug import (
-    PitchActuation,
-    like_stan_tug_1205,
-    linearised_response,
-    normalised_truth,
-    simulate_signals,
-    steepened,
-    torque_over_pitch,
-)
-from shaftprint.tug.plant import PitchActuator
+from shaftprint.tug import like_stan_tug_1205, linearised_response, normalised_truth, simulate_signals
+from shaftprint.tug._pitch_actuation import PitchActuation
+from shaftprint.tug._pitch_series import steepened, torque_over_pitch
+from shaftprint.tug.plant._pitch import PitchActuator
 from shaftprint.vessel import load_vessel
 
 REST_V = 4.0

@@ -8,8 +8,11 @@ import numpy as np
 import pytest
 
 from shaftprint.errors import SettingsError
-from shaftprint.tug import Tug, linearised_response, simulate_signals
-from shaftprint.tug.plant import Demand, Disturbance, Stretch, build_plant, interpolation_weights, torque_limits, voyage
+from shaftprint.tug import Tug, build_plant, linearised_response, simulate_signals
+from shaftprint.tug.plant._demand import Demand
+from shaftprint.tug.plant._disturbance import Disturbance
+from shaftprint.tug.plant._plant import interpolation_weights, torque_limits
+from shaftprint.tug.plant._voyage import Stretch, voyage
 from shaftprint.vessel import Vessel
 
 Make = Callable[..., Any]

@@ -11,8 +11,19 @@ import pytest
 from shaftprint.campaign import Campaign
 from shaftprint.errors import SettingsError
 from shaftprint.propeller import ka4_70_in_19a, sail_steadily
-from shaftprint.tug import Noise, Sailing, Tug, linearised_response, normalised_truth, sail, simulate_signals
-from shaftprint.tug.plant import RACK, SPEED, WAY, build_plant, derivatives, equilibrium, working_point
+from shaftprint.tug import (
+    Noise,
+    Sailing,
+    Tug,
+    build_plant,
+    derivatives,
+    linearised_response,
+    normalised_truth,
+    sail,
+    simulate_signals,
+)
+from shaftprint.tug.plant._physics import equilibrium, working_point
+from shaftprint.tug.plant._plant import RACK, SPEED, WAY
 from shaftprint.vessel import Vessel
 
 Make = Callable[..., Any]

@@ -10,7 +10,8 @@ import pytest
 
 from shaftprint.recording import read_recording
 from shaftprint.tug import Noise, Truth, Tug, sail, simulate_signals
-from shaftprint.tug.sensors import draw_dropouts, draw_times, shaft_orders
+from shaftprint.tug.sensors._faults import draw_dropouts, draw_times
+from shaftprint.tug.sensors._gauge import shaft_orders
 from shaftprint.vessel import Vessel
 
 Make = Callable[..., Any]

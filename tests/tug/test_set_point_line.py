@@ -7,7 +7,7 @@ import pytest
 
 from shaftprint.campaign import load_campaign
 from shaftprint.tug import Noise, Tug
-from shaftprint.tug.plant import Demand, demanded_speed
+from shaftprint.tug.plant._demand import Demand, demanded_speed
 from shaftprint.vessel import load_vessel
 
 VESSEL = load_vessel("stan-tug-1205")

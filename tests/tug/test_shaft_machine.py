@@ -6,15 +6,8 @@ import numpy as np
 import pytest
 
 from shaftprint.errors import SettingsError
-from shaftprint.tug import (
-    ShaftMachineTruth,
-    Tug,
-    like_stan_tug_1205,
-    linearised_response,
-    normalised_truth,
-    simulate_signals,
-)
-from shaftprint.tug.plant import build_plant
+from shaftprint.tug import Tug, build_plant, like_stan_tug_1205, linearised_response, normalised_truth, simulate_signals
+from shaftprint.tug._shaft_machine import ShaftMachineTruth
 from shaftprint.vessel import load_vessel
 
 SPEED_RPM, TORQUE_NM, RATIO, EFFICIENCY = 1200.0, 31236.0, 6.8, 0.95

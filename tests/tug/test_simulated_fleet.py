@@ -8,21 +8,10 @@ import pytest
 
 from shaftprint.errors import SettingsError
 from shaftprint.recording import read_recording
-from shaftprint.tug import (
-    ShipWork,
-    SimulatedShip,
-    Tolerances,
-    Tug,
-    Wear,
-    in_water,
-    sail_test,
-    sea_water_kg_m3,
-    ship_at,
-    simulated_fleet,
-    vessel_at,
-    with_load,
-    with_works,
-)
+from shaftprint.tug import Tolerances, Tug
+from shaftprint.tug._changes import in_water, sea_water_kg_m3, with_load
+from shaftprint.tug._simulated_fleet import sail_test, simulated_fleet
+from shaftprint.tug._simulated_ship import ShipWork, SimulatedShip, Wear, ship_at, vessel_at, with_works
 
 LAUNCHED = datetime(2020, 1, 1, tzinfo=UTC)
 YEAR = timedelta(days=365.25)

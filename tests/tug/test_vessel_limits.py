@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from shaftprint.tug import Tug, sail, simulate_signals
-from shaftprint.tug.plant import Demand, build_plant, torque_limits
+from shaftprint.tug import Tug, build_plant, sail, simulate_signals
+from shaftprint.tug.plant._demand import Demand
+from shaftprint.tug.plant._plant import torque_limits
 from shaftprint.vessel import OperatingLimits, Vessel
 
 Make = Callable[..., Any]

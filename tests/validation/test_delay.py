@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from shaftprint.validation.measures import remaining_delay
+from shaftprint.validation.measures._delay import remaining_delay
 
 RATE_HZ = 200.0
 MARGIN = 200

@@ -4,7 +4,8 @@ import pytest
 
 from shaftprint.campaign import Campaign, load_campaign
 from shaftprint.errors import ValidationError
-from shaftprint.validation import ValidationSettings, default_records, excerpts_of
+from shaftprint.validation import ValidationSettings
+from shaftprint.validation._validation_records import default_records, excerpts_of
 
 
 def cut(campaign, records, *, used=(), allow_in_sample=False, **settings):

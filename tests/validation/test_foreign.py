@@ -11,7 +11,7 @@ from shaftprint.errors import ValidationError
 from shaftprint.export import ExportedModel, write_fmu
 from shaftprint.signals import WorkingPoint
 from shaftprint.simulation import simulate
-from shaftprint.validation import ForeignModel
+from shaftprint.validation._foreign import ForeignModel
 
 SPEED_RPM, TORQUE_NM, RATE_HZ = 1183.8, 1740.0, 100.0
 VALUES = {"t_d": 0.0703, "t_sp": 0.0518}

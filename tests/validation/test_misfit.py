@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
-from shaftprint.validation.measures import Compared, NoisePieces, Unfiltered, misfit_of
+from shaftprint.validation.measures._misfit import Compared, Unfiltered, misfit_of
+from shaftprint.validation.measures._noise_pieces import NoisePieces
 
 SAMPLES = 400
 TIME = np.arange(SAMPLES) / 20.0

@@ -7,7 +7,7 @@ import pytest
 
 from shaftprint.campaign import load_campaign
 from shaftprint.signals import LegState
-from shaftprint.validation.measures import quiet_noise
+from shaftprint.validation.measures._noise_pieces import quiet_noise
 
 RATE_HZ, PERIOD_S, PERIODS, STD = 50.0, 20.013, 8, 0.03
 

@@ -4,16 +4,9 @@ import numpy as np
 import pytest
 from scipy.signal import butter, sosfiltfilt
 
-from shaftprint.validation.measures import (
-    EVERYWHERE,
-    Compared,
-    NoisePieces,
-    Swept,
-    Unfiltered,
-    WhileSettling,
-    misfit_of,
-    while_settling,
-)
+from shaftprint.validation.measures._misfit import Compared, Unfiltered, misfit_of
+from shaftprint.validation.measures._noise_pieces import NoisePieces
+from shaftprint.validation.measures._reach import EVERYWHERE, Swept, WhileSettling, while_settling
 
 RATE_HZ = 50.0
 SAMPLES = 700

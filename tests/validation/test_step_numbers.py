@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from shaftprint.validation.measures import STEP_NUMBERS, step_numbers
+from shaftprint.validation.measures._step_numbers import STEP_NUMBERS, step_numbers
 
 TIME = np.arange(-2.0, 12.0, 0.005)
 PLACE = {name: place for place, name in enumerate(STEP_NUMBERS)}

@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
-from shaftprint.validation import linear_prediction, thesis_models
-from shaftprint.validation.measures import STEP_NUMBERS, step_numbers
+from shaftprint.validation._prediction import linear_prediction
+from shaftprint.validation._thesis_models import thesis_models
+from shaftprint.validation.measures._step_numbers import STEP_NUMBERS, step_numbers
 
 RATE_HZ = 200.0
 TIME = np.arange(-10.0, 40.0, 1.0 / RATE_HZ)

@@ -12,7 +12,9 @@ from shaftprint.identify import Prior, Settings, identify
 from shaftprint.signals import Gap
 from shaftprint.spectra import estimate_response
 from shaftprint.tug import Noise, Tug, simulate_signals
-from shaftprint.validation import ValidationSettings, linear_prediction, model_of, simulated_prediction, validate
+from shaftprint.validation import ValidationSettings, validate
+from shaftprint.validation._model import model_of
+from shaftprint.validation._prediction import linear_prediction, simulated_prediction
 from shaftprint.vessel import load_vessel
 
 RATE_HZ = 100.0

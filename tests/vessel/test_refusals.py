@@ -5,7 +5,8 @@ from pydantic import ValidationError
 
 from shaftprint.errors import SettingsError
 from shaftprint.settings import write_template
-from shaftprint.vessel import ShaftTorqueSensor, SpeedSensor, load_vessel
+from shaftprint.vessel import SpeedSensor, load_vessel
+from shaftprint.vessel._shaft_torque import ShaftTorqueSensor
 
 
 @pytest.mark.parametrize(

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
-from shaftprint.vessel import SetPointSensor
+from shaftprint.vessel._set_point import SetPointSensor
 
 
 def sensor(unit, **fields):

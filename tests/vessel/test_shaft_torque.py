@@ -4,7 +4,8 @@ import pytest
 from pydantic import ValidationError
 
 from shaftprint.settings import write_template
-from shaftprint.vessel import GaugedShaft, ShaftTorqueSensor, load_vessel
+from shaftprint.vessel import load_vessel
+from shaftprint.vessel._shaft_torque import GaugedShaft, ShaftTorqueSensor
 
 STEEL = {"outer_diameter_m": 0.1, "shear_modulus_gpa": 80.0, "gauge_factor": 2.0}
 

@@ -13,7 +13,11 @@ from benchmarks.store_documents import document
 
 from shaftprint import __version__
 from shaftprint.store import JobRequest, add_document, create_store, enqueue, open_store, record_event
-from shaftprint.web import KeptJob, Listen, Person, Role, Service, Serving, Upload, guarded, hashed, with_user
+from shaftprint.web import Listen, Person, Serving, hashed, with_user
+from shaftprint.web._kept import KeptJob, Upload
+from shaftprint.web._server import guarded
+from shaftprint.web._service import Service
+from shaftprint.web.access._person import Role
 
 NOW = datetime(2026, 11, 24, 12, tzinfo=UTC)
 PASSWORD = "twelve letters"  # noqa: S105

@@ -10,8 +10,13 @@ from tests.web.client import form_of
 from tests.web.conftest import ADA, PASSWORD
 
 from shaftprint.errors import ServerError
-from shaftprint.web import Door, Listen, Person, Role, Service, Serving, listen_at, routes_of, with_user
-from shaftprint.web.access import Audit, network_of
+from shaftprint.web import Listen, Person, Serving, listen_at, with_user
+from shaftprint.web._door import Door
+from shaftprint.web._routes import routes_of
+from shaftprint.web._service import Service
+from shaftprint.web.access._audit import Audit
+from shaftprint.web.access._person import Role
+from shaftprint.web.access._throttle import network_of
 
 
 @pytest.mark.parametrize("host", ["evil.example", "evil.example:8080", "127.0.0.1.evil.example", "", "127.0.0.1@evil"])

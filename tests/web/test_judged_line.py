@@ -11,7 +11,7 @@ pytest.importorskip("sqlalchemy", reason="a store needs SQLAlchemy")
 from benchmarks.store_documents import document
 
 from shaftprint.store import add_document, create_store
-from shaftprint.web.calculator import Calculator
+from shaftprint.web.calculator._client import Calculator
 
 FIRST = datetime(2020, 1, 1, tzinfo=UTC)
 MEMORY = 4 * 2**30

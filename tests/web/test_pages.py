@@ -6,8 +6,10 @@ from datetime import UTC, datetime, timedelta
 
 from tests.web.conftest import ADA, HIDDEN, NOW
 
-from shaftprint.store import claim, lines_now, refuse, renew
-from shaftprint.web import TimeAxis, standing_of, strip
+from shaftprint.store import claim, refuse, renew
+from shaftprint.store._overview import lines_now
+from shaftprint.web._standing import standing_of
+from shaftprint.web._strip import TimeAxis, strip
 
 STEP = {"name": "propeller", "shape": "step", "since": "2026-03-01", "size": 4.2, "std": 0.8, "unit": "%"}
 

@@ -8,7 +8,7 @@ from importlib.resources import files
 from shaftprint.catalogue import STRUCTURES as ALL_STRUCTURES
 from shaftprint.settings import shipped_names
 from shaftprint.vessel import is_imo_number as is_of_a_ship
-from shaftprint.web.pages import CAMPAIGNS, STRUCTURES, VESSELS, is_imo_number
+from shaftprint.web.pages._recordings import CAMPAIGNS, STRUCTURES, VESSELS, is_imo_number
 
 
 def test_files_that_come_with_the_program_are_those_of_the_forms():

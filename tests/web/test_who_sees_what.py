@@ -11,10 +11,10 @@ from tests.web.conftest import ADA, HIDDEN, NOW, Desk, Site
 
 from shaftprint import __version__
 from shaftprint.errors import StoreError
-from shaftprint.fleet import arguments_of, job_arguments, submit
+from shaftprint.fleet import submit
+from shaftprint.fleet._arguments import arguments_of, job_arguments
 from shaftprint.store import (
     JobRequest,
-    Ship,
     add_document,
     claim,
     create_store,
@@ -22,23 +22,17 @@ from shaftprint.store import (
     finish,
     history,
     job,
-    lines_now,
     open_store,
     record_event,
 )
-from shaftprint.web import (
-    ADDRESSES,
-    KeptJob,
-    Listen,
-    Person,
-    Role,
-    Service,
-    Serving,
-    Upload,
-    forbidden_by,
-    routes_of,
-    with_user,
-)
+from shaftprint.store._nouns import Ship
+from shaftprint.store._overview import lines_now
+from shaftprint.web import Listen, Person, Serving, with_user
+from shaftprint.web._kept import KeptJob, Upload
+from shaftprint.web._rights import forbidden_by
+from shaftprint.web._routes import ADDRESSES, routes_of
+from shaftprint.web._service import Service
+from shaftprint.web.access._person import Role
 
 BOB, NEW, OTHER_BOB = 9319466, 9100023, 9100011
 SHIPS = {

@@ -8,7 +8,7 @@ more than what noise leaves uncertain.
 
 from shaftprint.bench._equipped import EquippedDrive
 from shaftprint.bench._held_yielding import YIELDING, yielding_of
-from shaftprint.catalogue import DRIVES
+from shaftprint.catalogue._drives import DRIVES
 
 # Of the assumed number, one standard deviation.
 ASSUMED = 2.0

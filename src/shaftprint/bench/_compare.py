@@ -8,7 +8,8 @@ import numpy as np
 from shaftprint.arguments import refusing_none
 from shaftprint.distributions import normal_cdf
 from shaftprint.errors import FingerprintError
-from shaftprint.fingerprint import DriveFingerprint, Quantity
+from shaftprint.fingerprint._drive_fingerprint import DriveFingerprint
+from shaftprint.fingerprint._quantity import Quantity
 
 Outcome: TypeAlias = Literal["differs", "perhaps", "no difference seen", "cannot be compared"]
 # A difference that chance makes in fewer than this share of pairs counts.

@@ -7,9 +7,14 @@ from typing import Any
 
 from shaftprint.bench._held_yielding import held_yielding, states_yielding, with_named_yielding
 from shaftprint.bench._parts import PARTS, Coefficients
-from shaftprint.drive import Block, Drive
+from shaftprint.drive._blocks import Block
+from shaftprint.drive._drive import Drive
 from shaftprint.errors import SettingsError
-from shaftprint.models import Diagram, Flow, Formula, Parameter, Structure, number
+from shaftprint.models._diagram import Diagram
+from shaftprint.models._parameter import Parameter
+from shaftprint.models._structure import Structure
+from shaftprint.models.equations._flow import Flow
+from shaftprint.models.equations._formula import Formula, number
 from shaftprint.spelling import meant
 
 

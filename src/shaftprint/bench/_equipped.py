@@ -5,11 +5,16 @@ from dataclasses import dataclass, replace
 from types import MappingProxyType
 
 from shaftprint.bench._composed import composed
-from shaftprint.catalogue import DRIVES, SIGNAL_UNITS, along_a_line, shipped_structure, unit_along
-from shaftprint.drive import Drive, KnownParameter, Signal, unit_factor
+from shaftprint.catalogue._drives import DRIVES, SIGNAL_UNITS
+from shaftprint.catalogue._linear_drives import along_a_line, unit_along
+from shaftprint.catalogue._shipped import shipped_structure
+from shaftprint.drive._drive import Drive
+from shaftprint.drive._signals import KnownParameter, Signal
+from shaftprint.drive._unit_factors import unit_factor
 from shaftprint.errors import SettingsError
-from shaftprint.identify import Prior
-from shaftprint.models import Parameter, Structure
+from shaftprint.identify.likelihood._prior import Prior
+from shaftprint.models._parameter import Parameter
+from shaftprint.models._structure import Structure
 from shaftprint.spelling import meant
 
 # So many standard deviations of what is known lie within the bounds of the search.

@@ -13,18 +13,13 @@ from shaftprint.bench._equipped import EquippedDrive
 from shaftprint.bench._fit import DriveFit
 from shaftprint.bench._per_record import base_name, record_structure
 from shaftprint.errors import FingerprintError
-from shaftprint.fingerprint import (
-    DriveFingerprint,
-    DriveRecord,
-    DriveResponse,
-    IdentifiedModel,
-    NoiseOfRecord,
-    Quantity,
-    SourceFile,
-)
-from shaftprint.identify.fit import Estimate
-from shaftprint.models import Structure
-from shaftprint.time_domain import RecordFit
+from shaftprint.fingerprint._drive_fingerprint import DriveFingerprint, DriveRecord, DriveResponse, NoiseOfRecord
+from shaftprint.fingerprint._fingerprint import SourceFile
+from shaftprint.fingerprint._model import IdentifiedModel
+from shaftprint.fingerprint._quantity import Quantity
+from shaftprint.identify.fit._identification import Estimate
+from shaftprint.models._structure import Structure
+from shaftprint.time_domain._record_fit import RecordFit
 
 
 @refusing_none(FingerprintError)

@@ -15,15 +15,23 @@ from shaftprint.bench._per_record import free_parameters, idle_labels, own_prior
 from shaftprint.bench._record_reasons import REQUIREMENTS, held_outputs, large_offsets, starts_in_motion
 from shaftprint.bench._search import AGREE, search_drive
 from shaftprint.errors import IdentificationError, SettingsError, StructureError
-from shaftprint.identify import Identification, LatinHypercube, Prior, Settings, Verdict, assess, profile
-from shaftprint.identify.search import Draw, GivenStarts
-from shaftprint.identify.uncertainty import Interval
-from shaftprint.models import Parameter, Structure
-from shaftprint.notebook import Shown, Summary, shortened
+from shaftprint.identify.fit._identification import Identification
+from shaftprint.identify.judgement._verdict import Verdict, assess
+from shaftprint.identify.likelihood._prior import Prior
+from shaftprint.identify.search._settings import Settings
+from shaftprint.identify.search._starts import Draw, GivenStarts, LatinHypercube
+from shaftprint.identify.uncertainty._profile import Interval, profile
+from shaftprint.models._parameter import Parameter
+from shaftprint.models._structure import Structure
+from shaftprint.notebook._shown import Shown
+from shaftprint.notebook._summary import Summary, shortened
 from shaftprint.reasons import Reason
-from shaftprint.simulation import Trace, equilibrium, state_names
+from shaftprint.simulation._equilibrium import equilibrium, state_names
+from shaftprint.simulation._simulate import Trace
 from shaftprint.spelling import meant
-from shaftprint.time_domain import ExactDelays, Record, Simulator, TimeSettings
+from shaftprint.time_domain._identify_in_time import TimeSettings
+from shaftprint.time_domain._record import Record
+from shaftprint.time_domain._simulator import ExactDelays, Simulator
 
 STARTS = 4
 """Starts of the search: a start in time costs a simulation of all records at each step."""

@@ -3,7 +3,8 @@
 from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 
-from shaftprint.drive import BlockKind, Drive
+from shaftprint.drive._blocks import BlockKind
+from shaftprint.drive._drive import Drive
 
 # What a state was called that now is called as the output of its block; others had what stands behind it now.
 FORMER: Mapping[BlockKind, str] = MappingProxyType(

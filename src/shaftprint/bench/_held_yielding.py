@@ -1,7 +1,7 @@
 """By how much what a block holds yields: a number of its row is a held parameter, so that what rests on it is told."""
 
-from shaftprint.drive import Block
-from shaftprint.models import Parameter
+from shaftprint.drive._blocks import Block
+from shaftprint.models._parameter import Parameter
 
 YIELDING = "yielding"
 

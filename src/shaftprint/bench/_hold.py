@@ -13,10 +13,13 @@ from shaftprint.arrays import FloatArray
 from shaftprint.bench._equipped import EquippedDrive
 from shaftprint.bench._per_record import with_structures
 from shaftprint.errors import IdentificationError
-from shaftprint.identify import Identification, Settings
-from shaftprint.identify.search import GivenStarts
+from shaftprint.identify.fit._identification import Identification
+from shaftprint.identify.search._settings import Settings
+from shaftprint.identify.search._starts import GivenStarts
 from shaftprint.reasons import Reason
-from shaftprint.time_domain import OutputError, Record, TimeSettings, identify_in_time
+from shaftprint.time_domain._identify_in_time import TimeSettings, identify_in_time
+from shaftprint.time_domain._output_error import OutputError
+from shaftprint.time_domain._record import Record
 
 # Squared changes of the changes over squared changes: 2 of a jump, 0.5 of a sine of nine samples.
 JUMPS = 0.5

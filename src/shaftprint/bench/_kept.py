@@ -1,12 +1,13 @@
 """The drive that a fingerprint describes, without its file: signals and the shipped structure that it names."""
 
 from shaftprint.bench._equipped import EquippedDrive, equipped
-from shaftprint.catalogue import DRIVES
-from shaftprint.drive import Drive, Signal
+from shaftprint.catalogue._drives import DRIVES
+from shaftprint.drive._drive import Drive
+from shaftprint.drive._signals import Signal
 from shaftprint.errors import FingerprintError
 from shaftprint.escape import printable
-from shaftprint.fingerprint import DriveFingerprint
-from shaftprint.models import Structure
+from shaftprint.fingerprint._drive_fingerprint import DriveFingerprint
+from shaftprint.models._structure import Structure
 
 
 def kept_drive(

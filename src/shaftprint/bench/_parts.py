@@ -5,26 +5,12 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import TypeAlias
 
-from shaftprint.drive import Block, BlockKind
-from shaftprint.models import (
-    Flow,
-    Formula,
-    Number,
-    as_formula,
-    backlash,
-    clip,
-    coefficients,
-    coulomb_friction,
-    deadband,
-    first_order_lag,
-    number,
-    raised,
-    realised,
-    second_order_lag,
-    stribeck_friction,
-    table,
-    two_sided,
-)
+from shaftprint.drive._blocks import Block, BlockKind
+from shaftprint.models.equations._flow import Flow
+from shaftprint.models.equations._formula import Formula, Number, as_formula, clip, number, table
+from shaftprint.models.equations._friction import backlash, coulomb_friction, stribeck_friction
+from shaftprint.models.equations._limits import deadband, first_order_lag, raised, second_order_lag, two_sided
+from shaftprint.models.equations._realisation import coefficients, realised
 
 Usual: TypeAlias = float | str | None
 """Usual value of a parameter: a number, the name of another parameter that it then equals, or none."""

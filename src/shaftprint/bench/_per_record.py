@@ -7,10 +7,11 @@ from collections.abc import Mapping, Sequence
 from typing import Protocol, TypeVar
 
 from shaftprint.bench._equipped import EquippedDrive
-from shaftprint.drive import PerRecord
-from shaftprint.identify import Prior
-from shaftprint.identify.likelihood import united_parameters
-from shaftprint.models import Parameter, Structure
+from shaftprint.drive._signals import PerRecord
+from shaftprint.identify.likelihood._prior import Prior
+from shaftprint.identify.likelihood._united_parameters import united_parameters
+from shaftprint.models._parameter import Parameter
+from shaftprint.models._structure import Structure
 
 
 class Named(Protocol):

@@ -12,9 +12,12 @@ from shaftprint.bench._equipped import EquippedDrive
 from shaftprint.bench._fit import drive_time_settings
 from shaftprint.bench._per_record import all_parameters, base_name, free_parameters, own_priors, with_structures
 from shaftprint.errors import IdentificationError
-from shaftprint.fingerprint import DriveFingerprint, DriveRecord
-from shaftprint.identify import Prior
-from shaftprint.time_domain import NoiseModel, Record, Whitening, output_error
+from shaftprint.fingerprint._drive_fingerprint import DriveFingerprint, DriveRecord
+from shaftprint.identify.likelihood._prior import Prior
+from shaftprint.time_domain._identify_in_time import output_error
+from shaftprint.time_domain._noise_model import NoiseModel
+from shaftprint.time_domain._record import Record
+from shaftprint.time_domain._whitening import Whitening
 
 # Rates of a plan and of a record are one but for rounding.
 SAME_RATE = 1e-6

@@ -8,11 +8,15 @@ import numpy as np
 from shaftprint.bench._equipped import EquippedDrive
 from shaftprint.bench._held_values import kept_for
 from shaftprint.digits import rounded, stated
-from shaftprint.drive import Signal, zero_is_anywhere
-from shaftprint.identify import Identification, Requirements
-from shaftprint.identify.judgement import fails
+from shaftprint.drive._signals import Signal
+from shaftprint.drive._unit_factors import zero_is_anywhere
+from shaftprint.identify.fit._identification import Identification
+from shaftprint.identify.judgement._data_contradictions import fails
+from shaftprint.identify.judgement._requirements import Requirements
 from shaftprint.reasons import Reason
-from shaftprint.time_domain import OutputError, Record, RecordFit
+from shaftprint.time_domain._output_error import OutputError
+from shaftprint.time_domain._record import Record
+from shaftprint.time_domain._record_fit import RecordFit
 
 REQUIREMENTS = Requirements(largest_excess=4.0)
 """What is asked of a fit of a drive. Its structure holds friction and whatever else acts, so that no misfit is taken

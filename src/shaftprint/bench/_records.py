@@ -11,11 +11,15 @@ from shaftprint.arrays import FloatArray
 from shaftprint.bench._equipped import EquippedDrive
 from shaftprint.bench._hold import jumps
 from shaftprint.bench._wrapped import turn_of, unwrapped
-from shaftprint.drive import Signal, Stretch, unit_factor
+from shaftprint.drive._signals import Signal, Stretch
+from shaftprint.drive._unit_factors import unit_factor
 from shaftprint.errors import RecordingError
-from shaftprint.recording import Channel, Recording, judge_messages, read_recording
-from shaftprint.signals import at_rate
-from shaftprint.time_domain import Record, record_from_arrays
+from shaftprint.recording._channel import Channel
+from shaftprint.recording._messages import judge_messages
+from shaftprint.recording._read import read_recording
+from shaftprint.recording._recording import Recording
+from shaftprint.signals._at_rate import at_rate
+from shaftprint.time_domain._record import Record, record_from_arrays
 
 # Uneven channels whose rates differ by less come from one sender, or from senders of one kind.
 _SAME_SENDER = 1.2

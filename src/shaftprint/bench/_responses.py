@@ -16,10 +16,13 @@ from shaftprint.bench._fit import DriveFit, alone, drive_settings
 from shaftprint.bench._per_record import free_parameters, idle_labels, own_priors, with_structures
 from shaftprint.bench._records import expect_different_names
 from shaftprint.bench._search import AGREE, MOST, agreeing_starts
-from shaftprint.drive import ResponseColumns
+from shaftprint.drive._responses import ResponseColumns
 from shaftprint.errors import IdentificationError, RecordingError, ResponseError
-from shaftprint.identify import assess, identify_jointly, profile
-from shaftprint.spectra import FrequencyResponse, circular_covariance, coherence_covariance
+from shaftprint.identify.fit._identify import identify_jointly
+from shaftprint.identify.judgement._verdict import assess
+from shaftprint.identify.uncertainty._profile import profile
+from shaftprint.spectra._frequency_response import FrequencyResponse
+from shaftprint.spectra._plain_covariance import circular_covariance, coherence_covariance
 from shaftprint.spelling import meant
 
 RESPONSE_STARTS = 8

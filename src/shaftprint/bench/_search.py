@@ -18,11 +18,15 @@ import numpy as np
 from shaftprint.arrays import FloatArray, IntArray
 from shaftprint.bench._equipped import EquippedDrive
 from shaftprint.bench._per_record import free_parameters, own_names, with_structures
-from shaftprint.catalogue import DRIVES
-from shaftprint.identify import Identification, Prior, Settings, identify_jointly
-from shaftprint.identify.fit import Cluster, optima_of
-from shaftprint.identify.search import GivenStarts
-from shaftprint.time_domain import Record, TimeSettings, identify_in_time, output_error
+from shaftprint.catalogue._drives import DRIVES
+from shaftprint.identify.fit._identification import Cluster, Identification
+from shaftprint.identify.fit._identify import identify_jointly
+from shaftprint.identify.fit._optima import optima_of
+from shaftprint.identify.likelihood._prior import Prior
+from shaftprint.identify.search._settings import Settings
+from shaftprint.identify.search._starts import GivenStarts
+from shaftprint.time_domain._identify_in_time import TimeSettings, identify_in_time, output_error
+from shaftprint.time_domain._record import Record
 
 AGREE = 2
 """So many starts must end at the optimum, lest it be one of which nobody knows whether there are others."""

@@ -21,11 +21,14 @@ from shaftprint.bench._per_record import all_parameters, free_parameters, own_pr
 from shaftprint.bench._search import search_drive
 from shaftprint.distributions import chi_square_tail
 from shaftprint.errors import IdentificationError
-from shaftprint.identify import Identification, identify_jointly
-from shaftprint.identify.comparison import expect_comparable
-from shaftprint.identify.search import GivenStarts
-from shaftprint.models import Parameter
-from shaftprint.time_domain import OutputError, Record, output_error
+from shaftprint.identify.comparison._compare import expect_comparable
+from shaftprint.identify.fit._identification import Identification
+from shaftprint.identify.fit._identify import identify_jointly
+from shaftprint.identify.search._starts import GivenStarts
+from shaftprint.models._parameter import Parameter
+from shaftprint.time_domain._identify_in_time import output_error
+from shaftprint.time_domain._output_error import OutputError
+from shaftprint.time_domain._record import Record
 
 # A ratio less likely than this by chance speaks for the larger structure.
 UNLIKELY = 0.01

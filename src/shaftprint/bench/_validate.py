@@ -12,16 +12,12 @@ from shaftprint.bench._fingerprint import identified_drive
 from shaftprint.bench._fit import drive_time_settings
 from shaftprint.bench._per_record import base_name, record_structure
 from shaftprint.errors import IdentificationError
-from shaftprint.fingerprint import DriveFingerprint
-from shaftprint.identify import Requirements, Settings
-from shaftprint.time_domain import (
-    Record,
-    RecordFit,
-    TimeSettings,
-    identify_in_time,
-    output_error,
-    with_noise_at,
-)
+from shaftprint.fingerprint._drive_fingerprint import DriveFingerprint
+from shaftprint.identify.judgement._requirements import Requirements
+from shaftprint.identify.search._settings import Settings
+from shaftprint.time_domain._identify_in_time import TimeSettings, identify_in_time, output_error, with_noise_at
+from shaftprint.time_domain._record import Record
+from shaftprint.time_domain._record_fit import RecordFit
 
 Outcome: TypeAlias = Literal["passes", "fails"]
 

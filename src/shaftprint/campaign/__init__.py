@@ -17,33 +17,6 @@ staircase jumps.
 Every excitation holds in the half-open interval from its start to its stop.
 """
 
-from shaftprint.campaign._binary_sequence import BinarySequence
-from shaftprint.campaign._both_shafts import SIDES, CampaignOfBoth, load_campaign_of_both
-from shaftprint.campaign._campaign import Campaign, load_campaign
-from shaftprint.campaign._excitation import Excitation
-from shaftprint.campaign._excitations import Chirp, Sine, Staircase
-from shaftprint.campaign._file_text import campaign_text, tests_text
-from shaftprint.campaign._leg import Leg
-from shaftprint.campaign._multisine import Multisine
-from shaftprint.campaign._setpoint import setpoint
-from shaftprint.campaign._trial_conditions import TrialConditions, load_trial_conditions
+import lazy_loader
 
-__all__ = [
-    "SIDES",
-    "BinarySequence",
-    "Campaign",
-    "CampaignOfBoth",
-    "Chirp",
-    "Excitation",
-    "Leg",
-    "Multisine",
-    "Sine",
-    "Staircase",
-    "TrialConditions",
-    "campaign_text",
-    "load_campaign",
-    "load_campaign_of_both",
-    "load_trial_conditions",
-    "setpoint",
-    "tests_text",
-]
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

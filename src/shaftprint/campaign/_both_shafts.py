@@ -13,7 +13,8 @@ from shaftprint.campaign._campaign import Campaign
 from shaftprint.campaign._excitation import Excitation
 from shaftprint.campaign._multisine import Multisine
 from shaftprint.errors import SettingsError
-from shaftprint.notebook import Shown, Summary
+from shaftprint.notebook._shown import Shown
+from shaftprint.notebook._summary import Summary
 from shaftprint.settings import Name, PositiveNumber, Settings, load_settings
 
 SIDES = ("port", "starboard")

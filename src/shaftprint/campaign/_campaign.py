@@ -17,7 +17,8 @@ from shaftprint.campaign._leg import Leg
 from shaftprint.campaign._moves import Move, faults_of, moves_of
 from shaftprint.campaign._multisine import Multisine
 from shaftprint.errors import SettingsError
-from shaftprint.notebook import Shown, Summary, shortened
+from shaftprint.notebook._shown import Shown
+from shaftprint.notebook._summary import Summary, shortened
 from shaftprint.settings import Name, Number, PositiveNumber, Settings, load_settings
 
 

@@ -12,21 +12,6 @@ disagreement                  a field that other fields of the same file contrad
 The simulated tug shares no physics with this room: it reads the file that is written here.
 """
 
-from shaftprint.card._card import Card, Gauge, Pulses
-from shaftprint.card._disagreement import Disagreement
-from shaftprint.card._disagreements import disagreements
-from shaftprint.card._series import four_quadrant_curve, open_water_curve
-from shaftprint.card._vessel_text import vessel_text
-from shaftprint.card._write import write_vessel
+import lazy_loader
 
-__all__ = [
-    "Card",
-    "Disagreement",
-    "Gauge",
-    "Pulses",
-    "disagreements",
-    "four_quadrant_curve",
-    "open_water_curve",
-    "vessel_text",
-    "write_vessel",
-]
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

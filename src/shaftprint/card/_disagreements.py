@@ -9,7 +9,7 @@ from shaftprint.card._disagreement import Disagreement
 from shaftprint.card._first_mode import first_mode
 from shaftprint.card._series import open_water_curve, series_torque, tested_pitch
 from shaftprint.units import rev_s_from_rpm
-from shaftprint.vessel import Vessel
+from shaftprint.vessel._vessel import Vessel
 
 # A rounded gear ratio is off by half a per cent, and no gear slips.
 _ROUNDED_RATIO, _WRONG_RATIO = 0.005, 0.02

@@ -5,8 +5,9 @@ from collections.abc import Iterator
 import numpy as np
 
 from shaftprint.card._disagreement import Disagreement
-from shaftprint.torsion import modes, torsional_line
-from shaftprint.vessel import Vessel
+from shaftprint.torsion._line import torsional_line
+from shaftprint.torsion._modes import modes
+from shaftprint.vessel._vessel import Vessel
 
 # Couplings of ships are tuned to 3 Hz and more, below the working orders of the engine and above what the governor
 # does; below 1 Hz the governor could not hold the speed.

@@ -3,8 +3,11 @@
 from dataclasses import dataclass
 
 from shaftprint.errors import PropellerError
-from shaftprint.propeller import FourQuadrantCurve, OpenWaterCurve, four_quadrants, ka4_70_in_19a, wageningen_b
-from shaftprint.vessel import Propeller
+from shaftprint.propeller._four_quadrants import FourQuadrantCurve, four_quadrants
+from shaftprint.propeller._ka4_70 import ka4_70_in_19a
+from shaftprint.propeller._open_water import OpenWaterCurve
+from shaftprint.propeller._wageningen_b import wageningen_b
+from shaftprint.vessel._machinery import Propeller
 
 OPEN_AREA_RATIO, NOZZLE_AREA_RATIO = 0.55, 0.70
 """Blade area ratios ``A_E/A_0`` that are usual for open propellers and for those in a nozzle."""

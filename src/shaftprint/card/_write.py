@@ -6,7 +6,7 @@ from shaftprint.card._card import Card
 from shaftprint.card._vessel_text import vessel_text
 from shaftprint.errors import SettingsError
 from shaftprint.files import reason, written_whole
-from shaftprint.vessel import Vessel, load_vessel
+from shaftprint.vessel._vessel import Vessel, load_vessel
 
 
 def write_vessel(card: Card, path: str | Path) -> Vessel:

@@ -17,7 +17,11 @@ from shaftprint.catalogue._gauge import (
     G,
 )
 from shaftprint.catalogue._gauge_combinations import gauge_combinations, motor_combinations
-from shaftprint.models import Combination, Flow, Formula, Number, Parameter, first_order_lag, second_order_lag
+from shaftprint.models._combination import Combination
+from shaftprint.models._parameter import Parameter
+from shaftprint.models.equations._flow import Flow
+from shaftprint.models.equations._formula import Formula, Number
+from shaftprint.models.equations._limits import first_order_lag, second_order_lag
 
 
 class Actuation(ABC):

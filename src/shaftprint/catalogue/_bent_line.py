@@ -7,7 +7,9 @@ see it. One at two would put the difference of the slopes into the gains if one 
 from dataclasses import replace
 
 from shaftprint.catalogue._roles import ShipRole
-from shaftprint.models import Gain, Parameter, Structure
+from shaftprint.models._blocks import Gain
+from shaftprint.models._parameter import Parameter
+from shaftprint.models._structure import Structure
 
 _SET_POINT = "n_set"
 B_SET = Parameter(

@@ -2,7 +2,10 @@
 
 from typing import Any
 
-from shaftprint.models import Flow, Formula, Parameter, slipping_clutch
+from shaftprint.models._parameter import Parameter
+from shaftprint.models.equations._clutch import slipping_clutch
+from shaftprint.models.equations._flow import Flow
+from shaftprint.models.equations._formula import Formula
 
 M_C = Parameter("m_c", "-", 0.0, 20.0, 3.0, "torque at which a clutch slips, at the shaft and over the working point's")
 CLUTCH_STIFFNESS = Parameter("k_c", "1/s", 10.0, 1e5, 1000.0, "stiffness of a closed clutch", held=True)

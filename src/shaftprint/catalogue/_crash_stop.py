@@ -27,18 +27,13 @@ from shaftprint.catalogue._known_propeller import HIGHEST_WAKE
 from shaftprint.catalogue._limited import DROOP, M_MAX, M_MIN, LimitedEngine, parameters_of, shape_of
 from shaftprint.catalogue._sailing import TAU_U, E
 from shaftprint.errors import StructureError
-from shaftprint.models import (
-    Diagram,
-    Flow,
-    Formula,
-    Parameter,
-    Structure,
-    choose,
-    maximum,
-    number,
-    rate_limited,
-)
-from shaftprint.propeller import FourQuadrantCurve
+from shaftprint.models._diagram import Diagram
+from shaftprint.models._parameter import Parameter
+from shaftprint.models._structure import Structure
+from shaftprint.models.equations._flow import Flow
+from shaftprint.models.equations._formula import Formula, choose, maximum, number
+from shaftprint.models.equations._limits import rate_limited
+from shaftprint.propeller._four_quadrants import FourQuadrantCurve
 
 CRASH_STOP = "CRASH-STOP"
 """Name of the structure."""

@@ -8,7 +8,13 @@ from collections.abc import Callable, Mapping
 from types import MappingProxyType
 from typing import Any
 
-from shaftprint.models import Combination, Diagram, Flow, Formula, Parameter, Structure, coulomb_friction
+from shaftprint.models._combination import Combination
+from shaftprint.models._diagram import Diagram
+from shaftprint.models._parameter import Parameter
+from shaftprint.models._structure import Structure
+from shaftprint.models.equations._flow import Flow
+from shaftprint.models.equations._formula import Formula
+from shaftprint.models.equations._friction import coulomb_friction
 
 SIGNAL_UNITS: Mapping[str, str] = MappingProxyType(
     {

@@ -13,7 +13,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from shaftprint.arrays import FloatArray
-from shaftprint.models import Combination
+from shaftprint.models._combination import Combination
 
 
 def engine_end(

@@ -17,26 +17,14 @@ With ``tau_up = 0`` and no latencies they are those of the thesis.
 from shaftprint.catalogue._elastic import coupling_mode, engine_end, shaft_end
 from shaftprint.catalogue._gauge_combinations import gauge_combinations, motor_combinations
 from shaftprint.catalogue._roles import ShipRole
-from shaftprint.models import (
-    AveragingSensor,
-    Combination,
-    Delay,
-    DynamicInflow,
-    EntrainedWater,
-    Expression,
-    FirstOrderLag,
-    Gain,
-    Inertia,
-    Inverse,
-    Parameter,
-    PIGovernor,
-    RationalBlock,
-    SecondOrderLag,
-    Sensitivity,
-    Shaft,
-    Structure,
-    TorqueBalance,
-)
+from shaftprint.models._blocks import FirstOrderLag, Gain, PIGovernor, SecondOrderLag
+from shaftprint.models._combination import Combination
+from shaftprint.models._delays import AveragingSensor, Delay
+from shaftprint.models._expression import Expression, Inverse, Sensitivity
+from shaftprint.models._own_blocks import RationalBlock
+from shaftprint.models._parameter import Parameter
+from shaftprint.models._shaft_blocks import DynamicInflow, EntrainedWater, Inertia, Shaft, TorqueBalance
+from shaftprint.models._structure import Structure
 
 T_D = Parameter(
     "t_d", "s", 0.0, 0.5, 0.1, "delay inside the loop: governor, injection, combustion", role=ShipRole.LOOP_DELAY

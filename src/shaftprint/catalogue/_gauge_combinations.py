@@ -1,7 +1,7 @@
 """What a test of a closed loop finds better than the parameters, by the names that the gauge-aware structures share."""
 
 from shaftprint.catalogue._roles import ShipRole
-from shaftprint.models import Combination
+from shaftprint.models._combination import Combination
 
 TOTAL_DELAY = Combination(
     name="t_d + t_sp",

@@ -34,20 +34,14 @@ from shaftprint.catalogue._gauge import (
 )
 from shaftprint.catalogue._gauge_combinations import RESET_TIME, TOTAL_DELAY
 from shaftprint.catalogue._roles import ShipRole
-from shaftprint.models import (
-    AveragingSensor,
-    Combination,
-    Delay,
-    FirstOrderLag,
-    Gain,
-    Parameter,
-    PIGovernor,
-    RationalBlock,
-    SecondOrderLag,
-    Sensitivity,
-    Structure,
-    TorqueBalance,
-)
+from shaftprint.models._blocks import FirstOrderLag, Gain, PIGovernor, SecondOrderLag
+from shaftprint.models._combination import Combination
+from shaftprint.models._delays import AveragingSensor, Delay
+from shaftprint.models._expression import Sensitivity
+from shaftprint.models._own_blocks import RationalBlock
+from shaftprint.models._parameter import Parameter
+from shaftprint.models._shaft_blocks import TorqueBalance
+from shaftprint.models._structure import Structure
 
 SHARE = Parameter(
     "s_m",

@@ -20,7 +20,11 @@ from shaftprint.catalogue._clutch import CLUTCH, clutch_torque
 from shaftprint.catalogue._gauge import C_SET, K_Q, T_GAUGE, T_SP, TAU_DN, TAU_UP
 from shaftprint.catalogue._hybrid import C_M, OWN_K_I, OWN_K_P, SHARE
 from shaftprint.catalogue._limited import DROOP, LimitedEngine, bollard_load, parameters_of, shape_of
-from shaftprint.models import Diagram, Flow, Formula, Parameter, Structure
+from shaftprint.models._diagram import Diagram
+from shaftprint.models._parameter import Parameter
+from shaftprint.models._structure import Structure
+from shaftprint.models.equations._flow import Flow
+from shaftprint.models.equations._formula import Formula
 
 CLUTCHED = "clutch"
 BEHIND_CLUTCH = Parameter("s_c", "-", 0.0, 0.9, 0.1, "share of tau_up that turns behind the clutch", held=True)

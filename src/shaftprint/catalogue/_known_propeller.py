@@ -6,8 +6,10 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import StructureError
-from shaftprint.models import Combination, Parameter, Structure
-from shaftprint.propeller import OpenWaterCurve
+from shaftprint.models._combination import Combination
+from shaftprint.models._parameter import Parameter
+from shaftprint.models._structure import Structure
+from shaftprint.propeller._open_water import OpenWaterCurve
 
 OF_THE_SHIP = ("a", "b", "e", "tau_u")
 """Slopes of thrust, torque and resistance and the time of the ship, by their names in free-sailing structures."""

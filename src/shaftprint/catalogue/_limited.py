@@ -31,25 +31,15 @@ from shaftprint.catalogue._gauge import (
     TAU_UP,
 )
 from shaftprint.errors import StructureError
-from shaftprint.models import (
-    AveragingSensor,
-    Delay,
-    Diagram,
-    FirstOrderLag,
-    Flow,
-    Formula,
-    Gain,
-    Number,
-    Parameter,
-    Structure,
-    boosted,
-    clip,
-    deadband,
-    limited_pi,
-    quadratic_propeller,
-    rate_limited,
-    table,
-)
+from shaftprint.models._blocks import FirstOrderLag, Gain
+from shaftprint.models._delays import AveragingSensor, Delay
+from shaftprint.models._diagram import Diagram
+from shaftprint.models._parameter import Parameter
+from shaftprint.models._structure import Structure
+from shaftprint.models.equations._engine_parts import boosted, quadratic_propeller
+from shaftprint.models.equations._flow import Flow
+from shaftprint.models.equations._formula import Formula, Number, clip, table
+from shaftprint.models.equations._limits import deadband, limited_pi, rate_limited
 
 M_MAX = Parameter("m_max", "-", 1.05, 6.0, 2.8, "torque limit of the engine over the brake torque of the working point")
 M_MIN = Parameter("m_min", "-", -2.0, 0.9, -0.6, "lowest brake torque, engine motored, over that of the working point")

@@ -42,7 +42,12 @@ from shaftprint.catalogue._limited import (
     parameters_of,
 )
 from shaftprint.catalogue._roles import ShipRole
-from shaftprint.models import Delay, Diagram, Flow, Formula, Parameter, Structure, maximum
+from shaftprint.models._delays import Delay
+from shaftprint.models._diagram import Diagram
+from shaftprint.models._parameter import Parameter
+from shaftprint.models._structure import Structure
+from shaftprint.models.equations._flow import Flow
+from shaftprint.models.equations._formula import Formula, maximum
 
 # Speed and torque are given early by this time [s]: the largest latency of the set point.
 AHEAD_S = T_SP.upper

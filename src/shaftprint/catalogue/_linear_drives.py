@@ -4,7 +4,8 @@ from collections.abc import Mapping
 from dataclasses import replace
 from types import MappingProxyType
 
-from shaftprint.models import Parameter, Structure
+from shaftprint.models._parameter import Parameter
+from shaftprint.models._structure import Structure
 
 LEVER_M = 0.01
 """Radius of a pinion or screw between the two [m], by which bounds and usual values of a line go."""

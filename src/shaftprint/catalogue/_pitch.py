@@ -46,22 +46,13 @@ from shaftprint.catalogue._gauge import (
 from shaftprint.catalogue._gauge_combinations import gauge_combinations
 from shaftprint.catalogue._roles import ShipRole
 from shaftprint.catalogue._sailing import TAU_TH, Q
-from shaftprint.models import (
-    AveragingSensor,
-    Combination,
-    Constant,
-    Delay,
-    Expression,
-    FirstOrderLag,
-    Gain,
-    Parameter,
-    PIGovernor,
-    SecondOrderLag,
-    Sensitivity,
-    Shaft,
-    Structure,
-    TorqueBalance,
-)
+from shaftprint.models._blocks import FirstOrderLag, Gain, PIGovernor, SecondOrderLag
+from shaftprint.models._combination import Combination
+from shaftprint.models._delays import AveragingSensor, Delay
+from shaftprint.models._expression import Constant, Expression, Sensitivity
+from shaftprint.models._parameter import Parameter
+from shaftprint.models._shaft_blocks import Shaft, TorqueBalance
+from shaftprint.models._structure import Structure
 
 T_TH = Parameter(
     "t_th", "s", 0.0, 3.0, 0.2, "delay of the pitch behind its set point, beside its lag", role=ShipRole.PITCH_DELAY

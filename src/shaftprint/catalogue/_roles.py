@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import Final
 
-from shaftprint.models import Basis, PhysicalForm, Role
+from shaftprint.models._role import Basis, PhysicalForm, Role
 
 
 def _inertia(name: str, symbol: str, meaning: str, *basis: Basis) -> Role:

@@ -29,21 +29,13 @@ from shaftprint.catalogue._gauge import (
 )
 from shaftprint.catalogue._roles import ShipRole
 from shaftprint.catalogue._sailing_blocks import PitchSpeed, SailingShaft, SailingSpeed, SailingTorque
-from shaftprint.models import (
-    AveragingSensor,
-    Combination,
-    Delay,
-    Expression,
-    FirstOrderLag,
-    Gain,
-    Inertia,
-    Inverse,
-    Parameter,
-    PIGovernor,
-    SecondOrderLag,
-    Sensitivity,
-    Structure,
-)
+from shaftprint.models._blocks import FirstOrderLag, Gain, PIGovernor, SecondOrderLag
+from shaftprint.models._combination import Combination
+from shaftprint.models._delays import AveragingSensor, Delay
+from shaftprint.models._expression import Expression, Inverse, Sensitivity
+from shaftprint.models._parameter import Parameter
+from shaftprint.models._shaft_blocks import Inertia
+from shaftprint.models._structure import Structure
 
 K_Q_HELD = K_Q.held_at(2.0)
 A = Parameter("a", "-", -6.0, 0.0, -1.0, "slope of the thrust coefficient, d ln K_T / d ln J")

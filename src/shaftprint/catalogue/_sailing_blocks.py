@@ -25,7 +25,8 @@ from typing import TypeVar
 import numpy as np
 
 from shaftprint.arrays import ComplexArray, FloatArray
-from shaftprint.models import Block, Parameter
+from shaftprint.models._block import Block
+from shaftprint.models._parameter import Parameter
 
 _Value = TypeVar("_Value")
 

@@ -15,7 +15,8 @@ from shaftprint.catalogue._limited import limited
 from shaftprint.catalogue._roles import ShipRole
 from shaftprint.catalogue._thesis import STRUCTURES, structure
 from shaftprint.errors import StructureError
-from shaftprint.models import Role, Structure
+from shaftprint.models._role import Role
+from shaftprint.models._structure import Structure
 
 _NONE = "QUADRATIC"
 _LIMITS = ("TORQUE", "RATE", "DEADBAND", "SMOKE")

@@ -24,22 +24,13 @@ from shaftprint.catalogue._pitch import gauge_combinator, gauge_pitch
 from shaftprint.catalogue._roles import ShipRole
 from shaftprint.catalogue._sailing import free_closed, free_core, free_log, free_pitch, free_ship
 from shaftprint.errors import StructureError
-from shaftprint.models import (
-    Combination,
-    Delay,
-    Expression,
-    FilteredDerivative,
-    Gain,
-    Integrator,
-    PadeDelay,
-    Parameter,
-    PIGovernor,
-    SecondOrderLag,
-    Sensitivity,
-    Shaft,
-    Structure,
-    TorqueBalance,
-)
+from shaftprint.models._blocks import FilteredDerivative, Gain, Integrator, PIGovernor, SecondOrderLag
+from shaftprint.models._combination import Combination
+from shaftprint.models._delays import Delay, PadeDelay
+from shaftprint.models._expression import Expression, Sensitivity
+from shaftprint.models._parameter import Parameter
+from shaftprint.models._shaft_blocks import Shaft, TorqueBalance
+from shaftprint.models._structure import Structure
 from shaftprint.spelling import meant
 
 TAU_N = Parameter("tau_n", "s", 0.0, 5.0, 0.39, "inertia time of the line, 2 pi I n_s0 / M_s0", role=ShipRole.INERTIA)

@@ -4,7 +4,9 @@ from dataclasses import dataclass
 from typing import Literal
 
 from shaftprint.catalogue._thesis import structure
-from shaftprint.models import Gain, PIGovernor, Shaft, Structure
+from shaftprint.models._blocks import Gain, PIGovernor
+from shaftprint.models._shaft_blocks import Shaft
+from shaftprint.models._structure import Structure
 
 Data = Literal["core", "governor"]
 

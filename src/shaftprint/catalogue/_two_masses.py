@@ -5,7 +5,10 @@ from collections.abc import Mapping
 import numpy as np
 
 from shaftprint.arrays import FloatArray
-from shaftprint.models import Combination, Parameter, RationalBlock, Structure
+from shaftprint.models._combination import Combination
+from shaftprint.models._own_blocks import RationalBlock
+from shaftprint.models._parameter import Parameter
+from shaftprint.models._structure import Structure
 
 # Bounds of the search around what is expected.
 LEAST, MOST = 0.2, 5.0

@@ -14,6 +14,6 @@ Tables go to the output, progress bars and errors to the error output. A command
 the command is called, not before: ``shaftprint --help`` loads neither NumPy nor anything heavier.
 """
 
-from shaftprint.cli._main import main, shaftprint
+import lazy_loader
 
-__all__ = ["main", "shaftprint"]
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

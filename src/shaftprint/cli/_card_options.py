@@ -5,7 +5,7 @@ from typing import Any, Literal, cast
 
 import click
 
-from shaftprint.card import Card, Gauge, Pulses
+from shaftprint.card._card import Card, Gauge, Pulses
 
 # Wider than any ship, and so that no power of them is beyond all numbers.
 _POSITIVE = click.FloatRange(1e-6, 1e9)

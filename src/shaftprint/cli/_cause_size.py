@@ -2,7 +2,7 @@
 
 import click
 
-from shaftprint.drift import ALL_CAUSES, Cause
+from shaftprint.drift._causes import ALL_CAUSES, Cause
 
 
 class CauseSize(click.ParamType):  # type: ignore[type-arg]

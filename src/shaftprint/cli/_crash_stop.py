@@ -8,18 +8,20 @@ import click
 import numpy as np
 
 from shaftprint.arrays import FloatArray, frozen_float
-from shaftprint.catalogue import CRASH_STOP, CrashStopSymbol, sails_free
+from shaftprint.catalogue._crash_stop import CRASH_STOP, CrashStopSymbol
+from shaftprint.catalogue._known_propeller import sails_free
 from shaftprint.cli._own_structure import TypedName
 from shaftprint.cli._simulated_model import SimulatedModel, expect_parameters
 from shaftprint.cli._simulated_set_point import SAME_WORKING_POINT, Drive, Place
 from shaftprint.cli._simulation_run import Prediction, Run
 from shaftprint.cli._vessel_file import print_disagreements
+from shaftprint.digits import with_deviation
 from shaftprint.errors import FingerprintError, StructureError
-from shaftprint.fingerprint import Fingerprint, named_structure
-from shaftprint.models import Structure
-from shaftprint.simulation import StoppedShip, stopped_ship
-from shaftprint.tables import with_deviation
-from shaftprint.vessel import load_vessel
+from shaftprint.fingerprint._fingerprint import Fingerprint
+from shaftprint.fingerprint._model import named_structure
+from shaftprint.models._structure import Structure
+from shaftprint.simulation._stopped_ship import StoppedShip, stopped_ship
+from shaftprint.vessel._vessel import load_vessel
 
 GEARS: Mapping[str, float] = {"ahead": 1.0, "neutral": 0.0, "astern": -1.0}
 # What follows the last move, where no end is given, and the longest stretch; steps that a closed clutch needs, and the

@@ -2,12 +2,13 @@
 
 from collections.abc import Mapping
 
-from shaftprint.catalogue import ShipRole
+from shaftprint.catalogue._roles import ShipRole
 from shaftprint.cli._terminal import print_findings
 from shaftprint.digits import plain_letters, stated, stated_interval, to_digit_of
 from shaftprint.distributions import NORMAL_95
-from shaftprint.fingerprint import Fingerprint, Quantity
-from shaftprint.identify import Identification
+from shaftprint.fingerprint._fingerprint import Fingerprint
+from shaftprint.fingerprint._quantity import Quantity
+from shaftprint.identify.fit._identification import Identification
 
 
 def print_summary(fingerprint: Fingerprint, truth: Mapping[str, float], core: Identification) -> None:

@@ -4,10 +4,11 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from shaftprint.catalogue import ShipRole
-from shaftprint.models import Structure, margins
-from shaftprint.signals import Signals, StripAngles
-from shaftprint.tug import StripTruth, Truth
+from shaftprint.catalogue._roles import ShipRole
+from shaftprint.models._margins import margins
+from shaftprint.models._structure import Structure
+from shaftprint.signals._signals import Signals, StripAngles
+from shaftprint.tug._truth import StripTruth, Truth
 from shaftprint.units import rpm_from_rev_s
 
 DEGREES_PER_REVOLUTION = 360.0

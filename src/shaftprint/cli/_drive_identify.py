@@ -7,26 +7,25 @@ from typing import Any
 
 import numpy as np
 
-from shaftprint.bench import (
-    RESPONSE_STARTS,
-    STARTS,
-    DriveFit,
-    EquippedDrive,
-    drive_fingerprint,
-    identify_drive,
-    identify_responses,
-    read_records,
-    read_responses,
-)
+from shaftprint.bench._equipped import EquippedDrive
+from shaftprint.bench._fingerprint import drive_fingerprint
+from shaftprint.bench._fit import STARTS, DriveFit, identify_drive
+from shaftprint.bench._records import read_records
+from shaftprint.bench._responses import RESPONSE_STARTS, identify_responses, read_responses
 from shaftprint.cli._drive_options import drive_sources, equipped_drive, expect_not_given, is_given
 from shaftprint.cli._fit_options import FitOptions
 from shaftprint.cli._own_structure import TypedName
 from shaftprint.cli._results import print_paths
 from shaftprint.cli._terminal import print_findings, say
-from shaftprint.cli.output import FINGERPRINT, Steps, give, output_folder, print_tables, progress
-from shaftprint.fingerprint import DriveFingerprint, write_drive_fingerprint
-from shaftprint.report import render_drive
-from shaftprint.tables import drive_assumed_table, drive_record_table, drive_response_table, quantity_table
+from shaftprint.cli.output._fingerprint_file import FINGERPRINT
+from shaftprint.cli.output._json import give
+from shaftprint.cli.output._output_folder import output_folder
+from shaftprint.cli.output._progress import Steps, progress
+from shaftprint.cli.output._tables import print_tables
+from shaftprint.fingerprint._drive_fingerprint import DriveFingerprint, write_drive_fingerprint
+from shaftprint.report._drive_page import render_drive
+from shaftprint.tables._drive import drive_assumed_table, drive_record_table, drive_response_table
+from shaftprint.tables._fingerprint import quantity_table
 
 
 def identify_on_the_bench(

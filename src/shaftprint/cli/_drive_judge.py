@@ -6,28 +6,23 @@ from pathlib import Path
 import click
 import numpy as np
 
-from shaftprint.bench import (
-    STARTS,
-    all_parameters,
-    compare_in_time,
-    drive_differences,
-    free_parameters,
-    identified_from,
-    noise_words,
-    predict_drive,
-    predicted_at,
-    read_records,
-    validate_drive,
-    without,
-)
+from shaftprint.bench._compare import drive_differences
+from shaftprint.bench._fit import STARTS
+from shaftprint.bench._per_record import all_parameters, free_parameters
+from shaftprint.bench._predict import noise_words, predict_drive, predicted_at
+from shaftprint.bench._records import read_records
+from shaftprint.bench._structures import compare_in_time, without
+from shaftprint.bench._validate import identified_from, validate_drive
 from shaftprint.cli._drive_options import drive_fingerprint_at, equipped_drive, file_sha256, holding, is_given, kept_one
 from shaftprint.cli._fit_options import FitOptions
 from shaftprint.cli._own_structure import TypedName
 from shaftprint.cli._terminal import answer, print_findings, say
-from shaftprint.cli.output import give, print_table, print_tables, progress
-from shaftprint.fingerprint import DriveFingerprint
-from shaftprint.identify import Prior
-from shaftprint.tables import (
+from shaftprint.cli.output._json import give
+from shaftprint.cli.output._progress import progress
+from shaftprint.cli.output._tables import print_table, print_tables
+from shaftprint.fingerprint._drive_fingerprint import DriveFingerprint
+from shaftprint.identify.likelihood._prior import Prior
+from shaftprint.tables._drive import (
     drive_difference_table,
     drive_prediction_table,
     time_comparison_table,

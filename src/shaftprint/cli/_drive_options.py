@@ -9,16 +9,18 @@ from typing import Any
 import click
 from click.core import ParameterSource
 
-from shaftprint.bench import EquippedDrive, equipped, kept_drive
+from shaftprint.bench._equipped import EquippedDrive, equipped
+from shaftprint.bench._kept import kept_drive
 from shaftprint.cli._fit_options import FitOptions, held_structures
 from shaftprint.cli._options import structure_sources
 from shaftprint.cli._own_structure import TypedName, chosen_structures, own_file
-from shaftprint.cli.output import fingerprint_file
-from shaftprint.drive import Drive, load_drive
+from shaftprint.cli.output._fingerprint_file import fingerprint_file
+from shaftprint.drive._drive import Drive, load_drive
 from shaftprint.errors import FingerprintError, SettingsError
 from shaftprint.files import read_json
-from shaftprint.fingerprint import DriveFingerprint, SourceFile, is_of_a_drive, read_drive_fingerprint
-from shaftprint.identify import Prior
+from shaftprint.fingerprint._drive_fingerprint import DriveFingerprint, is_of_a_drive, read_drive_fingerprint
+from shaftprint.fingerprint._fingerprint import SourceFile
+from shaftprint.identify.likelihood._prior import Prior
 
 
 def drive_option(command: Callable[..., Any]) -> Callable[..., Any]:

@@ -4,10 +4,12 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 
 from shaftprint.cli._terminal import print_findings, say
-from shaftprint.cli.output import give, print_tables
+from shaftprint.cli.output._json import give
+from shaftprint.cli.output._tables import print_tables
 from shaftprint.digits import stated
-from shaftprint.fingerprint import Fingerprint
-from shaftprint.tables import (
+from shaftprint.fingerprint._fingerprint import Fingerprint
+from shaftprint.tables._conditions import ship_text, tested_text, water_facts
+from shaftprint.tables._fingerprint import (
     NO_TRUTH,
     budget_table,
     combination_table,
@@ -16,9 +18,6 @@ from shaftprint.tables import (
     parameter_table,
     physical_table,
     quantity_table,
-    ship_text,
-    tested_text,
-    water_facts,
 )
 
 

@@ -10,12 +10,18 @@ from shaftprint.cli._gathered_options import gathered_options
 from shaftprint.cli._known_values import hold_option, prior_option
 from shaftprint.cli._own_structure import TypedName, chosen_structures
 from shaftprint.errors import StructureError
-from shaftprint.identify import MaximumLikelihood, Prior, Settings, Unweighted
-from shaftprint.models import Structure
-from shaftprint.signals import Mode
+from shaftprint.identify.likelihood._prior import Prior
+from shaftprint.identify.likelihood._weighting import MaximumLikelihood, Unweighted
+from shaftprint.identify.search._settings import Settings
+from shaftprint.models._structure import Structure
+from shaftprint.signals._clock import Mode
 from shaftprint.spelling import meant
-from shaftprint.survey import Measurement, SettingsOf, Trial, of_vessel, pairs_of, priors_of
-from shaftprint.vessel import Vessel
+from shaftprint.survey._fits import priors_of
+from shaftprint.survey._measurement import Measurement, pairs_of
+from shaftprint.survey._of_vessel import of_vessel
+from shaftprint.survey._survey import SettingsOf
+from shaftprint.survey._trial import Trial
+from shaftprint.vessel._vessel import Vessel
 
 _OPTIONS = (
     prior_option,

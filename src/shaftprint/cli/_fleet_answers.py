@@ -13,8 +13,14 @@ from shaftprint.cli._fleet_demo import (
     WORN,
 )
 from shaftprint.cli._terminal import answer, echo, say
-from shaftprint.drift import history_of, judge_sisters, sister_of, sister_sentences, watch, watch_sentences
-from shaftprint.store import Store, class_histories
+from shaftprint.drift._class_numbers import sister_of
+from shaftprint.drift._history import history_of
+from shaftprint.drift._sister_words import sister_sentences
+from shaftprint.drift._sisters import judge_sisters
+from shaftprint.drift._watch import watch
+from shaftprint.drift._words import watch_sentences
+from shaftprint.store._class_histories import class_histories
+from shaftprint.store._store import Store
 
 SEED = 1
 PERCENT = 100.0

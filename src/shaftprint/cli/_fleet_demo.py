@@ -12,13 +12,17 @@ from pathlib import Path
 
 import numpy as np
 
-from shaftprint.campaign import TrialConditions
-from shaftprint.catalogue import structure
-from shaftprint.fingerprint import write_fingerprint
-from shaftprint.identify import Settings
-from shaftprint.survey import Trial, fingerprint_of, fit, load_trial, measure, priors_of
-from shaftprint.tug import ShipWork, SimulatedFleet, Wear, sail_test, simulated_fleet, with_works
-from shaftprint.vessel import Ship
+from shaftprint.campaign._trial_conditions import TrialConditions
+from shaftprint.catalogue._thesis import structure
+from shaftprint.fingerprint._json_file import write_fingerprint
+from shaftprint.identify.search._settings import Settings
+from shaftprint.survey._fits import fit, priors_of
+from shaftprint.survey._measurement import measure
+from shaftprint.survey._survey import fingerprint_of
+from shaftprint.survey._trial import Trial, load_trial
+from shaftprint.tug._simulated_fleet import SimulatedFleet, sail_test, simulated_fleet
+from shaftprint.tug._simulated_ship import ShipWork, Wear, with_works
+from shaftprint.vessel._ship import Ship
 
 VESSEL, CAMPAIGN, STRUCTURE = "stan-tug-1205", "short", "GAUGE-CLOSED"
 CLASS, LINE, PLACE = "Stan Tug 1205", "port", "simulated"

@@ -10,9 +10,13 @@ from typing import Any
 import click
 
 from shaftprint.cli._terminal import answer, print_findings
-from shaftprint.cli.output import give, progress
-from shaftprint.fleet import LIMIT_S, Event, Worked, work
-from shaftprint.store import Job, JobCounts, Store, job_counts, jobs
+from shaftprint.cli.output._json import give
+from shaftprint.cli.output._progress import progress
+from shaftprint.fleet._lane import Event
+from shaftprint.fleet._work import LIMIT_S, Worked, work
+from shaftprint.store._job import Job, JobCounts
+from shaftprint.store._ledger import job_counts, jobs
+from shaftprint.store._store import Store
 
 MOST_SHOWN = 20
 """Refusals that are printed; ``--json`` has all of them."""

@@ -1,11 +1,14 @@
 """Where the tests of a campaign are in the recorded set point, as a table and as lines of a campaign file."""
 
-from shaftprint.campaign import Campaign, Sine, tests_text
+from shaftprint.campaign._campaign import Campaign
+from shaftprint.campaign._excitations import Sine
+from shaftprint.campaign._file_text import tests_text
 from shaftprint.cli._terminal import echo, say
-from shaftprint.cli.output import print_table
+from shaftprint.cli.output._tables import print_table
 from shaftprint.errors import SignalError
-from shaftprint.signals import FoundTest, common_shift_s, proposed_campaign
-from shaftprint.tables import Table, numbers, texts
+from shaftprint.plain_table import Table, numbers, texts
+from shaftprint.signals.excitation._found_test import FoundTest, common_shift_s
+from shaftprint.signals.excitation._proposed_campaign import proposed_campaign
 
 
 def print_found_tests(found: tuple[FoundTest, ...], campaign: Campaign) -> None:

@@ -14,26 +14,24 @@ from shaftprint.cli._own_structure import TypedName
 from shaftprint.cli._report_options import ReportOptions
 from shaftprint.cli._results import write_results
 from shaftprint.cli._terminal import answer, echo, say
-from shaftprint.cli.output import FINGERPRINT, REPORT, give, output_folder, print_tables, progress
-from shaftprint.drift import differ, finding_sentences
-from shaftprint.fingerprint import write_fingerprint
-from shaftprint.report import (
-    Difference,
-    cause_table,
-    change_in_words,
-    difference_table,
-    differences,
-    render_comparison,
-    vessel_file_sentences,
-)
-from shaftprint.survey import (
-    SurveyOfBoth,
-    default_structure,
-    judged,
-    load_trials_of_both,
-    run_both,
-    wash_sentences,
-)
+from shaftprint.cli.output._fingerprint_file import FINGERPRINT, REPORT
+from shaftprint.cli.output._json import give
+from shaftprint.cli.output._output_folder import output_folder
+from shaftprint.cli.output._progress import progress
+from shaftprint.cli.output._tables import print_tables
+from shaftprint.drift._differ import differ
+from shaftprint.drift._words import finding_sentences
+from shaftprint.fingerprint._json_file import write_fingerprint
+from shaftprint.report._comparison import render_comparison
+from shaftprint.report.comparison._cause_table import cause_table
+from shaftprint.report.comparison._differences import Difference, differences
+from shaftprint.report.comparison._tables import difference_table
+from shaftprint.report.comparison._vessel_file_words import vessel_file_sentences
+from shaftprint.report.sections._comparison_cover import change_in_words
+from shaftprint.survey._both_shafts import SurveyOfBoth, load_trials_of_both, run_both
+from shaftprint.survey._of_vessel import default_structure
+from shaftprint.survey._survey import judged
+from shaftprint.survey._wash import wash_sentences
 
 COMPARISON = "comparison"
 

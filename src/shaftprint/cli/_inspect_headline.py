@@ -7,10 +7,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from shaftprint.campaign import Campaign
-from shaftprint.identify.judgement import good_lines, listed
-from shaftprint.signals import Signals
-from shaftprint.spectra import Spectra
+from shaftprint.campaign._campaign import Campaign
+from shaftprint.identify.judgement._line_quality import good_lines
+from shaftprint.identify.judgement._phrases import listed
+from shaftprint.signals._signals import Signals
+from shaftprint.spectra._spectra import Spectra
 
 # GAUGE-CLOSED has about ten free parameters and a line gives four numbers: twice what is needed at the least.
 FEWEST_LINES = 5

@@ -9,45 +9,34 @@ import click
 from shaftprint.cli._known_ship_options import KnownShipOptions
 from shaftprint.cli._own_structure import TypedName, chosen_structures, closed_loop_of, structure_to_use
 from shaftprint.cli._plan_options import limits_with, set_point_rpm_of
-from shaftprint.cli.output import Steps, fingerprint_at
-from shaftprint.design import (
-    AssumedShip,
-    Knowledge,
-    Limits,
-    SetPointLine,
-    expect_motion,
-    limits_from_vessel,
+from shaftprint.cli.output._fingerprint_file import fingerprint_at
+from shaftprint.cli.output._progress import Steps
+from shaftprint.design.inputs._assumed_ship import AssumedShip
+from shaftprint.design.inputs._knowledge import Knowledge
+from shaftprint.design.inputs._known_ship import (
     limits_of_fingerprint,
-    line_of_fingerprint,
     possible_ship,
     ship_before_test,
     ship_of_fingerprint,
-    usual_speeds,
 )
-from shaftprint.fingerprint import Fingerprint
-from shaftprint.identify import (
-    NoiseLevels,
-    Prior,
-    expected_from_vessel,
-    noise_at,
-    priors_from_vessel,
-)
-from shaftprint.models import Structure
-from shaftprint.survey import (
-    NOISE_SPREAD,
-    RECORDED_SPREAD,
-    at_speeds,
-    continued_below,
-    expected_of_ship,
-    load_trial,
-    measure,
-    noise_at_speeds,
-    noise_of_unknown_ship,
-    of_vessel,
-    stated_working_point,
-)
+from shaftprint.design.inputs._limits import Limits, limits_from_vessel, usual_speeds
+from shaftprint.design.inputs._set_point_line import SetPointLine, line_of_fingerprint
+from shaftprint.design.motion._motion import expect_motion
+from shaftprint.fingerprint._fingerprint import Fingerprint
+from shaftprint.identify.likelihood._known import expected_from_vessel, priors_from_vessel
+from shaftprint.identify.likelihood._prior import Prior
+from shaftprint.identify.prediction._noise_at_speeds import noise_at
+from shaftprint.identify.prediction._noise_levels import NoiseLevels
+from shaftprint.models._structure import Structure
+from shaftprint.survey._assumed_noise import NOISE_SPREAD, RECORDED_SPREAD, continued_below, noise_of_unknown_ship
+from shaftprint.survey._expected_of_ship import expected_of_ship
+from shaftprint.survey._fits import stated_working_point
+from shaftprint.survey._measurement import measure
+from shaftprint.survey._noise import noise_at_speeds
+from shaftprint.survey._of_vessel import at_speeds, of_vessel
+from shaftprint.survey._trial import load_trial
 from shaftprint.units import rpm_from_rev_s
-from shaftprint.vessel import Vessel, load_vessel
+from shaftprint.vessel._vessel import Vessel, load_vessel
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

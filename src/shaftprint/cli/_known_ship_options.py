@@ -10,7 +10,7 @@ import click
 from shaftprint.cli._gathered_options import gathered_options
 from shaftprint.cli._known_values import hold_option, named_value, prior_option, rpm_per_volt_option
 from shaftprint.cli._plan_options import LIMITS, StatedLimit, limit_of, shares_of
-from shaftprint.identify import Prior
+from shaftprint.identify.likelihood._prior import Prior
 
 _OPTIONS = (
     click.option(

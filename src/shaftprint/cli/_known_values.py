@@ -7,7 +7,7 @@ from typing import Any
 import click
 
 from shaftprint.errors import IdentificationError
-from shaftprint.identify import Prior
+from shaftprint.identify.likelihood._prior import Prior
 
 
 def named_prior(text: str) -> tuple[str, Prior]:

@@ -3,13 +3,15 @@
 import math
 
 from shaftprint.cli._terminal import print_findings
-from shaftprint.cli.output import give, print_table, print_tables
-from shaftprint.digits import fine_unit, interval, stated_interval
+from shaftprint.cli.output._json import give
+from shaftprint.cli.output._tables import print_table, print_tables
+from shaftprint.digits import fine_unit, interval, stated_interval, unit_text, with_deviation
 from shaftprint.distributions import NORMAL_95
-from shaftprint.fingerprint import LineWithLimits
-from shaftprint.identify.fit import Estimate
-from shaftprint.limits import LimitEstimate, LimitFit
-from shaftprint.tables import MEANING, Symbol, Table, numbers, quantity_table, texts, unit_text, with_deviation
+from shaftprint.fingerprint._line_with_limits import LineWithLimits
+from shaftprint.identify.fit._identification import Estimate
+from shaftprint.limits._limit_fit import LimitEstimate, LimitFit
+from shaftprint.plain_table import MEANING, Symbol, Table, numbers, texts
+from shaftprint.tables._fingerprint import quantity_table
 
 FITS = {"limits": "the fit to small signals, levels beside its governor", "joint fit": "all of the test in one fit"}
 NOTE = "± is one standard deviation, with that of the working point."

@@ -3,9 +3,10 @@
 from collections.abc import Sequence
 
 from shaftprint.cli._terminal import print_findings
-from shaftprint.cli.output import give, print_table
-from shaftprint.design import LimitUse
-from shaftprint.tables import limit_use_sentences, limit_use_table
+from shaftprint.cli.output._json import give
+from shaftprint.cli.output._tables import print_table
+from shaftprint.design.operation._limit_use import LimitUse
+from shaftprint.tables._limit_uses import limit_use_sentences, limit_use_table
 
 
 def print_limit_uses(uses: Sequence[LimitUse], *, is_expected: bool) -> None:

@@ -8,8 +8,8 @@ from typing import Any
 import click
 
 from shaftprint.cli._own_structure import TypedName, own_file
-from shaftprint.fingerprint import SourceFile
-from shaftprint.recording import WRITTEN_ENDINGS, WRITTEN_FORMATS
+from shaftprint.fingerprint._fingerprint import SourceFile
+from shaftprint.recording.writers._by_ending import WRITTEN_ENDINGS, WRITTEN_FORMATS
 
 NAMES = "a path, or the name of a shipped one such as"
 

@@ -11,13 +11,17 @@ from pathlib import Path
 from types import CodeType, ModuleType
 from typing import NewType
 
-from shaftprint.campaign import Campaign
-from shaftprint.catalogue import CLOSED_LOOPS, COMBINED_LOOP, DRIVES, PITCHED_LOOP, STRUCTURES, shipped_structure
+from shaftprint.campaign._campaign import Campaign
+from shaftprint.catalogue._drives import DRIVES
+from shaftprint.catalogue._shipped import shipped_structure
+from shaftprint.catalogue._thesis import CLOSED_LOOPS, COMBINED_LOOP, PITCHED_LOOP, STRUCTURES
 from shaftprint.errors import ShaftprintError, StructureError
-from shaftprint.fingerprint import Fingerprint, named_structure
-from shaftprint.models import Structure, check_structure
-from shaftprint.survey import default_structure
-from shaftprint.vessel import Vessel
+from shaftprint.fingerprint._fingerprint import Fingerprint
+from shaftprint.fingerprint._model import named_structure
+from shaftprint.models._check import check_structure
+from shaftprint.models._structure import Structure
+from shaftprint.survey._of_vessel import default_structure
+from shaftprint.vessel._vessel import Vessel
 
 SUFFIX = ".py"
 OWN_FILE_HELP = "a shipped one, or my_ship.py:my_loop for one of your own file, which is Python and is run"

@@ -8,7 +8,9 @@ from typing import Any, Final
 
 import click
 
-from shaftprint.design import GaugeRange, Limits, Wish
+from shaftprint.design.inputs._gauge_range import GaugeRange
+from shaftprint.design.inputs._limits import Limits
+from shaftprint.design.inputs._wish import Wish
 from shaftprint.spelling import meant
 from shaftprint.units import SECONDS_PER_MINUTE
 

@@ -3,9 +3,15 @@
 from pathlib import Path
 
 from shaftprint.cli._terminal import answer, echo, print_findings
-from shaftprint.cli.output import REPORT, give, print_tables
-from shaftprint.design import CAMPAIGN, CSV, GENERATOR, MAT, PLAN, PlannedTest, abort_card
-from shaftprint.tables import abort_table, planned_leg_table, predicted_number_table, wish_table
+from shaftprint.cli.output._fingerprint_file import REPORT
+from shaftprint.cli.output._json import give
+from shaftprint.cli.output._tables import print_tables
+from shaftprint.design.files._plan_folder import CAMPAIGN
+from shaftprint.design.files._plan_json import PLAN
+from shaftprint.design.files._set_point_files import CSV, GENERATOR, MAT
+from shaftprint.design.planned_test._planned_test import PlannedTest
+from shaftprint.design.views._abort_card import abort_card
+from shaftprint.tables._plan import abort_table, planned_leg_table, predicted_number_table, wish_table
 
 
 def print_planned_test(planned: PlannedTest, folder: Path) -> None:

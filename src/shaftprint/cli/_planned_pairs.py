@@ -1,16 +1,18 @@
 """The structure of ``predict`` with the planned lines that it will be fitted to, at each working point."""
 
-from shaftprint.campaign import Campaign
-from shaftprint.catalogue import shipped_structure
+from shaftprint.campaign._campaign import Campaign
+from shaftprint.catalogue._shipped import shipped_structure
 from shaftprint.cli._own_structure import closed_loop_of
 from shaftprint.cli._ship_before_test import ShipBeforeTest
 from shaftprint.errors import StructureError
-from shaftprint.identify import expected_response, planned_response
-from shaftprint.identify.prediction import PlannedLeg, planned_beside, planned_legs
-from shaftprint.models import Structure
-from shaftprint.signals import EXCITATIONS, MovedBeside, moved_beside
-from shaftprint.spectra import SPEED, FrequencyResponse, open_loop
-from shaftprint.survey import expect_one_speed, of_vessel
+from shaftprint.identify.prediction._planned_legs import PlannedLeg, planned_beside, planned_legs
+from shaftprint.identify.prediction._planned_response import expected_response, planned_response
+from shaftprint.models._structure import Structure
+from shaftprint.signals._moved_beside import EXCITATIONS, MovedBeside, moved_beside
+from shaftprint.spectra._frequency_response import FrequencyResponse
+from shaftprint.spectra._leg_spectra import SPEED
+from shaftprint.spectra._open_loop import open_loop
+from shaftprint.survey._of_vessel import expect_one_speed, of_vessel
 
 Pair = tuple[Structure, FrequencyResponse]
 

@@ -3,17 +3,19 @@
 import math
 from collections.abc import Mapping, Sequence
 
-from shaftprint.campaign import Campaign
+from shaftprint.campaign._campaign import Campaign
 from shaftprint.cli._fingerprint_tables import print_assumed
 from shaftprint.cli._terminal import print_findings, say
-from shaftprint.cli.output import give, print_table, print_tables
-from shaftprint.digits import fine_unit
-from shaftprint.drift import VisibleChange, visible_changes
-from shaftprint.identify.fit import Estimate
-from shaftprint.identify.prediction import Accuracy, Identifiability
-from shaftprint.identify.uncertainty import Interval
-from shaftprint.spectra import FrequencyResponse
-from shaftprint.tables import MEANING, Symbol, Table, interval, numbers, plain, texts, unit_text, with_deviation
+from shaftprint.cli.output._json import give
+from shaftprint.cli.output._tables import print_table, print_tables
+from shaftprint.digits import fine_unit, interval, plain, unit_text, with_deviation
+from shaftprint.drift._visible import VisibleChange, visible_changes
+from shaftprint.identify.fit._identification import Estimate
+from shaftprint.identify.prediction._accuracy import Accuracy
+from shaftprint.identify.prediction._identifiability import Identifiability
+from shaftprint.identify.uncertainty._profile import Interval
+from shaftprint.plain_table import MEANING, Symbol, Table, numbers, texts
+from shaftprint.spectra._frequency_response import FrequencyResponse
 
 
 def print_prediction(

@@ -6,11 +6,12 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.cli._terminal import answer, echo
-from shaftprint.cli.output import expect_free
+from shaftprint.cli.output._file_to_write import expect_free
 from shaftprint.errors import RecordingError, SettingsError
 from shaftprint.escape import printable, toml_string
 from shaftprint.files import write_bytes
-from shaftprint.recording import Channel, read_recording
+from shaftprint.recording._channel import Channel
+from shaftprint.recording._read import read_recording
 
 # Words in the names of channels that are put in, not measured.
 _INPUTS = (

@@ -9,11 +9,11 @@ from typing import Any
 
 import click
 
-from shaftprint.campaign import TrialConditions, load_trial_conditions
+from shaftprint.campaign._trial_conditions import TrialConditions, load_trial_conditions
 from shaftprint.cli._dates import Moment
-from shaftprint.cli.output import fingerprint_at
-from shaftprint.fingerprint import Fingerprint
-from shaftprint.report import expect_reportlab
+from shaftprint.cli.output._fingerprint_file import fingerprint_at
+from shaftprint.fingerprint._fingerprint import Fingerprint
+from shaftprint.report._page import expect_reportlab
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

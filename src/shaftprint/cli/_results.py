@@ -6,14 +6,19 @@ from types import MappingProxyType
 from typing import Any
 
 from shaftprint.cli._terminal import echo, print_findings
-from shaftprint.cli.output import FINGERPRINT, REPORT, Steps, give, print_tables
-from shaftprint.fingerprint import Fingerprint, write_fingerprint
-from shaftprint.identify.comparison import StructureComparison
-from shaftprint.recording import read_recording
-from shaftprint.report import render_report
-from shaftprint.spectra import FrequencyResponse
-from shaftprint.survey import Survey, ThesisMode
-from shaftprint.tables import structure_tables
+from shaftprint.cli.output._fingerprint_file import FINGERPRINT, REPORT
+from shaftprint.cli.output._json import give
+from shaftprint.cli.output._progress import Steps
+from shaftprint.cli.output._tables import print_tables
+from shaftprint.fingerprint._fingerprint import Fingerprint
+from shaftprint.fingerprint._json_file import write_fingerprint
+from shaftprint.identify.comparison._comparison import StructureComparison
+from shaftprint.recording._read import read_recording
+from shaftprint.report._render import render_report
+from shaftprint.spectra._frequency_response import FrequencyResponse
+from shaftprint.survey._survey import Survey
+from shaftprint.survey._thesis_mode import ThesisMode
+from shaftprint.tables._structures import structure_tables
 
 
 def write_results(

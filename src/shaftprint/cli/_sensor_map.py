@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
 from shaftprint.escape import toml_string
-from shaftprint.recording import Channel
+from shaftprint.recording._channel import Channel
 from shaftprint.units import ANGLES_REV, NM_PER_UNIT, REV_S_PER_UNIT
 
 Use: TypeAlias = Literal["speed", "instrument", "encoder", "shaft_torque", "set_point", "rack", "demand", "ship_speed"]

@@ -6,23 +6,22 @@ from pathlib import Path
 
 import click
 
-from shaftprint.campaign import Campaign
-from shaftprint.cli.output import progress
+from shaftprint.campaign._campaign import Campaign
+from shaftprint.cli.output._progress import progress
 from shaftprint.errors import StructureError
-from shaftprint.identify import NoiseLevels, Prior, noise_at, priors_from_vessel
-from shaftprint.identify.prediction import first_leg
-from shaftprint.models import Structure
-from shaftprint.survey import (
-    assumed_noise,
-    load_trial,
-    measure,
-    noise_at_speeds,
-    noise_of_further,
-    priors_of,
-    stated_working_point,
-)
+from shaftprint.identify.likelihood._known import priors_from_vessel
+from shaftprint.identify.likelihood._prior import Prior
+from shaftprint.identify.prediction._noise_at_speeds import noise_at
+from shaftprint.identify.prediction._noise_levels import NoiseLevels
+from shaftprint.identify.prediction._planned_legs import first_leg
+from shaftprint.models._structure import Structure
+from shaftprint.survey._assumed_noise import assumed_noise
+from shaftprint.survey._fits import priors_of, stated_working_point
+from shaftprint.survey._measurement import measure
+from shaftprint.survey._noise import noise_at_speeds, noise_of_further
+from shaftprint.survey._trial import load_trial
 from shaftprint.units import rpm_from_rev_s
-from shaftprint.vessel import Vessel
+from shaftprint.vessel._vessel import Vessel
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

@@ -3,18 +3,17 @@
 import numpy as np
 
 from shaftprint.cli._terminal import echo, say
-from shaftprint.cli.output import print_table, print_tables
-from shaftprint.digits import plain_letters
-from shaftprint.signals import Signals
-from shaftprint.spectra import Spectra
-from shaftprint.tables import (
+from shaftprint.cli.output._tables import print_table, print_tables
+from shaftprint.digits import plain_letters, with_deviation
+from shaftprint.signals._signals import Signals
+from shaftprint.spectra._spectra import Spectra
+from shaftprint.tables._signals import (
     local_ratio_table,
     overall_ratio_table,
     repair_table,
     speed_table,
     step_table,
     strip_table,
-    with_deviation,
 )
 from shaftprint.units import rpm_from_rev_s
 

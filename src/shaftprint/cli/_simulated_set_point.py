@@ -8,12 +8,14 @@ import click
 import numpy as np
 
 from shaftprint.arrays import FloatArray, frozen_float
-from shaftprint.campaign import Campaign, load_campaign, setpoint
+from shaftprint.campaign._campaign import Campaign, load_campaign
+from shaftprint.campaign._setpoint import setpoint
 from shaftprint.errors import RecordingError
-from shaftprint.fingerprint import Fingerprint
-from shaftprint.models import Structure
-from shaftprint.recording import Channel, read_recording
-from shaftprint.vessel import load_vessel
+from shaftprint.fingerprint._fingerprint import Fingerprint
+from shaftprint.models._structure import Structure
+from shaftprint.recording._channel import Channel
+from shaftprint.recording._read import read_recording
+from shaftprint.vessel._vessel import load_vessel
 
 SET_POINT, SET_POINT_CHANNEL = "n_set", "set point"
 # Steps of a simulated campaign: a limit that a jump meets is seen half a step early. Longer stretches than a million

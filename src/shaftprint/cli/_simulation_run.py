@@ -10,11 +10,13 @@ import numpy as np
 from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.cli._simulated_model import SimulatedModel
 from shaftprint.cli._simulated_set_point import Drive, Place
-from shaftprint.cli.output import Steps
+from shaftprint.cli.output._progress import Steps
 from shaftprint.errors import ExactStepsError
-from shaftprint.recording import Channel, write_csv
-from shaftprint.report import SimulatedSignal
-from shaftprint.simulation import simulate, simulate_exactly
+from shaftprint.recording._channel import Channel
+from shaftprint.recording.writers._csv import write_csv
+from shaftprint.report.figures._simulation import SimulatedSignal
+from shaftprint.simulation._simulate import simulate
+from shaftprint.simulation._simulate_exactly import simulate_exactly
 
 # Derivatives that the simulation takes at a time; more at once would only take more memory.
 AT_ONCE = 8

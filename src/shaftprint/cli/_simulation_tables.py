@@ -8,9 +8,10 @@ import numpy as np
 from shaftprint.arrays import FloatArray
 from shaftprint.cli._simulated_model import SimulatedModel
 from shaftprint.cli._terminal import say
-from shaftprint.cli.output import print_table
-from shaftprint.report import SimulatedSignal
-from shaftprint.tables import MEANING, Table, numbers, rounded, texts, unit_text, with_deviation
+from shaftprint.cli.output._tables import print_table
+from shaftprint.digits import rounded, unit_text, with_deviation
+from shaftprint.plain_table import MEANING, Table, numbers, texts
+from shaftprint.report.figures._simulation import SimulatedSignal
 
 VALUE_DIGITS, RANGE_DIGITS, STD_DIGITS = 6, 5, 2
 # Of the largest value: less is what rounding leaves of zero.

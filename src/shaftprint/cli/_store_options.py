@@ -9,7 +9,7 @@ import click
 
 from shaftprint.cli._dates import DATE_FORMATS, Moment, zone_option
 from shaftprint.cli._terminal import echo
-from shaftprint.store import Store, open_store
+from shaftprint.store._store import Store, open_store
 from shaftprint.zones import in_zone
 
 DEFAULT_STORE = "shaftprint.db"

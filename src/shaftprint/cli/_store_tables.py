@@ -6,8 +6,8 @@ from datetime import tzinfo
 
 from shaftprint.cli._terminal import print_document, print_findings
 from shaftprint.digits import interval, with_deviation
-from shaftprint.store import Event, Fault, HistoryEntry, LineSummary, StoredNumber
-from shaftprint.tables import Column, Symbol, Table
+from shaftprint.plain_table import Column, Symbol, Table
+from shaftprint.store._nouns import Event, Fault, HistoryEntry, LineSummary, StoredNumber
 from shaftprint.zones import utc_text
 
 SHOWN_HASH = 12

@@ -8,25 +8,26 @@ import numpy as np
 
 from shaftprint.arrays import frozen_float
 from shaftprint.cli._terminal import print_findings
-from shaftprint.cli.output import Steps, give, print_tables
+from shaftprint.cli.output._json import give
+from shaftprint.cli.output._progress import Steps
+from shaftprint.cli.output._tables import print_tables
 from shaftprint.errors import FingerprintError
 from shaftprint.escape import plain_name
-from shaftprint.fingerprint import Fingerprint, identified_model
-from shaftprint.models import Structure
-from shaftprint.report import save_chart, validation_chart, validation_summary_chart
-from shaftprint.signals import Signals
-from shaftprint.survey import Measurement, Trial, limited_model, limits_of, validated_apart
-from shaftprint.tables import excerpt_name, misfit_table, step_number_table
+from shaftprint.fingerprint._fingerprint import Fingerprint
+from shaftprint.fingerprint._model import identified_model
+from shaftprint.models._structure import Structure
+from shaftprint.report.charts._pictures import save_chart
+from shaftprint.report.figures._validation import validation_chart, validation_summary_chart
+from shaftprint.signals._signals import Signals
+from shaftprint.survey._measurement import Measurement
+from shaftprint.survey._trial import Trial
+from shaftprint.survey._validation_apart import limited_model, limits_of, validated_apart
+from shaftprint.tables._validation import excerpt_name, misfit_table, step_number_table
 from shaftprint.units import rpm_from_rev_s
-from shaftprint.validation import (
-    ExcerptComparison,
-    Model,
-    Predict,
-    Validation,
-    linear_prediction,
-    simulated_prediction,
-    validate,
-)
+from shaftprint.validation._model import Model
+from shaftprint.validation._prediction import Predict, linear_prediction, simulated_prediction
+from shaftprint.validation._validate import validate
+from shaftprint.validation._validation import ExcerptComparison, Validation
 
 # As the thesis shares its sets between the parts (a) and (b) of figures 5.7 to 5.9.
 GROUPS = {"a": ("CL4", "OL1+OL5", "benchmark"), "b": ("CL3", "OL1+OL4", "benchmark")}

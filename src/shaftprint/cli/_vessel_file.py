@@ -1,8 +1,8 @@
 """What is said of a vessel file before anything is made of it: whether it agrees with itself."""
 
-from shaftprint.card import disagreements
+from shaftprint.card._disagreements import disagreements
 from shaftprint.cli._terminal import print_findings
-from shaftprint.vessel import Vessel
+from shaftprint.vessel._vessel import Vessel
 
 
 def print_disagreements(vessel: Vessel, file: str) -> None:

@@ -11,20 +11,6 @@ Raw samples are never moved: a channel on another clock gets another start and r
 attributes of the merged recording; ``logger_clocks`` reads it.
 """
 
-from shaftprint.clocks._align import align
-from shaftprint.clocks._alignment import Alignment, Stretch
-from shaftprint.clocks._clock_map import ClockMap
-from shaftprint.clocks._logger_clock import LoggerClock, clock_attributes, logger_clocks
-from shaftprint.clocks._merge import joined, merged
+import lazy_loader
 
-__all__ = [
-    "Alignment",
-    "ClockMap",
-    "LoggerClock",
-    "Stretch",
-    "align",
-    "clock_attributes",
-    "joined",
-    "logger_clocks",
-    "merged",
-]
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

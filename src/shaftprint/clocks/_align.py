@@ -10,7 +10,7 @@ from shaftprint.clocks._clock_map import ClockMap
 from shaftprint.clocks._coarse import RATE_HZ, coarse_offset
 from shaftprint.clocks._windows import WindowDelay, delays_of
 from shaftprint.errors import ClockError
-from shaftprint.signals import Content
+from shaftprint.signals._content import Content
 
 DRIFT_STD = 1e-4
 """Standard deviation of a logger's drift before the data are seen: quartz is good for 100 ppm."""

@@ -9,7 +9,7 @@ from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.errors import ClockError
 
 if TYPE_CHECKING:
-    from shaftprint.recording import Channel
+    from shaftprint.recording._channel import Channel
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

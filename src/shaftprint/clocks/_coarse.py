@@ -5,7 +5,7 @@ import scipy
 
 from shaftprint.arrays import BoolArray, FloatArray
 from shaftprint.errors import ClockError
-from shaftprint.signals import Content
+from shaftprint.signals._content import Content
 
 RATE_HZ = 5.0
 """Rate at which whole recordings are compared [Hz]; a drift of 200 ppm moves three hours by 2 s."""

@@ -11,7 +11,7 @@ from shaftprint.clocks._alignment import Alignment, Stretch
 from shaftprint.clocks._clock_map import ClockMap
 from shaftprint.errors import ClockError, RecordingError
 from shaftprint.escape import printable
-from shaftprint.recording import CLOCK_MAPS, Recording
+from shaftprint.recording._recording import CLOCK_MAPS, Recording
 
 # Seconds beyond any calendar, and small enough that products and squares stay numbers.
 _LARGEST = 1e15

@@ -13,7 +13,8 @@ from shaftprint.clocks._alignment import Alignment
 from shaftprint.clocks._logger_clock import LoggerClock, clock_attributes, logger_clocks
 from shaftprint.errors import ClockError
 from shaftprint.escape import printable
-from shaftprint.recording import CLOCK_MAPS, Channel, Recording
+from shaftprint.recording._channel import Channel
+from shaftprint.recording._recording import CLOCK_MAPS, Recording
 
 # A part may begin this share of a sample off the grid of the part before it.
 OFF_GRID = 0.51

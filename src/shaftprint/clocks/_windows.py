@@ -13,7 +13,7 @@ import scipy
 
 from shaftprint.arrays import FloatArray
 from shaftprint.clocks._shared_band import shared_band
-from shaftprint.signals import Content
+from shaftprint.signals._content import Content
 
 STRETCH_S = 60.0
 """Length of a stretch [s]: long against the movements, short against what temperature does to a clock."""

@@ -11,8 +11,8 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Final, Literal
 
-from shaftprint.catalogue import ShipRole
-from shaftprint.models import Role
+from shaftprint.catalogue._roles import ShipRole
+from shaftprint.models._role import Role
 
 PERCENT, MILLISECONDS = 100.0, 1000.0
 _LARGEST_LOGARITHM = 10.0

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from shaftprint.arrays import BoolArray, FloatArray
-from shaftprint.catalogue import ShipRole
+from shaftprint.catalogue._roles import ShipRole
 from shaftprint.drift._causes import GAUGE_SCALE, Cause
 from shaftprint.drift._dated import DatedTest
 from shaftprint.drift._doubts import judged_in
@@ -17,10 +17,10 @@ from shaftprint.drift._series import own_covariances, stated_errors
 from shaftprint.drift._shared_errors import is_common
 from shaftprint.drift._single_test import SingleTest, single_test
 from shaftprint.drift._straight import straightened
-from shaftprint.fingerprint import BEHIND, TVC
+from shaftprint.fingerprint._vessel_fields import BEHIND, TVC
 
 if TYPE_CHECKING:
-    from shaftprint.models import Role
+    from shaftprint.models._role import Role
 
 NEWEST_TESTS = 3
 """Tests of a ship that stand for it, the newest ones."""

@@ -4,12 +4,12 @@ from dataclasses import dataclass
 from datetime import datetime
 from typing import TYPE_CHECKING
 
-from shaftprint.catalogue import ShipRole
+from shaftprint.catalogue._roles import ShipRole
 from shaftprint.errors import FingerprintError
 
 if TYPE_CHECKING:
-    from shaftprint.fingerprint import Fingerprint
-    from shaftprint.models import Role
+    from shaftprint.fingerprint._fingerprint import Fingerprint
+    from shaftprint.models._role import Role
 
 _GOVERNOR = (
     ShipRole.PROPORTIONAL_GAIN, ShipRole.INTEGRAL_GAIN, ShipRole.LOOP_DELAY, ShipRole.SET_POINT_LATENCY,

@@ -11,7 +11,7 @@ from shaftprint.drift._finding import Finding, ShipChange, SizedCause, odds_agai
 from shaftprint.drift._pair import Pair, pair_of
 
 if TYPE_CHECKING:
-    from shaftprint.fingerprint import Fingerprint
+    from shaftprint.fingerprint._fingerprint import Fingerprint
 
 UNLIKELY = 0.05
 """A change that chance makes in fewer than this share of unchanged pairs counts."""

@@ -11,14 +11,16 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from shaftprint.arrays import BoolArray, FloatArray
-from shaftprint.catalogue import ShipRole
+from shaftprint.catalogue._roles import ShipRole
 from shaftprint.drift._single_test import SingleTest, is_share
-from shaftprint.identify.fit import Estimate
-from shaftprint.identify.judgement import AFFECTED, depends_on, listed
+from shaftprint.identify.fit._identification import Estimate
+from shaftprint.identify.judgement._affected_numbers import AFFECTED, depends_on
+from shaftprint.identify.judgement._phrases import listed
 
 if TYPE_CHECKING:
     from shaftprint.drift._dated import DatedTest
-    from shaftprint.fingerprint import Fingerprint, Quantity
+    from shaftprint.fingerprint._fingerprint import Fingerprint
+    from shaftprint.fingerprint._quantity import Quantity
 
 NOT_POSITIVE = "it is not larger than zero"
 HELD = "it was held"

@@ -9,7 +9,7 @@ from shaftprint.drift._program_epochs import program_epochs
 from shaftprint.errors import FingerprintError
 
 if TYPE_CHECKING:
-    from shaftprint.fingerprint import Fingerprint
+    from shaftprint.fingerprint._fingerprint import Fingerprint
 
 SECONDS_PER_YEAR: Final = 365.25 * 86400.0
 

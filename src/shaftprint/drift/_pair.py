@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shaftprint.arrays import FloatArray
-from shaftprint.catalogue import ShipRole
+from shaftprint.catalogue._roles import ShipRole
 from shaftprint.drift._causes import CAUSES, GAUGE, GAUGE_SCALE, Cause, by_role, may_happen
 from shaftprint.drift._doubts import doubts_of, judged_together, left_out_of
 from shaftprint.drift._shared_errors import SharedErrors, shared_errors
@@ -20,8 +20,8 @@ from shaftprint.drift._single_test import SingleTest, single_test
 from shaftprint.drift._straight import straightened
 
 if TYPE_CHECKING:
-    from shaftprint.fingerprint import Fingerprint
-    from shaftprint.models import Role
+    from shaftprint.fingerprint._fingerprint import Fingerprint
+    from shaftprint.models._role import Role
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Final
 from shaftprint.drift._dated import DatedTest, Event
 
 if TYPE_CHECKING:
-    from shaftprint.fingerprint import Fingerprint
+    from shaftprint.fingerprint._fingerprint import Fingerprint
 
 SAME_WITHIN: Final = 0.2
 """Two versions find the same where every number of the ship moves by at most so many of its standard deviations."""

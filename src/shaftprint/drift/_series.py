@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shaftprint.arrays import BoolArray, FloatArray
-from shaftprint.catalogue import ShipRole
+from shaftprint.catalogue._roles import ShipRole
 from shaftprint.drift._causes import GAUGE_SCALE, Cause
 from shaftprint.drift._dated import EVENTS
 from shaftprint.drift._doubts import judged_in
@@ -18,8 +18,8 @@ from shaftprint.drift._single_test import SingleTest, single_test
 from shaftprint.drift._straight import straightened
 
 if TYPE_CHECKING:
-    from shaftprint.fingerprint import Fingerprint
-    from shaftprint.models import Role
+    from shaftprint.fingerprint._fingerprint import Fingerprint
+    from shaftprint.models._role import Role
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

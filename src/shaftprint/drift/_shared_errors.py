@@ -8,11 +8,11 @@ than a test, and the water at one side is not that at the other.
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from shaftprint.fingerprint import BEHIND, TVC, FieldValue, stated_behind
-from shaftprint.identify.likelihood import PRIOR_OF
+from shaftprint.fingerprint._vessel_fields import BEHIND, TVC, FieldValue, stated_behind
+from shaftprint.identify.likelihood._prior import PRIOR_OF
 
 if TYPE_CHECKING:
-    from shaftprint.fingerprint import Fingerprint
+    from shaftprint.fingerprint._fingerprint import Fingerprint
 
 OF_EACH_PIECE = 1.0 / 16.0
 """Share of the variance of a drawing's or an assumption's error that is another in each of two lines: parts are made to

@@ -9,14 +9,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shaftprint.arrays import BoolArray, FloatArray
-from shaftprint.catalogue import ShipRole
+from shaftprint.catalogue._roles import ShipRole
 from shaftprint.errors import FingerprintError
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from shaftprint.fingerprint import Fingerprint, Quantity
-    from shaftprint.models import Role
+    from shaftprint.fingerprint._fingerprint import Fingerprint
+    from shaftprint.fingerprint._quantity import Quantity
+    from shaftprint.models._role import Role
 
 SHARES = (ShipRole.TORQUE, ShipRole.ACTUATOR_FREQUENCY, ShipRole.ACTUATOR_DAMPING)
 """Roles of numbers that are larger than zero, beside those of physical values."""

@@ -24,14 +24,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shaftprint.arrays import FloatArray
-from shaftprint.catalogue import shipped_structure
+from shaftprint.catalogue._shipped import shipped_structure
 from shaftprint.drift._single_test import SingleTest, is_share
 from shaftprint.errors import StructureError
-from shaftprint.models import at_working_point
+from shaftprint.models._working_point import at_working_point
 
 if TYPE_CHECKING:
-    from shaftprint.fingerprint import Fingerprint, LegRecord, NoiseSpectrum
-    from shaftprint.models import Structure
+    from shaftprint.fingerprint._fingerprint import Fingerprint
+    from shaftprint.fingerprint._leg_records import LegRecord, NoiseSpectrum
+    from shaftprint.models._structure import Structure
 
 
 def straightened(

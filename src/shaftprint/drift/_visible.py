@@ -14,7 +14,7 @@ from shaftprint.drift._pair import directions_of
 from shaftprint.drift._single_test import is_share
 
 if TYPE_CHECKING:
-    from shaftprint.identify.prediction import Accuracy
+    from shaftprint.identify.prediction._accuracy import Accuracy
 
 POWER_80: Final = 0.8416212335729143
 """Standard normal deviation below which four of five scores lie."""

@@ -9,26 +9,6 @@ parameter           stated    in the unit of the structure's parameter
 =================== ========= ========================================================================================
 """
 
-from shaftprint.drive._blocks import Block, BlockKind, FreeParameter
-from shaftprint.drive._drive import Drive, FitWay, load_drive
-from shaftprint.drive._responses import ResponseColumns
-from shaftprint.drive._signals import KnownParameter, PerRecord, SearchedParameter, Signal, StartState, Stretch
-from shaftprint.drive._unit_factors import unit_factor, zero_is_anywhere
+import lazy_loader
 
-__all__ = [
-    "Block",
-    "BlockKind",
-    "Drive",
-    "FitWay",
-    "FreeParameter",
-    "KnownParameter",
-    "PerRecord",
-    "ResponseColumns",
-    "SearchedParameter",
-    "Signal",
-    "StartState",
-    "Stretch",
-    "load_drive",
-    "unit_factor",
-    "zero_is_anywhere",
-]
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

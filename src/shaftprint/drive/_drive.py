@@ -11,7 +11,8 @@ from shaftprint.drive._blocks import Block, FreeParameter
 from shaftprint.drive._responses import ResponseColumns
 from shaftprint.drive._signals import KnownParameter, PerRecord, SearchedParameter, Signal, StartState, Stretch
 from shaftprint.errors import SettingsError
-from shaftprint.notebook import Shown, Summary, shortened
+from shaftprint.notebook._shown import Shown
+from shaftprint.notebook._summary import Summary, shortened
 from shaftprint.settings import Name, PositiveNumber, Settings, read_settings
 
 

@@ -5,7 +5,8 @@ import re
 from collections.abc import Mapping, Sequence
 
 from shaftprint.errors import ExportError
-from shaftprint.models import Formula, postorder
+from shaftprint.models.equations._calculus import postorder
+from shaftprint.models.equations._formula import Formula
 
 _SIGNS = {"add": "({} + {})", "multiply": "({} * {})", "divide": "({} / {})"}
 _FUNCTIONS = {"absolute": "fabs", "minimum": "least", "maximum": "most"}

@@ -9,9 +9,9 @@ from scipy.linalg import block_diag
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import ExportError
 from shaftprint.export._model import ExportedModel, exported_model
-from shaftprint.export.linear import DelayModel, delay_model
-from shaftprint.fingerprint import Fingerprint
-from shaftprint.notebook import library
+from shaftprint.export.linear._delay_model import DelayModel, delay_model
+from shaftprint.fingerprint._fingerprint import Fingerprint
+from shaftprint.notebook._library import library
 
 if TYPE_CHECKING:
     from control import FrequencyResponseData, StateSpace

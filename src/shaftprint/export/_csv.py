@@ -15,8 +15,8 @@ from shaftprint.export._model import exported_model
 from shaftprint.export._model_response import model_response
 from shaftprint.export._tables import Cell, Row, number_rows, parameter_rows, response_rows
 from shaftprint.files import written_whole
-from shaftprint.fingerprint import Fingerprint
-from shaftprint.models import Structure
+from shaftprint.fingerprint._fingerprint import Fingerprint
+from shaftprint.models._structure import Structure
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -30,7 +30,7 @@ from shaftprint.export._fmu_samples import posterior_deviations
 from shaftprint.export._fmu_variables import Variable, variables
 from shaftprint.export._model import ExportedModel
 from shaftprint.files import written_whole
-from shaftprint.models import evaluate
+from shaftprint.models.equations._evaluate import evaluate
 
 CORE: Final = ("core.c", "history.c", "snapshot.c", "start.c", "steady.c", "values.c")
 HEADERS: Final = ("core.h", "exchange.h")

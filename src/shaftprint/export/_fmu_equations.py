@@ -8,7 +8,7 @@ from shaftprint.escape import c_string
 from shaftprint.export._c_text import c_array, c_function, c_integers, identifier
 from shaftprint.export._fmu_program import FmuProgram
 from shaftprint.export._fmu_signals import FmuSignal
-from shaftprint.models import Formula
+from shaftprint.models.equations._formula import Formula
 
 ARGUMENTS = "(const Values *v, double *out)"
 FUNCTIONS = (

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Final
 
 from shaftprint.files import written_whole
-from shaftprint.kernels import private_folder
+from shaftprint.kernels._folder import private_folder
 
 MOST_KEPT: Final = 200
 

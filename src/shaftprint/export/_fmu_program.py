@@ -6,7 +6,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from shaftprint.arrays import FloatArray
-from shaftprint.models import Formula, Late, Program, Structure, derivatives, evaluate, maximum, postorder, program_of
+from shaftprint.models._program import Late, Program, program_of
+from shaftprint.models._structure import Structure
+from shaftprint.models.equations._calculus import derivatives, postorder
+from shaftprint.models.equations._evaluate import evaluate
+from shaftprint.models.equations._formula import Formula, maximum
 
 _COMPARED = ("minimum", "maximum", "choose")
 

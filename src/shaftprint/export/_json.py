@@ -15,10 +15,10 @@ from shaftprint.export._model import ExportedModel, exported_model
 from shaftprint.export._model_response import ModelResponse, model_response
 from shaftprint.export._parameter_descriptions import scaled_signal
 from shaftprint.export._tables import number_rows, parameter_rows
-from shaftprint.export.linear import DelayModel, delay_model
+from shaftprint.export.linear._delay_model import DelayModel, delay_model
 from shaftprint.files import written_whole
-from shaftprint.fingerprint import Fingerprint
-from shaftprint.models import Structure
+from shaftprint.fingerprint._fingerprint import Fingerprint
+from shaftprint.models._structure import Structure
 
 LAYOUT: Final = 1
 

@@ -17,9 +17,9 @@ from shaftprint.escape import matlab_comment, matlab_string, printable
 from shaftprint.export._model import ExportedModel
 from shaftprint.export._model_response import ModelResponse, channel_covariance, model_response
 from shaftprint.export._parameter_descriptions import scaled_signal
-from shaftprint.export.linear import DelayModel, delay_model
+from shaftprint.export.linear._delay_model import DelayModel, delay_model
 from shaftprint.files import written_whole
-from shaftprint.spectra import FrequencyResponse
+from shaftprint.spectra._frequency_response import FrequencyResponse
 
 LONGEST_NAME: Final = 63
 # MATLAB keeps 116 bytes of text at the head of a file; a date would make equal models differ.

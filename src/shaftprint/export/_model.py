@@ -9,9 +9,11 @@ from shaftprint.arguments import refusing_none
 from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.errors import ExportError
 from shaftprint.export._fmu_signals import DEVIATION, FmuSignal, fmu_signal
-from shaftprint.fingerprint import Fingerprint, identified_model, model_with_limits, named_structure
-from shaftprint.models import Structure
-from shaftprint.notebook import Shown, Summary, shortened
+from shaftprint.fingerprint._fingerprint import Fingerprint
+from shaftprint.fingerprint._model import identified_model, model_with_limits, named_structure
+from shaftprint.models._structure import Structure
+from shaftprint.notebook._shown import Shown
+from shaftprint.notebook._summary import Summary, shortened
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)

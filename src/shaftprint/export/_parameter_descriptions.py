@@ -7,7 +7,7 @@ from shaftprint.digits import interval, plain_letters, to_digit_of
 from shaftprint.distributions import NORMAL_95
 from shaftprint.export._fmu_signals import FmuSignal
 from shaftprint.export._model import ExportedModel
-from shaftprint.models import Parameter
+from shaftprint.models._parameter import Parameter
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

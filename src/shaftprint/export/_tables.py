@@ -5,8 +5,9 @@ from typing import TypeAlias
 
 from shaftprint.distributions import NORMAL_95
 from shaftprint.export._model_response import ModelResponse
-from shaftprint.fingerprint import Fingerprint, Quantity
-from shaftprint.models import Structure
+from shaftprint.fingerprint._fingerprint import Fingerprint
+from shaftprint.fingerprint._quantity import Quantity
+from shaftprint.models._structure import Structure
 
 Cell: TypeAlias = str | float | bool | None
 Row: TypeAlias = dict[str, Cell]

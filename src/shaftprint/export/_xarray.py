@@ -7,8 +7,8 @@ from numpy.typing import ArrayLike
 
 from shaftprint.export._model import ExportedModel, exported_model
 from shaftprint.export._model_response import model_response
-from shaftprint.fingerprint import Fingerprint
-from shaftprint.notebook import library
+from shaftprint.fingerprint._fingerprint import Fingerprint
+from shaftprint.notebook._library import library
 
 if TYPE_CHECKING:
     from xarray import Dataset

@@ -3,17 +3,18 @@
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from shaftprint.catalogue import ShipRole
+from shaftprint.catalogue._roles import ShipRole
 from shaftprint.digits import stated
 from shaftprint.fingerprint._resting import resting_on
-from shaftprint.identify.judgement import listed, unseen_drift
-from shaftprint.models import Combination
+from shaftprint.identify.judgement._clock_drift import unseen_drift
+from shaftprint.identify.judgement._phrases import listed
+from shaftprint.models._combination import Combination
 from shaftprint.units import MILLI
 
 if TYPE_CHECKING:
-    from shaftprint.identify import Identification
-    from shaftprint.identify.uncertainty import Interval
-    from shaftprint.vessel import Vessel
+    from shaftprint.identify.fit._identification import Identification
+    from shaftprint.identify.uncertainty._profile import Interval
+    from shaftprint.vessel._vessel import Vessel
 
 PERCENT = 100.0
 # How far what the vessel file states may be off beside its deviation: rows that were forgotten, a torque that falls

@@ -8,7 +8,7 @@ from shaftprint.fingerprint._quantity import Quantity
 from shaftprint.units import rpm_from_rev_s
 
 if TYPE_CHECKING:
-    from shaftprint.signals import SetPointCalibration, Signals, StripAngles
+    from shaftprint.signals._signals import SetPointCalibration, Signals, StripAngles
 
 DEGREES_PER_REVOLUTION = 360.0
 

@@ -17,9 +17,10 @@ import numpy as np
 from shaftprint.units import MILLI
 
 if TYPE_CHECKING:
-    from shaftprint.clocks import LoggerClock
-    from shaftprint.signals import Signals
-    from shaftprint.spectra import FrequencyResponse, Spectra
+    from shaftprint.clocks._logger_clock import LoggerClock
+    from shaftprint.signals._signals import Signals
+    from shaftprint.spectra._frequency_response import FrequencyResponse
+    from shaftprint.spectra._spectra import Spectra
 
 NOTABLE_SHIFT = 0.3
 """Shift from which there is a remark: with it a standard deviation is a twentieth too small."""

@@ -7,11 +7,12 @@ from typing import TYPE_CHECKING, Any, Literal
 from pydantic import FiniteFloat
 
 from shaftprint.fingerprint._quantity import FrozenRecord, Quantity
-from shaftprint.vessel import ImoNumber, ShortName
+from shaftprint.vessel._ship import ImoNumber, ShortName
 
 if TYPE_CHECKING:
-    from shaftprint.campaign import Campaign, TrialConditions
-    from shaftprint.vessel import Vessel
+    from shaftprint.campaign._campaign import Campaign
+    from shaftprint.campaign._trial_conditions import TrialConditions
+    from shaftprint.vessel._vessel import Vessel
 
 WATER = ("draught_m", "trim_m", "water_temperature_c", "water_density_kg_m3", "depth_m", "wind_m_s")
 """What is stated of ship and water at a test; no recording shows it."""

@@ -12,12 +12,13 @@ from typing import TYPE_CHECKING
 
 from shaftprint.fingerprint._quantity import Quantity
 from shaftprint.reasons import Reason
-from shaftprint.signals import ScaleEvidence, scale_reasons
+from shaftprint.signals._scale_reasons import scale_reasons
+from shaftprint.signals.levels._speed_scale import ScaleEvidence
 
 if TYPE_CHECKING:
-    from shaftprint.campaign import Campaign
-    from shaftprint.signals import Signals
-    from shaftprint.vessel import Vessel
+    from shaftprint.campaign._campaign import Campaign
+    from shaftprint.signals._signals import Signals
+    from shaftprint.vessel._vessel import Vessel
 
 # So many standard deviations of all that is stated, the scale of the gauge included, are no chance.
 FAR = 3.5

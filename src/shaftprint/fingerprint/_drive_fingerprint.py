@@ -15,9 +15,11 @@ from shaftprint.files import read_json, write_bytes
 from shaftprint.fingerprint._covariance_check import covariance_fault
 from shaftprint.fingerprint._fingerprint import SourceFile
 from shaftprint.fingerprint._quantity import Deviation, FrozenRecord, Quantity
-from shaftprint.identify import Prior, Verdict
-from shaftprint.notebook import Shown, Summary, shortened
-from shaftprint.publication import complete
+from shaftprint.identify.judgement._verdict import Verdict
+from shaftprint.identify.likelihood._prior import Prior
+from shaftprint.notebook._shown import Shown
+from shaftprint.notebook._summary import Summary, shortened
+from shaftprint.publication._publish import complete
 
 DRIVE_SCHEMA: Final = "drive 1.2"
 """Version of the layout of a drive's fingerprint."""

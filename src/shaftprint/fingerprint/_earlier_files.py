@@ -10,14 +10,15 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from shaftprint.catalogue import ROLES, ShipRole, shipped_structure
+from shaftprint.catalogue._roles import ROLES, ShipRole
+from shaftprint.catalogue._shipped import shipped_structure
 from shaftprint.errors import FingerprintError, StructureError
 from shaftprint.fingerprint._conditions import WATER
 from shaftprint.fingerprint._fingerprint import SCHEMA_VERSION, Fingerprint
 from shaftprint.fingerprint._physical import GAUGE_ZERO
 from shaftprint.fingerprint._quantity import Quantity
-from shaftprint.models import Role
-from shaftprint.notebook import shortened
+from shaftprint.models._role import Role
+from shaftprint.notebook._summary import shortened
 
 PHYSICAL: Mapping[str, Role] = {
     **{role.physical.name: role for role in ROLES.values() if role.physical is not None},

@@ -5,21 +5,21 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shaftprint.catalogue import ShipRole
+from shaftprint.catalogue._roles import ShipRole
 from shaftprint.digits import p_value_text, plain_letters, stated, stated_interval
 from shaftprint.distributions import NORMAL_95
 from shaftprint.fingerprint._physical import GAUGE_ZERO
 from shaftprint.fingerprint._quantity import Quantity
 from shaftprint.fingerprint._working_point_share import LOAD_WANDER
-from shaftprint.identify import Identification
-from shaftprint.identify.fit import Estimate
-from shaftprint.identify.judgement import doubts_of
-from shaftprint.identify.likelihood import PRIOR_OF
-from shaftprint.identify.uncertainty import Budget, Profile
+from shaftprint.identify.fit._identification import Estimate, Identification
+from shaftprint.identify.judgement._number_precision import doubts_of
+from shaftprint.identify.likelihood._prior import PRIOR_OF
+from shaftprint.identify.uncertainty._budget import Budget
+from shaftprint.identify.uncertainty._profile import Profile
 from shaftprint.reasons import Reason
 
 if TYPE_CHECKING:
-    from shaftprint.vessel import Vessel
+    from shaftprint.vessel._vessel import Vessel
 
 # A combination is named when it is determined this much better, relative to its size, than a parameter in it.
 BETTER_KNOWN = 0.4

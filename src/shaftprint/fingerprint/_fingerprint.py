@@ -7,7 +7,7 @@ import numpy as np
 from pydantic import AwareDatetime, Field, NonNegativeFloat, model_validator
 
 from shaftprint.arrays import FloatArray
-from shaftprint.catalogue import ShipRole
+from shaftprint.catalogue._roles import ShipRole
 from shaftprint.errors import FingerprintError
 from shaftprint.fingerprint._conditions import Conditions
 from shaftprint.fingerprint._covariance_check import covariance_fault
@@ -18,9 +18,13 @@ from shaftprint.fingerprint._line_with_limits import LineWithLimits
 from shaftprint.fingerprint._quantity import FrozenRecord, Quantity
 from shaftprint.fingerprint._validation_record import ValidationRecord
 from shaftprint.fingerprint._vessel_fields import FieldValue
-from shaftprint.identify import NoiseLevels, Prior, Verdict
-from shaftprint.identify.uncertainty import Budget
-from shaftprint.notebook import Labelled, LabelledData, Shown, Summary, shortened
+from shaftprint.identify.judgement._verdict import Verdict
+from shaftprint.identify.likelihood._prior import Prior
+from shaftprint.identify.prediction._noise_levels import NoiseLevels
+from shaftprint.identify.uncertainty._budget import Budget
+from shaftprint.notebook._labelled import Labelled, LabelledData
+from shaftprint.notebook._shown import Shown
+from shaftprint.notebook._summary import Summary, shortened
 
 SCHEMA_VERSION: Final = "2.2"
 """Version of the layout: the second number grows with what is added to it, see ``docs/fingerprint-file.md``."""

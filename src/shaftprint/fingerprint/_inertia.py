@@ -2,13 +2,13 @@
 
 from typing import TYPE_CHECKING
 
-from shaftprint.catalogue import ShipRole
+from shaftprint.catalogue._roles import ShipRole
 from shaftprint.fingerprint._fingerprint import Fingerprint
-from shaftprint.torsion import ExpectedInertia, InertiaComparison, compare_inertia, expected_inertia
+from shaftprint.torsion._expected_inertia import ExpectedInertia, InertiaComparison, compare_inertia, expected_inertia
 from shaftprint.units import rev_s_from_rpm
 
 if TYPE_CHECKING:
-    from shaftprint.vessel import Vessel
+    from shaftprint.vessel._vessel import Vessel
 
 
 def inertia_beside(fingerprint: Fingerprint, vessel: "Vessel") -> tuple[ExpectedInertia, tuple[InertiaComparison, ...]]:

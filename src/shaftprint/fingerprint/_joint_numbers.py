@@ -15,12 +15,12 @@ from shaftprint.arrays import FloatArray
 from shaftprint.fingerprint._covariance_check import covariance_fault
 from shaftprint.fingerprint._physical import GAUGE_ZERO, physical_numbers
 from shaftprint.fingerprint._quantity import FrozenRecord
-from shaftprint.identify.uncertainty import joint_covariance
+from shaftprint.identify.uncertainty._joint import joint_covariance
 
 if TYPE_CHECKING:
-    from shaftprint.identify import Identification
-    from shaftprint.signals import WorkingPoint
-    from shaftprint.vessel import Vessel
+    from shaftprint.identify.fit._identification import Identification
+    from shaftprint.signals._working_points import WorkingPoint
+    from shaftprint.vessel._vessel import Vessel
 
 # Each test has a zero of its own: it drifts, and is taken anew.
 OF_THE_TEST = ("gauge zero",)

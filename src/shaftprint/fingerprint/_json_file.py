@@ -14,7 +14,7 @@ from shaftprint.files import read_json, write_bytes
 from shaftprint.fingerprint._drive_fingerprint import is_of_a_drive
 from shaftprint.fingerprint._earlier_files import of_earlier_schema, of_later_schema, with_roles
 from shaftprint.fingerprint._fingerprint import SCHEMA_VERSION, Fingerprint
-from shaftprint.publication import complete
+from shaftprint.publication._publish import complete
 
 _SCHEMA_2 = re.compile(r"2\.([0-9]{1,4})")
 MINOR = int(SCHEMA_VERSION.partition(".")[2])

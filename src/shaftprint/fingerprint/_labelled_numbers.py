@@ -6,7 +6,8 @@ from typing import Any
 
 from shaftprint.arrays import FloatArray
 from shaftprint.fingerprint._quantity import Quantity
-from shaftprint.notebook import LabelledData, labelled_rows
+from shaftprint.notebook._labelled import LabelledData
+from shaftprint.notebook._labelled_rows import labelled_rows
 
 
 def labelled_numbers(

@@ -7,11 +7,11 @@ import numpy as np
 from pydantic import Field, FiniteFloat, NonNegativeFloat, PositiveFloat, PositiveInt, model_validator
 
 from shaftprint.fingerprint._quantity import FrozenRecord
-from shaftprint.identify import NoiseLevels
+from shaftprint.identify.prediction._noise_levels import NoiseLevels
 from shaftprint.units import rpm_from_rev_s
 
 if TYPE_CHECKING:
-    from shaftprint.signals import LegState, WorkingPoint
+    from shaftprint.signals._working_points import LegState, WorkingPoint
 
 
 class LegRecord(FrozenRecord):

@@ -10,7 +10,7 @@ from typing import Annotated, Final, Literal, Self, TypeAlias
 
 from pydantic import Field, FiniteFloat, model_validator
 
-from shaftprint.catalogue import limited
+from shaftprint.catalogue._limited import limited
 from shaftprint.errors import StructureError
 from shaftprint.fingerprint._covariance_check import covariance_fault
 from shaftprint.fingerprint._quantity import Deviation, FrozenRecord, Quantity

@@ -10,7 +10,10 @@ from collections.abc import Callable, Mapping
 import numpy as np
 
 from shaftprint.arrays import BoolArray, ComplexArray, FloatArray, IntArray
-from shaftprint.models import Combination, Margins, Structure, loop_gain, margins
+from shaftprint.models._combination import Combination
+from shaftprint.models._margins import Margins, margins
+from shaftprint.models._nyquist import loop_gain
+from shaftprint.models._structure import Structure
 
 # Loop gains between these matter for margins.
 STRONG, WEAK = 30.0, 0.03

@@ -2,12 +2,13 @@
 
 import numpy as np
 
-from shaftprint.catalogue import ShipRole
+from shaftprint.catalogue._roles import ShipRole
 from shaftprint.fingerprint._margin_numbers import MEANINGS, margin_numbers, margin_values
 from shaftprint.fingerprint._quantity import Quantity
 from shaftprint.fingerprint._working_point_share import std_of_working_point, widened
-from shaftprint.identify import Identification
-from shaftprint.identify.uncertainty import Budget, Profile, budget
+from shaftprint.identify.fit._identification import Identification
+from shaftprint.identify.uncertainty._budget import Budget, budget
+from shaftprint.identify.uncertainty._profile import Profile
 
 UNKNOWN_STD = np.inf
 

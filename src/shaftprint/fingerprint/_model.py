@@ -5,12 +5,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from shaftprint.arrays import FloatArray, frozen_float
-from shaftprint.catalogue import ShipRole, limited, shipped_structure, with_bend
+from shaftprint.catalogue._bent_line import with_bend
+from shaftprint.catalogue._limited import limited
+from shaftprint.catalogue._roles import ShipRole
+from shaftprint.catalogue._shipped import shipped_structure
 from shaftprint.errors import FingerprintError, StructureError
 from shaftprint.escape import printable
 from shaftprint.fingerprint._fingerprint import Fingerprint
 from shaftprint.fingerprint._line_with_limits import LineWithLimits
-from shaftprint.models import Structure
+from shaftprint.models._structure import Structure
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

@@ -21,18 +21,19 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shaftprint.arrays import FloatArray
-from shaftprint.catalogue import ROLES, ShipRole
+from shaftprint.catalogue._roles import ROLES, ShipRole
 from shaftprint.fingerprint._quantity import Quantity
 from shaftprint.fingerprint._working_point_share import LOAD_WANDER, shares_over_torque, shifts_of_working_point
-from shaftprint.identify import Identification
-from shaftprint.identify.likelihood import stated_by_vessel
-from shaftprint.identify.uncertainty import Budget, budget
-from shaftprint.models import Combination, Structure
+from shaftprint.identify.fit._identification import Identification
+from shaftprint.identify.likelihood._known import stated_by_vessel
+from shaftprint.identify.uncertainty._budget import Budget, budget
+from shaftprint.models._combination import Combination
+from shaftprint.models._structure import Structure
 from shaftprint.normalisation import Normalisation
 
 if TYPE_CHECKING:
-    from shaftprint.signals import WorkingPoint
-    from shaftprint.vessel import Vessel
+    from shaftprint.signals._working_points import WorkingPoint
+    from shaftprint.vessel._vessel import Vessel
 
 PERCENT = 100.0
 IDEAL_SLOPE = 2.0

@@ -5,10 +5,10 @@ from typing import Annotated, Final, TypeAlias
 
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, PlainSerializer
 
-from shaftprint.catalogue import ROLES
+from shaftprint.catalogue._roles import ROLES
 from shaftprint.distributions import NORMAL_95
-from shaftprint.models import Role
-from shaftprint.notebook import field_words
+from shaftprint.models._role import Role
+from shaftprint.notebook._shown import field_words
 
 # An end of the interval further than this share of its width from the end that a standard deviation gives: only the
 # interval is shown.

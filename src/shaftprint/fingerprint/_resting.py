@@ -4,10 +4,10 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from shaftprint.identify import Identification
-from shaftprint.identify.search import Conditional
-from shaftprint.identify.uncertainty import Interval
-from shaftprint.models import Combination
+from shaftprint.identify.fit._identification import Identification
+from shaftprint.identify.search._conditional_minimum import Conditional
+from shaftprint.identify.uncertainty._profile import Interval
+from shaftprint.models._combination import Combination
 
 # Starts of the search beside the optimum: with one number held elsewhere the best branch may be another.
 _STARTS = 8

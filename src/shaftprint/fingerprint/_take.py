@@ -11,7 +11,7 @@ import numpy as np
 import shaftprint
 from shaftprint.arguments import refusing_none
 from shaftprint.arrays import FloatArray
-from shaftprint.catalogue import ShipRole
+from shaftprint.catalogue._roles import ShipRole
 from shaftprint.errors import FingerprintError
 from shaftprint.fingerprint._assumptions import assumptions_of
 from shaftprint.fingerprint._calibration import calibration_quantities
@@ -32,18 +32,21 @@ from shaftprint.fingerprint._working_point_share import (
     widened,
     widened_covariance,
 )
-from shaftprint.identify import Identification, assess, profile
-from shaftprint.identify.fit import Estimate
-from shaftprint.identify.uncertainty import Budget, Interval, budget
-from shaftprint.models import Combination
+from shaftprint.identify.fit._identification import Estimate, Identification
+from shaftprint.identify.judgement._verdict import assess
+from shaftprint.identify.uncertainty._budget import Budget, budget
+from shaftprint.identify.uncertainty._profile import Interval, profile
+from shaftprint.models._combination import Combination
 from shaftprint.reasons import Reason
 from shaftprint.units import SECONDS_PER_MINUTE
 
 if TYPE_CHECKING:
-    from shaftprint.campaign import Campaign, TrialConditions
-    from shaftprint.signals import Signals, WorkingPoint
-    from shaftprint.spectra import SignalToNoise
-    from shaftprint.vessel import Vessel
+    from shaftprint.campaign._campaign import Campaign
+    from shaftprint.campaign._trial_conditions import TrialConditions
+    from shaftprint.signals._signals import Signals
+    from shaftprint.signals._working_points import WorkingPoint
+    from shaftprint.spectra.lines._signal_to_noise import SignalToNoise
+    from shaftprint.vessel._vessel import Vessel
 
 
 @refusing_none(FingerprintError)

@@ -19,11 +19,11 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.distributions import NORMAL_95
-from shaftprint.identify import Identification
-from shaftprint.identify.uncertainty import Budget
+from shaftprint.identify.fit._identification import Identification
+from shaftprint.identify.uncertainty._budget import Budget
 
 if TYPE_CHECKING:
-    from shaftprint.signals import WorkingPoint
+    from shaftprint.signals._working_points import WorkingPoint
 
 LOAD_WANDER = "wander of the load"
 SPEED = "working-point speed"

@@ -6,11 +6,12 @@ from typing import Annotated, Any, Final
 
 from pydantic import Field, ValidationError, field_validator
 
-from shaftprint.campaign import TrialConditions
+from shaftprint.campaign._trial_conditions import TrialConditions
 from shaftprint.errors import SettingsError, StoreError
 from shaftprint.settings import Name, PositiveInteger, Settings
-from shaftprint.store import Line, Ship, Stated
-from shaftprint.vessel import ImoNumber, ShortName
+from shaftprint.store._nouns import Line, Ship
+from shaftprint.store._stated import Stated
+from shaftprint.vessel._ship import ImoNumber, ShortName
 
 OF_CONDITIONS: Final = tuple(TrialConditions.model_fields)
 """Facts of a test that no recording shows; they go into the fingerprint."""

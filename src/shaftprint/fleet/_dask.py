@@ -8,7 +8,8 @@ from shaftprint import __version__
 from shaftprint.arguments import refusing_none
 from shaftprint.errors import StoreError
 from shaftprint.fleet._work import LIMIT_S, Worked, work
-from shaftprint.store import job_counts, open_store
+from shaftprint.store._ledger import job_counts
+from shaftprint.store._store import open_store
 
 _WAIT_S: Final = 60.0
 _LOOK_S: Final = 5.0

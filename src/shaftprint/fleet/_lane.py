@@ -11,7 +11,9 @@ from shaftprint import __version__
 from shaftprint.errors import DatabaseError, ShaftprintError, StoreError
 from shaftprint.fleet._arguments import arguments_of
 from shaftprint.fleet._computer import Computer, Limits, Outcome
-from shaftprint.store import Job, Store, claim, finish, give_back, has_open_jobs, refuse, renew
+from shaftprint.store._job import Job
+from shaftprint.store._ledger import claim, finish, give_back, has_open_jobs, refuse, renew
+from shaftprint.store._store import Store
 
 POLL_S: Final = 2.0
 """How often a worker that has nothing to do looks for a job [s]."""

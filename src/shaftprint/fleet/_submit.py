@@ -10,13 +10,16 @@ from typing import Literal
 
 from shaftprint import __version__
 from shaftprint.arguments import refusing_none
-from shaftprint.campaign import load_campaign
-from shaftprint.catalogue import shipped_structure
+from shaftprint.campaign._campaign import load_campaign
+from shaftprint.catalogue._shipped import shipped_structure
 from shaftprint.errors import SettingsError, StoreError
 from shaftprint.fleet._arguments import JobArguments
 from shaftprint.settings import settings_content
-from shaftprint.store import Job, JobRequest, Store, enqueue, file_hashes
-from shaftprint.vessel import load_vessel
+from shaftprint.store._hashes import file_hashes
+from shaftprint.store._job import Job, JobRequest
+from shaftprint.store._ledger import enqueue
+from shaftprint.store._store import Store
+from shaftprint.vessel._vessel import load_vessel
 from shaftprint.zones import possible
 
 KIND = "identify"

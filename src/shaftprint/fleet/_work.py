@@ -12,7 +12,8 @@ from shaftprint.arguments import refusing_none
 from shaftprint.errors import DatabaseError, ShaftprintError, StoreError
 from shaftprint.fleet._computer import Limits
 from shaftprint.fleet._lane import Event, Lane
-from shaftprint.store import Job, Store
+from shaftprint.store._job import Job
+from shaftprint.store._store import Store
 
 # Each beat may write the step of every job that has gone on.
 _BEAT_S: Final = 5.0

@@ -27,62 +27,6 @@ folder          what happens there
 =============== ======================================================================================================
 """
 
-from shaftprint.identify.comparison import compare_structures
-from shaftprint.identify.fit import Identification, identify, identify_jointly
-from shaftprint.identify.judgement import Requirements, Verdict, assess
-from shaftprint.identify.likelihood import (
-    SHARE_ROUNDING,
-    MaximumLikelihood,
-    Prior,
-    StudentT,
-    Unweighted,
-    expected_from_vessel,
-    fit_percent,
-    priors_from_vessel,
-)
-from shaftprint.identify.prediction import (
-    STAN_TUG_NOISE,
-    STAN_TUG_NOISE_AT_SPEEDS,
-    NoiseLevels,
-    expected_response,
-    identifiability,
-    noise_at,
-    noise_levels,
-    planned_response,
-    predict_accuracy,
-)
-from shaftprint.identify.search import LatinHypercube, Settings, Uniform
-from shaftprint.identify.uncertainty import bootstrap, profile, profile_intervals
+import lazy_loader
 
-__all__ = [
-    "SHARE_ROUNDING",
-    "STAN_TUG_NOISE",
-    "STAN_TUG_NOISE_AT_SPEEDS",
-    "Identification",
-    "LatinHypercube",
-    "MaximumLikelihood",
-    "NoiseLevels",
-    "Prior",
-    "Requirements",
-    "Settings",
-    "StudentT",
-    "Uniform",
-    "Unweighted",
-    "Verdict",
-    "assess",
-    "bootstrap",
-    "compare_structures",
-    "expected_from_vessel",
-    "expected_response",
-    "fit_percent",
-    "identifiability",
-    "identify",
-    "identify_jointly",
-    "noise_at",
-    "noise_levels",
-    "planned_response",
-    "predict_accuracy",
-    "priors_from_vessel",
-    "profile",
-    "profile_intervals",
-]
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

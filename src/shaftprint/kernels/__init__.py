@@ -3,8 +3,3 @@
 What is kept is unpickled and run, so it is kept only where nobody but the user can have put it; elsewhere functions are
 compiled anew in every run. All compiled functions of the package are made here, so that one rule holds for all.
 """
-
-from shaftprint.kernels._compiled import compiled
-from shaftprint.kernels._folder import cache_folder, private_folder
-
-__all__ = ["cache_folder", "compiled", "private_folder"]

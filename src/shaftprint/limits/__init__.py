@@ -18,19 +18,6 @@ torque ``M_b``      -         of the engine, deviation over ``M_b0 = M_s0 / (i e
 =================== ========= ==========================================================================
 """
 
-from shaftprint.limits._candidates import Kind
-from shaftprint.limits._identify_limits import expect_engine, identify_limits
-from shaftprint.limits._levels_beside import Levels, levels_beside
-from shaftprint.limits._limit_fit import LimitEstimate, LimitFit
-from shaftprint.limits._limit_hints import limit_hints
+import lazy_loader
 
-__all__ = [
-    "Kind",
-    "Levels",
-    "LimitEstimate",
-    "LimitFit",
-    "expect_engine",
-    "identify_limits",
-    "levels_beside",
-    "limit_hints",
-]
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -7,7 +7,7 @@ from enum import Enum
 import numpy as np
 
 from shaftprint.arrays import FloatArray
-from shaftprint.catalogue import GovernorSymbol
+from shaftprint.catalogue._limited_governor import GovernorSymbol
 
 
 class Kind(Enum):

@@ -6,13 +6,20 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from shaftprint.arrays import FloatArray
-from shaftprint.catalogue import GovernorSymbol
-from shaftprint.identify import Identification, Prior, Settings, identify_jointly
-from shaftprint.identify.likelihood import MaximumLikelihood, build_joint_objective
-from shaftprint.identify.search import Draw, descend
+from shaftprint.catalogue._limited_governor import GovernorSymbol
+from shaftprint.identify.fit._identification import Identification
+from shaftprint.identify.fit._identify import identify_jointly
+from shaftprint.identify.likelihood._build_objective import build_joint_objective
+from shaftprint.identify.likelihood._prior import Prior
+from shaftprint.identify.likelihood._weighting import MaximumLikelihood
+from shaftprint.identify.search._levenberg_marquardt import descend
+from shaftprint.identify.search._settings import Settings
+from shaftprint.identify.search._starts import Draw
 from shaftprint.limits._candidates import IDLE, Kind, parameters_of
-from shaftprint.limits.prediction import GovernorRecord, Messages, PredictionError
-from shaftprint.models import Structure
+from shaftprint.limits.prediction._held_set_point import Messages
+from shaftprint.limits.prediction._prediction_error import PredictionError
+from shaftprint.limits.prediction._set_point import GovernorRecord
+from shaftprint.models._structure import Structure
 
 GOVERNOR: Mapping[str, float] = {
     GovernorSymbol.PROPORTIONAL_GAIN: 5.0,

@@ -6,11 +6,11 @@ from functools import partial
 
 import numpy as np
 
-from shaftprint.campaign import Campaign
-from shaftprint.catalogue import GovernorSymbol, limited_governor
+from shaftprint.campaign._campaign import Campaign
+from shaftprint.catalogue._limited_governor import GovernorSymbol, limited_governor
 from shaftprint.errors import SettingsError
-from shaftprint.identify import Identification, Prior
-from shaftprint.identify.fit import Estimate
+from shaftprint.identify.fit._identification import Estimate, Identification
+from shaftprint.identify.likelihood._prior import Prior
 from shaftprint.limits._candidates import CANDIDATES, Kind
 from shaftprint.limits._governor_fit import GOVERNOR, Fitted, fitted, identified, schwarz
 from shaftprint.limits._limit_fit import LimitFit
@@ -27,10 +27,11 @@ from shaftprint.limits._numbers import (
 from shaftprint.limits._search import Scanned, Search, with_messages
 from shaftprint.limits._set_point_quantum import quantum_of
 from shaftprint.limits._uncertainty import LevelScatter, spread_of
-from shaftprint.limits.prediction import Messages, governor_test
-from shaftprint.models import Structure
-from shaftprint.signals import Signals
-from shaftprint.vessel import Vessel
+from shaftprint.limits.prediction._governor_test import governor_test
+from shaftprint.limits.prediction._held_set_point import Messages
+from shaftprint.models._structure import Structure
+from shaftprint.signals._signals import Signals
+from shaftprint.vessel._vessel import Vessel
 
 # Drive of the search [Hz]; levels do not depend on milliseconds, and the reported fit has twice as much.
 COARSE_HZ = 100.0

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from shaftprint.arrays import FloatArray, frozen_float
-from shaftprint.campaign import Campaign
-from shaftprint.catalogue import GovernorSymbol
+from shaftprint.campaign._campaign import Campaign
+from shaftprint.catalogue._limited_governor import GovernorSymbol
 from shaftprint.errors import IdentificationError
 from shaftprint.limits._candidates import IDLE, STRUCTURE_LIMITS, Kind, idle_values, parameters_of
 from shaftprint.limits._governor_fit import (
@@ -29,9 +29,10 @@ from shaftprint.limits._identify_limits import COARSE_HZ, FINE, set_point_priors
 from shaftprint.limits._numbers import Units
 from shaftprint.limits._search import LEAST_GAIN
 from shaftprint.limits._uncertainty import spread_of
-from shaftprint.limits.prediction import PredictionError, governor_test
-from shaftprint.signals import Signals
-from shaftprint.vessel import Vessel
+from shaftprint.limits.prediction._governor_test import governor_test
+from shaftprint.limits.prediction._prediction_error import PredictionError
+from shaftprint.signals._signals import Signals
+from shaftprint.vessel._vessel import Vessel
 
 OF_SET_POINT = (GovernorSymbol.SET_POINT_SCALE, GovernorSymbol.SET_POINT_OFFSET)
 """What follows the recording, and not the governor."""

@@ -3,11 +3,11 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from shaftprint.identify import Identification
-from shaftprint.identify.fit import Estimate
+from shaftprint.identify.fit._identification import Estimate, Identification
 from shaftprint.limits._candidates import STRUCTURE_LIMITS, Kind, parameters_of
-from shaftprint.limits.prediction import PredictedTorque
-from shaftprint.notebook import Shown, Summary, shortened
+from shaftprint.limits.prediction._prediction_error import PredictedTorque
+from shaftprint.notebook._shown import Shown
+from shaftprint.notebook._summary import Summary, shortened
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from shaftprint.spectra import Harmonics
+from shaftprint.spectra.lines._harmonics import Harmonics
 
 # A harmonic counts where noise is as large in one of a million lines, and where it is this share of the line.
 LEAST_POWER, LEAST_SHARE = 14.0, 0.02

@@ -6,12 +6,13 @@ from dataclasses import replace
 import numpy as np
 
 from shaftprint.arrays import BoolArray, frozen_bool
-from shaftprint.campaign import Campaign
-from shaftprint.catalogue import GovernorSymbol
-from shaftprint.identify import Prior
+from shaftprint.campaign._campaign import Campaign
+from shaftprint.catalogue._limited_governor import GovernorSymbol
+from shaftprint.identify.likelihood._prior import Prior
 from shaftprint.limits._candidates import Kind
 from shaftprint.limits._governor_fit import Fitted
-from shaftprint.limits.prediction import OUTPUT, GovernorRecord
+from shaftprint.limits.prediction._prediction_error import OUTPUT
+from shaftprint.limits.prediction._set_point import GovernorRecord
 
 # Share of the tests, the calmest first, whose torque changes so little that no limit is near.
 CALM = 0.5

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from shaftprint.catalogue import GovernorSymbol
+from shaftprint.catalogue._limited_governor import GovernorSymbol
 from shaftprint.distributions import NORMAL_95
 from shaftprint.limits._candidates import CANDIDATES, Kind, LimitCandidate
 from shaftprint.limits._governor_fit import GOVERNOR, Fitted
@@ -13,11 +13,12 @@ from shaftprint.limits._level_profile import LevelInterval, profile_interval
 from shaftprint.limits._limit_fit import LimitEstimate
 from shaftprint.limits._set_point_quantum import Quantum
 from shaftprint.limits._uncertainty import LevelScatter
-from shaftprint.limits.prediction import Messages, Reach
-from shaftprint.models import Parameter
-from shaftprint.signals import Signals
+from shaftprint.limits.prediction._held_set_point import Messages
+from shaftprint.limits.prediction._reach import Reach
+from shaftprint.models._parameter import Parameter
+from shaftprint.signals._signals import Signals
 from shaftprint.units import rpm_from_rev_s
-from shaftprint.vessel import Vessel
+from shaftprint.vessel._vessel import Vessel
 
 # A number whose interval is wider than this share of it is hardly known.
 HARDLY_KNOWN = 0.6

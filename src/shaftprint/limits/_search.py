@@ -5,15 +5,18 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from shaftprint.campaign import Campaign
-from shaftprint.catalogue import GovernorSymbol
+from shaftprint.campaign._campaign import Campaign
+from shaftprint.catalogue._limited_governor import GovernorSymbol
 from shaftprint.errors import IdentificationError
-from shaftprint.identify import Prior
+from shaftprint.identify.likelihood._prior import Prior
 from shaftprint.limits._candidates import CANDIDATES, Kind, LimitCandidate, idle_values, starts_of
 from shaftprint.limits._governor_fit import GOVERNOR, NEGLIGIBLE_FALL, Fitted, fitted, schwarz, values_without_limits
 from shaftprint.limits._moves import LARGEST_OFFSET, SAME_OFFSET, calm_part, delay_moves, rest_moves
-from shaftprint.limits.prediction import GovernorRecord, GovernorTest, Messages, Reach, messages_of
-from shaftprint.models import Structure
+from shaftprint.limits.prediction._governor_test import GovernorTest
+from shaftprint.limits.prediction._held_set_point import Messages, messages_of
+from shaftprint.limits.prediction._reach import Reach
+from shaftprint.limits.prediction._set_point import GovernorRecord
+from shaftprint.models._structure import Structure
 
 # Gain of twice the log-likelihood over what Schwarz' criterion asks that a limit must bring to be named.
 LEAST_GAIN = 25.0

@@ -13,11 +13,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from shaftprint.arrays import BoolArray, ComplexArray, FloatArray
-from shaftprint.campaign import BinarySequence, Campaign, Staircase
-from shaftprint.catalogue import GovernorSymbol
+from shaftprint.campaign._binary_sequence import BinarySequence
+from shaftprint.campaign._campaign import Campaign
+from shaftprint.campaign._excitations import Staircase
+from shaftprint.catalogue._limited_governor import GovernorSymbol
 from shaftprint.limits._candidates import Kind
 from shaftprint.limits._governor_fit import GOVERNOR, Fitted, values_without_limits
-from shaftprint.limits.prediction import GovernorRecord, GovernorTest, Innovations
+from shaftprint.limits.prediction._governor_test import GovernorTest
+from shaftprint.limits.prediction._noise_colour import Innovations
+from shaftprint.limits.prediction._set_point import GovernorRecord
 
 # Steps that are looked for, over the speed of the working point. Finer ones cannot be told from what noise and
 # deadbands do; coarser ones are levels of a switch.

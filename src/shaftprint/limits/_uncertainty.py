@@ -13,12 +13,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from shaftprint.arrays import FloatArray, frozen_float
-from shaftprint.catalogue import GovernorSymbol
+from shaftprint.catalogue._limited_governor import GovernorSymbol
 from shaftprint.errors import IdentificationError
 from shaftprint.limits._governor_fit import Fitted
-from shaftprint.limits.prediction import GovernorTest, PredictionError
-from shaftprint.signals import Signals
-from shaftprint.vessel import Vessel
+from shaftprint.limits.prediction._governor_test import GovernorTest
+from shaftprint.limits.prediction._prediction_error import PredictionError
+from shaftprint.signals._signals import Signals
+from shaftprint.vessel._vessel import Vessel
 
 # Sums of slopes over this time are independent of each other [s]: loop and hunting have forgotten it.
 BLOCK_S = 10.0

@@ -3,20 +3,6 @@
 Whatever a template is given is escaped by ``environment`` and nowhere else.
 """
 
-from shaftprint.markup._environment import TABLE, environment, shown_table, style_sheet, template_text
-from shaftprint.markup._html import cell_html, sentence_html, symbol_html
-from shaftprint.markup._symbols import mathtext, name_parts, plain_label
+import lazy_loader
 
-__all__ = [
-    "TABLE",
-    "cell_html",
-    "environment",
-    "mathtext",
-    "name_parts",
-    "plain_label",
-    "sentence_html",
-    "shown_table",
-    "style_sheet",
-    "symbol_html",
-    "template_text",
-]
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

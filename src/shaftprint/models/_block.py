@@ -10,7 +10,9 @@ from shaftprint.arrays import ComplexArray, FloatArray
 from shaftprint.errors import StructureError
 from shaftprint.models._expression import Dual, Expression, Gradient, Polynomials, Walk
 from shaftprint.models._parameter import Parameter
-from shaftprint.models.equations import Flow, Formula, Ratio, coefficients, realised
+from shaftprint.models.equations._flow import Flow
+from shaftprint.models.equations._formula import Formula
+from shaftprint.models.equations._realisation import Ratio, coefficients, realised
 
 # Share of a parameter by which it is moved to find a derivative: errors of rounding and of the formula are alike.
 STEP = 1e-3

@@ -10,7 +10,8 @@ from shaftprint.errors import StructureError
 from shaftprint.models._block import Block
 from shaftprint.models._expression import Polynomials
 from shaftprint.models._parameter import Parameter
-from shaftprint.models.equations import Flow, Formula
+from shaftprint.models.equations._flow import Flow
+from shaftprint.models.equations._formula import Formula
 
 
 @dataclass(frozen=True, slots=True, eq=False)

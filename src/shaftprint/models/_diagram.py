@@ -19,7 +19,8 @@ from shaftprint.models._expression import Dual, Gradient, Walk
 from shaftprint.models._parameter import Parameter
 from shaftprint.models._program import Program, completed
 from shaftprint.models._small_signal import SmallSignal
-from shaftprint.models.equations import Flow, Formula, number
+from shaftprint.models.equations._flow import Flow
+from shaftprint.models.equations._formula import Formula, number
 
 Equations = Callable[[Flow, Formula, Any], Mapping[str, Formula]]
 

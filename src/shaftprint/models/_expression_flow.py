@@ -13,18 +13,10 @@ from shaftprint.errors import StructureError
 from shaftprint.models._block import Block
 from shaftprint.models._delays import AveragingSensor, Delay
 from shaftprint.models._expression import Constant, Expression, Inverse, Parallel, Sensitivity, Series
-from shaftprint.models.equations import (
-    Flow,
-    Formula,
-    Ratio,
-    depends,
-    derivative,
-    number,
-    product,
-    realised,
-    replaced,
-    total,
-)
+from shaftprint.models.equations._calculus import depends, derivative, replaced
+from shaftprint.models.equations._flow import Flow
+from shaftprint.models.equations._formula import Formula, number
+from shaftprint.models.equations._realisation import Ratio, product, realised, total
 
 # How often the change of an input or of a late signal can be taken.
 KNOWN_CHANGES = 1

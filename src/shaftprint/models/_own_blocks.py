@@ -14,7 +14,7 @@ from shaftprint.models._block import Block
 from shaftprint.models._expression import Polynomials
 from shaftprint.models._imaginary_step import NOT_DIFFERENTIABLE, slope, stepped
 from shaftprint.models._parameter import Parameter
-from shaftprint.models.equations import Formula
+from shaftprint.models.equations._formula import Formula
 
 Coefficients: TypeAlias = Callable[..., tuple[Sequence[ArrayLike], Sequence[ArrayLike]]]
 

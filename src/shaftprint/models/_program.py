@@ -7,7 +7,9 @@ from typing import Any
 from shaftprint.errors import StructureError
 from shaftprint.models._expression_flow import split_common_shift, split_shift
 from shaftprint.models._structure import Structure
-from shaftprint.models.equations import Flow, Formula, Past, as_formula, number, postorder, replaced, swept
+from shaftprint.models.equations._calculus import postorder, replaced, swept
+from shaftprint.models.equations._flow import Flow, Past
+from shaftprint.models.equations._formula import Formula, as_formula, number
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

@@ -6,7 +6,9 @@ import numpy as np
 
 from shaftprint.arrays import ComplexArray, FloatArray
 from shaftprint.models._program import Program
-from shaftprint.models.equations import Array, Formula, Leaves, derivatives, evaluate
+from shaftprint.models.equations._calculus import derivatives
+from shaftprint.models.equations._evaluate import Array, Leaves, evaluate
+from shaftprint.models.equations._formula import Formula
 
 
 class SmallSignal:

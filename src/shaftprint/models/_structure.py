@@ -28,7 +28,8 @@ from shaftprint.models._parameter import Parameter
 from shaftprint.models._renaming import Renaming
 from shaftprint.models._role import Role
 from shaftprint.models._tied_parameter import Tie, through_ties
-from shaftprint.notebook import Shown, Summary, shortened
+from shaftprint.notebook._shown import Shown
+from shaftprint.notebook._summary import Summary, shortened
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False, weakref_slot=True, repr=False)

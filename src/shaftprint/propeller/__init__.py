@@ -20,23 +20,6 @@ quantity              unit    meaning and sign
 ``OpenWaterCurve`` holds in the first quadrant, ship and propeller ahead; ``FourQuadrantCurve`` in all four.
 """
 
-from shaftprint.propeller._four_quadrants import Bollard, FourQuadrantCurve, ThrustAndTorque, four_quadrants
-from shaftprint.propeller._ka4_70 import ka4_70_in_19a
-from shaftprint.propeller._open_water import OpenWaterCurve, OpenWaterPoint
-from shaftprint.propeller._polynomial import Polynomial
-from shaftprint.propeller._steady_sailing import SteadySailing, sail_steadily
-from shaftprint.propeller._wageningen_b import wageningen_b
+import lazy_loader
 
-__all__ = [
-    "Bollard",
-    "FourQuadrantCurve",
-    "OpenWaterCurve",
-    "OpenWaterPoint",
-    "Polynomial",
-    "SteadySailing",
-    "ThrustAndTorque",
-    "four_quadrants",
-    "ka4_70_in_19a",
-    "sail_steadily",
-    "wageningen_b",
-]
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.errors import PropellerError
-from shaftprint.notebook import Shown
+from shaftprint.notebook._shown import Shown
 from shaftprint.propeller._b4_70_coefficients import B4_70
 
 # The speed of the blades is taken at this share of the radius.

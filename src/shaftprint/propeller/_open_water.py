@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from shaftprint.errors import PropellerError
-from shaftprint.notebook import Shown
+from shaftprint.notebook._shown import Shown
 from shaftprint.propeller._polynomial import Polynomial
 
 # Where rounding leaves an advance ratio a little beyond the end of the curve.

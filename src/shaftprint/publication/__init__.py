@@ -10,8 +10,3 @@ file in the folder       meaning
 
 Without a journal the folder holds the earlier results; with one, the new. Decision 31 says why.
 """
-
-from shaftprint.publication._journal import CONTROL_NAMES, is_inner
-from shaftprint.publication._publish import complete, publish, staged
-
-__all__ = ["CONTROL_NAMES", "complete", "is_inner", "publish", "staged"]

@@ -8,9 +8,13 @@ from shaftprint.arguments import refusing_none
 from shaftprint.errors import RecordingError
 from shaftprint.escape import terminal_message
 from shaftprint.files import reason
-from shaftprint.publication import complete
+from shaftprint.publication._publish import complete
 from shaftprint.recording._recording import Recording
-from shaftprint.recording.readers import FASTEST_HZ, READERS, SLOWEST_HZ, Reader, read_outside, remedy
+from shaftprint.recording.readers._all import READERS
+from shaftprint.recording.readers._outside import read_outside
+from shaftprint.recording.readers._reader import Reader
+from shaftprint.recording.readers._time_scale import FASTEST_HZ, SLOWEST_HZ
+from shaftprint.recording.readers._unread import remedy
 
 # a log of ordinary service has a value a second or more often
 _SLOW_FILE_HZ = 0.2

@@ -9,7 +9,8 @@ from types import TracebackType
 from typing import Self
 
 from shaftprint.errors import RecordingError
-from shaftprint.notebook import Shown, Summary, shortened
+from shaftprint.notebook._shown import Shown
+from shaftprint.notebook._summary import Summary, shortened
 from shaftprint.recording._channel import Channel
 from shaftprint.recording._levels import Levels, levels_of
 

@@ -10,8 +10,6 @@ limited share       -       part of the time of a leg for which a limit of the s
 The tug shares no physics with the models that are identified from it, so that what a plan overlooks shows.
 """
 
-from shaftprint.rehearsal._continue import standing_after
-from shaftprint.rehearsal._rehearse import rehearse_on_tug
-from shaftprint.rehearsal._simulated_ship import simulated_truth, tug_of_plan
+import lazy_loader
 
-__all__ = ["rehearse_on_tug", "simulated_truth", "standing_after", "tug_of_plan"]
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

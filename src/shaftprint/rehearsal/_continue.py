@@ -5,15 +5,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shaftprint.design import SailedLeg, Standing, standing_of
+from shaftprint.design.planned_test._planned_test import SailedLeg
+from shaftprint.design.standing._standing import Standing, standing_of
 from shaftprint.errors import DesignError
-from shaftprint.identify import Settings, identify, identify_jointly
-from shaftprint.survey import Trial, leg_pairs
+from shaftprint.identify.fit._identify import identify, identify_jointly
+from shaftprint.identify.search._settings import Settings
+from shaftprint.survey._legs import leg_pairs
+from shaftprint.survey._trial import Trial
 from shaftprint.units import rpm_from_rev_s
 
 if TYPE_CHECKING:
-    from shaftprint.design import PlannedTest
-    from shaftprint.survey import Measurement
+    from shaftprint.design.planned_test._planned_test import PlannedTest
+    from shaftprint.survey._measurement import Measurement
 
 
 def standing_after(

@@ -6,22 +6,25 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shaftprint.design import Rehearsal, RehearsedTest, rehearse
+from shaftprint.design.planned_test._rehearsal import Rehearsal, RehearsedTest, rehearse
 from shaftprint.errors import DesignError
-from shaftprint.identify import Identification, Settings
-from shaftprint.identify.fit import fit_of
-from shaftprint.recording import read_recording
+from shaftprint.identify.fit._fit_of import fit_of
+from shaftprint.identify.fit._identification import Identification
+from shaftprint.identify.search._settings import Settings
+from shaftprint.recording._read import read_recording
 from shaftprint.rehearsal._simulated_ship import simulated_truth, tug_of_plan
-from shaftprint.signals import prepare_signals
-from shaftprint.survey import SILENT, Progress, leg_pairs, legs_of
-from shaftprint.tug import normalised_truth, sail
+from shaftprint.signals._prepare import prepare_signals
+from shaftprint.survey._legs import leg_pairs, legs_of
+from shaftprint.survey._progress import SILENT, Progress
+from shaftprint.tug._sail import sail
+from shaftprint.tug._truth import normalised_truth
 
 if TYPE_CHECKING:
-    from shaftprint.campaign import Campaign
-    from shaftprint.design import PlannedTest
-    from shaftprint.signals import Signals
-    from shaftprint.tug import Tug
-    from shaftprint.vessel import Vessel
+    from shaftprint.campaign._campaign import Campaign
+    from shaftprint.design.planned_test._planned_test import PlannedTest
+    from shaftprint.signals._signals import Signals
+    from shaftprint.tug._tug import Tug
+    from shaftprint.vessel._vessel import Vessel
 
 
 def rehearse_on_tug(

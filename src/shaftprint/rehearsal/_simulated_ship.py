@@ -7,16 +7,20 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from shaftprint.catalogue import CLOSED_LOOPS, OF_THE_SHIP, ShipRole, sails_free
-from shaftprint.design import stated_limits
+from shaftprint.catalogue._known_propeller import OF_THE_SHIP, sails_free
+from shaftprint.catalogue._roles import ShipRole
+from shaftprint.catalogue._thesis import CLOSED_LOOPS
+from shaftprint.design.operation._limit_use import stated_limits
 from shaftprint.errors import DesignError
-from shaftprint.tug import Tug, like_stan_tug_1205
+from shaftprint.tug._like_stan_tug import like_stan_tug_1205
+from shaftprint.tug._tug import Tug
 from shaftprint.units import rev_s_from_rpm
 
 if TYPE_CHECKING:
-    from shaftprint.design import Plan, PlannedTest
-    from shaftprint.models import Role
-    from shaftprint.vessel import Vessel
+    from shaftprint.design.plan._plan import Plan
+    from shaftprint.design.planned_test._planned_test import PlannedTest
+    from shaftprint.models._role import Role
+    from shaftprint.vessel._vessel import Vessel
 
 # The propeller of the simulated tug takes the square of its speed.
 _LOAD_SLOPE = 2.0

@@ -6,8 +6,11 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from shaftprint.report._folder import FIGURES, PLOTS
-from shaftprint.report.charts import chart_script, plotly_version, quick_script, save_chart
-from shaftprint.report.sections import Picture
+from shaftprint.report.charts._pictures import save_chart
+from shaftprint.report.charts._plotly import chart_script
+from shaftprint.report.charts._quick_script import quick_script
+from shaftprint.report.charts._script import plotly_version
+from shaftprint.report.sections._sections import Picture
 
 # On the page, and as a drawing whose lines stay sharp.
 SUFFIXES = (".svg", ".pdf", ".png")

@@ -5,17 +5,20 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from shaftprint.drift import sister_sentences
+from shaftprint.drift._sister_words import sister_sentences
 from shaftprint.report._page import Page, write_page
-from shaftprint.report.comparison import cause_spread_table, number_spread_table, sister_table, source_table
-from shaftprint.report.figures import sister_chart
-from shaftprint.report.sections import Card, Cover, Picture, Section, State
+from shaftprint.report.comparison._sister_tables import cause_spread_table, number_spread_table, sister_table
+from shaftprint.report.comparison._tables import source_table
+from shaftprint.report.figures._sisters import sister_chart
+from shaftprint.report.sections._cover import Card, Cover, State
+from shaftprint.report.sections._sections import Picture, Section
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from datetime import datetime
 
-    from shaftprint.drift import ClassFinding, Sister
+    from shaftprint.drift._class_finding import ClassFinding
+    from shaftprint.drift._class_numbers import Sister
 
 HEADLINES: Mapping[State, str] = {
     "look": "Not all ships are as their sisters are",

@@ -5,29 +5,26 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from shaftprint.catalogue import STRUCTURES, structure
-from shaftprint.drift import LOAD_REPEATABILITY, Finding, are_two_lines, differ
+from shaftprint.catalogue._thesis import STRUCTURES, structure
+from shaftprint.drift._differ import LOAD_REPEATABILITY, differ
+from shaftprint.drift._finding import Finding
+from shaftprint.drift._shared_errors import are_two_lines
 from shaftprint.errors import ReportError
+from shaftprint.plain_table import Table
 from shaftprint.report._curve import fingerprint_curve
 from shaftprint.report._page import Page, write_page
-from shaftprint.report.comparison import (
-    Difference,
-    beside_table,
-    cause_table,
-    condition_table,
-    difference_table,
-    differences,
-    source_table,
-    vessel_file_sentences,
-    vessel_file_table,
-)
-from shaftprint.report.figures import bode_chart, difference_chart, shown_names
-from shaftprint.report.sections import Picture, Section, comparison_cover, not_alike
-from shaftprint.tables import Table
+from shaftprint.report.comparison._cause_table import cause_table
+from shaftprint.report.comparison._differences import Difference, differences
+from shaftprint.report.comparison._tables import beside_table, condition_table, difference_table, source_table
+from shaftprint.report.comparison._vessel_file_words import vessel_file_sentences, vessel_file_table
+from shaftprint.report.figures._bode import bode_chart
+from shaftprint.report.figures._differences import difference_chart, shown_names
+from shaftprint.report.sections._comparison_cover import comparison_cover, not_alike
+from shaftprint.report.sections._sections import Picture, Section
 
 if TYPE_CHECKING:
-    from shaftprint.fingerprint import Fingerprint
-    from shaftprint.models import Structure
+    from shaftprint.fingerprint._fingerprint import Fingerprint
+    from shaftprint.models._structure import Structure
     from shaftprint.report._curve import Curve
 
 FEWEST = 2

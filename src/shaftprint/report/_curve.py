@@ -7,13 +7,15 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import StructureError
-from shaftprint.fingerprint import Fingerprint, identified_model
-from shaftprint.models import Inverse, Sensitivity, Structure
+from shaftprint.fingerprint._fingerprint import Fingerprint
+from shaftprint.fingerprint._model import identified_model
+from shaftprint.models._expression import Inverse, Sensitivity
+from shaftprint.models._structure import Structure
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from shaftprint.identify import Identification
+    from shaftprint.identify.fit._identification import Identification
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

@@ -8,23 +8,18 @@ from typing import TYPE_CHECKING
 
 from shaftprint.arguments import refusing_none
 from shaftprint.errors import ReportError
-from shaftprint.fingerprint import DriveFingerprint, drive_fingerprint_content
+from shaftprint.fingerprint._drive_fingerprint import DriveFingerprint, drive_fingerprint_content
+from shaftprint.plain_table import Table, texts
 from shaftprint.report._page import Page, write_page
-from shaftprint.report.figures import SimulatedSignal, simulation_chart
-from shaftprint.report.sections import Picture, Section, picture_name
-from shaftprint.tables import (
-    Table,
-    drive_assumed_table,
-    drive_record_table,
-    drive_response_table,
-    quantity_table,
-    texts,
-)
-from shaftprint.time_domain import RecordFit
+from shaftprint.report.figures._simulation import SimulatedSignal, simulation_chart
+from shaftprint.report.sections._sections import Picture, Section, picture_name
+from shaftprint.tables._drive import drive_assumed_table, drive_record_table, drive_response_table
+from shaftprint.tables._fingerprint import quantity_table
+from shaftprint.time_domain._record_fit import RecordFit
 
 if TYPE_CHECKING:
-    from shaftprint.bench import DriveFit
-    from shaftprint.report.charts import Chart
+    from shaftprint.bench._fit import DriveFit
+    from shaftprint.report.charts._chart import Chart
 
 
 @refusing_none(ReportError)

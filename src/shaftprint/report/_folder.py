@@ -4,7 +4,7 @@ import contextlib
 from collections.abc import Iterator
 from pathlib import Path, PurePosixPath
 
-from shaftprint.publication import publish, staged
+from shaftprint.publication._publish import publish, staged
 
 PAGE = "index.html"
 THESIS = "thesis.html"

@@ -5,16 +5,22 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from shaftprint.drift import ALL_CAUSES, SizedCause, differ, watch_sentences
+from shaftprint.drift._causes import ALL_CAUSES
+from shaftprint.drift._differ import differ
+from shaftprint.drift._finding import SizedCause
+from shaftprint.drift._words import watch_sentences
 from shaftprint.report._page import Page, write_page
-from shaftprint.report.comparison import course_table, history_table, source_table
-from shaftprint.report.figures import history_chart
-from shaftprint.report.sections import Card, Cover, Picture, Section, State
+from shaftprint.report.comparison._history_tables import course_table, history_table
+from shaftprint.report.comparison._tables import source_table
+from shaftprint.report.figures._history import history_chart
+from shaftprint.report.sections._cover import Card, Cover, State
+from shaftprint.report.sections._sections import Picture, Section
 
 if TYPE_CHECKING:
     from datetime import datetime
 
-    from shaftprint.drift import History, WatchFinding
+    from shaftprint.drift._drift_finding import WatchFinding
+    from shaftprint.drift._history import History
 
 
 HEADLINES: Mapping[State, str] = {

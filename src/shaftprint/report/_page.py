@@ -20,12 +20,13 @@ from jinja2 import Template
 from markupsafe import Markup
 
 from shaftprint.errors import ReportError
-from shaftprint.markup import environment, shown_table, style_sheet, template_text
+from shaftprint.markup._environment import environment, shown_table, style_sheet, template_text
+from shaftprint.plain_table import Table
 from shaftprint.report._chart_files import ChartFiles, write_charts, write_scripts
 from shaftprint.report._folder import PAGE, PDF, report_written_whole
-from shaftprint.report.charts import plotly_script, plotly_sheets
-from shaftprint.report.sections import Cover, Section
-from shaftprint.tables import Table
+from shaftprint.report.charts._script import plotly_script, plotly_sheets
+from shaftprint.report.sections._cover import Cover
+from shaftprint.report.sections._sections import Section
 
 TEMPLATE, CHART_TEMPLATE = "report.html.j2", "chart.html.j2"
 TEMPLATES = (TEMPLATE, CHART_TEMPLATE, "sketch.svg.j2")

@@ -2,28 +2,28 @@
 
 from typing import TYPE_CHECKING, TypeAlias
 
-from shaftprint.catalogue import STRUCTURES, structure
+from shaftprint.catalogue._thesis import STRUCTURES, structure
 from shaftprint.errors import ReportError
-from shaftprint.fingerprint import Fingerprint
-from shaftprint.identify import Identification
-from shaftprint.identify.uncertainty import Budget
-from shaftprint.limits import LimitFit
+from shaftprint.fingerprint._fingerprint import Fingerprint
+from shaftprint.identify.fit._identification import Identification
+from shaftprint.identify.uncertainty._budget import Budget
+from shaftprint.limits._limit_fit import LimitFit
 from shaftprint.report._curve import Curve, fingerprint_curve
-from shaftprint.report.charts import Chart, draw
-from shaftprint.report.figures import (
-    bode_chart,
-    budget_chart,
-    fit_chart,
-    limit_chart,
-    mode_chart,
-    signal_chart,
-    validation_summary_chart,
-)
-from shaftprint.signals import Signals
-from shaftprint.spectra import FrequencyResponse, Spectra
-from shaftprint.survey import Survey
-from shaftprint.torsion import Modes
-from shaftprint.validation import Validation
+from shaftprint.report.charts._chart import Chart
+from shaftprint.report.charts._pictures import draw
+from shaftprint.report.figures._bode import bode_chart
+from shaftprint.report.figures._covariance import budget_chart
+from shaftprint.report.figures._fit import fit_chart
+from shaftprint.report.figures._limits import limit_chart
+from shaftprint.report.figures._modes import mode_chart
+from shaftprint.report.figures._time_series import signal_chart
+from shaftprint.report.figures._validation import validation_summary_chart
+from shaftprint.signals._signals import Signals
+from shaftprint.spectra._frequency_response import FrequencyResponse
+from shaftprint.spectra._spectra import Spectra
+from shaftprint.survey._survey import Survey
+from shaftprint.torsion._modes import Modes
+from shaftprint.validation._validation import Validation
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -6,21 +6,24 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from shaftprint.arguments import refusing_none
-from shaftprint.clocks import logger_clocks
+from shaftprint.clocks._logger_clock import logger_clocks
 from shaftprint.errors import ReportError
 from shaftprint.files import written_whole
-from shaftprint.fingerprint import fingerprint_sha256
+from shaftprint.fingerprint._json_file import fingerprint_sha256
+from shaftprint.plain_table import Table, texts
 from shaftprint.report._folder import PAGE, THESIS
 from shaftprint.report._page import Page, expect_reportlab, page_as_pdf, write_page
-from shaftprint.report.sections import Inputs, Section, cover_of, page_sections, thesis_sections
-from shaftprint.tables import Table, texts
+from shaftprint.report.sections._order import page_sections, thesis_sections
+from shaftprint.report.sections._sections import Inputs, Section
+from shaftprint.report.sections.first_page._cover_of import cover_of
 
 if TYPE_CHECKING:
-    from shaftprint.fingerprint import Fingerprint
-    from shaftprint.models import Structure
-    from shaftprint.recording import Recording
-    from shaftprint.spectra import FrequencyResponse
-    from shaftprint.survey import Survey, ThesisMode
+    from shaftprint.fingerprint._fingerprint import Fingerprint
+    from shaftprint.models._structure import Structure
+    from shaftprint.recording._recording import Recording
+    from shaftprint.spectra._frequency_response import FrequencyResponse
+    from shaftprint.survey._survey import Survey
+    from shaftprint.survey._thesis_mode import ThesisMode
 
 THESIS_TITLE = "The thesis' way on the same recording"
 

@@ -10,14 +10,15 @@ import scipy
 
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import SignalError
-from shaftprint.recording import stamped_values
+from shaftprint.recording._messages import stamped_values
 from shaftprint.signals._channels import blocks
 from shaftprint.signals._clock import Clock
-from shaftprint.signals.conditioning import decimated
-from shaftprint.signals.kinds import comes_in_messages
+from shaftprint.signals.conditioning._decimate import decimated
+from shaftprint.signals.kinds._splined_messages import comes_in_messages
 
 if TYPE_CHECKING:
-    from shaftprint.recording import Channel, Recording
+    from shaftprint.recording._channel import Channel
+    from shaftprint.recording._recording import Recording
 
 # A cubic spline goes through four values.
 _FEWEST = 4

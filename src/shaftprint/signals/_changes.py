@@ -3,12 +3,13 @@
 from typing import TYPE_CHECKING
 
 from shaftprint.reasons import Reason
-from shaftprint.signals.levels import expect_steady_gauge, expect_steady_set_point
+from shaftprint.signals.levels._set_point_steadiness import expect_steady_set_point
+from shaftprint.signals.levels._steadiness import expect_steady_gauge
 
 if TYPE_CHECKING:
-    from shaftprint.campaign import Campaign
+    from shaftprint.campaign._campaign import Campaign
     from shaftprint.signals._readings import Readings
-    from shaftprint.vessel import Vessel
+    from shaftprint.vessel._vessel import Vessel
 
 
 def changes_of_set_point(vessel: "Vessel", campaign: "Campaign", readings: "Readings") -> tuple[Reason, ...]:

@@ -10,13 +10,15 @@ from shaftprint.memory import give_back_memory
 from shaftprint.signals._channel_signals import ChannelRole
 from shaftprint.signals._clock import Clock, Mode, common_clock
 from shaftprint.signals._held_samples import HeldSamples, held_samples
-from shaftprint.signals.conditioning import Reading, RunTally
-from shaftprint.signals.kinds import find_sources
+from shaftprint.signals.conditioning._condition import Reading
+from shaftprint.signals.conditioning._runs import RunTally
+from shaftprint.signals.kinds._kinds import find_sources
 
 if TYPE_CHECKING:
-    from shaftprint.recording import Channel, Recording
-    from shaftprint.signals.kinds import Source
-    from shaftprint.vessel import Vessel
+    from shaftprint.recording._channel import Channel
+    from shaftprint.recording._recording import Recording
+    from shaftprint.signals.kinds._kind import Source
+    from shaftprint.vessel._vessel import Vessel
 
 # One thread computes while the other waits for the file; more would only queue for the file.
 _THREADS = 2

@@ -7,10 +7,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shaftprint.errors import SignalError
-from shaftprint.recording import judge_messages
+from shaftprint.recording._messages import judge_messages
 
 if TYPE_CHECKING:
-    from shaftprint.recording import Channel, Recording
+    from shaftprint.recording._channel import Channel
+    from shaftprint.recording._recording import Recording
 
 Counts: TypeAlias = NDArray[np.int16] | NDArray[np.float64]
 Advance: TypeAlias = Callable[[int], None]

@@ -9,10 +9,10 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.signals._channels import DEFAULT_BLOCK_SAMPLES, Advance
-from shaftprint.signals.conditioning import SampleGrid
+from shaftprint.signals.conditioning._decimate import SampleGrid
 
 if TYPE_CHECKING:
-    from shaftprint.recording import Channel
+    from shaftprint.recording._channel import Channel
 
 Mode: TypeAlias = Literal["shaftprint", "thesis"]
 """Whether each step is done shaftprint's way or the thesis' way."""

@@ -9,12 +9,15 @@ from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.errors import SignalError
 from shaftprint.signals._channels import DEFAULT_BLOCK_SAMPLES, blocks, expect_one_clock
 from shaftprint.signals._gaps import joined
-from shaftprint.signals.conditioning import SampleGrid, conditioned, fault_limits
-from shaftprint.signals.kinds import read_pick_up, speed_channel
+from shaftprint.signals.conditioning._condition import conditioned
+from shaftprint.signals.conditioning._decimate import SampleGrid
+from shaftprint.signals.conditioning._outliers import fault_limits
+from shaftprint.signals.kinds._encoder_speed import speed_channel
+from shaftprint.signals.kinds._pick_up import read_pick_up
 
 if TYPE_CHECKING:
-    from shaftprint.recording import Channel
-    from shaftprint.vessel import SpeedSensor
+    from shaftprint.recording._channel import Channel
+    from shaftprint.vessel._sensors import SpeedSensor
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

@@ -9,13 +9,14 @@ import numpy as np
 from shaftprint.signals._inspect import ChannelReport, PulseReport
 from shaftprint.signals._scale_reasons import scale_reasons
 from shaftprint.signals._working_points import WorkingPoint
-from shaftprint.signals.kinds import LARGEST_DIFFERENCE
-from shaftprint.signals.levels import direction_words
+from shaftprint.signals.kinds._compare import LARGEST_DIFFERENCE
+from shaftprint.signals.levels._working_point import direction_words
 
 if TYPE_CHECKING:
-    from shaftprint.campaign import Campaign
+    from shaftprint.campaign._campaign import Campaign
     from shaftprint.signals._signals import Signals
-    from shaftprint.vessel import SpeedSensor, Vessel
+    from shaftprint.vessel._sensors import SpeedSensor
+    from shaftprint.vessel._vessel import Vessel
 
 # All orders of more are tried no longer.
 _MOST_SENSORS = 7

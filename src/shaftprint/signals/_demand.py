@@ -11,15 +11,16 @@ import numpy as np
 from shaftprint.arrays import FloatArray
 from shaftprint.signals._channels import find_channel
 from shaftprint.signals._signals import SetPointDelay
-from shaftprint.signals.excitation import steps_of_sine
-from shaftprint.signals.kinds import MessageReading, read_messages
+from shaftprint.signals.excitation._quantum import steps_of_sine
+from shaftprint.signals.kinds._message_reading import MessageReading, read_messages
 from shaftprint.units import MILLI
 
 if TYPE_CHECKING:
-    from shaftprint.campaign import Campaign, Sine
-    from shaftprint.recording import Recording
+    from shaftprint.campaign._campaign import Campaign
+    from shaftprint.campaign._excitations import Sine
+    from shaftprint.recording._recording import Recording
     from shaftprint.signals._readings import Readings
-    from shaftprint.vessel import DemandSensor
+    from shaftprint.vessel._sensors import DemandSensor
 
 _FEWEST_LINES = 3
 # Fewer messages do not tell a sine from noise; nor do sines of fewer steps.

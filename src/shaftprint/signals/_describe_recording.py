@@ -7,12 +7,12 @@ from shaftprint.arguments import refusing_none
 from shaftprint.errors import SignalError
 from shaftprint.signals._channels import find_channel
 from shaftprint.signals._clock import clock_of
-from shaftprint.signals.description import Description, described
-from shaftprint.signals.kinds import read_set_point
+from shaftprint.signals.description._describe import Description, described
+from shaftprint.signals.kinds._set_point import read_set_point
 
 if TYPE_CHECKING:
-    from shaftprint.recording import Recording
-    from shaftprint.vessel import Vessel
+    from shaftprint.recording._recording import Recording
+    from shaftprint.vessel._vessel import Vessel
 
 # Rate at which the set point is looked at [Hz].
 _LOOKED_HZ = 200.0

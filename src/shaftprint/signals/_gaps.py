@@ -16,7 +16,7 @@ from shaftprint.arrays import BoolArray, FloatArray
 from shaftprint.signals._channels import time_of
 
 if TYPE_CHECKING:
-    from shaftprint.recording import Channel
+    from shaftprint.recording._channel import Channel
 
 # More gaps than this are listed as one.
 _MOST_LISTED = 8

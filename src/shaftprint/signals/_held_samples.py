@@ -15,7 +15,7 @@ import numpy as np
 
 from shaftprint.arrays import BoolArray, FloatArray, IntArray
 from shaftprint.reasons import Reason
-from shaftprint.signals.conditioning import Runs
+from shaftprint.signals.conditioning._runs import Runs
 from shaftprint.units import MILLI
 
 # A change by more steps than this is none to the next step.

@@ -5,18 +5,21 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from shaftprint.errors import SignalError
-from shaftprint.recording import Levels, watch_levels
+from shaftprint.recording._level_watch import watch_levels
+from shaftprint.recording._levels import Levels
 from shaftprint.signals._channel_readings import ChannelReadings, read_channels
 from shaftprint.signals._channel_signals import ChannelRole
 from shaftprint.signals._gaps import Gap
 from shaftprint.signals._signals import Repair
-from shaftprint.signals.kinds import PulseReading
+from shaftprint.signals.kinds._pick_up import PulseReading
 from shaftprint.units import rpm_from_rev_s
 
 if TYPE_CHECKING:
-    from shaftprint.recording import Channel, Recording
-    from shaftprint.signals.kinds import Source
-    from shaftprint.vessel import SpeedSensor, Vessel
+    from shaftprint.recording._channel import Channel
+    from shaftprint.recording._recording import Recording
+    from shaftprint.signals.kinds._kind import Source
+    from shaftprint.vessel._sensors import SpeedSensor
+    from shaftprint.vessel._vessel import Vessel
 
 _ORDER = (ChannelRole.RESPONSE, ChannelRole.EXCITATION, ChannelRole.SIDE)
 

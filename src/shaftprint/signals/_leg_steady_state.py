@@ -3,19 +3,14 @@
 from typing import TYPE_CHECKING
 
 from shaftprint.errors import SignalError
-from shaftprint.signals.kinds import SteadyState
-from shaftprint.signals.levels import (
-    DcScale,
-    LegSamples,
-    calibration_of_legs,
-    leg_periods,
-    leg_state,
-    repeated_periods,
-    stretch_of,
-)
+from shaftprint.signals.kinds._kind import SteadyState
+from shaftprint.signals.levels._dc_scale import DcScale
+from shaftprint.signals.levels._leg_periods import leg_periods
+from shaftprint.signals.levels._leg_state import LegSamples, calibration_of_legs, leg_state, stretch_of
+from shaftprint.signals.levels._repeated_periods import repeated_periods
 
 if TYPE_CHECKING:
-    from shaftprint.campaign import Campaign
+    from shaftprint.campaign._campaign import Campaign
     from shaftprint.signals._readings import Readings
     from shaftprint.signals._working_points import LegState
 

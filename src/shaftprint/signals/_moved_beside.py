@@ -4,10 +4,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 
-from shaftprint.campaign import Campaign
+from shaftprint.campaign._campaign import Campaign
 from shaftprint.signals._channel_signals import ChannelRole
-from shaftprint.signals.kinds import KINDS
-from shaftprint.vessel import Vessel
+from shaftprint.signals.kinds._kinds import KINDS
+from shaftprint.vessel._vessel import Vessel
 
 PITCH_SET_POINT, MACHINE_TORQUE = "pitch_set_point", "machine_torque"
 EXCITATIONS: Mapping[str, str] = MappingProxyType(

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from shaftprint.signals._channel_signals import SpeedSignal
-    from shaftprint.vessel import Order, Vessel
+    from shaftprint.vessel._orders import Order
+    from shaftprint.vessel._vessel import Vessel
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

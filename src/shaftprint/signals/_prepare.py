@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from shaftprint.arguments import refusing_none
 from shaftprint.arrays import FloatArray
-from shaftprint.campaign import Campaign
+from shaftprint.campaign._campaign import Campaign
 from shaftprint.errors import SignalError
 from shaftprint.memory import give_back_memory
 from shaftprint.reasons import Reason
@@ -23,45 +23,35 @@ from shaftprint.signals._rates import expect_one_rate
 from shaftprint.signals._readings import Readings, usable_readings
 from shaftprint.signals._signals import SetPointCalibration, Signals
 from shaftprint.signals._working_points import LegState
-from shaftprint.signals.excitation import (
-    FoundTest,
-    expect_campaign,
-    find_step_delays,
-    found_tests,
-    joined_about_lines,
-    left_out,
-    take_out_steps,
-)
-from shaftprint.signals.kinds import (
-    SetPointMessages,
-    Source,
-    SteadyState,
-    compare_speeds,
-    expect_moving_torque,
-    expect_one_sign,
-    read_set_point,
-)
-from shaftprint.signals.levels import (
-    DcScale,
-    calibrate,
-    calibrate_through_wander,
-    dc_scale,
+from shaftprint.signals.excitation._found_test import FoundTest
+from shaftprint.signals.excitation._found_tests import found_tests
+from shaftprint.signals.excitation._match import expect_campaign, left_out
+from shaftprint.signals.excitation._message_lines import joined_about_lines
+from shaftprint.signals.excitation._quantum import take_out_steps
+from shaftprint.signals.excitation._steps import find_step_delays
+from shaftprint.signals.kinds._compare import compare_speeds
+from shaftprint.signals.kinds._kind import Source, SteadyState
+from shaftprint.signals.kinds._set_point import SetPointMessages, read_set_point
+from shaftprint.signals.kinds._torque import expect_moving_torque, expect_one_sign
+from shaftprint.signals.levels._calibrate import calibrate, calibrate_through_wander
+from shaftprint.signals.levels._dc_scale import DcScale, dc_scale, scale_of_sines
+from shaftprint.signals.levels._leg_state import leg_state
+from shaftprint.signals.levels._steady import steady_stretches
+from shaftprint.signals.levels._working_point import (
     expect_asked_speed,
     expect_plausible,
     expect_stated_slope,
     find_working_point,
-    leg_state,
-    scale_of_sines,
-    steady_stretches,
     stretches_at_working_point,
     working_point_of_test,
     working_voltage,
 )
-from shaftprint.signals.pulses import expect_whole_crests
+from shaftprint.signals.pulses._flat_top import expect_whole_crests
 
 if TYPE_CHECKING:
-    from shaftprint.recording import Recording
-    from shaftprint.vessel import SetPointSensor, Vessel
+    from shaftprint.recording._recording import Recording
+    from shaftprint.vessel._set_point import SetPointSensor
+    from shaftprint.vessel._vessel import Vessel
 
 # Rate at which the set point alone is looked at [Hz].
 _SET_POINT_HZ = 200.0

@@ -6,11 +6,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shaftprint.reasons import Reason
-from shaftprint.recording import CLOCK_MAPS
+from shaftprint.recording._recording import CLOCK_MAPS
 from shaftprint.units import PPM
 
 if TYPE_CHECKING:
-    from shaftprint.recording import Channel, Recording
+    from shaftprint.recording._channel import Channel
+    from shaftprint.recording._recording import Recording
 
 # Rates that differ by less are one rate that was rounded; by more, different ones on purpose.
 _LEAST, _MOST = 2e-6, 1e-2

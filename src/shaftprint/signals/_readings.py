@@ -10,13 +10,13 @@ from shaftprint.signals._channel_readings import ChannelReadings
 from shaftprint.signals._gaps import Coverage, Gap, within
 from shaftprint.signals._held_samples import held_reasons
 from shaftprint.signals._signals import Repair
-from shaftprint.signals.conditioning import Reading
-from shaftprint.signals.kinds import SpeedReading
+from shaftprint.signals.conditioning._condition import Reading
+from shaftprint.signals.kinds._speed_reading import SpeedReading
 
 if TYPE_CHECKING:
     from shaftprint.arrays import FloatArray
     from shaftprint.signals._clock import Clock
-    from shaftprint.signals.kinds import Source
+    from shaftprint.signals.kinds._kind import Source
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from shaftprint.reasons import Reason
-from shaftprint.signals.levels import (
+from shaftprint.signals.levels._speed_scale import (
     ScaleDoubt,
     ScaleEvidence,
     asked_speed,
@@ -16,9 +16,10 @@ from shaftprint.signals.levels import (
 from shaftprint.units import rpm_from_rev_s
 
 if TYPE_CHECKING:
-    from shaftprint.campaign import Campaign
+    from shaftprint.campaign._campaign import Campaign
     from shaftprint.signals._working_points import WorkingPoint
-    from shaftprint.vessel import SpeedSensor, Vessel
+    from shaftprint.vessel._sensors import SpeedSensor
+    from shaftprint.vessel._vessel import Vessel
 
 # A factor is that of the gear within so much: the efficiency of the gear, and a load of another day.
 _LIKE_GEAR = 0.15

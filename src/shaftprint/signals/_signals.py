@@ -9,7 +9,9 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import SignalError
-from shaftprint.notebook import Labelled, LabelledData, Shown, Summary, Variable, shortened
+from shaftprint.notebook._labelled import Labelled, LabelledData, Variable
+from shaftprint.notebook._shown import Shown
+from shaftprint.notebook._summary import Summary, shortened
 from shaftprint.reasons import Reason
 from shaftprint.signals._channel_signals import ChannelSignal, ExcitationSignal, MessageSignal, SpeedSignal
 from shaftprint.signals._gaps import Coverage, Gap

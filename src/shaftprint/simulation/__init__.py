@@ -4,22 +4,6 @@ Everything follows from the equations that the blocks of a structure state; comp
 is stopped by its clutches has its equations from the catalogue and its numbers from the vessel file.
 """
 
-from shaftprint.simulation._equilibrium import Equilibrium, equilibrium, state_names
-from shaftprint.simulation._linearise import Linearisation, linearise
-from shaftprint.simulation._simulate import Trace, simulate
-from shaftprint.simulation._simulate_exactly import simulate_exactly
-from shaftprint.simulation._stopped_ship import StatedValue, StoppedShip, stopped_ship
+import lazy_loader
 
-__all__ = [
-    "Equilibrium",
-    "Linearisation",
-    "StatedValue",
-    "StoppedShip",
-    "Trace",
-    "equilibrium",
-    "linearise",
-    "simulate",
-    "simulate_exactly",
-    "state_names",
-    "stopped_ship",
-]
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

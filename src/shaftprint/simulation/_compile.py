@@ -10,7 +10,7 @@ import threading
 from pathlib import Path
 from types import ModuleType
 
-from shaftprint.kernels import private_folder
+from shaftprint.kernels._folder import private_folder
 
 _MAKING = threading.Lock()
 

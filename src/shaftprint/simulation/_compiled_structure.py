@@ -9,7 +9,10 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import StructureError
-from shaftprint.models import Formula, Program, Structure, derivatives, postorder, program_of
+from shaftprint.models._program import Program, program_of
+from shaftprint.models._structure import Structure
+from shaftprint.models.equations._calculus import derivatives, postorder
+from shaftprint.models.equations._formula import Formula
 from shaftprint.simulation._compile import module_of
 from shaftprint.simulation._exact_text import ExactText
 from shaftprint.simulation._kernel_text import KernelText

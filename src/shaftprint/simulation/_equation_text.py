@@ -7,7 +7,8 @@ each parameter, a block that the compiler can treat as one vector.
 
 from collections.abc import Iterable, Sequence
 
-from shaftprint.models import Formula, postorder
+from shaftprint.models.equations._calculus import postorder
+from shaftprint.models.equations._formula import Formula
 from shaftprint.simulation._loop_invariants import FormulaSlopes, Hoisted
 from shaftprint.simulation._text import statements
 

@@ -9,8 +9,9 @@ from numpy.typing import ArrayLike
 
 from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.errors import StructureError
-from shaftprint.models import Program, Structure
-from shaftprint.notebook import Shown
+from shaftprint.models._program import Program
+from shaftprint.models._structure import Structure
+from shaftprint.notebook._shown import Shown
 from shaftprint.simulation._compiled_structure import build
 from shaftprint.simulation._steady import Steady
 

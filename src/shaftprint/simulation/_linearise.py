@@ -7,8 +7,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from shaftprint.arrays import ComplexArray, FloatArray
-from shaftprint.models import Leaves, SmallSignal, Structure
-from shaftprint.notebook import Shown
+from shaftprint.models._small_signal import SmallSignal
+from shaftprint.models._structure import Structure
+from shaftprint.models.equations._evaluate import Leaves
+from shaftprint.notebook._shown import Shown
 from shaftprint.simulation._compiled_structure import build
 from shaftprint.simulation._equilibrium import Equilibrium, held_zeros, input_vector
 

@@ -4,7 +4,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import islice
 
-from shaftprint.models import Formula, Program, derivatives, postorder, rebuilt, replaced
+from shaftprint.models._program import Program
+from shaftprint.models.equations._calculus import derivatives, postorder, rebuilt, replaced
+from shaftprint.models.equations._formula import Formula
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

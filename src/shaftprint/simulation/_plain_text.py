@@ -4,7 +4,7 @@ import math
 from collections.abc import Callable, Sequence
 from typing import TypeAlias
 
-from shaftprint.models import Formula
+from shaftprint.models.equations._formula import Formula
 from shaftprint.simulation._compile import plain_module_of
 from shaftprint.simulation._text import statements
 

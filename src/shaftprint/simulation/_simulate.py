@@ -9,8 +9,8 @@ from numpy.typing import ArrayLike
 from shaftprint.arguments import refusing_none
 from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.errors import StructureError
-from shaftprint.models import Structure
-from shaftprint.notebook import Shown
+from shaftprint.models._structure import Structure
+from shaftprint.notebook._shown import Shown
 from shaftprint.simulation._compiled_structure import build
 from shaftprint.simulation._equilibrium import held_zeros
 from shaftprint.simulation._march import March

@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike
 
 from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.errors import ExactStepsError
-from shaftprint.models import Structure
+from shaftprint.models._structure import Structure
 from shaftprint.simulation._compiled_structure import Built, build
 from shaftprint.simulation._equilibrium import held_zeros
 from shaftprint.simulation._exact_grid import PRE, ExactGrid, jump_times

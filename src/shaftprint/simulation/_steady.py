@@ -6,7 +6,9 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import StructureError
-from shaftprint.models import Formula, Program, derivatives
+from shaftprint.models._program import Program
+from shaftprint.models.equations._calculus import derivatives
+from shaftprint.models.equations._formula import Formula
 from shaftprint.simulation._plain_text import Plain, plain_function
 
 LARGEST_STEPS = 80

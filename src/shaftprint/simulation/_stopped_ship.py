@@ -5,13 +5,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from shaftprint.card import four_quadrant_curve
-from shaftprint.catalogue import NOT_OF_THE_LINE, CrashStopSymbol, FourQuadrantPropeller, crash_stop
+from shaftprint.card._series import four_quadrant_curve
+from shaftprint.catalogue._crash_stop import NOT_OF_THE_LINE, CrashStopSymbol, FourQuadrantPropeller, crash_stop
 from shaftprint.errors import SettingsError
-from shaftprint.models import Structure
+from shaftprint.models._structure import Structure
 from shaftprint.normalisation import Normalisation
 from shaftprint.units import rev_s_from_rpm
-from shaftprint.vessel import Hull, Vessel
+from shaftprint.vessel._hull import Hull
+from shaftprint.vessel._vessel import Vessel
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -2,7 +2,8 @@
 
 from collections.abc import Mapping, Sequence
 
-from shaftprint.models import Formula, postorder
+from shaftprint.models.equations._calculus import postorder
+from shaftprint.models.equations._formula import Formula
 
 _SIGNS = {"add": "({} + {})", "multiply": "({} * {})", "divide": "({} / {})"}
 

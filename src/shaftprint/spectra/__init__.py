@@ -20,62 +20,6 @@ For drives that are no ships `response_from_arrays` makes a response from plain 
 `plant_from_closed_loop` takes a plant out of its loop, and `FrequencyResponse` holds what another program has measured.
 """
 
-from shaftprint.spectra._closed_loop import plant_from_closed_loop
-from shaftprint.spectra._frequency_response import FrequencyResponse
-from shaftprint.spectra._leg_spectra import SPEED, estimate_inputs_of_legs, estimate_legs
-from shaftprint.spectra._line_responses import NOT_MEASURED_STD, measured
-from shaftprint.spectra._measured_inputs import with_measured_inputs
-from shaftprint.spectra._open_loop import governor_and_engine, open_loop
-from shaftprint.spectra._plain_covariance import circular_covariance, coherence_covariance
-from shaftprint.spectra._spectra import Spectra, estimate_response, estimate_spectra
-from shaftprint.spectra._speed_ratios import SpeedRatio
-from shaftprint.spectra.lines import (
-    ExactBin,
-    Harmonics,
-    HighestPeak,
-    LineFit,
-    LoadDrift,
-    SignalToNoise,
-    SineMethod,
-    WholePeriodSine,
-    Window,
-    WindowSamples,
-    plan_windows,
-    whole_period_window,
-)
-from shaftprint.spectra.records import Arbitrary, Excitation, Periodic, response_from_arrays
+import lazy_loader
 
-__all__ = [
-    "NOT_MEASURED_STD",
-    "SPEED",
-    "Arbitrary",
-    "ExactBin",
-    "Excitation",
-    "FrequencyResponse",
-    "Harmonics",
-    "HighestPeak",
-    "LineFit",
-    "LoadDrift",
-    "Periodic",
-    "SignalToNoise",
-    "SineMethod",
-    "Spectra",
-    "SpeedRatio",
-    "WholePeriodSine",
-    "Window",
-    "WindowSamples",
-    "circular_covariance",
-    "coherence_covariance",
-    "estimate_inputs_of_legs",
-    "estimate_legs",
-    "estimate_response",
-    "estimate_spectra",
-    "governor_and_engine",
-    "measured",
-    "open_loop",
-    "plan_windows",
-    "plant_from_closed_loop",
-    "response_from_arrays",
-    "whole_period_window",
-    "with_measured_inputs",
-]
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

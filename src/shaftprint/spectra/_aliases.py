@@ -3,7 +3,8 @@
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from shaftprint.signals import ExcitationSignal, Signals, SpeedSignal
+    from shaftprint.signals._channel_signals import ExcitationSignal, SpeedSignal
+    from shaftprint.signals._signals import Signals
 
 
 def alias_remarks(

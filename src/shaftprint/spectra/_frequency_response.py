@@ -16,7 +16,9 @@ from shaftprint.arrays import (
     frozen_float,
 )
 from shaftprint.errors import ResponseError
-from shaftprint.notebook import Labelled, LabelledData, Shown, Summary, Variable, shortened
+from shaftprint.notebook._labelled import Labelled, LabelledData, Variable
+from shaftprint.notebook._shown import Shown
+from shaftprint.notebook._summary import Summary, shortened
 from shaftprint.reasons import Reason
 from shaftprint.spectra._response_covariance import weight_change
 

@@ -12,26 +12,29 @@ from shaftprint.spectra._line_responses import response_of_lines
 from shaftprint.spectra._shift_check import shift_reasons
 from shaftprint.spectra._spectra import Spectra
 from shaftprint.spectra._speed_ratios import speed_ratios
-from shaftprint.spectra.legs import check_leg, cut_leg, leg_clock_reasons, leg_shape_reasons, measure_leg
-from shaftprint.spectra.lines import (
-    LoadDrift,
-    band_of_lines,
-    band_reasons,
-    channel_clock_reasons,
-    collect_harmonics,
-    offsets_of_lines,
-    signal_to_noise,
-)
+from shaftprint.spectra.legs._leg_check import check_leg, leg_clock_reasons, leg_shape_reasons
+from shaftprint.spectra.legs._leg_lines import measure_leg
+from shaftprint.spectra.legs._leg_window import cut_leg
+from shaftprint.spectra.lines._clock_check import channel_clock_reasons, offsets_of_lines
+from shaftprint.spectra.lines._harmonics import collect_harmonics
+from shaftprint.spectra.lines._input_band import band_of_lines, band_reasons
+from shaftprint.spectra.lines._load_drift import LoadDrift
+from shaftprint.spectra.lines._signal_to_noise import signal_to_noise
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from shaftprint.arrays import BoolArray
-    from shaftprint.campaign import Campaign, Leg, Multisine
+    from shaftprint.campaign._campaign import Campaign
+    from shaftprint.campaign._leg import Leg
+    from shaftprint.campaign._multisine import Multisine
     from shaftprint.reasons import Reason
-    from shaftprint.signals import ExcitationSignal, LegState, Signals, SpeedSignal
-    from shaftprint.spectra.legs import LegFinding, LegLines
-    from shaftprint.spectra.lines import LineMeasurement
+    from shaftprint.signals._channel_signals import ExcitationSignal, SpeedSignal
+    from shaftprint.signals._signals import Signals
+    from shaftprint.signals._working_points import LegState
+    from shaftprint.spectra.legs._leg_check import LegFinding
+    from shaftprint.spectra.legs._leg_lines import LegLines
+    from shaftprint.spectra.lines._line_measurement import LineMeasurement
 
 SPEED = "n_set"
 """Symbol of the set point of the speed."""

@@ -8,10 +8,12 @@ import numpy as np
 from shaftprint.arrays import BoolArray, ComplexArray, FloatArray
 from shaftprint.spectra._frequency_response import FrequencyResponse
 from shaftprint.spectra._response_covariance import response_of_line, weight_factor, with_common_error
-from shaftprint.spectra.lines import LineMeasurement, without_cross_term
+from shaftprint.spectra.lines._cross_term import without_cross_term
+from shaftprint.spectra.lines._line_measurement import LineMeasurement
 
 if TYPE_CHECKING:
-    from shaftprint.signals import ChannelSignal, ExcitationSignal, Signals, SpeedSignal
+    from shaftprint.signals._channel_signals import ChannelSignal, ExcitationSignal, SpeedSignal
+    from shaftprint.signals._signals import Signals
 
 NOT_MEASURED_STD = 100.0
 """Standard deviation of real and imaginary part of a response that was not measured [-]: a line that is governed stays

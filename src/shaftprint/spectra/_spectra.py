@@ -8,46 +8,37 @@ import numpy as np
 
 from shaftprint.arguments import refusing_none
 from shaftprint.errors import ResponseError
-from shaftprint.notebook import Shown
+from shaftprint.notebook._shown import Shown
 from shaftprint.reasons import Reason
 from shaftprint.spectra._aliases import alias_remarks
 from shaftprint.spectra._frequency_response import FrequencyResponse
 from shaftprint.spectra._line_responses import response_of_lines
 from shaftprint.spectra._shift_check import shift_reasons
 from shaftprint.spectra._speed_ratios import SpeedRatio, speed_ratios
-from shaftprint.spectra.lines import (
-    Harmonics,
-    LineMeasurement,
-    LoadDrift,
-    SignalToNoise,
-    SineMethod,
-    WholePeriodSine,
-    Window,
-    WindowSamples,
+from shaftprint.spectra.lines._clock_check import clock_reasons
+from shaftprint.spectra.lines._harmonics import Harmonics, collect_harmonics
+from shaftprint.spectra.lines._input_band import band_of_lines, band_reasons
+from shaftprint.spectra.lines._input_clock import drift_of_input
+from shaftprint.spectra.lines._line_fit import SineMethod, WindowSamples, cut_window, window_slice
+from shaftprint.spectra.lines._line_measurement import LineMeasurement, measure_line
+from shaftprint.spectra.lines._load_drift import LoadDrift, load_drift
+from shaftprint.spectra.lines._message_line import cut_messages
+from shaftprint.spectra.lines._set_point_check import (
     amplitude_remark,
-    band_of_lines,
-    band_reasons,
     check_frequency_unit,
     check_set_point,
-    clock_reasons,
-    collect_harmonics,
-    cut_messages,
-    cut_window,
-    drift_of_input,
-    left_in_remark,
-    load_drift,
-    measure_line,
-    plan_windows,
     shape_reasons,
-    signal_to_noise,
-    window_slice,
-    without_orders,
 )
+from shaftprint.spectra.lines._signal_to_noise import SignalToNoise, signal_to_noise
+from shaftprint.spectra.lines._sine_fit import WholePeriodSine
+from shaftprint.spectra.lines._window_orders import left_in_remark, without_orders
+from shaftprint.spectra.lines._windows import Window, plan_windows
 
 if TYPE_CHECKING:
     from shaftprint.arrays import BoolArray, FloatArray
-    from shaftprint.campaign import Campaign
-    from shaftprint.signals import ExcitationSignal, Signals, SpeedSignal
+    from shaftprint.campaign._campaign import Campaign
+    from shaftprint.signals._channel_signals import ExcitationSignal, SpeedSignal
+    from shaftprint.signals._signals import Signals
 
 _WHOLE_PERIOD_SINE = WholePeriodSine()
 

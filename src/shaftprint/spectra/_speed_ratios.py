@@ -9,8 +9,8 @@ import numpy as np
 from shaftprint.arrays import FloatArray
 
 if TYPE_CHECKING:
-    from shaftprint.signals import SpeedSignal
-    from shaftprint.spectra.lines import LineMeasurement
+    from shaftprint.signals._channel_signals import SpeedSignal
+    from shaftprint.spectra.lines._line_measurement import LineMeasurement
 
 # Up to this share of the pulse rate the spline through pulses shows a sine but for 0.4 %.
 _SHOWN_SHARE = 0.2

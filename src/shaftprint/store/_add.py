@@ -6,7 +6,7 @@ from pathlib import Path
 from shaftprint.arguments import refusing_none
 from shaftprint.errors import StoreError
 from shaftprint.files import reason
-from shaftprint.publication import complete
+from shaftprint.publication._publish import complete
 from shaftprint.store._document import MOST_BYTES
 from shaftprint.store._nouns import Added, Ship
 from shaftprint.store._record import record_of

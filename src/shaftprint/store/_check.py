@@ -13,7 +13,7 @@ from shaftprint.store._record import numbers_of
 from shaftprint.store._store import Store, part_with_database
 
 if TYPE_CHECKING:
-    from shaftprint.store.database import Reader
+    from shaftprint.store.database._reader import Reader
 
 
 @refusing_none(StoreError)

@@ -14,7 +14,7 @@ from shaftprint.store._store import Store
 from shaftprint.store._text import LONGEST_TEXT, expect_short
 
 if TYPE_CHECKING:
-    from shaftprint.store.database import Reader
+    from shaftprint.store.database._reader import Reader
 
 MOST_NUMBERS = 100
 

@@ -19,7 +19,8 @@ from shaftprint.store._stated import utc_iso
 from shaftprint.store._store import Store
 
 if TYPE_CHECKING:
-    from shaftprint.store.database import Ledger, Reader
+    from shaftprint.store.database._ledger import Ledger
+    from shaftprint.store.database._reader import Reader
 
 _AT_A_TIME = 500
 

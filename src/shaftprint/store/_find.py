@@ -9,7 +9,7 @@ from shaftprint.spelling import meant
 from shaftprint.store._nouns import Line, Ship
 
 if TYPE_CHECKING:
-    from shaftprint.store.database import Reader, ShipRow
+    from shaftprint.store.database._reader import Reader, ShipRow
 
 _MOST_NAMED = 12
 

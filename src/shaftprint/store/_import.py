@@ -22,7 +22,8 @@ from shaftprint.store._store import Store, part_with_database
 from shaftprint.store._text import LONGEST_TEXT
 
 if TYPE_CHECKING:
-    from shaftprint.store.database import Ledger, Writer
+    from shaftprint.store.database._ledger import Ledger
+    from shaftprint.store.database._writer import Writer
 
 _AT_A_TIME = 200
 

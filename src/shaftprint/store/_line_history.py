@@ -16,8 +16,8 @@ from shaftprint.store._nouns import Line, Ship, StoredFingerprint
 from shaftprint.store._store import Store
 
 if TYPE_CHECKING:
-    from shaftprint.drift import Event
-    from shaftprint.fingerprint import Fingerprint
+    from shaftprint.drift._dated import Event
+    from shaftprint.fingerprint._fingerprint import Fingerprint
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

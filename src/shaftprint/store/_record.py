@@ -15,7 +15,9 @@ from shaftprint.store._stated import Stated, possible_time, ship_of, time_of_tes
 from shaftprint.store._text import LONGEST_TEXT, expect_short
 
 if TYPE_CHECKING:
-    from shaftprint.fingerprint import Fingerprint, Quantity, ShipIdentity, SourceFile
+    from shaftprint.fingerprint._conditions import ShipIdentity
+    from shaftprint.fingerprint._fingerprint import Fingerprint, SourceFile
+    from shaftprint.fingerprint._quantity import Quantity
 
 
 _LATEST = datetime(9000, 1, 1, tzinfo=UTC)

@@ -7,7 +7,7 @@ from shaftprint.store._late_rooms import drift_room
 from shaftprint.store._line_history import LineHistory
 
 if TYPE_CHECKING:
-    from shaftprint.drift import Sister
+    from shaftprint.drift._class_numbers import Sister
 
 
 def sisters_of(

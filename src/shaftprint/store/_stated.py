@@ -10,7 +10,7 @@ from shaftprint.store._text import expect_short
 from shaftprint.zones import in_zone, possible, utc_text
 
 if TYPE_CHECKING:
-    from shaftprint.fingerprint import Conditions, ShipIdentity
+    from shaftprint.fingerprint._conditions import Conditions, ShipIdentity
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

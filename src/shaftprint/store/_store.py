@@ -9,7 +9,7 @@ from shaftprint.arguments import refusing_none
 from shaftprint.errors import StoreError
 
 if TYPE_CHECKING:
-    from shaftprint.store.database import Database
+    from shaftprint.store.database._database import Database
 
 DATABASE = "shaftprint.store.database"
 _NEEDED = ("sqlalchemy", "alembic")

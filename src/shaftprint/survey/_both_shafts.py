@@ -11,17 +11,19 @@ from typing import Any
 import numpy as np
 
 from shaftprint.arguments import refusing_none
-from shaftprint.campaign import SIDES, CampaignOfBoth, TrialConditions, load_campaign_of_both
+from shaftprint.campaign._both_shafts import SIDES, CampaignOfBoth, load_campaign_of_both
+from shaftprint.campaign._trial_conditions import TrialConditions
 from shaftprint.errors import SettingsError
-from shaftprint.fingerprint import SourceFile
-from shaftprint.models import Structure
-from shaftprint.notebook import Shown, Summary
+from shaftprint.fingerprint._fingerprint import SourceFile
+from shaftprint.models._structure import Structure
+from shaftprint.notebook._shown import Shown
+from shaftprint.notebook._summary import Summary
 from shaftprint.settings import settings_content
 from shaftprint.survey._progress import SILENT, Progress
 from shaftprint.survey._survey import SettingsOf, Survey, run
 from shaftprint.survey._trial import Trial, load_trial
 from shaftprint.survey._wash import Wash, wash_on
-from shaftprint.vessel import Vessel
+from shaftprint.vessel._vessel import Vessel
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)

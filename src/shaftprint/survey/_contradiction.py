@@ -3,7 +3,7 @@
 import numpy as np
 
 from shaftprint.distributions import chi_square_tail
-from shaftprint.identify import Identification
+from shaftprint.identify.fit._identification import Identification
 
 DISAGREE_BELOW = 0.01
 """Below this p-value the records of a joint fit contradict its sines, as for a fit that is refused."""

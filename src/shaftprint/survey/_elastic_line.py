@@ -6,22 +6,25 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from shaftprint.catalogue import CLOSED_LOOPS, ShipRole, shipped_structure
+from shaftprint.catalogue._roles import ShipRole
+from shaftprint.catalogue._shipped import shipped_structure
+from shaftprint.catalogue._thesis import CLOSED_LOOPS
 from shaftprint.digits import p_value_text, plain, plain_letters, with_deviation
 from shaftprint.errors import IdentificationError
-from shaftprint.identify import Identification, Settings
-from shaftprint.identify.comparison import criteria_of
-from shaftprint.identify.fit import fit_of
-from shaftprint.identify.judgement import explained
-from shaftprint.models import Structure
+from shaftprint.identify.comparison._criteria import criteria_of
+from shaftprint.identify.fit._fit_of import fit_of
+from shaftprint.identify.fit._identification import Identification
+from shaftprint.identify.judgement._misfit import explained
+from shaftprint.identify.search._settings import Settings
+from shaftprint.models._structure import Structure
 from shaftprint.normalisation import Normalisation
 from shaftprint.reasons import Reason
 from shaftprint.survey._elastic_starts import beyond_lines, highest_hz, with_elastic_starts
 from shaftprint.survey._measurement import Measurement, pairs_of
 from shaftprint.survey._of_vessel import of_vessel
 from shaftprint.survey._trial import Trial
-from shaftprint.torsion import line_coupling
-from shaftprint.vessel import Vessel
+from shaftprint.torsion._coupling import line_coupling
+from shaftprint.vessel._vessel import Vessel
 
 RIGID = CLOSED_LOOPS["engine"]
 ON_SHAFT, ON_ENGINE = "GAUGE-ELASTIC", "GAUGE-ELASTIC-ENGINE"

@@ -9,10 +9,11 @@ from dataclasses import replace
 import numpy as np
 
 from shaftprint.arrays import FloatArray
-from shaftprint.catalogue import ShipRole
-from shaftprint.identify import Identification, Settings
-from shaftprint.identify.search import GivenStarts
-from shaftprint.models import Structure
+from shaftprint.catalogue._roles import ShipRole
+from shaftprint.identify.fit._identification import Identification
+from shaftprint.identify.search._settings import Settings
+from shaftprint.identify.search._starts import GivenStarts
+from shaftprint.models._structure import Structure
 
 _MODES, _LOWEST_HZ = 16, 1.0
 # Modes beyond the highest line that still show, as multiples of it: the twist itself shows from a third of the mode on

@@ -12,22 +12,22 @@ from dataclasses import replace
 import numpy as np
 
 from shaftprint.arrays import FloatArray
-from shaftprint.catalogue import limited
-from shaftprint.fingerprint import Fingerprint, Quantity
-from shaftprint.identify import Identification, Prior
-from shaftprint.limits import LimitFit, expect_engine, identify_limits
+from shaftprint.catalogue._limited import limited
+from shaftprint.fingerprint._fingerprint import Fingerprint
+from shaftprint.fingerprint._quantity import Quantity
+from shaftprint.identify.fit._identification import Identification
+from shaftprint.identify.likelihood._prior import Prior
+from shaftprint.limits._identify_limits import expect_engine, identify_limits
+from shaftprint.limits._limit_fit import LimitFit
 from shaftprint.survey._contradiction import contradiction
 from shaftprint.survey._fits import priors_of
 from shaftprint.survey._limits import with_levels_beside
 from shaftprint.survey._line_with_limits import expect_limitable
 from shaftprint.survey._progress import SILENT, Progress
 from shaftprint.survey._survey import Survey
-from shaftprint.time_domain import (
-    LimitedModel,
-    NonlinearSettings,
-    identify_nonlinear,
-    structure_for,
-)
+from shaftprint.time_domain.nonlinear._fit import identify_nonlinear
+from shaftprint.time_domain.nonlinear._settings import NonlinearSettings
+from shaftprint.time_domain.nonlinear._structure import LimitedModel, structure_for
 
 ONE_START = NonlinearSettings(starts=1, better=1, kept=1)
 """The line and its limits are known already: there is nothing to search for."""

@@ -5,12 +5,13 @@ A test is to find these numbers, and no fit knows them beforehand: they say wher
 
 import numpy as np
 
-from shaftprint.card import open_water_curve
-from shaftprint.catalogue import ShipRole, sailing_values
-from shaftprint.models import Structure
+from shaftprint.card._series import open_water_curve
+from shaftprint.catalogue._known_propeller import sailing_values
+from shaftprint.catalogue._roles import ShipRole
+from shaftprint.models._structure import Structure
 from shaftprint.survey._known_propeller import known_propeller
 from shaftprint.units import rev_s_from_rpm
-from shaftprint.vessel import Vessel
+from shaftprint.vessel._vessel import Vessel
 
 
 def expected_of_ship(structure: Structure, vessel: Vessel) -> dict[str, float]:

@@ -7,24 +7,23 @@ from dataclasses import replace
 
 import numpy as np
 
-from shaftprint.catalogue import ShipRole
+from shaftprint.catalogue._roles import ShipRole
 from shaftprint.errors import IdentificationError
-from shaftprint.identify import (
-    SHARE_ROUNDING,
-    Identification,
-    Prior,
-    Settings,
-    priors_from_vessel,
-)
-from shaftprint.identify.comparison import StructureComparison, compare_fits
-from shaftprint.identify.fit import fit_of
-from shaftprint.identify.judgement import by_weight
-from shaftprint.models import Structure
-from shaftprint.signals import SetPointCalibration, Signals, WorkingPoint
+from shaftprint.identify.comparison._compare import compare_fits
+from shaftprint.identify.comparison._comparison import StructureComparison
+from shaftprint.identify.fit._fit_of import fit_of
+from shaftprint.identify.fit._identification import Identification
+from shaftprint.identify.judgement._affected_numbers import by_weight
+from shaftprint.identify.likelihood._known import SHARE_ROUNDING, priors_from_vessel
+from shaftprint.identify.likelihood._prior import Prior
+from shaftprint.identify.search._settings import Settings
+from shaftprint.models._structure import Structure
+from shaftprint.signals._signals import SetPointCalibration, Signals
+from shaftprint.signals._working_points import WorkingPoint
 from shaftprint.survey._measurement import Measurement, pairs_of
 from shaftprint.survey._progress import SILENT, Progress
 from shaftprint.units import rev_s_from_rpm
-from shaftprint.vessel import Vessel
+from shaftprint.vessel._vessel import Vessel
 
 
 def priors_of(

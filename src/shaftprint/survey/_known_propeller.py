@@ -1,8 +1,8 @@
 """The propeller of a ship underway, where its vessel file names a series that is known."""
 
-from shaftprint.card import open_water_curve
-from shaftprint.catalogue import KnownPropeller
-from shaftprint.vessel import Vessel
+from shaftprint.card._series import open_water_curve
+from shaftprint.catalogue._known_propeller import KnownPropeller
+from shaftprint.vessel._vessel import Vessel
 
 
 def known_propeller(vessel: Vessel, *, shaft_speed_rev_s: float, ship_speed_m_s: float) -> KnownPropeller | None:

@@ -4,15 +4,20 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from shaftprint.identify import Identification
-from shaftprint.identify.fit import FitTest, part_tests
-from shaftprint.models import Structure, at_working_point
-from shaftprint.spectra import SPEED, FrequencyResponse, Spectra, estimate_inputs_of_legs
+from shaftprint.identify.fit._fit_test import FitTest
+from shaftprint.identify.fit._identification import Identification
+from shaftprint.identify.fit._part_tests import part_tests
+from shaftprint.models._structure import Structure
+from shaftprint.models._working_point import at_working_point
+from shaftprint.spectra._frequency_response import FrequencyResponse
+from shaftprint.spectra._leg_spectra import SPEED, estimate_inputs_of_legs
+from shaftprint.spectra._spectra import Spectra
 from shaftprint.units import rev_s_from_rpm
 
 if TYPE_CHECKING:
-    from shaftprint.campaign import Campaign
-    from shaftprint.signals import Signals, WorkingPoint
+    from shaftprint.campaign._campaign import Campaign
+    from shaftprint.signals._signals import Signals
+    from shaftprint.signals._working_points import WorkingPoint
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

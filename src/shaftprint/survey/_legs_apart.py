@@ -9,13 +9,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shaftprint.digits import p_value_text, plain, plain_letters, with_deviation
-from shaftprint.identify import Identification, Requirements, Settings, identify
+from shaftprint.identify.fit._identification import Identification
+from shaftprint.identify.fit._identify import identify
+from shaftprint.identify.judgement._requirements import Requirements
+from shaftprint.identify.search._settings import Settings
 from shaftprint.reasons import Reason
 from shaftprint.survey._measurement import SINES, Measurement, pairs_of
 from shaftprint.units import rpm_from_rev_s
 
 if TYPE_CHECKING:
-    from shaftprint.signals import WorkingPoint
+    from shaftprint.signals._working_points import WorkingPoint
 
 # A number differs between two legs where the difference is so many of its standard deviations.
 _APART = 3.0

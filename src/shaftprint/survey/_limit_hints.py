@@ -2,9 +2,10 @@
 
 from collections.abc import Sequence
 
-from shaftprint.design import LimitUse, limit_uses, recorded_operation, stated_limits
+from shaftprint.design.operation._limit_use import LimitUse, limit_uses, stated_limits
+from shaftprint.design.operation._recorded import recorded_operation
 from shaftprint.digits import plain, plain_letters
-from shaftprint.limits import limit_hints
+from shaftprint.limits._limit_hints import limit_hints
 from shaftprint.survey._measurement import Measurement
 from shaftprint.survey._trial import Trial
 

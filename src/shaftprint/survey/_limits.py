@@ -2,8 +2,11 @@
 
 from dataclasses import replace
 
-from shaftprint.fingerprint import Fingerprint, FoundBy
-from shaftprint.limits import LimitFit, expect_engine, identify_limits, levels_beside
+from shaftprint.fingerprint._fingerprint import Fingerprint
+from shaftprint.fingerprint._line_with_limits import FoundBy
+from shaftprint.limits._identify_limits import expect_engine, identify_limits
+from shaftprint.limits._levels_beside import levels_beside
+from shaftprint.limits._limit_fit import LimitFit
 from shaftprint.survey._line_with_limits import expect_limitable, limit_number, line_with_limits
 from shaftprint.survey._progress import SILENT, Progress
 from shaftprint.survey._survey import Survey

@@ -10,13 +10,16 @@ from collections.abc import Sequence
 import numpy as np
 
 from shaftprint.arrays import FloatArray
-from shaftprint.catalogue import limited
+from shaftprint.catalogue._limited import limited
 from shaftprint.errors import FingerprintError
-from shaftprint.fingerprint import Fingerprint, FoundBy, LimitNumber, LineWithLimits, Quantity
-from shaftprint.limits import Levels, LimitEstimate
-from shaftprint.models import Structure
-from shaftprint.signals import WorkingPoint
-from shaftprint.vessel import Vessel
+from shaftprint.fingerprint._fingerprint import Fingerprint
+from shaftprint.fingerprint._line_with_limits import FoundBy, LimitNumber, LineWithLimits
+from shaftprint.fingerprint._quantity import Quantity
+from shaftprint.limits._levels_beside import Levels
+from shaftprint.limits._limit_fit import LimitEstimate
+from shaftprint.models._structure import Structure
+from shaftprint.signals._working_points import WorkingPoint
+from shaftprint.vessel._vessel import Vessel
 
 
 def line_with_limits(

@@ -8,27 +8,29 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-from shaftprint.catalogue import ShipRole
-from shaftprint.clocks import logger_clocks
+from shaftprint.catalogue._roles import ShipRole
+from shaftprint.clocks._logger_clock import logger_clocks
 from shaftprint.errors import StructureError
-from shaftprint.fingerprint import clock_findings, clock_influences
-from shaftprint.identify.fit import has_measured_inputs
+from shaftprint.fingerprint._clock_influence import clock_findings, clock_influences
+from shaftprint.identify.fit._measured_inputs import has_measured_inputs
 from shaftprint.memory import give_back_memory
-from shaftprint.models import Structure
-from shaftprint.notebook import Shown
-from shaftprint.recording import Levels, Recording, read_recording, watch_levels
-from shaftprint.signals import Mode, Signals, WorkingPoint, prepare_signals
-from shaftprint.spectra import (
-    ExactBin,
-    FrequencyResponse,
-    Spectra,
-    SpeedRatio,
-    WholePeriodSine,
-    estimate_spectra,
-    governor_and_engine,
-    open_loop,
-    plant_from_closed_loop,
-)
+from shaftprint.models._structure import Structure
+from shaftprint.notebook._shown import Shown
+from shaftprint.recording._level_watch import watch_levels
+from shaftprint.recording._levels import Levels
+from shaftprint.recording._read import read_recording
+from shaftprint.recording._recording import Recording
+from shaftprint.signals._clock import Mode
+from shaftprint.signals._prepare import prepare_signals
+from shaftprint.signals._signals import Signals
+from shaftprint.signals._working_points import WorkingPoint
+from shaftprint.spectra._closed_loop import plant_from_closed_loop
+from shaftprint.spectra._frequency_response import FrequencyResponse
+from shaftprint.spectra._open_loop import governor_and_engine, open_loop
+from shaftprint.spectra._spectra import Spectra, estimate_spectra
+from shaftprint.spectra._speed_ratios import SpeedRatio
+from shaftprint.spectra.lines._bin_selection import ExactBin
+from shaftprint.spectra.lines._sine_fit import WholePeriodSine
 from shaftprint.survey._legs import LegMeasurement, legs_of, rack_of, structure_at
 from shaftprint.survey._progress import SILENT, Progress
 from shaftprint.survey._ripple import torque_ripple

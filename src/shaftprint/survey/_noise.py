@@ -3,13 +3,14 @@
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from shaftprint.identify import NoiseLevels, noise_levels
+from shaftprint.identify.prediction._noise_levels import NoiseLevels, noise_levels
 from shaftprint.units import rpm_from_rev_s
 
 if TYPE_CHECKING:
-    from shaftprint.campaign import Campaign
-    from shaftprint.signals import Signals, WorkingPoint
-    from shaftprint.spectra import FrequencyResponse
+    from shaftprint.campaign._campaign import Campaign
+    from shaftprint.signals._signals import Signals
+    from shaftprint.signals._working_points import WorkingPoint
+    from shaftprint.spectra._frequency_response import FrequencyResponse
     from shaftprint.survey._measurement import Measurement
 
 

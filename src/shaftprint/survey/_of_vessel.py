@@ -2,14 +2,16 @@
 
 from collections.abc import Iterable, Sequence
 
-from shaftprint.campaign import Campaign
-from shaftprint.catalogue import CLOSED_LOOPS, COMBINED_LOOP, PITCHED_LOOP, ShipRole, with_bend
+from shaftprint.campaign._campaign import Campaign
+from shaftprint.catalogue._bent_line import with_bend
+from shaftprint.catalogue._roles import ShipRole
+from shaftprint.catalogue._thesis import CLOSED_LOOPS, COMBINED_LOOP, PITCHED_LOOP
 from shaftprint.errors import StructureError
-from shaftprint.models import Structure
+from shaftprint.models._structure import Structure
 from shaftprint.normalisation import inertia_time_s
-from shaftprint.torsion import line_coupling
+from shaftprint.torsion._coupling import line_coupling
 from shaftprint.units import rev_s_from_rpm
-from shaftprint.vessel import Vessel
+from shaftprint.vessel._vessel import Vessel
 
 _OF_SENSORS = {ShipRole.LOAD_SLOPE: (1.0, 3.0), ShipRole.LOG_LATENCY: (-2.0, 2.0)}
 _PITCH = "pitch_set_point"

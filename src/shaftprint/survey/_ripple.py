@@ -7,8 +7,9 @@ import numpy as np
 from shaftprint.arrays import FloatArray
 
 if TYPE_CHECKING:
-    from shaftprint.recording import Channel, Recording
-    from shaftprint.signals import Signals
+    from shaftprint.recording._channel import Channel
+    from shaftprint.recording._recording import Recording
+    from shaftprint.signals._signals import Signals
     from shaftprint.survey._trial import Trial
 
 # Of each excitation so much is looked at, at its end [s].

@@ -12,14 +12,18 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from shaftprint.catalogue import KnownPropeller, sails_free, with_known_propeller
-from shaftprint.fingerprint import Quantity
-from shaftprint.identify import Identification, Prior, Settings, identify
-from shaftprint.identify.search import GivenStarts
-from shaftprint.models import Structure
-from shaftprint.signals import Signals
+from shaftprint.catalogue._known_propeller import KnownPropeller, sails_free, with_known_propeller
+from shaftprint.fingerprint._quantity import Quantity
+from shaftprint.identify.fit._identification import Identification
+from shaftprint.identify.fit._identify import identify
+from shaftprint.identify.likelihood._prior import Prior
+from shaftprint.identify.search._settings import Settings
+from shaftprint.identify.search._starts import GivenStarts
+from shaftprint.models._structure import Structure
+from shaftprint.signals._signals import Signals
 from shaftprint.survey._known_propeller import known_propeller
-from shaftprint.vessel import Hull, Vessel
+from shaftprint.vessel._hull import Hull
+from shaftprint.vessel._vessel import Vessel
 
 _STARTS = 8
 

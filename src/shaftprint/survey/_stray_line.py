@@ -10,10 +10,12 @@ from typing import TypeAlias
 
 from shaftprint.arrays import frozen_bool
 from shaftprint.digits import p_value_text, plain
-from shaftprint.identify import Identification
-from shaftprint.identify.judgement import Requirements, explained
-from shaftprint.identify.likelihood import LineTest
-from shaftprint.spectra import FrequencyResponse, Spectra
+from shaftprint.identify.fit._identification import Identification
+from shaftprint.identify.judgement._misfit import explained
+from shaftprint.identify.judgement._requirements import Requirements
+from shaftprint.identify.likelihood._line_test import LineTest
+from shaftprint.spectra._frequency_response import FrequencyResponse
+from shaftprint.spectra._spectra import Spectra
 from shaftprint.survey._measurement import Measurement
 
 # A neighbour is as far off as chance allows once in so many tests.

@@ -12,28 +12,26 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from shaftprint.arguments import refusing_none
-from shaftprint.campaign import Campaign, TrialConditions
-from shaftprint.catalogue import shipped_structure
+from shaftprint.campaign._campaign import Campaign
+from shaftprint.campaign._trial_conditions import TrialConditions
+from shaftprint.catalogue._shipped import shipped_structure
 from shaftprint.errors import IdentificationError, SettingsError, StructureError
-from shaftprint.fingerprint import (
-    Fingerprint,
-    LegRecord,
-    NoiseSpectrum,
-    Quantity,
-    SourceFile,
-    leg_record,
-    noise_spectra,
-    take_fingerprint,
-)
-from shaftprint.identify import Identification, Settings
-from shaftprint.identify.comparison import StructureComparison
-from shaftprint.limits import LimitFit
-from shaftprint.models import Structure
-from shaftprint.notebook import Shown, Summary, shortened
+from shaftprint.fingerprint._fingerprint import Fingerprint, SourceFile
+from shaftprint.fingerprint._leg_records import LegRecord, NoiseSpectrum, leg_record, noise_spectra
+from shaftprint.fingerprint._quantity import Quantity
+from shaftprint.fingerprint._take import take_fingerprint
+from shaftprint.identify.comparison._comparison import StructureComparison
+from shaftprint.identify.fit._identification import Identification
+from shaftprint.identify.search._settings import Settings
+from shaftprint.limits._limit_fit import LimitFit
+from shaftprint.models._structure import Structure
+from shaftprint.notebook._shown import Shown
+from shaftprint.notebook._summary import Summary, shortened
 from shaftprint.reasons import Reason
-from shaftprint.recording import Recording
-from shaftprint.signals import Mode, Signals
-from shaftprint.spectra import Spectra
+from shaftprint.recording._recording import Recording
+from shaftprint.signals._clock import Mode
+from shaftprint.signals._signals import Signals
+from shaftprint.spectra._spectra import Spectra
 from shaftprint.survey._elastic_line import (
     ElasticOffer,
     begun_at_rigid,
@@ -56,8 +54,8 @@ from shaftprint.survey._trial import Trial, load_trial
 from shaftprint.survey._twist import twist_reasons
 from shaftprint.survey._validation_apart import with_validation
 from shaftprint.survey._validations import failed_steps, validations_of, validations_with_limits
-from shaftprint.validation import Validation
-from shaftprint.vessel import Vessel
+from shaftprint.validation._validation import Validation
+from shaftprint.vessel._vessel import Vessel
 
 SettingsOf: TypeAlias = Callable[[Structure, Measurement, Trial], Settings]
 """Gives how a structure is fitted to a measurement of a trial."""

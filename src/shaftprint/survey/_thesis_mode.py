@@ -3,9 +3,9 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from shaftprint.identify import Identification
-from shaftprint.signals import Signals
-from shaftprint.spectra import Spectra
+from shaftprint.identify.fit._identification import Identification
+from shaftprint.signals._signals import Signals
+from shaftprint.spectra._spectra import Spectra
 
 # Share of itself by which the set point is taken to be off, to show what that does: less than the 1.05 % by which the
 # line of equation 3.2 misses the speed of the working point at -5 V (table 3.2).

@@ -4,9 +4,14 @@ from dataclasses import replace
 
 import numpy as np
 
-from shaftprint.catalogue import structure
-from shaftprint.identify import Identification, Settings, Uniform, Unweighted
-from shaftprint.spectra import ExactBin, FrequencyResponse, HighestPeak, estimate_response
+from shaftprint.catalogue._thesis import structure
+from shaftprint.identify.fit._identification import Identification
+from shaftprint.identify.likelihood._weighting import Unweighted
+from shaftprint.identify.search._settings import Settings
+from shaftprint.identify.search._starts import Uniform
+from shaftprint.spectra._frequency_response import FrequencyResponse
+from shaftprint.spectra._spectra import estimate_response
+from shaftprint.spectra.lines._bin_selection import ExactBin, HighestPeak
 from shaftprint.survey._fits import fit, priors_of
 from shaftprint.survey._measurement import Measurement, responses_of
 from shaftprint.survey._progress import SILENT, Progress

@@ -6,11 +6,12 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Literal
 
-from shaftprint.campaign import Campaign, TrialConditions, load_campaign, load_trial_conditions
-from shaftprint.fingerprint import SourceFile
-from shaftprint.notebook import Shown
+from shaftprint.campaign._campaign import Campaign, load_campaign
+from shaftprint.campaign._trial_conditions import TrialConditions, load_trial_conditions
+from shaftprint.fingerprint._fingerprint import SourceFile
+from shaftprint.notebook._shown import Shown
 from shaftprint.settings import settings_content
-from shaftprint.vessel import Vessel, load_vessel
+from shaftprint.vessel._vessel import Vessel, load_vessel
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, repr=False)

@@ -13,10 +13,10 @@ import numpy as np
 from shaftprint.digits import plain, plain_letters, with_deviation
 from shaftprint.distributions import f_tail
 from shaftprint.reasons import Reason
-from shaftprint.spectra import SpeedRatio
+from shaftprint.spectra._speed_ratios import SpeedRatio
 
 if TYPE_CHECKING:
-    from shaftprint.vessel import Vessel
+    from shaftprint.vessel._vessel import Vessel
 
 # Three lines tell a square from a scatter.
 _FEWEST_LINES = 3

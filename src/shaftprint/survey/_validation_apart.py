@@ -11,24 +11,24 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from shaftprint.arrays import frozen_float
-from shaftprint.campaign import Campaign, Chirp, Staircase
+from shaftprint.campaign._campaign import Campaign
+from shaftprint.campaign._excitations import Chirp, Staircase
 from shaftprint.errors import FingerprintError, ValidationError
-from shaftprint.fingerprint import Fingerprint, LineWithLimits, StretchRecord, ValidationRecord, model_with_limits
-from shaftprint.limits import Kind, Levels, levels_beside
-from shaftprint.signals import Signals
+from shaftprint.fingerprint._fingerprint import Fingerprint
+from shaftprint.fingerprint._line_with_limits import LineWithLimits
+from shaftprint.fingerprint._model import model_with_limits
+from shaftprint.fingerprint._validation_record import StretchRecord, ValidationRecord
+from shaftprint.limits._candidates import Kind
+from shaftprint.limits._levels_beside import Levels, levels_beside
+from shaftprint.signals._signals import Signals
 from shaftprint.survey._line_with_limits import line_with_limits
 from shaftprint.survey._progress import SILENT, Progress
 from shaftprint.survey._trial import Trial
-from shaftprint.validation import (
-    Excerpt,
-    Model,
-    Validation,
-    default_records,
-    excerpts_of,
-    joined,
-    simulated_prediction,
-    validate,
-)
+from shaftprint.validation._model import Model
+from shaftprint.validation._prediction import simulated_prediction
+from shaftprint.validation._validate import joined, validate
+from shaftprint.validation._validation import Validation
+from shaftprint.validation._validation_records import Excerpt, default_records, excerpts_of
 
 # What follows a record still answers it [s].
 AFTER_S = 5.0

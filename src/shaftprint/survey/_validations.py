@@ -5,13 +5,14 @@ from collections.abc import Sequence
 import numpy as np
 
 from shaftprint.errors import IdentificationError, ValidationError
-from shaftprint.fingerprint import Fingerprint
-from shaftprint.identify import Identification
+from shaftprint.fingerprint._fingerprint import Fingerprint
+from shaftprint.identify.fit._identification import Identification
 from shaftprint.survey._measurement import Measurement
 from shaftprint.survey._progress import SILENT, Progress
 from shaftprint.survey._trial import Trial
 from shaftprint.survey._validation_apart import validated_apart
-from shaftprint.validation import Validation, validate
+from shaftprint.validation._validate import validate
+from shaftprint.validation._validation import Validation
 
 INPUTS, OUTPUTS = ("n_set",), {"n", "M_s"}
 

@@ -18,12 +18,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shaftprint.arrays import ComplexArray, FloatArray
-from shaftprint.catalogue import ShipRole
+from shaftprint.catalogue._roles import ShipRole
 from shaftprint.digits import stated
 from shaftprint.units import rev_s_from_rpm
 
 if TYPE_CHECKING:
-    from shaftprint.signals import ChannelSignal, LegState, Signals
+    from shaftprint.signals._channel_signals import ChannelSignal
+    from shaftprint.signals._signals import Signals
+    from shaftprint.signals._working_points import LegState
     from shaftprint.survey._survey import Survey
 
 TORQUE = "M_s"

@@ -7,7 +7,7 @@ from shaftprint.digits import plain
 if TYPE_CHECKING:
     from datetime import datetime
 
-    from shaftprint.fingerprint import Conditions, ShipIdentity
+    from shaftprint.fingerprint._conditions import Conditions, ShipIdentity
 
 DECIMALS = {
     "draught_m": ("Draught", 2, "m"),

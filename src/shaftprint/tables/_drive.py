@@ -8,9 +8,11 @@ from shaftprint.digits import p_value_text, rounded, stated, unit_text, with_dev
 from shaftprint.plain_table import MEANING, Symbol, Table, numbers, texts
 
 if TYPE_CHECKING:
-    from shaftprint.bench import DriveDifference, TimeComparison, ValidatedRecord
-    from shaftprint.fingerprint import DriveFingerprint
-    from shaftprint.models import Parameter
+    from shaftprint.bench._compare import DriveDifference
+    from shaftprint.bench._structures import TimeComparison
+    from shaftprint.bench._validate import ValidatedRecord
+    from shaftprint.fingerprint._drive_fingerprint import DriveFingerprint
+    from shaftprint.models._parameter import Parameter
 
 PERCENT = 100.0
 

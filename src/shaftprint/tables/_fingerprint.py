@@ -9,9 +9,10 @@ from shaftprint.distributions import NORMAL_95
 from shaftprint.plain_table import MEANING, Column, Symbol, Table, numbers, texts
 
 if TYPE_CHECKING:
-    from shaftprint.fingerprint import Fingerprint, Quality, Quantity
-    from shaftprint.identify import Identification
-    from shaftprint.identify.uncertainty import Budget, BudgetRow
+    from shaftprint.fingerprint._fingerprint import Fingerprint, Quality
+    from shaftprint.fingerprint._quantity import Quantity
+    from shaftprint.identify.fit._identification import Identification
+    from shaftprint.identify.uncertainty._budget import Budget, BudgetRow
 
 PERCENT = 100.0
 # A share that is printed as 0 % says as much.

@@ -8,8 +8,10 @@ from shaftprint.digits import plain, rounded, unit_text, with_deviation
 from shaftprint.plain_table import Table, numbers, texts
 
 if TYPE_CHECKING:
-    from shaftprint.torsion import ExpectedInertia, ExpectedValue, InertiaComparison, Modes, TwoMasses
-    from shaftprint.vessel import Vessel
+    from shaftprint.torsion._expected_inertia import ExpectedInertia, ExpectedValue, InertiaComparison
+    from shaftprint.torsion._modes import Modes
+    from shaftprint.torsion._two_masses import TwoMasses
+    from shaftprint.vessel._vessel import Vessel
 
 PERCENT = 100.0
 # Sources with a smaller share of the variance are put together.

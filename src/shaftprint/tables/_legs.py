@@ -8,8 +8,8 @@ from shaftprint.plain_table import Table, numbers, texts
 from shaftprint.units import rpm_from_rev_s
 
 if TYPE_CHECKING:
-    from shaftprint.signals import WorkingPoint
-    from shaftprint.survey import LegMeasurement, LegTest
+    from shaftprint.signals._working_points import WorkingPoint
+    from shaftprint.survey._legs import LegMeasurement, LegTest
 
 
 def leg_table(legs: Sequence["LegMeasurement"]) -> Table:

@@ -7,7 +7,7 @@ from shaftprint.digits import plain
 from shaftprint.plain_table import Table, numbers, texts
 
 if TYPE_CHECKING:
-    from shaftprint.design import LimitUse
+    from shaftprint.design.operation._limit_use import LimitUse
 
 
 def limit_use_table(uses: Sequence["LimitUse"], *, note: str) -> Table:

@@ -4,14 +4,16 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from shaftprint.design import length_words
+from shaftprint.design.plan._plan import length_words
 from shaftprint.digits import fine_unit, interval, plain, rounded, unit_text, with_deviation
 from shaftprint.distributions import NORMAL_95
 from shaftprint.plain_table import Symbol, Table, numbers, texts
 
 if TYPE_CHECKING:
-    from shaftprint.design import AbortCard, PlannedTest, Standing
-    from shaftprint.identify.fit import Estimate
+    from shaftprint.design.planned_test._planned_test import PlannedTest
+    from shaftprint.design.standing._standing import Standing
+    from shaftprint.design.views._abort_card import AbortCard
+    from shaftprint.identify.fit._identification import Estimate
 
 PERCENT = 100.0
 _FIRST_ORDER = "Predicted to first order, for the middle of the possible ships"

@@ -9,8 +9,10 @@ from shaftprint.plain_table import Table, numbers, texts
 from shaftprint.units import MILLI, PPM
 
 if TYPE_CHECKING:
-    from shaftprint.clocks import Alignment, LoggerClock
-    from shaftprint.recording import Levels, Recording
+    from shaftprint.clocks._alignment import Alignment
+    from shaftprint.clocks._logger_clock import LoggerClock
+    from shaftprint.recording._levels import Levels
+    from shaftprint.recording._recording import Recording
 
 PERCENT = 100.0
 # A channel that spends more than this share of its time at its highest or lowest value may be cut off there.

@@ -9,8 +9,9 @@ from shaftprint.plain_table import Column, Symbol, Table, numbers, texts
 from shaftprint.units import MILLI, SECONDS_PER_MINUTE
 
 if TYPE_CHECKING:
-    from shaftprint.signals import Repair, Signals, SpeedSignal
-    from shaftprint.spectra import Spectra
+    from shaftprint.signals._channel_signals import SpeedSignal
+    from shaftprint.signals._signals import Repair, Signals
+    from shaftprint.spectra._spectra import Spectra
 
 DEGREES_PER_REV = 360.0
 PERCENT = 100.0

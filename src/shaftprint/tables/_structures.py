@@ -7,9 +7,9 @@ from shaftprint.digits import p_value_text, plain, rounded, with_deviation
 from shaftprint.plain_table import Table, numbers, texts
 
 if TYPE_CHECKING:
-    from shaftprint.identify import Identification
-    from shaftprint.identify.comparison import Candidate, LikelihoodRatio, StructureComparison
-    from shaftprint.identify.fit import Estimate
+    from shaftprint.identify.comparison._comparison import Candidate, StructureComparison
+    from shaftprint.identify.comparison._likelihood_ratio import LikelihoodRatio
+    from shaftprint.identify.fit._identification import Estimate, Identification
 
 PERCENT = 100.0
 HOLD_OUT_NOTE = (

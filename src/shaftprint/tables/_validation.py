@@ -9,7 +9,10 @@ from shaftprint.plain_table import Symbol, Table, numbers, texts
 from shaftprint.units import MILLI
 
 if TYPE_CHECKING:
-    from shaftprint.validation import ExcerptComparison, Misfit, RemainingDelay, StepNumber, Validation
+    from shaftprint.validation._step_comparison import StepNumber
+    from shaftprint.validation._validation import ExcerptComparison, Validation
+    from shaftprint.validation.measures._delay import RemainingDelay
+    from shaftprint.validation.measures._misfit import Misfit
 
 PERCENT = 100.0
 

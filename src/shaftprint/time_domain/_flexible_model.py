@@ -25,7 +25,7 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.distributions import f_tail
-from shaftprint.identify.likelihood import CheckKind, TermCheck
+from shaftprint.identify.likelihood._term_check import CheckKind, TermCheck
 from shaftprint.time_domain._flexible_directions import (
     impulse_responses,
     slow_course,

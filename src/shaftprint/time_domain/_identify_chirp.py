@@ -6,11 +6,16 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import IdentificationError
-from shaftprint.identify import Identification, MaximumLikelihood, Settings, identify, identify_jointly
-from shaftprint.identify.fit import Cluster, with_sensor
-from shaftprint.identify.likelihood import with_load
-from shaftprint.identify.search import GivenStarts
-from shaftprint.models import Integrator, Structure, free_responses
+from shaftprint.identify.fit._identification import Cluster, Identification
+from shaftprint.identify.fit._identify import identify, identify_jointly
+from shaftprint.identify.fit._sensor import with_sensor
+from shaftprint.identify.likelihood._load_factors import with_load
+from shaftprint.identify.likelihood._weighting import MaximumLikelihood
+from shaftprint.identify.search._settings import Settings
+from shaftprint.identify.search._starts import GivenStarts
+from shaftprint.models._blocks import Integrator
+from shaftprint.models._free_response import free_responses
+from shaftprint.models._structure import Structure
 from shaftprint.time_domain._nodes import Nodes
 from shaftprint.time_domain._record import Record
 from shaftprint.time_domain._spectrum import Spectrum, spectrum_of

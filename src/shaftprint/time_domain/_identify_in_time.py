@@ -15,14 +15,17 @@ import numpy as np
 
 from shaftprint.arguments import refusing_none
 from shaftprint.arrays import FloatArray
-from shaftprint.catalogue import ShipRole
+from shaftprint.catalogue._roles import ShipRole
 from shaftprint.errors import IdentificationError
-from shaftprint.identify import Identification, Settings, identify_jointly
-from shaftprint.identify.fit import with_sensor
-from shaftprint.identify.likelihood import Term, with_load
-from shaftprint.identify.search import GivenStarts
-from shaftprint.models import Structure
-from shaftprint.spectra import FrequencyResponse
+from shaftprint.identify.fit._identification import Identification
+from shaftprint.identify.fit._identify import identify_jointly
+from shaftprint.identify.fit._sensor import with_sensor
+from shaftprint.identify.likelihood._load_factors import with_load
+from shaftprint.identify.likelihood._term import Term
+from shaftprint.identify.search._settings import Settings
+from shaftprint.identify.search._starts import GivenStarts
+from shaftprint.models._structure import Structure
+from shaftprint.spectra._frequency_response import FrequencyResponse
 from shaftprint.time_domain._input_response import noise_of
 from shaftprint.time_domain._noise_model import LONGEST_S, estimate_noise, white_noise
 from shaftprint.time_domain._nuisance import usual_drift_degree

@@ -13,9 +13,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from shaftprint.arrays import BoolArray, FloatArray
-from shaftprint.identify.fit import Estimate, PseudoInverse
-from shaftprint.models import Structure
-from shaftprint.simulation import state_names
+from shaftprint.identify.fit._identification import Estimate
+from shaftprint.identify.fit._pseudo_inverse import PseudoInverse
+from shaftprint.models._structure import Structure
+from shaftprint.simulation._equilibrium import state_names
 from shaftprint.time_domain._nuisance import left_of
 from shaftprint.time_domain._record import Record
 

@@ -13,8 +13,9 @@ import numpy as np
 
 from shaftprint.arrays import BoolArray, FloatArray, frozen_float
 from shaftprint.errors import IdentificationError
-from shaftprint.identify.fit import Estimate
-from shaftprint.identify.likelihood import LineTest, Repeats, TermTest, WhitenedTerm
+from shaftprint.identify.fit._identification import Estimate
+from shaftprint.identify.likelihood._line_test import LineTest
+from shaftprint.identify.likelihood._term import Repeats, TermTest, WhitenedTerm
 from shaftprint.time_domain._assumed import shortened
 from shaftprint.time_domain._flexible_model import FlexibleModel
 from shaftprint.time_domain._initial_states import (

@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 
 from shaftprint.arrays import BoolArray, FloatArray, frozen_bool, frozen_float
 from shaftprint.errors import SignalError
-from shaftprint.notebook import Shown
+from shaftprint.notebook._shown import Shown
 from shaftprint.time_domain._decimator import Decimator
 
 

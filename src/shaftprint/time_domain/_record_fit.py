@@ -6,10 +6,11 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from shaftprint.arrays import ComplexArray, FloatArray, frozen_float
-from shaftprint.identify import fit_percent
-from shaftprint.identify.fit import Estimate
-from shaftprint.identify.likelihood import FittedTerm, TermCheck, fit_ceiling
-from shaftprint.models import Structure
+from shaftprint.identify.fit._identification import Estimate
+from shaftprint.identify.likelihood._fit_percent import fit_ceiling, fit_percent
+from shaftprint.identify.likelihood._term import FittedTerm
+from shaftprint.identify.likelihood._term_check import TermCheck
+from shaftprint.models._structure import Structure
 from shaftprint.time_domain._flexible_model import FlexibleModel
 from shaftprint.time_domain._noise_model import NoiseModel
 from shaftprint.time_domain._record import Record

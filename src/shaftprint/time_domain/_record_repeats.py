@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from shaftprint.arrays import FloatArray, IntArray
-from shaftprint.identify.likelihood import Repeats
+from shaftprint.identify.likelihood._term import Repeats
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

@@ -13,9 +13,14 @@ from collections.abc import Sequence
 import numpy as np
 
 from shaftprint.arrays import BoolArray, FloatArray, frozen_bool, frozen_float
-from shaftprint.campaign import Campaign, Excitation, Leg, Sine
+from shaftprint.campaign._campaign import Campaign
+from shaftprint.campaign._excitation import Excitation
+from shaftprint.campaign._excitations import Sine
+from shaftprint.campaign._leg import Leg
 from shaftprint.errors import SignalError
-from shaftprint.signals import Signals, SpeedSignal, deviation
+from shaftprint.signals._channel_signals import SpeedSignal
+from shaftprint.signals._signals import Signals
+from shaftprint.signals.levels._working_point import deviation
 from shaftprint.time_domain._decimator import Decimator
 from shaftprint.time_domain._record import Record
 

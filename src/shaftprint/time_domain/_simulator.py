@@ -10,8 +10,9 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import StructureError
-from shaftprint.models import Structure
-from shaftprint.simulation import Trace, equilibrium, simulate
+from shaftprint.models._structure import Structure
+from shaftprint.simulation._equilibrium import equilibrium
+from shaftprint.simulation._simulate import Trace, simulate
 from shaftprint.time_domain._record import Record
 
 # Outputs beyond this have run away, and so have those beyond this times the largest that was measured.

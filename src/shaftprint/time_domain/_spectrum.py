@@ -7,7 +7,7 @@ import numpy as np
 
 from shaftprint.arrays import ComplexArray, FloatArray, frozen_complex, frozen_float
 from shaftprint.errors import SignalError
-from shaftprint.spectra import FrequencyResponse
+from shaftprint.spectra._frequency_response import FrequencyResponse
 from shaftprint.time_domain._bands import NARROWEST, LineBands, bands_of
 from shaftprint.time_domain._record import Record
 

@@ -15,8 +15,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from shaftprint.arrays import BoolArray, ComplexArray, FloatArray, IntArray
-from shaftprint.identify.likelihood import FittedTerm, LineTest, Repeats, Term, TermCheck, TermTest
-from shaftprint.models import Structure
+from shaftprint.identify.likelihood._line_test import LineTest
+from shaftprint.identify.likelihood._term import FittedTerm, Repeats, Term, TermTest
+from shaftprint.identify.likelihood._term_check import TermCheck
+from shaftprint.models._structure import Structure
 from shaftprint.time_domain._bands import ORDERS
 from shaftprint.time_domain._nodes import Nodes
 from shaftprint.time_domain._spectrum import Spectrum

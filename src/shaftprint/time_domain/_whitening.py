@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from shaftprint.arrays import FloatArray
-from shaftprint.kernels import compiled
+from shaftprint.kernels._compiled import compiled
 from shaftprint.time_domain._noise_model import NoiseModel
 
 

@@ -18,53 +18,6 @@ torque of a link      N m          at the propeller shaft; positive when its eng
 A gear mesh joins two masses into one body, as does every rigid link. A *body* has the name of its largest mass.
 """
 
-from shaftprint.torsion._coupling import LineCoupling, line_coupling
-from shaftprint.torsion._entrained_water import (
-    Blades,
-    WaterEstimate,
-    schwanecke_kg_m2,
-    strip_theory_kg_m2,
-    water_estimates,
-)
-from shaftprint.torsion._expected_inertia import (
-    ExpectedInertia,
-    ExpectedValue,
-    InertiaComparison,
-    WetLine,
-    compare_inertia,
-    expected_inertia,
-)
-from shaftprint.torsion._forced_response import LineResponse, forced_response
-from shaftprint.torsion._line import LineLink, TorsionalLine, torsional_line
-from shaftprint.torsion._modes import Modes, modes
-from shaftprint.torsion._trace import LineTrace, simulate_line
-from shaftprint.torsion._two_masses import TwoMasses, two_masses
-from shaftprint.torsion._viscous_damper import best_damper_nm_s_rad
+import lazy_loader
 
-__all__ = [
-    "Blades",
-    "ExpectedInertia",
-    "ExpectedValue",
-    "InertiaComparison",
-    "LineCoupling",
-    "LineLink",
-    "LineResponse",
-    "LineTrace",
-    "Modes",
-    "TorsionalLine",
-    "TwoMasses",
-    "WaterEstimate",
-    "WetLine",
-    "best_damper_nm_s_rad",
-    "compare_inertia",
-    "expected_inertia",
-    "forced_response",
-    "line_coupling",
-    "modes",
-    "schwanecke_kg_m2",
-    "simulate_line",
-    "strip_theory_kg_m2",
-    "torsional_line",
-    "two_masses",
-    "water_estimates",
-]
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

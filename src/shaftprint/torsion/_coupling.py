@@ -11,7 +11,9 @@ from shaftprint.torsion._line import TorsionalLine, torsional_line
 from shaftprint.torsion._modes import modes
 
 if TYPE_CHECKING:
-    from shaftprint.vessel import InertiaRow, ShaftLink, Vessel
+    from shaftprint.vessel._inertia import InertiaRow
+    from shaftprint.vessel._links import ShaftLink
+    from shaftprint.vessel._vessel import Vessel
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -9,7 +9,7 @@ import numpy as np
 from shaftprint.arrays import FloatArray
 
 if TYPE_CHECKING:
-    from shaftprint.vessel import Vessel
+    from shaftprint.vessel._vessel import Vessel
 
 WATER_SHARE = 0.25
 """Entrained water over dry propeller, as torsional vibration calculations usually take it."""

@@ -10,7 +10,8 @@ from shaftprint.torsion._entrained_water import WaterEstimate, water_estimates
 from shaftprint.units import rev_s_from_rpm
 
 if TYPE_CHECKING:
-    from shaftprint.vessel import InertiaRow, Vessel
+    from shaftprint.vessel._inertia import InertiaRow
+    from shaftprint.vessel._vessel import Vessel
 
 GAUGE_SCALE = "gauge scale"
 SIDES: tuple[tuple[Literal["upstream", "downstream"], str], ...] = (("upstream", "up"), ("downstream", "dn"))

@@ -9,11 +9,13 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.errors import SettingsError, StructureError
-from shaftprint.notebook import Shown
+from shaftprint.notebook._shown import Shown
 from shaftprint.units import rev_s_from_rpm
 
 if TYPE_CHECKING:
-    from shaftprint.vessel import InertiaRow, ShaftLink, Vessel
+    from shaftprint.vessel._inertia import InertiaRow
+    from shaftprint.vessel._links import ShaftLink
+    from shaftprint.vessel._vessel import Vessel
 
 QUADRATIC_LAW = 2.0
 

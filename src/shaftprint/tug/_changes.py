@@ -6,8 +6,8 @@ import numpy as np
 
 from shaftprint.tug._noise import Noise
 from shaftprint.tug._tug import Tug
-from shaftprint.tug.plant import working_point
-from shaftprint.vessel import Vessel
+from shaftprint.tug.plant._physics import working_point
+from shaftprint.vessel._vessel import Vessel
 
 # From test to test: the torque of the propeller as a share, the zero of the gauge [N m], the set point [V: 5 rpm].
 LOAD_REPEATABILITY, ZERO_STD_NM, SET_POINT_STD_V = 0.005, 60.0, 0.02

@@ -3,7 +3,8 @@
 import math
 from dataclasses import dataclass
 
-from shaftprint.vessel import ShaftLink, Vessel
+from shaftprint.vessel._links import ShaftLink
+from shaftprint.vessel._vessel import Vessel
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

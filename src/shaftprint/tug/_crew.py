@@ -5,44 +5,32 @@ from typing import Literal, Protocol, TypedDict
 import numpy as np
 from numpy.typing import NDArray
 
-from shaftprint.campaign import Campaign
+from shaftprint.campaign._campaign import Campaign
 from shaftprint.errors import SettingsError
-from shaftprint.recording import RecordingWriter
+from shaftprint.recording._writer import RecordingWriter
 from shaftprint.tug._pitch_actuation import PitchActuation
 from shaftprint.tug._truth import StripTruth, Truth, rack_latency_s, tell_truth
 from shaftprint.tug._tug import Tug
-from shaftprint.tug.plant import (
-    RACK,
-    SPEED,
-    WAY,
-    Demand,
-    Stretch,
-    actuation_of,
-    build_plant,
-    equilibrium,
-    steady_load_nm,
-)
-from shaftprint.tug.sensors import (
-    VOLT_PER_COUNT,
-    Bus,
-    ControlUnit,
-    DemandMessages,
-    Encoder,
-    Fault,
-    Helm,
-    HelmMessages,
-    MachineTorque,
-    MessageTimes,
-    PickUp,
-    PitchFeedback,
-    PitchLever,
-    SpeedLog,
-    SpeedMessages,
-    SpeedMeter,
-    TorqueGauge,
-    TorqueMessages,
-)
-from shaftprint.vessel import SAMPLES_A_TOOTH, SpeedSensor, Vessel
+from shaftprint.tug.plant._demand import Demand
+from shaftprint.tug.plant._physics import build_plant, equilibrium, steady_load_nm
+from shaftprint.tug.plant._pitch import actuation_of
+from shaftprint.tug.plant._plant import RACK, SPEED, WAY
+from shaftprint.tug.plant._voyage import Stretch
+from shaftprint.tug.sensors._bus import Bus, MessageTimes
+from shaftprint.tug.sensors._control_unit import ControlUnit
+from shaftprint.tug.sensors._demand_messages import DemandMessages
+from shaftprint.tug.sensors._encoder import Encoder
+from shaftprint.tug.sensors._faults import Fault
+from shaftprint.tug.sensors._gauge import TorqueGauge, TorqueMessages
+from shaftprint.tug.sensors._helm import Helm, HelmMessages, PitchLever
+from shaftprint.tug.sensors._log import SpeedLog
+from shaftprint.tug.sensors._machine_torque import MachineTorque
+from shaftprint.tug.sensors._pitch_feedback import PitchFeedback
+from shaftprint.tug.sensors._pulses import VOLT_PER_COUNT, PickUp
+from shaftprint.tug.sensors._speed_meter import SpeedMessages, SpeedMeter
+from shaftprint.vessel._sensors import SpeedSensor
+from shaftprint.vessel._vessel import Vessel
+from shaftprint.vessel._wheel import SAMPLES_A_TOOTH
 
 RATE_HZ = 2000.0
 """Sample rate where the vessel file names no logger [Hz]."""

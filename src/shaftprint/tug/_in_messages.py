@@ -7,7 +7,7 @@ from typing import Any, Final
 from shaftprint.errors import SettingsError
 from shaftprint.tug._tug import Tug
 from shaftprint.tug.sensors._speed_meter import SPEED_STEP_RPM
-from shaftprint.vessel import Vessel
+from shaftprint.vessel._vessel import Vessel
 
 MESSAGES: Final = ("torque", "speed", "set-point")
 """What may come in messages."""

@@ -10,10 +10,10 @@ from shaftprint.tug._sailing import Sailing, with_propeller_of
 from shaftprint.tug._shaft_machine import ShaftMachineTruth
 from shaftprint.tug._truth import normalised_truth
 from shaftprint.tug._tug import Tug
-from shaftprint.vessel import Vessel
+from shaftprint.vessel._vessel import Vessel
 
 if TYPE_CHECKING:
-    from shaftprint.campaign import Campaign
+    from shaftprint.campaign._campaign import Campaign
 
 # At the quay the lever asks for the working speed at -5 V, as on the Stan Tug. Its line has this inertia time [s], less
 # half a per cent so that its governor is left as it is.

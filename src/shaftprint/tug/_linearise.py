@@ -9,7 +9,10 @@ from shaftprint.arrays import ComplexArray, FloatArray
 from shaftprint.errors import SettingsError
 from shaftprint.tug._pitch_actuation import PitchActuation, pitch_torque
 from shaftprint.tug._tug import Tug
-from shaftprint.tug.plant import (
+from shaftprint.tug.plant._constants import Plant
+from shaftprint.tug.plant._physics import build_plant, equilibrium, steady_load_nm, working_point, working_point_rack
+from shaftprint.tug.plant._pitch import actuation_of
+from shaftprint.tug.plant._plant import (
     ANGLE,
     ENGINE,
     INTEGRAL,
@@ -19,17 +22,10 @@ from shaftprint.tug.plant import (
     SPEED,
     TWIST,
     WAY,
-    Plant,
-    actuation_of,
-    build_plant,
     derivatives,
-    equilibrium,
-    steady_load_nm,
-    working_point,
-    working_point_rack,
 )
 from shaftprint.units import rpm_from_rev_s
-from shaftprint.vessel import Vessel
+from shaftprint.vessel._vessel import Vessel
 
 # Places in the vector that is perturbed: nine states, the demand in the ECU, the rack given a delay ago, the pitch, the
 # disturbance of the propeller's torque, the torque of an electric machine on the gearbox.

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from shaftprint.errors import SettingsError
 from shaftprint.tug._pitch_series import torque_over_pitch
-from shaftprint.vessel import Vessel
+from shaftprint.vessel._vessel import Vessel
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -3,7 +3,7 @@
 import math
 
 from shaftprint.errors import SettingsError
-from shaftprint.vessel import Vessel
+from shaftprint.vessel._vessel import Vessel
 
 # Ka4-70 in nozzle 19A (M.W.C. Oosterveld, Wake adapted ducted propellers, 1970): the terms of K_Q without J, (power of
 # P/D, coefficient). The tests hold both series against the room of propellers.

@@ -5,15 +5,16 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
 
 from shaftprint.arguments import refusing_none
-from shaftprint.campaign import Campaign
+from shaftprint.campaign._campaign import Campaign
 from shaftprint.errors import RecordingError, SettingsError
 from shaftprint.files import reason, written_whole
-from shaftprint.recording import RecordingWriter
+from shaftprint.recording._writer import RecordingWriter
 from shaftprint.tug._crew import Crew
 from shaftprint.tug._truth import Truth, truth_path, truth_text
 from shaftprint.tug._tug import Tug
-from shaftprint.tug.plant import Disturbance, voyage
-from shaftprint.vessel import Vessel
+from shaftprint.tug.plant._disturbance import Disturbance
+from shaftprint.tug.plant._voyage import voyage
+from shaftprint.vessel._vessel import Vessel
 
 CHUNK = 262_144
 """Samples in one compressed block of the container: no block is copied."""

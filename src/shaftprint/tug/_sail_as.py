@@ -5,14 +5,15 @@ import tempfile
 from collections.abc import Callable
 from pathlib import Path
 
-from shaftprint.campaign import Campaign
+from shaftprint.campaign._campaign import Campaign
 from shaftprint.errors import RecordingError
 from shaftprint.files import reason, written_whole
-from shaftprint.recording import NATIVE_ENDINGS, expect_known_ending, read_recording, write_by_ending
+from shaftprint.recording._read import read_recording
+from shaftprint.recording.writers._by_ending import NATIVE_ENDINGS, expect_known_ending, write_by_ending
 from shaftprint.tug._sail import sail
 from shaftprint.tug._truth import Truth, truth_path
 from shaftprint.tug._tug import Tug
-from shaftprint.vessel import Vessel
+from shaftprint.vessel._vessel import Vessel
 
 
 def sail_as(

@@ -9,18 +9,19 @@ from pathlib import Path
 import numpy as np
 
 from shaftprint.arguments import refusing_none
-from shaftprint.campaign import CampaignOfBoth
+from shaftprint.campaign._both_shafts import CampaignOfBoth
 from shaftprint.errors import RecordingError, SettingsError
 from shaftprint.files import reason, written_whole
-from shaftprint.notebook import Shown
-from shaftprint.recording import RecordingWriter
+from shaftprint.notebook._shown import Shown
+from shaftprint.recording._writer import RecordingWriter
 from shaftprint.tug._crew import Crew
 from shaftprint.tug._sail import CHUNK
 from shaftprint.tug._shared_water import SharedWater
 from shaftprint.tug._truth import SCHEMA, Truth, truth_path
 from shaftprint.tug._tug import Tug
-from shaftprint.tug.plant import Stretch, sea_and_own, voyage_of_both
-from shaftprint.vessel import Vessel
+from shaftprint.tug.plant._both_lines import sea_and_own, voyage_of_both
+from shaftprint.tug.plant._voyage import Stretch
+from shaftprint.vessel._vessel import Vessel
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, repr=False)

@@ -8,7 +8,8 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import SettingsError
-from shaftprint.vessel import Hull, Vessel
+from shaftprint.vessel._hull import Hull
+from shaftprint.vessel._vessel import Vessel
 
 # Ka4-70 in nozzle 19A at P/D 1.11 (M.W.C. Oosterveld, Wake adapted ducted propellers, 1970): its polynomials in powers
 # of P/D and J, gathered by hand to powers of J at this one pitch. The tests hold them against the room of propellers.

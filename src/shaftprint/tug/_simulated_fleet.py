@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from shaftprint.campaign import Campaign
+from shaftprint.campaign._campaign import Campaign
 from shaftprint.errors import SettingsError
 from shaftprint.tug._changes import (
     in_water,
@@ -22,7 +22,7 @@ from shaftprint.tug._sail import sail
 from shaftprint.tug._simulated_ship import SimulatedShip, Wear, ship_at, vessel_at
 from shaftprint.tug._truth import Truth
 from shaftprint.tug._tug import Tug
-from shaftprint.vessel import Vessel
+from shaftprint.vessel._vessel import Vessel
 
 WATER_C = (5.0, 25.0)
 DRAUGHT_STD_M = 0.1

@@ -7,7 +7,7 @@ from typing import Final
 from shaftprint.errors import SettingsError
 from shaftprint.tug._changes import with_delay, with_gains, with_injection, with_load
 from shaftprint.tug._tug import Tug
-from shaftprint.vessel import Vessel
+from shaftprint.vessel._vessel import Vessel
 
 SECONDS_PER_YEAR: Final = 365.25 * 86400.0
 CLEANS: Final = ("docking", "propeller-polished")

@@ -7,16 +7,18 @@ from pathlib import Path
 
 import numpy as np
 
-from shaftprint.campaign import Campaign
+from shaftprint.campaign._campaign import Campaign
 from shaftprint.errors import RecordingError
-from shaftprint.notebook import Shown
+from shaftprint.notebook._shown import Shown
 from shaftprint.tug._pitch_actuation import pitch_truth
 from shaftprint.tug._sailing import sailing_truth, way_of
 from shaftprint.tug._tug import Tug
-from shaftprint.tug.plant import build_plant, demand_limits, shaft_time_constant_s, working_point, working_point_rack
-from shaftprint.tug.sensors import Fault
+from shaftprint.tug.plant._demand import demand_limits
+from shaftprint.tug.plant._physics import build_plant, shaft_time_constant_s, working_point, working_point_rack
+from shaftprint.tug.sensors._faults import Fault
 from shaftprint.units import rpm_from_rev_s
-from shaftprint.vessel import RackSensor, Vessel
+from shaftprint.vessel._sensors import RackSensor
+from shaftprint.vessel._vessel import Vessel
 
 _PITCH = ("rate_per_s", "deadband", "play", "sensor_rms", "sensor_wander_rms")
 

@@ -12,37 +12,6 @@ deviation           -       ``(x - x_0) / x_0`` from the working point
 =================== ======= ==========================================================================================
 """
 
-from shaftprint.validation._foreign import ForeignModel
-from shaftprint.validation._model import Model, identified_model, model_of
-from shaftprint.validation._prediction import Predict, linear_prediction, simulated_prediction
-from shaftprint.validation._settings import ValidationSettings
-from shaftprint.validation._step_comparison import StepNumber
-from shaftprint.validation._thesis_models import thesis_models
-from shaftprint.validation._validate import joined, validate
-from shaftprint.validation._validation import ExcerptComparison, ExcerptTraces, Validation
-from shaftprint.validation._validation_records import Excerpt, default_records, excerpts_of
-from shaftprint.validation.measures import Misfit, Outcome, RemainingDelay
+import lazy_loader
 
-__all__ = [
-    "Excerpt",
-    "ExcerptComparison",
-    "ExcerptTraces",
-    "ForeignModel",
-    "Misfit",
-    "Model",
-    "Outcome",
-    "Predict",
-    "RemainingDelay",
-    "StepNumber",
-    "Validation",
-    "ValidationSettings",
-    "default_records",
-    "excerpts_of",
-    "identified_model",
-    "joined",
-    "linear_prediction",
-    "model_of",
-    "simulated_prediction",
-    "thesis_models",
-    "validate",
-]
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

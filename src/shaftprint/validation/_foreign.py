@@ -18,11 +18,11 @@ from typing import Final
 import numpy as np
 
 from shaftprint.arrays import FloatArray
-from shaftprint.catalogue import structure
+from shaftprint.catalogue._thesis import structure
 from shaftprint.errors import ValidationError
 from shaftprint.escape import printable
-from shaftprint.models import Structure
-from shaftprint.signals import WorkingPoint
+from shaftprint.models._structure import Structure
+from shaftprint.signals._working_points import WorkingPoint
 from shaftprint.validation._model import Model, model_of
 
 EXTRA: Final = 'pip install "shaftprint[models]"'

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from shaftprint.arrays import FloatArray, frozen_float
-from shaftprint.identify import Identification
-from shaftprint.identify.likelihood import FittedResponse
-from shaftprint.models import Structure
-from shaftprint.notebook import Shown
+from shaftprint.identify.fit._identification import Identification
+from shaftprint.identify.likelihood._fitted_response import FittedResponse
+from shaftprint.models._structure import Structure
+from shaftprint.notebook._shown import Shown
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)

@@ -17,8 +17,8 @@ import scipy
 
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import ValidationError
-from shaftprint.models import Structure
-from shaftprint.simulation import simulate
+from shaftprint.models._structure import Structure
+from shaftprint.simulation._simulate import simulate
 
 OUTPUTS = ("n", "M_s")
 

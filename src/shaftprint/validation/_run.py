@@ -7,25 +7,17 @@ from functools import partial
 import numpy as np
 
 from shaftprint.arrays import FloatArray
-from shaftprint.campaign import Campaign
-from shaftprint.signals import Signals, deviation
+from shaftprint.campaign._campaign import Campaign
+from shaftprint.signals._signals import Signals
+from shaftprint.signals.levels._working_point import deviation
 from shaftprint.validation._model import Model
 from shaftprint.validation._prediction import OUTPUTS, Predict, add_quadratic_torque
 from shaftprint.validation._settings import ValidationSettings
 from shaftprint.validation._validation_records import Excerpt
-from shaftprint.validation.measures import (
-    EVERYWHERE,
-    LEAST_LOAD,
-    Compared,
-    QuietNoise,
-    Reach,
-    Swept,
-    Unfiltered,
-    low_pass,
-    quiet_noise,
-    reach_of_low_pass,
-    while_settling,
-)
+from shaftprint.validation.measures._low_pass import low_pass, reach_of_low_pass
+from shaftprint.validation.measures._misfit import Compared, Unfiltered
+from shaftprint.validation.measures._noise_pieces import LEAST_LOAD, QuietNoise, quiet_noise
+from shaftprint.validation.measures._reach import EVERYWHERE, Reach, Swept, while_settling
 
 # Time behind a record that is predicted too: the low-pass and the search for a delay look beyond its end.
 _BEHIND_S = 5.0

@@ -8,7 +8,8 @@ from shaftprint.validation._model import Model
 from shaftprint.validation._settings import ValidationSettings
 from shaftprint.validation._step_comparison import StepNumber
 from shaftprint.validation._validation import ExcerptComparison
-from shaftprint.validation.measures import Misfit, QuietNoise
+from shaftprint.validation.measures._misfit import Misfit
+from shaftprint.validation.measures._noise_pieces import QuietNoise
 
 PERCENT = 100.0
 WORDS = {"n": "speed", "M_s": "torque"}

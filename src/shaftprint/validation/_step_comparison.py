@@ -12,7 +12,8 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.distributions import deviations
-from shaftprint.validation.measures import STEP_NUMBERS, Compared, step_numbers
+from shaftprint.validation.measures._misfit import Compared
+from shaftprint.validation.measures._step_numbers import STEP_NUMBERS, step_numbers
 
 _FEWEST_PIECES = 3
 # A number that so small a share of the noisy responses shows is no number to compare.

@@ -1,6 +1,7 @@
 """The parameter sets of the thesis, to be held against records as chapter 5.6 of the thesis does."""
 
-from shaftprint.catalogue import THESIS_VALUES, structure
+from shaftprint.catalogue._thesis import structure
+from shaftprint.catalogue._thesis_values import THESIS_VALUES
 from shaftprint.validation._model import Model, model_of
 
 

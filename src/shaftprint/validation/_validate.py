@@ -7,13 +7,13 @@ import numpy as np
 
 from shaftprint.arguments import refusing_none
 from shaftprint.arrays import frozen_float
-from shaftprint.campaign import Campaign
+from shaftprint.campaign._campaign import Campaign
 from shaftprint.errors import ValidationError
-from shaftprint.identify import Identification
-from shaftprint.identify.fit import pick_up_values
+from shaftprint.identify.fit._identification import Identification
+from shaftprint.identify.fit._sensor import pick_up_values
 from shaftprint.memory import give_back_memory
-from shaftprint.models import Structure
-from shaftprint.signals import Signals
+from shaftprint.models._structure import Structure
+from shaftprint.signals._signals import Signals
 from shaftprint.validation._headline import headline_of
 from shaftprint.validation._model import Model, identified_model, model_of
 from shaftprint.validation._prediction import Predict, linear_prediction
@@ -23,7 +23,8 @@ from shaftprint.validation._settings import ValidationSettings
 from shaftprint.validation._step_comparison import StepNumber, compare_steps
 from shaftprint.validation._validation import ExcerptComparison, ExcerptTraces, Validation
 from shaftprint.validation._validation_records import Excerpt, default_records, excerpts_of, whole_excerpts
-from shaftprint.validation.measures import LONGEST_S, Compared, Outcome, RemainingDelay, misfit_of, remaining_delay
+from shaftprint.validation.measures._delay import LONGEST_S, RemainingDelay, remaining_delay
+from shaftprint.validation.measures._misfit import Compared, Outcome, misfit_of
 
 
 def _any(excerpt: Excerpt) -> bool:

@@ -3,12 +3,14 @@
 from dataclasses import dataclass
 
 from shaftprint.arrays import FloatArray
-from shaftprint.notebook import Shown, Summary, shortened
+from shaftprint.notebook._shown import Shown
+from shaftprint.notebook._summary import Summary, shortened
 from shaftprint.validation._model import Model
 from shaftprint.validation._settings import ValidationSettings
 from shaftprint.validation._step_comparison import StepNumber
 from shaftprint.validation._validation_records import Excerpt
-from shaftprint.validation.measures import Misfit, Outcome, RemainingDelay
+from shaftprint.validation.measures._delay import RemainingDelay
+from shaftprint.validation.measures._misfit import Misfit, Outcome
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)

@@ -11,9 +11,10 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Literal
 
-from shaftprint.campaign import Campaign, Chirp, Staircase
+from shaftprint.campaign._campaign import Campaign
+from shaftprint.campaign._excitations import Chirp, Staircase
 from shaftprint.errors import ValidationError
-from shaftprint.signals import Coverage
+from shaftprint.signals._gaps import Coverage
 from shaftprint.validation._settings import ValidationSettings
 
 _LOOKS_BEHIND_S = 2.0

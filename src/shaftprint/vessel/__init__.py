@@ -24,67 +24,6 @@ The torque gauge sits on the propeller shaft: *upstream* of it is what lies towa
 *downstream* what lies towards the propeller.
 """
 
-from shaftprint.vessel._current_loop import ALIVE_MA, LIVE_ZERO_MA
-from shaftprint.vessel._hull import Hull
-from shaftprint.vessel._inertia import InertiaRow
-from shaftprint.vessel._limits import OperatingLimits
-from shaftprint.vessel._links import ShaftLink
-from shaftprint.vessel._machine_torque import MachineTorqueSensor
-from shaftprint.vessel._machinery import Engine, Gearbox, Machine, Motor, Propeller, RackMap
-from shaftprint.vessel._orders import Order
-from shaftprint.vessel._pitch import ControllablePitch
-from shaftprint.vessel._pitch_sensors import PitchSensor, PitchSetPointSensor
-from shaftprint.vessel._sensors import (
-    DemandSensor,
-    Logger,
-    RackSensor,
-    Sensors,
-    ShipSpeedSensor,
-    SpeedSensor,
-)
-from shaftprint.vessel._set_point import SetPointSensor
-from shaftprint.vessel._shaft_machine import ShaftMachine
-from shaftprint.vessel._shaft_torque import GaugedShaft, ShaftTorqueSensor
-from shaftprint.vessel._ship import ImoNumber, Ship, ShortName, is_imo_number
-from shaftprint.vessel._vessel import Vessel, load_vessel
-from shaftprint.vessel._wheel import SAMPLES_A_TOOTH, Wheel
-from shaftprint.vessel._working_point import WorkingPoint
+import lazy_loader
 
-__all__ = [
-    "ALIVE_MA",
-    "LIVE_ZERO_MA",
-    "SAMPLES_A_TOOTH",
-    "ControllablePitch",
-    "DemandSensor",
-    "Engine",
-    "GaugedShaft",
-    "Gearbox",
-    "Hull",
-    "ImoNumber",
-    "InertiaRow",
-    "Logger",
-    "Machine",
-    "MachineTorqueSensor",
-    "Motor",
-    "OperatingLimits",
-    "Order",
-    "PitchSensor",
-    "PitchSetPointSensor",
-    "Propeller",
-    "RackMap",
-    "RackSensor",
-    "Sensors",
-    "SetPointSensor",
-    "ShaftLink",
-    "ShaftMachine",
-    "ShaftTorqueSensor",
-    "Ship",
-    "ShipSpeedSensor",
-    "ShortName",
-    "SpeedSensor",
-    "Vessel",
-    "Wheel",
-    "WorkingPoint",
-    "is_imo_number",
-    "load_vessel",
-]
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

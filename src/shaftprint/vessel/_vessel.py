@@ -11,7 +11,8 @@ from pydantic import Field, model_validator
 from shaftprint.arguments import refusing_none
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import SettingsError
-from shaftprint.notebook import Shown, Summary, shortened
+from shaftprint.notebook._shown import Shown
+from shaftprint.notebook._summary import Summary, shortened
 from shaftprint.settings import Name, PositiveNumber, Settings, load_settings
 from shaftprint.vessel._hull import Hull
 from shaftprint.vessel._inertia import InertiaRow

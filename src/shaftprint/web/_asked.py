@@ -10,8 +10,9 @@ from starlette.concurrency import run_in_threadpool
 from starlette.exceptions import HTTPException
 from starlette.requests import Request
 
-from shaftprint.store import Line, Ship
-from shaftprint.web.access import Person, Role, Session
+from shaftprint.store._nouns import Line, Ship
+from shaftprint.web.access._person import Person, Role
+from shaftprint.web.access._sessions import Session
 
 if TYPE_CHECKING:
     from shaftprint.web._service import Service

@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING, Any, Final
 from starlette.concurrency import run_in_threadpool
 
 from shaftprint.errors import ShaftprintError
-from shaftprint.store import LineNow
+from shaftprint.store._overview import LineNow
 from shaftprint.web._asked import line_key, ship_content
 from shaftprint.web._kept import Making
 from shaftprint.web._waking import Waking
-from shaftprint.web.calculator import Calculator
+from shaftprint.web.calculator._client import Calculator
 
 if TYPE_CHECKING:
     from shaftprint.web._service import Service

@@ -11,7 +11,7 @@ from typing import Any, Final, TypeAlias
 import h11
 from uvicorn.protocols.http.h11_impl import H11Protocol
 
-from shaftprint.web.access import network_of
+from shaftprint.web.access._throttle import network_of
 
 WHOLE_S: Final = 15.0
 """How long a request may take until all of it is there, but for an upload of somebody who may [s]."""

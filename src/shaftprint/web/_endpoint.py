@@ -15,7 +15,8 @@ from shaftprint.web._asked import API, Asked, Moved, Shown
 from shaftprint.web._door import STREAMS
 from shaftprint.web._service import Service
 from shaftprint.web._setting import answer_of, refusal
-from shaftprint.web.access import COOKIE, KNOWN_S, NOBODY, Role
+from shaftprint.web.access._person import NOBODY, Role
+from shaftprint.web.access._sessions import COOKIE, KNOWN_S
 
 Answer: TypeAlias = Callable[[Asked], Awaitable[Shown | Moved | Response]]
 TOKEN_HEAD: Final = "x-csrf-token"  # noqa: S105 - the name of a head

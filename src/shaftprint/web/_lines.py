@@ -3,7 +3,8 @@
 import threading
 from dataclasses import dataclass, field
 
-from shaftprint.store import LineNow, Store, lines_now, store_state
+from shaftprint.store._overview import LineNow, lines_now, store_state
+from shaftprint.store._store import Store
 
 
 @dataclass(slots=True)

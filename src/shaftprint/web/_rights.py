@@ -2,9 +2,11 @@
 
 from collections.abc import Callable
 
-from shaftprint.store import Job, Ship
+from shaftprint.store._job import Job
+from shaftprint.store._nouns import Ship
 from shaftprint.web._kept import Kept
-from shaftprint.web.access import Role, Users
+from shaftprint.web.access._person import Role
+from shaftprint.web.access._users import Users
 
 
 def forbidden_by(kept: Kept, users: Users | None) -> Callable[[Job], str | None]:

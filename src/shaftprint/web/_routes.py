@@ -8,45 +8,57 @@ from starlette.requests import Request
 from starlette.responses import Response
 from starlette.routing import Route
 
-from shaftprint.web import pages
 from shaftprint.web._asked import API
 from shaftprint.web._endpoint import NOT_THERE, Address, endpoint, twin_of
 from shaftprint.web._service import Service
 from shaftprint.web._setting import refusal
-from shaftprint.web.access import Role
+from shaftprint.web.access._person import Role
+from shaftprint.web.pages._audit import audit
+from shaftprint.web.pages._classes import sister_class
+from shaftprint.web.pages._compare import compare
+from shaftprint.web.pages._folders import folder
+from shaftprint.web.pages._jobs import job, job_events, jobs, new_job, retry_job
+from shaftprint.web.pages._line import line, new_event, withdraw
+from shaftprint.web.pages._number import give_number
+from shaftprint.web.pages._recordings import look, put_recording, recording, upload, upload_form
+from shaftprint.web.pages._reports import make_report, report_file
+from shaftprint.web.pages._ships import ships
+from shaftprint.web.pages._sign_in import session, sign_in, sign_in_form, sign_out
+from shaftprint.web.pages._static import static
+from shaftprint.web.pages._trial import fingerprint_document, trial
 
 ADDRESSES: Final = (
-    Address(path="/", answer=pages.ships),
-    Address(path="/ships/{ship}/{line}", answer=pages.line),
-    Address(path="/ships/{ship}/{line}/events", answer=pages.new_event, method="POST", least=Role.TESTER),
-    Address(path="/ships/{ship}/{line}/events/withdrawn", answer=pages.withdraw, method="POST", least=Role.OWNER),
-    Address(path="/ships/{ship}/{line}/number", answer=pages.give_number, method="POST", least=Role.OWNER),
-    Address(path="/trials/{sha256}", answer=pages.trial),
-    Address(path="/trials/{sha256}/report", answer=pages.make_report, method="POST", least=Role.TESTER),
-    Address(path="/trials/{sha256}/report/{path:path}", answer=pages.report_file, twin=False),
-    Address(path="/fingerprints/{sha256}", answer=pages.fingerprint_document),
-    Address(path="/compare", answer=pages.compare),
-    Address(path="/classes/{name}", answer=pages.sister_class),
-    Address(path="/jobs", answer=pages.jobs),
-    Address(path="/jobs", answer=pages.new_job, method="POST", least=Role.TESTER),
-    Address(path="/jobs/{id}", answer=pages.job),
-    Address(path="/jobs/{id}/events", answer=pages.job_events),
-    Address(path="/jobs/{id}/retry", answer=pages.retry_job, method="POST", least=Role.TESTER),
-    Address(path="/upload", answer=pages.upload_form, least=Role.TESTER),
-    Address(path="/upload", answer=pages.upload, method="POST", least=Role.TESTER, streams=True, twin=False),
-    Address(path=f"{API}/recordings/{{name}}", answer=pages.put_recording, method="PUT", least=Role.TESTER,
+    Address(path="/", answer=ships),
+    Address(path="/ships/{ship}/{line}", answer=line),
+    Address(path="/ships/{ship}/{line}/events", answer=new_event, method="POST", least=Role.TESTER),
+    Address(path="/ships/{ship}/{line}/events/withdrawn", answer=withdraw, method="POST", least=Role.OWNER),
+    Address(path="/ships/{ship}/{line}/number", answer=give_number, method="POST", least=Role.OWNER),
+    Address(path="/trials/{sha256}", answer=trial),
+    Address(path="/trials/{sha256}/report", answer=make_report, method="POST", least=Role.TESTER),
+    Address(path="/trials/{sha256}/report/{path:path}", answer=report_file, twin=False),
+    Address(path="/fingerprints/{sha256}", answer=fingerprint_document),
+    Address(path="/compare", answer=compare),
+    Address(path="/classes/{name}", answer=sister_class),
+    Address(path="/jobs", answer=jobs),
+    Address(path="/jobs", answer=new_job, method="POST", least=Role.TESTER),
+    Address(path="/jobs/{id}", answer=job),
+    Address(path="/jobs/{id}/events", answer=job_events),
+    Address(path="/jobs/{id}/retry", answer=retry_job, method="POST", least=Role.TESTER),
+    Address(path="/upload", answer=upload_form, least=Role.TESTER),
+    Address(path="/upload", answer=upload, method="POST", least=Role.TESTER, streams=True, twin=False),
+    Address(path=f"{API}/recordings/{{name}}", answer=put_recording, method="PUT", least=Role.TESTER,
             streams=True, twin=False),
-    Address(path="/recordings/{id}", answer=pages.recording),
-    Address(path="/recordings/{id}/look", answer=pages.look, method="POST", least=Role.TESTER),
-    Address(path="/folders", answer=pages.folder, least=Role.TESTER),
-    Address(path="/folders/{number}/{inside:path}", answer=pages.folder, least=Role.TESTER),
-    Address(path="/audit", answer=pages.audit, least=Role.OWNER),
-    Address(path="/sign-in", answer=pages.sign_in_form, least=None, twin=False),
-    Address(path="/sign-in", answer=pages.sign_in, method="POST", least=None, twin=False),
-    Address(path="/sign-out", answer=pages.sign_out, method="POST", least=None),
-    Address(path=f"{API}/session", answer=pages.session, least=None, twin=False),
-    Address(path=f"{API}/session", answer=pages.sign_in, method="POST", least=None, twin=False),
-    Address(path="/static/{name}", answer=pages.static, least=None, twin=False),
+    Address(path="/recordings/{id}", answer=recording),
+    Address(path="/recordings/{id}/look", answer=look, method="POST", least=Role.TESTER),
+    Address(path="/folders", answer=folder, least=Role.TESTER),
+    Address(path="/folders/{number}/{inside:path}", answer=folder, least=Role.TESTER),
+    Address(path="/audit", answer=audit, least=Role.OWNER),
+    Address(path="/sign-in", answer=sign_in_form, least=None, twin=False),
+    Address(path="/sign-in", answer=sign_in, method="POST", least=None, twin=False),
+    Address(path="/sign-out", answer=sign_out, method="POST", least=None),
+    Address(path=f"{API}/session", answer=session, least=None, twin=False),
+    Address(path=f"{API}/session", answer=sign_in, method="POST", least=None, twin=False),
+    Address(path="/static/{name}", answer=static, least=None, twin=False),
 )  # fmt: skip
 """Every address with what answers, and the least role that may ask."""
 

@@ -12,13 +12,16 @@ from typing import Self
 
 from shaftprint.errors import ServerError
 from shaftprint.files import reason
-from shaftprint.store import Store, open_store
+from shaftprint.store._store import Store, open_store
 from shaftprint.web._kept import Kept
 from shaftprint.web._lines import Lines
 from shaftprint.web._settings import Serving
 from shaftprint.web._waking import Waking
-from shaftprint.web.access import Audit, Sessions, Throttle, Users, read_users
-from shaftprint.web.calculator import Calculator
+from shaftprint.web.access._audit import Audit
+from shaftprint.web.access._sessions import Sessions
+from shaftprint.web.access._throttle import Throttle
+from shaftprint.web.access._users import Users, read_users
+from shaftprint.web.calculator._client import Calculator
 
 _KEY_BYTES = 32
 

@@ -7,10 +7,10 @@ from typing import Any
 from jinja2 import Environment
 from starlette.responses import RedirectResponse, Response
 
-from shaftprint.markup import environment, shown_table, template_text
+from shaftprint.markup._environment import environment, shown_table, template_text
 from shaftprint.plain_table import Column, Symbol, Table
 from shaftprint.web._asked import Asked, Moved, Shown
-from shaftprint.web.access import Role
+from shaftprint.web.access._person import Role
 
 TEMPLATES = (
     "frame.html.j2",

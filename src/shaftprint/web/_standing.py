@@ -5,7 +5,7 @@ from datetime import datetime, timedelta
 from typing import Any, Final, Literal, TypeAlias
 
 from shaftprint.digits import with_deviation
-from shaftprint.store import LineNow
+from shaftprint.store._overview import LineNow
 
 Look: TypeAlias = Literal["fine", "look", "bad", "open"]
 WORDS: Final = (

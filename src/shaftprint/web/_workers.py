@@ -7,7 +7,7 @@ import os
 import sys
 from typing import TYPE_CHECKING, Final
 
-from shaftprint.web.calculator import scratch_environment
+from shaftprint.web.calculator._client import scratch_environment
 
 if TYPE_CHECKING:
     from shaftprint.web._service import Service

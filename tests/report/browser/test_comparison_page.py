@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from shaftprint.errors import ReportError
-from shaftprint.report import render_comparison
+from shaftprint.report._comparison import render_comparison
 
 pytestmark = pytest.mark.slow
 

@@ -5,7 +5,7 @@ import shutil
 
 import pytest
 
-from shaftprint.report import render_comparison
+from shaftprint.report._comparison import render_comparison
 
 pytestmark = pytest.mark.slow
 

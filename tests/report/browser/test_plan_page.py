@@ -16,7 +16,7 @@ from shaftprint.design import (
     limits_from_vessel,
 )
 from shaftprint.identify import STAN_TUG_NOISE
-from shaftprint.report import render_plan
+from shaftprint.report.plan._plan_page import render_plan
 from shaftprint.vessel import load_vessel
 
 pytestmark = pytest.mark.slow

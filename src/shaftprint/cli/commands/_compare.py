@@ -9,19 +9,21 @@ from shaftprint.cli._drive_options import drive_fingerprint_at, is_drive_place
 from shaftprint.cli._load_option import load_repeatability_option
 from shaftprint.cli._own_structure import OWN_FILE_HELP, TypedName, chosen_structures
 from shaftprint.cli._terminal import answer, echo, say
-from shaftprint.cli.output import FINGERPRINT, REPORT, fingerprint_at, force_option, give, output_folder, print_tables
-from shaftprint.drift import Finding, are_two_lines, differ, finding_sentences
-from shaftprint.fingerprint import Fingerprint
-from shaftprint.report import (
-    Difference,
-    cause_table,
-    change_in_words,
-    difference_table,
-    differences,
-    render_comparison,
-    stated_table,
-    vessel_file_sentences,
-)
+from shaftprint.cli.output._fingerprint_file import FINGERPRINT, REPORT, fingerprint_at
+from shaftprint.cli.output._json import give
+from shaftprint.cli.output._output_folder import force_option, output_folder
+from shaftprint.cli.output._tables import print_tables
+from shaftprint.drift._differ import differ
+from shaftprint.drift._finding import Finding
+from shaftprint.drift._shared_errors import are_two_lines
+from shaftprint.drift._words import finding_sentences
+from shaftprint.fingerprint._fingerprint import Fingerprint
+from shaftprint.report._comparison import render_comparison
+from shaftprint.report.comparison._cause_table import cause_table
+from shaftprint.report.comparison._differences import Difference, differences
+from shaftprint.report.comparison._tables import difference_table, stated_table
+from shaftprint.report.comparison._vessel_file_words import vessel_file_sentences
+from shaftprint.report.sections._comparison_cover import change_in_words
 
 FEWEST = 2
 PERCENT = 100.0

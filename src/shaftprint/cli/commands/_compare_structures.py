@@ -11,9 +11,11 @@ from shaftprint.cli._fit_options import FitOptions, fit_options, settings_of, st
 from shaftprint.cli._options import campaign_option, vessel_option
 from shaftprint.cli._own_structure import OWN_FILE_HELP, TypedName
 from shaftprint.cli._results import print_comparison
-from shaftprint.cli.output import no_progress_option, progress
-from shaftprint.identify.comparison import compare_jointly, expect_comparable
-from shaftprint.survey import load_trial, measure, pairs_of, settings_by_name
+from shaftprint.cli.output._progress import no_progress_option, progress
+from shaftprint.identify.comparison._compare import compare_jointly, expect_comparable
+from shaftprint.survey._measurement import measure, pairs_of
+from shaftprint.survey._survey import settings_by_name
+from shaftprint.survey._trial import load_trial
 
 
 @click.command("compare-structures")

@@ -8,20 +8,20 @@ from shaftprint.cli._command_group import NOT_REACHED
 from shaftprint.cli._options import vessel_option
 from shaftprint.cli._own_structure import OWN_FILE_HELP, TypedName, chosen_structures
 from shaftprint.cli._terminal import answer, echo, print_findings
-from shaftprint.cli.output import (
-    REPORT,
-    force_option,
-    give,
-    no_progress_option,
-    output_folder,
-    print_tables,
-    progress,
-)
-from shaftprint.design import CAMPAIGN, RATE_HZ, Standing, read_plan, write_plan_files
-from shaftprint.rehearsal import standing_after
-from shaftprint.report import render_plan
-from shaftprint.survey import load_trial, measure
-from shaftprint.tables import planned_leg_table, standing_leg_table, standing_table
+from shaftprint.cli.output._fingerprint_file import REPORT
+from shaftprint.cli.output._json import give
+from shaftprint.cli.output._output_folder import force_option, output_folder
+from shaftprint.cli.output._progress import no_progress_option, progress
+from shaftprint.cli.output._tables import print_tables
+from shaftprint.design.files._plan_folder import CAMPAIGN, write_plan_files
+from shaftprint.design.files._plan_json import read_plan
+from shaftprint.design.files._set_point_samples import RATE_HZ
+from shaftprint.design.standing._standing import Standing
+from shaftprint.rehearsal._continue import standing_after
+from shaftprint.report.plan._plan_page import render_plan
+from shaftprint.survey._measurement import measure
+from shaftprint.survey._trial import load_trial
+from shaftprint.tables._plan import planned_leg_table, standing_leg_table, standing_table
 
 NEXT = "next"
 """Folder for what is missing, in that of the plan."""

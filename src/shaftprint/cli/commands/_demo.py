@@ -17,23 +17,21 @@ from shaftprint.cli._fleet_demo import all_tested, fleet_of_the_demo, tests_of_t
 from shaftprint.cli._results import print_comparison, print_paths, write_results
 from shaftprint.cli._signal_tables import print_lines
 from shaftprint.cli._terminal import echo, say
-from shaftprint.cli.output import Steps, force_option, no_progress_option, output_folder, print_table, progress
-from shaftprint.spectra import FrequencyResponse
-from shaftprint.store import add, create_store, record_event
-from shaftprint.survey import (
-    Survey,
-    ThesisMode,
-    Trial,
-    line_selections,
-    load_trial,
-    measure,
-    settings_text,
-    survey_of,
-    thesis_way,
-    weighted_fits,
-)
-from shaftprint.tables import fits_table
-from shaftprint.tug import Truth, sail
+from shaftprint.cli.output._output_folder import force_option, output_folder
+from shaftprint.cli.output._progress import Steps, no_progress_option, progress
+from shaftprint.cli.output._tables import print_table
+from shaftprint.spectra._frequency_response import FrequencyResponse
+from shaftprint.store._add import add
+from shaftprint.store._event import record_event
+from shaftprint.store._store import create_store
+from shaftprint.survey._measurement import measure
+from shaftprint.survey._survey import Survey, survey_of
+from shaftprint.survey._thesis_mode import ThesisMode
+from shaftprint.survey._thesis_way import line_selections, thesis_way, weighted_fits
+from shaftprint.survey._trial import Trial, load_trial, settings_text
+from shaftprint.tables._structures import fits_table
+from shaftprint.tug._sail import sail
+from shaftprint.tug._truth import Truth
 
 VESSEL = "stan-tug-1205"
 FULL, SHORT = "thesis", "short"

@@ -11,21 +11,19 @@ from shaftprint.cli._dates import Moment, zone_option
 from shaftprint.cli._load_option import load_repeatability_option
 from shaftprint.cli._store_options import instant, opened_store, store_option
 from shaftprint.cli._terminal import answer, echo, say
-from shaftprint.cli.output import REPORT, fingerprint_at, force_option, give, output_folder, print_tables
-from shaftprint.drift import (
-    EVENTS,
-    Cause,
-    Event,
-    History,
-    history_of,
-    limit_sentence,
-    may_happen,
-    watch,
-    watch_sentences,
-)
-from shaftprint.fingerprint import Fingerprint
-from shaftprint.report import course_table, history_table, render_history, sizes_of_tests
-from shaftprint.store import line_history
+from shaftprint.cli.output._fingerprint_file import REPORT, fingerprint_at
+from shaftprint.cli.output._json import give
+from shaftprint.cli.output._output_folder import force_option, output_folder
+from shaftprint.cli.output._tables import print_tables
+from shaftprint.drift._causes import Cause, may_happen
+from shaftprint.drift._dated import EVENTS, Event
+from shaftprint.drift._history import History, history_of
+from shaftprint.drift._watch import watch
+from shaftprint.drift._words import limit_sentence, watch_sentences
+from shaftprint.fingerprint._fingerprint import Fingerprint
+from shaftprint.report._history_page import render_history, sizes_of_tests
+from shaftprint.report.comparison._history_tables import course_table, history_table
+from shaftprint.store._line_history import line_history
 
 FEWEST = 2
 PERCENT = 100.0

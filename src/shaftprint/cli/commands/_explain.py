@@ -8,18 +8,22 @@ import numpy as np
 from shaftprint.cli._options import campaign_option, vessel_option
 from shaftprint.cli._results import print_paths, write_results
 from shaftprint.cli._terminal import say
-from shaftprint.cli.output import force_option, no_progress_option, output_folder, print_table, progress
+from shaftprint.cli.output._output_folder import force_option, output_folder
+from shaftprint.cli.output._progress import no_progress_option, progress
+from shaftprint.cli.output._tables import print_table
 from shaftprint.digits import plain_letters
-from shaftprint.report import (
-    Explanation,
+from shaftprint.report.thesis._explanation import Explanation, explain_thesis
+from shaftprint.report.thesis._words import (
     damping_table,
-    explain_thesis,
     explanation_sentences,
     gain_table,
     inertia_table,
     integral_table,
 )
-from shaftprint.survey import Survey, fingerprint_of, line_selections, load_trial, measure, thesis_way, weighted_fits
+from shaftprint.survey._measurement import measure
+from shaftprint.survey._survey import Survey, fingerprint_of
+from shaftprint.survey._thesis_way import line_selections, thesis_way, weighted_fits
+from shaftprint.survey._trial import load_trial
 
 
 @click.command("explain")

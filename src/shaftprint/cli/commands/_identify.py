@@ -25,18 +25,18 @@ from shaftprint.cli._own_structure import DEFAULT_HELP, OWN_FILE_HELP, TypedName
 from shaftprint.cli._report_options import ReportOptions, report_options
 from shaftprint.cli._results import print_comparison, print_paths, write_results
 from shaftprint.cli._terminal import print_findings, say
-from shaftprint.cli.output import (
-    FINGERPRINT,
-    Steps,
-    force_option,
-    no_progress_option,
-    output_folder,
-    print_table,
-    progress,
-)
-from shaftprint.fingerprint import write_fingerprint
-from shaftprint.survey import Survey, default_structure, judged, load_trial, run, with_everything, with_limits
-from shaftprint.tables import fits_table, leg_test_table
+from shaftprint.cli.output._fingerprint_file import FINGERPRINT
+from shaftprint.cli.output._output_folder import force_option, output_folder
+from shaftprint.cli.output._progress import Steps, no_progress_option, progress
+from shaftprint.cli.output._tables import print_table
+from shaftprint.fingerprint._json_file import write_fingerprint
+from shaftprint.survey._everything import with_everything
+from shaftprint.survey._limits import with_limits
+from shaftprint.survey._of_vessel import default_structure
+from shaftprint.survey._survey import Survey, judged, run
+from shaftprint.survey._trial import load_trial
+from shaftprint.tables._legs import leg_test_table
+from shaftprint.tables._structures import fits_table
 
 
 @click.command("identify")

@@ -5,15 +5,16 @@ from pathlib import Path
 import click
 
 from shaftprint.cli._terminal import answer, say
-from shaftprint.cli.output import expect_free, expect_no_input, fingerprint_at, fingerprint_file, give, print_table
+from shaftprint.cli.output._file_to_write import expect_free, expect_no_input
+from shaftprint.cli.output._fingerprint_file import fingerprint_at, fingerprint_file
+from shaftprint.cli.output._json import give
+from shaftprint.cli.output._tables import print_table
 from shaftprint.digits import plain_letters
 from shaftprint.files import written_whole
-from shaftprint.fingerprint import inertia_beside
-from shaftprint.report import (
-    mode_chart,
-    save_chart,
-)
-from shaftprint.tables import (
+from shaftprint.fingerprint._inertia import inertia_beside
+from shaftprint.report.charts._pictures import save_chart
+from shaftprint.report.figures._modes import mode_chart
+from shaftprint.tables._inertia import (
     expected_inertia_table,
     inertia_budget_table,
     mass_table,
@@ -21,16 +22,11 @@ from shaftprint.tables import (
     two_mass_sentence,
     water_table,
 )
-from shaftprint.torsion import (
-    ExpectedInertia,
-    InertiaComparison,
-    Modes,
-    expected_inertia,
-    modes,
-    torsional_line,
-    two_masses,
-)
-from shaftprint.vessel import Vessel, load_vessel
+from shaftprint.torsion._expected_inertia import ExpectedInertia, InertiaComparison, expected_inertia
+from shaftprint.torsion._line import torsional_line
+from shaftprint.torsion._modes import Modes, modes
+from shaftprint.torsion._two_masses import two_masses
+from shaftprint.vessel._vessel import Vessel, load_vessel
 
 SUFFIXES = (".svg", ".png", ".pdf")
 

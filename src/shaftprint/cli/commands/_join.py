@@ -7,9 +7,11 @@ import click
 
 from shaftprint.cli._options import cut_options
 from shaftprint.cli._terminal import answer, echo
-from shaftprint.cli.output import expect_no_input
-from shaftprint.clocks import joined
-from shaftprint.recording import cut, read_recording, write_recording
+from shaftprint.cli.output._file_to_write import expect_no_input
+from shaftprint.clocks._merge import joined
+from shaftprint.recording._cut import cut
+from shaftprint.recording._read import read_recording
+from shaftprint.recording._write import write_recording
 
 
 @click.command("join")

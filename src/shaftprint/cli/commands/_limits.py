@@ -10,9 +10,13 @@ from shaftprint.cli._options import campaign_option, vessel_option
 from shaftprint.cli._results import print_paths, write_results
 from shaftprint.cli._terminal import say
 from shaftprint.cli._validation import print_validation
-from shaftprint.cli.output import force_option, no_progress_option, output_folder, progress
-from shaftprint.limits import identify_limits
-from shaftprint.survey import Trial, judged, load_trial, measure, run, with_limits
+from shaftprint.cli.output._output_folder import force_option, output_folder
+from shaftprint.cli.output._progress import no_progress_option, progress
+from shaftprint.limits._identify_limits import identify_limits
+from shaftprint.survey._limits import with_limits
+from shaftprint.survey._measurement import measure
+from shaftprint.survey._survey import judged, run
+from shaftprint.survey._trial import Trial, load_trial
 
 # As for ``identify``.
 SEED = 1

@@ -7,12 +7,19 @@ import numpy as np
 
 from shaftprint.cli._options import NAMES
 from shaftprint.cli._terminal import answer
-from shaftprint.cli.output import expect_no_input, print_tables
-from shaftprint.clocks import Alignment, ClockMap, align, logger_clocks, merged
-from shaftprint.recording import Recording, read_recording, write_recording
-from shaftprint.signals import Content, content_of
-from shaftprint.tables import clock_map_table
-from shaftprint.vessel import Vessel, load_vessel
+from shaftprint.cli.output._file_to_write import expect_no_input
+from shaftprint.cli.output._tables import print_tables
+from shaftprint.clocks._align import align
+from shaftprint.clocks._alignment import Alignment
+from shaftprint.clocks._clock_map import ClockMap
+from shaftprint.clocks._logger_clock import logger_clocks
+from shaftprint.clocks._merge import merged
+from shaftprint.recording._read import read_recording
+from shaftprint.recording._recording import Recording
+from shaftprint.recording._write import write_recording
+from shaftprint.signals._content import Content, content_of
+from shaftprint.tables._recording import clock_map_table
+from shaftprint.vessel._vessel import Vessel, load_vessel
 
 RATE_HZ = 50.0
 """Rate at which contents are compared [Hz]."""

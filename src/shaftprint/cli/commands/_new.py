@@ -6,7 +6,7 @@ from typing import Literal
 
 import click
 
-from shaftprint.card import write_vessel
+from shaftprint.card._write import write_vessel
 from shaftprint.cli._card_options import card_of, card_options
 from shaftprint.cli._options import NAMES
 from shaftprint.cli._recorded_campaign import write_recorded_campaign

@@ -14,11 +14,16 @@ from shaftprint.cli._own_structure import DEFAULT_HELP, OWN_FILE_HELP, TypedName
 from shaftprint.cli._plan_options import seconds_of, wish_from, wish_of
 from shaftprint.cli._plan_tables import print_planned_test
 from shaftprint.cli._vessel_file import print_disagreements
-from shaftprint.cli.output import Steps, force_option, no_progress_option, output_folder, progress
-from shaftprint.design import RATE_HZ, PlannedTest, Wish, plan_test, write_plan_files
-from shaftprint.rehearsal import rehearse_on_tug
-from shaftprint.report import render_plan
-from shaftprint.vessel import Vessel
+from shaftprint.cli.output._output_folder import force_option, output_folder
+from shaftprint.cli.output._progress import Steps, no_progress_option, progress
+from shaftprint.design.files._plan_folder import write_plan_files
+from shaftprint.design.files._set_point_samples import RATE_HZ
+from shaftprint.design.inputs._wish import Wish
+from shaftprint.design.planned_test._planned_test import PlannedTest
+from shaftprint.design.planning._from_knowledge import plan_test
+from shaftprint.rehearsal._rehearse import rehearse_on_tug
+from shaftprint.report.plan._plan_page import render_plan
+from shaftprint.vessel._vessel import Vessel
 
 LONGEST_S = 3600.0
 

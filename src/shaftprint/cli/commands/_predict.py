@@ -6,8 +6,9 @@ from pathlib import Path
 import click
 import numpy as np
 
-from shaftprint.campaign import Campaign, load_campaign
-from shaftprint.catalogue import shipped_structure, with_bend
+from shaftprint.campaign._campaign import Campaign, load_campaign
+from shaftprint.catalogue._bent_line import with_bend
+from shaftprint.catalogue._shipped import shipped_structure
 from shaftprint.cli._drive_judge import predict_on_the_bench
 from shaftprint.cli._drive_options import drive_option, expect_not_given
 from shaftprint.cli._known_values import hold_option, named_value, prior_option, rpm_per_volt_option
@@ -19,15 +20,22 @@ from shaftprint.cli._prediction_tables import print_prediction
 from shaftprint.cli._ship_before_test import ShipBeforeTest, assumed_ship, recorded_ship
 from shaftprint.cli._terminal import say
 from shaftprint.cli._vessel_file import print_disagreements
-from shaftprint.cli.output import no_progress_option
-from shaftprint.design import expected_operation, inputs_left_out, limit_uses, ship_before_test, stated_limits
+from shaftprint.cli.output._progress import no_progress_option
+from shaftprint.design.inputs._known_ship import ship_before_test
+from shaftprint.design.operation._expected import expected_operation, inputs_left_out
+from shaftprint.design.operation._limit_use import limit_uses, stated_limits
 from shaftprint.errors import StructureError
-from shaftprint.identify import Prior, expected_from_vessel, identifiability
-from shaftprint.identify.prediction import predict_joint_accuracy, predict_joint_intervals
-from shaftprint.models import Structure
+from shaftprint.identify.likelihood._known import expected_from_vessel
+from shaftprint.identify.likelihood._prior import Prior
+from shaftprint.identify.prediction._accuracy import predict_joint_accuracy
+from shaftprint.identify.prediction._identifiability import identifiability
+from shaftprint.identify.prediction._predicted_intervals import predict_joint_intervals
+from shaftprint.models._structure import Structure
 from shaftprint.spelling import meant
-from shaftprint.survey import expected_of_ship, of_vessel, stated_working_point
-from shaftprint.vessel import Vessel, load_vessel
+from shaftprint.survey._expected_of_ship import expected_of_ship
+from shaftprint.survey._fits import stated_working_point
+from shaftprint.survey._of_vessel import of_vessel
+from shaftprint.vessel._vessel import Vessel, load_vessel
 
 # Where the sensitivity of a structure is taken; what can be found does not depend on it.
 SEED = 1

@@ -7,15 +7,20 @@ from typing import TypeAlias
 
 import click
 
-from shaftprint.catalogue import thesis_families
+from shaftprint.catalogue._thesis_figures import thesis_families
 from shaftprint.cli._options import SettingsPath
 from shaftprint.cli._own_structure import TypedName, chosen_structures
 from shaftprint.cli._terminal import answer
-from shaftprint.cli.output import force_option, no_progress_option, output_folder, progress
+from shaftprint.cli.output._output_folder import force_option, output_folder
+from shaftprint.cli.output._progress import no_progress_option, progress
 from shaftprint.escape import plain_name
-from shaftprint.report import Chart, save_chart, sensitivity_chart
-from shaftprint.spectra import FrequencyResponse, open_loop
-from shaftprint.survey import load_trial, measure
+from shaftprint.report.charts._chart import Chart
+from shaftprint.report.charts._pictures import save_chart
+from shaftprint.report.figures._sensitivity import sensitivity_chart
+from shaftprint.spectra._frequency_response import FrequencyResponse
+from shaftprint.spectra._open_loop import open_loop
+from shaftprint.survey._measurement import measure
+from shaftprint.survey._trial import load_trial
 
 Drawings: TypeAlias = dict[str, partial[Chart]]
 

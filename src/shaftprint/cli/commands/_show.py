@@ -7,7 +7,7 @@ import click
 from shaftprint.cli._drive_identify import print_drive
 from shaftprint.cli._drive_options import drive_fingerprint_at, is_drive_place
 from shaftprint.cli._fingerprint_tables import print_fingerprint
-from shaftprint.cli.output import fingerprint_at
+from shaftprint.cli.output._fingerprint_file import fingerprint_at
 
 
 @click.command("show")

@@ -5,7 +5,7 @@ from pathlib import Path
 import click
 import numpy as np
 
-from shaftprint.catalogue import CRASH_STOP
+from shaftprint.catalogue._crash_stop import CRASH_STOP
 from shaftprint.cli._crash_stop import LeverMove, crash_stop_run, is_crash_stop, lever_option
 from shaftprint.cli._known_values import named_value, rpm_per_volt_option
 from shaftprint.cli._options import NAMES
@@ -16,17 +16,13 @@ from shaftprint.cli._simulation_run import Prediction, Run, predicted, signals_o
 from shaftprint.cli._simulation_tables import print_simulation
 from shaftprint.cli._terminal import answer
 from shaftprint.cli.commands._inertia import picture
-from shaftprint.cli.output import (
-    expect_free,
-    expect_no_input,
-    fingerprint_at,
-    fingerprint_file,
-    no_progress_option,
-    progress,
-)
+from shaftprint.cli.output._file_to_write import expect_free, expect_no_input
+from shaftprint.cli.output._fingerprint_file import fingerprint_at, fingerprint_file
+from shaftprint.cli.output._progress import no_progress_option, progress
 from shaftprint.files import written_whole
-from shaftprint.models import Structure
-from shaftprint.report import SimulatedSignal, save_chart, simulation_chart
+from shaftprint.models._structure import Structure
+from shaftprint.report.charts._pictures import save_chart
+from shaftprint.report.figures._simulation import SimulatedSignal, simulation_chart
 
 
 def span_of_time(

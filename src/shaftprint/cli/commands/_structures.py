@@ -2,12 +2,15 @@
 
 import click
 
-from shaftprint.catalogue import DRIVES, STRUCTURES
+from shaftprint.catalogue._drives import DRIVES
+from shaftprint.catalogue._thesis import STRUCTURES
 from shaftprint.cli._own_structure import TypedName, chosen_structures
 from shaftprint.cli._terminal import echo, say
-from shaftprint.cli.output import give, print_table
-from shaftprint.models import Parameter, Structure
-from shaftprint.tables import MEANING, Symbol, Table, numbers, texts
+from shaftprint.cli.output._json import give
+from shaftprint.cli.output._tables import print_table
+from shaftprint.models._parameter import Parameter
+from shaftprint.models._structure import Structure
+from shaftprint.plain_table import MEANING, Symbol, Table, numbers, texts
 
 
 @click.command("structures")

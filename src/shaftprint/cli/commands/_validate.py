@@ -19,20 +19,21 @@ from shaftprint.cli._validation import (
     validated_with_limits,
     write_validations,
 )
-from shaftprint.cli.output import (
-    Steps,
-    fingerprint_at,
-    force_option,
-    no_progress_option,
-    output_folder,
-    print_table,
-    progress,
-)
-from shaftprint.fingerprint import Fingerprint
-from shaftprint.models import Structure
-from shaftprint.survey import Measurement, Trial, default_structure, fit, load_trial, measure, settings_by_name
-from shaftprint.tables import models_table
-from shaftprint.validation import ForeignModel, Model, identified_model, thesis_models
+from shaftprint.cli.output._fingerprint_file import fingerprint_at
+from shaftprint.cli.output._output_folder import force_option, output_folder
+from shaftprint.cli.output._progress import Steps, no_progress_option, progress
+from shaftprint.cli.output._tables import print_table
+from shaftprint.fingerprint._fingerprint import Fingerprint
+from shaftprint.models._structure import Structure
+from shaftprint.survey._fits import fit
+from shaftprint.survey._measurement import Measurement, measure
+from shaftprint.survey._of_vessel import default_structure
+from shaftprint.survey._survey import settings_by_name
+from shaftprint.survey._trial import Trial, load_trial
+from shaftprint.tables._validation import models_table
+from shaftprint.validation._foreign import ForeignModel
+from shaftprint.validation._model import Model, identified_model
+from shaftprint.validation._thesis_models import thesis_models
 
 
 @click.command("validate")

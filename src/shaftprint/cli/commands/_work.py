@@ -4,7 +4,7 @@ import click
 
 from shaftprint.cli._fleet_options import say_what_was_done, work_here, work_options
 from shaftprint.cli._store_options import opened_store, store_option
-from shaftprint.cli.output import no_progress_option
+from shaftprint.cli.output._progress import no_progress_option
 
 
 @click.command("work")

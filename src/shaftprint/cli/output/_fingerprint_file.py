@@ -5,7 +5,8 @@ import re
 from pathlib import Path
 
 from shaftprint.errors import FingerprintError
-from shaftprint.fingerprint import Fingerprint, read_fingerprint
+from shaftprint.fingerprint._fingerprint import Fingerprint
+from shaftprint.fingerprint._json_file import read_fingerprint
 
 FINGERPRINT = "fingerprint.json"
 REPORT = "index.html"

@@ -11,7 +11,7 @@ from pydantic import BaseModel
 from shaftprint.cli._terminal import output
 from shaftprint.digits import plain_letters
 from shaftprint.escape import printable
-from shaftprint.tables import Table
+from shaftprint.plain_table import Table
 
 # An array with more numbers than this is data, not an answer: it stays in the files that the command writes.
 MOST_NUMBERS = 10_000

@@ -9,7 +9,7 @@ from itertools import zip_longest
 
 from shaftprint.digits import plain_letters
 from shaftprint.escape import printable
-from shaftprint.tables import Column, Symbol, Table
+from shaftprint.plain_table import Column, Symbol, Table
 
 GAP = "   "
 # Text in a column narrower than this is harder to read than in a block of its own.

@@ -6,7 +6,8 @@ from pathlib import Path, PurePosixPath
 
 import click
 
-from shaftprint.publication import CONTROL_NAMES, is_inner, publish, staged
+from shaftprint.publication._journal import CONTROL_NAMES, is_inner
+from shaftprint.publication._publish import publish, staged
 
 force_option = click.option(
     "--force",

@@ -7,7 +7,7 @@ from shaftprint.cli._terminal import WIDTH_OF_TABLES, output, print_lines_of_tab
 from shaftprint.cli.output._json import table_json
 from shaftprint.cli.output._layout import table_lines
 from shaftprint.digits import plain_letters
-from shaftprint.tables import Table
+from shaftprint.plain_table import Table
 
 
 def print_tables(tables: Sequence[Table]) -> None:

@@ -5,13 +5,21 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shaftprint.arrays import frozen_float
-from shaftprint.design.inputs import AssumedShip, SetPointLine, Wish
-from shaftprint.design.plan import Band, Leg, Plan, predicted_accuracy
-from shaftprint.design.planned_test import PlannedTest, Rehearsal, Remedy, SailedLeg
+from shaftprint.design.inputs._assumed_ship import AssumedShip
+from shaftprint.design.inputs._set_point_line import SetPointLine
+from shaftprint.design.inputs._wish import Wish
+from shaftprint.design.plan._band import Band
+from shaftprint.design.plan._leg import Leg
+from shaftprint.design.plan._plan import Plan, predicted_accuracy
+from shaftprint.design.planned_test._planned_test import PlannedTest, SailedLeg
+from shaftprint.design.planned_test._rehearsal import Rehearsal
+from shaftprint.design.planned_test._remedies import Remedy
 from shaftprint.errors import DesignError
-from shaftprint.identify import NoiseLevels, Prior
-from shaftprint.models import Structure, at_working_point
-from shaftprint.spectra import FrequencyResponse
+from shaftprint.identify.likelihood._prior import Prior
+from shaftprint.identify.prediction._noise_levels import NoiseLevels
+from shaftprint.models._structure import Structure
+from shaftprint.models._working_point import at_working_point
+from shaftprint.spectra._frequency_response import FrequencyResponse
 
 if TYPE_CHECKING:
     from shaftprint.design.files._records import (

@@ -3,14 +3,14 @@
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from shaftprint.campaign import campaign_text
+from shaftprint.campaign._file_text import campaign_text
 from shaftprint.design.files._plan_json import PLAN, write_plan
 from shaftprint.design.files._set_point_files import write_set_point
 from shaftprint.design.files._set_point_samples import set_point_samples
 from shaftprint.files import written_whole
 
 if TYPE_CHECKING:
-    from shaftprint.design.planned_test import PlannedTest
+    from shaftprint.design.planned_test._planned_test import PlannedTest
 
 CAMPAIGN = "campaign.toml"
 """Name of the campaign file in a folder of ``shaftprint plan``."""

@@ -6,15 +6,15 @@ from typing import Final
 from pydantic import ValidationError
 
 from shaftprint.arguments import refusing_none
-from shaftprint.catalogue import shipped_structure
+from shaftprint.catalogue._shipped import shipped_structure
 from shaftprint.design.files._from_record import planned_test_of
 from shaftprint.design.files._records import SCHEMA_VERSION, PlanRecord
 from shaftprint.design.files._to_record import record_of
-from shaftprint.design.planned_test import PlannedTest
+from shaftprint.design.planned_test._planned_test import PlannedTest
 from shaftprint.errors import DesignError, ShaftprintError
 from shaftprint.files import read_json, write_bytes
-from shaftprint.models import Structure
-from shaftprint.publication import complete
+from shaftprint.models._structure import Structure
+from shaftprint.publication._publish import complete
 
 PLAN: Final = "plan.json"
 """Name of the file in a folder of ``shaftprint plan``."""

@@ -4,8 +4,9 @@ from typing import Annotated, Final, Literal
 
 from pydantic import AwareDatetime, BaseModel, ConfigDict, Field
 
-from shaftprint.design.inputs import Limits
-from shaftprint.design.plan import Peaks, Timetable
+from shaftprint.design.inputs._limits import Limits
+from shaftprint.design.plan._plan import Peaks
+from shaftprint.design.plan._timetable import Timetable
 
 SCHEMA_VERSION: Final = 1
 

@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shaftprint.arrays import FloatArray
-from shaftprint.campaign import setpoint
+from shaftprint.campaign._setpoint import setpoint
 from shaftprint.errors import DesignError
 
 if TYPE_CHECKING:
-    from shaftprint.design.planned_test import PlannedTest
+    from shaftprint.design.planned_test._planned_test import PlannedTest
 
 RATE_HZ = 100.0
 """Samples a second where nobody says otherwise [Hz]: the steps take 0.2 % of a line of 3.4 Hz."""

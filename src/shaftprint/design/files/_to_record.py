@@ -17,9 +17,11 @@ from shaftprint.design.files._records import (
 )
 
 if TYPE_CHECKING:
-    from shaftprint.design.plan import Leg, Peaks, Plan
-    from shaftprint.design.planned_test import PlannedTest, Rehearsal, SailedLeg
-    from shaftprint.identify import NoiseLevels
+    from shaftprint.design.plan._leg import Leg
+    from shaftprint.design.plan._plan import Peaks, Plan
+    from shaftprint.design.planned_test._planned_test import PlannedTest, SailedLeg
+    from shaftprint.design.planned_test._rehearsal import Rehearsal
+    from shaftprint.identify.prediction._noise_levels import NoiseLevels
 
 
 def record_of(test: "PlannedTest") -> PlanRecord:

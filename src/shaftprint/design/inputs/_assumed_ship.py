@@ -12,14 +12,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shaftprint.arrays import FloatArray, frozen_float
-from shaftprint.catalogue import ShipRole
+from shaftprint.catalogue._roles import ShipRole
 from shaftprint.errors import DesignError
-from shaftprint.models import Role, Structure, stable_rows
-from shaftprint.notebook import Shown
+from shaftprint.models._nyquist import stable_rows
+from shaftprint.models._role import Role
+from shaftprint.models._structure import Structure
+from shaftprint.notebook._shown import Shown
 from shaftprint.spelling import meant
 
 if TYPE_CHECKING:
-    from shaftprint.identify import Identification
+    from shaftprint.identify.fit._identification import Identification
 
 # Of so many draws for one that is wanted nearly all lines would have to be unstable for too few to be left.
 _DRAWN_FOR_ONE = 4

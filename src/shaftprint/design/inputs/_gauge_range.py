@@ -5,10 +5,10 @@ from typing import TYPE_CHECKING, TypeVar
 
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import DesignError
-from shaftprint.notebook import Shown
+from shaftprint.notebook._shown import Shown
 
 if TYPE_CHECKING:
-    from shaftprint.vessel import Vessel
+    from shaftprint.vessel._vessel import Vessel
 
 FULL_SCALE = "full scale of the gauge"
 """Name of the limit."""

@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING
 from shaftprint.design.inputs._assumed_ship import AssumedShip
 from shaftprint.design.inputs._limits import Limits
 from shaftprint.design.inputs._set_point_line import SetPointLine
-from shaftprint.notebook import Shown
+from shaftprint.notebook._shown import Shown
 
 if TYPE_CHECKING:
-    from shaftprint.identify import NoiseLevels, Prior
+    from shaftprint.identify.likelihood._prior import Prior
+    from shaftprint.identify.prediction._noise_levels import NoiseLevels
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)

@@ -7,18 +7,18 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shaftprint.arrays import BoolArray, FloatArray, frozen_float
-from shaftprint.catalogue import ShipRole
+from shaftprint.catalogue._roles import ShipRole
 from shaftprint.design.inputs._assumed_ship import GAINS, RELATIVE_SPREAD, AssumedShip, assumed_ship
 from shaftprint.distributions import NORMAL_95
-from shaftprint.fingerprint import identified_model
-from shaftprint.models import stable_rows
+from shaftprint.fingerprint._model import identified_model
+from shaftprint.models._nyquist import stable_rows
 
 if TYPE_CHECKING:
     from shaftprint.design.inputs._limits import Limits
-    from shaftprint.fingerprint import Fingerprint
-    from shaftprint.identify import Prior
-    from shaftprint.models import Structure
-    from shaftprint.vessel import Vessel
+    from shaftprint.fingerprint._fingerprint import Fingerprint
+    from shaftprint.identify.likelihood._prior import Prior
+    from shaftprint.models._structure import Structure
+    from shaftprint.vessel._vessel import Vessel
 
 # How many times as large the gains may be before the line hunts, as those of the Stan Tug 1205 may be 1.6 times, and
 # the smallest share of the usual gains that is tried.

@@ -9,10 +9,10 @@ import numpy as np
 
 from shaftprint.design.inputs._gauge_range import GaugeRange, gauge_range_of
 from shaftprint.errors import DesignError
-from shaftprint.notebook import Shown
+from shaftprint.notebook._shown import Shown
 
 if TYPE_CHECKING:
-    from shaftprint.vessel import Vessel
+    from shaftprint.vessel._vessel import Vessel
 
 Curve: TypeAlias = tuple[tuple[float, float], ...]
 """Torque over speed: points of engine speed [rpm] and brake torque [N m], speeds ascending."""

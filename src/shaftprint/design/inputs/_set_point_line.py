@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING
 
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import DesignError
-from shaftprint.notebook import Shown
+from shaftprint.notebook._shown import Shown
 
 if TYPE_CHECKING:
-    from shaftprint.fingerprint import Fingerprint
+    from shaftprint.fingerprint._fingerprint import Fingerprint
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, repr=False)

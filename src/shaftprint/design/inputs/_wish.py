@@ -4,10 +4,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Protocol
 
-from shaftprint.catalogue import ShipRole
+from shaftprint.catalogue._roles import ShipRole
 from shaftprint.errors import DesignError
-from shaftprint.models import Structure
-from shaftprint.notebook import Shown
+from shaftprint.models._structure import Structure
+from shaftprint.notebook._shown import Shown
 from shaftprint.spelling import meant
 
 # Below this share of the value a smaller deviation is of no more use to anyone.

@@ -5,7 +5,7 @@ from itertools import pairwise
 import numpy as np
 
 from shaftprint.arrays import FloatArray, frozen_float
-from shaftprint.design.inputs import SPEED_SIGMAS, Curve, Limits
+from shaftprint.design.inputs._limits import SPEED_SIGMAS, Curve, Limits
 from shaftprint.design.motion._bound import Bound
 from shaftprint.design.motion._gauge import gauge_bounds
 from shaftprint.design.motion._motion import SIGNALS

@@ -3,7 +3,8 @@
 import numpy as np
 
 from shaftprint.arrays import FloatArray, frozen_float
-from shaftprint.design.inputs import FULL_SCALE, Limits
+from shaftprint.design.inputs._gauge_range import FULL_SCALE
+from shaftprint.design.inputs._limits import Limits
 from shaftprint.design.motion._bound import Bound
 from shaftprint.design.motion._motion import SIGNALS
 from shaftprint.errors import DesignError

@@ -8,11 +8,12 @@ the delay and lag of the engine have made it smoother. All are deviations over t
 import numpy as np
 
 from shaftprint.arrays import ComplexArray, FloatArray
-from shaftprint.catalogue import ShipRole
-from shaftprint.catalogue import structure as structure_of
+from shaftprint.catalogue._roles import ShipRole
+from shaftprint.catalogue._thesis import structure as structure_of
 from shaftprint.errors import DesignError
-from shaftprint.identify import NoiseLevels
-from shaftprint.models import Role, Structure
+from shaftprint.identify.prediction._noise_levels import NoiseLevels
+from shaftprint.models._role import Role
+from shaftprint.models._structure import Structure
 
 SIGNALS = ("set point", "rate", "speed", "brake torque", "torque demand", "shaft torque")
 """What limits are stated of, in the order of ``motion``; the rate is the set point's, over the working point [1/s], and

@@ -6,17 +6,20 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shaftprint.arrays import FloatArray
-from shaftprint.campaign import setpoint
-from shaftprint.catalogue import ShipRole, limited, pitched_with_rack, sailing_with_rack
+from shaftprint.campaign._setpoint import setpoint
+from shaftprint.catalogue._limited import limited
+from shaftprint.catalogue._pitch import pitched_with_rack
+from shaftprint.catalogue._roles import ShipRole
+from shaftprint.catalogue._sailing import sailing_with_rack
 from shaftprint.design.operation._operation import Operation
 from shaftprint.errors import DesignError
-from shaftprint.models import Structure
-from shaftprint.signals import MovedBeside, moved_beside
-from shaftprint.simulation import simulate
+from shaftprint.models._structure import Structure
+from shaftprint.signals._moved_beside import MovedBeside, moved_beside
+from shaftprint.simulation._simulate import simulate
 
 if TYPE_CHECKING:
-    from shaftprint.campaign import Campaign
-    from shaftprint.vessel import Vessel
+    from shaftprint.campaign._campaign import Campaign
+    from shaftprint.vessel._vessel import Vessel
 
 # Fine enough for lines of 10 Hz: their peaks are met within half a per cent, and so is a derivative.
 _RATE_HZ = 200.0

@@ -8,13 +8,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shaftprint.arrays import BoolArray, FloatArray
-from shaftprint.design.inputs import FULL_SCALE, NO_MOTORING, Curve, GaugeRange, Limits, limits_from_vessel
+from shaftprint.design.inputs._gauge_range import FULL_SCALE, GaugeRange
+from shaftprint.design.inputs._limits import NO_MOTORING, Curve, Limits, limits_from_vessel
 from shaftprint.design.operation._operation import Operation
 from shaftprint.digits import plain, plain_letters
-from shaftprint.notebook import Shown
+from shaftprint.notebook._shown import Shown
 
 if TYPE_CHECKING:
-    from shaftprint.vessel import Vessel
+    from shaftprint.vessel._vessel import Vessel
 
 # A barred range may be crossed, but not for longer [s].
 CROSSING_S = 2.0

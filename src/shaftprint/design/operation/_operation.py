@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shaftprint.arrays import BoolArray, FloatArray, frozen_float
-from shaftprint.notebook import Shown
+from shaftprint.notebook._shown import Shown
 
 if TYPE_CHECKING:
-    from shaftprint.campaign import Campaign
+    from shaftprint.campaign._campaign import Campaign
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)

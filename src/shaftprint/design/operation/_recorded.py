@@ -9,9 +9,9 @@ from shaftprint.design.operation._operation import Operation
 from shaftprint.units import rpm_from_rev_s
 
 if TYPE_CHECKING:
-    from shaftprint.campaign import Campaign
-    from shaftprint.signals import Signals
-    from shaftprint.vessel import Vessel
+    from shaftprint.campaign._campaign import Campaign
+    from shaftprint.signals._signals import Signals
+    from shaftprint.vessel._vessel import Vessel
 
 # Speed and torque are averaged over it, so that the noise of a derivative does not count as torque; a swing of 1.2 Hz
 # loses 2 % of its height.

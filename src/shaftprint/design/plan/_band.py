@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from shaftprint.notebook import Shown
+from shaftprint.notebook._shown import Shown
 
 HELD = 0.8
 """Share of the possible ships that a band holds: a tenth lies on either side."""

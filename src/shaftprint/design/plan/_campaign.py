@@ -2,7 +2,9 @@
 
 import numpy as np
 
-from shaftprint.campaign import Campaign, Multisine, Staircase
+from shaftprint.campaign._campaign import Campaign
+from shaftprint.campaign._excitations import Staircase
+from shaftprint.campaign._multisine import Multisine
 from shaftprint.design.plan._leg import Leg
 from shaftprint.design.plan._plan import Plan
 from shaftprint.errors import DesignError

@@ -7,7 +7,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from shaftprint.arrays import ComplexArray, FloatArray, frozen_complex
-from shaftprint.notebook import Shown, Summary
+from shaftprint.notebook._shown import Shown
+from shaftprint.notebook._summary import Summary
 
 # Lines weaker than this share of the strongest one of their leg are left out.
 WEAKEST = 1e-3

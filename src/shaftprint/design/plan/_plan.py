@@ -8,17 +8,22 @@ from typing import TypeAlias
 import numpy as np
 
 from shaftprint.arrays import FloatArray
-from shaftprint.design.inputs import AssumedShip, Limits, Wish
+from shaftprint.design.inputs._assumed_ship import AssumedShip
+from shaftprint.design.inputs._limits import Limits
+from shaftprint.design.inputs._wish import Wish
 from shaftprint.design.plan._band import Band
 from shaftprint.design.plan._leg import Leg
 from shaftprint.design.plan._timetable import Timetable
-from shaftprint.identify import NoiseLevels, Prior
-from shaftprint.identify.fit import Estimate
-from shaftprint.identify.prediction import Accuracy, planned_lines, predict_joint_accuracy
-from shaftprint.models import Structure
-from shaftprint.notebook import Shown, Summary
-from shaftprint.spectra import FrequencyResponse
-from shaftprint.spectra.legs import leg_freedom
+from shaftprint.identify.fit._identification import Estimate
+from shaftprint.identify.likelihood._prior import Prior
+from shaftprint.identify.prediction._accuracy import Accuracy, predict_joint_accuracy
+from shaftprint.identify.prediction._noise_levels import NoiseLevels
+from shaftprint.identify.prediction._planned_response import planned_lines
+from shaftprint.models._structure import Structure
+from shaftprint.notebook._shown import Shown
+from shaftprint.notebook._summary import Summary
+from shaftprint.spectra._frequency_response import FrequencyResponse
+from shaftprint.spectra.legs._leg_lines import leg_freedom
 from shaftprint.units import SECONDS_PER_MINUTE
 
 # A longer test is stated in hours.

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 from shaftprint.errors import DesignError
-from shaftprint.notebook import Shown
+from shaftprint.notebook._shown import Shown
 
 # A test with fewer periods a leg has too little to tell noise from the response.
 FEWEST_PERIODS = 4

@@ -4,14 +4,16 @@ from dataclasses import dataclass
 from datetime import datetime
 
 from shaftprint import __version__
-from shaftprint.campaign import Campaign
-from shaftprint.design.inputs import SetPointLine
-from shaftprint.design.plan import Plan, campaign_of
+from shaftprint.campaign._campaign import Campaign
+from shaftprint.design.inputs._set_point_line import SetPointLine
+from shaftprint.design.plan._campaign import campaign_of
+from shaftprint.design.plan._plan import Plan
 from shaftprint.design.planned_test._rehearsal import Rehearsal
 from shaftprint.design.planned_test._remedies import Remedy
 from shaftprint.design.planned_test._verdict import plan_sentences
-from shaftprint.notebook import Shown, Summary
-from shaftprint.spectra import FrequencyResponse
+from shaftprint.notebook._shown import Shown
+from shaftprint.notebook._summary import Summary
+from shaftprint.spectra._frequency_response import FrequencyResponse
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)

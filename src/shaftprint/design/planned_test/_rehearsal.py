@@ -11,11 +11,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from shaftprint.arrays import FloatArray, frozen_float
-from shaftprint.design.plan import Plan
+from shaftprint.design.plan._plan import Plan
 from shaftprint.distributions import NORMAL_95, chi_square_quantile
 from shaftprint.errors import DesignError, ShaftprintError
-from shaftprint.identify.fit import Estimate
-from shaftprint.notebook import Shown
+from shaftprint.identify.fit._identification import Estimate
+from shaftprint.notebook._shown import Shown
 
 # Share of the time in the windows for which a limit may act before the plan needs a larger margin.
 MOST_LIMITED = 5e-4

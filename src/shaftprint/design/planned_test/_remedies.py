@@ -4,12 +4,13 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
-from shaftprint.catalogue import ShipRole, sails_free
-from shaftprint.design.plan import Plan, predicted_accuracy
+from shaftprint.catalogue._known_propeller import sails_free
+from shaftprint.catalogue._roles import ShipRole
+from shaftprint.design.plan._plan import Plan, predicted_accuracy
 from shaftprint.errors import DesignError
-from shaftprint.identify import Prior
-from shaftprint.identify.prediction import Accuracy
-from shaftprint.notebook import Shown
+from shaftprint.identify.likelihood._prior import Prior
+from shaftprint.identify.prediction._accuracy import Accuracy
+from shaftprint.notebook._shown import Shown
 
 LATENCY_STD_S = 0.005
 """How well a latency can be measured on a bench, or read from a data sheet [s]."""

@@ -5,8 +5,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from shaftprint.design.inputs import numbers_of_line
-from shaftprint.design.plan import HELD, Plan, length_words
+from shaftprint.design.inputs._wish import numbers_of_line
+from shaftprint.design.plan._band import HELD
+from shaftprint.design.plan._plan import Plan, length_words
 from shaftprint.design.planned_test._rehearsal import Rehearsal
 from shaftprint.design.planned_test._remedies import Remedy
 from shaftprint.digits import stated

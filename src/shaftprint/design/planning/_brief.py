@@ -6,14 +6,26 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from shaftprint.arrays import FloatArray
-from shaftprint.design.inputs import FULL_SCALE, AssumedShip, Limits, Wish
-from shaftprint.design.motion import Bound, bounds_of_leg, expect_motion, gauge_bounds, motion, motion_noise
-from shaftprint.design.plan import SailedTest, Timetable, odd_harmonics
-from shaftprint.design.search import Uses
+from shaftprint.design.inputs._assumed_ship import AssumedShip
+from shaftprint.design.inputs._gauge_range import FULL_SCALE
+from shaftprint.design.inputs._limits import Limits
+from shaftprint.design.inputs._wish import Wish
+from shaftprint.design.motion._bound import Bound
+from shaftprint.design.motion._bounds import bounds_of_leg
+from shaftprint.design.motion._gauge import gauge_bounds
+from shaftprint.design.motion._motion import expect_motion, motion, motion_noise
+from shaftprint.design.plan._leg import odd_harmonics
+from shaftprint.design.plan._plan import SailedTest
+from shaftprint.design.plan._timetable import Timetable
+from shaftprint.design.search._uses import Uses
 from shaftprint.errors import DesignError
-from shaftprint.identify import NoiseLevels, Prior, noise_at
-from shaftprint.identify.prediction import LineInformation, line_information, planned_lines
-from shaftprint.models import Structure, at_working_point
+from shaftprint.identify.likelihood._prior import Prior
+from shaftprint.identify.prediction._line_information import LineInformation, line_information
+from shaftprint.identify.prediction._noise_at_speeds import noise_at
+from shaftprint.identify.prediction._noise_levels import NoiseLevels
+from shaftprint.identify.prediction._planned_response import planned_lines
+from shaftprint.models._structure import Structure
+from shaftprint.models._working_point import at_working_point
 
 # Odd harmonics of a leg.
 MOST_LINES = 70

@@ -5,23 +5,21 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from shaftprint.arrays import ComplexArray, FloatArray
-from shaftprint.design.inputs import FULL_SCALE, AssumedShip, Limits, Wish, numbers_of_line
-from shaftprint.design.plan import Plan, SailedTest, Timetable
+from shaftprint.design.inputs._assumed_ship import AssumedShip
+from shaftprint.design.inputs._gauge_range import FULL_SCALE
+from shaftprint.design.inputs._limits import Limits
+from shaftprint.design.inputs._wish import Wish, numbers_of_line
+from shaftprint.design.plan._plan import Plan, SailedTest
+from shaftprint.design.plan._timetable import Timetable
 from shaftprint.design.planning._brief import Brief
 from shaftprint.design.planning._finish import SHARE_HELD, plan_of_lines
 from shaftprint.design.planning._shown import CRESTS, is_shown
-from shaftprint.design.search import (
-    Criterion,
-    DeterminantWithFloor,
-    Effort,
-    Possibility,
-    Problem,
-    WorstWish,
-    random_start,
-    search,
-)
-from shaftprint.identify import NoiseLevels, Prior
-from shaftprint.identify.prediction import LineInformation
+from shaftprint.design.search._criterion import Criterion, DeterminantWithFloor, WorstWish
+from shaftprint.design.search._problem import Possibility, Problem
+from shaftprint.design.search._search import Effort, random_start, search
+from shaftprint.identify.likelihood._prior import Prior
+from shaftprint.identify.prediction._line_information import LineInformation
+from shaftprint.identify.prediction._noise_levels import NoiseLevels
 
 
 def design_campaign(

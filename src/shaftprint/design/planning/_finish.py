@@ -6,12 +6,13 @@ from dataclasses import replace
 import numpy as np
 
 from shaftprint.arrays import ComplexArray, FloatArray
-from shaftprint.design.motion import motion
-from shaftprint.design.plan import Leg, Peaks, Plan, peaks_of, predicted_accuracy, strong_lines
+from shaftprint.design.motion._motion import motion
+from shaftprint.design.plan._leg import Leg, strong_lines
+from shaftprint.design.plan._plan import Peaks, Plan, peaks_of, predicted_accuracy
 from shaftprint.design.planning._brief import Brief
 from shaftprint.design.planning._stairs import stairs_of
 from shaftprint.design.planning._start import gentle_start
-from shaftprint.design.search import Uses, held_draws
+from shaftprint.design.search._uses import Uses, held_draws
 
 # Share of the possible ships for which every limit of every leg holds.
 SHARE_HELD = 0.98

@@ -5,13 +5,16 @@ from datetime import datetime
 
 import numpy as np
 
-from shaftprint.design.inputs import Knowledge, Wish
-from shaftprint.design.plan import STAIRS, Plan, Timetable
-from shaftprint.design.planned_test import PlannedTest, remedies
+from shaftprint.design.inputs._knowledge import Knowledge
+from shaftprint.design.inputs._wish import Wish
+from shaftprint.design.plan._plan import Plan
+from shaftprint.design.plan._timetable import STAIRS, Timetable
+from shaftprint.design.planned_test._planned_test import PlannedTest
+from shaftprint.design.planned_test._remedies import remedies
 from shaftprint.design.planning._band import with_band
 from shaftprint.design.planning._design import design_campaign
 from shaftprint.design.planning._shortest import shortest
-from shaftprint.design.search import Effort
+from shaftprint.design.search._search import Effort
 from shaftprint.units import SECONDS_PER_MINUTE
 
 # A shorter test has no staircase unless it is asked for: it would be a fifth of it, or more.

@@ -4,12 +4,13 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from shaftprint.design.inputs import ship_of_fit
-from shaftprint.design.plan import Plan
+from shaftprint.design.inputs._assumed_ship import ship_of_fit
+from shaftprint.design.plan._plan import Plan
 from shaftprint.design.planning._design import design_campaign
-from shaftprint.design.search import Effort
-from shaftprint.identify import Identification, NoiseLevels
-from shaftprint.identify.likelihood import FittedResponse
+from shaftprint.design.search._search import Effort
+from shaftprint.identify.fit._identification import Identification
+from shaftprint.identify.likelihood._fitted_response import FittedResponse
+from shaftprint.identify.prediction._noise_levels import NoiseLevels
 
 
 def replan(

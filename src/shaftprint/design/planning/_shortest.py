@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 
-from shaftprint.design.plan import Plan
+from shaftprint.design.plan._plan import Plan
 from shaftprint.errors import DesignError
 from shaftprint.units import SECONDS_PER_MINUTE
 

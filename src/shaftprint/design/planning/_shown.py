@@ -3,10 +3,11 @@
 import numpy as np
 
 from shaftprint.arrays import FloatArray
-from shaftprint.design.motion import motion, share_cut_off
-from shaftprint.design.plan import Plan
+from shaftprint.design.motion._gauge import share_cut_off
+from shaftprint.design.motion._motion import motion
+from shaftprint.design.plan._plan import Plan
 from shaftprint.design.planning._finish import SHARE_HELD
-from shaftprint.design.search import Uses, samples_of_period
+from shaftprint.design.search._uses import Uses, samples_of_period
 
 CRESTS = (0.8, 0.9, 1.0, 1.1, 1.2, 1.3)
 """How many times the ripple is kept free at crests, tried one after the other; one in 10,000 passes the last."""

@@ -6,7 +6,8 @@ Steps are what a model is held against that was fitted to lines, and what limits
 import numpy as np
 
 from shaftprint.arrays import FloatArray
-from shaftprint.design.motion import Bound, motion
+from shaftprint.design.motion._bound import Bound
+from shaftprint.design.motion._motion import motion
 from shaftprint.design.planning._brief import Brief
 
 # Rate at which steps are seen [Hz]: what governor and engine do to them is far slower.

@@ -9,10 +9,11 @@ from dataclasses import replace
 import numpy as np
 
 from shaftprint.arrays import ComplexArray, FloatArray
-from shaftprint.design.motion import Bound, motion
-from shaftprint.design.plan import Leg
-from shaftprint.design.search import samples_of_period
-from shaftprint.models import Structure
+from shaftprint.design.motion._bound import Bound
+from shaftprint.design.motion._motion import motion
+from shaftprint.design.plan._leg import Leg
+from shaftprint.design.search._uses import samples_of_period
+from shaftprint.models._structure import Structure
 
 # Samples a period of the fastest line, between which the set point is straight where it passes its level.
 _CROSSING_SAMPLES = 64

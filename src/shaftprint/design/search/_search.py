@@ -8,7 +8,7 @@ import scipy
 from shaftprint.arrays import FloatArray
 from shaftprint.design.search._problem import Problem
 from shaftprint.design.search._uses import held_draws
-from shaftprint.notebook import Shown
+from shaftprint.notebook._shown import Shown
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, repr=False)

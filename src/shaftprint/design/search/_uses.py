@@ -8,7 +8,7 @@ import numpy as np
 import scipy
 
 from shaftprint.arrays import ComplexArray, FloatArray, IntArray
-from shaftprint.design.motion import Bound
+from shaftprint.design.motion._bound import Bound
 
 # Samples a period of the fastest line.
 SAMPLES_PER_PERIOD = 8

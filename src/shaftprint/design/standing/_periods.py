@@ -7,12 +7,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shaftprint.arrays import FloatArray
-from shaftprint.identify.prediction import line_information, planned_lines
+from shaftprint.identify.prediction._line_information import line_information
+from shaftprint.identify.prediction._planned_response import planned_lines
 
 if TYPE_CHECKING:
-    from shaftprint.design.plan import Plan
-    from shaftprint.identify import NoiseLevels
-    from shaftprint.spectra import FrequencyResponse
+    from shaftprint.design.plan._plan import Plan
+    from shaftprint.identify.prediction._noise_levels import NoiseLevels
+    from shaftprint.spectra._frequency_response import FrequencyResponse
 
 MOST_PERIODS = 400
 """Periods after which nothing more is to be expected of the same lines: a day of them."""

@@ -15,19 +15,20 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shaftprint.arrays import FloatArray
-from shaftprint.design.plan import Plan, predicted_accuracy
-from shaftprint.design.planned_test import PlannedTest, SailedLeg
+from shaftprint.design.plan._plan import Plan, predicted_accuracy
+from shaftprint.design.planned_test._planned_test import PlannedTest, SailedLeg
 from shaftprint.design.standing._periods import PeriodInformation, missing_periods, period_information
 from shaftprint.design.standing._within import legs_within, updated_ship
 from shaftprint.errors import DesignError
-from shaftprint.identify.prediction import planned_lines
-from shaftprint.models import at_working_point
-from shaftprint.notebook import Shown, Summary
+from shaftprint.identify.prediction._planned_response import planned_lines
+from shaftprint.models._working_point import at_working_point
+from shaftprint.notebook._shown import Shown
+from shaftprint.notebook._summary import Summary
 from shaftprint.units import SECONDS_PER_MINUTE
 
 if TYPE_CHECKING:
-    from shaftprint.design.plan import Leg
-    from shaftprint.identify import Identification
+    from shaftprint.design.plan._leg import Leg
+    from shaftprint.identify.fit._identification import Identification
 
 # A further leg has so many periods at least: the noise is what differs between them.
 FEWEST_MORE = 2

@@ -6,17 +6,18 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shaftprint.arrays import frozen_float
-from shaftprint.design.inputs import AssumedShip, ship_of_fit
-from shaftprint.design.motion import bounds_of_leg, motion, motion_noise
-from shaftprint.design.plan import Peaks, Plan, peaks_of
-from shaftprint.design.planning import FINE, SHARE_HELD, extremes
-from shaftprint.design.search import Uses
+from shaftprint.design.inputs._assumed_ship import AssumedShip, ship_of_fit
+from shaftprint.design.motion._bounds import bounds_of_leg
+from shaftprint.design.motion._motion import motion, motion_noise
+from shaftprint.design.plan._plan import Peaks, Plan, peaks_of
+from shaftprint.design.planning._finish import FINE, SHARE_HELD, extremes
+from shaftprint.design.search._uses import Uses
 from shaftprint.errors import DesignError
 
 if TYPE_CHECKING:
     from shaftprint.arrays import FloatArray
-    from shaftprint.design.plan import Leg
-    from shaftprint.identify import Identification
+    from shaftprint.design.plan._leg import Leg
+    from shaftprint.identify.fit._identification import Identification
 
 _SHIPS = 200
 

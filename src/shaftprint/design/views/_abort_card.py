@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shaftprint.design.inputs import SPEED_SIGMAS
-from shaftprint.design.motion import SIGNALS, motion_noise
-from shaftprint.notebook import Shown
+from shaftprint.design.inputs._limits import SPEED_SIGMAS
+from shaftprint.design.motion._motion import SIGNALS, motion_noise
+from shaftprint.notebook._shown import Shown
 
 if TYPE_CHECKING:
-    from shaftprint.design.planned_test import PlannedTest
+    from shaftprint.design.planned_test._planned_test import PlannedTest
 
 _SPEED, _TORQUE = SIGNALS.index("speed"), SIGNALS.index("brake torque")
 _OWN = slice(_SPEED, _TORQUE + 1)

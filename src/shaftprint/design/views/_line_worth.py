@@ -11,11 +11,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shaftprint.arrays import FloatArray, frozen_float
-from shaftprint.design.plan import Plan
-from shaftprint.identify.prediction import line_information, planned_lines
+from shaftprint.design.plan._plan import Plan
+from shaftprint.identify.prediction._line_information import line_information
+from shaftprint.identify.prediction._planned_response import planned_lines
 
 if TYPE_CHECKING:
-    from shaftprint.design.plan import Leg
+    from shaftprint.design.plan._leg import Leg
 
 # Frequencies at which the worth is computed.
 _FREQUENCIES = 120

@@ -6,8 +6,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from shaftprint.arrays import FloatArray, frozen_float
-from shaftprint.design.inputs import numbers_of_line
-from shaftprint.design.plan import FEWEST_PERIODS, Plan, predicted_accuracy
+from shaftprint.design.inputs._wish import numbers_of_line
+from shaftprint.design.plan._plan import Plan, predicted_accuracy
+from shaftprint.design.plan._timetable import FEWEST_PERIODS
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

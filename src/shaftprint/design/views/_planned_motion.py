@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shaftprint.arrays import FloatArray, frozen_float
-from shaftprint.design.motion import SIGNALS, motion, motion_noise
-from shaftprint.design.plan import Plan
+from shaftprint.design.motion._motion import SIGNALS, motion, motion_noise
+from shaftprint.design.plan._plan import Plan
 
 if TYPE_CHECKING:
-    from shaftprint.design.plan import Leg
+    from shaftprint.design.plan._leg import Leg
 
 # Samples a period of the fastest line.
 _SAMPLES = 16

@@ -20,7 +20,8 @@ from shaftprint.errors import ExportError
 from shaftprint.export._model import ExportedModel
 from shaftprint.export.linear._linear_table import LinearTable, linear_table
 from shaftprint.export.linear._past_rates import without_past_rates
-from shaftprint.models import Leaves, Program, evaluate, program_of
+from shaftprint.models._program import Program, program_of
+from shaftprint.models.equations._evaluate import Leaves, evaluate
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

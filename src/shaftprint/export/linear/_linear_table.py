@@ -7,7 +7,10 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import ExportError
-from shaftprint.models import Formula, Leaves, Program, derivatives, evaluate
+from shaftprint.models._program import Program
+from shaftprint.models.equations._calculus import derivatives
+from shaftprint.models.equations._evaluate import Leaves, evaluate
+from shaftprint.models.equations._formula import Formula
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

@@ -3,7 +3,9 @@
 from dataclasses import replace
 
 from shaftprint.errors import ExportError
-from shaftprint.models import Computed, Formula, Late, Program, derivatives, postorder, replaced
+from shaftprint.models._program import Computed, Late, Program
+from shaftprint.models.equations._calculus import derivatives, postorder, replaced
+from shaftprint.models.equations._formula import Formula
 
 
 def without_past_rates(program: Program) -> Program:

@@ -9,9 +9,11 @@ from shaftprint.escape import modelica_string
 from shaftprint.export._c_text import identifier
 from shaftprint.export._fmu_program import fmu_program
 from shaftprint.export._model import ExportedModel
-from shaftprint.export.linear import without_past_rates
+from shaftprint.export.linear._past_rates import without_past_rates
 from shaftprint.export.modelica._expressions import ModelicaText, modelica_name, modelica_number
-from shaftprint.models import Program, evaluate, postorder
+from shaftprint.models._program import Program
+from shaftprint.models.equations._calculus import postorder
+from shaftprint.models.equations._evaluate import evaluate
 
 # A delay that depends on signals needs a bound for the memory that it takes.
 LONGEST_OVER_REST: Final = 10.0

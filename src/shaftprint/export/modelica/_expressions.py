@@ -9,7 +9,8 @@ from typing import Final
 
 from shaftprint.errors import ExportError
 from shaftprint.escape import modelica_identifier
-from shaftprint.models import Formula, postorder
+from shaftprint.models.equations._calculus import postorder
+from shaftprint.models.equations._formula import Formula
 
 _WORDS: Final = """
 algorithm and annotation block break class connect connector constant constrainedby der discrete each else elseif

@@ -13,7 +13,7 @@ from typing import Any, TextIO
 
 from shaftprint.errors import ShaftprintError
 from shaftprint.files import limit_file_size
-from shaftprint.fingerprint import fingerprint_document
+from shaftprint.fingerprint._json_file import fingerprint_document
 from shaftprint.fleet._arguments import arguments_of
 from shaftprint.fleet.computing._asked_lines import asked_lines
 from shaftprint.fleet.computing._identify import survey_of_job

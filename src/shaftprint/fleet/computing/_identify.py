@@ -6,11 +6,14 @@ from datetime import datetime
 import numpy as np
 
 from shaftprint.errors import RecordingError
-from shaftprint.fingerprint import Fingerprint
+from shaftprint.fingerprint._fingerprint import Fingerprint
 from shaftprint.fleet._arguments import JobArguments
-from shaftprint.identify import Settings
-from shaftprint.models import Structure
-from shaftprint.survey import Measurement, Survey, Trial, priors_of, run
+from shaftprint.identify.search._settings import Settings
+from shaftprint.models._structure import Structure
+from shaftprint.survey._fits import priors_of
+from shaftprint.survey._measurement import Measurement
+from shaftprint.survey._survey import Survey, run
+from shaftprint.survey._trial import Trial
 
 
 class Told:

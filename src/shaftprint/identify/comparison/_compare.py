@@ -13,10 +13,11 @@ from shaftprint.identify.comparison._hold_out import HoldOut, hold_out
 from shaftprint.identify.comparison._likelihood_ratio import LikelihoodRatio, likelihood_ratio
 from shaftprint.identify.comparison._nesting import nesting, no_worse
 from shaftprint.identify.comparison._sentences import comparison_words
-from shaftprint.identify.fit import Identification, fit_of
-from shaftprint.identify.search import Settings
-from shaftprint.models import Structure
-from shaftprint.spectra import FrequencyResponse
+from shaftprint.identify.fit._fit_of import fit_of
+from shaftprint.identify.fit._identification import Identification
+from shaftprint.identify.search._settings import Settings
+from shaftprint.models._structure import Structure
+from shaftprint.spectra._frequency_response import FrequencyResponse
 
 FOLDS = 5
 DRAWS = 199

@@ -8,8 +8,9 @@ import numpy as np
 from shaftprint.identify.comparison._criteria import Criteria
 from shaftprint.identify.comparison._hold_out import HoldOut
 from shaftprint.identify.comparison._likelihood_ratio import LikelihoodRatio
-from shaftprint.identify.fit import Identification
-from shaftprint.notebook import Shown, Summary, shortened
+from shaftprint.identify.fit._identification import Identification
+from shaftprint.notebook._shown import Shown
+from shaftprint.notebook._summary import Summary, shortened
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

@@ -19,7 +19,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from shaftprint.identify.fit import Identification
+from shaftprint.identify.fit._identification import Identification
 
 # Directions below this share of the largest scaled information have none.
 RANK_TOLERANCE = 1e-12

@@ -14,9 +14,13 @@ import numpy as np
 
 from shaftprint.arrays import BoolArray, ComplexArray, FloatArray
 from shaftprint.errors import IdentificationError
-from shaftprint.identify.fit import Identification, fit_of, variance_along
-from shaftprint.identify.likelihood import Experiment, channels_of, load_factors
-from shaftprint.spectra import FrequencyResponse
+from shaftprint.identify.fit._covariance import variance_along
+from shaftprint.identify.fit._fit_of import fit_of
+from shaftprint.identify.fit._identification import Identification
+from shaftprint.identify.likelihood._experiment import Experiment
+from shaftprint.identify.likelihood._fitted_response import channels_of
+from shaftprint.identify.likelihood._load_factors import load_factors
+from shaftprint.spectra._frequency_response import FrequencyResponse
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

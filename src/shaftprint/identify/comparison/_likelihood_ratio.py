@@ -18,9 +18,10 @@ import numpy as np
 from shaftprint.arrays import ComplexArray, FloatArray
 from shaftprint.distributions import chi_square_tail
 from shaftprint.identify.comparison._nesting import NO_GAIN, Nesting
-from shaftprint.identify.fit import Identification, refit
-from shaftprint.identify.likelihood import MaximumLikelihood
-from shaftprint.identify.search import spread
+from shaftprint.identify.fit._identification import Identification
+from shaftprint.identify.fit._refit import refit
+from shaftprint.identify.likelihood._weighting import MaximumLikelihood
+from shaftprint.identify.search._spread import spread
 
 _Array = TypeVar("_Array", FloatArray, ComplexArray)
 

@@ -12,10 +12,12 @@ import numpy as np
 from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.distributions import chi_square_tail
 from shaftprint.errors import IdentificationError
-from shaftprint.identify.fit import Identification, fit_of
-from shaftprint.identify.likelihood import Objective, load_factors
-from shaftprint.identify.search import GivenStarts
-from shaftprint.spectra import FrequencyResponse
+from shaftprint.identify.fit._fit_of import fit_of
+from shaftprint.identify.fit._identification import Identification
+from shaftprint.identify.likelihood._load_factors import load_factors
+from shaftprint.identify.likelihood._objective import Objective
+from shaftprint.identify.search._starts import GivenStarts
+from shaftprint.spectra._frequency_response import FrequencyResponse
 
 # Squared distance over the square of the response itself below which nothing is left.
 SAME_RESPONSE = 1e-9

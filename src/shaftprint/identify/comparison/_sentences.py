@@ -4,7 +4,8 @@ from collections.abc import Mapping, Sequence
 
 from shaftprint.identify.comparison._comparison import Candidate
 from shaftprint.identify.comparison._likelihood_ratio import LikelihoodRatio
-from shaftprint.identify.judgement import explained, misfit_words, probability
+from shaftprint.identify.judgement._misfit import explained, misfit_words
+from shaftprint.identify.judgement._phrases import probability
 
 # What a difference of BIC is worth (Kass and Raftery, Bayes factors, 1995, section 3.2).
 WORTH = ((10.0, "very strong evidence"), (6.0, "strong evidence"), (2.0, "some evidence"))

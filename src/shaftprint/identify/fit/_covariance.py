@@ -10,7 +10,7 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.identify.fit._pseudo_inverse import PseudoInverse
-from shaftprint.identify.likelihood import Objective
+from shaftprint.identify.likelihood._objective import Objective
 
 
 def estimate_covariance(objective: Objective, theta: FloatArray, *, expected: bool = False) -> FloatArray:

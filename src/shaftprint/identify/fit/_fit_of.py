@@ -6,9 +6,9 @@ import numpy as np
 
 from shaftprint.identify.fit._identification import Identification
 from shaftprint.identify.fit._identify import identify, identify_jointly
-from shaftprint.identify.search import Settings
-from shaftprint.models import Structure
-from shaftprint.spectra import FrequencyResponse
+from shaftprint.identify.search._settings import Settings
+from shaftprint.models._structure import Structure
+from shaftprint.spectra._frequency_response import FrequencyResponse
 
 
 def fit_of(

@@ -19,7 +19,9 @@ from dataclasses import dataclass
 
 from shaftprint.arrays import FloatArray
 from shaftprint.distributions import chi_square_tail
-from shaftprint.identify.likelihood import LineTest, Objective, TermTest
+from shaftprint.identify.likelihood._line_test import LineTest
+from shaftprint.identify.likelihood._objective import Objective
+from shaftprint.identify.likelihood._term import TermTest
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

@@ -11,11 +11,19 @@ from shaftprint.distributions import NORMAL_95
 from shaftprint.errors import IdentificationError
 from shaftprint.identify.fit._covariance import variance_along
 from shaftprint.identify.fit._fit_test import FitTest
-from shaftprint.identify.likelihood import FittedResponse, FittedTerm, LineTest, Objective
-from shaftprint.identify.search import Settings
-from shaftprint.models import Margins, Role, Structure, margins
-from shaftprint.notebook import Labelled, LabelledData, Shown, Summary, labelled_rows, shortened
-from shaftprint.spectra import FrequencyResponse
+from shaftprint.identify.likelihood._fitted_response import FittedResponse
+from shaftprint.identify.likelihood._line_test import LineTest
+from shaftprint.identify.likelihood._objective import Objective
+from shaftprint.identify.likelihood._term import FittedTerm
+from shaftprint.identify.search._settings import Settings
+from shaftprint.models._margins import Margins, margins
+from shaftprint.models._role import Role
+from shaftprint.models._structure import Structure
+from shaftprint.notebook._labelled import Labelled, LabelledData
+from shaftprint.notebook._labelled_rows import labelled_rows
+from shaftprint.notebook._shown import Shown
+from shaftprint.notebook._summary import Summary, shortened
+from shaftprint.spectra._frequency_response import FrequencyResponse
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

@@ -12,10 +12,14 @@ from shaftprint.identify.fit._fit_test import tested_fit
 from shaftprint.identify.fit._identification import Cluster, Identification
 from shaftprint.identify.fit._measured_inputs import along_the_test, has_measured_inputs
 from shaftprint.identify.fit._sensor import with_sensor
-from shaftprint.identify.likelihood import Objective, Source, Term, build_joint_objective
-from shaftprint.identify.search import Descent, Settings, polish, search
-from shaftprint.models import Structure
-from shaftprint.spectra import FrequencyResponse
+from shaftprint.identify.likelihood._build_objective import Source, build_joint_objective
+from shaftprint.identify.likelihood._objective import Objective
+from shaftprint.identify.likelihood._term import Term
+from shaftprint.identify.search._levenberg_marquardt import Descent
+from shaftprint.identify.search._search import polish, search
+from shaftprint.identify.search._settings import Settings
+from shaftprint.models._structure import Structure
+from shaftprint.spectra._frequency_response import FrequencyResponse
 
 # Starts belong to one optimum when their costs differ by no more than the search may have left undone, so many times
 # its tolerance as a share of the cost, ...

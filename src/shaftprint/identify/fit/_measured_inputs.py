@@ -19,8 +19,11 @@ from dataclasses import replace
 import numpy as np
 
 from shaftprint.arrays import ComplexArray, FloatArray
-from shaftprint.models import Expression, Structure, Tabulated
-from shaftprint.spectra import FrequencyResponse, with_measured_inputs
+from shaftprint.models._expression import Expression
+from shaftprint.models._structure import Structure
+from shaftprint.models._tabulated import Tabulated
+from shaftprint.spectra._frequency_response import FrequencyResponse
+from shaftprint.spectra._measured_inputs import with_measured_inputs
 
 SPEED = "n"
 

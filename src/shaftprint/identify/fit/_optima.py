@@ -11,7 +11,8 @@ import numpy as np
 
 from shaftprint.arrays import BoolArray, FloatArray, frozen_float
 from shaftprint.identify.fit._identification import Identification
-from shaftprint.identify.search import descend, highest_between
+from shaftprint.identify.search._levenberg_marquardt import descend
+from shaftprint.identify.search._optimum_path import highest_between
 
 # 95 % point of chi-square with one degree of freedom.
 WITHIN = 3.841458820694124

@@ -22,8 +22,9 @@ from shaftprint.arrays import (
 )
 from shaftprint.errors import IdentificationError
 from shaftprint.identify.fit._identification import Identification
-from shaftprint.identify.likelihood import Experiment, Objective, Redrawn, ResponseRepeats
-from shaftprint.identify.search import Descent, descend
+from shaftprint.identify.likelihood._experiment import Experiment, ResponseRepeats
+from shaftprint.identify.likelihood._objective import Objective, Redrawn
+from shaftprint.identify.search._levenberg_marquardt import Descent, descend
 
 # A repeat is done when a further step promises less than this share of its cost: below 1e-3 standard deviations.
 TOLERANCE = 1e-8

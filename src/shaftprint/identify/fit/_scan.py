@@ -16,10 +16,14 @@ from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.errors import IdentificationError
 from shaftprint.identify.fit._identification import Identification
 from shaftprint.identify.fit._identify import identify
-from shaftprint.identify.likelihood import Objective
-from shaftprint.identify.search import Conditional, Draw, Settings, descend
-from shaftprint.models import Parameter, Structure
-from shaftprint.spectra import FrequencyResponse
+from shaftprint.identify.likelihood._objective import Objective
+from shaftprint.identify.search._conditional_minimum import Conditional
+from shaftprint.identify.search._levenberg_marquardt import descend
+from shaftprint.identify.search._settings import Settings
+from shaftprint.identify.search._starts import Draw
+from shaftprint.models._parameter import Parameter
+from shaftprint.models._structure import Structure
+from shaftprint.spectra._frequency_response import FrequencyResponse
 
 FIRST_POINTS = 65
 # Halvings of an interval of the first grid.

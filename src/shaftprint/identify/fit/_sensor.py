@@ -2,8 +2,8 @@
 
 from typing import Protocol
 
-from shaftprint.catalogue import ShipRole
-from shaftprint.models import Structure
+from shaftprint.catalogue._roles import ShipRole
+from shaftprint.models._structure import Structure
 
 
 class PickUpReading(Protocol):

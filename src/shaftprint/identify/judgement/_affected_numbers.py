@@ -9,8 +9,8 @@ What a number is made of follows from its role.
 from collections.abc import Mapping, Sequence
 from typing import get_args
 
-from shaftprint.identify.fit import Estimate
-from shaftprint.models import Basis
+from shaftprint.identify.fit._identification import Estimate
+from shaftprint.models._role import Basis
 from shaftprint.reasons import Reason, ReasonKind
 
 ALL: frozenset[Basis] = frozenset(get_args(Basis))

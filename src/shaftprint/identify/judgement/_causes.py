@@ -14,8 +14,8 @@ import numpy as np
 
 from shaftprint.arrays import ComplexArray, FloatArray
 from shaftprint.identify.judgement._phrases import number
-from shaftprint.identify.likelihood import Experiment
-from shaftprint.models import Structure
+from shaftprint.identify.likelihood._experiment import Experiment
+from shaftprint.models._structure import Structure
 
 # Time in which the slipstream follows the propeller, and inertia times of the whole line and of what is downstream of
 # the gauge, as they are on a tug [s]. The size of an effect depends on them, its place in the band hardly.

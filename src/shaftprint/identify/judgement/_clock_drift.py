@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from shaftprint.distributions import chi_square_tail
-from shaftprint.identify.fit import Identification
+from shaftprint.identify.fit._identification import Identification
 from shaftprint.identify.judgement._misfit import REJECTED
 from shaftprint.identify.judgement._suspects import OWN, gathered_causes, misfit_of
 from shaftprint.reasons import Reason

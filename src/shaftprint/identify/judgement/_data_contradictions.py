@@ -5,7 +5,8 @@ from collections.abc import Iterator, Mapping
 from shaftprint.identify.judgement._evidence import Evidence
 from shaftprint.identify.judgement._phrases import probability
 from shaftprint.identify.judgement._requirements import Requirements
-from shaftprint.identify.likelihood import CheckKind, FittedTerm, TermCheck
+from shaftprint.identify.likelihood._term import FittedTerm
+from shaftprint.identify.likelihood._term_check import CheckKind, TermCheck
 
 WORDS: Mapping[CheckKind, tuple[str, str]] = {
     "small and large": (

@@ -6,15 +6,16 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from shaftprint.arrays import BoolArray
-from shaftprint.identify.fit import Identification
+from shaftprint.identify.fit._identification import Identification
 from shaftprint.identify.judgement._line_quality import good_channels
 from shaftprint.identify.judgement._requirements import Requirements
 from shaftprint.identify.judgement._search_report import SearchReport, report_search
-from shaftprint.identify.uncertainty import Profile
-from shaftprint.models import Delay, Margins
+from shaftprint.identify.uncertainty._profile import Profile
+from shaftprint.models._delays import Delay
+from shaftprint.models._margins import Margins
 
 if TYPE_CHECKING:
-    from shaftprint.spectra import SignalToNoise
+    from shaftprint.spectra.lines._signal_to_noise import SignalToNoise
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from shaftprint.identify.fit import WITHIN, Identification
+from shaftprint.identify.fit._identification import Identification
+from shaftprint.identify.fit._optima import WITHIN
 from shaftprint.identify.judgement._evidence import Evidence
 from shaftprint.identify.judgement._line_quality import gap_at_crossing
 from shaftprint.identify.judgement._misfit import explained, misfit_words

@@ -10,12 +10,14 @@ holds too where the model is not linear in its parameters between here and there
 import numpy as np
 
 from shaftprint.distributions import chi_square_tail
-from shaftprint.identify.fit import Identification
+from shaftprint.identify.fit._identification import Identification
 from shaftprint.identify.judgement._evidence import Evidence
 from shaftprint.identify.judgement._phrases import probability, spans
 from shaftprint.identify.judgement._requirements import Requirements
-from shaftprint.identify.likelihood import Experiment, build_joint_objective, channels_of
-from shaftprint.identify.search import polish
+from shaftprint.identify.likelihood._build_objective import build_joint_objective
+from shaftprint.identify.likelihood._experiment import Experiment
+from shaftprint.identify.likelihood._fitted_response import channels_of
+from shaftprint.identify.search._search import polish
 
 # Other optima of the search from which the lines are taken in again, too.
 _STARTS = 4

@@ -6,12 +6,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shaftprint.arrays import BoolArray, ComplexArray, FloatArray
-from shaftprint.identify.fit import Identification
+from shaftprint.identify.fit._identification import Identification
 from shaftprint.identify.judgement._requirements import Requirements
-from shaftprint.identify.likelihood import Experiment, excess_freedom
+from shaftprint.identify.likelihood._experiment import Experiment
+from shaftprint.identify.likelihood._tails import excess_freedom
 
 if TYPE_CHECKING:
-    from shaftprint.spectra import FrequencyResponse, SignalToNoise
+    from shaftprint.spectra._frequency_response import FrequencyResponse
+    from shaftprint.spectra.lines._signal_to_noise import SignalToNoise
 
 
 def good_channels(

@@ -3,9 +3,10 @@
 import numpy as np
 
 from shaftprint.arrays import FloatArray
-from shaftprint.identify.fit import Identification
+from shaftprint.identify.fit._identification import Identification
 from shaftprint.identify.judgement._phrases import probability, spans
-from shaftprint.identify.likelihood import FittedResponse, channel_names, channels_of, load_factors
+from shaftprint.identify.likelihood._fitted_response import FittedResponse, channel_names, channels_of
+from shaftprint.identify.likelihood._load_factors import load_factors
 
 # Below this probability a fit is rejected, and a line where it is that of the worst of all lines (Bonferroni).
 REJECTED = 0.01

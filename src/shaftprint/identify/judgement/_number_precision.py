@@ -3,12 +3,12 @@
 import math
 from collections.abc import Mapping, Sequence
 
-from shaftprint.catalogue import ShipRole
+from shaftprint.catalogue._roles import ShipRole
 from shaftprint.distributions import NORMAL_95
-from shaftprint.identify.fit import Estimate, Identification
+from shaftprint.identify.fit._identification import Estimate, Identification
 from shaftprint.identify.judgement._phrases import number
 from shaftprint.identify.judgement._requirements import Requirements
-from shaftprint.identify.uncertainty import Interval, Profile
+from shaftprint.identify.uncertainty._profile import Interval, Profile
 
 WHOLE_PERCENT = 100.0
 

@@ -8,11 +8,11 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from shaftprint.catalogue import ShipRole
+from shaftprint.catalogue._roles import ShipRole
 from shaftprint.digits import stated
-from shaftprint.identify.fit import Estimate, Identification
+from shaftprint.identify.fit._identification import Estimate, Identification
 from shaftprint.identify.judgement._phrases import number
-from shaftprint.models import Role
+from shaftprint.models._role import Role
 from shaftprint.reasons import Reason, ReasonKind
 
 # So many standard deviations from what was known are no chance: once in 2000 tests. From the first of them, once in 80,

@@ -2,7 +2,8 @@
 
 from dataclasses import dataclass
 
-from shaftprint.identify.fit import Identification, Optimum, is_passed_over, is_rival, optima_of
+from shaftprint.identify.fit._identification import Identification
+from shaftprint.identify.fit._optima import Optimum, is_passed_over, is_rival, optima_of
 from shaftprint.identify.judgement._search_words import search_words
 
 

@@ -11,11 +11,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from shaftprint.arrays import ComplexArray, FloatArray
-from shaftprint.identify.fit import Identification
+from shaftprint.identify.fit._identification import Identification
 from shaftprint.identify.judgement._causes import Cause, causes_of
 from shaftprint.identify.judgement._misfit import REJECTED, explained
 from shaftprint.identify.judgement._phrases import number
-from shaftprint.identify.likelihood import Experiment
+from shaftprint.identify.likelihood._experiment import Experiment
 
 MOST = 3
 # A cause is worth naming where it takes away this share of the misfit beyond the noise, and chi-square with one degree

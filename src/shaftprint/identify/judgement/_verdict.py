@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Literal
 
 from shaftprint.arguments import refusing_none
 from shaftprint.errors import IdentificationError
-from shaftprint.identify.fit import Estimate, Identification
+from shaftprint.identify.fit._identification import Estimate, Identification
 from shaftprint.identify.judgement._affected_numbers import OF_WORKING_POINT, basis_of, by_weight, clause_of
 from shaftprint.identify.judgement._cautions import cautions_of
 from shaftprint.identify.judgement._clock_drift import drift_reasons
@@ -39,13 +39,14 @@ from shaftprint.identify.judgement._phrases import listed, probability
 from shaftprint.identify.judgement._prior_contradictions import beyond_priors, contradicted_priors
 from shaftprint.identify.judgement._requirements import Requirements
 from shaftprint.identify.judgement._suspects import NOT_LINEAR, Suspect, is_gross, suspects_of
-from shaftprint.identify.uncertainty import Profile
-from shaftprint.identify.uncertainty import profile as find_profile
-from shaftprint.notebook import Shown, Summary, shortened
+from shaftprint.identify.uncertainty._profile import Profile
+from shaftprint.identify.uncertainty._profile import profile as find_profile
+from shaftprint.notebook._shown import Shown
+from shaftprint.notebook._summary import Summary, shortened
 from shaftprint.reasons import Reason, ReasonKind
 
 if TYPE_CHECKING:
-    from shaftprint.spectra import SignalToNoise
+    from shaftprint.spectra.lines._signal_to_noise import SignalToNoise
 
 # What is asked of a fit, in this order; what comes after the first no would only follow from it.
 QUESTIONS: tuple[tuple[ReasonKind, Callable[[Evidence], str]], ...] = (

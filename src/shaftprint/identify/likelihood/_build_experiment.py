@@ -10,8 +10,8 @@ from shaftprint.identify.likelihood._experiment import Experiment, elements_of
 from shaftprint.identify.likelihood._fitted_response import channels_of
 from shaftprint.identify.likelihood._load_factors import load_factors
 from shaftprint.identify.likelihood._weighting import Weighting
-from shaftprint.models import Structure
-from shaftprint.spectra import FrequencyResponse
+from shaftprint.models._structure import Structure
+from shaftprint.spectra._frequency_response import FrequencyResponse
 
 
 def build_experiment(

@@ -14,8 +14,8 @@ from shaftprint.identify.likelihood._prior import Prior
 from shaftprint.identify.likelihood._term import Term
 from shaftprint.identify.likelihood._united_parameters import united_parameters
 from shaftprint.identify.likelihood._weighting import Weighting
-from shaftprint.models import Structure
-from shaftprint.spectra import FrequencyResponse
+from shaftprint.models._structure import Structure
+from shaftprint.spectra._frequency_response import FrequencyResponse
 from shaftprint.spelling import meant
 
 Source: TypeAlias = tuple[Structure, FrequencyResponse] | Term

@@ -27,8 +27,8 @@ from shaftprint.identify.likelihood._term import Repeats, Term, TermTest
 from shaftprint.identify.likelihood._tested_lines import tested_lines
 from shaftprint.identify.likelihood._weighting import Weighting
 from shaftprint.identify.likelihood._wishart import estimated_shapes
-from shaftprint.notebook import Shown
-from shaftprint.spectra import FrequencyResponse
+from shaftprint.notebook._shown import Shown
+from shaftprint.spectra._frequency_response import FrequencyResponse
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

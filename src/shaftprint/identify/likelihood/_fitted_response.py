@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from shaftprint.arrays import BoolArray, ComplexArray, FloatArray
 from shaftprint.identify.likelihood._term import FittedTerm
 from shaftprint.identify.likelihood._term_check import TermCheck
-from shaftprint.models import Structure
-from shaftprint.notebook import Shown
-from shaftprint.spectra import FrequencyResponse
+from shaftprint.models._structure import Structure
+from shaftprint.notebook._shown import Shown
+from shaftprint.spectra._frequency_response import FrequencyResponse
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)

@@ -12,16 +12,19 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shaftprint.catalogue import ShipRole, expect_roles
+from shaftprint.catalogue._roles import ShipRole
+from shaftprint.catalogue._shipped import expect_roles
 from shaftprint.identify.likelihood._prior import Prior
-from shaftprint.models import Role, Structure
+from shaftprint.models._role import Role
+from shaftprint.models._structure import Structure
 from shaftprint.normalisation import Normalisation
-from shaftprint.torsion import LineCoupling, line_coupling
+from shaftprint.torsion._coupling import LineCoupling, line_coupling
 from shaftprint.units import rev_s_from_rpm
 
 if TYPE_CHECKING:
-    from shaftprint.signals import Mode, WorkingPoint
-    from shaftprint.vessel import Vessel
+    from shaftprint.signals._clock import Mode
+    from shaftprint.signals._working_points import WorkingPoint
+    from shaftprint.vessel._vessel import Vessel
 
 PRIOR_OF_G = Prior(mean=0.0, std=0.1)
 """Slope of the engine torque with speed, before any test: flat to a tenth."""

@@ -3,8 +3,8 @@
 import numpy as np
 
 from shaftprint.arrays import BoolArray, RealOrComplexArray
-from shaftprint.models import Structure
-from shaftprint.spectra import FrequencyResponse
+from shaftprint.models._structure import Structure
+from shaftprint.spectra._frequency_response import FrequencyResponse
 
 
 def with_load(structure: Structure, load: float) -> Structure:

@@ -13,8 +13,10 @@ import numpy as np
 from shaftprint.arrays import BoolArray, FloatArray, IntArray
 from shaftprint.identify.likelihood._experiment import Experiment
 from shaftprint.identify.likelihood._term import Repeats, Term
-from shaftprint.models import Combination, Parameter, Structure
-from shaftprint.notebook import Shown
+from shaftprint.models._combination import Combination
+from shaftprint.models._parameter import Parameter
+from shaftprint.models._structure import Structure
+from shaftprint.notebook._shown import Shown
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

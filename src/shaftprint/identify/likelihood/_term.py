@@ -15,7 +15,8 @@ import numpy as np
 from shaftprint.arrays import BoolArray, FloatArray, IntArray
 from shaftprint.identify.likelihood._line_test import LineTest
 from shaftprint.identify.likelihood._term_check import TermCheck
-from shaftprint.models import Structure, stable_rows
+from shaftprint.models._nyquist import stable_rows
+from shaftprint.models._structure import Structure
 
 
 class Repeats(ABC):

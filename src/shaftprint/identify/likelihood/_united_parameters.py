@@ -2,9 +2,10 @@
 
 from collections.abc import Sequence
 
-from shaftprint.catalogue import ShipRole
+from shaftprint.catalogue._roles import ShipRole
 from shaftprint.errors import IdentificationError
-from shaftprint.models import Parameter, Structure
+from shaftprint.models._parameter import Parameter
+from shaftprint.models._structure import Structure
 
 # Held parameters of these roles belong to the pick-up of an experiment: they may differ from one to the other.
 OF_PICK_UP = (ShipRole.PICK_UP_AVERAGE, ShipRole.PICK_UP_HOLD, ShipRole.PICK_UP_DELAY)

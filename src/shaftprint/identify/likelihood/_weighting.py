@@ -9,7 +9,7 @@ import numpy as np
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import IdentificationError
 from shaftprint.identify.likelihood._tails import Tails, estimated_tails, student_tails
-from shaftprint.spectra import FrequencyResponse
+from shaftprint.spectra._frequency_response import FrequencyResponse
 
 
 class Weighting(ABC):

@@ -14,13 +14,17 @@ import numpy as np
 from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.digits import stated
 from shaftprint.errors import IdentificationError
-from shaftprint.identify.fit import Estimate, PseudoInverse, known_covariance, known_variance
-from shaftprint.identify.likelihood import Objective, Prior
+from shaftprint.identify.fit._covariance import known_covariance, known_variance
+from shaftprint.identify.fit._identification import Estimate
+from shaftprint.identify.fit._pseudo_inverse import PseudoInverse
+from shaftprint.identify.likelihood._objective import Objective
+from shaftprint.identify.likelihood._prior import Prior
 from shaftprint.identify.prediction._inseparable_groups import Group, inseparable_groups
 from shaftprint.identify.prediction._planned_objective import assumed_values, planned_objective, value_and_slopes
-from shaftprint.models import Combination, Structure
-from shaftprint.notebook import Shown
-from shaftprint.spectra import FrequencyResponse
+from shaftprint.models._combination import Combination
+from shaftprint.models._structure import Structure
+from shaftprint.notebook._shown import Shown
+from shaftprint.spectra._frequency_response import FrequencyResponse
 
 # Standard deviations over the value that the words tell apart.
 LEVELS = (0.01, 0.05, 0.2)

@@ -25,7 +25,7 @@ from shaftprint.identify.prediction._formulas import (
     unit_of,
 )
 from shaftprint.identify.prediction._null_space import NullSpace
-from shaftprint.models import Combination
+from shaftprint.models._combination import Combination
 
 # A projection below this share of the gradient is none.
 TOLERANCE = 1e-6

@@ -9,7 +9,8 @@ from shaftprint.errors import StructureError
 from shaftprint.identify.prediction._combinations import found_combinations
 from shaftprint.identify.prediction._lost_directions import Direction, directions_of
 from shaftprint.identify.prediction._null_space import null_space
-from shaftprint.models import Combination, Structure
+from shaftprint.models._combination import Combination
+from shaftprint.models._structure import Structure
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

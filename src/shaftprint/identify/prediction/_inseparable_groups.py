@@ -7,10 +7,13 @@ from itertools import combinations
 import numpy as np
 
 from shaftprint.arrays import FloatArray
-from shaftprint.identify.fit import Estimate
-from shaftprint.identify.likelihood import Objective
+from shaftprint.identify.fit._identification import Estimate
+from shaftprint.identify.likelihood._objective import Objective
 from shaftprint.identify.prediction._formulas import FormulaTerm, ParameterFormula, single, sum_of
-from shaftprint.models import Combination, Delay, Parameter, SecondOrderLag
+from shaftprint.models._blocks import SecondOrderLag
+from shaftprint.models._combination import Combination
+from shaftprint.models._delays import Delay
+from shaftprint.models._parameter import Parameter
 
 # Two parameters cannot be separated when they correlate more than this ...
 CORRELATED = 0.9

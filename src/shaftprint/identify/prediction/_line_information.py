@@ -11,10 +11,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from shaftprint.arrays import FloatArray, frozen_float
-from shaftprint.identify.likelihood import Experiment, Objective, Prior
+from shaftprint.identify.likelihood._experiment import Experiment
+from shaftprint.identify.likelihood._objective import Objective
+from shaftprint.identify.likelihood._prior import Prior
 from shaftprint.identify.prediction._planned_objective import assumed_values, planned_objective, value_and_slopes
-from shaftprint.models import Structure
-from shaftprint.spectra import FrequencyResponse
+from shaftprint.models._structure import Structure
+from shaftprint.spectra._frequency_response import FrequencyResponse
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

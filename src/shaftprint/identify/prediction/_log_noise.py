@@ -6,7 +6,7 @@ import numpy as np
 
 from shaftprint.errors import IdentificationError
 from shaftprint.identify.prediction._noise_levels import NoiseLevels
-from shaftprint.spectra import NOT_MEASURED_STD
+from shaftprint.spectra._line_responses import NOT_MEASURED_STD
 
 SHIP_SPEED, TORQUE = "v_s", "M_s"
 """Speed of the ship as its log shows it, and torque at the gauge."""

@@ -10,10 +10,10 @@ from numpy.typing import ArrayLike
 
 from shaftprint.arrays import ComplexArray, FloatArray, frozen_complex, frozen_float
 from shaftprint.errors import IdentificationError
-from shaftprint.spectra import FrequencyResponse
+from shaftprint.spectra._frequency_response import FrequencyResponse
 
 if TYPE_CHECKING:
-    from shaftprint.campaign import Campaign
+    from shaftprint.campaign._campaign import Campaign
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

@@ -5,9 +5,10 @@ from collections.abc import Mapping
 import numpy as np
 
 from shaftprint.arrays import ComplexArray, FloatArray
-from shaftprint.catalogue import ShipRole
+from shaftprint.catalogue._roles import ShipRole
 from shaftprint.identify.prediction._noise_levels import NoiseLevels
-from shaftprint.models import Role, Structure
+from shaftprint.models._role import Role
+from shaftprint.models._structure import Structure
 
 _SPEED, _TORQUE = "n", "M_s"
 _NEEDED = (ShipRole.INERTIA_UPSTREAM, ShipRole.SET_POINT_LATENCY)

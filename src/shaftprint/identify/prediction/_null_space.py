@@ -13,7 +13,8 @@ import numpy as np
 
 from shaftprint.arrays import BoolArray, ComplexArray, FloatArray
 from shaftprint.errors import StructureError
-from shaftprint.models import Block, Structure
+from shaftprint.models._block import Block
+from shaftprint.models._structure import Structure
 
 # From below the slowest line of a ship to what no logger sees; rows are scaled, so the width costs nothing.
 OMEGA_RAD_S = np.geomspace(1e-3, 1e4, 120)

@@ -7,12 +7,15 @@ from typing import TYPE_CHECKING
 from shaftprint.identify.prediction._noise_at_speeds import noise_at
 from shaftprint.identify.prediction._noise_levels import NoiseLevels
 from shaftprint.identify.prediction._planned_response import planned_lines
-from shaftprint.models import Structure, at_working_point
-from shaftprint.spectra import SPEED, FrequencyResponse
-from shaftprint.spectra.legs import leg_freedom
+from shaftprint.models._structure import Structure
+from shaftprint.models._working_point import at_working_point
+from shaftprint.spectra._frequency_response import FrequencyResponse
+from shaftprint.spectra._leg_spectra import SPEED
+from shaftprint.spectra.legs._leg_lines import leg_freedom
 
 if TYPE_CHECKING:
-    from shaftprint.campaign import Campaign, Leg
+    from shaftprint.campaign._campaign import Campaign
+    from shaftprint.campaign._leg import Leg
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

@@ -6,10 +6,14 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import IdentificationError
-from shaftprint.identify.fit import with_sensor
-from shaftprint.identify.likelihood import MaximumLikelihood, Objective, Prior, build_joint_objective
-from shaftprint.models import Combination, Structure
-from shaftprint.spectra import FrequencyResponse
+from shaftprint.identify.fit._sensor import with_sensor
+from shaftprint.identify.likelihood._build_objective import build_joint_objective
+from shaftprint.identify.likelihood._objective import Objective
+from shaftprint.identify.likelihood._prior import Prior
+from shaftprint.identify.likelihood._weighting import MaximumLikelihood
+from shaftprint.models._combination import Combination
+from shaftprint.models._structure import Structure
+from shaftprint.spectra._frequency_response import FrequencyResponse
 
 # Share of a parameter's range over which slopes are taken.
 STEP = 1e-6

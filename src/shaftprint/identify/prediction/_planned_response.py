@@ -11,11 +11,13 @@ from shaftprint.arrays import FloatArray
 from shaftprint.errors import IdentificationError
 from shaftprint.identify.prediction._noise_levels import NoiseLevels
 from shaftprint.identify.prediction._order_cost import order_cost
-from shaftprint.models import Structure
-from shaftprint.spectra import SPEED, FrequencyResponse, plan_windows
+from shaftprint.models._structure import Structure
+from shaftprint.spectra._frequency_response import FrequencyResponse
+from shaftprint.spectra._leg_spectra import SPEED
+from shaftprint.spectra.lines._windows import plan_windows
 
 if TYPE_CHECKING:
-    from shaftprint.campaign import Campaign
+    from shaftprint.campaign._campaign import Campaign
 
 _TORQUE = "M_s"
 # By how much an order enlarges the deviation of a torque before that is worth a remark.

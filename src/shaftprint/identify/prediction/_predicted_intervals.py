@@ -6,13 +6,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from shaftprint.arrays import FloatArray
-from shaftprint.identify.fit import identify, identify_jointly
-from shaftprint.identify.likelihood import Prior
+from shaftprint.identify.fit._identify import identify, identify_jointly
+from shaftprint.identify.likelihood._prior import Prior
 from shaftprint.identify.prediction._planned_response import expected_response
-from shaftprint.identify.search import Draw, Settings
-from shaftprint.identify.uncertainty import Interval, profile
-from shaftprint.models import Structure
-from shaftprint.spectra import FrequencyResponse
+from shaftprint.identify.search._settings import Settings
+from shaftprint.identify.search._starts import Draw
+from shaftprint.identify.uncertainty._profile import Interval, profile
+from shaftprint.models._structure import Structure
+from shaftprint.spectra._frequency_response import FrequencyResponse
 
 
 @dataclass(frozen=True, slots=True, eq=False)

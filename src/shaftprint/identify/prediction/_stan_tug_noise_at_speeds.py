@@ -10,10 +10,10 @@ there decides how well inertia and load slope are known. Below 0.01 Hz the level
 from collections.abc import Mapping
 from types import MappingProxyType
 
-from shaftprint.catalogue import ShipRole
+from shaftprint.catalogue._roles import ShipRole
 from shaftprint.identify.prediction._noise_levels import NoiseLevels, tabulated_noise
 from shaftprint.identify.prediction._stan_tug_noise import ORDERS_HZ, SLOW_LEVELS, STAN_TUG_NOISE
-from shaftprint.models import Role
+from shaftprint.models._role import Role
 
 _LEVELS: dict[float, tuple[tuple[float, float, float, complex], ...]] = {
     0.70: (

@@ -10,7 +10,7 @@ from itertools import combinations
 import numpy as np
 
 from shaftprint.arrays import BoolArray
-from shaftprint.identify.likelihood import Objective
+from shaftprint.identify.likelihood._objective import Objective
 from shaftprint.identify.search._spread import spread
 
 # Places in the box at which the derivatives are compared.

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from shaftprint.arrays import FloatArray, IntArray
-from shaftprint.identify.likelihood import Objective
+from shaftprint.identify.likelihood._objective import Objective
 from shaftprint.identify.search._affine_parameters import affine_parameters
 from shaftprint.identify.search._bounded_least_squares import bounded_least_squares
 from shaftprint.identify.search._levenberg_marquardt import descend

@@ -3,7 +3,7 @@
 import numpy as np
 
 from shaftprint.arrays import FloatArray, IntArray
-from shaftprint.identify.likelihood import Objective
+from shaftprint.identify.likelihood._objective import Objective
 from shaftprint.identify.search._levenberg_marquardt import descend
 
 # Places on the way at which the cost is looked at.

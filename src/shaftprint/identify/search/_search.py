@@ -13,7 +13,7 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import IdentificationError
-from shaftprint.identify.likelihood import Objective
+from shaftprint.identify.likelihood._objective import Objective
 from shaftprint.identify.search._levenberg_marquardt import Allowed, Descent, descend
 from shaftprint.identify.search._settings import Settings
 from shaftprint.identify.search._stability_border import border_minimum, stable_models

@@ -5,7 +5,8 @@ from dataclasses import dataclass, field
 from typing import Literal, get_args
 
 from shaftprint.errors import IdentificationError
-from shaftprint.identify.likelihood import MaximumLikelihood, Prior, Weighting
+from shaftprint.identify.likelihood._prior import Prior
+from shaftprint.identify.likelihood._weighting import MaximumLikelihood, Weighting
 from shaftprint.identify.search._starts import Draw, LatinHypercube
 
 Stability = Literal["after", "during", "ignored"]

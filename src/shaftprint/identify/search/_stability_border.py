@@ -12,10 +12,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from shaftprint.arrays import BoolArray, ComplexArray, FloatArray, IntArray
-from shaftprint.identify.likelihood import Objective
+from shaftprint.identify.likelihood._objective import Objective
 from shaftprint.identify.search._levenberg_marquardt import Allowed, Descent, descend
 from shaftprint.identify.search._settings import Settings
-from shaftprint.models import Structure
+from shaftprint.models._structure import Structure
 
 # The best stopped starts whose border is searched.
 CHOSEN = 8

@@ -17,10 +17,11 @@ from numpy.typing import ArrayLike
 
 from shaftprint.arrays import ComplexArray, FloatArray, frozen_float
 from shaftprint.distributions import deviations
-from shaftprint.identify.fit import Identification
+from shaftprint.identify.fit._identification import Identification
 from shaftprint.identify.uncertainty._bootstrap import Bootstrap
 from shaftprint.identify.uncertainty._parameter_spread import ParameterSpread, spread_of
-from shaftprint.models import Structure, step_response
+from shaftprint.models._step_response import step_response
+from shaftprint.models._structure import Structure
 from shaftprint.units import decibel
 
 DECIBEL_PER_NEPER = 20.0 / np.log(10.0)

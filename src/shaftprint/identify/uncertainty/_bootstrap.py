@@ -14,10 +14,11 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.errors import IdentificationError
-from shaftprint.identify.fit import Identification, refit_redrawn
-from shaftprint.identify.likelihood import Redrawn
+from shaftprint.identify.fit._identification import Identification
+from shaftprint.identify.fit._refit import refit_redrawn
+from shaftprint.identify.likelihood._objective import Redrawn
 from shaftprint.identify.uncertainty._numbers import Numbers, all_numbers
-from shaftprint.models import Combination
+from shaftprint.models._combination import Combination
 
 # Percentiles of an interval of 95 % coverage.
 TAILS_PERCENT = (2.5, 97.5)

@@ -6,11 +6,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from shaftprint.errors import IdentificationError
-from shaftprint.identify.fit import Identification
+from shaftprint.identify.fit._identification import Identification
 from shaftprint.identify.uncertainty._numbers import Numbers
 from shaftprint.identify.uncertainty._propagation import propagation
-from shaftprint.models import Combination
-from shaftprint.notebook import Shown
+from shaftprint.models._combination import Combination
+from shaftprint.notebook._shown import Shown
 
 Direct = Mapping[str, Mapping[str, float]]
 NO_DIRECT: Direct = {}

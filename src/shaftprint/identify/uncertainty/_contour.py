@@ -17,7 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from shaftprint.arrays import BoolArray, FloatArray, IntArray
-from shaftprint.identify.likelihood import Objective
+from shaftprint.identify.likelihood._objective import Objective
 from shaftprint.identify.uncertainty._numbers import Numbers
 
 ROUNDS = 200

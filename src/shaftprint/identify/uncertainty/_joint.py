@@ -12,11 +12,11 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import IdentificationError
-from shaftprint.identify.fit import Identification
+from shaftprint.identify.fit._identification import Identification
 from shaftprint.identify.uncertainty._budget import NO_DIRECT, Direct
 from shaftprint.identify.uncertainty._numbers import Numbers, all_numbers
 from shaftprint.identify.uncertainty._propagation import propagation
-from shaftprint.models import Combination
+from shaftprint.models._combination import Combination
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from shaftprint.arrays import FloatArray, IntArray
-from shaftprint.identify.likelihood import Objective
-from shaftprint.models import Combination
+from shaftprint.identify.likelihood._objective import Objective
+from shaftprint.models._combination import Combination
 
 # Step of a numerical slope over the standard deviation of a parameter when all others are known.
 STEP = 1e-4

@@ -6,8 +6,10 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import IdentificationError
-from shaftprint.identify.fit import LOST_SHARE, Identification, known_covariance
-from shaftprint.models import Structure
+from shaftprint.identify.fit._covariance import known_covariance
+from shaftprint.identify.fit._identification import Identification
+from shaftprint.identify.fit._pseudo_inverse import LOST_SHARE
+from shaftprint.models._structure import Structure
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

@@ -14,11 +14,12 @@ import numpy as np
 from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.distributions import NORMAL_95
 from shaftprint.errors import IdentificationError
-from shaftprint.identify.fit import SAME_PLACE, Identification
+from shaftprint.identify.fit._identification import Identification
+from shaftprint.identify.fit._optima import SAME_PLACE
 from shaftprint.identify.uncertainty._contour import furthest
 from shaftprint.identify.uncertainty._numbers import Numbers, all_numbers
-from shaftprint.models import Combination
-from shaftprint.notebook import Shown
+from shaftprint.models._combination import Combination
+from shaftprint.notebook._shown import Shown
 
 # No curve of a profile rises by more.
 MOST_RISE = 4.0

@@ -6,11 +6,11 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.errors import IdentificationError
-from shaftprint.identify.fit import Identification
+from shaftprint.identify.fit._identification import Identification
 from shaftprint.identify.uncertainty._contour import furthest
 from shaftprint.identify.uncertainty._numbers import Numbers, all_numbers
 from shaftprint.identify.uncertainty._profile import expect_likelihood, other_optima, profile_distance
-from shaftprint.models import Combination
+from shaftprint.models._combination import Combination
 
 # How far the curve goes beyond the ends of the 95 % interval, in roots of the rise of the cost.
 REACH = 1.3

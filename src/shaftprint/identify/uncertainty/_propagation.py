@@ -18,8 +18,10 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from shaftprint.arrays import FloatArray
-from shaftprint.identify.fit import Identification, PseudoInverse
-from shaftprint.identify.likelihood import Experiment, Term
+from shaftprint.identify.fit._identification import Identification
+from shaftprint.identify.fit._pseudo_inverse import PseudoInverse
+from shaftprint.identify.likelihood._experiment import Experiment
+from shaftprint.identify.likelihood._term import Term
 
 NO_DIRECT: Mapping[str, float] = {}
 NO_SHIFTS: Mapping[str, Mapping[str, float]] = {}

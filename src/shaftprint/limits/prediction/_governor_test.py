@@ -6,15 +6,17 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from shaftprint.arrays import BoolArray, FloatArray, frozen_bool, frozen_float
-from shaftprint.campaign import Campaign
-from shaftprint.catalogue import AHEAD_S
+from shaftprint.campaign._campaign import Campaign
+from shaftprint.catalogue._limited_governor import AHEAD_S
 from shaftprint.errors import SignalError
-from shaftprint.identify.prediction import first_leg
+from shaftprint.identify.prediction._planned_legs import first_leg
 from shaftprint.limits.prediction._set_point import GovernorRecord
 from shaftprint.normalisation import Normalisation
-from shaftprint.signals import Signals, deviation
-from shaftprint.time_domain import Decimator, Jump, jumps_in, with_jumps
-from shaftprint.vessel import Vessel
+from shaftprint.signals._signals import Signals
+from shaftprint.signals.levels._working_point import deviation
+from shaftprint.time_domain._decimator import Decimator
+from shaftprint.time_domain.nonlinear._drive import Jump, jumps_in, with_jumps
+from shaftprint.vessel._vessel import Vessel
 
 # Samples of the record and of its drive a second [Hz]. Above 6 Hz a governor hardly acts, and what a pick-up of one
 # pulse a revolution adds to the speed is in the acceleration too: the fit takes it for an answer of the governor.

@@ -6,16 +6,21 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from shaftprint.arrays import BoolArray, FloatArray, frozen_float
-from shaftprint.catalogue import GovernorSymbol
+from shaftprint.catalogue._limited_governor import GovernorSymbol
 from shaftprint.errors import IdentificationError
-from shaftprint.identify import fit_percent
-from shaftprint.identify.likelihood import FittedTerm, LineTest, Repeats, TermCheck, TermTest, WhitenedTerm
+from shaftprint.identify.likelihood._fit_percent import fit_percent
+from shaftprint.identify.likelihood._line_test import LineTest
+from shaftprint.identify.likelihood._term import FittedTerm, Repeats, TermTest, WhitenedTerm
+from shaftprint.identify.likelihood._term_check import TermCheck
 from shaftprint.limits._candidates import IDLE
 from shaftprint.limits.prediction._noise_colour import Innovations, innovations, without_gaps
 from shaftprint.limits.prediction._recent_simulations import RecentSimulations
 from shaftprint.limits.prediction._set_point import GovernorRecord
-from shaftprint.models import Structure
-from shaftprint.time_domain import ExactDelays, Record, qr_reduced, simulated_on
+from shaftprint.models._structure import Structure
+from shaftprint.time_domain._record import Record
+from shaftprint.time_domain._simulator import ExactDelays
+from shaftprint.time_domain._simulator import on_record as simulated_on
+from shaftprint.time_domain._span import qr_reduced
 
 # Longest step of the simulation [s].
 LONGEST_STEP_S = 0.01

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from shaftprint.arrays import BoolArray, FloatArray
-from shaftprint.catalogue import GovernorSymbol
-from shaftprint.kernels import compiled
+from shaftprint.catalogue._limited_governor import GovernorSymbol
+from shaftprint.kernels._compiled import compiled
 from shaftprint.limits._candidates import Kind
 from shaftprint.limits.prediction._governor_test import LEAST_SPEED, GovernorTest
 

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from shaftprint.arrays import FloatArray, frozen_float
-from shaftprint.time_domain import Record
+from shaftprint.time_domain._record import Record
 
 # Beyond the best parameters a descent has tried a few others before it ends.
 KEPT = 4

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from shaftprint.arrays import FloatArray, frozen_float
-from shaftprint.kernels import compiled
-from shaftprint.time_domain import Record
+from shaftprint.kernels._compiled import compiled
+from shaftprint.time_domain._record import Record
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)

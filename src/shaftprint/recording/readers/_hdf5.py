@@ -20,7 +20,7 @@ from shaftprint.recording.readers._netcdf_values import CountRule, never_written
 from shaftprint.recording.readers._opened import Opened
 from shaftprint.recording.readers._time_scale import expect_time_unit
 from shaftprint.recording.readers._vectors import Vector, gather_vectors
-from shaftprint.recording.readers.hdf5_files import CANNOT_BE_OPENED, expect_storage, is_hdf5, open_hdf5
+from shaftprint.recording.readers.hdf5_files._open import CANNOT_BE_OPENED, expect_storage, is_hdf5, open_hdf5
 
 NAME = "HDF5 or NetCDF-4"
 

@@ -25,7 +25,8 @@ from shaftprint.recording.readers._hints import rate_hint
 from shaftprint.recording.readers._packed import CANNOT_BE_UNPACKED, damaged_gzip, first_bytes, open_unpacked
 from shaftprint.recording.readers._printed_rate import rate_of_step
 from shaftprint.recording.readers._segment_clock import clock_of_segments
-from shaftprint.recording.readers.csv import LONGEST_LINE, Header, Unpacked, unpack
+from shaftprint.recording.readers.csv._header import Header
+from shaftprint.recording.readers.csv._rows import LONGEST_LINE, Unpacked, unpack
 from shaftprint.units import plain_unit
 
 NAME = "LabVIEW LVM"

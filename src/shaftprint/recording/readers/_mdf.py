@@ -25,7 +25,9 @@ from shaftprint.recording.readers._mdf_frames import frames_of, holds_frames, ho
 from shaftprint.recording.readers._mdf_records import MdfRecords, expect_in_record
 from shaftprint.recording.readers._mdf_values import by_formula, is_worked_out_here, numbers_of, unit_of
 from shaftprint.recording.readers._opened import Opened
-from shaftprint.recording.readers.can import Database, Decoded, add_signals, database_of, decoded, expect_known
+from shaftprint.recording.readers.can._channels import Decoded, decoded
+from shaftprint.recording.readers.can._database import Database
+from shaftprint.recording.readers.can._log import add_signals, database_of, expect_known
 from shaftprint.units import plain_unit
 
 NAME = "MDF"

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shaftprint.recording.readers._mdf_records import MdfRecords
-from shaftprint.recording.readers.can import EXTENDED, FILL, FrameLog, Frames
+from shaftprint.recording.readers.can._frames import EXTENDED, FILL, FrameLog, Frames
 
 # ASAM MDF 4.1, block CG: the records are events of a bus.
 _BUS_EVENT = 2

@@ -27,7 +27,7 @@ from shaftprint.recording._recording import Recording
 from shaftprint.recording._seal import has_seal, hashed
 from shaftprint.recording.readers._damage import told_as_damage
 from shaftprint.recording.readers._hints import expect_hints
-from shaftprint.recording.readers.hdf5_files import expect_storage, is_hdf5, open_hdf5
+from shaftprint.recording.readers.hdf5_files._open import expect_storage, is_hdf5, open_hdf5
 
 NAME = "shaftprint recording (NetCDF-4)"
 

@@ -11,10 +11,9 @@ from numpy.typing import NDArray
 from shaftprint.arrays import FloatArray
 from shaftprint.recording._channel import Channel
 from shaftprint.recording._container import CHUNK_SAMPLES
-from shaftprint.recording.readers import told_apart
-from shaftprint.recording.readers.can import FILL
-from shaftprint.recording.readers.can import BusMessage as Message
-from shaftprint.recording.readers.can import BusSignal as Signal
+from shaftprint.recording.readers._gather import told_apart
+from shaftprint.recording.readers.can._frames import FILL
+from shaftprint.recording.readers.can._messages import Message, Signal
 
 Frame: TypeAlias = tuple[float, int, bytes]
 """Time [s], identifier and bytes."""

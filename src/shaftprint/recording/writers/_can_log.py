@@ -6,7 +6,7 @@ from pathlib import Path
 
 from shaftprint.errors import RecordingError
 from shaftprint.recording._channel import Channel
-from shaftprint.recording.readers.can import BusMessage as Message
+from shaftprint.recording.readers.can._messages import Message
 from shaftprint.recording.writers._bus_log import write_bus_log
 from shaftprint.recording.writers._bus_messages import BITS, Sent, names_in_messages, own_signal, rounding_of
 from shaftprint.recording.writers._shared_clock import by_clock

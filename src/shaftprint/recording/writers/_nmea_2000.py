@@ -12,8 +12,9 @@ import numpy as np
 from shaftprint.arrays import FloatArray
 from shaftprint.recording._channel import Channel
 from shaftprint.recording._container import CHUNK_SAMPLES
-from shaftprint.recording.readers.can import KNOWN, pgn_of
-from shaftprint.recording.readers.can import BusSignal as Signal
+from shaftprint.recording.readers.can._frames import pgn_of
+from shaftprint.recording.readers.can._known import KNOWN
+from shaftprint.recording.readers.can._messages import Signal
 from shaftprint.recording.writers._bus_log import write_bus_log
 from shaftprint.recording.writers._bus_messages import (
     Sent,

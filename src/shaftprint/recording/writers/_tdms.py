@@ -10,7 +10,7 @@ import numpy as np
 from shaftprint.files import written_whole
 from shaftprint.recording._channel import Channel
 from shaftprint.recording._container import CHUNK_SAMPLES
-from shaftprint.recording.readers import library
+from shaftprint.recording.readers._extra import library
 from shaftprint.recording.writers._refused import told_as_refused
 from shaftprint.recording.writers._shared_clock import expect_no_messages, in_parts
 

@@ -12,7 +12,8 @@ from shaftprint.errors import RecordingError
 from shaftprint.escape import printable
 from shaftprint.files import written_whole
 from shaftprint.recording._channel import Channel
-from shaftprint.recording.readers import library, rate_of_step
+from shaftprint.recording.readers._extra import library
+from shaftprint.recording.readers._printed_rate import rate_of_step
 from shaftprint.recording.writers._refused import told_as_refused
 
 _TIME, _GENERAL = 17, 0

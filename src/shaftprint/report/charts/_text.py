@@ -2,9 +2,11 @@
 
 from typing import TypeAlias
 
+from shaftprint.digits import unit_text
 from shaftprint.escape import html_text
-from shaftprint.markup import mathtext, plain_label, symbol_html
-from shaftprint.tables import Symbol, unit_text
+from shaftprint.markup._html import symbol_html
+from shaftprint.markup._symbols import mathtext, plain_label
+from shaftprint.plain_table import Symbol
 
 Text: TypeAlias = str | tuple[str, ...]
 """A text, a ``Symbol``, or parts of both one after the other."""

@@ -2,11 +2,11 @@
 
 from typing import TYPE_CHECKING
 
-from shaftprint.digits import with_deviation
-from shaftprint.tables import Table, numbers, p_value_text, plain, texts
+from shaftprint.digits import p_value_text, plain, with_deviation
+from shaftprint.plain_table import Table, numbers, texts
 
 if TYPE_CHECKING:
-    from shaftprint.drift import Finding, ShipChange, SizedCause
+    from shaftprint.drift._finding import Finding, ShipChange, SizedCause
 
 MOST_ODDS = 1000.0
 

@@ -25,12 +25,14 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal, TypeAlias
 
 from shaftprint.distributions import NORMAL_95, normal_cdf
-from shaftprint.drift import LOAD_REPEATABILITY, shared_errors
-from shaftprint.fingerprint import GAUGE_ZERO
-from shaftprint.tables import limits
+from shaftprint.drift._differ import LOAD_REPEATABILITY
+from shaftprint.drift._shared_errors import shared_errors
+from shaftprint.fingerprint._physical import GAUGE_ZERO
+from shaftprint.tables._fingerprint import limits
 
 if TYPE_CHECKING:
-    from shaftprint.fingerprint import Fingerprint, Quantity
+    from shaftprint.fingerprint._fingerprint import Fingerprint
+    from shaftprint.fingerprint._quantity import Quantity
 
 Outcome: TypeAlias = Literal["differs", "perhaps", "no difference seen", "cannot be compared"]
 

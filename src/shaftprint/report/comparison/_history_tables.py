@@ -3,11 +3,14 @@
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
+from shaftprint.digits import p_value_text, plain
+from shaftprint.plain_table import Column, Table, numbers, texts
 from shaftprint.report.comparison._cause_table import odds_text, sized
-from shaftprint.tables import Column, Table, numbers, p_value_text, plain, texts
 
 if TYPE_CHECKING:
-    from shaftprint.drift import DatedCause, History, SizedCause, WatchFinding
+    from shaftprint.drift._drift_finding import DatedCause, WatchFinding
+    from shaftprint.drift._finding import SizedCause
+    from shaftprint.drift._history import History
 
 MOST_CAUSES = 4
 NOT_THERE = "–"

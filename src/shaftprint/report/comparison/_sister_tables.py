@@ -2,12 +2,12 @@
 
 from typing import TYPE_CHECKING
 
-from shaftprint.digits import to_digit_of
+from shaftprint.digits import p_value_text, plain, to_digit_of
+from shaftprint.plain_table import Table, numbers, texts
 from shaftprint.report.comparison._cause_table import odds_text, sized
-from shaftprint.tables import Table, numbers, p_value_text, plain, texts
 
 if TYPE_CHECKING:
-    from shaftprint.drift import ClassFinding, NumberSpread
+    from shaftprint.drift._class_finding import ClassFinding, NumberSpread
 
 NOT_THERE = "–"
 

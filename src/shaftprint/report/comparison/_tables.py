@@ -3,29 +3,15 @@
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
+from shaftprint.digits import interval, p_value_text, plain, rounded, to_digit_of, unit_text, with_deviation
 from shaftprint.distributions import NORMAL_95
-from shaftprint.tables import (
-    MEANING,
-    Column,
-    Symbol,
-    Table,
-    interval,
-    limits,
-    numbers,
-    p_value_text,
-    plain,
-    rounded,
-    ship_text,
-    tested_text,
-    texts,
-    to_digit_of,
-    unit_text,
-    water_facts,
-    with_deviation,
-)
+from shaftprint.plain_table import MEANING, Column, Symbol, Table, numbers, texts
+from shaftprint.tables._conditions import ship_text, tested_text, water_facts
+from shaftprint.tables._fingerprint import limits
 
 if TYPE_CHECKING:
-    from shaftprint.fingerprint import Fingerprint, Quantity
+    from shaftprint.fingerprint._fingerprint import Fingerprint
+    from shaftprint.fingerprint._quantity import Quantity
     from shaftprint.report.comparison._differences import Difference
 
 PERCENT = 100.0

@@ -3,12 +3,13 @@
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from shaftprint.drift import shared_errors
-from shaftprint.tables import Table, texts
+from shaftprint.drift._shared_errors import shared_errors
+from shaftprint.plain_table import Table, texts
 
 if TYPE_CHECKING:
-    from shaftprint.drift import FieldChange
-    from shaftprint.fingerprint import FieldValue, Fingerprint
+    from shaftprint.drift._shared_errors import FieldChange
+    from shaftprint.fingerprint._fingerprint import Fingerprint
+    from shaftprint.fingerprint._vessel_fields import FieldValue
 
 MOST_NAMED = 4
 MOST_NUMBERS = 6

@@ -8,15 +8,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shaftprint.arrays import BoolArray, FloatArray
-from shaftprint.identify.uncertainty import model_band
-from shaftprint.report.charts import Band, Chart, Line, Mark, Panel, Points, Scale, Shade, Straight, Text, joined, over
+from shaftprint.identify.uncertainty._band import model_band
+from shaftprint.report.charts._chart import Chart, Panel, Scale
+from shaftprint.report.charts._marks import Band, Line, Mark, Points, Shade, Straight
+from shaftprint.report.charts._text import Text, joined, over
 from shaftprint.report.figures._phase import TURN_DEG, WRAPPED_SPAN_DEG, reads_better_wrapped, wrapped, wrapped_line
 from shaftprint.report.figures._traces import Trace, channel_of, measured_phase_deg, trace_of
 from shaftprint.report.figures._uncertainty import measured_points
 
 if TYPE_CHECKING:
     from shaftprint.report._curve import Curve
-    from shaftprint.spectra import FrequencyResponse
+    from shaftprint.spectra._frequency_response import FrequencyResponse
 
 GRID_POINTS = 301
 # Bands are smoother than lines: every third point will do, and keeps the file small.

@@ -5,13 +5,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shaftprint.distributions import NORMAL_95
-from shaftprint.report.charts import Band, Bars, Chart, Line, Mark, Panel, Points, Scale, Straight
+from shaftprint.report.charts._chart import Chart, Panel, Scale
+from shaftprint.report.charts._marks import Band, Bars, Line, Mark, Points, Straight
 from shaftprint.units import SECONDS_PER_MINUTE
 
 if TYPE_CHECKING:
     from shaftprint.arrays import FloatArray
-    from shaftprint.signals import SetPointCalibration, StripAngles
-    from shaftprint.vessel import Vessel
+    from shaftprint.signals._signals import SetPointCalibration, StripAngles
+    from shaftprint.vessel._vessel import Vessel
 
 BEYOND_V = 0.3
 DEGREES_PER_REV = 360.0

@@ -6,13 +6,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shaftprint.arrays import FloatArray
-from shaftprint.report.charts import Chart, Line, Mark, Panel, Points, Scale, Words
+from shaftprint.report.charts._chart import Chart, Panel, Scale
+from shaftprint.report.charts._marks import Line, Mark, Points, Words
 from shaftprint.report.figures._envelope import STRETCHES, channel_envelope
 
 if TYPE_CHECKING:
-    from shaftprint.campaign import Campaign
-    from shaftprint.recording import Recording
-    from shaftprint.vessel import Vessel
+    from shaftprint.campaign._campaign import Campaign
+    from shaftprint.recording._recording import Recording
+    from shaftprint.vessel._vessel import Vessel
 
 ROWS = 3
 # Names of tests must keep this share of a row's length from each other to be read.

@@ -5,12 +5,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shaftprint.report.charts import Bars, Chart, Fields, Mark, Panel, Scale, Straight
-from shaftprint.tables import Symbol
+from shaftprint.plain_table import Symbol
+from shaftprint.report.charts._chart import Chart, Panel, Scale
+from shaftprint.report.charts._marks import Bars, Fields, Mark, Straight
 
 if TYPE_CHECKING:
-    from shaftprint.identify import Identification
-    from shaftprint.identify.uncertainty import Budget
+    from shaftprint.identify.fit._identification import Identification
+    from shaftprint.identify.uncertainty._budget import Budget
 
 PERCENT = 100.0
 BAR_PX, FIELD_PX = 26, 30

@@ -5,11 +5,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shaftprint.report.charts import Chart, Mark, Panel, Points, Scale, Straight
-from shaftprint.tables import Symbol
+from shaftprint.plain_table import Symbol
+from shaftprint.report.charts._chart import Chart, Panel, Scale
+from shaftprint.report.charts._marks import Mark, Points, Straight
 
 if TYPE_CHECKING:
-    from shaftprint.report.comparison import Difference
+    from shaftprint.report.comparison._differences import Difference
 
 PERCENT = 100.0
 ROW_PX, FRAME_PX = 30, 20

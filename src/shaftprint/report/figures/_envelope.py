@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from shaftprint.arrays import FloatArray
 
 if TYPE_CHECKING:
-    from shaftprint.recording import Channel
+    from shaftprint.recording._channel import Channel
 
 STRETCHES = 1200
 # Samples that are kept for each period of the highest frequency of a signal without anything faster.

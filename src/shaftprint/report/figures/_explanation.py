@@ -4,11 +4,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shaftprint.report.charts import Chart, Line, Mark, Panel, Points, Scale
+from shaftprint.report.charts._chart import Chart, Panel, Scale
+from shaftprint.report.charts._marks import Line, Mark, Points
 from shaftprint.units import decibel
 
 if TYPE_CHECKING:
-    from shaftprint.report.thesis import Explanation
+    from shaftprint.report.thesis._explanation import Explanation
 
 
 def missing_damping_chart(explanation: "Explanation") -> Chart:

@@ -6,16 +6,18 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shaftprint.arrays import FloatArray
-from shaftprint.identify.uncertainty import model_band
+from shaftprint.identify.uncertainty._band import model_band
 from shaftprint.report._curve import Curve
-from shaftprint.report.charts import Band, Chart, Mark, Panel, Points, Scale, over
+from shaftprint.report.charts._chart import Chart, Panel, Scale
+from shaftprint.report.charts._marks import Band, Mark, Points
+from shaftprint.report.charts._text import over
 from shaftprint.report.figures._bode import Column, columns_chart, frequency_scale
 from shaftprint.report.figures._residuals import LEAST_STD, explained_band, unexplained
 from shaftprint.report.figures._uncertainty import measured_points
 from shaftprint.units import decibel
 
 if TYPE_CHECKING:
-    from shaftprint.identify import Identification
+    from shaftprint.identify.fit._identification import Identification
 
 ROOM = 1.1
 

@@ -7,12 +7,14 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.distributions import NORMAL_95
-from shaftprint.report.charts import Chart, Mark, Panel, Points, Scale, Straight
+from shaftprint.report.charts._chart import Chart, Panel, Scale
+from shaftprint.report.charts._marks import Mark, Points, Straight
 
 if TYPE_CHECKING:
     from datetime import datetime
 
-    from shaftprint.drift import History, SizedCause
+    from shaftprint.drift._finding import SizedCause
+    from shaftprint.drift._history import History
 
 PANEL_PX = 150
 

@@ -5,12 +5,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shaftprint.arrays import BoolArray, FloatArray
-from shaftprint.catalogue import AHEAD_S, GovernorSymbol
+from shaftprint.catalogue._limited_governor import AHEAD_S, GovernorSymbol
 from shaftprint.distributions import NORMAL_95
-from shaftprint.report.charts import Band, Chart, Line, Mark, Panel, Points, Scale
+from shaftprint.report.charts._chart import Chart, Panel, Scale
+from shaftprint.report.charts._marks import Band, Line, Mark, Points
 
 if TYPE_CHECKING:
-    from shaftprint.limits import LimitFit
+    from shaftprint.limits._limit_fit import LimitFit
 
 SHOWN_S = 12.0
 LEVEL = GovernorSymbol.TORQUE_LIMIT

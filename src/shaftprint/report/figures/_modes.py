@@ -4,12 +4,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shaftprint.report.charts import Chart, Line, Mark, Panel, Points, Scale, Straight
-from shaftprint.tables import plain, with_deviation
+from shaftprint.digits import plain, with_deviation
+from shaftprint.report.charts._chart import Chart, Panel, Scale
+from shaftprint.report.charts._marks import Line, Mark, Points, Straight
 
 if TYPE_CHECKING:
     from shaftprint.arrays import FloatArray
-    from shaftprint.torsion import Modes, TorsionalLine
+    from shaftprint.torsion._line import TorsionalLine
+    from shaftprint.torsion._modes import Modes
 
 SHOWN = 4
 BESIDE = 0.5

@@ -5,8 +5,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shaftprint.arrays import ComplexArray, FloatArray
-from shaftprint.models import Margins, loop_gain, margins
-from shaftprint.report.charts import Chart, Line, Mark, Panel, Points, Scale, Straight, Words
+from shaftprint.models._margins import Margins, margins
+from shaftprint.models._nyquist import loop_gain
+from shaftprint.report.charts._chart import Chart, Panel, Scale
+from shaftprint.report.charts._marks import Line, Mark, Points, Straight, Words
 
 if TYPE_CHECKING:
     from shaftprint.report._curve import Curve

@@ -5,14 +5,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shaftprint.arrays import FloatArray
-from shaftprint.report.charts import Chart, Line, Mark, Panel, Points, Scale
+from shaftprint.report.charts._chart import Chart, Panel, Scale
+from shaftprint.report.charts._marks import Line, Mark, Points
 from shaftprint.report.figures._envelope import channel_envelope, extremes
 from shaftprint.units import SECONDS_PER_MINUTE
 
 if TYPE_CHECKING:
-    from shaftprint.recording import Recording
-    from shaftprint.signals import Signals
-    from shaftprint.vessel import Vessel
+    from shaftprint.recording._recording import Recording
+    from shaftprint.signals._signals import Signals
+    from shaftprint.vessel._vessel import Vessel
 
 # Kinds of repair of a voltage or torque channel; pulses are repaired elsewhere.
 KINDS = ("outlier", "dropout", "saturated")

@@ -6,15 +6,20 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shaftprint.arrays import FloatArray
-from shaftprint.campaign import setpoint
+from shaftprint.campaign._setpoint import setpoint
 from shaftprint.distributions import NORMAL_95
-from shaftprint.report.charts import Band, Chart, Line, Mark, Panel, Points, Scale, Straight
+from shaftprint.plain_table import Symbol
+from shaftprint.report.charts._chart import Chart, Panel, Scale
+from shaftprint.report.charts._marks import Band, Line, Mark, Points, Straight
 from shaftprint.report.figures._envelope import envelope
-from shaftprint.tables import Symbol
 from shaftprint.units import SECONDS_PER_MINUTE
 
 if TYPE_CHECKING:
-    from shaftprint.design import LengthCurve, LineWorth, Plan, PlannedMotion, PlannedTest
+    from shaftprint.design.plan._plan import Plan
+    from shaftprint.design.planned_test._planned_test import PlannedTest
+    from shaftprint.design.views._line_worth import LineWorth
+    from shaftprint.design.views._other_lengths import LengthCurve
+    from shaftprint.design.views._planned_motion import PlannedMotion
 
 PERCENT = 100.0
 # Samples of the set point of a whole test.

@@ -5,12 +5,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shaftprint.identify.uncertainty import profile_curve
-from shaftprint.report.charts import Chart, Line, Mark, Panel, Scale, Straight, quantity
+from shaftprint.identify.uncertainty._profile_curve import profile_curve
+from shaftprint.report.charts._chart import Chart, Panel, Scale
+from shaftprint.report.charts._marks import Line, Mark, Straight
+from shaftprint.report.charts._text import quantity
 
 if TYPE_CHECKING:
-    from shaftprint.identify import Identification
-    from shaftprint.identify.uncertainty import ProfileCurve
+    from shaftprint.identify.fit._identification import Identification
+    from shaftprint.identify.uncertainty._profile_curve import ProfileCurve
 
 COLUMNS = 3
 PARABOLA_POINTS = 41

@@ -6,13 +6,15 @@ import numpy as np
 
 from shaftprint.arrays import ComplexArray, FloatArray
 from shaftprint.distributions import NORMAL_95, chi_square_quantile
-from shaftprint.identify.likelihood import load_factors
-from shaftprint.report.charts import Band, Chart, Mark, Panel, Points, Scale, Straight, joined
+from shaftprint.identify.likelihood._load_factors import load_factors
+from shaftprint.plain_table import Symbol
+from shaftprint.report.charts._chart import Chart, Panel, Scale
+from shaftprint.report.charts._marks import Band, Mark, Points, Straight
+from shaftprint.report.charts._text import joined
 from shaftprint.report.figures._uncertainty import COVERAGE
-from shaftprint.tables import Symbol
 
 if TYPE_CHECKING:
-    from shaftprint.identify import Identification
+    from shaftprint.identify.fit._identification import Identification
 
 # The picture shows at least this many standard deviations.
 LEAST_STD = 3.2

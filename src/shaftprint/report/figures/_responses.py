@@ -3,11 +3,12 @@
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
-from shaftprint.report.charts import Chart, joined, over
+from shaftprint.report.charts._chart import Chart
+from shaftprint.report.charts._text import joined, over
 from shaftprint.report.figures._bode import Column, columns_chart
 
 if TYPE_CHECKING:
-    from shaftprint.spectra import FrequencyResponse
+    from shaftprint.spectra._frequency_response import FrequencyResponse
 
 CRITICAL_SPAN_RAD_S = (1.0, 10.0)
 """Where the thesis' sets differ from each other and two lines only were measured."""

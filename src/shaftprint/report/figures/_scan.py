@@ -6,11 +6,13 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.distributions import NORMAL_95
-from shaftprint.report.charts import Chart, Line, Panel, Points, Scale, Straight, quantity
+from shaftprint.report.charts._chart import Chart, Panel, Scale
+from shaftprint.report.charts._marks import Line, Points, Straight
+from shaftprint.report.charts._text import quantity
 
 if TYPE_CHECKING:
-    from shaftprint.identify import Identification
-    from shaftprint.identify.fit import Scan
+    from shaftprint.identify.fit._identification import Identification
+    from shaftprint.identify.fit._scan import Scan
 
 ROOM = 1.06
 

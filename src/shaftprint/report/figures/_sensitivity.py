@@ -7,19 +7,23 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shaftprint.arrays import FloatArray
+from shaftprint.digits import unit_text
 from shaftprint.errors import StructureError
+from shaftprint.plain_table import Symbol
 from shaftprint.report._curve import Curve
-from shaftprint.report.charts import Chart, Line, Mark, Panel, Points, Scale, joined
+from shaftprint.report.charts._chart import Chart, Panel, Scale
+from shaftprint.report.charts._marks import Line, Mark, Points
+from shaftprint.report.charts._text import joined
 from shaftprint.report.figures._bode import ENDLESS_DB, GRID_POINTS, frequency_scale
 from shaftprint.report.figures._traces import channel_of, measured_phase_deg, trace_of
 from shaftprint.report.figures._uncertainty import measured_points
-from shaftprint.tables import Symbol, unit_text
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from shaftprint.models import Parameter, Structure
-    from shaftprint.spectra import FrequencyResponse
+    from shaftprint.models._parameter import Parameter
+    from shaftprint.models._structure import Structure
+    from shaftprint.spectra._frequency_response import FrequencyResponse
 
 STEPS = ("lower bound", "a quarter up", "half way", "three quarters up", "upper bound")
 # What a meaning explains after its first words: too long for a title.

@@ -4,11 +4,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shaftprint.report.charts import Chart, Line, Mark, Panel, Points, Scale, Straight
-from shaftprint.tables import Symbol
+from shaftprint.plain_table import Symbol
+from shaftprint.report.charts._chart import Chart, Panel, Scale
+from shaftprint.report.charts._marks import Line, Mark, Points, Straight
 
 if TYPE_CHECKING:
-    from shaftprint.spectra import Spectra
+    from shaftprint.spectra._spectra import Spectra
 
 THESIS_LIMIT_DB = 3.0
 

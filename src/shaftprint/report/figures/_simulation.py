@@ -7,9 +7,11 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.distributions import deviations
-from shaftprint.report.charts import Band, Chart, Line, Mark, Panel, Scale, quantity
+from shaftprint.plain_table import Symbol
+from shaftprint.report.charts._chart import Chart, Panel, Scale
+from shaftprint.report.charts._marks import Band, Line, Mark
+from shaftprint.report.charts._text import quantity
 from shaftprint.report.figures._envelope import STRETCHES, envelope
-from shaftprint.tables import Symbol
 
 COVERAGE = 0.95
 PERCENT = 100.0

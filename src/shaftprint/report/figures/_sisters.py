@@ -5,10 +5,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shaftprint.distributions import NORMAL_95
-from shaftprint.report.charts import Band, Chart, Mark, Panel, Points, Scale, Straight
+from shaftprint.report.charts._chart import Chart, Panel, Scale
+from shaftprint.report.charts._marks import Band, Mark, Points, Straight
 
 if TYPE_CHECKING:
-    from shaftprint.drift import CauseSpread, ClassFinding
+    from shaftprint.drift._class_finding import CauseSpread, ClassFinding
 
 SHIP_PX, PANEL_PX, COLUMNS = 22, 90, 2
 HALF = 0.5

@@ -4,15 +4,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shaftprint.identify.uncertainty import step_band
-from shaftprint.report.charts import Band, Chart, Line, Mark, Panel, Scale, joined, over
+from shaftprint.identify.uncertainty._band import step_band
+from shaftprint.plain_table import Symbol
+from shaftprint.report.charts._chart import Chart, Panel, Scale
+from shaftprint.report.charts._marks import Band, Line, Mark
+from shaftprint.report.charts._text import joined, over
 from shaftprint.report.figures._envelope import envelope
-from shaftprint.tables import Symbol
 
 if TYPE_CHECKING:
     from shaftprint.arrays import FloatArray
-    from shaftprint.identify import Identification
-    from shaftprint.signals import Signals, StepDelay
+    from shaftprint.identify.fit._identification import Identification
+    from shaftprint.signals._signals import Signals, StepDelay
 
 DURATION_S = 6.0
 POINTS = 301

@@ -5,12 +5,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shaftprint.arrays import FloatArray
-from shaftprint.report.charts import Chart, Line, Mark, Panel, Points, Scale, Straight, Words, joined
+from shaftprint.plain_table import Symbol
+from shaftprint.report.charts._chart import Chart, Panel, Scale
+from shaftprint.report.charts._marks import Line, Mark, Points, Straight, Words
+from shaftprint.report.charts._text import joined
 from shaftprint.report.figures._envelope import envelope
-from shaftprint.tables import Symbol
 
 if TYPE_CHECKING:
-    from shaftprint.signals import Signals, StepDelay
+    from shaftprint.signals._signals import Signals, StepDelay
 
 AROUND_S = 20.0
 ZOOM_BEFORE_S, ZOOM_AFTER_S = 0.6, 1.8

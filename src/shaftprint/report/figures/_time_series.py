@@ -6,13 +6,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shaftprint.arrays import FloatArray
-from shaftprint.report.charts import Chart, Line, Mark, Panel, Scale, Straight, joined
+from shaftprint.plain_table import Symbol
+from shaftprint.report.charts._chart import Chart, Panel, Scale
+from shaftprint.report.charts._marks import Line, Mark, Straight
+from shaftprint.report.charts._text import joined
 from shaftprint.report.figures._envelope import envelope, extremes
-from shaftprint.tables import Symbol
 
 if TYPE_CHECKING:
-    from shaftprint.campaign import Campaign, Excitation
-    from shaftprint.signals import Signals
+    from shaftprint.campaign._campaign import Campaign
+    from shaftprint.campaign._excitation import Excitation
+    from shaftprint.signals._signals import Signals
 
 WHAT = ("engine speed", "shaft torque")
 

@@ -12,7 +12,7 @@ from shaftprint.units import decibel
 
 if TYPE_CHECKING:
     from shaftprint.report._curve import Curve
-    from shaftprint.spectra import FrequencyResponse
+    from shaftprint.spectra._frequency_response import FrequencyResponse
 
 # From one used line to the next a measured phase may lead by no more than this; the rest of the turn is lag.
 LARGEST_LEAD_DEG = 90.0

@@ -13,7 +13,7 @@ from shaftprint.distributions import deviations
 from shaftprint.units import decibel
 
 if TYPE_CHECKING:
-    from shaftprint.spectra import FrequencyResponse
+    from shaftprint.spectra._frequency_response import FrequencyResponse
 
 COVERAGE = 0.95
 

@@ -6,12 +6,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shaftprint.distributions import deviations
-from shaftprint.report.charts import Band, Chart, Line, Mark, Panel, Points, Scale, Straight, joined
+from shaftprint.plain_table import Symbol
+from shaftprint.report.charts._chart import Chart, Panel, Scale
+from shaftprint.report.charts._marks import Band, Line, Mark, Points, Straight
+from shaftprint.report.charts._text import joined
 from shaftprint.report.figures._envelope import envelope, worthwhile
-from shaftprint.tables import Symbol
 
 if TYPE_CHECKING:
-    from shaftprint.validation import ExcerptComparison, Validation
+    from shaftprint.validation._validation import ExcerptComparison, Validation
 
 PERCENT = 100.0
 BAND_POINTS = 200

@@ -2,7 +2,3 @@
 
 ReportLab is imported here, and is needed by nothing else: ``report`` loads this folder when a PDF is asked for.
 """
-
-from shaftprint.report.paper._write_pdf import write_pdf
-
-__all__ = ["write_pdf"]

@@ -13,7 +13,7 @@ from reportlab.pdfbase.ttfonts import TTFont
 from reportlab.platypus import Paragraph
 
 from shaftprint.escape import printable
-from shaftprint.markup import sentence_html
+from shaftprint.markup._html import sentence_html
 
 MARGIN_MM = 14.0
 WIDTH_MM = 210.0 - 2.0 * MARGIN_MM

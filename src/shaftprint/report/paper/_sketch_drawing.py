@@ -10,7 +10,7 @@ from shaftprint.escape import printable
 from shaftprint.report.paper._looks import FAMILY
 
 if TYPE_CHECKING:
-    from shaftprint.report.sections import Sketch
+    from shaftprint.report.sections._sketch import Sketch
 
 LABEL_SIZE = 19.0
 ARROW, HALF_ARROW = 11.0, 6.0

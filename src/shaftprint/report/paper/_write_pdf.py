@@ -15,14 +15,15 @@ from reportlab.platypus import Image, KeepTogether, ListFlowable, PageBreak, Sim
 from reportlab.platypus import Table as Grid
 
 from shaftprint.escape import printable
-from shaftprint.markup import cell_html
-from shaftprint.report.charts import draw
+from shaftprint.markup._html import cell_html
+from shaftprint.report.charts._pictures import draw
 from shaftprint.report.paper._looks import CELL_PT, MARGIN_MM, PAPER_COLOURS, WIDTH_MM, Looks, make_looks
 from shaftprint.report.paper._sketch_drawing import sketch_drawing
 
 if TYPE_CHECKING:
-    from shaftprint.report.sections import Card, Cover, Picture, Section
-    from shaftprint.tables import Table
+    from shaftprint.plain_table import Table
+    from shaftprint.report.sections._cover import Card, Cover
+    from shaftprint.report.sections._sections import Picture, Section
 
 # Two of them and the budget are a sheet. They are drawn larger than they are printed: letters of 6 pt.
 HIGHEST_PICTURE_MM = 60.0

@@ -2,12 +2,13 @@
 
 from typing import TYPE_CHECKING
 
-from shaftprint.design import length_words
-from shaftprint.report.sections import Card, Cover
-from shaftprint.tables import plain, wish_table
+from shaftprint.design.plan._plan import length_words
+from shaftprint.digits import plain
+from shaftprint.report.sections._cover import Card, Cover
+from shaftprint.tables._plan import wish_table
 
 if TYPE_CHECKING:
-    from shaftprint.design import PlannedTest
+    from shaftprint.design.planned_test._planned_test import PlannedTest
 
 PERCENT = 100.0
 # Error over the planned deviation, limited time and coverage within which a rehearsal speaks for a plan.

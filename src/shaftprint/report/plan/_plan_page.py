@@ -5,26 +5,29 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from shaftprint.arguments import refusing_none
-from shaftprint.design import CAMPAIGN, CSV, GENERATOR, MAT, PLAN, abort_card, length_curve, line_worths, planned_motion
+from shaftprint.design.files._plan_folder import CAMPAIGN
+from shaftprint.design.files._plan_json import PLAN
+from shaftprint.design.files._set_point_files import CSV, GENERATOR, MAT
+from shaftprint.design.views._abort_card import abort_card
+from shaftprint.design.views._line_worth import line_worths
+from shaftprint.design.views._other_lengths import length_curve
+from shaftprint.design.views._planned_motion import planned_motion
+from shaftprint.digits import unit_text, with_deviation
 from shaftprint.errors import ReportError
+from shaftprint.plain_table import Symbol, Table, numbers, texts
 from shaftprint.report._page import Page, write_page
-from shaftprint.report.figures import length_chart, planned_line_chart, planned_motion_chart, planned_set_point_chart
-from shaftprint.report.plan._plan_cover import plan_cover
-from shaftprint.report.sections import Picture, Section
-from shaftprint.tables import (
-    Symbol,
-    Table,
-    abort_table,
-    numbers,
-    planned_leg_table,
-    predicted_number_table,
-    texts,
-    unit_text,
-    with_deviation,
+from shaftprint.report.figures._plan import (
+    length_chart,
+    planned_line_chart,
+    planned_motion_chart,
+    planned_set_point_chart,
 )
+from shaftprint.report.plan._plan_cover import plan_cover
+from shaftprint.report.sections._sections import Picture, Section
+from shaftprint.tables._plan import abort_table, planned_leg_table, predicted_number_table
 
 if TYPE_CHECKING:
-    from shaftprint.design import PlannedTest
+    from shaftprint.design.planned_test._planned_test import PlannedTest
 
 
 @refusing_none(ReportError)

@@ -1,7 +1,10 @@
 """The section of a report on an earlier test: what has changed since, along causes and number by number."""
 
-from shaftprint.drift import differ
-from shaftprint.report.comparison import cause_table, difference_table, differences, vessel_file_sentences
+from shaftprint.drift._differ import differ
+from shaftprint.report.comparison._cause_table import cause_table
+from shaftprint.report.comparison._differences import differences
+from shaftprint.report.comparison._tables import difference_table
+from shaftprint.report.comparison._vessel_file_words import vessel_file_sentences
 from shaftprint.report.sections._comparison_cover import not_alike
 from shaftprint.report.sections._sections import Inputs, Section
 

@@ -4,13 +4,15 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from shaftprint.fingerprint import NOTABLE_SHIFT
-from shaftprint.tables import clock_deviations, plain, rounded, with_deviation
+from shaftprint.digits import plain, rounded, with_deviation
+from shaftprint.fingerprint._clock_influence import NOTABLE_SHIFT
+from shaftprint.tables._recording import clock_deviations
 from shaftprint.units import MILLI, PPM
 
 if TYPE_CHECKING:
-    from shaftprint.clocks import Alignment, LoggerClock
-    from shaftprint.fingerprint import ClockInfluence
+    from shaftprint.clocks._alignment import Alignment
+    from shaftprint.clocks._logger_clock import LoggerClock
+    from shaftprint.fingerprint._clock_influence import ClockInfluence
 
 # Minutes that scatter so many times further than their noise explains lie on no straight line.
 UNEVEN = 2.0

@@ -3,14 +3,16 @@
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from shaftprint.drift import Finding, are_two_lines, finding_sentences
-from shaftprint.report.figures import in_percent
+from shaftprint.digits import plain, unit_text
+from shaftprint.drift._finding import Finding
+from shaftprint.drift._shared_errors import are_two_lines
+from shaftprint.drift._words import finding_sentences
+from shaftprint.report.figures._differences import in_percent
 from shaftprint.report.sections._cover import Card, Cover, State
-from shaftprint.tables import plain, unit_text
 
 if TYPE_CHECKING:
-    from shaftprint.fingerprint import Fingerprint
-    from shaftprint.report.comparison import Difference
+    from shaftprint.fingerprint._fingerprint import Fingerprint
+    from shaftprint.report.comparison._differences import Difference
 
 # Normalised numbers move with the working point: beyond this share they differ for that reason alone.
 SAME_WORKING_POINT = 0.02

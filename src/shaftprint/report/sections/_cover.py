@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal, TypeAlias
 
-from shaftprint.tables import Table
+from shaftprint.plain_table import Table
 
 if TYPE_CHECKING:
     from shaftprint.report.sections._sketch import Sketch

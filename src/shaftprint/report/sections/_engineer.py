@@ -3,11 +3,13 @@
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from shaftprint.digits import unit_text, with_deviation
+from shaftprint.plain_table import Column
 from shaftprint.report.sections._sections import Inputs, Section
-from shaftprint.tables import Column, budget_table, quantity_table, unit_text, with_deviation
+from shaftprint.tables._fingerprint import budget_table, quantity_table
 
 if TYPE_CHECKING:
-    from shaftprint.fingerprint import Fingerprint
+    from shaftprint.fingerprint._fingerprint import Fingerprint
 
 BUDGET_OPENING = (
     "Every estimate depends on the noise of the measured lines and on its prior: the torsional vibration "

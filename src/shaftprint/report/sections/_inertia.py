@@ -1,15 +1,11 @@
 """The section of a report on the inertia by calculation and the torsional modes of the line."""
 
-from shaftprint.fingerprint import inertia_beside
-from shaftprint.report.figures import mode_chart
+from shaftprint.fingerprint._inertia import inertia_beside
+from shaftprint.report.figures._modes import mode_chart
 from shaftprint.report.sections._sections import Inputs, Picture, Section
-from shaftprint.tables import (
-    expected_inertia_table,
-    inertia_budget_table,
-    mode_table,
-    water_table,
-)
-from shaftprint.torsion import modes, torsional_line
+from shaftprint.tables._inertia import expected_inertia_table, inertia_budget_table, mode_table, water_table
+from shaftprint.torsion._line import torsional_line
+from shaftprint.torsion._modes import modes
 
 OPENING = (
     "Inertia by the table of the vessel file, at the measured working point. The torque gauge cuts the "

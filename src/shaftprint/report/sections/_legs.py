@@ -2,9 +2,9 @@
 
 from functools import partial
 
-from shaftprint.report.figures import bode_chart
+from shaftprint.report.figures._bode import bode_chart
 from shaftprint.report.sections._sections import Inputs, Picture, Section, picture_name
-from shaftprint.tables import leg_table, leg_test_table
+from shaftprint.tables._legs import leg_table, leg_test_table
 
 
 def leg_section(inputs: Inputs) -> list[Section]:

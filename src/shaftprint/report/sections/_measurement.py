@@ -4,24 +4,20 @@ from functools import partial
 from itertools import groupby
 from typing import TYPE_CHECKING
 
-from shaftprint.report.figures import (
-    bode_chart,
-    calibration_chart,
-    campaign_chart,
-    delay_chart,
-    excitation_chart,
-    open_loop_chart,
-    outlier_chart,
-    staircase_chart,
-    strip_chart,
-)
+from shaftprint.report.figures._bode import bode_chart
+from shaftprint.report.figures._calibration import calibration_chart, strip_chart
+from shaftprint.report.figures._campaign import campaign_chart
+from shaftprint.report.figures._outliers import outlier_chart
+from shaftprint.report.figures._responses import open_loop_chart
+from shaftprint.report.figures._steps import delay_chart
+from shaftprint.report.figures._time_series import excitation_chart, staircase_chart
 from shaftprint.report.sections._sections import Inputs, Picture, Section, picture_name
-from shaftprint.spectra import open_loop
-from shaftprint.tables import calibration_table, step_table, strip_table
+from shaftprint.spectra._open_loop import open_loop
+from shaftprint.tables._signals import calibration_table, step_table, strip_table
 
 if TYPE_CHECKING:
-    from shaftprint.campaign import Excitation
-    from shaftprint.signals import Signals
+    from shaftprint.campaign._excitation import Excitation
+    from shaftprint.signals._signals import Signals
 
 
 def signal_section(inputs: Inputs) -> Section:

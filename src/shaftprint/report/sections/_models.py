@@ -6,24 +6,25 @@ from typing import TYPE_CHECKING
 
 from shaftprint.escape import plain_name
 from shaftprint.report._curve import Curve, closed_loop_curve, open_loop_curve
-from shaftprint.report.figures import CRITICAL_SPAN_RAD_S, bode_chart, missing_damping_chart, sensitivity_chart
+from shaftprint.report.figures._bode import bode_chart
+from shaftprint.report.figures._explanation import missing_damping_chart
+from shaftprint.report.figures._responses import CRITICAL_SPAN_RAD_S
+from shaftprint.report.figures._sensitivity import sensitivity_chart
 from shaftprint.report.sections._sections import Inputs, Picture, Section
-from shaftprint.report.thesis import (
-    can_explain,
+from shaftprint.report.thesis._explanation import can_explain, explain_thesis
+from shaftprint.report.thesis._thesis_mode import thesis_findings, thesis_fit_table
+from shaftprint.report.thesis._words import (
     damping_table,
-    explain_thesis,
     explanation_sentences,
     gain_table,
     inertia_table,
     integral_table,
-    thesis_findings,
-    thesis_fit_table,
 )
-from shaftprint.spectra import open_loop
+from shaftprint.spectra._open_loop import open_loop
 
 if TYPE_CHECKING:
-    from shaftprint.identify import Identification
-    from shaftprint.spectra import FrequencyResponse
+    from shaftprint.identify.fit._identification import Identification
+    from shaftprint.spectra._frequency_response import FrequencyResponse
 
 ROWS_A_FIGURE = 4
 GOVERNOR = ("OL2", "OL3", "OL4", "OL5")

@@ -3,24 +3,17 @@
 from functools import partial
 from typing import TYPE_CHECKING
 
-from shaftprint.fingerprint import clock_influences
-from shaftprint.markup import name_parts
-from shaftprint.report.figures import THESIS_LIMIT_DB, signal_to_noise_chart
+from shaftprint.digits import plain
+from shaftprint.fingerprint._clock_influence import clock_influences
+from shaftprint.markup._symbols import name_parts
+from shaftprint.report.figures._signal_to_noise import THESIS_LIMIT_DB, signal_to_noise_chart
 from shaftprint.report.sections._clocks import clock_sentences
 from shaftprint.report.sections._sections import Inputs, Picture, Section
-from shaftprint.tables import (
-    clock_map_table,
-    clock_table,
-    level_table,
-    local_ratio_table,
-    overall_ratio_table,
-    plain,
-    repair_table,
-    window_table,
-)
+from shaftprint.tables._recording import clock_map_table, clock_table, level_table
+from shaftprint.tables._signals import local_ratio_table, overall_ratio_table, repair_table, window_table
 
 if TYPE_CHECKING:
-    from shaftprint.tables import Table
+    from shaftprint.plain_table import Table
 
 
 def quality_section(inputs: Inputs) -> Section:

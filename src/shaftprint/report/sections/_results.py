@@ -2,26 +2,27 @@
 
 from typing import TYPE_CHECKING
 
+from shaftprint.digits import p_value_text, plain, unit_text, with_deviation
 from shaftprint.report._curve import Curve
-from shaftprint.report.figures import correlation_chart, fit_chart, nyquist_chart, residual_chart, step_chart
+from shaftprint.report.figures._covariance import correlation_chart
+from shaftprint.report.figures._fit import fit_chart
+from shaftprint.report.figures._nyquist import nyquist_chart
+from shaftprint.report.figures._residuals import residual_chart
+from shaftprint.report.figures._step_band import step_chart
 from shaftprint.report.sections._sections import Inputs, Picture, Section
 from shaftprint.report.sections._validation import step_against_data
-from shaftprint.tables import (
+from shaftprint.tables._fingerprint import (
     combination_table,
     expected_text,
     fit_table,
     margin_table,
-    p_value_text,
     parameter_table,
     physical_table,
-    plain,
     truth_of_combinations,
-    unit_text,
-    with_deviation,
 )
 
 if TYPE_CHECKING:
-    from shaftprint.fingerprint import Fingerprint
+    from shaftprint.fingerprint._fingerprint import Fingerprint
 
 # A misfit that chance alone makes in fewer than this share of the tests is none of chance.
 UNLIKELY = 0.01

@@ -2,16 +2,18 @@
 
 from typing import TYPE_CHECKING
 
-from shaftprint.identify.fit import scan
-from shaftprint.identify.judgement import report_search
-from shaftprint.models import Delay
-from shaftprint.report.figures import scan_chart
+from shaftprint.digits import rounded, unit_text
+from shaftprint.identify.fit._scan import scan
+from shaftprint.identify.judgement._search_report import report_search
+from shaftprint.models._delays import Delay
+from shaftprint.plain_table import Symbol, Table, numbers, texts
+from shaftprint.report.figures._scan import scan_chart
 from shaftprint.report.sections._sections import Inputs, Picture, Section
-from shaftprint.tables import Symbol, Table, numbers, rounded, structure_tables, texts, unit_text
+from shaftprint.tables._structures import structure_tables
 
 if TYPE_CHECKING:
-    from shaftprint.identify import Identification
-    from shaftprint.identify.fit import Optimum
+    from shaftprint.identify.fit._identification import Identification
+    from shaftprint.identify.fit._optima import Optimum
 
 MOST_OPTIMA = 8
 

@@ -5,22 +5,25 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from shaftprint.tables import Table
+from shaftprint.plain_table import Table
 
 if TYPE_CHECKING:
-    from shaftprint.campaign import Campaign
-    from shaftprint.clocks import LoggerClock
-    from shaftprint.fingerprint import Fingerprint
-    from shaftprint.identify import Identification
-    from shaftprint.identify.comparison import StructureComparison
-    from shaftprint.models import Structure
-    from shaftprint.recording import Levels, Recording
-    from shaftprint.report.charts import Chart
-    from shaftprint.signals import Signals
-    from shaftprint.spectra import FrequencyResponse, Spectra
-    from shaftprint.survey import LegMeasurement, LegTest, ThesisMode
-    from shaftprint.validation import Validation
-    from shaftprint.vessel import Vessel
+    from shaftprint.campaign._campaign import Campaign
+    from shaftprint.clocks._logger_clock import LoggerClock
+    from shaftprint.fingerprint._fingerprint import Fingerprint
+    from shaftprint.identify.comparison._comparison import StructureComparison
+    from shaftprint.identify.fit._identification import Identification
+    from shaftprint.models._structure import Structure
+    from shaftprint.recording._levels import Levels
+    from shaftprint.recording._recording import Recording
+    from shaftprint.report.charts._chart import Chart
+    from shaftprint.signals._signals import Signals
+    from shaftprint.spectra._frequency_response import FrequencyResponse
+    from shaftprint.spectra._spectra import Spectra
+    from shaftprint.survey._legs import LegMeasurement, LegTest
+    from shaftprint.survey._thesis_mode import ThesisMode
+    from shaftprint.validation._validation import Validation
+    from shaftprint.vessel._vessel import Vessel
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

@@ -1,6 +1,7 @@
 """The section of a report that draws the uncertainty: shares of the sources, and how far parabolas can be trusted."""
 
-from shaftprint.report.figures import budget_chart, profile_chart
+from shaftprint.report.figures._covariance import budget_chart
+from shaftprint.report.figures._profiles import profile_chart
 from shaftprint.report.sections._sections import Inputs, Picture, Section
 
 

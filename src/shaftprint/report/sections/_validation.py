@@ -5,12 +5,12 @@ from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING
 
-from shaftprint.report.figures import validation_chart, validation_summary_chart
+from shaftprint.report.figures._validation import validation_chart, validation_summary_chart
 from shaftprint.report.sections._sections import Inputs, Picture, Section, picture_name
-from shaftprint.tables import misfit_table
+from shaftprint.tables._validation import misfit_table
 
 if TYPE_CHECKING:
-    from shaftprint.validation import ExcerptComparison, Validation
+    from shaftprint.validation._validation import ExcerptComparison, Validation
 
 MOST_BANDS = 2
 AROUND_STEP_S = (0.5, 6.0)

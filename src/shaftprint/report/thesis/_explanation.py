@@ -15,19 +15,21 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shaftprint.arrays import ComplexArray, FloatArray
-from shaftprint.catalogue import ShipRole, gauge_governor, gauge_line
+from shaftprint.catalogue._gauge import gauge_governor, gauge_line
+from shaftprint.catalogue._roles import ShipRole
 from shaftprint.errors import IdentificationError
-from shaftprint.models import Role, Structure
+from shaftprint.models._role import Role
+from shaftprint.models._structure import Structure
 from shaftprint.report._curve import Curve, closed_loop_curve
 from shaftprint.report.thesis._integral_gain import IntegralGain, integral_gain
 from shaftprint.report.thesis._thesis_mode import GOVERNOR_FITS, calculated_inertia_time_s
-from shaftprint.spectra import open_loop
+from shaftprint.spectra._open_loop import open_loop
 
 if TYPE_CHECKING:
-    from shaftprint.identify import Identification
-    from shaftprint.spectra import FrequencyResponse
-    from shaftprint.survey import ThesisMode
-    from shaftprint.vessel import Vessel
+    from shaftprint.identify.fit._identification import Identification
+    from shaftprint.spectra._frequency_response import FrequencyResponse
+    from shaftprint.survey._thesis_mode import ThesisMode
+    from shaftprint.vessel._vessel import Vessel
 
 GAUGE = "GAUGE-CLOSED"
 CORE, CORE_WITH_SENSOR = "OL1", "GAUGE-CORE"

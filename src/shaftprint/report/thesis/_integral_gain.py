@@ -16,13 +16,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from shaftprint.catalogue import ShipRole
+from shaftprint.catalogue._roles import ShipRole
+from shaftprint.digits import plain, rounded, with_deviation
+from shaftprint.plain_table import Table, numbers, texts
 from shaftprint.report.thesis._thesis_mode import GOVERNOR_FITS
-from shaftprint.tables import Table, numbers, plain, rounded, texts, with_deviation
 
 if TYPE_CHECKING:
-    from shaftprint.identify import Identification
-    from shaftprint.survey import ThesisMode
+    from shaftprint.identify.fit._identification import Identification
+    from shaftprint.survey._thesis_mode import ThesisMode
 
 PERCENT = 100.0
 MILLISECONDS = 1000.0

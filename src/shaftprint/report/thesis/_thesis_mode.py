@@ -4,14 +4,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shaftprint.catalogue import ShipRole
+from shaftprint.catalogue._roles import ShipRole
+from shaftprint.digits import plain, rounded
 from shaftprint.normalisation import inertia_time_s
-from shaftprint.spectra import open_loop
-from shaftprint.tables import Symbol, Table, numbers, plain, rounded, texts
+from shaftprint.plain_table import Symbol, Table, numbers, texts
+from shaftprint.spectra._open_loop import open_loop
 
 if TYPE_CHECKING:
-    from shaftprint.survey import ThesisMode
-    from shaftprint.vessel import Vessel
+    from shaftprint.survey._thesis_mode import ThesisMode
+    from shaftprint.vessel._vessel import Vessel
 
 GOVERNOR_FITS = ("OL2", "OL3", "OL4", "OL5")
 SHOWN = ("tau_n", "K_p", "K_i", "t_d", "omega_n", "zeta")

@@ -5,8 +5,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from shaftprint.digits import p_value_text, plain, rounded, with_deviation
+from shaftprint.plain_table import Table, numbers, texts
 from shaftprint.report.thesis._integral_gain import integral_gain_table, integral_gain_words
-from shaftprint.tables import Table, numbers, p_value_text, plain, rounded, texts, with_deviation
 
 if TYPE_CHECKING:
     from shaftprint.report.thesis._explanation import Explanation, GainStep, LineStep

@@ -19,7 +19,7 @@ from shaftprint.signals.conditioning._patch import Patcher
 from shaftprint.signals.conditioning._thesis import previous_neighbours
 
 if TYPE_CHECKING:
-    from shaftprint.recording import Channel
+    from shaftprint.recording._channel import Channel
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

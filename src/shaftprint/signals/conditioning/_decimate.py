@@ -14,7 +14,7 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import SignalError
-from shaftprint.kernels import compiled
+from shaftprint.kernels._compiled import compiled
 
 PASS_SHARE, STOP_SHARE = 0.2, 0.5
 """Ends of the pass band and beginning of the stop band, as shares of the rate of the grid."""

@@ -14,11 +14,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shaftprint.arrays import FloatArray
-from shaftprint.kernels import compiled
+from shaftprint.kernels._compiled import compiled
 from shaftprint.signals._channels import Counts, spots
 
 if TYPE_CHECKING:
-    from shaftprint.recording import Channel
+    from shaftprint.recording._channel import Channel
 
 GOOD, SPIKE, HOLD, RAIL, MISSING = range(5)
 """Codes of samples, from least to most certain fault."""

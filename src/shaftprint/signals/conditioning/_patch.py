@@ -14,7 +14,7 @@ from shaftprint.signals._signals import Repair
 from shaftprint.signals.conditioning._outliers import GOOD, HOLD, MISSING, RAIL, FaultLimits
 
 if TYPE_CHECKING:
-    from shaftprint.recording import Channel
+    from shaftprint.recording._channel import Channel
 
 # A telemetry that holds its value for longer, or stays at its rail, has lost it: a gap.
 _LONGEST_RUN_S = 2.0

@@ -7,10 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shaftprint.arrays import FloatArray, IntArray
-from shaftprint.kernels import compiled
+from shaftprint.kernels._compiled import compiled
 
 if TYPE_CHECKING:
-    from shaftprint.recording import Channel
+    from shaftprint.recording._channel import Channel
 
 # Runs that are shorter make nothing late that a fit would see.
 _SHORTEST_S = 0.002

@@ -13,8 +13,8 @@ from shaftprint.arrays import FloatArray
 from shaftprint.signals.conditioning._decimate import SampleGrid
 
 if TYPE_CHECKING:
-    from shaftprint.recording import Channel
-    from shaftprint.signals.pulses import PulseTrain
+    from shaftprint.recording._channel import Channel
+    from shaftprint.signals.pulses._pulses import PulseTrain
 
 # A rounding error must not push what lies on a sample to the next one.
 _ROUNDING = 1e-6

@@ -10,7 +10,8 @@ import numpy as np
 from pydantic import ValidationError
 
 from shaftprint.arrays import FloatArray
-from shaftprint.campaign import Campaign, setpoint
+from shaftprint.campaign._campaign import Campaign
+from shaftprint.campaign._setpoint import setpoint
 from shaftprint.errors import SignalError
 from shaftprint.signals.description._course import Course, course_of, runs
 from shaftprint.signals.description._excitations import (

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from shaftprint.arrays import FloatArray
-from shaftprint.campaign import BinarySequence
+from shaftprint.campaign._binary_sequence import BinarySequence
 
 _ORDERS = range(3, 13)
 _FEWEST_JUMPS = 8

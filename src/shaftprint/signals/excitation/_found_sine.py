@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from shaftprint.arrays import FloatArray
-from shaftprint.campaign import Sine
+from shaftprint.campaign._excitations import Sine
 from shaftprint.signals.excitation._found_test import FoundTest
 
 # Samples of a sine a period that are enough for its phase; how many times its frequency is looked at.

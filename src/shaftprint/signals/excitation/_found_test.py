@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from shaftprint.campaign import Excitation, Sine
+from shaftprint.campaign._excitation import Excitation
+from shaftprint.campaign._excitations import Sine
 
 # A begin is known to this, and a phase to that [s, deg]; what differs by more is named.
 _SAME_BEGIN_S, _SAME_PHASE_DEG = 0.3, 20.0

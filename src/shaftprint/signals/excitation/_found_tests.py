@@ -9,7 +9,10 @@ import numpy as np
 from numpy.fft import irfft, rfft
 
 from shaftprint.arrays import FloatArray
-from shaftprint.campaign import Campaign, Excitation, Sine, setpoint
+from shaftprint.campaign._campaign import Campaign
+from shaftprint.campaign._excitation import Excitation
+from shaftprint.campaign._excitations import Sine
+from shaftprint.campaign._setpoint import setpoint
 from shaftprint.signals.excitation._found_sine import LEAST_EXPLAINED, SetPointGrid, found_sine
 from shaftprint.signals.excitation._found_test import FoundTest
 

@@ -6,13 +6,17 @@ from dataclasses import replace
 import numpy as np
 
 from shaftprint.arrays import FloatArray
-from shaftprint.campaign import Campaign, Excitation, Leg, Sine, Staircase, setpoint
+from shaftprint.campaign._campaign import Campaign
+from shaftprint.campaign._excitation import Excitation
+from shaftprint.campaign._excitations import Sine, Staircase
+from shaftprint.campaign._leg import Leg
+from shaftprint.campaign._setpoint import setpoint
 from shaftprint.errors import SignalError
 from shaftprint.signals._gaps import EVERYTHING, Coverage, gap_findings
 from shaftprint.signals.excitation._found_test import FoundTest, common_shift_s
 from shaftprint.signals.excitation._found_tests import found_tests
 from shaftprint.signals.excitation._steps import step_window
-from shaftprint.signals.levels import leg_periods
+from shaftprint.signals.levels._leg_periods import leg_periods
 
 # Slow excitations only: a second of clock error must not look like another campaign.
 _SLOW_HZ = 0.2

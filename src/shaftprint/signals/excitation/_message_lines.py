@@ -15,10 +15,10 @@ import numpy as np
 import scipy
 
 from shaftprint.arrays import BoolArray, ComplexArray, FloatArray
-from shaftprint.campaign import Campaign
+from shaftprint.campaign._campaign import Campaign
 from shaftprint.sender_cycle import behind_cycle, is_late_by
 from shaftprint.signals._channel_signals import HIGHEST_SHARE_OF_RATE, spline_gain
-from shaftprint.signals.conditioning import SentValues
+from shaftprint.signals.conditioning._condition import SentValues
 
 if TYPE_CHECKING:
     from shaftprint.signals._clock import Clock

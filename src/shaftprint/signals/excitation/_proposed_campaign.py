@@ -3,7 +3,10 @@
 import math
 from typing import Any
 
-from shaftprint.campaign import Campaign, Chirp, Leg, Multisine, Sine, Staircase
+from shaftprint.campaign._campaign import Campaign
+from shaftprint.campaign._excitations import Chirp, Sine, Staircase
+from shaftprint.campaign._leg import Leg
+from shaftprint.campaign._multisine import Multisine
 from shaftprint.errors import SignalError
 from shaftprint.signals.excitation._found_test import FoundTest
 

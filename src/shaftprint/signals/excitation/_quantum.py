@@ -17,7 +17,9 @@ import numpy as np
 import scipy
 
 from shaftprint.arrays import FloatArray
-from shaftprint.campaign import Campaign, Staircase, setpoint
+from shaftprint.campaign._campaign import Campaign
+from shaftprint.campaign._excitations import Staircase
+from shaftprint.campaign._setpoint import setpoint
 
 # So many rounds, each half of the way: the error of a sine of few steps hangs on itself.
 _ROUNDS, _SHARE = 12, 0.5

@@ -7,7 +7,8 @@ together.
 import numpy as np
 
 from shaftprint.arrays import FloatArray
-from shaftprint.campaign import Campaign, Staircase
+from shaftprint.campaign._campaign import Campaign
+from shaftprint.campaign._excitations import Staircase
 from shaftprint.signals._gaps import EVERYTHING, Coverage
 from shaftprint.signals._signals import StepDelay
 

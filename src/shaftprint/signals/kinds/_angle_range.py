@@ -9,10 +9,10 @@ import numpy as np
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import SignalError
 from shaftprint.signals._channels import spots
-from shaftprint.vessel import SpeedSensor
+from shaftprint.vessel._sensors import SpeedSensor
 
 if TYPE_CHECKING:
-    from shaftprint.recording import Channel
+    from shaftprint.recording._channel import Channel
 
 # Nearer to half a range the sense of turning is a guess.
 _LARGEST_STEP = 0.4

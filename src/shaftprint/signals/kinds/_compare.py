@@ -10,7 +10,7 @@ from shaftprint.errors import SignalError
 from shaftprint.signals.kinds._speed_reading import SpeedReading
 
 if TYPE_CHECKING:
-    from shaftprint.vessel import Vessel
+    from shaftprint.vessel._vessel import Vessel
 
 LARGEST_DIFFERENCE = 1e-2
 """Share by which two pick-ups of one line may differ without an error in the vessel file."""

@@ -2,10 +2,10 @@
 
 from typing import TYPE_CHECKING
 
-from shaftprint.vessel import ALIVE_MA
+from shaftprint.vessel._current_loop import ALIVE_MA
 
 if TYPE_CHECKING:
-    from shaftprint.recording import Channel
+    from shaftprint.recording._channel import Channel
 
 
 def alive_counts(channel: "Channel") -> tuple[float, float]:

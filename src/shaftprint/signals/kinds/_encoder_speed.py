@@ -14,18 +14,19 @@ from shaftprint.arrays import FloatArray
 from shaftprint.errors import SignalError
 from shaftprint.signals._channels import Counts
 from shaftprint.signals._gaps import Gap, bridge, clock_gaps, gaps_of_missing, joined, runs_of
-from shaftprint.signals.conditioning import Reading, conditioned, fault_limits
+from shaftprint.signals.conditioning._condition import Reading, conditioned
+from shaftprint.signals.conditioning._outliers import fault_limits
 from shaftprint.signals.kinds._angle_range import angle_range, range_of_small_steps, wrapped
 from shaftprint.signals.kinds._kind import Source
 from shaftprint.signals.kinds._message_reading import read_messages
 from shaftprint.signals.kinds._speed_reading import LONGEST_GAP_VALUES, REACH_VALUES, SpeedReading
 from shaftprint.signals.kinds._splined_messages import comes_in_messages
-from shaftprint.signals.pulses import spline_speed
+from shaftprint.signals.pulses._speed import spline_speed
 from shaftprint.units import rev_s_from_rpm, rpm_from_rev_s
-from shaftprint.vessel import SpeedSensor
+from shaftprint.vessel._sensors import SpeedSensor
 
 if TYPE_CHECKING:
-    from shaftprint.recording import Channel
+    from shaftprint.recording._channel import Channel
     from shaftprint.signals._clock import Clock
 
 # Mean speeds of so long a time tell a shaft that stands still, or turns back, by this share of the usual speed.

@@ -3,8 +3,8 @@
 import math
 
 from shaftprint.arrays import FloatArray
-from shaftprint.signals.conditioning import SampleGrid, decimated
-from shaftprint.signals.pulses import spline_speed, spline_speeds
+from shaftprint.signals.conditioning._decimate import SampleGrid, decimated
+from shaftprint.signals.pulses._speed import spline_speed, spline_speeds
 
 # Pulses that come faster than this share of the rate of the grid are taken through a filter, as samples are; the spline
 # is then read at so many instants a pulse.

@@ -14,15 +14,17 @@ import scipy
 from shaftprint.errors import SignalError
 from shaftprint.signals._channels import blocks
 from shaftprint.signals._gaps import bridge, clock_gaps, gaps_of_missing, joined
-from shaftprint.signals.conditioning import FaultLimits, Reading, conditioned, fault_limits
+from shaftprint.signals.conditioning._condition import Reading, conditioned
+from shaftprint.signals.conditioning._outliers import FaultLimits, fault_limits
 from shaftprint.signals.kinds._current_loop import alive_counts
 from shaftprint.signals.kinds._message_reading import read_messages
 from shaftprint.signals.kinds._speed_reading import LONGEST_GAP_VALUES, REACH_VALUES, SpeedReading
 from shaftprint.signals.kinds._splined_messages import comes_in_messages, no_numbers, splined, unknown_age
-from shaftprint.vessel import LIVE_ZERO_MA, SpeedSensor
+from shaftprint.vessel._current_loop import LIVE_ZERO_MA
+from shaftprint.vessel._sensors import SpeedSensor
 
 if TYPE_CHECKING:
-    from shaftprint.recording import Channel
+    from shaftprint.recording._channel import Channel
     from shaftprint.signals._clock import Clock
 
 # A line through zero speed at 4 mA, to this share of the speed at 20 mA.

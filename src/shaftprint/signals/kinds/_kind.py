@@ -7,17 +7,19 @@ from typing import TYPE_CHECKING, ClassVar, Generic, Protocol, TypeVar
 
 from shaftprint.signals._channel_signals import ChannelRole, ChannelSignal
 from shaftprint.signals._channels import find_channel
-from shaftprint.signals.conditioning import Reading
+from shaftprint.signals.conditioning._condition import Reading
 
 if TYPE_CHECKING:
     from shaftprint.arrays import FloatArray
-    from shaftprint.recording import Channel, Recording
+    from shaftprint.recording._channel import Channel
+    from shaftprint.recording._recording import Recording
     from shaftprint.signals._clock import Clock
     from shaftprint.signals._signals import SetPointCalibration
     from shaftprint.signals._working_points import WorkingPoint
-    from shaftprint.signals.conditioning import FaultLimits
-    from shaftprint.signals.levels import DcScale, SteadyStretch
-    from shaftprint.vessel import Vessel
+    from shaftprint.signals.conditioning._outliers import FaultLimits
+    from shaftprint.signals.levels._dc_scale import DcScale
+    from shaftprint.signals.levels._steady import SteadyStretch
+    from shaftprint.vessel._vessel import Vessel
 
 
 class Sensor(Protocol):

@@ -15,9 +15,9 @@ from shaftprint.signals.kinds._ship_speed import ShipSpeed
 from shaftprint.signals.kinds._torque import ShaftTorque
 
 if TYPE_CHECKING:
-    from shaftprint.recording import Recording
+    from shaftprint.recording._recording import Recording
     from shaftprint.signals.kinds._kind import ChannelKind, Source
-    from shaftprint.vessel import Vessel
+    from shaftprint.vessel._vessel import Vessel
 
 KINDS: "Mapping[str, ChannelKind[Any]]" = MappingProxyType(
     {

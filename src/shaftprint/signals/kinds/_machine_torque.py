@@ -8,9 +8,10 @@ import numpy as np
 from shaftprint.arrays import frozen_float
 from shaftprint.errors import SignalError
 from shaftprint.signals._channel_signals import ChannelRole, ExcitationSignal
-from shaftprint.signals.conditioning import FaultLimits, Reading, conditioned, fault_limits
+from shaftprint.signals.conditioning._condition import Reading, conditioned
+from shaftprint.signals.conditioning._outliers import FaultLimits, fault_limits
 from shaftprint.signals.kinds._kind import ChannelKind, Source, SteadyState, steady_parts
-from shaftprint.vessel import MachineTorqueSensor
+from shaftprint.vessel._machine_torque import MachineTorqueSensor
 
 if TYPE_CHECKING:
     from shaftprint.signals._clock import Clock

@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shaftprint.arrays import BoolArray, FloatArray
-from shaftprint.recording import Messages, messages_of, stamped_values
+from shaftprint.recording._messages import Messages, messages_of, stamped_values
 from shaftprint.signals._gaps import Gap
-from shaftprint.signals.conditioning import Reading
+from shaftprint.signals.conditioning._condition import Reading
 
 if TYPE_CHECKING:
-    from shaftprint.recording import Channel
+    from shaftprint.recording._channel import Channel
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

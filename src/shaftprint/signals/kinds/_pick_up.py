@@ -12,33 +12,26 @@ from shaftprint.signals._channel_signals import SpeedSignal
 from shaftprint.signals._channels import Advance, blocks, find_channel, time_of
 from shaftprint.signals._gaps import Gap, bridge, clock_gaps, merged
 from shaftprint.signals._signals import Repair, StripAngles
-from shaftprint.signals.conditioning import Reading, pulse_period_speed
+from shaftprint.signals.conditioning._condition import Reading
+from shaftprint.signals.conditioning._thesis import pulse_period_speed
 from shaftprint.signals.kinds._encoder_speed import judge_encoder, read_encoder
 from shaftprint.signals.kinds._grid_speed import speed_on_grid
 from shaftprint.signals.kinds._instrument_speed import read_instrument
 from shaftprint.signals.kinds._kind import ChannelKind, Source, SteadyState
 from shaftprint.signals.kinds._samples_a_tooth import expect_samples, fastest_turns_hz, too_slow_for_pulses
 from shaftprint.signals.kinds._speed_reading import SpeedReading
-from shaftprint.signals.pulses import (
-    PulseLevels,
-    PulseTrain,
-    find_edges,
-    find_strips,
-    number_pulses,
-    number_teeth,
-    pulse_levels,
-    renumbered,
-    revolutions,
-    steady_turns,
-    unplaced_stretches,
-)
+from shaftprint.signals.pulses._edges import PulseLevels, find_edges, pulse_levels
+from shaftprint.signals.pulses._pulses import PulseTrain, number_pulses
+from shaftprint.signals.pulses._strips import find_strips, renumbered, revolutions, steady_turns, unplaced_stretches
+from shaftprint.signals.pulses._teeth import number_teeth
 from shaftprint.units import rev_s_from_rpm
-from shaftprint.vessel import SpeedSensor
+from shaftprint.vessel._sensors import SpeedSensor
 
 if TYPE_CHECKING:
-    from shaftprint.recording import Channel, Recording
+    from shaftprint.recording._channel import Channel
+    from shaftprint.recording._recording import Recording
     from shaftprint.signals._clock import Clock
-    from shaftprint.vessel import Vessel
+    from shaftprint.vessel._vessel import Vessel
 
 # Over a gap longer than this the speed cannot be told from the pulses around it.
 _LONGEST_GAP_S, _LONGEST_GAP_PULSES = 1.0, 8

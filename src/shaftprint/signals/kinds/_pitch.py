@@ -8,10 +8,11 @@ import numpy as np
 from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.errors import SignalError
 from shaftprint.signals._channel_signals import ChannelRole, ChannelSignal, ExcitationSignal
-from shaftprint.signals.conditioning import FaultLimits, Reading, conditioned, fault_limits
+from shaftprint.signals.conditioning._condition import Reading, conditioned
+from shaftprint.signals.conditioning._outliers import FaultLimits, fault_limits
 from shaftprint.signals.kinds._kind import ChannelKind, Source, SteadyState, steady_parts
 from shaftprint.signals.kinds._set_point import read_voltage
-from shaftprint.vessel import PitchSensor, PitchSetPointSensor
+from shaftprint.vessel._pitch_sensors import PitchSensor, PitchSetPointSensor
 
 if TYPE_CHECKING:
     from shaftprint.signals._clock import Clock

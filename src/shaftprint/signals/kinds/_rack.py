@@ -17,15 +17,16 @@ from shaftprint.signals._channel_signals import ChannelRole, MessageSignal
 from shaftprint.signals._channels import blocks, time_of
 from shaftprint.signals._gaps import Coverage, Gap, clock_gaps, joined, runs_of
 from shaftprint.signals._signals import Repair
-from shaftprint.signals.conditioning import Reading
+from shaftprint.signals.conditioning._condition import Reading
 from shaftprint.signals.kinds._kind import ChannelKind, Source, SteadyState
 from shaftprint.signals.kinds._message_reading import MessageReading, read_messages
-from shaftprint.signals.levels import SteadyStretch, find_working_point
+from shaftprint.signals.levels._steady import SteadyStretch
+from shaftprint.signals.levels._working_point import find_working_point
 from shaftprint.units import rpm_from_rev_s
-from shaftprint.vessel import RackSensor
+from shaftprint.vessel._sensors import RackSensor
 
 if TYPE_CHECKING:
-    from shaftprint.recording import Channel
+    from shaftprint.recording._channel import Channel
     from shaftprint.signals._clock import Clock
 
 # Beyond the range of the message stand "error" and "not available" (SAE J1939-71).

@@ -4,12 +4,13 @@ import math
 from typing import TYPE_CHECKING
 
 from shaftprint.errors import SignalError
-from shaftprint.vessel import SAMPLES_A_TOOTH
+from shaftprint.vessel._wheel import SAMPLES_A_TOOTH
 
 if TYPE_CHECKING:
-    from shaftprint.recording import Channel
-    from shaftprint.signals.pulses import PulseTrain
-    from shaftprint.vessel import SpeedSensor, Wheel
+    from shaftprint.recording._channel import Channel
+    from shaftprint.signals.pulses._pulses import PulseTrain
+    from shaftprint.vessel._sensors import SpeedSensor
+    from shaftprint.vessel._wheel import Wheel
 
 # Of a strip or a tooth with fewer samples levels and edges are not sure to be found. Teeth are as wide as the
 # spaces between them, and what a pick-up makes of them is round.

@@ -13,15 +13,16 @@ from shaftprint.arrays import frozen_float
 from shaftprint.errors import SignalError
 from shaftprint.signals._channel_signals import ChannelRole, ExcitationSignal
 from shaftprint.signals._channels import middle_of
-from shaftprint.signals.conditioning import FaultLimits, Reading, conditioned, fault_limits
+from shaftprint.signals.conditioning._condition import Reading, conditioned
+from shaftprint.signals.conditioning._outliers import FaultLimits, fault_limits
 from shaftprint.signals.kinds._kind import ChannelKind, Source, SteadyState
 from shaftprint.signals.kinds._message_reading import read_messages
 from shaftprint.signals.kinds._splined_messages import comes_in_messages, splined
 from shaftprint.units import rpm_from_rev_s
-from shaftprint.vessel import SetPointSensor
+from shaftprint.vessel._set_point import SetPointSensor
 
 if TYPE_CHECKING:
-    from shaftprint.recording import Channel
+    from shaftprint.recording._channel import Channel
     from shaftprint.signals._clock import Clock
 
 # Of a percentage, values above say "error" and "not available" (SAE J1939-71).

@@ -14,14 +14,15 @@ from shaftprint.errors import SignalError
 from shaftprint.signals._channel_signals import ChannelRole, ChannelSignal
 from shaftprint.signals._channels import blocks
 from shaftprint.signals._gaps import clock_gaps, gaps_of_missing, joined
-from shaftprint.signals.conditioning import Reading
+from shaftprint.signals.conditioning._condition import Reading
 from shaftprint.signals.kinds._kind import ChannelKind, Source, SteadyState, steady_parts
 from shaftprint.signals.kinds._message_reading import read_messages
-from shaftprint.signals.levels import SteadyStretch, mean_of_stretches
-from shaftprint.vessel import ShipSpeedSensor
+from shaftprint.signals.levels._steady import SteadyStretch
+from shaftprint.signals.levels._working_point import mean_of_stretches
+from shaftprint.vessel._sensors import ShipSpeedSensor
 
 if TYPE_CHECKING:
-    from shaftprint.recording import Channel
+    from shaftprint.recording._channel import Channel
     from shaftprint.signals._clock import Clock
 
 # Below this a ship is moored, whatever its log says [m/s].

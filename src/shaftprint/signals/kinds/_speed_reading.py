@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from shaftprint.signals._signals import StripAngles
-from shaftprint.signals.conditioning import Reading
+from shaftprint.signals.conditioning._condition import Reading
 
 # Values of a channel that is slower than the grid are joined by a spline.
 LONGEST_GAP_VALUES = 3

@@ -8,13 +8,13 @@ import scipy
 
 from shaftprint.errors import SignalError
 from shaftprint.signals._gaps import bridge
-from shaftprint.signals.conditioning import SentValues
+from shaftprint.signals.conditioning._condition import SentValues
 from shaftprint.signals.kinds._message_reading import MessageReading
 from shaftprint.signals.kinds._speed_reading import REACH_VALUES
 from shaftprint.units import MILLI
 
 if TYPE_CHECKING:
-    from shaftprint.recording import Channel
+    from shaftprint.recording._channel import Channel
     from shaftprint.signals._clock import Clock
 
 # A cubic spline goes through four values.

@@ -6,23 +6,26 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shaftprint.arrays import FloatArray, frozen_float
-from shaftprint.campaign import Campaign, Sine
+from shaftprint.campaign._campaign import Campaign
+from shaftprint.campaign._excitations import Sine
 from shaftprint.errors import SignalError
 from shaftprint.signals._channel_signals import ChannelSignal
 from shaftprint.signals._channels import middle_of
 from shaftprint.signals._gaps import EVERYTHING, Coverage
 from shaftprint.signals._signals import Repair
-from shaftprint.signals.conditioning import FaultLimits, Reading, conditioned, fault_limits
+from shaftprint.signals.conditioning._condition import Reading, conditioned
+from shaftprint.signals.conditioning._outliers import FaultLimits, fault_limits
 from shaftprint.signals.kinds._current_loop import alive_counts
 from shaftprint.signals.kinds._kind import ChannelKind, Source, SteadyState
 from shaftprint.signals.kinds._splined_messages import comes_in_messages
 from shaftprint.signals.kinds._torque_messages import torque_messages
-from shaftprint.vessel import LIVE_ZERO_MA, ShaftTorqueSensor
+from shaftprint.vessel._current_loop import LIVE_ZERO_MA
+from shaftprint.vessel._shaft_torque import ShaftTorqueSensor
 
 if TYPE_CHECKING:
-    from shaftprint.recording import Channel
+    from shaftprint.recording._channel import Channel
     from shaftprint.signals._clock import Clock
-    from shaftprint.vessel import Vessel
+    from shaftprint.vessel._vessel import Vessel
 
 # So near to full scale counts as there.
 _RAIL_SHARE = 0.999

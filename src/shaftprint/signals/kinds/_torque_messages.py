@@ -12,14 +12,15 @@ import numpy as np
 
 from shaftprint.arrays import BoolArray
 from shaftprint.signals._channels import blocks
-from shaftprint.signals.conditioning import FaultLimits, Patcher, flagged
+from shaftprint.signals.conditioning._outliers import FaultLimits, flagged
+from shaftprint.signals.conditioning._patch import Patcher
 from shaftprint.signals.kinds._kind import Source
 from shaftprint.signals.kinds._message_reading import MessageReading, read_messages
 from shaftprint.signals.kinds._splined_messages import splined, unknown_age
-from shaftprint.vessel import ShaftTorqueSensor
+from shaftprint.vessel._shaft_torque import ShaftTorqueSensor
 
 if TYPE_CHECKING:
-    from shaftprint.recording import Channel
+    from shaftprint.recording._channel import Channel
     from shaftprint.signals._clock import Clock
     from shaftprint.signals._signals import Repair
 

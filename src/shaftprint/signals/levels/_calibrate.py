@@ -22,7 +22,7 @@ from shaftprint.signals.levels._dc_scale import FEWEST_LINES, low_lines, period_
 from shaftprint.signals.levels._wander import fit_through_wander
 
 if TYPE_CHECKING:
-    from shaftprint.campaign import Campaign
+    from shaftprint.campaign._campaign import Campaign
     from shaftprint.signals.levels._steady import SteadyStretch
 
 # Stretches whose voltages are this near to each other, as a share of the range, are one level.

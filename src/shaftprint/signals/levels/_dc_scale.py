@@ -15,7 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shaftprint.arrays import ComplexArray, FloatArray
-from shaftprint.campaign import Campaign, Sine
+from shaftprint.campaign._campaign import Campaign
+from shaftprint.campaign._excitations import Sine
 from shaftprint.digits import stated
 from shaftprint.signals._gaps import EVERYTHING, Coverage
 from shaftprint.signals._signals import SetPointCalibration

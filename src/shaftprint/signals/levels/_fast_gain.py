@@ -18,7 +18,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from shaftprint.arrays import BoolArray, FloatArray, IntArray
-from shaftprint.kernels import compiled
+from shaftprint.kernels._compiled import compiled
 
 # Rate at which torque and speed are compared [Hz]: faster, the shaft twists.
 _RATE_HZ = 20.0

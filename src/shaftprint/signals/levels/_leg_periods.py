@@ -10,7 +10,7 @@ from shaftprint.signals._gaps import merged
 
 if TYPE_CHECKING:
     from shaftprint.arrays import ComplexArray, FloatArray
-    from shaftprint.campaign import Leg
+    from shaftprint.campaign._leg import Leg
     from shaftprint.signals._gaps import Coverage
 
 FEWEST_PERIODS = 2

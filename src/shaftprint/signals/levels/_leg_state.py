@@ -28,7 +28,7 @@ from shaftprint.signals.levels._wander import fit_through_wander
 from shaftprint.units import rpm_from_rev_s
 
 if TYPE_CHECKING:
-    from shaftprint.campaign import Leg
+    from shaftprint.campaign._leg import Leg
 
 # Means nearer to each other than this are one level [V].
 _SAME_LEVEL_V = 0.05

@@ -28,7 +28,9 @@ from shaftprint.signals._gaps import EVERYTHING, Coverage
 from shaftprint.signals.levels._leg_periods import leg_periods
 
 if TYPE_CHECKING:
-    from shaftprint.campaign import Campaign, Leg, Sine
+    from shaftprint.campaign._campaign import Campaign
+    from shaftprint.campaign._excitations import Sine
+    from shaftprint.campaign._leg import Leg
 
 # A window is looked at in so many stretches of whole periods.
 _STRETCHES = 6

@@ -19,9 +19,9 @@ from typing import TYPE_CHECKING, Final, Literal
 from shaftprint.units import rpm_from_rev_s
 
 if TYPE_CHECKING:
-    from shaftprint.campaign import Campaign
+    from shaftprint.campaign._campaign import Campaign
     from shaftprint.signals._working_points import WorkingPoint
-    from shaftprint.vessel import Vessel
+    from shaftprint.vessel._vessel import Vessel
 
 # Standard deviations of logarithms. What a lever asks for, where campaign or sensor say it: droop, and a line that was
 # read off a lever. Where nothing says it, the working point of the vessel file: another lever, a test at another speed.

@@ -25,7 +25,7 @@ from shaftprint.signals.levels._fast_gain import FastGains, fast_gains
 from shaftprint.signals.levels._wander import window_covariance
 
 if TYPE_CHECKING:
-    from shaftprint.campaign import Campaign
+    from shaftprint.campaign._campaign import Campaign
 
 # Pieces in which the gain is looked at, and of how many a mean load is made: a shorter mean says no more.
 _PIECE_S, _MOST_PIECES, _PIECES_A_LOAD = 10.0, 200, 2

@@ -5,7 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from shaftprint.arrays import BoolArray, FloatArray
-from shaftprint.campaign import Campaign, Chirp, Leg, Sine
+from shaftprint.campaign._campaign import Campaign
+from shaftprint.campaign._excitations import Chirp, Sine
+from shaftprint.campaign._leg import Leg
 from shaftprint.signals._gaps import EVERYTHING, Coverage
 
 _BLOCK_S = 1.0

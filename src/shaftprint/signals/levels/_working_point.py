@@ -9,14 +9,15 @@ from shaftprint.errors import SignalError
 from shaftprint.signals._working_points import WorkingPoint
 from shaftprint.signals.levels._load import torque_of_mean_load
 from shaftprint.units import rpm_from_rev_s
-from shaftprint.vessel import ALIVE_MA
+from shaftprint.vessel._current_loop import ALIVE_MA
 
 if TYPE_CHECKING:
-    from shaftprint.campaign import Campaign
+    from shaftprint.campaign._campaign import Campaign
     from shaftprint.signals._gaps import Coverage
     from shaftprint.signals._signals import SetPointCalibration
     from shaftprint.signals.levels._steady import SteadyStretch
-    from shaftprint.vessel import ShaftTorqueSensor, Vessel
+    from shaftprint.vessel._shaft_torque import ShaftTorqueSensor
+    from shaftprint.vessel._vessel import Vessel
 
 # Voltages this near to the offset of the campaign are the working voltage.
 _NEAR_V = 0.25

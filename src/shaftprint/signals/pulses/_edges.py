@@ -8,11 +8,11 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import SignalError
-from shaftprint.kernels import compiled
+from shaftprint.kernels._compiled import compiled
 from shaftprint.signals._channels import Counts, spots
 
 if TYPE_CHECKING:
-    from shaftprint.recording import Channel
+    from shaftprint.recording._channel import Channel
 
 # Share of the way from the low to the high level; a pulse must pass all three.
 _ARM, _EDGE, _FIRE = 0.3, 0.5, 0.7

@@ -16,7 +16,7 @@ from shaftprint.reasons import Reason
 from shaftprint.signals._channels import spots
 
 if TYPE_CHECKING:
-    from shaftprint.recording import Channel
+    from shaftprint.recording._channel import Channel
     from shaftprint.signals._channels import Counts
 
 # Which end, the value of the channel in counts, and the share of the samples that are there.

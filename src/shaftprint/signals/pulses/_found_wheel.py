@@ -3,7 +3,7 @@
 import numpy as np
 
 from shaftprint.arrays import BoolArray, IntArray
-from shaftprint.vessel import Wheel
+from shaftprint.vessel._wheel import Wheel
 
 # Faults are random; of what belongs to a wheel so much comes back after a turn.
 RECURRING = 0.6

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from shaftprint.arrays import FloatArray
-from shaftprint.kernels import compiled
+from shaftprint.kernels._compiled import compiled
 
 
 def spline_speed(time_s: FloatArray, angle_rev: FloatArray, *, start_s: float, step_s: float, count: int) -> FloatArray:

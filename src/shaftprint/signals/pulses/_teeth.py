@@ -21,7 +21,7 @@ from shaftprint.signals.pulses._pulses import (
     doubled_pulses,
     expect_few_faults,
 )
-from shaftprint.vessel import Wheel
+from shaftprint.vessel._wheel import Wheel
 
 # Turns in which the marks are looked for, at a time.
 _TURNS = 20

@@ -7,11 +7,12 @@ import numpy as np
 
 from shaftprint.reasons import Reason
 from shaftprint.spectra.legs._leg_lines import LegLines
-from shaftprint.spectra.lines import LineMeasurement, amplitude_remark
+from shaftprint.spectra.lines._line_measurement import LineMeasurement
+from shaftprint.spectra.lines._set_point_check import amplitude_remark
 
 if TYPE_CHECKING:
     from shaftprint.arrays import FloatArray
-    from shaftprint.signals import ExcitationSignal
+    from shaftprint.signals._channel_signals import ExcitationSignal
 
 # Of the amplitude that was asked for: no line at all, no usable line, and what is worth a remark.
 _SILENT_SHARE, _UNEXCITED_SHARE, _AMPLITUDE_TOLERANCE = 1e-3, 0.1, 0.1

@@ -35,21 +35,22 @@ from shaftprint.spectra.legs._leg_messages import LegMessages, measure_leg_messa
 from shaftprint.spectra.legs._leg_orders import LegOrders, without_leg_orders
 from shaftprint.spectra.legs._leg_window import LegWindow
 from shaftprint.spectra.legs._load_wander import linear_torque
-from shaftprint.spectra.lines import (
-    LineMeasurement,
+from shaftprint.spectra.lines._line_measurement import LineMeasurement
+from shaftprint.spectra.lines._message_line import MessageLine
+from shaftprint.spectra.lines._noise import (
     LineNoise,
-    LineVariances,
-    MessageLine,
     Neighbours,
     ShaftRelation,
-    Window,
     equivalent_samples,
     noise_from_neighbours,
 )
-from shaftprint.spectra.orders import LineOrders
+from shaftprint.spectra.lines._signal_to_noise import LineVariances
+from shaftprint.spectra.lines._windows import Window
+from shaftprint.spectra.orders._line_orders import LineOrders
 
 if TYPE_CHECKING:
-    from shaftprint.signals import MessageSignal, TrackedOrder
+    from shaftprint.signals._channel_signals import MessageSignal
+    from shaftprint.signals._orders import TrackedOrder
 
 _TORQUE = "M_s"
 _NOISE_BINS = 36

@@ -15,7 +15,7 @@ from shaftprint.arrays import ComplexArray, FloatArray, IntArray
 from shaftprint.sender_cycle import times_of_course
 
 if TYPE_CHECKING:
-    from shaftprint.signals import MessageSignal
+    from shaftprint.signals._channel_signals import MessageSignal
     from shaftprint.spectra.legs._leg_window import LegWindow
 
 # Fewer messages for each number that is fitted do not tell the noise.

@@ -8,20 +8,14 @@ import numpy as np
 
 from shaftprint.arrays import BoolArray, ComplexArray, FloatArray
 from shaftprint.spectra.legs._leg_window import LegWindow
-from shaftprint.spectra.lines import words_at
-from shaftprint.spectra.orders import (
-    LineOrders,
-    OrderBand,
-    OrderFit,
-    fit_orders,
-    order_bands,
-    order_waves,
-    with_measured_gears,
-    with_speed,
-)
+from shaftprint.spectra.lines._window_orders import words_at
+from shaftprint.spectra.orders._gears import with_measured_gears
+from shaftprint.spectra.orders._line_orders import LineOrders
+from shaftprint.spectra.orders._order_fit import OrderFit, fit_orders
+from shaftprint.spectra.orders._order_waves import OrderBand, order_bands, order_waves, with_speed
 
 if TYPE_CHECKING:
-    from shaftprint.signals import TrackedOrder
+    from shaftprint.signals._orders import TrackedOrder
 
 # Bins beyond a band in which its order is looked for as well.
 _BESIDE_BINS = 10

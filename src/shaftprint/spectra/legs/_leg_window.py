@@ -15,7 +15,7 @@ import numpy as np
 from shaftprint.arrays import ComplexArray, FloatArray, frozen_float
 
 if TYPE_CHECKING:
-    from shaftprint.signals import LegState
+    from shaftprint.signals._working_points import LegState
 
 # Periods together may miss whole samples by this: the fastest lines then turn by less than 1e-3 rad.
 _SAME_SAMPLES = 1e-3

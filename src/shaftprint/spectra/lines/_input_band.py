@@ -21,7 +21,7 @@ from shaftprint.reasons import Reason
 from shaftprint.units import MILLI
 
 if TYPE_CHECKING:
-    from shaftprint.signals import ExcitationSignal
+    from shaftprint.signals._channel_signals import ExcitationSignal
     from shaftprint.spectra.lines._line_measurement import LineMeasurement
 
 _FEWEST_LINES = 4

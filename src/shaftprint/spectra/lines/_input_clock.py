@@ -13,8 +13,8 @@ import numpy as np
 from shaftprint.arrays import FloatArray
 
 if TYPE_CHECKING:
-    from shaftprint.campaign import Sine
-    from shaftprint.signals import ExcitationSignal
+    from shaftprint.campaign._excitations import Sine
+    from shaftprint.signals._channel_signals import ExcitationSignal
     from shaftprint.spectra.lines._line_measurement import LineMeasurement
 
 _FEWEST_LINES = 4

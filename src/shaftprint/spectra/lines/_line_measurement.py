@@ -14,7 +14,7 @@ from shaftprint.spectra.lines._modulation import without_modulation
 from shaftprint.spectra.lines._noise import LineNoise, ShaftRelation, line_noise, residual_spectrum
 from shaftprint.spectra.lines._signal_to_noise import LineVariances, line_variances
 from shaftprint.spectra.lines._stretches import stretch_amplitudes
-from shaftprint.spectra.orders import LineOrders
+from shaftprint.spectra.orders._line_orders import LineOrders
 
 if TYPE_CHECKING:
     from shaftprint.spectra.lines._line_fit import LineFit, SineMethod, WindowSamples

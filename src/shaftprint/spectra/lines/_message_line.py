@@ -19,7 +19,7 @@ from shaftprint.spectra.lines._signal_to_noise import NEIGHBOUR_BINS, LineVarian
 from shaftprint.spectra.lines._sine_fit import WholePeriodSine
 
 if TYPE_CHECKING:
-    from shaftprint.signals import MessageSignal
+    from shaftprint.signals._channel_signals import MessageSignal
     from shaftprint.spectra.lines._windows import Window
 
 # Taking sidebands out leaves less, or by chance a little more.

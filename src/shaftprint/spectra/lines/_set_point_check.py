@@ -13,7 +13,7 @@ from shaftprint.reasons import Reason
 from shaftprint.spectra.lines._stretches import stretch_periods
 
 if TYPE_CHECKING:
-    from shaftprint.signals import ExcitationSignal
+    from shaftprint.signals._channel_signals import ExcitationSignal
     from shaftprint.spectra.lines._line_measurement import LineMeasurement
 
 _UNEXCITED_SHARE = 0.1

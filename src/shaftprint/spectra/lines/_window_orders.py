@@ -11,17 +11,13 @@ from shaftprint.spectra.lines._line_fit import LineFit, WindowSamples
 from shaftprint.spectra.lines._noise import residual_spectrum
 from shaftprint.spectra.lines._signal_to_noise import NEIGHBOUR_BINS
 from shaftprint.spectra.lines._sine_fit import WholePeriodSine
-from shaftprint.spectra.orders import (
-    LineOrders,
-    OrderBand,
-    fit_orders,
-    order_bands,
-    order_waves,
-    with_measured_gears,
-)
+from shaftprint.spectra.orders._gears import with_measured_gears
+from shaftprint.spectra.orders._line_orders import LineOrders
+from shaftprint.spectra.orders._order_fit import fit_orders
+from shaftprint.spectra.orders._order_waves import OrderBand, order_bands, order_waves
 
 if TYPE_CHECKING:
-    from shaftprint.signals import TrackedOrder
+    from shaftprint.signals._orders import TrackedOrder
 
 # Bins beyond a band in which its order is looked for as well: a steady order stands in one or two bins.
 _BESIDE_BINS = 10

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 from shaftprint.errors import ResponseError
 
 if TYPE_CHECKING:
-    from shaftprint.campaign import Campaign, Sine
+    from shaftprint.campaign._campaign import Campaign
+    from shaftprint.campaign._excitations import Sine
 
 FEWEST_PERIODS = 2
 """With fewer whole periods a sine cannot be told from drift."""

@@ -15,7 +15,7 @@ import numpy as np
 from shaftprint.arrays import FloatArray
 
 if TYPE_CHECKING:
-    from shaftprint.signals import TrackedOrder
+    from shaftprint.signals._orders import TrackedOrder
 
 # The grid of the signals is flat up to here, as a share of its rate; an order above is neither needed nor whole.
 _HIGHEST_SHARE_OF_RATE = 0.2

@@ -3,7 +3,7 @@
 import numpy as np
 
 from shaftprint.arrays import ComplexArray, FloatArray
-from shaftprint.spectra.lines import Neighbours, equivalent_samples, levelled
+from shaftprint.spectra.lines._noise import Neighbours, equivalent_samples, levelled
 
 _FEWEST_SAMPLES = 12
 _SAMPLES_A_CHANNEL = 3

@@ -20,8 +20,8 @@ from typing import TypeAlias
 import numpy as np
 
 from shaftprint.arrays import FloatArray, IntArray, frozen_float
-from shaftprint.identify import Identification
-from shaftprint.identify.fit import PseudoInverse
+from shaftprint.identify.fit._identification import Identification
+from shaftprint.identify.fit._pseudo_inverse import PseudoInverse
 from shaftprint.time_domain._output_error import OutputError
 
 BLOCK_S = 4.0

@@ -21,7 +21,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from shaftprint.arrays import BoolArray, FloatArray, frozen_float
-from shaftprint.campaign import Campaign
+from shaftprint.campaign._campaign import Campaign
 from shaftprint.time_domain._decimator import Decimator
 from shaftprint.time_domain._record import Record
 

@@ -9,13 +9,18 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from shaftprint.campaign import Campaign
-from shaftprint.catalogue import structure
+from shaftprint.campaign._campaign import Campaign
+from shaftprint.catalogue._thesis import structure
 from shaftprint.errors import IdentificationError
-from shaftprint.identify import Identification, Prior, Settings, identify, priors_from_vessel
-from shaftprint.models import Structure
-from shaftprint.signals import Signals
-from shaftprint.spectra import FrequencyResponse, estimate_response
+from shaftprint.identify.fit._identification import Identification
+from shaftprint.identify.fit._identify import identify
+from shaftprint.identify.likelihood._known import priors_from_vessel
+from shaftprint.identify.likelihood._prior import Prior
+from shaftprint.identify.search._settings import Settings
+from shaftprint.models._structure import Structure
+from shaftprint.signals._signals import Signals
+from shaftprint.spectra._frequency_response import FrequencyResponse
+from shaftprint.spectra._spectra import estimate_response
 from shaftprint.time_domain._identify_in_time import TimeSettings, output_error, with_noise_at
 from shaftprint.time_domain._output_error import OutputError
 from shaftprint.time_domain._record import Record
@@ -30,7 +35,7 @@ from shaftprint.time_domain.nonlinear._orders import without_orders
 from shaftprint.time_domain.nonlinear._search import Part, best_ends, first_pass, free_values, from_these
 from shaftprint.time_domain.nonlinear._settings import NonlinearSettings
 from shaftprint.time_domain.nonlinear._structure import LimitedModel
-from shaftprint.vessel import Vessel
+from shaftprint.vessel._vessel import Vessel
 
 LINEAR = "GAUGE-CLOSED"
 

@@ -4,8 +4,8 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from shaftprint.catalogue import GovernorSymbol
-from shaftprint.models import Structure
+from shaftprint.catalogue._limited_governor import GovernorSymbol
+from shaftprint.models._structure import Structure
 from shaftprint.time_domain._identify_in_time import output_error
 from shaftprint.time_domain._record import Record
 from shaftprint.time_domain._simulator import ExactDelays, on_record

@@ -5,12 +5,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from shaftprint.catalogue import GovernorSymbol
-from shaftprint.identify import Identification
-from shaftprint.identify.fit import Estimate
-from shaftprint.signals import WorkingPoint
+from shaftprint.catalogue._limited_governor import GovernorSymbol
+from shaftprint.identify.fit._identification import Estimate, Identification
+from shaftprint.signals._working_points import WorkingPoint
 from shaftprint.units import rpm_from_rev_s
-from shaftprint.vessel import Vessel
+from shaftprint.vessel._vessel import Vessel
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -13,8 +13,8 @@ taken; blades and firings are above half the rate of a record.
 import numpy as np
 
 from shaftprint.arrays import FloatArray, frozen_float
-from shaftprint.signals import Signals
-from shaftprint.vessel import Vessel
+from shaftprint.signals._signals import Signals
+from shaftprint.vessel._vessel import Vessel
 
 # A mean over this time is slow: it holds a period of the lowest order at half the working-point speed.
 SLOW_S = 0.4

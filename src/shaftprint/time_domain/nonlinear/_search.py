@@ -7,11 +7,14 @@ from typing import TypeAlias
 import numpy as np
 
 from shaftprint.arrays import FloatArray
-from shaftprint.identify import Identification, LatinHypercube, Prior, Settings, identify_jointly
-from shaftprint.identify.likelihood import Term
-from shaftprint.identify.search import Draw, GivenStarts
-from shaftprint.models import Structure
-from shaftprint.spectra import FrequencyResponse
+from shaftprint.identify.fit._identification import Identification
+from shaftprint.identify.fit._identify import identify_jointly
+from shaftprint.identify.likelihood._prior import Prior
+from shaftprint.identify.likelihood._term import Term
+from shaftprint.identify.search._settings import Settings
+from shaftprint.identify.search._starts import Draw, GivenStarts, LatinHypercube
+from shaftprint.models._structure import Structure
+from shaftprint.spectra._frequency_response import FrequencyResponse
 from shaftprint.time_domain.nonlinear._settings import NonlinearSettings
 
 Part: TypeAlias = tuple[Structure, FrequencyResponse] | Term

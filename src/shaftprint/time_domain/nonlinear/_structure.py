@@ -5,11 +5,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from shaftprint.catalogue import GovernorSymbol, limited
+from shaftprint.catalogue._limited import limited
+from shaftprint.catalogue._limited_governor import GovernorSymbol
 from shaftprint.errors import IdentificationError
-from shaftprint.models import Structure
-from shaftprint.signals import WorkingPoint
-from shaftprint.vessel import Vessel
+from shaftprint.models._structure import Structure
+from shaftprint.signals._working_points import WorkingPoint
+from shaftprint.vessel._vessel import Vessel
 
 ORDER = ("torque", "rate", "deadband", "ramp", "smoke")
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from shaftprint.arrays import FloatArray
-from shaftprint.campaign import Campaign
+from shaftprint.campaign._campaign import Campaign
 from shaftprint.errors import SettingsError
 from shaftprint.tug._noise import Noise
 from shaftprint.tug._shared_water import SharedWater
@@ -18,7 +18,7 @@ from shaftprint.tug.plant._pitch import lag
 from shaftprint.tug.plant._plant import SPEED, advance
 from shaftprint.tug.plant._traces import Traces
 from shaftprint.tug.plant._voyage import Forces, ReadyLine, Stretch, empty_traces, forced, ready_line, stretch_of
-from shaftprint.vessel import Vessel
+from shaftprint.vessel._vessel import Vessel
 
 # The wash that meets a block of steps has left the other propeller before the block begins.
 _FEWEST_STEPS = 2

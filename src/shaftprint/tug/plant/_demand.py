@@ -5,13 +5,14 @@ from typing import NamedTuple
 import numpy as np
 
 from shaftprint.arrays import FloatArray
-from shaftprint.campaign import Campaign, setpoint
+from shaftprint.campaign._campaign import Campaign
+from shaftprint.campaign._setpoint import setpoint
 from shaftprint.errors import SettingsError
-from shaftprint.kernels import compiled
+from shaftprint.kernels._compiled import compiled
 from shaftprint.tug._tug import Tug
 from shaftprint.tug.plant._physics import working_point
 from shaftprint.units import rev_s_from_rpm, rpm_from_rev_s
-from shaftprint.vessel import Vessel
+from shaftprint.vessel._vessel import Vessel
 
 
 @compiled(nogil=True)

@@ -6,7 +6,7 @@ from typing import NamedTuple, Self
 import numpy as np
 
 from shaftprint.arrays import FloatArray
-from shaftprint.kernels import compiled
+from shaftprint.kernels._compiled import compiled
 from shaftprint.tug._noise import Noise
 
 

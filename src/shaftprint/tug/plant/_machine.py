@@ -4,10 +4,11 @@ import numpy as np
 import scipy
 
 from shaftprint.arrays import FloatArray
-from shaftprint.campaign import Campaign, setpoint
+from shaftprint.campaign._campaign import Campaign
+from shaftprint.campaign._setpoint import setpoint
 from shaftprint.errors import SettingsError
 from shaftprint.tug._tug import Tug
-from shaftprint.vessel import Vessel
+from shaftprint.vessel._vessel import Vessel
 
 INPUT = "machine_torque"
 

@@ -13,7 +13,7 @@ from shaftprint.tug._tug import USUAL_MOTORING_NM, Tug
 from shaftprint.tug.plant._constants import Plant
 from shaftprint.tug.plant._plant import ENGINE, INTEGRAL, RACK, SLIPSTREAM, SPEED, STATES, TWIST, WAY
 from shaftprint.units import rev_s_from_rpm
-from shaftprint.vessel import Vessel
+from shaftprint.vessel._vessel import Vessel
 
 # Speed over that of the working point up to which friction grows in proportion; no engine gets there.
 _FASTEST_SHARE = 10.0

@@ -13,14 +13,15 @@ from typing import NamedTuple
 import numpy as np
 
 from shaftprint.arrays import FloatArray
-from shaftprint.campaign import Campaign, setpoint
+from shaftprint.campaign._campaign import Campaign
+from shaftprint.campaign._setpoint import setpoint
 from shaftprint.errors import SettingsError
-from shaftprint.kernels import compiled
+from shaftprint.kernels._compiled import compiled
 from shaftprint.tug._pitch_actuation import PitchActuation, pitch_torque
 from shaftprint.tug._tug import Tug
 from shaftprint.tug.plant._demand import demanded_speed, helm_voltage
 from shaftprint.units import rpm_from_rev_s
-from shaftprint.vessel import Vessel
+from shaftprint.vessel._vessel import Vessel
 
 INPUT = "pitch_set_point"
 _ROUNDING = 1e-9

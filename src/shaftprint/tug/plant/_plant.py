@@ -50,7 +50,7 @@ Gains and delay may go with a power of the engine speed, ``K (n_e / n_e0)^a`` an
 import numpy as np
 
 from shaftprint.arrays import FloatArray
-from shaftprint.kernels import compiled
+from shaftprint.kernels._compiled import compiled
 
 SPEED, INTEGRAL, RACK, RACK_RATE, SLIPSTREAM, ANGLE, WAY, ENGINE, TWIST = range(9)
 """Places in the state vector: shaft speed [rev/s], integrator [rack], rack, rack rate [1/s], slipstream velocity as a

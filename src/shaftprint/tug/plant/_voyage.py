@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from shaftprint.arrays import BoolArray, FloatArray
-from shaftprint.campaign import Campaign
+from shaftprint.campaign._campaign import Campaign
 from shaftprint.errors import SettingsError
 from shaftprint.tug._tug import Tug
 from shaftprint.tug.plant._constants import Plant
@@ -19,7 +19,7 @@ from shaftprint.tug.plant._physics import build_plant, equilibrium, steady_boost
 from shaftprint.tug.plant._pitch import PitchActuator, PitchMotion
 from shaftprint.tug.plant._plant import FARTHEST_SHARE, RACK, advance, interpolation_weights
 from shaftprint.tug.plant._traces import Carried, DelayTaps, Traces
-from shaftprint.vessel import Vessel
+from shaftprint.vessel._vessel import Vessel
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

@@ -4,11 +4,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shaftprint.arrays import FloatArray
-from shaftprint.tug.plant import Stretch
+from shaftprint.tug.plant._voyage import Stretch
 from shaftprint.tug.sensors._bus import Bus, MessageStream, MessageTimes
 from shaftprint.tug.sensors._faults import Fault
 from shaftprint.units import rpm_from_rev_s
-from shaftprint.vessel import RackSensor, Vessel
+from shaftprint.vessel._sensors import RackSensor
+from shaftprint.vessel._vessel import Vessel
 
 LOWEST_PERCENT = -125.0
 """What a count of 0 means [%]; SAE J1939-71, percent torque."""

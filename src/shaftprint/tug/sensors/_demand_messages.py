@@ -4,12 +4,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shaftprint.arrays import FloatArray
-from shaftprint.tug.plant import Stretch
+from shaftprint.tug.plant._voyage import Stretch
 from shaftprint.tug.sensors._bus import Bus, MessageStream, MessageTimes
 from shaftprint.tug.sensors._faults import Fault
 from shaftprint.tug.sensors._speed_meter import SPEED_STEP_RPM
 from shaftprint.units import rpm_from_rev_s
-from shaftprint.vessel import DemandSensor
+from shaftprint.vessel._sensors import DemandSensor
 
 
 class DemandMessages:

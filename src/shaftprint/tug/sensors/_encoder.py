@@ -6,11 +6,12 @@ from numpy.typing import NDArray
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import SettingsError
 from shaftprint.tug._tug import Tug
-from shaftprint.tug.plant import Stretch
+from shaftprint.tug.plant._voyage import Stretch
 from shaftprint.tug.sensors._faults import Fault
 from shaftprint.tug.sensors._late import Late
 from shaftprint.tug.sensors._turns import motion_of, turns_of
-from shaftprint.vessel import SpeedSensor, Vessel
+from shaftprint.vessel._sensors import SpeedSensor
+from shaftprint.vessel._vessel import Vessel
 
 # Values of a channel of 16 bits; the lowest stands for an angle of 0.
 _VALUES, _LOWEST = 65_536, -32_768

@@ -7,12 +7,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shaftprint.arrays import FloatArray, IntArray
-from shaftprint.kernels import compiled
+from shaftprint.kernels._compiled import compiled
 from shaftprint.tug._noise import Noise
-from shaftprint.tug.plant import Stretch
+from shaftprint.tug.plant._voyage import Stretch
 from shaftprint.tug.sensors._bus import MessageStream, MessageTimes
 from shaftprint.tug.sensors._faults import Fault, draw_dropouts, draw_spikes
-from shaftprint.vessel import Vessel
+from shaftprint.vessel._vessel import Vessel
 
 LOW_PASS_HZ = 500.0
 """Corner of the first-order low-pass filter in the telemetry [Hz]."""

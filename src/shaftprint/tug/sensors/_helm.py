@@ -4,13 +4,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shaftprint.arrays import FloatArray
-from shaftprint.campaign import Campaign, setpoint
+from shaftprint.campaign._campaign import Campaign
+from shaftprint.campaign._setpoint import setpoint
 from shaftprint.tug._tug import Tug
-from shaftprint.tug.plant import Stretch, helm_voltage
+from shaftprint.tug.plant._demand import helm_voltage
+from shaftprint.tug.plant._voyage import Stretch
 from shaftprint.tug.sensors._bus import Bus, MessageStream, MessageTimes
 from shaftprint.tug.sensors._faults import Fault, draw_spikes
 from shaftprint.tug.sensors._pulses import VOLT_PER_COUNT
-from shaftprint.vessel import Vessel
+from shaftprint.vessel._vessel import Vessel
 
 PITCH_INPUT = "pitch_set_point"
 """Table of the vessel file's sensors by which a campaign names the pitch."""

@@ -4,9 +4,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shaftprint.arrays import FloatArray
-from shaftprint.tug.plant import Stretch
+from shaftprint.tug.plant._voyage import Stretch
 from shaftprint.tug.sensors._faults import Fault
-from shaftprint.vessel import ShipSpeedSensor
+from shaftprint.vessel._sensors import ShipSpeedSensor
 
 
 class SpeedLog:

@@ -8,11 +8,14 @@ from numpy.typing import NDArray
 from shaftprint.arrays import FloatArray
 from shaftprint.tug._shaft_machine import ShaftMachineTruth
 from shaftprint.tug._tug import Tug
-from shaftprint.tug.plant import Stretch, working_point
+from shaftprint.tug.plant._physics import working_point
+from shaftprint.tug.plant._voyage import Stretch
 from shaftprint.tug.sensors._faults import Fault
 from shaftprint.tug.sensors._late import Late
 from shaftprint.tug.sensors._pulses import VOLT_PER_COUNT
-from shaftprint.vessel import MachineTorqueSensor, ShaftMachine, Vessel
+from shaftprint.vessel._machine_torque import MachineTorqueSensor
+from shaftprint.vessel._shaft_machine import ShaftMachine
+from shaftprint.vessel._vessel import Vessel
 
 
 class MachineTorque:

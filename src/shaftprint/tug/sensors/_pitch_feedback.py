@@ -8,11 +8,11 @@ from numpy.typing import NDArray
 
 from shaftprint.arrays import FloatArray
 from shaftprint.tug._pitch_actuation import PitchActuation
-from shaftprint.tug.plant import Stretch
+from shaftprint.tug.plant._voyage import Stretch
 from shaftprint.tug.sensors._faults import Fault
 from shaftprint.tug.sensors._late import Late
 from shaftprint.tug.sensors._pulses import VOLT_PER_COUNT
-from shaftprint.vessel import PitchSensor
+from shaftprint.vessel._pitch_sensors import PitchSensor
 
 
 class PitchFeedback:

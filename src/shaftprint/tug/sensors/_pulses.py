@@ -6,12 +6,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shaftprint.arrays import FloatArray, IntArray
-from shaftprint.kernels import compiled
+from shaftprint.kernels._compiled import compiled
 from shaftprint.tug._tug import Tug
-from shaftprint.tug.plant import Stretch
+from shaftprint.tug.plant._voyage import Stretch
 from shaftprint.tug.sensors._faults import Fault, draw_times
 from shaftprint.tug.sensors._turns import motion_of, turns_of
-from shaftprint.vessel import SpeedSensor, Vessel
+from shaftprint.vessel._sensors import SpeedSensor
+from shaftprint.vessel._vessel import Vessel
 
 VOLT_PER_COUNT = 10.24 / 32768.0
 """Resolution of the voltage channels of the logger [V]."""

@@ -7,12 +7,13 @@ from numpy.typing import NDArray
 
 from shaftprint.arrays import FloatArray
 from shaftprint.tug._tug import Tug
-from shaftprint.tug.plant import Stretch
+from shaftprint.tug.plant._voyage import Stretch
 from shaftprint.tug.sensors._bus import Bus, MessageStream, MessageTimes
 from shaftprint.tug.sensors._faults import Fault
 from shaftprint.tug.sensors._late import Late
 from shaftprint.tug.sensors._turns import motion_of, turns_of
-from shaftprint.vessel import SpeedSensor, Vessel
+from shaftprint.vessel._sensors import SpeedSensor
+from shaftprint.vessel._vessel import Vessel
 
 # Counts at 30 % above rated speed, which no engine reaches.
 _HIGHEST_COUNT = 32_000

@@ -1,8 +1,9 @@
 """What a sensor on one of the shafts sees of the line: its turns for one of the propeller shaft, speed and angle."""
 
 from shaftprint.arrays import FloatArray
-from shaftprint.tug.plant import Stretch
-from shaftprint.vessel import SpeedSensor, Vessel
+from shaftprint.tug.plant._voyage import Stretch
+from shaftprint.vessel._sensors import SpeedSensor
+from shaftprint.vessel._vessel import Vessel
 
 
 def turns_of(sensor: SpeedSensor, vessel: Vessel) -> float:

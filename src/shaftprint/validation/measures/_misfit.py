@@ -18,7 +18,7 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.distributions import chi_square_tail, deviations
-from shaftprint.identify import fit_percent
+from shaftprint.identify.likelihood._fit_percent import fit_percent
 from shaftprint.validation.measures._noise_pieces import NoisePieces, quadratic_form
 from shaftprint.validation.measures._reach import EVERYWHERE, Reach
 

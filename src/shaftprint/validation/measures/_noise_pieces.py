@@ -26,9 +26,11 @@ import numpy as np
 import scipy
 
 from shaftprint.arrays import FloatArray, frozen_float
-from shaftprint.campaign import Campaign, Staircase
+from shaftprint.campaign._campaign import Campaign
+from shaftprint.campaign._excitations import Staircase
 from shaftprint.errors import ValidationError
-from shaftprint.signals import LegState, Signals
+from shaftprint.signals._signals import Signals
+from shaftprint.signals._working_points import LegState
 
 # What the low-pass shows of a step before it happens.
 _AHEAD_S = 1.0

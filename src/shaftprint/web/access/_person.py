@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from enum import IntEnum
 from typing import Final
 
-from shaftprint.store import Ship
+from shaftprint.store._nouns import Ship
 
 ALL: Final = "all"
 """In place of a list of ships: every ship, those to come too."""

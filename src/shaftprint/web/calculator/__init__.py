@@ -3,8 +3,3 @@
 It is asked by a line of JSON on its standard input and answers by one on its standard output. The server itself loads
 nothing that calculates, and opens no file of a user.
 """
-
-from shaftprint.web.calculator._client import Calculator, scratch_environment
-from shaftprint.web.calculator._limits import limit_memory
-
-__all__ = ["Calculator", "limit_memory", "scratch_environment"]

@@ -9,7 +9,7 @@ from typing import Any, Final
 
 from shaftprint.errors import ShaftprintError
 from shaftprint.files import limit_file_size
-from shaftprint.fleet.computing import asked_lines
+from shaftprint.fleet.computing._asked_lines import asked_lines
 from shaftprint.web.calculator._class import judged_class
 from shaftprint.web.calculator._compared import compared
 from shaftprint.web.calculator._inspected import inspected

@@ -3,9 +3,14 @@
 import os
 from typing import Any
 
-from shaftprint.drift import NEWEST_TESTS, judge_sisters, sister_sentences
-from shaftprint.report import cause_spread_table, sister_table
-from shaftprint.store import Ship, line_history, open_store, sisters_of
+from shaftprint.drift._class_numbers import NEWEST_TESTS
+from shaftprint.drift._sister_words import sister_sentences
+from shaftprint.drift._sisters import judge_sisters
+from shaftprint.report.comparison._sister_tables import cause_spread_table, sister_table
+from shaftprint.store._line_history import line_history
+from shaftprint.store._nouns import Ship
+from shaftprint.store._sisters import sisters_of
+from shaftprint.store._store import open_store
 from shaftprint.web.calculator._tables import table_contents
 
 

@@ -3,10 +3,15 @@
 import os
 from typing import Any
 
-from shaftprint.drift import LOAD_REPEATABILITY, differ, finding_sentences
-from shaftprint.fingerprint import parse_fingerprint
-from shaftprint.report import cause_table, difference_table, differences, vessel_file_sentences
-from shaftprint.store import document, open_store
+from shaftprint.drift._differ import LOAD_REPEATABILITY, differ
+from shaftprint.drift._words import finding_sentences
+from shaftprint.fingerprint._json_file import parse_fingerprint
+from shaftprint.report.comparison._cause_table import cause_table
+from shaftprint.report.comparison._differences import differences
+from shaftprint.report.comparison._tables import difference_table
+from shaftprint.report.comparison._vessel_file_words import vessel_file_sentences
+from shaftprint.store._history import document
+from shaftprint.store._store import open_store
 from shaftprint.web.calculator._tables import table_content, table_contents
 
 

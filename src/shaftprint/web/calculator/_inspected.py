@@ -4,8 +4,10 @@ from pathlib import Path
 from typing import Any
 
 from shaftprint.digits import rounded
-from shaftprint.recording import read_recording, watch_levels
-from shaftprint.tables import Table, level_table, numbers, texts
+from shaftprint.plain_table import Table, numbers, texts
+from shaftprint.recording._level_watch import watch_levels
+from shaftprint.recording._read import read_recording
+from shaftprint.tables._recording import level_table
 from shaftprint.web.calculator._tables import table_content
 
 

@@ -6,14 +6,22 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from shaftprint.distributions import NORMAL_95
-from shaftprint.drift import LOAD_REPEATABILITY, history_of, watch, watch_sentences
-from shaftprint.report import course_table, sizes_of_tests
-from shaftprint.store import Ship, line_history, open_store
+from shaftprint.drift._differ import LOAD_REPEATABILITY
+from shaftprint.drift._history import history_of
+from shaftprint.drift._watch import watch
+from shaftprint.drift._words import watch_sentences
+from shaftprint.report._history_page import sizes_of_tests
+from shaftprint.report.comparison._history_tables import course_table
+from shaftprint.store._line_history import line_history
+from shaftprint.store._nouns import Ship
+from shaftprint.store._store import open_store
 from shaftprint.web.calculator._tables import table_content
 
 if TYPE_CHECKING:
-    from shaftprint.drift import DatedCause, History, SizedCause, WatchFinding
-    from shaftprint.fingerprint import Fingerprint
+    from shaftprint.drift._drift_finding import DatedCause, WatchFinding
+    from shaftprint.drift._finding import SizedCause
+    from shaftprint.drift._history import History
+    from shaftprint.fingerprint._fingerprint import Fingerprint
 
 SEED: Final = 1
 MOST_TESTS: Final = 40

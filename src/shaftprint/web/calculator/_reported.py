@@ -5,11 +5,11 @@ from typing import Any
 
 import numpy as np
 
-from shaftprint.fleet import arguments_of
-from shaftprint.fleet.computing import survey_of_job
-from shaftprint.recording import read_recording
-from shaftprint.report import render_report
-from shaftprint.survey import judged
+from shaftprint.fleet._arguments import arguments_of
+from shaftprint.fleet.computing._identify import survey_of_job
+from shaftprint.recording._read import read_recording
+from shaftprint.report._render import render_report
+from shaftprint.survey._survey import judged
 
 
 def reported(arguments: dict[str, Any], folder: str) -> dict[str, Any]:

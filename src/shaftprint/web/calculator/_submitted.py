@@ -6,9 +6,10 @@ from pathlib import Path
 from typing import Any
 
 from shaftprint.errors import ServerError
-from shaftprint.fleet import job_arguments, submit
-from shaftprint.store import open_store
-from shaftprint.vessel import load_vessel
+from shaftprint.fleet._arguments import job_arguments
+from shaftprint.fleet._submit import submit
+from shaftprint.store._store import open_store
+from shaftprint.vessel._vessel import load_vessel
 
 
 def submitted(

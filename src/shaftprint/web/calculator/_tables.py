@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 from typing import Any
 
-from shaftprint.tables import Symbol, Table
+from shaftprint.plain_table import Symbol, Table
 
 
 def table_content(table: Table) -> dict[str, Any]:

@@ -2,7 +2,7 @@
 
 from typing import Any, Final
 
-from shaftprint.store import Ship
+from shaftprint.store._nouns import Ship
 from shaftprint.web._asked import Asked, Shown
 
 MOST: Final = 200

@@ -10,7 +10,7 @@ from starlette.exceptions import HTTPException
 from shaftprint import __version__
 from shaftprint.digits import interval, unit_text, with_deviation
 from shaftprint.errors import ServerError
-from shaftprint.store import LineNow
+from shaftprint.store._overview import LineNow
 from shaftprint.web._asked import Asked, NotThere, Shown, line_address, ship_content
 
 NUMBERS: Final = ("K_Q", "I_dn", "governor proportional action", "governor integral action")

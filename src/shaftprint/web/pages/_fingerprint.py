@@ -1,6 +1,7 @@
 """A fingerprint by its SHA-256, for whoever sees its ship."""
 
-from shaftprint.store import StoredFingerprint, stored_fingerprint
+from shaftprint.store._nouns import StoredFingerprint
+from shaftprint.store._overview import stored_fingerprint
 from shaftprint.web._asked import Asked, NotThere
 
 _HASH = 64

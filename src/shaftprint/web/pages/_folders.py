@@ -7,7 +7,7 @@ from urllib.parse import quote
 
 from shaftprint.web._asked import Asked, NotThere, Shown
 from shaftprint.web._upload import SETTINGS
-from shaftprint.web.access import Role
+from shaftprint.web.access._person import Role
 from shaftprint.web.pages._recordings import choices_of
 
 MOST: Final = 500

@@ -12,9 +12,11 @@ from starlette.exceptions import HTTPException
 from starlette.responses import Response, StreamingResponse
 
 from shaftprint.errors import StoreError
-from shaftprint.store import Job, Line, Ship, retry
-from shaftprint.store import job as job_called
-from shaftprint.store import jobs as stored_jobs
+from shaftprint.store._job import Job
+from shaftprint.store._ledger import job as job_called
+from shaftprint.store._ledger import jobs as stored_jobs
+from shaftprint.store._ledger import retry
+from shaftprint.store._nouns import Line, Ship
 from shaftprint.web._asked import Asked, Moved, NotThere, Shown
 from shaftprint.web._kept import KeptJob
 from shaftprint.web.pages._folders import place_of

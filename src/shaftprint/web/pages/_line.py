@@ -6,21 +6,13 @@ from typing import Any, Final
 from starlette.exceptions import HTTPException
 
 from shaftprint.digits import unit_text, with_deviation
-from shaftprint.store import (
-    KINDS,
-    Event,
-    HistoryEntry,
-    LineNow,
-    LineRecords,
-    StoredNumber,
-    line_records,
-    record_event,
-    withdraw_event,
-)
+from shaftprint.store._event import record_event, withdraw_event
+from shaftprint.store._nouns import KINDS, Event, HistoryEntry, StoredNumber
+from shaftprint.store._overview import LineNow, LineRecords, line_records
 from shaftprint.web._asked import Asked, Moved, NotThere, Shown, line_address, line_key
 from shaftprint.web._standing import Standing, standing_of
 from shaftprint.web._strip import TimeAxis, strip
-from shaftprint.web.access import Role
+from shaftprint.web.access._person import Role
 from shaftprint.zones import in_zone, time_zone
 
 PHYSICAL: Final = "physical value"

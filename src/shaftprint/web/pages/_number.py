@@ -4,9 +4,9 @@ from dataclasses import replace
 
 from starlette.exceptions import HTTPException
 
-from shaftprint.store import give_imo_number
+from shaftprint.store._overview import give_imo_number
 from shaftprint.web._asked import Asked, Moved, NotThere, line_address
-from shaftprint.web.access import Role
+from shaftprint.web.access._person import Role
 from shaftprint.web.pages._line import records_of
 from shaftprint.web.pages._recordings import is_imo_number
 

@@ -8,13 +8,14 @@ from typing import Any, Final
 from starlette.exceptions import HTTPException
 from starlette.responses import Response
 
-from shaftprint.store import Line, Ship, namesakes
+from shaftprint.store._nouns import Line, Ship
+from shaftprint.store._overview import namesakes
 from shaftprint.web._asked import Asked, Moved, NotThere, Shown, ship_word
 from shaftprint.web._kept import Making, Upload
 from shaftprint.web._multipart import form_with_file
 from shaftprint.web._setting import answer_of
 from shaftprint.web._upload import SETTINGS, Taken, checked_name, expect_room, is_number, take
-from shaftprint.web.access import Role, is_like_a_number
+from shaftprint.web.access._person import Role, is_like_a_number
 from shaftprint.web.pages._line import records_called
 from shaftprint.zones import possible
 

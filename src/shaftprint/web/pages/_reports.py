@@ -7,10 +7,12 @@ from typing import Any, Final
 from starlette.exceptions import HTTPException
 from starlette.responses import FileResponse, Response
 
-from shaftprint.store import JobState, StoredFingerprint, jobs
+from shaftprint.store._job import JobState
+from shaftprint.store._ledger import jobs
+from shaftprint.store._nouns import StoredFingerprint
 from shaftprint.web._asked import Asked, Moved, NotThere
 from shaftprint.web._kept import Making
-from shaftprint.web.access import Role
+from shaftprint.web.access._person import Role
 from shaftprint.web.pages._fingerprint import fingerprint_of
 
 # the page has a policy of its own too; both hold

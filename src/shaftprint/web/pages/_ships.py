@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import Any, Final
 from urllib.parse import quote
 
-from shaftprint.store import LineNow
+from shaftprint.store._overview import LineNow
 from shaftprint.web._asked import Asked, Shown, line_address, line_key
 from shaftprint.web._standing import WORDS, Standing, standing_of
 

@@ -8,7 +8,9 @@ from starlette.responses import Response
 from shaftprint.web._asked import Asked, Moved, Shown
 from shaftprint.web._endpoint import keep
 from shaftprint.web._setting import answer_of
-from shaftprint.web.access import LONGEST, Person, is_right, network_of
+from shaftprint.web.access._password import LONGEST, is_right
+from shaftprint.web.access._person import Person
+from shaftprint.web.access._throttle import network_of
 
 _WRONG = "Name or password is wrong."
 _FORGOTTEN = timedelta(days=1)

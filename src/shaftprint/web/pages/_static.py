@@ -2,7 +2,7 @@
 
 from starlette.responses import Response
 
-from shaftprint.markup import style_sheet, template_text
+from shaftprint.markup._environment import style_sheet, template_text
 from shaftprint.web._asked import Asked, NotThere
 
 _KINDS = {"page.css": "text/css", "web.css": "text/css", "web.js": "text/javascript", "icon.svg": "image/svg+xml"}

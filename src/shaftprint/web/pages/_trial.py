@@ -5,7 +5,9 @@ from typing import Any
 from starlette.responses import Response
 
 from shaftprint.digits import interval, unit_text, with_deviation
-from shaftprint.store import HistoryEntry, LineRecords, StoredFingerprint, StoredNumber, document
+from shaftprint.store._history import document
+from shaftprint.store._nouns import HistoryEntry, StoredFingerprint, StoredNumber
+from shaftprint.store._overview import LineRecords
 from shaftprint.web._asked import Asked, NotThere, Shown, line_address, ship_word
 from shaftprint.web.pages._fingerprint import fingerprint_of
 from shaftprint.web.pages._line import records_called

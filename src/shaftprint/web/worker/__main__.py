@@ -5,12 +5,12 @@ import sys
 import threading
 from pathlib import Path
 
-from shaftprint.fleet import work
-from shaftprint.store import open_store
+from shaftprint.fleet._work import work
+from shaftprint.store._store import open_store
 from shaftprint.web._kept import Kept
 from shaftprint.web._rights import forbidden_by
-from shaftprint.web.access import Users
-from shaftprint.web.calculator import limit_memory
+from shaftprint.web.access._users import Users
+from shaftprint.web.calculator._limits import limit_memory
 
 
 def main() -> None:

@@ -4,7 +4,7 @@ import click
 
 from shaftprint.cli._store_options import opened_store, store_option
 from shaftprint.cli._terminal import answer
-from shaftprint.store import job, retry
+from shaftprint.store._ledger import job, retry
 
 
 @click.command("retry")

@@ -10,9 +10,15 @@ from shaftprint.cli._command_group import NOT_REACHED
 from shaftprint.cli._fleet_options import say_refusals, say_what_was_done, work_here, work_options
 from shaftprint.cli._store_options import opened_store, store_option
 from shaftprint.cli._terminal import answer
-from shaftprint.cli.output import give, no_progress_option
-from shaftprint.fleet import Worked, recordings_in, recordings_of_list, submit, work_on_dask
-from shaftprint.store import Job, Store, jobs
+from shaftprint.cli.output._json import give
+from shaftprint.cli.output._progress import no_progress_option
+from shaftprint.fleet._dask import work_on_dask
+from shaftprint.fleet._lists import recordings_in, recordings_of_list
+from shaftprint.fleet._submit import submit
+from shaftprint.fleet._work import Worked
+from shaftprint.store._job import Job
+from shaftprint.store._ledger import jobs
+from shaftprint.store._store import Store
 
 
 @click.command("run")

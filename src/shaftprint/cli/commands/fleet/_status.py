@@ -6,9 +6,11 @@ from shaftprint import __version__
 from shaftprint.cli._fleet_options import recording_of, refused_jobs, say_counts, say_refusals
 from shaftprint.cli._store_options import opened_store, store_option
 from shaftprint.cli._terminal import say
-from shaftprint.cli.output import give, print_tables
-from shaftprint.store import Job, job_counts, jobs
-from shaftprint.tables import Column, Table
+from shaftprint.cli.output._json import give
+from shaftprint.cli.output._tables import print_tables
+from shaftprint.plain_table import Column, Table
+from shaftprint.store._job import Job
+from shaftprint.store._ledger import job_counts, jobs
 from shaftprint.zones import utc_text
 
 

@@ -18,8 +18,9 @@ from shaftprint.cli.commands.formats._exported import (
     set_option,
     structure_option,
 )
-from shaftprint.cli.output import no_progress_option, progress
-from shaftprint.export import PLATFORMS, WrittenFmu, write_fmu
+from shaftprint.cli.output._progress import no_progress_option, progress
+from shaftprint.export._fmu import WrittenFmu, write_fmu
+from shaftprint.export._fmu_build import PLATFORMS
 
 ALL = "all"
 # times the fastest pole: where the rule of Runge and Kutta stops being stable

@@ -7,8 +7,9 @@ import click
 from shaftprint.cli._own_structure import OWN_FILE_HELP, TypedName, structure_to_use
 from shaftprint.cli._terminal import answer
 from shaftprint.cli.commands.formats._exported import file_to_write, fingerprint_argument, force_option, output_option
-from shaftprint.cli.output import fingerprint_at
-from shaftprint.export import exported_model, write_json
+from shaftprint.cli.output._fingerprint_file import fingerprint_at
+from shaftprint.export._json import write_json
+from shaftprint.export._model import exported_model
 
 
 @click.command("json")

@@ -16,11 +16,13 @@ from shaftprint.cli.commands.formats._exported import (
     set_option,
     structure_option,
 )
-from shaftprint.cli.output import fingerprint_at, no_progress_option, progress
-from shaftprint.export import write_matlab
-from shaftprint.models import Structure
-from shaftprint.spectra import FrequencyResponse
-from shaftprint.survey import load_trial, measure, response_of
+from shaftprint.cli.output._fingerprint_file import fingerprint_at
+from shaftprint.cli.output._progress import no_progress_option, progress
+from shaftprint.export._matlab import write_matlab
+from shaftprint.models._structure import Structure
+from shaftprint.spectra._frequency_response import FrequencyResponse
+from shaftprint.survey._measurement import measure, response_of
+from shaftprint.survey._trial import load_trial
 
 
 @click.command("matlab")

@@ -16,7 +16,7 @@ from shaftprint.cli.commands.formats._exported import (
     set_option,
     structure_option,
 )
-from shaftprint.export import write_modelica
+from shaftprint.export.modelica._write import write_modelica
 
 
 @click.command("modelica")

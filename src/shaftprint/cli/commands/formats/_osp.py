@@ -15,7 +15,7 @@ from shaftprint.cli.commands.formats._exported import (
     set_option,
     structure_option,
 )
-from shaftprint.export import write_osp
+from shaftprint.export._osp import write_osp
 
 
 @click.command("osp")

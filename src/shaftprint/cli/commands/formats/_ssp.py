@@ -16,7 +16,7 @@ from shaftprint.cli.commands.formats._exported import (
     set_option,
     structure_option,
 )
-from shaftprint.export import write_ssv
+from shaftprint.export._ssp import write_ssv
 
 
 @click.command("ssp")

@@ -8,8 +8,11 @@ import click
 from shaftprint.cli._dates import zone_option
 from shaftprint.cli._store_options import moment_option, opened_store, store_option
 from shaftprint.cli._terminal import answer
-from shaftprint.cli.output import fingerprint_at, fingerprint_file, give
-from shaftprint.store import Added, Stated, add
+from shaftprint.cli.output._fingerprint_file import fingerprint_at, fingerprint_file
+from shaftprint.cli.output._json import give
+from shaftprint.store._add import add
+from shaftprint.store._nouns import Added
+from shaftprint.store._stated import Stated
 
 SHOWN_HASH = 12
 

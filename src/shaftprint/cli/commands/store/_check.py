@@ -5,8 +5,9 @@ import click
 from shaftprint.cli._store_options import opened_store, store_option
 from shaftprint.cli._store_tables import DAMAGED
 from shaftprint.cli._terminal import answer, print_document, print_findings
-from shaftprint.cli.output import give, no_progress_option, progress
-from shaftprint.store import check
+from shaftprint.cli.output._json import give
+from shaftprint.cli.output._progress import no_progress_option, progress
+from shaftprint.store._check import check
 
 
 @click.command("check")

@@ -7,8 +7,9 @@ import click
 from shaftprint.cli._dates import zone_option
 from shaftprint.cli._store_options import instant, moment_option, opened_store, store_option
 from shaftprint.cli._terminal import answer
-from shaftprint.cli.output import give
-from shaftprint.store import KINDS, record_event, withdraw_event
+from shaftprint.cli.output._json import give
+from shaftprint.store._event import record_event, withdraw_event
+from shaftprint.store._nouns import KINDS
 from shaftprint.zones import utc_text
 
 

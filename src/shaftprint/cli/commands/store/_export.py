@@ -7,8 +7,9 @@ import click
 from shaftprint.cli._store_options import opened_store, store_option
 from shaftprint.cli._store_tables import DAMAGED, print_damage
 from shaftprint.cli._terminal import answer
-from shaftprint.cli.output import expect_free
-from shaftprint.store import Fault, export_store
+from shaftprint.cli.output._file_to_write import expect_free
+from shaftprint.store._export import export_store
+from shaftprint.store._nouns import Fault
 
 
 @click.command("export")

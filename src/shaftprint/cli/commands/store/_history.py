@@ -14,8 +14,9 @@ from shaftprint.cli._store_tables import (
     test_table,
 )
 from shaftprint.cli._terminal import answer
-from shaftprint.cli.output import give, print_tables
-from shaftprint.store import history
+from shaftprint.cli.output._json import give
+from shaftprint.cli.output._tables import print_tables
+from shaftprint.store._history import history
 
 
 @click.command("history")

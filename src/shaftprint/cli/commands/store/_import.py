@@ -6,8 +6,8 @@ import click
 
 from shaftprint.cli._store_options import opened_store, store_option
 from shaftprint.cli._terminal import answer
-from shaftprint.cli.output import give
-from shaftprint.store import import_store
+from shaftprint.cli.output._json import give
+from shaftprint.store._import import import_store
 
 
 @click.command("import")

@@ -7,8 +7,9 @@ import click
 from shaftprint.cli._store_options import opened_store, shown_zone_option, store_option
 from shaftprint.cli._store_tables import line_table
 from shaftprint.cli._terminal import answer
-from shaftprint.cli.output import give, print_tables
-from shaftprint.store import newest
+from shaftprint.cli.output._json import give
+from shaftprint.cli.output._tables import print_tables
+from shaftprint.store._history import newest
 
 
 @click.command("list")

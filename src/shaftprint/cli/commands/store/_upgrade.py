@@ -4,7 +4,7 @@ import click
 
 from shaftprint.cli._store_options import store_option
 from shaftprint.cli._terminal import answer
-from shaftprint.store import upgrade_store
+from shaftprint.store._store import upgrade_store
 
 
 @click.command("upgrade")

@@ -16,12 +16,13 @@ from shaftprint.errors import RecordingError
 from shaftprint.recording._channel import Channel, Times
 from shaftprint.recording._recording import Recording, sha256_of
 from shaftprint.recording._spool import Spool
-from shaftprint.recording.readers import _uff, can
+from shaftprint.recording.readers import _uff
 from shaftprint.recording.readers._clock import SampleClock, clock_of_times, on_clock
 from shaftprint.recording.readers._gather import reasons_in_words
 from shaftprint.recording.readers._hints import rate_hint
 from shaftprint.recording.readers._packed import CANNOT_BE_UNPACKED, damaged_gzip, first_bytes, open_unpacked
 from shaftprint.recording.readers._time_scale import TimeScale, expect_time_unit, time_scale
+from shaftprint.recording.readers.can._log import begins_as_log
 from shaftprint.recording.readers.csv._dates import dates, has_offset, is_date
 from shaftprint.recording.readers.csv._edge_list import edge_channels
 from shaftprint.recording.readers.csv._header import Header, looks_like_a_table, read_header
@@ -56,7 +57,7 @@ def is_mine(path: Path) -> bool:
     if begin is None:
         # too damaged to tell: the name decides
         return name.suffix.lower() in _ENDINGS
-    if begin.startswith((_LABVIEW, _JSON)) or can.begins_as_log(path, begin) or _uff.is_mine(path):
+    if begin.startswith((_LABVIEW, _JSON)) or begins_as_log(path, begin) or _uff.is_mine(path):
         return False
     # a logger that lost its supply leaves NUL bytes behind its rows
     if b"\0" in begin.rstrip(b"\0") and not begin.startswith((*_UTF_16, *_UTF_32)):

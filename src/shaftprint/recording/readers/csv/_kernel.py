@@ -5,7 +5,7 @@ What is unusual in a field is left to Python, and whether a row has as many fiel
 
 import numpy as np
 
-from shaftprint.kernels import compiled
+from shaftprint.kernels._compiled import compiled
 from shaftprint.recording.readers.csv._fields import OVERLOAD
 
 SKIP, AS_TEXT = -1, -2

@@ -15,7 +15,7 @@ from shaftprint.recording.readers._hints import rate_hint
 from shaftprint.recording.readers._opened import Opened
 from shaftprint.recording.readers._time_scale import expect_time_unit
 from shaftprint.recording.readers._vectors import Vector
-from shaftprint.recording.readers.hdf5_files import CANNOT_BE_OPENED, expect_storage, open_hdf5
+from shaftprint.recording.readers.hdf5_files._open import CANNOT_BE_OPENED, expect_storage, open_hdf5
 from shaftprint.recording.readers.matlab._objects import keep_objects
 from shaftprint.recording.readers.matlab._variables import (
     MatVariables,

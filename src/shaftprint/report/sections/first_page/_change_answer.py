@@ -2,15 +2,16 @@
 
 from typing import TYPE_CHECKING
 
-from shaftprint.drift import differ, finding_sentences
-from shaftprint.report.comparison import differences
-from shaftprint.report.figures import in_percent
+from shaftprint.digits import plain
+from shaftprint.drift._differ import differ
+from shaftprint.drift._words import finding_sentences
+from shaftprint.report.comparison._differences import differences
+from shaftprint.report.figures._differences import in_percent
 from shaftprint.report.sections._cover import Card
-from shaftprint.tables import plain
 
 if TYPE_CHECKING:
-    from shaftprint.fingerprint import Fingerprint
-    from shaftprint.report.comparison import Difference
+    from shaftprint.fingerprint._fingerprint import Fingerprint
+    from shaftprint.report.comparison._differences import Difference
 
 MOST_NAMED = 3
 WORDS = {

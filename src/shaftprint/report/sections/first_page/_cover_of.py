@@ -3,18 +3,19 @@
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from shaftprint.digits import plain, unit_text
 from shaftprint.report.sections._cover import Cover, overall
 from shaftprint.report.sections.first_page._change_answer import change_answer
 from shaftprint.report.sections.first_page._line_answers import hunting, inertia, other_contradictions, propeller
 from shaftprint.report.sections.first_page._line_sketch import line_sketch
 from shaftprint.report.sections.first_page._number_table import number_table
 from shaftprint.report.sections.first_page._test_answers import gauge, measured, predicts, usable
-from shaftprint.tables import plain, ship_text, tested_text, unit_text, water_facts
+from shaftprint.tables._conditions import ship_text, tested_text, water_facts
 
 if TYPE_CHECKING:
-    from shaftprint.fingerprint import Fingerprint
-    from shaftprint.validation import Validation
-    from shaftprint.vessel import Vessel
+    from shaftprint.fingerprint._fingerprint import Fingerprint
+    from shaftprint.validation._validation import Validation
+    from shaftprint.vessel._vessel import Vessel
 
 
 def cover_of(

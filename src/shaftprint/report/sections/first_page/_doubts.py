@@ -3,7 +3,8 @@
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from shaftprint.fingerprint import Fingerprint, Quantity
+    from shaftprint.fingerprint._fingerprint import Fingerprint
+    from shaftprint.fingerprint._quantity import Quantity
 
 # A number may differ from the expected one by so many standard deviations of both before anyone should look, and act.
 FAR, TOO_FAR = 2.0, 3.5

@@ -2,13 +2,15 @@
 
 from typing import TYPE_CHECKING
 
+from shaftprint.digits import plain, unit_text, with_deviation
 from shaftprint.report.sections._cover import Card, State
 from shaftprint.report.sections.first_page._doubts import FAR, TOO_FAR, deviations_apart, doubt_of, is_off
 from shaftprint.report.sections.first_page._number_table import expected_shown, shown
-from shaftprint.tables import expected_text, plain, unit_text, with_deviation
+from shaftprint.tables._fingerprint import expected_text
 
 if TYPE_CHECKING:
-    from shaftprint.fingerprint import Fingerprint, Quantity
+    from shaftprint.fingerprint._fingerprint import Fingerprint
+    from shaftprint.fingerprint._quantity import Quantity
 
 PERCENT = 100.0
 SAME_PERCENT = 0.5

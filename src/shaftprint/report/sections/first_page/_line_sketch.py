@@ -2,11 +2,11 @@
 
 from typing import TYPE_CHECKING
 
+from shaftprint.digits import plain, rounded
 from shaftprint.report.sections._sketch import Label, Outline, Sketch, box
-from shaftprint.tables import plain, rounded
 
 if TYPE_CHECKING:
-    from shaftprint.vessel import Vessel
+    from shaftprint.vessel._vessel import Vessel
 
 SHAFT = 92.0
 ENGINE_SHAFT, PROPELLER_SHAFT = 288.0, 515.0

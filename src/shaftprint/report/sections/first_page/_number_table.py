@@ -3,12 +3,15 @@
 import math
 from typing import TYPE_CHECKING
 
+from shaftprint.digits import plain, unit_text
+from shaftprint.plain_table import Table, numbers, texts
 from shaftprint.report.sections.first_page._doubts import doubt_of, is_off
-from shaftprint.tables import Table, expected_text, limits, numbers, plain, texts, unit_text
+from shaftprint.tables._fingerprint import expected_text, limits
 from shaftprint.units import MILLI
 
 if TYPE_CHECKING:
-    from shaftprint.fingerprint import Fingerprint, Quantity
+    from shaftprint.fingerprint._fingerprint import Fingerprint
+    from shaftprint.fingerprint._quantity import Quantity
 
 NUMBERS = (
     ("I_dn", "Inertia behind the torque gauge: propeller, shaft, entrained water"),

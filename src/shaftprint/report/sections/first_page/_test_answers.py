@@ -3,16 +3,16 @@
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from shaftprint.catalogue import ShipRole
+from shaftprint.catalogue._roles import ShipRole
+from shaftprint.digits import plain, with_deviation
 from shaftprint.distributions import NORMAL_95
-from shaftprint.fingerprint import GAUGE_ZERO
+from shaftprint.fingerprint._physical import GAUGE_ZERO
 from shaftprint.report.sections._cover import Card, State
 from shaftprint.report.sections.first_page._reason_words import words_of
-from shaftprint.tables import plain, with_deviation
 
 if TYPE_CHECKING:
-    from shaftprint.fingerprint import Fingerprint
-    from shaftprint.validation import Validation
+    from shaftprint.fingerprint._fingerprint import Fingerprint
+    from shaftprint.validation._validation import Validation
 
 # Zero of the torque gauge that is common, as a share of the torque [%]: 0.5 to 1 % of full scale, taken at half load.
 COMMON_ZERO = 2.0

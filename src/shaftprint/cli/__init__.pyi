@@ -1,0 +1,5 @@
+from ._main import shaftprint
+
+__all__ = [
+    "shaftprint",
+]

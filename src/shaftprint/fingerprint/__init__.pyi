@@ -1,0 +1,29 @@
+from ._clock_influence import ClockInfluence
+from ._conditions import WATER, ShipIdentity
+from ._drive_fingerprint import read_drive_fingerprint
+from ._fingerprint import Fingerprint, SourceFile
+from ._inertia import inertia_beside
+from ._json_file import parse_fingerprint, read_fingerprint, write_fingerprint
+from ._model import named_structure
+from ._physical import physical_quantities
+from ._quantity import Quantity
+from ._take import take_fingerprint
+from ._vessel_fields import vessel_fields
+
+__all__ = [
+    "WATER",
+    "ClockInfluence",
+    "Fingerprint",
+    "Quantity",
+    "ShipIdentity",
+    "SourceFile",
+    "inertia_beside",
+    "named_structure",
+    "parse_fingerprint",
+    "physical_quantities",
+    "read_drive_fingerprint",
+    "read_fingerprint",
+    "take_fingerprint",
+    "vessel_fields",
+    "write_fingerprint",
+]

@@ -1,0 +1,34 @@
+from ._both_shafts import load_trials_of_both, run_both
+from ._expected_of_ship import expected_of_ship
+from ._fits import fit, priors_of
+from ._legs import leg_tests
+from ._legs_apart import legs_alone
+from ._limits import with_limits
+from ._measurement import Measurement, measure
+from ._of_vessel import default_structure, of_vessel
+from ._survey import Survey, run, survey_of
+from ._thesis_mode import ThesisMode
+from ._thesis_way import GAUGE
+from ._trial import Trial, load_trial
+
+__all__ = [
+    "GAUGE",
+    "Measurement",
+    "Survey",
+    "ThesisMode",
+    "Trial",
+    "default_structure",
+    "expected_of_ship",
+    "fit",
+    "leg_tests",
+    "legs_alone",
+    "load_trial",
+    "load_trials_of_both",
+    "measure",
+    "of_vessel",
+    "priors_of",
+    "run",
+    "run_both",
+    "survey_of",
+    "with_limits",
+]

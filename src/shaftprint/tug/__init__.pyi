@@ -1,0 +1,32 @@
+from ._coupling import Coupling
+from ._ideal import simulate_signals
+from ._like_stan_tug import like_stan_tug_1205
+from ._linearise import linearised_response
+from ._noise import Noise
+from ._sail import sail
+from ._sailing import Sailing
+from ._simulated_fleet import SimulatedFleet, Tolerances
+from ._truth import Truth, normalised_truth, read_truth, truth_path
+from ._tug import Tug
+from .plant._physics import build_plant
+from .plant._plant import derivatives, governor_rack
+
+__all__ = [
+    "Coupling",
+    "Noise",
+    "Sailing",
+    "SimulatedFleet",
+    "Tolerances",
+    "Truth",
+    "Tug",
+    "build_plant",
+    "derivatives",
+    "governor_rack",
+    "like_stan_tug_1205",
+    "linearised_response",
+    "normalised_truth",
+    "read_truth",
+    "sail",
+    "simulate_signals",
+    "truth_path",
+]

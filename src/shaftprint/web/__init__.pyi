@@ -1,0 +1,18 @@
+from ._server import serve
+from ._settings import Listen, Serving, listen_at
+from .access._password import LONGEST, SHORTEST, hashed
+from .access._person import Person
+from .access._users import ROLES, with_user
+
+__all__ = [
+    "LONGEST",
+    "ROLES",
+    "SHORTEST",
+    "Listen",
+    "Person",
+    "Serving",
+    "hashed",
+    "listen_at",
+    "serve",
+    "with_user",
+]
