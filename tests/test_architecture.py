@@ -47,7 +47,7 @@ def test_import_contract_is_kept():
 @pytest.mark.parametrize("name", ["identify", "models", "spectra"])
 def test_fits_need_numpy_only(name):
     heavy = {"scipy", "numba", "pydantic", "matplotlib", "h5py", "h5netcdf", "pandas", "click", "rich", "jinja2"}
-    code = f"import sys, shaftprint.{name}; print(*sorted({heavy!r} & set(sys.modules)))"
+    code = f"import sys; from shaftprint.{name} import *; print(*sorted({heavy!r} & set(sys.modules)))"
     found = run(sys.executable, "-c", code)
     assert found.returncode == 0, found.stderr
     assert found.stdout.split() == []
@@ -71,19 +71,40 @@ def test_imports_stand_at_the_top():
     assert [found for path in FILES for found in function_level_imports(path)] == []
 
 
-def imports_past_a_door(path):
-    """Imports of a file that starts with ``_`` from outside its own room or folder."""
-    here = ("shaftprint", *path.relative_to(SOURCE).parent.parts)
+def imported_from(path):
+    """Line and module of each ``from module import``, and the names that it takes."""
     for node in ast.walk(tree_of(path)):
-        if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("shaftprint."):
-            parts = node.module.split(".")
-            home = next((parts[:i] for i, part in enumerate(parts) if part.startswith("_")), [])
-            if here[: len(home)] != tuple(home):
-                yield f"{path.relative_to(SOURCE)}:{node.lineno} {node.module}"
+        if isinstance(node, ast.ImportFrom):
+            yield node.lineno, node.module or "", [alias.name for alias in node.names]
 
 
-def test_rooms_are_entered_by_their_door():
-    assert [found for path in FILES for found in imports_past_a_door(path)] == []
+def is_file_of(folder, name):
+    return (folder / f"{name}.py").exists() or (folder / name).is_dir()
+
+
+def test_inside_the_package_modules_import_each_other_by_file():
+    """What a room's door names is loaded when it is asked for; whoever went through it inside would hide a cycle."""
+    doors = {f"shaftprint.{name}": SOURCE / name for name in ROOMS if "/" not in name}
+    found = [
+        f"{path.relative_to(SOURCE)}:{line} {module}"
+        for path in FILES
+        for line, module, names in imported_from(path)
+        if module in doors and not all(is_file_of(doors[module], name) for name in names)
+    ]
+    assert found == []
+
+
+def test_what_people_read_comes_in_by_the_doors():
+    """Pages, tutorials and examples, which are run by other tests, name no file of a room."""
+    read = [ROOT / "README.md", *(ROOT / "docs").rglob("*.md"), *(ROOT / "examples").rglob("*")]
+    texts = {path: path.read_text(encoding="utf-8") for path in read if path.suffix in {".md", ".py", ".ipynb"}}
+    found = [
+        f"{path.relative_to(ROOT)}: {name}"
+        for path, text in texts.items()
+        for name in re.findall(r"(?:from|import) (shaftprint\.[\w.]*\b_\w+)", text)
+    ]
+    assert len(texts) > 100
+    assert found == []
 
 
 # ---- names and descriptions ----
@@ -98,14 +119,25 @@ def public_names(module):
     }
 
 
+# What a user must be able to hold: the names that pages and examples use.
+MOST_NAMES_ON_DOORS = 450
+
+
+def test_all_that_a_door_names_is_there():
+    doors = {name: getattr(room(name), "__all__", ()) for name in ROOMS if "/" not in name}
+    for name, names in doors.items():
+        assert len(set(names)) == len(names)
+        assert [public for public in names if not hasattr(room(name), public)] == []
+    assert 300 < sum(map(len, doors.values())) <= MOST_NAMES_ON_DOORS
+
+
 @pytest.mark.parametrize("name", ROOMS)
-def test_all_of_a_room_is_its_public_names(name):
-    module = room(name)
-    if not hasattr(module, "__all__"):
-        assert public_names(module) == set()
-        return
-    assert len(set(module.__all__)) == len(module.__all__)
-    assert set(module.__all__) == public_names(module)
+def test_folders_inside_a_room_have_no_door(name):
+    """But one whose packages only some users have, which is loaded when a store is opened."""
+    tree = ast.parse((SOURCE / name / "__init__.py").read_text(encoding="utf-8"))
+    assert ast.get_docstring(tree)
+    if "/" in name and name != "store/database":
+        assert len(tree.body) == 1
 
 
 def described(value):
@@ -115,23 +147,35 @@ def described(value):
     return bool(text) and not made_up
 
 
-@pytest.mark.parametrize("name", [*ROOMS, *LEAVES])
+@pytest.mark.parametrize("name", [*(name for name in ROOMS if "/" not in name), *LEAVES])
 def test_public_things_are_described(name):
     module = room(name)
     assert module.__doc__
     for public in getattr(module, "__all__", sorted(public_names(module))):
         value = getattr(module, public)
-        if not (inspect.isclass(value) or inspect.isfunction(value)):
-            continue
-        if not value.__module__.startswith("shaftprint"):
-            continue
-        assert described(value), f"{name}.{public} has no docstring"
-        if inspect.isclass(value):
-            # models are built when they are first used
-            for member, inner in [*vars(value).items()]:
-                function = inner.fget if isinstance(inner, property) else getattr(inner, "__func__", inner)
-                if not member.startswith("_") and inspect.isfunction(function):
-                    assert inspect.getdoc(getattr(value, member)), f"{name}.{public}.{member} has no docstring"
+        if (inspect.isclass(value) or inspect.isfunction(value)) and value.__module__.startswith("shaftprint"):
+            assert described(value), f"{name}.{public} has no docstring"
+
+
+def test_what_files_share_is_described():
+    """Functions and classes without ``_``, and their methods: files of other rooms may use them."""
+    functions = ast.FunctionDef | ast.AsyncFunctionDef
+    found = []
+    for path in FILES:
+        members = [node for node in tree_of(path).body if isinstance(node, functions | ast.ClassDef)]
+        members += [
+            member
+            for node in members
+            if isinstance(node, ast.ClassDef) and not node.name.startswith("_")
+            for member in node.body
+            if isinstance(member, functions)
+        ]
+        found += [
+            f"{path.relative_to(SOURCE)}:{node.lineno} {node.name}"
+            for node in members
+            if not node.name.startswith("_") and not ast.get_docstring(node)
+        ]
+    assert found == []
 
 
 @pytest.mark.parametrize("name", [n for n in ROOMS if n not in {"cli"}])

@@ -144,7 +144,7 @@ def test_the_campaign_of_the_page_on_both_shafts_is_one():
 
 
 def test_the_users_of_the_page_on_the_server_can_be_read(tmp_path):
-    access = pytest.importorskip("shaftprint.web.access")
+    access = pytest.importorskip("shaftprint.web.access._users")
     ((_, text),) = (block for block in blocks("docs/serve.md") if block[0] == "toml")
     hashed = access.hashed("twelve letters")
     (tmp_path / "users.toml").write_text(text.replace("$argon2id$...", hashed), encoding="utf-8")

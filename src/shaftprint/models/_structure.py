@@ -380,8 +380,7 @@ class Structure(Shown):
         chained: dict[str, RealOrComplexArray | float] = dict(self.factors)
         for name, factor in (factors or {}).items():
             if name in columns:
-                # blocks calculate with complex values alike
-                columns[name] = cast("FloatArray", columns[name] * factor)
+                columns[name] = cast("FloatArray", columns[name] * factor)  # blocks take complex values alike
                 chained[name] = chained[name] * factor if name in chained else factor
         independent = {name: table[..., column : column + 1] for column, name in enumerate(self.names)}
         ties = [tie for tie in self.ties if any(argument in names for argument in tie.arguments)]

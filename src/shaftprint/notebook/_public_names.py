@@ -31,7 +31,7 @@ def closest_names(name: str) -> tuple[str, ...]:
 
 def _public_names() -> Iterator[tuple[str, str]]:
     """Yield room and name of everything that stands at a room's door."""
-    for door in sorted(Path(__file__).parents[1].glob("*/__init__.py")):
+    for door in sorted(Path(__file__).parents[1].glob("*/__init__.pyi")):
         if door.parent.name == OF_THE_PROGRAM:
             continue
         for node in ast.parse(door.read_text(encoding="utf-8")).body:
