@@ -33,13 +33,7 @@ from shaftprint.identify.likelihood._known import PRIOR_OF_G
 from shaftprint.models import margins
 from shaftprint.survey import Trial, fit, load_trial, measure, priors_of
 from shaftprint.survey._survey import fingerprint_of
-from shaftprint.tug import (
-    Noise,
-    Truth,
-    Tug,
-    normalised_truth,
-    sail,
-)
+from shaftprint.tug import Noise, Truth, Tug, normalised_truth, sail
 from shaftprint.vessel import Vessel
 
 DOCUMENT = ROOT / "docs" / "monte-carlo.md"

@@ -27,14 +27,7 @@ from benchmarks.monte_carlo_tables import table, write_between_marks
 from benchmarks.planned_tests import CLOSED, OFFSET_V, SLOPE_RPM_PER_V, TRUTH, VESSEL
 from benchmarks.planned_tests_tables import ABSOLUTE
 from shaftprint.campaign import Campaign, load_campaign
-from shaftprint.design import (
-    Plan,
-    assumed_ship,
-    campaign_of,
-    design_campaign,
-    limits_from_vessel,
-    no_worse_than,
-)
+from shaftprint.design import Plan, assumed_ship, campaign_of, design_campaign, limits_from_vessel, no_worse_than
 from shaftprint.distributions import NORMAL_95
 from shaftprint.errors import ShaftprintError
 from shaftprint.identify import (

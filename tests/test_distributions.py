@@ -7,14 +7,7 @@ import pytest
 import scipy.special
 import scipy.stats
 
-from shaftprint.distributions import (
-    NORMAL_95,
-    chi_square_quantile,
-    chi_square_tail,
-    deviations,
-    f_tail,
-    normal_cdf,
-)
+from shaftprint.distributions import NORMAL_95, chi_square_quantile, chi_square_tail, deviations, f_tail, normal_cdf
 
 # ---- normal and Student's t ----
 

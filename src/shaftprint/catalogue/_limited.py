@@ -18,18 +18,7 @@ from collections.abc import Callable, Mapping
 from typing import Any, TypeAlias
 
 from shaftprint.catalogue._actuation import ENGINE, MOTOR, Actuation
-from shaftprint.catalogue._gauge import (
-    C_SET,
-    K_Q,
-    T_AVERAGE,
-    T_FILTER,
-    T_GAUGE,
-    T_HOLD,
-    T_PICKUP,
-    T_SP,
-    TAU_DN,
-    TAU_UP,
-)
+from shaftprint.catalogue._gauge import C_SET, K_Q, T_AVERAGE, T_FILTER, T_GAUGE, T_HOLD, T_PICKUP, T_SP, TAU_DN, TAU_UP
 from shaftprint.errors import StructureError
 from shaftprint.models._blocks import FirstOrderLag, Gain
 from shaftprint.models._delays import AveragingSensor, Delay

@@ -17,17 +17,7 @@ places on the grid of the simulation. Speed and torque are given ``AHEAD_S`` ear
 from collections.abc import Mapping
 from typing import Any
 
-from shaftprint.catalogue._gauge import (
-    C_SET,
-    GAUGE_K_I,
-    GAUGE_K_P,
-    GAUGE_OMEGA_N,
-    GAUGE_ZETA,
-    T_D,
-    T_SP,
-    V_ONE,
-    G,
-)
+from shaftprint.catalogue._gauge import C_SET, GAUGE_K_I, GAUGE_K_P, GAUGE_OMEGA_N, GAUGE_ZETA, T_D, T_SP, V_ONE, G
 from shaftprint.catalogue._limited import (
     A_0,
     D_E,

@@ -4,14 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
-from shaftprint.cli._fleet_demo import (
-    CLASS,
-    FOULING_PER_YEAR,
-    INJECTION_PER_YEAR,
-    PROPORTIONAL,
-    RETUNED,
-    WORN,
-)
+from shaftprint.cli._fleet_demo import CLASS, FOULING_PER_YEAR, INJECTION_PER_YEAR, PROPORTIONAL, RETUNED, WORN
 from shaftprint.cli._terminal import answer, echo, say
 from shaftprint.drift._class_numbers import sister_of
 from shaftprint.drift._history import history_of

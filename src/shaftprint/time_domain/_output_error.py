@@ -18,13 +18,7 @@ from shaftprint.identify.likelihood._line_test import LineTest
 from shaftprint.identify.likelihood._term import Repeats, TermTest, WhitenedTerm
 from shaftprint.time_domain._assumed import shortened
 from shaftprint.time_domain._flexible_model import FlexibleModel
-from shaftprint.time_domain._initial_states import (
-    InitialStates,
-    best_states,
-    effects_of,
-    spread_of,
-    state_estimates,
-)
+from shaftprint.time_domain._initial_states import InitialStates, best_states, effects_of, spread_of, state_estimates
 from shaftprint.time_domain._input_response import excited
 from shaftprint.time_domain._moving_load import load_columns, with_quadratic_torque, without_quadratic_torque
 from shaftprint.time_domain._noise_model import LONGEST_S

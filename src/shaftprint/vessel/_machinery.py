@@ -8,14 +8,7 @@ from typing import Annotated, ClassVar, Literal, Self
 import numpy as np
 from pydantic import Field, model_validator
 
-from shaftprint.settings import (
-    Name,
-    NotNegativeNumber,
-    Number,
-    PositiveInteger,
-    PositiveNumber,
-    Settings,
-)
+from shaftprint.settings import Name, NotNegativeNumber, Number, PositiveInteger, PositiveNumber, Settings
 from shaftprint.units import rev_s_from_rpm
 from shaftprint.vessel._usual import PITCH_STD
 

@@ -9,14 +9,7 @@ from numpy.typing import ArrayLike
 from pydantic import Field, model_validator
 
 from shaftprint.arrays import FloatArray
-from shaftprint.settings import (
-    Name,
-    NotNegativeNumber,
-    Number,
-    PositiveInteger,
-    PositiveNumber,
-    Settings,
-)
+from shaftprint.settings import Name, NotNegativeNumber, Number, PositiveInteger, PositiveNumber, Settings
 from shaftprint.units import ANGLES_REV, M_S_PER_KNOT, REV_S_PER_UNIT
 from shaftprint.vessel._machine_torque import MachineTorqueSensor
 from shaftprint.vessel._machinery import Machine

@@ -6,15 +6,7 @@ import numpy as np
 import pytest
 
 from shaftprint.catalogue import structure
-from shaftprint.design import (
-    Effort,
-    PlannedTest,
-    SetPointLine,
-    Wish,
-    assumed_ship,
-    design_campaign,
-    limits_from_vessel,
-)
+from shaftprint.design import Effort, PlannedTest, SetPointLine, Wish, assumed_ship, design_campaign, limits_from_vessel
 from shaftprint.identify import STAN_TUG_NOISE
 from shaftprint.report.plan._plan_page import render_plan
 from shaftprint.vessel import load_vessel

@@ -12,14 +12,7 @@ from typing import cast
 import numpy as np
 from numpy.typing import ArrayLike
 
-from shaftprint.arrays import (
-    BoolArray,
-    ComplexArray,
-    FloatArray,
-    IntArray,
-    frozen_bool,
-    frozen_float,
-)
+from shaftprint.arrays import BoolArray, ComplexArray, FloatArray, IntArray, frozen_bool, frozen_float
 from shaftprint.errors import IdentificationError
 from shaftprint.identify.fit._identification import Identification
 from shaftprint.identify.likelihood._experiment import Experiment, ResponseRepeats

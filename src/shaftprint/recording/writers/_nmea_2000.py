@@ -16,13 +16,7 @@ from shaftprint.recording.readers.can._frames import pgn_of
 from shaftprint.recording.readers.can._known import KNOWN
 from shaftprint.recording.readers.can._messages import Signal
 from shaftprint.recording.writers._bus_log import write_bus_log
-from shaftprint.recording.writers._bus_messages import (
-    Sent,
-    counts_of,
-    names_in_messages,
-    none_of,
-    rounding_of,
-)
+from shaftprint.recording.writers._bus_messages import Sent, counts_of, names_in_messages, none_of, rounding_of
 from shaftprint.recording.writers._can_log import losses_of, own_message
 
 _PRIORITY, _SENDER = 2, 0x0A

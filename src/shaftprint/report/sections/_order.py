@@ -12,12 +12,7 @@ from shaftprint.report.sections._models import (
     thesis_section,
 )
 from shaftprint.report.sections._quality import quality_section
-from shaftprint.report.sections._results import (
-    fit_section,
-    parameter_section,
-    stability_section,
-    summary_section,
-)
+from shaftprint.report.sections._results import fit_section, parameter_section, stability_section, summary_section
 from shaftprint.report.sections._search import comparison_section, search_section
 from shaftprint.report.sections._sections import Inputs, Section
 from shaftprint.report.sections._uncertainty import uncertainty_section

@@ -14,12 +14,7 @@ from shaftprint.campaign._campaign import Campaign
 from shaftprint.campaign._setpoint import setpoint
 from shaftprint.errors import SignalError
 from shaftprint.signals.description._course import Course, course_of, runs
-from shaftprint.signals.description._excitations import (
-    multisine_fields,
-    register_fields,
-    stairs_fields,
-    wave_fields,
-)
+from shaftprint.signals.description._excitations import multisine_fields, register_fields, stairs_fields, wave_fields
 from shaftprint.signals.description._holds_of import SHORTEST_DWELL_S, holds_of, is_level, stairs_of, with_one_dwell
 from shaftprint.signals.description._parse import Unexplained, pieces_of, with_exact_borders
 from shaftprint.signals.description._pieces import Piece, Repeated, Stairs, Straight, Wave

@@ -4,13 +4,7 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from shaftprint.recording.readers.csv._fields import (
-    DELIMITERS,
-    GAP,
-    TEXT,
-    kinds_of,
-    split_row,
-)
+from shaftprint.recording.readers.csv._fields import DELIMITERS, GAP, TEXT, kinds_of, split_row
 
 # Words in a row speak against a delimiter: a decimal comma taken for one leaves some.
 _WORDS = 0.5
