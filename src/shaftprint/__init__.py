@@ -93,6 +93,7 @@ _INNER_ROOMS = (
     "plain_table",
     "publication",
     "reasons",
+    "records",
     "sender_cycle",
     "spelling",
     "zones",

@@ -30,6 +30,7 @@ from shaftprint import propeller as propeller
 from shaftprint import publication as publication
 from shaftprint import reasons as reasons
 from shaftprint import recording as recording
+from shaftprint import records as records
 from shaftprint import rehearsal as rehearsal
 from shaftprint import report as report
 from shaftprint import sender_cycle as sender_cycle

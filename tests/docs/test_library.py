@@ -20,7 +20,7 @@ LIBRARY = (ROOT / "docs" / "library.md").read_text(encoding="utf-8")
 # what the rooms are made with: given, but not offered to who completes a name in a session
 INNER = {
     *("arguments", "arrays", "digits", "distributions", "escape", "files"),
-    *("kernels", "markup", "memory", "normalisation", "notebook", "plain_table", "publication", "reasons"),
+    *("kernels", "markup", "memory", "normalisation", "notebook", "plain_table", "publication", "reasons", "records"),
     "sender_cycle",
     *("spelling", "zones"),
 }

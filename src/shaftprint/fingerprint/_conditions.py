@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from pydantic import FiniteFloat
 
-from shaftprint.fingerprint._quantity import FrozenRecord, Quantity
+from shaftprint.fingerprint._quantity import Quantity
+from shaftprint.records import Record
 from shaftprint.vessel._ship import ImoNumber, ShortName
 
 if TYPE_CHECKING:
@@ -18,7 +19,7 @@ WATER = ("draught_m", "trim_m", "water_temperature_c", "water_density_kg_m3", "d
 """What is stated of ship and water at a test; no recording shows it."""
 
 
-class ShipIdentity(FrozenRecord):
+class ShipIdentity(Record):
     """Which ship and which of its shaft lines was tested."""
 
     name: ShortName
@@ -31,7 +32,7 @@ class ShipIdentity(FrozenRecord):
     """The shaft line, such as ``port``."""
 
 
-class Conditions(FrozenRecord):
+class Conditions(Record):
     """Under which conditions the fingerprint holds."""
 
     vessel: str

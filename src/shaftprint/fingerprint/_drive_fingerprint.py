@@ -14,18 +14,19 @@ from shaftprint.errors import FingerprintError, ShaftprintError
 from shaftprint.files import read_json, write_bytes
 from shaftprint.fingerprint._covariance_check import covariance_fault
 from shaftprint.fingerprint._fingerprint import SourceFile
-from shaftprint.fingerprint._quantity import Deviation, FrozenRecord, Quantity
+from shaftprint.fingerprint._quantity import Deviation, Quantity
 from shaftprint.identify.judgement._verdict import Verdict
 from shaftprint.identify.likelihood._prior import Prior
 from shaftprint.notebook._shown import Shown
 from shaftprint.notebook._summary import Summary, shortened
 from shaftprint.publication._publish import complete
+from shaftprint.records import Record, faults
 
 DRIVE_SCHEMA: Final = "drive 1.2"
 """Version of the layout of a drive's fingerprint."""
 
 
-class NoiseOfRecord(FrozenRecord):
+class NoiseOfRecord(Record):
     """The colour of the noise of a record: a vector autoregression, outputs in the order of the fingerprint."""
 
     coefficients: tuple[tuple[tuple[float, ...], ...], ...]
@@ -34,7 +35,7 @@ class NoiseOfRecord(FrozenRecord):
     """Covariance of what comes anew with each sample, shape (outputs, outputs)."""
 
 
-class DriveRecord(FrozenRecord):
+class DriveRecord(Record):
     """How well one record is explained."""
 
     name: str
@@ -67,7 +68,7 @@ class DriveRecord(FrozenRecord):
         return self.recording == recording and self.from_s < to_s and from_s < self.to_s
 
 
-class DriveResponse(FrozenRecord):
+class DriveResponse(Record):
     """How well one frequency response is explained."""
 
     name: str
@@ -84,7 +85,7 @@ class DriveResponse(FrozenRecord):
     """FitPercent that the stated deviations allow."""
 
 
-class DriveFingerprint(Shown, FrozenRecord):
+class DriveFingerprint(Shown, Record):
     """Parameters of one drive with uncertainty, and how well its records are explained."""
 
     kind: Literal["drive"] = "drive"
@@ -208,8 +209,7 @@ def read_drive_fingerprint(path: str | Path) -> DriveFingerprint:
     try:
         return DriveFingerprint.model_validate_json(text)
     except ValidationError as error:
-        wrong = "; ".join(f"{'.'.join(map(str, e['loc']))}: {e['msg']}" for e in error.errors())
-        raise FingerprintError(f"{json_path} is not a fingerprint of schema {DRIVE_SCHEMA}: {wrong}.") from None
+        raise FingerprintError(f"{json_path} is not a fingerprint of schema {DRIVE_SCHEMA}: {faults(error)}.") from None
     except ShaftprintError as error:
         raise FingerprintError(f"{json_path} is not a fingerprint of schema {DRIVE_SCHEMA}: {error}") from None
 

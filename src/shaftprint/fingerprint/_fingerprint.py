@@ -15,7 +15,7 @@ from shaftprint.fingerprint._joint_numbers import JointNumbers
 from shaftprint.fingerprint._labelled_numbers import labelled_numbers
 from shaftprint.fingerprint._leg_records import LegRecord, NoiseSpectrum
 from shaftprint.fingerprint._line_with_limits import LineWithLimits
-from shaftprint.fingerprint._quantity import FrozenRecord, Quantity
+from shaftprint.fingerprint._quantity import Quantity
 from shaftprint.fingerprint._validation_record import ValidationRecord
 from shaftprint.fingerprint._vessel_fields import FieldValue
 from shaftprint.identify.judgement._verdict import Verdict
@@ -25,12 +25,13 @@ from shaftprint.identify.uncertainty._budget import Budget
 from shaftprint.notebook._labelled import Labelled, LabelledData
 from shaftprint.notebook._shown import Shown
 from shaftprint.notebook._summary import Summary, shortened
+from shaftprint.records import Record
 
 SCHEMA_VERSION: Final = "2.2"
 """Version of the layout: the second number grows with what is added to it, see ``docs/fingerprint-file.md``."""
 
 
-class SourceFile(FrozenRecord):
+class SourceFile(Record):
     """A file that went into the fingerprint."""
 
     role: Literal["recording", "vessel", "campaign", "structure", "drive"]
@@ -41,7 +42,7 @@ class SourceFile(FrozenRecord):
     """SHA-256 of its content."""
 
 
-class Quality(FrozenRecord):
+class Quality(Record):
     """How well the model explains the data, and how good the data were."""
 
     weighting: str
@@ -72,7 +73,7 @@ class Quality(FrozenRecord):
     """What was found on the signals, and on test lines that were fitted all the same."""
 
 
-class Fingerprint(Shown, Labelled, FrozenRecord):
+class Fingerprint(Shown, Labelled, Record):
     """Physical and normalised parameters of one propulsion line with uncertainty, margins and conditions."""
 
     schema_version: Literal["2.2"] = SCHEMA_VERSION

@@ -14,8 +14,8 @@ from pydantic import Field, model_validator
 from shaftprint.arrays import FloatArray
 from shaftprint.fingerprint._covariance_check import covariance_fault
 from shaftprint.fingerprint._physical import GAUGE_ZERO, physical_numbers
-from shaftprint.fingerprint._quantity import FrozenRecord
 from shaftprint.identify.uncertainty._joint import joint_covariance
+from shaftprint.records import Record
 
 if TYPE_CHECKING:
     from shaftprint.identify.fit._identification import Identification
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 OF_THE_TEST = ("gauge zero",)
 
 
-class JointNumbers(FrozenRecord):
+class JointNumbers(Record):
     """Covariance of the numbers that are of the ship, not of its sensors or the load of the day."""
 
     names: tuple[str, ...] = Field(max_length=100)

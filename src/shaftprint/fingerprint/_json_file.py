@@ -15,6 +15,7 @@ from shaftprint.fingerprint._drive_fingerprint import is_of_a_drive
 from shaftprint.fingerprint._earlier_files import of_earlier_schema, of_later_schema, with_roles
 from shaftprint.fingerprint._fingerprint import SCHEMA_VERSION, Fingerprint
 from shaftprint.publication._publish import complete
+from shaftprint.records import faults
 
 _SCHEMA_2 = re.compile(r"2\.([0-9]{1,4})")
 MINOR = int(SCHEMA_VERSION.partition(".")[2])
@@ -101,17 +102,10 @@ def _fingerprint_of(text: str, content: Any, *, named: str) -> Fingerprint:
             return with_roles(of_earlier_schema(text))
         return with_roles(of_later_schema(text) if minor > MINOR else Fingerprint.model_validate_json(text))
     except ValidationError as error:
-        wrong = "; ".join(_described(details["loc"], details["msg"]) for details in error.errors())
-        raise FingerprintError(f"{named} is not a fingerprint of schema {SCHEMA_VERSION}: {wrong}.") from None
+        raise FingerprintError(f"{named} is not a fingerprint of schema {SCHEMA_VERSION}: {faults(error)}.") from None
     except ShaftprintError as error:
         # what other rooms ask of their own nouns, such as a prior
         raise FingerprintError(f"{named} is not a fingerprint of schema {SCHEMA_VERSION}: {error}") from None
-
-
-def _described(field: tuple[int | str, ...], message: str) -> str:
-    """Return an error of a field; one of the whole record names its fields itself."""
-    words = message.removeprefix("Value error, ")
-    return f"{'.'.join(str(part) for part in field)}: {words}" if field else words
 
 
 def _minor_of(content: Any, named: str) -> int | None:

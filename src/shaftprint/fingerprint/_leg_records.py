@@ -6,15 +6,15 @@ from typing import TYPE_CHECKING, Self
 import numpy as np
 from pydantic import Field, FiniteFloat, NonNegativeFloat, PositiveFloat, PositiveInt, model_validator
 
-from shaftprint.fingerprint._quantity import FrozenRecord
 from shaftprint.identify.prediction._noise_levels import NoiseLevels
+from shaftprint.records import Record
 from shaftprint.units import rpm_from_rev_s
 
 if TYPE_CHECKING:
     from shaftprint.signals._working_points import LegState, WorkingPoint
 
 
-class LegRecord(FrozenRecord):
+class LegRecord(Record):
     """One leg of the test: whole periods of several lines about a speed of its own."""
 
     name: str
@@ -36,7 +36,7 @@ class LegRecord(FrozenRecord):
     others."""
 
 
-class NoiseSpectrum(FrozenRecord):
+class NoiseSpectrum(Record):
     """Power spectral densities of the outputs' noise at one engine speed, one-sided, over the values there."""
 
     engine_speed_rpm: PositiveFloat

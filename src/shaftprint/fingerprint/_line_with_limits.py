@@ -13,14 +13,15 @@ from pydantic import Field, FiniteFloat, model_validator
 from shaftprint.catalogue._limited import limited
 from shaftprint.errors import StructureError
 from shaftprint.fingerprint._covariance_check import covariance_fault
-from shaftprint.fingerprint._quantity import Deviation, FrozenRecord, Quantity
+from shaftprint.fingerprint._quantity import Deviation, Quantity
+from shaftprint.records import Record
 
 # More corners than any full-load curve has; the equations of the model grow with them.
 MOST_CORNERS: Final = 200
 LimitName = Literal["torque", "rate", "deadband", "ramp", "smoke"]
 
 
-class LimitNumber(FrozenRecord):
+class LimitNumber(Record):
     """One number of a limit in the units of the ship, as ``limits`` states it."""
 
     limit: str
@@ -58,7 +59,7 @@ FoundBy: TypeAlias = Literal["limits", "joint fit"]
 """Which fit gave a line with its limits."""
 
 
-class LineWithLimits(FrozenRecord):
+class LineWithLimits(Record):
     """Governor, limits, engine, shaft and a propeller that takes the square of the speed, with their values."""
 
     found_by: FoundBy

@@ -3,26 +3,16 @@
 import math
 from typing import Annotated, Final, TypeAlias
 
-from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, PlainSerializer
+from pydantic import AfterValidator, BeforeValidator, PlainSerializer
 
 from shaftprint.catalogue._roles import ROLES
 from shaftprint.distributions import NORMAL_95
 from shaftprint.models._role import Role
-from shaftprint.notebook._shown import field_words
+from shaftprint.records import Record
 
 # An end of the interval further than this share of its width from the end that a standard deviation gives: only the
 # interval is shown.
 ENDS_ALIKE: Final = 0.25
-
-
-class FrozenRecord(BaseModel):
-    """A frozen part of a fingerprint; fields that it does not know are refused."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid", ser_json_inf_nan="strings", strict=False, defer_build=True)
-
-    def __dir__(self) -> list[str]:
-        """Return the words of the field; pydantic's stay out of what a session completes."""
-        return field_words(super().__dir__(), BaseModel)
 
 
 def _not_negative(std: float) -> float:
@@ -57,7 +47,7 @@ NamedRole: TypeAlias = Annotated[
 """A role, in files by its name."""
 
 
-class Quantity(FrozenRecord):
+class Quantity(Record):
     """A number with its unit and uncertainty."""
 
     name: str

@@ -2,12 +2,12 @@
 
 from typing import Literal
 
-from shaftprint.fingerprint._quantity import FrozenRecord
+from shaftprint.records import Record
 
 Outcome = Literal["passes", "fails", "undecided"]
 
 
-class StretchRecord(FrozenRecord):
+class StretchRecord(Record):
     """Model and data in one stretch of a chirp or staircase."""
 
     record: str
@@ -22,7 +22,7 @@ class StretchRecord(FrozenRecord):
     """Its 95 % interval."""
 
 
-class ValidationRecord(FrozenRecord):
+class ValidationRecord(Record):
     """What the model was worth on records that its fit had not seen."""
 
     model: str

@@ -7,14 +7,13 @@ from pydantic import ValidationError
 
 from shaftprint.arguments import refusing_none
 from shaftprint.catalogue._shipped import shipped_structure
-from shaftprint.design.files._from_record import planned_test_of
-from shaftprint.design.files._records import SCHEMA_VERSION, PlanRecord
-from shaftprint.design.files._to_record import record_of
+from shaftprint.design.files._plan_record import SCHEMA_VERSION, PlanRecord, record_of
 from shaftprint.design.planned_test._planned_test import PlannedTest
 from shaftprint.errors import DesignError, ShaftprintError
 from shaftprint.files import read_json, write_bytes
 from shaftprint.models._structure import Structure
 from shaftprint.publication._publish import complete
+from shaftprint.records import faults
 
 PLAN: Final = "plan.json"
 """Name of the file in a folder of ``shaftprint plan``."""
@@ -54,12 +53,10 @@ def read_plan(path: str | Path, *, structure: Structure | None = None) -> Planne
     content = _content(json_path)
     try:
         record = PlanRecord.model_validate_json(content)
-        return planned_test_of(record, _structure(record, structure))
+        return record.planned_test(_structure(record, structure))
     except ValidationError as error:
-        faults = error.errors()
-        wrong = [f"{'.'.join(map(str, one['loc']))}: {one['msg']}" for one in faults[:_MOST_NAMED]]
-        more = f"; and {len(faults) - _MOST_NAMED} more" if len(faults) > _MOST_NAMED else ""
-        raise DesignError(f"{json_path} is not a plan of schema {SCHEMA_VERSION}: {'; '.join(wrong)}{more}.") from None
+        wrong = faults(error, most=_MOST_NAMED)
+        raise DesignError(f"{json_path} is not a plan of schema {SCHEMA_VERSION}: {wrong}.") from None
     except (ValueError, TypeError, KeyError) as error:
         raise DesignError(f"{json_path} is not a plan of schema {SCHEMA_VERSION}: {error}.") from None
     except ShaftprintError as error:

@@ -2,13 +2,18 @@
 
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import ArrayLike
+from pydantic import Field
 
 from shaftprint.arrays import ComplexArray, FloatArray, frozen_complex
+from shaftprint.errors import DesignError
 from shaftprint.notebook._shown import Shown
 from shaftprint.notebook._summary import Summary
+from shaftprint.records import MOST, NotNegativeNumber, PositiveNumber, TwoRows
 
 # Lines weaker than this share of the strongest one of their leg are left out.
 WEAKEST = 1e-3
@@ -18,24 +23,37 @@ WEAKEST = 1e-3
 class Leg(Shown):
     """Whole periods of a sum of sines about a speed of its own."""
 
-    speed_share: float
+    speed_share: PositiveNumber
     """Mean speed over that of the first working point."""
-    level_rpm: float
+    level_rpm: PositiveNumber
     """The same as engine speed [rpm]."""
-    period_s: float
+    period_s: PositiveNumber
     """Period [s]; the lines are multiples of its reciprocal."""
-    harmonics: tuple[int, ...]
+    harmonics: Annotated[tuple[int, ...], Field(max_length=MOST)]
     """Number of periods of each line in one period of the sum, ascending and odd."""
-    amplitudes: ComplexArray
+    amplitudes: TwoRows
     """Complex amplitudes ``c_k`` of the set point over the leg's mean speed, ``Re sum_k c_k exp(j 2 pi h_k t / T)``
     from the start of the first period on, shape (lines,)."""
-    periods: int
+    periods: Annotated[int, Field(gt=0, le=MOST)]
     """Whole periods of the window."""
-    settle_s: float
+    settle_s: NotNegativeNumber
     """Time that the multisine runs before the window begins [s]."""
 
     def __post_init__(self) -> None:
-        """Make the amplitudes read-only."""
+        """Check the lines and make the amplitudes read-only.
+
+        Raises
+        ------
+        DesignError
+            If the harmonics are not positive and ascending, or have not as many amplitudes.
+        """
+        harmonics = self.harmonics
+        ascending = all(0 < earlier < later for earlier, later in pairwise((*harmonics, np.inf)))
+        if not (harmonics and ascending) or np.shape(self.amplitudes) != (len(harmonics),):
+            raise DesignError(
+                "leg: expected ascending harmonics and an amplitude of each, found "
+                f"{len(harmonics)} harmonics and amplitudes of shape {np.shape(self.amplitudes)}."
+            )
         object.__setattr__(self, "amplitudes", frozen_complex(self.amplitudes))
 
     def summary(self) -> Summary:

@@ -16,6 +16,7 @@ from shaftprint.distributions import NORMAL_95, chi_square_quantile
 from shaftprint.errors import DesignError, ShaftprintError
 from shaftprint.identify.fit._identification import Estimate
 from shaftprint.notebook._shown import Shown
+from shaftprint.records import AnyFloats, Floats
 
 # Share of the time in the windows for which a limit may act before the plan needs a larger margin.
 MOST_LIMITED = 5e-4
@@ -39,16 +40,31 @@ class Rehearsal(Shown):
 
     names: tuple[str, ...]
     """Numbers that every sailing has found."""
-    errors: FloatArray
+    errors: Floats
     """Estimate minus truth, shape (sailings, numbers)."""
-    stated: FloatArray
+    stated: AnyFloats
     """Stated standard deviations, shape (sailings, numbers)."""
-    planned: FloatArray
+    planned: Floats
     """Planned standard deviations, shape (numbers,)."""
-    limited: FloatArray
+    limited: Floats
     """Share of the time in the windows for which a limit acted, shape (sailings,)."""
     failures: tuple[str, ...]
     """What sailings without a result said."""
+
+    def __post_init__(self) -> None:
+        """Check that the tables go together.
+
+        Raises
+        ------
+        DesignError
+            If a row has more or fewer numbers than there are names, or a table more rows than there are sailings.
+        """
+        numbers, sailings = len(self.names), len(self.limited)
+        shapes = [np.shape(table) for table in (self.errors, self.stated, self.planned)]
+        if shapes != [(sailings, numbers), (sailings, numbers), (numbers,)]:
+            raise DesignError(
+                f"rehearsal: expected {sailings} rows of {numbers} numbers, as many as names, found others."
+            )
 
     @property
     def mean_z(self) -> dict[str, float]:
