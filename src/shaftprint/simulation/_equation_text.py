@@ -22,7 +22,7 @@ import numpy as np
 from numba import njit
 from numpy import cos, exp, log, sin, sqrt, tanh
 
-from shaftprint.kernels import compiled
+from shaftprint.kernels._compiled import compiled
 
 INNER = njit(error_model="numpy", fastmath={"contract"}, no_cpython_wrapper=True, no_cfunc_wrapper=True)
 OUTER = compiled(error_model="numpy", fastmath={"contract"}, nogil=True)
