@@ -138,7 +138,7 @@ def test_a_phone_has_room_for_every_panel_below_the_other():
 @pytest.mark.slow
 def test_the_script_is_plotly_and_its_package_is_not_imported():
     code = (
-        "import sys; from shaftprint.report.charts import plotly_script; plotly_script();"
+        "import sys; from shaftprint.report.charts._script import plotly_script; plotly_script();"
         "print([name for name in sys.modules if name.split('.')[0] == 'plotly'])"
     )
     found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

@@ -174,7 +174,7 @@ print(len(kernels), sum(kernel._cache.cache_path is not None for kernel in kerne
 
 WHEN_CALLED = """
 import sys
-from shaftprint.kernels import compiled
+from shaftprint.kernels._compiled import compiled
 
 @compiled()
 def twice(x):
