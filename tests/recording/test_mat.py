@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 import scipy.io
 import scipy.sparse
+from tests.recording.mat_v5 import write_mat_v5
 
 from shaftprint.errors import RecordingError
 from shaftprint.recording import read_recording, write_mat_v73
-from shaftprint.recording.writers._mat_v5 import write_mat_v5
 
 TIME = 2.0 + np.arange(1000) / 500.0
 TORQUE = np.sin(TIME)

@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
+from tests.simulation.sailing_at_large import pitch_actuator, sailing_at_large
 
 from shaftprint.catalogue import KnownPropeller, structure, with_known_propeller
-from shaftprint.catalogue._sailing_at_large import pitch_actuator, sailing_at_large
 from shaftprint.errors import StructureError
 from shaftprint.models import Diagram, Parameter, Structure
 from shaftprint.propeller import ka4_70_in_19a

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 from scipy.special import chdtrc
+from tests.time_domain.whiteness import whiteness_p_value
 
 from shaftprint.errors import IdentificationError
 from shaftprint.time_domain._noise_model import NoiseModel, estimate_noise, white_noise
-from shaftprint.time_domain._whiteness import whiteness_p_value
 from shaftprint.time_domain._whitening import Whitening
 
 FIRST = np.array([[0.9, 0.1], [-0.3, 0.5]])

@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 from scipy.signal import chirp
+from tests.torsion.traced_line import simulate_line
 
 from shaftprint.catalogue import two_mass_line
 from shaftprint.identify import Settings, identify
 from shaftprint.spectra import response_from_arrays
 from shaftprint.torsion import modes
-from shaftprint.torsion._trace import simulate_line
 from shaftprint.torsion._two_masses import two_masses
 
 CYLINDERS = tuple(f"Cylinder {number}" for number in range(1, 7))

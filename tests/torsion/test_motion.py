@@ -6,12 +6,12 @@ from dataclasses import replace
 import numpy as np
 import opentorsion
 import pytest
+from tests.torsion.traced_line import simulate_line
+from tests.torsion.viscous_damper import best_damper_nm_s_rad
 
 from shaftprint.errors import StructureError
 from shaftprint.torsion import modes
 from shaftprint.torsion._forced_response import forced_response
-from shaftprint.torsion._trace import simulate_line
-from shaftprint.torsion._viscous_damper import best_damper_nm_s_rad
 
 CYLINDERS = tuple(f"Cylinder {number}" for number in range(1, 7))
 SHARED = dict.fromkeys(CYLINDERS, 1.0 / 6.0)
