@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from tests.simulation.sailing_at_large import pitch_actuator, sailing_at_large
+from tests.catalogue.sailing_at_large import pitch_actuator, sailing_at_large
 
 from shaftprint.catalogue import KnownPropeller, structure, with_known_propeller
 from shaftprint.errors import StructureError

@@ -9,7 +9,7 @@ from shaftprint.arrays import ComplexArray
 from shaftprint.tug._linearise import linearised_response
 from shaftprint.tug._shared_water import SharedWater
 from shaftprint.tug._tug import Tug
-from shaftprint.vessel._vessel import Vessel
+from shaftprint.vessel import Vessel
 
 
 def linearised_both(

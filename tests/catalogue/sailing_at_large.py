@@ -37,14 +37,19 @@ from shaftprint.catalogue._known_propeller import HIGHEST_WAKE, KnownPropeller
 from shaftprint.catalogue._limited import DROOP, LimitedLoop, parameters_of
 from shaftprint.catalogue._sailing import K_Q_HELD, SIGMA, T_LOG, TAU_U, E
 from shaftprint.errors import StructureError
-from shaftprint.models._blocks import FirstOrderLag, Gain
-from shaftprint.models._delays import AveragingSensor, Delay
-from shaftprint.models._diagram import Diagram
-from shaftprint.models._parameter import Parameter
-from shaftprint.models._structure import Structure
+from shaftprint.models import (
+    AveragingSensor,
+    Delay,
+    Diagram,
+    FirstOrderLag,
+    Gain,
+    Parameter,
+    Structure,
+    first_order_lag,
+    rate_limited,
+)
 from shaftprint.models.equations._flow import Flow
 from shaftprint.models.equations._formula import Formula, Number, as_formula, number
-from shaftprint.models.equations._limits import first_order_lag, rate_limited
 
 
 def sailing_at_large(
