@@ -65,7 +65,7 @@ def test_words_say_who_was_behind_and_how_well_that_is_known():
     assert "ms ahead of that of bridge.nc at 0 s" in words
     assert "ppm fast. This was given, not found" in words
     short = replace(SHAFT, alignment=replace(FOUND, stretches=FOUND.stretches[:1]))
-    assert "ppm slow. One minute was compared; nowhere in" in clock_sentences(short, NONE)
+    assert "ppm slow. One stretch was compared; nowhere in" in clock_sentences(short, NONE)
     words = clock_sentences(replace(SHAFT, alignment=replace(FOUND, scatter=3.2)), NONE)
     assert (
         "3.20 times as far as their noise explains: the clock did not run evenly. Widened by as much, nowhere" in words

@@ -7,7 +7,8 @@ import numpy as np
 from shaftprint.arrays import FloatArray
 from shaftprint.clocks._alignment import Alignment, Stretch
 from shaftprint.clocks._clock_map import ClockMap
-from shaftprint.clocks._coarse import RATE_HZ, coarse_offset
+from shaftprint.clocks._coarse import RATE_HZ, coarse_offset, is_short
+from shaftprint.clocks._short import short_line
 from shaftprint.clocks._windows import WindowDelay, delays_of
 from shaftprint.errors import ClockError
 from shaftprint.signals._content import Content
@@ -63,16 +64,12 @@ def align(
     is_slower = other.rate_hz <= reference.rate_hz
     slow, fast = (other, reference) if is_slower else (reference, other)
     names = f"channels {reference.name} and {other.name}"
-    expected = np.full(slow.values.size, offset_s if is_slower else -offset_s)
-    for within_s in (FIRST_S, NEXT_S):
-        every = delays_of(slow, fast, expected, within_s)
-        delays = [delay for delay in every if delay.tells]
-        line = _line(delays, drift_std, names)
-        expected = line.reference_s(slow.time_s) - slow.time_s
-    _expect_alike(every, names)
-    _expect_line(delays, line, names)
-    scatter = _scatter(delays, line)
-    line = _widened(line, scatter, len(delays))
+    if not is_slower:
+        offset_s = -offset_s
+    if is_short(other, reference):
+        line, stretches, scatter = *short_line(slow, fast, offset_s, drift_std, names), None
+    else:
+        line, stretches, scatter = _long_line(slow, fast, offset_s, drift_std, names)
     clock_map = line if is_slower else line.inverse()
     covariance = clock_map.covariance + np.array([[latency_std_s**2, 0.0], [0.0, 0.0]])
     clock_map = ClockMap(
@@ -84,9 +81,25 @@ def align(
     return Alignment(
         map=clock_map,
         span_s=(other.start_s, float(other.time_s[-1])),
-        stretches=tuple(_stretch(delay, latency_s, is_slower=is_slower) for delay in delays),
+        stretches=tuple(_stretch(delay, latency_s, is_slower=is_slower) for delay in stretches),
         scatter=scatter,
     )
+
+
+def _long_line(
+    slow: Content, fast: Content, offset_s: float, drift_std: float, names: str
+) -> tuple[ClockMap, list[WindowDelay], float]:
+    """Return the map from the slower content's clock to the faster one's, its minutes, and how far they scatter."""
+    expected = np.full(slow.values.size, offset_s)
+    for within_s in (FIRST_S, NEXT_S):
+        every = delays_of(slow, fast, expected, within_s)
+        delays = [delay for delay in every if delay.tells]
+        line = _line(delays, drift_std, names)
+        expected = line.reference_s(slow.time_s) - slow.time_s
+    _expect_alike(every, names)
+    _expect_line(delays, line, names)
+    scatter = _scatter(delays, line)
+    return _widened(line, scatter, len(delays)), delays, scatter
 
 
 def _stretch(delay: WindowDelay, latency_s: float, *, is_slower: bool) -> Stretch:

@@ -32,7 +32,8 @@ class Alignment:
     """What each stretch says, in order of time."""
     scatter: float | None = None
     """Root mean square of the stretches' distances from the line in their standard deviations, about 1 where all is
-    well; the covariance of the map has grown by its square where it is larger. None without stretches."""
+    well; the covariance of the map has grown by its square where it is larger. None without
+    stretches, and of a short recording, which is one stretch."""
 
     @property
     def worst_std_s(self) -> float:

@@ -16,13 +16,15 @@ from shaftprint.arrays import FloatArray
 SEGMENT_S = 60.0
 # Lines that are averaged where there are few segments.
 NEIGHBOURS = 5
-# Coherence up to so many times what chance gives tells nothing.
+# One line in twenty passes by chance alone.
 CHANCE = 3.0
 # Lines weaker than this share of the strongest are taken to be that strong; nothing is divided by zero.
 FLOOR, TINY = 1e-12, 1e-300
 
 
-def shared_band(slow: FloatArray, fast: FloatArray, rate_hz: float) -> tuple[FloatArray, FloatArray]:
+def shared_band(
+    slow: FloatArray, fast: FloatArray, rate_hz: float, *, chance: float = CHANCE
+) -> tuple[FloatArray, FloatArray]:
     """Return both contents filtered, each of shape (samples,).
 
     Parameters
@@ -31,6 +33,8 @@ def shared_band(slow: FloatArray, fast: FloatArray, rate_hz: float) -> tuple[Flo
         Contents at the same instants, as nearly as the map of the clocks is known, shape (samples,).
     rate_hz
         Their rate [Hz].
+    chance
+        Coherence up to so many times what chance gives tells nothing.
     """
     length = min(round(SEGMENT_S * rate_hz), slow.size // 3)
     straight_slow, straight_fast = scipy.signal.detrend(slow), scipy.signal.detrend(fast)
@@ -43,7 +47,7 @@ def shared_band(slow: FloatArray, fast: FloatArray, rate_hz: float) -> tuple[Flo
     coherence = np.abs(both) ** 2 / np.maximum(likely, FLOOR * likely.max() + TINY)
     # without anything shared it is not zero but one over the number of averages
     shared = np.clip((coherence * segments - 1.0) / (segments - 1.0), 0.0, 1.0 - 1e-6)
-    shared[coherence < CHANCE / segments] = 0.0
+    shared[coherence < chance / segments] = 0.0
     white = 1.0 / np.sqrt(np.maximum(own_slow * (1.0 - shared), FLOOR * own_slow.max() + TINY))
     share = np.sqrt(shared * own_slow / np.maximum(own_fast, FLOOR * own_fast.max() + TINY))
     every = np.fft.rfftfreq(2 * slow.size, 1.0 / rate_hz)

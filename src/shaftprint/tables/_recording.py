@@ -117,13 +117,13 @@ def clock_map_table(clocks: "Sequence[LoggerClock]") -> Table:
         columns=(
             *texts("logger", "channels"),
             *numbers("offset [ms]", "at [s]", "drift [ppm]", "correlation of both"),
-            *numbers("largest std [ms]", "minutes", "scatter"),
+            *numbers("largest std [ms]", "stretches", "scatter"),
         ),
         rows=tuple(rows),
         note="The recording's clock reads the offset more at the given time of the logger, and runs faster by the "
-        "drift. The largest standard deviation is that within the recording; the scatter is that of the minutes "
-        "compared over what their noise explains. Samples are not moved: channels of another logger get another start "
-        "and rate.",
+        "drift. The largest standard deviation is that within the recording; the scatter is that of the stretches "
+        "compared, minutes or the whole of a short recording, over what their noise explains. Samples are not moved: "
+        "channels of another logger get another start and rate.",
     )
 
 

@@ -12,6 +12,7 @@ from shaftprint.cli.output._tables import print_tables
 from shaftprint.clocks._align import align
 from shaftprint.clocks._alignment import Alignment
 from shaftprint.clocks._clock_map import ClockMap
+from shaftprint.clocks._coarse import LONG_S
 from shaftprint.clocks._logger_clock import logger_clocks
 from shaftprint.clocks._merge import merged
 from shaftprint.recording._read import read_recording
@@ -21,8 +22,8 @@ from shaftprint.signals._content import Content, content_of
 from shaftprint.tables._recording import clock_map_table
 from shaftprint.vessel._vessel import Vessel, load_vessel
 
-RATE_HZ = 50.0
-"""Rate at which contents are compared [Hz]."""
+RATE_HZ, SHORT_RATE_HZ = 50.0, 200.0
+"""Rate at which contents are compared [Hz], and that at which short ones are, where a shaft that rings tells most."""
 
 
 @click.command("merge")
@@ -70,8 +71,7 @@ def command(
             alignment = _one_clock(moving)
         else:
             alignment = align(
-                _content(moving, names[1], ship),
-                _content(still, names[0], ship),
+                *_contents(moving, still, names, ship),
                 latency_s=1e-3 * latency_ms,
                 latency_std_s=1e-3 * latency_std_ms,
             )
@@ -96,6 +96,12 @@ def _names(shared: str) -> tuple[str, str]:
     return first, second
 
 
-def _content(recording: Recording, name: str, ship: Vessel | None) -> Content:
+def _contents(
+    other: Recording, reference: Recording, names: tuple[str, str], ship: Vessel | None
+) -> tuple[Content, Content]:
+    """Return what the shared channels of both show."""
+    channels = other.channel(names[1]), reference.channel(names[0])
+    rate_hz = SHORT_RATE_HZ if min(channel.duration_s for channel in channels) < LONG_S else RATE_HZ
     sensors = {} if ship is None else {sensor.channel: sensor for sensor in ship.sensors.speed}
-    return content_of(recording.channel(name), sensors.get(name), rate_hz=RATE_HZ)
+    moving, still = (content_of(channel, sensors.get(channel.name), rate_hz=rate_hz) for channel in channels)
+    return moving, still

@@ -35,11 +35,11 @@ def clock_sentences(clock: "LoggerClock", influence: "ClockInfluence") -> str:
 
 def _rest(fit: "Alignment") -> str:
     worst = f"nowhere in the recording is that known worse than to {rounded(MILLI * fit.worst_std_s, 2)} ms"
-    if fit.scatter is None:
+    if not fit.stretches:
         return f"This was given, not found from what both saw; {worst}."
     count = len(fit.stretches)
-    if count == 1:
-        return f"One minute was compared; {worst}."
+    if fit.scatter is None or count == 1:
+        return f"One stretch was compared; {worst}."
     words = f"The {count} minutes that were compared scatter {plain(fit.scatter, 2)} times as far as their "
     if fit.scatter > UNEVEN:
         return f"{words}noise explains: the clock did not run evenly. Widened by as much, {worst}."
