@@ -5,11 +5,8 @@ of other projects (intersphinx) are off.
 """
 
 import os
-import re
 import sys
 from pathlib import Path
-
-from sphinx.application import Sphinx
 
 import shaftprint
 
@@ -87,23 +84,3 @@ html_theme_options = {
     "footer_end": [],
     "secondary_sidebar_items": ["page-toc"],
 }
-
-
-def list_all_guides(app: Sphinx, page: str, source: list[str]) -> None:
-    """Put guides that no list names at the end of the list of guides, and leave out what is not there."""
-    if page != "guides":
-        return
-    lists = [(HERE / f"{name}.md").read_text(encoding="utf-8") for name in ("index", "evidence", "thesis")]
-    elsewhere = set(re.findall(r"^(?:[\w ]+<)?([\w/-]+)>?$", "\n".join(lists), flags=re.MULTILINE)) | {
-        "index",
-        "guides",
-    }
-    listed = re.findall(r"^[\w-]+$", source[0], flags=re.MULTILINE)
-    there = {name for name in app.env.found_docs if "/" not in name} - elsewhere
-    names = [name for name in listed if name in there] + sorted(there - set(listed))
-    source[0] = re.sub(r"(?<=:maxdepth: 1\n\n)[^`]*", "\n".join(names) + "\n", source[0])
-
-
-def setup(app: Sphinx) -> None:
-    """Connect what this file adds."""
-    app.connect("source-read", list_all_guides)

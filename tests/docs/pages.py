@@ -26,6 +26,7 @@ SHOWN = {
     "docs/free-sailing.md": "thrust   T* =",
     "docs/crash-stop.md": "engine      tau_up",
     "docs/rooms.md": "┌",
+    "docs/tutorials/german-csv.md": "Datum/Uhrzeit;",
     "docs/several-loggers.md": "PTM_1, PTM_4 and M_s were logged",
 }
 

@@ -11,7 +11,7 @@ from xml.etree import ElementTree as ET
 
 import numpy as np
 import pytest
-from pages import PAGES, ROOT, blocks, python_of
+from pages import PAGES, ROOT, blocks, python_of, shown
 
 from shaftprint.bench import equipped
 from shaftprint.campaign import Campaign, CampaignOfBoth, load_campaign
@@ -93,8 +93,31 @@ def test_toml_is_of_a_page_with_a_check_of_its_own():
         "docs/legs.md",
         "docs/pitch.md",
         "docs/serve.md",
+        "docs/tutorials/german-csv.md",
     }
     assert {page.values[0] for page in of("toml")} == known
+
+
+def test_the_sensors_of_the_page_on_a_german_csv_are_those_of_its_file(tmp_path):
+    page = "docs/tutorials/german-csv.md"
+    ((_, text),) = (block for block in blocks(page) if block[0] == "toml")
+    settings = tomllib.loads(text)
+    title, *rows = shown(page).splitlines()
+    # the rows of the page, then as many in their manner that a clock is seen
+    values = rows[-1].partition(";")[2]
+    rows += [f"20.11.2026 09:30:{place // 2000:02d},{place % 2000 * 5:04d};{values}" for place in range(3, 4000)]
+    (tmp_path / "logger.csv").write_text("\n".join([title, *rows]), encoding="cp1252")
+    with read_recording(tmp_path / "logger.csv") as recording:
+        sensors = settings["sensors"]
+        for sensor in (sensors["set_point"], *sensors["speed"], sensors["shaft_torque"]):
+            channel = recording.channel(sensor["channel"])
+            assert channel.unit == sensor["unit"]
+            assert channel.rate_hz == pytest.approx(settings["logger"]["sample_rate_hz"], rel=1e-6)
+        assert recording.channel("Drehmoment").values(0, 2).tolist() == [3.80625, 3.474687]
+        assert recording.began.isoformat() == "2026-11-20T09:30:00"
+    # 4 and 20 mA are the voltages of the comment
+    volts = [sensors["set_point"]["v_per_unit"] * current + sensors["set_point"]["v_at_zero"] for current in (4, 20)]
+    assert volts == [-10.0, 0.0]
 
 
 def test_the_campaign_of_the_page_on_legs_is_one():
@@ -231,6 +254,15 @@ def test_matlab_is_of_pages_with_a_check_of_their_own():
     assert sorted(page.values[0] for page in of("matlab")) == ["docs/export-formats.md", "docs/formats.md"]
 
 
+def test_every_page_is_in_one_table_of_contents():
+    listed = []
+    for page, text in (found.values for found in of("{toctree}")):
+        folder = (ROOT / page).parent
+        entries = [re.sub(r".*<(.*)>", r"\1", line) for line in text.splitlines() if line and not line.startswith(":")]
+        listed += [path.relative_to(ROOT).as_posix() for entry in entries for path in folder.glob(f"{entry}.md")]
+    assert sorted(listed) == sorted(page for page in PAGES if page.startswith("docs/") and page != "docs/index.md")
+
+
 @pytest.mark.parametrize(("page", "text"), of("{toctree}"))
 def test_pages_of_a_table_of_contents_exist(page, text):
     folder = (ROOT / page).parent
@@ -254,3 +286,16 @@ def test_parts_of_examples_that_a_page_includes_are_there(page):
             source = path.read_text(encoding="utf-8")
             assert first in source
             assert last in source[source.index(first) :]
+
+
+TEN = re.findall(r"^\| (.+?) \| .+ \| \[.+\]\((.+)\) \|$", PAGES["docs/evidence.md"], flags=re.MULTILINE)
+
+
+def test_there_are_ten_numbers():
+    assert len(TEN) == 10
+
+
+@pytest.mark.parametrize(("number", "page"), TEN)
+def test_a_number_of_the_ten_stands_on_the_page_that_it_names(number, page):
+    plain = number.removesuffix(" s").removesuffix(" %")
+    assert re.search(rf"(?<![\d.]){re.escape(plain)}(?![\d])", PAGES[f"docs/{page}"]), number
