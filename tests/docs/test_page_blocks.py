@@ -167,13 +167,14 @@ def test_the_campaign_of_the_page_on_both_shafts_is_one():
 
 
 def test_the_users_of_the_page_on_the_server_can_be_read(tmp_path):
-    access = pytest.importorskip("shaftprint.web.access._users")
+    users = pytest.importorskip("shaftprint.web.access._users")
+    password = pytest.importorskip("shaftprint.web.access._password")
     ((_, text),) = (block for block in blocks("docs/serve.md") if block[0] == "toml")
-    hashed = access.hashed("twelve letters")
+    hashed = password.hashed("twelve letters")
     (tmp_path / "users.toml").write_text(text.replace("$argon2id$...", hashed), encoding="utf-8")
-    (anna,) = access.read_users(tmp_path / "users.toml").values()
+    (anna,) = users.read_users(tmp_path / "users.toml").values()
     assert (anna.role.name, anna.ships) == ("TESTER", ("9074729",))
-    assert access.is_right("twelve letters", anna.password)
+    assert password.is_right("twelve letters", anna.password)
 
 
 def test_the_drives_of_their_page_have_structures():

@@ -1,5 +1,6 @@
-from ._main import shaftprint
+from ._main import main, shaftprint
 
 __all__ = [
+    "main",
     "shaftprint",
 ]
