@@ -1,6 +1,7 @@
 from ._known_propeller import KnownPropeller, with_known_propeller
 from ._limited import limited
 from ._limited_governor import AHEAD_S, limited_governor
+from ._own_structure import chosen_structures
 from ._roles import ShipRole
 from ._sailing_blocks import SailingShaft, SailingSpeed, SailingTorque
 from ._shipped import shipped_structure
@@ -17,6 +18,7 @@ __all__ = [
     "SailingSpeed",
     "SailingTorque",
     "ShipRole",
+    "chosen_structures",
     "limited",
     "limited_governor",
     "shipped_structure",

@@ -10,7 +10,7 @@ import numpy as np
 from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.catalogue._crash_stop import CRASH_STOP, CrashStopSymbol
 from shaftprint.catalogue._known_propeller import sails_free
-from shaftprint.cli._own_structure import TypedName
+from shaftprint.catalogue._own_structure import TypedName
 from shaftprint.cli._simulated_model import SimulatedModel, expect_parameters
 from shaftprint.cli._simulated_set_point import SAME_WORKING_POINT, Drive, Place
 from shaftprint.cli._simulation_run import Prediction, Run

@@ -12,9 +12,9 @@ from shaftprint.bench._fingerprint import drive_fingerprint
 from shaftprint.bench._fit import STARTS, DriveFit, identify_drive
 from shaftprint.bench._records import read_records
 from shaftprint.bench._responses import RESPONSE_STARTS, identify_responses, read_responses
+from shaftprint.catalogue._own_structure import TypedName
 from shaftprint.cli._drive_options import drive_sources, equipped_drive, expect_not_given, is_given
 from shaftprint.cli._fit_options import FitOptions
-from shaftprint.cli._own_structure import TypedName
 from shaftprint.cli._results import print_paths
 from shaftprint.cli._terminal import print_findings, say
 from shaftprint.cli.output._fingerprint_file import FINGERPRINT

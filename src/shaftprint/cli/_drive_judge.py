@@ -13,9 +13,9 @@ from shaftprint.bench._predict import noise_words, predict_drive, predicted_at
 from shaftprint.bench._records import read_records
 from shaftprint.bench._structures import compare_in_time, without
 from shaftprint.bench._validate import identified_from, validate_drive
+from shaftprint.catalogue._own_structure import TypedName
 from shaftprint.cli._drive_options import drive_fingerprint_at, equipped_drive, file_sha256, holding, is_given, kept_one
 from shaftprint.cli._fit_options import FitOptions
-from shaftprint.cli._own_structure import TypedName
 from shaftprint.cli._terminal import answer, print_findings, say
 from shaftprint.cli.output._json import give
 from shaftprint.cli.output._progress import progress

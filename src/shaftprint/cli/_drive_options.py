@@ -11,9 +11,9 @@ from click.core import ParameterSource
 
 from shaftprint.bench._equipped import EquippedDrive, equipped
 from shaftprint.bench._kept import kept_drive
+from shaftprint.catalogue._own_structure import TypedName, chosen_structures, own_file
 from shaftprint.cli._fit_options import FitOptions, held_structures
 from shaftprint.cli._options import structure_sources
-from shaftprint.cli._own_structure import TypedName, chosen_structures, own_file
 from shaftprint.cli.output._fingerprint_file import fingerprint_file
 from shaftprint.drive._drive import Drive, load_drive
 from shaftprint.errors import FingerprintError, SettingsError

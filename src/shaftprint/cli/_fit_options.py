@@ -6,9 +6,9 @@ from typing import Any
 
 import click
 
+from shaftprint.catalogue._own_structure import TypedName, chosen_structures
 from shaftprint.cli._gathered_options import gathered_options
 from shaftprint.cli._known_values import hold_option, prior_option
-from shaftprint.cli._own_structure import TypedName, chosen_structures
 from shaftprint.errors import StructureError
 from shaftprint.identify.likelihood._prior import Prior
 from shaftprint.identify.likelihood._weighting import MaximumLikelihood, Unweighted

@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 
+from shaftprint.catalogue._own_structure import TypedName
 from shaftprint.cli._fingerprint_tables import print_fingerprint
 from shaftprint.cli._fit_options import FitOptions, settings_of, structures_of
 from shaftprint.cli._options import structure_sources
-from shaftprint.cli._own_structure import TypedName
 from shaftprint.cli._report_options import ReportOptions
 from shaftprint.cli._results import write_results
 from shaftprint.cli._terminal import answer, echo, say
@@ -53,7 +53,7 @@ def identify_both_lines(
 ) -> None:
     """Identify both lines, print and write the results of each side and the comparison of both."""
     trials = load_trials_of_both(*vessels, campaign, about.conditions)
-    chosen = names or (TypedName(default_structure(trials[0].vessel, trials[0].campaign)),)
+    chosen = names or (default_structure(trials[0].vessel, trials[0].campaign),)
     structures = structures_of(chosen, options, trials[0].vessel)
     of_user = structure_sources(names)
     port, starboard = (replace(trial, sources=(*trial.sources, *of_user)) for trial in trials)

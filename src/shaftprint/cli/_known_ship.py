@@ -6,8 +6,8 @@ from pathlib import Path
 
 import click
 
+from shaftprint.catalogue._own_structure import TypedName, chosen_structures
 from shaftprint.cli._known_ship_options import KnownShipOptions
-from shaftprint.cli._own_structure import TypedName, chosen_structures, closed_loop_of, structure_to_use
 from shaftprint.cli._plan_options import limits_with, set_point_rpm_of
 from shaftprint.cli.output._fingerprint_file import fingerprint_at
 from shaftprint.cli.output._progress import Steps
@@ -23,6 +23,7 @@ from shaftprint.design.inputs._limits import Limits, limits_from_vessel, usual_s
 from shaftprint.design.inputs._set_point_line import SetPointLine, line_of_fingerprint
 from shaftprint.design.motion._motion import expect_motion
 from shaftprint.fingerprint._fingerprint import Fingerprint
+from shaftprint.fingerprint._model import structure_to_use
 from shaftprint.identify.likelihood._known import expected_from_vessel, priors_from_vessel
 from shaftprint.identify.likelihood._prior import Prior
 from shaftprint.identify.prediction._noise_at_speeds import noise_at
@@ -33,7 +34,7 @@ from shaftprint.survey._expected_of_ship import expected_of_ship
 from shaftprint.survey._fits import stated_working_point
 from shaftprint.survey._measurement import measure
 from shaftprint.survey._noise import noise_at_speeds
-from shaftprint.survey._of_vessel import at_speeds, of_vessel
+from shaftprint.survey._of_vessel import at_speeds, default_structure, of_vessel
 from shaftprint.survey._trial import load_trial
 from shaftprint.units import rpm_from_rev_s
 from shaftprint.vessel._vessel import Vessel, load_vessel
@@ -75,7 +76,7 @@ def stated_ship(vessel_name: str, structure_name: TypedName | None, options: Kno
     vessel = load_vessel(vessel_name)
     first_test = None if options.after is None else fingerprint_at(options.after)
     if first_test is None:
-        (structure,) = chosen_structures([structure_name or closed_loop_of(vessel)])
+        (structure,) = chosen_structures([structure_name or default_structure(vessel)])
     else:
         structure = structure_to_use(structure_name, first_test)
     return Stated(

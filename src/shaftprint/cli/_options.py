@@ -7,10 +7,17 @@ from typing import Any
 
 import click
 
-from shaftprint.cli._own_structure import TypedName, own_file
+from shaftprint.catalogue._own_structure import TypedName, own_file
+from shaftprint.catalogue._thesis import CLOSED_LOOPS, COMBINED_LOOP, PITCHED_LOOP
 from shaftprint.fingerprint._fingerprint import SourceFile
 from shaftprint.recording.writers._by_ending import WRITTEN_ENDINGS, WRITTEN_FORMATS
 
+OWN_FILE_HELP = "a shipped one, or my_ship.py:my_loop for one of your own file, which is Python and is run"
+DEFAULT_HELP = (
+    f"{CLOSED_LOOPS['engine']}, {CLOSED_LOOPS['motor']} where a motor drives the line, {CLOSED_LOOPS['hybrid']} where "
+    f"one helps an engine, {PITCHED_LOOP} where the campaign moves a logged pitch, {COMBINED_LOOP} with a "
+    "combinator, or FREE-LOG underway"
+)
 NAMES = "a path, or the name of a shipped one such as"
 
 

@@ -2,7 +2,6 @@
 
 from shaftprint.campaign._campaign import Campaign
 from shaftprint.catalogue._shipped import shipped_structure
-from shaftprint.cli._own_structure import closed_loop_of
 from shaftprint.cli._ship_before_test import ShipBeforeTest
 from shaftprint.errors import StructureError
 from shaftprint.identify.prediction._planned_legs import PlannedLeg, planned_beside, planned_legs
@@ -12,7 +11,7 @@ from shaftprint.signals._moved_beside import EXCITATIONS, MovedBeside, moved_bes
 from shaftprint.spectra._frequency_response import FrequencyResponse
 from shaftprint.spectra._leg_spectra import SPEED
 from shaftprint.spectra._open_loop import open_loop
-from shaftprint.survey._of_vessel import expect_one_speed, of_vessel
+from shaftprint.survey._of_vessel import default_structure, expect_one_speed, of_vessel
 
 Pair = tuple[Structure, FrequencyResponse]
 
@@ -73,7 +72,7 @@ def _legs(campaign: Campaign, ship: ShipBeforeTest) -> tuple[PlannedLeg, ...]:
 
 def _pairs_of_speed(chosen: Structure, campaign: Campaign, ship: ShipBeforeTest) -> list[Pair]:
     """Return what the lines of the speed's set point tell."""
-    loop, of_speed = shipped_structure(closed_loop_of(ship.vessel)), campaign.of_input()
+    loop, of_speed = shipped_structure(default_structure(ship.vessel)), campaign.of_input()
     if ship.vessel is not None:
         loop = of_vessel(loop, ship.vessel)
     if len(loop.inputs) > 1:

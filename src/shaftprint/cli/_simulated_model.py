@@ -7,10 +7,10 @@ import click
 import numpy as np
 
 from shaftprint.arrays import FloatArray, frozen_float
-from shaftprint.cli._own_structure import TypedName, chosen_structures, structure_to_use
+from shaftprint.catalogue._own_structure import TypedName, chosen_structures
 from shaftprint.errors import FingerprintError, StructureError
 from shaftprint.fingerprint._fingerprint import Fingerprint
-from shaftprint.fingerprint._model import model_with_limits
+from shaftprint.fingerprint._model import model_with_limits, structure_to_use
 from shaftprint.fingerprint._quantity import Quantity
 from shaftprint.models._structure import Structure
 from shaftprint.spelling import meant

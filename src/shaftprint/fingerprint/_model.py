@@ -7,6 +7,7 @@ import numpy as np
 from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.catalogue._bent_line import with_bend
 from shaftprint.catalogue._limited import limited
+from shaftprint.catalogue._own_structure import TypedName, chosen_structures
 from shaftprint.catalogue._roles import ShipRole
 from shaftprint.catalogue._shipped import shipped_structure
 from shaftprint.errors import FingerprintError, StructureError
@@ -110,3 +111,16 @@ def named_structure(fingerprint: Fingerprint) -> Structure:
             f"file that it names is run: read {file}, then give it with --structure {file}:NAME, or as a Structure "
             "to the Python call."
         ) from None
+
+
+def structure_to_use(name: TypedName | None, fingerprint: Fingerprint) -> Structure:
+    """Return the structure that the user names, otherwise the shipped one of a fingerprint.
+
+    Raises
+    ------
+    StructureError
+        If there is no such structure, or its file fails.
+    FingerprintError
+        If the user names none, and the fingerprint none that is shipped.
+    """
+    return named_structure(fingerprint) if name is None else chosen_structures([name])[0]

@@ -4,6 +4,7 @@ from collections.abc import Iterable, Sequence
 
 from shaftprint.campaign._campaign import Campaign
 from shaftprint.catalogue._bent_line import with_bend
+from shaftprint.catalogue._own_structure import TypedName
 from shaftprint.catalogue._roles import ShipRole
 from shaftprint.catalogue._thesis import CLOSED_LOOPS, COMBINED_LOOP, PITCHED_LOOP
 from shaftprint.errors import StructureError
@@ -26,7 +27,7 @@ _MOST_DRIVEN = 0.5
 _SAME_SPEED = 1.02
 
 
-def default_structure(vessel: Vessel, campaign: Campaign | None = None) -> str:
+def default_structure(vessel: Vessel | None, campaign: Campaign | None = None) -> TypedName:
     """Return the name of the closed loop that a test asks for: by what drives the line, where, and what is moved.
 
     At the quay it is GAUGE-CLOSED, GAUGE-MOTOR where a motor drives the line, GAUGE-HYBRID where an electric machine is
@@ -36,10 +37,16 @@ def default_structure(vessel: Vessel, campaign: Campaign | None = None) -> str:
     Parameters
     ----------
     vessel
-        The installation.
+        The installation; that of an engine at the quay where it is not given.
     campaign
         What is asked of it; without one nothing but the set point of the speed is moved.
     """
+    return TypedName(_closed_loop(vessel, campaign))
+
+
+def _closed_loop(vessel: Vessel | None, campaign: Campaign | None) -> str:
+    if vessel is None:
+        return CLOSED_LOOPS["engine"]
     if vessel.is_underway and vessel.motor is None:
         return _UNDERWAY if vessel.sensors.ship_speed is None else _UNDERWAY_WITH_LOG
     if vessel.combinator is not None:

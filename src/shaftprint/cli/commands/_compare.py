@@ -4,10 +4,11 @@ from pathlib import Path
 
 import click
 
+from shaftprint.catalogue._own_structure import TypedName, chosen_structures
 from shaftprint.cli._drive_judge import compare_on_the_bench
 from shaftprint.cli._drive_options import drive_fingerprint_at, is_drive_place
 from shaftprint.cli._load_option import load_repeatability_option
-from shaftprint.cli._own_structure import OWN_FILE_HELP, TypedName, chosen_structures
+from shaftprint.cli._options import OWN_FILE_HELP
 from shaftprint.cli._terminal import answer, echo, say
 from shaftprint.cli.output._fingerprint_file import FINGERPRINT, REPORT, fingerprint_at
 from shaftprint.cli.output._json import give

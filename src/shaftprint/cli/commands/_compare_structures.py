@@ -5,11 +5,11 @@ from pathlib import Path
 import click
 import numpy as np
 
+from shaftprint.catalogue._own_structure import TypedName
 from shaftprint.cli._drive_judge import compare_structures_on_the_bench
 from shaftprint.cli._drive_options import drive_option, expect_not_given, only_recording
 from shaftprint.cli._fit_options import FitOptions, fit_options, settings_of, structures_of
-from shaftprint.cli._options import campaign_option, vessel_option
-from shaftprint.cli._own_structure import OWN_FILE_HELP, TypedName
+from shaftprint.cli._options import OWN_FILE_HELP, campaign_option, vessel_option
 from shaftprint.cli._results import print_comparison
 from shaftprint.cli.output._progress import no_progress_option, progress
 from shaftprint.identify.comparison._compare import compare_jointly, expect_comparable

@@ -4,9 +4,9 @@ from pathlib import Path
 
 import click
 
+from shaftprint.catalogue._own_structure import TypedName, chosen_structures
 from shaftprint.cli._command_group import NOT_REACHED
-from shaftprint.cli._options import vessel_option
-from shaftprint.cli._own_structure import OWN_FILE_HELP, TypedName, chosen_structures
+from shaftprint.cli._options import OWN_FILE_HELP, vessel_option
 from shaftprint.cli._terminal import answer, echo, print_findings
 from shaftprint.cli.output._fingerprint_file import REPORT
 from shaftprint.cli.output._json import give

@@ -7,6 +7,7 @@ from typing import Any
 import click
 import numpy as np
 
+from shaftprint.catalogue._own_structure import TypedName
 from shaftprint.cli._drive_identify import identify_on_the_bench
 from shaftprint.cli._drive_options import drive_option, only_recording
 from shaftprint.cli._fingerprint_tables import print_fingerprint
@@ -14,6 +15,8 @@ from shaftprint.cli._fit_options import FitOptions, fit_options, settings_of, st
 from shaftprint.cli._identify_both import identify_both_lines
 from shaftprint.cli._limit_tables import print_limits, print_line
 from shaftprint.cli._options import (
+    DEFAULT_HELP,
+    OWN_FILE_HELP,
     campaign_option,
     hints_of,
     reading_options,
@@ -21,7 +24,6 @@ from shaftprint.cli._options import (
     structure_sources,
     vessel_option,
 )
-from shaftprint.cli._own_structure import DEFAULT_HELP, OWN_FILE_HELP, TypedName
 from shaftprint.cli._report_options import ReportOptions, report_options
 from shaftprint.cli._results import print_comparison, print_paths, write_results
 from shaftprint.cli._terminal import print_findings, say
@@ -141,9 +143,7 @@ def command(
         return
     # before the folder is made: a mistake in a settings file leaves none
     trial, rng = load_trial(vessel, campaign), np.random.default_rng(options.seed)
-    structures = structures_of(
-        names or (TypedName(default_structure(trial.vessel, trial.campaign)),), options, trial.vessel
-    )
+    structures = structures_of(names or (default_structure(trial.vessel, trial.campaign),), options, trial.vessel)
     with output_folder(output, of="identify", force=force) as folder:
         with progress(hidden=no_progress) as steps:
             survey = run(

@@ -6,11 +6,11 @@ from pathlib import Path
 
 import click
 
+from shaftprint.catalogue._own_structure import TypedName
 from shaftprint.cli._command_group import NOT_REACHED
 from shaftprint.cli._known_ship import knowledge_of, stated_ship
 from shaftprint.cli._known_ship_options import KnownShipOptions, known_ship_options
-from shaftprint.cli._options import vessel_option
-from shaftprint.cli._own_structure import DEFAULT_HELP, OWN_FILE_HELP, TypedName
+from shaftprint.cli._options import DEFAULT_HELP, OWN_FILE_HELP, vessel_option
 from shaftprint.cli._plan_options import seconds_of, wish_from, wish_of
 from shaftprint.cli._plan_tables import print_planned_test
 from shaftprint.cli._vessel_file import print_disagreements

@@ -8,13 +8,13 @@ import numpy as np
 
 from shaftprint.campaign._campaign import Campaign, load_campaign
 from shaftprint.catalogue._bent_line import with_bend
+from shaftprint.catalogue._own_structure import TypedName, chosen_structures
 from shaftprint.catalogue._shipped import shipped_structure
 from shaftprint.cli._drive_judge import predict_on_the_bench
 from shaftprint.cli._drive_options import drive_option, expect_not_given
 from shaftprint.cli._known_values import hold_option, named_value, prior_option, rpm_per_volt_option
 from shaftprint.cli._limit_uses import print_limit_uses
-from shaftprint.cli._options import NAMES, campaign_option
-from shaftprint.cli._own_structure import DEFAULT_HELP, OWN_FILE_HELP, TypedName, chosen_structures, closed_loop_of
+from shaftprint.cli._options import DEFAULT_HELP, NAMES, OWN_FILE_HELP, campaign_option
 from shaftprint.cli._planned_pairs import planned_pairs
 from shaftprint.cli._prediction_tables import print_prediction
 from shaftprint.cli._ship_before_test import ShipBeforeTest, assumed_ship, recorded_ship
@@ -34,7 +34,7 @@ from shaftprint.models._structure import Structure
 from shaftprint.spelling import meant
 from shaftprint.survey._expected_of_ship import expected_of_ship
 from shaftprint.survey._fits import stated_working_point
-from shaftprint.survey._of_vessel import of_vessel
+from shaftprint.survey._of_vessel import default_structure, of_vessel
 from shaftprint.vessel._vessel import Vessel, load_vessel
 
 # Where the sensitivity of a structure is taken; what can be found does not depend on it.
@@ -126,7 +126,7 @@ def command(
         known = load_vessel(vessel)
         print_disagreements(known, vessel)
     planned = load_campaign(campaign)
-    (chosen,) = chosen_structures([name or closed_loop_of(known, planned)])
+    (chosen,) = chosen_structures([name or default_structure(known, planned)])
     chosen = (chosen if known is None else of_vessel(chosen, known)).held_at(**dict(held))
     alone = chosen
     if len({leg.level_v for leg in planned.legs} | ({planned.offset_v} if planned.sines else set())) > 1:
@@ -167,7 +167,7 @@ def _print_limits(
 
     Whatever structure the test is for, it moves the whole closed loop.
     """
-    loop = of_vessel(shipped_structure(closed_loop_of(vessel, planned)), vessel)
+    loop = of_vessel(shipped_structure(default_structure(vessel, planned)), vessel)
     assumed = _values_of(loop, vessel, priors, (), [one for one in values if one[0] in loop.names])
     operation = expected_operation(planned, vessel, assumed, slope_rpm_per_v=ship.slope_rpm_per_v)
     print_limit_uses(limit_uses(operation, stated_limits(vessel)), is_expected=True)

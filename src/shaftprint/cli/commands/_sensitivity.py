@@ -7,9 +7,9 @@ from typing import TypeAlias
 
 import click
 
+from shaftprint.catalogue._own_structure import TypedName, chosen_structures
 from shaftprint.catalogue._thesis_figures import thesis_families
 from shaftprint.cli._options import SettingsPath
-from shaftprint.cli._own_structure import TypedName, chosen_structures
 from shaftprint.cli._terminal import answer
 from shaftprint.cli.output._output_folder import force_option, output_folder
 from shaftprint.cli.output._progress import no_progress_option, progress

@@ -6,10 +6,10 @@ import click
 import numpy as np
 
 from shaftprint.catalogue._crash_stop import CRASH_STOP
+from shaftprint.catalogue._own_structure import TypedName
 from shaftprint.cli._crash_stop import LeverMove, crash_stop_run, is_crash_stop, lever_option
 from shaftprint.cli._known_values import named_value, rpm_per_volt_option
-from shaftprint.cli._options import NAMES
-from shaftprint.cli._own_structure import OWN_FILE_HELP, TypedName
+from shaftprint.cli._options import NAMES, OWN_FILE_HELP
 from shaftprint.cli._simulated_model import LIMITED_HELP, simulated_model
 from shaftprint.cli._simulated_set_point import Drive, Place, campaign_drive, file_drive, place_of
 from shaftprint.cli._simulation_run import Prediction, Run, predicted, signals_of, write_signals

@@ -3,8 +3,8 @@
 import click
 
 from shaftprint.catalogue._drives import DRIVES
+from shaftprint.catalogue._own_structure import TypedName, chosen_structures
 from shaftprint.catalogue._thesis import STRUCTURES
-from shaftprint.cli._own_structure import TypedName, chosen_structures
 from shaftprint.cli._terminal import echo, say
 from shaftprint.cli.output._json import give
 from shaftprint.cli.output._tables import print_table

@@ -5,12 +5,12 @@ from pathlib import Path
 import click
 import numpy as np
 
+from shaftprint.catalogue._own_structure import TypedName
 from shaftprint.cli._drive_judge import validate_on_the_bench
 from shaftprint.cli._drive_options import drive_option, expect_not_given, only_recording
 from shaftprint.cli._fit_options import FitOptions, fit_options, held_structures, settings_of, structures_of
 from shaftprint.cli._known_values import named_variable
-from shaftprint.cli._options import campaign_option, vessel_option
-from shaftprint.cli._own_structure import DEFAULT_HELP, OWN_FILE_HELP, TypedName, structure_to_use
+from shaftprint.cli._options import DEFAULT_HELP, OWN_FILE_HELP, campaign_option, vessel_option
 from shaftprint.cli._terminal import echo
 from shaftprint.cli._validation import (
     Asked,
@@ -24,6 +24,7 @@ from shaftprint.cli.output._output_folder import force_option, output_folder
 from shaftprint.cli.output._progress import Steps, no_progress_option, progress
 from shaftprint.cli.output._tables import print_table
 from shaftprint.fingerprint._fingerprint import Fingerprint
+from shaftprint.fingerprint._model import structure_to_use
 from shaftprint.models._structure import Structure
 from shaftprint.survey._fits import fit
 from shaftprint.survey._measurement import Measurement, measure
@@ -142,7 +143,7 @@ def command(
     kept = None if fingerprint is None else fingerprint_at(fingerprint)
     if kept is None:
         structures = structures_of(
-            [structure or TypedName(default_structure(trial.vessel, trial.campaign))], options, trial.vessel
+            [structure or default_structure(trial.vessel, trial.campaign)], options, trial.vessel
         )
     else:
         structures = held_structures([structure_to_use(structure, kept)], options)

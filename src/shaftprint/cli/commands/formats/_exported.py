@@ -9,9 +9,10 @@ import numpy as np
 
 from shaftprint.arrays import frozen_float
 from shaftprint.bench._fingerprint import identified_drive
+from shaftprint.catalogue._own_structure import TypedName
 from shaftprint.cli._drive_options import drive_fingerprint_at, is_drive_place, kept_one
 from shaftprint.cli._known_values import named_value
-from shaftprint.cli._own_structure import OWN_FILE_HELP, TypedName
+from shaftprint.cli._options import OWN_FILE_HELP
 from shaftprint.cli._simulated_model import LIMITED_HELP, simulated_model
 from shaftprint.cli._terminal import say
 from shaftprint.cli.output._file_to_write import expect_free, expect_no_input

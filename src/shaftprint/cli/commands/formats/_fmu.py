@@ -6,7 +6,7 @@ from typing import Literal
 import click
 import numpy as np
 
-from shaftprint.cli._own_structure import TypedName
+from shaftprint.catalogue._own_structure import TypedName
 from shaftprint.cli._terminal import answer, say
 from shaftprint.cli.commands.formats._exported import (
     file_to_write,

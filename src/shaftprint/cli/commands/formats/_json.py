@@ -4,12 +4,14 @@ from pathlib import Path
 
 import click
 
-from shaftprint.cli._own_structure import OWN_FILE_HELP, TypedName, structure_to_use
+from shaftprint.catalogue._own_structure import TypedName
+from shaftprint.cli._options import OWN_FILE_HELP
 from shaftprint.cli._terminal import answer
 from shaftprint.cli.commands.formats._exported import file_to_write, fingerprint_argument, force_option, output_option
 from shaftprint.cli.output._fingerprint_file import fingerprint_at
 from shaftprint.export._json import write_json
 from shaftprint.export._model import exported_model
+from shaftprint.fingerprint._model import structure_to_use
 
 
 @click.command("json")

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import click
 
-from shaftprint.cli._own_structure import TypedName
+from shaftprint.catalogue._own_structure import TypedName
 from shaftprint.cli._terminal import answer
 from shaftprint.cli.commands.formats._exported import (
     file_to_write,

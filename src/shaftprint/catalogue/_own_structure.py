@@ -11,55 +11,17 @@ from pathlib import Path
 from types import CodeType, ModuleType
 from typing import NewType
 
-from shaftprint.campaign._campaign import Campaign
 from shaftprint.catalogue._drives import DRIVES
 from shaftprint.catalogue._shipped import shipped_structure
-from shaftprint.catalogue._thesis import CLOSED_LOOPS, COMBINED_LOOP, PITCHED_LOOP, STRUCTURES
+from shaftprint.catalogue._thesis import STRUCTURES
 from shaftprint.errors import ShaftprintError, StructureError
-from shaftprint.fingerprint._fingerprint import Fingerprint
-from shaftprint.fingerprint._model import named_structure
 from shaftprint.models._check import check_structure
 from shaftprint.models._structure import Structure
-from shaftprint.survey._of_vessel import default_structure
-from shaftprint.vessel._vessel import Vessel
 
 SUFFIX = ".py"
-OWN_FILE_HELP = "a shipped one, or my_ship.py:my_loop for one of your own file, which is Python and is run"
 
 TypedName = NewType("TypedName", str)
 """The name of a structure as the user typed it, which may be that of a file to run; a text out of a file is no such."""
-
-DEFAULT_HELP = (
-    f"{CLOSED_LOOPS['engine']}, {CLOSED_LOOPS['motor']} where a motor drives the line, {CLOSED_LOOPS['hybrid']} where "
-    f"one helps an engine, {PITCHED_LOOP} where the campaign moves a logged pitch, {COMBINED_LOOP} with a "
-    "combinator, or FREE-LOG underway"
-)
-
-
-def closed_loop_of(vessel: Vessel | None, campaign: Campaign | None = None) -> TypedName:
-    """Return the closed loop that a test asks for; that of an engine at the quay where no vessel file is given.
-
-    Parameters
-    ----------
-    vessel
-        The installation.
-    campaign
-        What is asked of it; without one the set point of the speed alone.
-    """
-    return TypedName(CLOSED_LOOPS["engine"] if vessel is None else default_structure(vessel, campaign))
-
-
-def structure_to_use(name: TypedName | None, fingerprint: Fingerprint) -> Structure:
-    """Return the structure that the user names, otherwise the shipped one of a fingerprint.
-
-    Raises
-    ------
-    StructureError
-        If there is no such structure, or its file fails.
-    FingerprintError
-        If the user names none, and the fingerprint none that is shipped.
-    """
-    return named_structure(fingerprint) if name is None else chosen_structures([name])[0]
 
 
 def chosen_structures(texts: Sequence[TypedName]) -> tuple[Structure, ...]:
