@@ -10,7 +10,8 @@ from pathlib import Path
 import numpy as np
 
 from shaftprint.catalogue import limited, structure
-from shaftprint.report import SimulatedSignal, save_chart, simulation_chart
+from shaftprint.forecast import SimulatedSignal
+from shaftprint.report import save_chart, simulation_chart
 from shaftprint.simulation import simulate
 
 SPEED_RPM, TORQUE_NM, BRAKE_NM = 1183.8, 1725.0, 465.54

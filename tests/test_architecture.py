@@ -78,6 +78,18 @@ def imported_from(path):
             yield node.lineno, node.module or "", [alias.name for alias in node.names]
 
 
+def test_only_the_commands_know_how_options_are_typed():
+    """What the program can do, a notebook and the server can do by the same verb, and are told what is wrong."""
+    with_click = {
+        path.relative_to(SOURCE).parts[0]
+        for path in FILES
+        for node in ast.walk(tree_of(path))
+        if (isinstance(node, ast.ImportFrom) and (node.module or "").split(".")[0] == "click")
+        or (isinstance(node, ast.Import) and any(alias.name.split(".")[0] == "click" for alias in node.names))
+    }
+    assert with_click == {"cli"}
+
+
 def is_file_of(folder, name):
     return (folder / f"{name}.py").exists() or (folder / name).is_dir()
 

@@ -54,6 +54,7 @@ _ROOMS = (
     "export",
     "fingerprint",
     "fleet",
+    "forecast",
     "identify",
     "limits",
     "models",

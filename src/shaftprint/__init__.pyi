@@ -17,6 +17,7 @@ from shaftprint import export as export
 from shaftprint import files as files
 from shaftprint import fingerprint as fingerprint
 from shaftprint import fleet as fleet
+from shaftprint import forecast as forecast
 from shaftprint import identify as identify
 from shaftprint import kernels as kernels
 from shaftprint import limits as limits

@@ -20,7 +20,8 @@
     ├── StoreError            a store of fingerprints that cannot be used, or a record that it refuses
     │   └── DatabaseError     a database that is busy, full, damaged or not reached: another time it may do
     ├── ServerError           a server that cannot be started, or a request that it refuses
-    └── ExportError           a model that cannot be written for another program
+    ├── ExportError           a model that cannot be written for another program
+    └── RequestError          arguments that do not go together, or of which one is missing
 
 Every message says which file, channel, second or field, what was expected, what was found and what to do.
 """
@@ -100,3 +101,7 @@ class DatabaseError(StoreError):
 
 class ExportError(ShaftprintError):
     """A model cannot be written for another program."""
+
+
+class RequestError(ShaftprintError):
+    """What was asked for does not go together or is not complete; the program says how it is called."""

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from tests.report.marks import mark, names
 
-from shaftprint.report import SimulatedSignal, simulation_chart
+from shaftprint.forecast import SimulatedSignal
+from shaftprint.report import simulation_chart
 from shaftprint.report.charts._marks import Band
 from shaftprint.report.charts._text import as_plain
 

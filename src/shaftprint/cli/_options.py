@@ -18,6 +18,10 @@ DEFAULT_HELP = (
     f"one helps an engine, {PITCHED_LOOP} where the campaign moves a logged pitch, {COMBINED_LOOP} with a "
     "combinator, or FREE-LOG underway"
 )
+LIMITED_HELP = (
+    "GAUGE-QUADRATIC, GAUGE-TORQUE, GAUGE-TORQUE-RATE and so on: GAUGE-CLOSED at large, with limits; "
+    "HYBRID-TORQUE-CLUTCH and so on: GAUGE-HYBRID, whose clutch slips"
+)
 NAMES = "a path, or the name of a shipped one such as"
 
 

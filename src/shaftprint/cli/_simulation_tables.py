@@ -1,33 +1,24 @@
 """A simulation on the terminal: what it was made with, and what came out."""
 
 import math
-from collections.abc import Sequence
 
 import numpy as np
 
 from shaftprint.arrays import FloatArray
-from shaftprint.cli._simulated_model import SimulatedModel
 from shaftprint.cli._terminal import say
 from shaftprint.cli.output._tables import print_table
 from shaftprint.digits import rounded, unit_text, with_deviation
+from shaftprint.forecast._simulation import Simulation
 from shaftprint.plain_table import MEANING, Table, numbers, texts
-from shaftprint.report.figures._simulation import SimulatedSignal
 
 VALUE_DIGITS, RANGE_DIGITS, STD_DIGITS = 6, 5, 2
 # Of the largest value: less is what rounding leaves of zero.
 NOTHING = 1e-12
 
 
-def print_simulation(
-    model: SimulatedModel, time_s: FloatArray, signals: Sequence[SimulatedSignal], *, warnings: Sequence[str]
-) -> None:
-    """Print the parameters with where they come from, the range of every signal, and what a reader must know.
-
-    Parameters
-    ----------
-    warnings
-        What a reader must know, in sentences.
-    """
+def print_simulation(simulation: Simulation) -> None:
+    """Print the parameters with where they come from, the range of every signal, and what a reader must know."""
+    model, time_s = simulation.run.model, simulation.time_s
     structure = model.structure
     std = dict(zip(model.uncertain, np.sqrt(np.diag(model.covariance)), strict=True))
     std |= dict.fromkeys(model.not_known, math.inf)
@@ -50,7 +41,7 @@ def print_simulation(
             *(rounded(end, RANGE_DIGITS) for end in _ends(signal.values)),
             "" if signal.std is None else rounded(float(signal.std.max()), STD_DIGITS),
         )
-        for signal in signals
+        for signal in simulation.signals
     ]
     print_table(
         Table(
@@ -64,7 +55,7 @@ def print_simulation(
     if model.not_known:
         pronoun = "it" if len(model.not_known) == 1 else "them"
         say(f"The test said nothing of {', '.join(model.not_known)}: the band leaves {pronoun} out.")
-    for sentence in warnings:
+    for sentence in simulation.remarks:
         say(sentence)
 
 

@@ -1,8 +1,13 @@
 """How a command speaks: the options ``--json``, ``--verbose`` and ``--quiet``, which every command has."""
 
+from collections.abc import Callable
+from functools import wraps
+from typing import Any
+
 import click
 
 from shaftprint.cli._terminal import Document, output
+from shaftprint.errors import RequestError
 
 
 def _as_json(context: click.Context, parameter: click.Parameter, chosen: bool) -> None:
@@ -45,7 +50,21 @@ def _options() -> list[click.Option]:
 
 
 def speaking(command: click.Command) -> click.Command:
-    """Return a command with the options that say how it speaks."""
+    """Return a command with the options that say how it speaks, which says how it is called when asked wrongly."""
     if not any(parameter.name == "as_json" for parameter in command.params):
         command.params += _options()
+        command.callback = _saying_how_it_is_called(command.callback)
     return command
+
+
+def _saying_how_it_is_called(callback: Callable[..., Any] | None) -> Callable[..., Any]:
+    assert callback is not None  # noqa: S101 - every command does something
+
+    @wraps(callback)
+    def called(*args: Any, **kwargs: Any) -> Any:
+        try:
+            return callback(*args, **kwargs)
+        except RequestError as error:
+            raise click.UsageError(str(error)) from error
+
+    return called

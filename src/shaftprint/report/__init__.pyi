@@ -21,7 +21,7 @@ from .figures._responses import open_loop_chart
 from .figures._scan import scan_chart
 from .figures._sensitivity import sensitivity_chart
 from .figures._signal_to_noise import signal_to_noise_chart
-from .figures._simulation import SimulatedSignal, simulation_chart
+from .figures._simulation import simulation_chart
 from .figures._sisters import sister_chart
 from .figures._step_band import step_chart
 from .figures._steps import delay_chart
@@ -30,7 +30,6 @@ from .figures._validation import validation_chart, validation_summary_chart
 
 __all__ = [
     "Curve",
-    "SimulatedSignal",
     "bode_chart",
     "budget_chart",
     "calibration_chart",

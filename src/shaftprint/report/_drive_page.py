@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING
 from shaftprint.arguments import refusing_none
 from shaftprint.errors import ReportError
 from shaftprint.fingerprint._drive_fingerprint import DriveFingerprint, drive_fingerprint_content
+from shaftprint.forecast._simulation import SimulatedSignal
 from shaftprint.plain_table import Table, texts
 from shaftprint.report._page import Page, write_page
-from shaftprint.report.figures._simulation import SimulatedSignal, simulation_chart
+from shaftprint.report.figures._simulation import simulation_chart
 from shaftprint.report.sections._sections import Picture, Section, picture_name
 from shaftprint.tables._drive import drive_assumed_table, drive_record_table, drive_response_table
 from shaftprint.tables._fingerprint import quantity_table

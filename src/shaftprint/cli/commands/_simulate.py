@@ -5,24 +5,49 @@ from pathlib import Path
 import click
 import numpy as np
 
+from shaftprint.campaign._campaign import load_campaign
 from shaftprint.catalogue._crash_stop import CRASH_STOP
 from shaftprint.catalogue._own_structure import TypedName
-from shaftprint.cli._crash_stop import LeverMove, crash_stop_run, is_crash_stop, lever_option
 from shaftprint.cli._known_values import named_value, rpm_per_volt_option
-from shaftprint.cli._options import NAMES, OWN_FILE_HELP
-from shaftprint.cli._simulated_model import LIMITED_HELP, simulated_model
-from shaftprint.cli._simulated_set_point import Drive, Place, campaign_drive, file_drive, place_of
-from shaftprint.cli._simulation_run import Prediction, Run, predicted, signals_of, write_signals
+from shaftprint.cli._options import LIMITED_HELP, NAMES, OWN_FILE_HELP
 from shaftprint.cli._simulation_tables import print_simulation
 from shaftprint.cli._terminal import answer
+from shaftprint.cli._vessel_file import print_disagreements
 from shaftprint.cli.commands._inertia import picture
 from shaftprint.cli.output._file_to_write import expect_free, expect_no_input
 from shaftprint.cli.output._fingerprint_file import fingerprint_at, fingerprint_file
 from shaftprint.cli.output._progress import no_progress_option, progress
 from shaftprint.files import written_whole
+from shaftprint.forecast._crash_stop import GEARS, LeverMove, crash_stop_run
+from shaftprint.forecast._inputs import Inputs, Point, campaign_inputs, file_inputs, point_of
+from shaftprint.forecast._simulated_model import simulated_model
+from shaftprint.forecast._simulation import Run, simulated, write_simulation
 from shaftprint.models._structure import Structure
 from shaftprint.report.charts._pictures import save_chart
-from shaftprint.report.figures._simulation import SimulatedSignal, simulation_chart
+from shaftprint.report.figures._simulation import simulation_chart
+from shaftprint.vessel._vessel import load_vessel
+
+
+class _LeverMoveType(click.ParamType):  # type: ignore[type-arg]
+    """``TIME:SPEED:GEAR``."""
+
+    name = "move"
+
+    def convert(self, value: object, param: click.Parameter | None, ctx: click.Context | None) -> LeverMove:
+        """Return a move as it was typed."""
+        try:
+            time, speed, gear = str(value).split(":")
+            move = LeverMove(time_s=float(time), speed_rpm=float(speed), gear=GEARS[gear.strip().lower()])
+        except (ValueError, KeyError):
+            move = None
+        if move is None or not (0.0 <= move.time_s < np.inf and 0.0 < move.speed_rpm < np.inf):
+            self.fail(
+                f"expected a time in s, an engine speed in rpm and one of {', '.join(GEARS)}, such as 5:650:neutral, "
+                f"found {value}.",
+                param,
+                ctx,
+            )
+        return move
 
 
 def span_of_time(
@@ -66,7 +91,15 @@ def span_of_time(
     type=click.Path(path_type=Path),
     help='Instead of a campaign a CSV, MATLAB or NetCDF file with columns named as the inputs; "set point [rpm]" too.',
 )
-@lever_option
+@click.option(
+    "--lever",
+    "moves",
+    metavar="TIME:RPM:GEAR",
+    type=_LeverMoveType(),
+    multiple=True,
+    help=f"For {CRASH_STOP}: from this time [s] the lever asks for an engine speed and ahead, neutral or astern, such "
+    "as 5:650:neutral; may be repeated. Ahead at the working point before.",
+)
 @click.option("--hold", is_flag=True, help="Keep each value of --input until the next; straight in between otherwise.")
 @click.option(
     "--vessel",
@@ -122,52 +155,54 @@ def command(
             expect_no_input(path, table, None if fingerprint is None else fingerprint_file(fingerprint))
             expect_free(path, force=force)
     identified = None if fingerprint is None else fingerprint_at(fingerprint)
+    installation = None if vessel is None else load_vessel(vessel)
     values = dict(given)
-    if is_crash_stop(structure):
+    if structure is not None and structure.upper() == CRASH_STOP:
         _expect_only_a_lever(campaign, table, rpm_per_volt, linear or None, hold or None)
-        run = crash_stop_run(vessel, identified, values, moves, rate_hz=rate_hz, span=span)
+        if vessel is None or installation is None:
+            raise click.UsageError(f"{CRASH_STOP} expects --vessel, the ship that is stopped.")
+        print_disagreements(installation, vessel)
+        run = crash_stop_run(installation, moves, fingerprint=identified, given=values, rate_hz=rate_hz, span=span)
     else:
-        _expect_no_lever(moves)
-        place = place_of(identified, vessel, rpm_per_volt)
+        if moves:
+            raise click.UsageError(f"--lever is for --structure {CRASH_STOP}, whose engine has clutches.")
+        point = point_of(identified, installation, rpm_per_volt)
         model = simulated_model(structure, identified, values, linear=linear)
-        run = Run(
-            model=model,
-            place=place,
-            drive=_drive(campaign, table, model.structure, place, hold=hold, span=span, rate_hz=rate_hz),
-        )
+        inputs = _inputs(campaign, table, model.structure, point, hold=hold, span=span, rate_hz=rate_hz)
+        run = Run(model=model, point=point, inputs=inputs)
     with progress(hidden=no_progress) as steps:
-        prediction = predicted(run.model, run.drive, steps=steps)
-        signals = signals_of(run.drive, prediction, run.place)
+        simulation = simulated(run, progress=steps)
         if figure is not None:
             steps.begin("Drawing")
-            _draw(run, signals, figure)
+            chart = simulation_chart(simulation.time_s, simulation.signals, name=run.model.structure.name)
+            with written_whole(figure, overwrite=True) as part:
+                save_chart(chart, part)
         steps.begin("Writing")
-        write_signals(output, run.drive.time_s, signals, overwrite=force)
-    for sentence in run.answers(prediction):
+        write_simulation(output, simulation, overwrite=force)
+    for sentence in simulation.answers:
         answer(sentence)
-    warnings = _warnings(run.model.structure, run.drive, prediction)
-    print_simulation(run.model, run.drive.time_s, signals, warnings=warnings)
+    print_simulation(simulation)
     for path in (output, figure):
         if path is not None:
             answer(path)
 
 
-def _drive(
+def _inputs(
     campaign: str | None,
     table: Path | None,
     structure: Structure,
-    place: Place | None,
+    point: Point | None,
     *,
     hold: bool,
     span: tuple[float, float] | None,
     rate_hz: float,
-) -> Drive:
+) -> Inputs:
     if (campaign is None) == (table is None):
         raise click.UsageError("expected one set point: either --campaign or --input.")
     if campaign is not None:
-        return campaign_drive(campaign, structure, place, rate_hz=rate_hz, span=span)
+        return campaign_inputs(load_campaign(campaign), structure, point, rate_hz=rate_hz, span=span)
     assert table is not None  # noqa: S101 - one of both was given
-    return file_drive(table, structure, place, hold=hold, span=span)
+    return file_inputs(table, structure, point, hold=hold, span=span)
 
 
 def _expect_only_a_lever(*others: object) -> None:
@@ -175,32 +210,3 @@ def _expect_only_a_lever(*others: object) -> None:
         raise click.UsageError(
             f"{CRASH_STOP} is moved by --lever alone, without --campaign, --input, --rpm-per-volt, --linear or --hold."
         )
-
-
-def _expect_no_lever(moves: tuple[LeverMove, ...]) -> None:
-    if moves:
-        raise click.UsageError(f"--lever is for --structure {CRASH_STOP}, whose engine has clutches.")
-
-
-def _draw(run: Run, signals: tuple[SimulatedSignal, ...], path: Path) -> None:
-    with written_whole(path, overwrite=True) as part:
-        save_chart(simulation_chart(run.drive.time_s, signals, name=run.model.structure.name), part)
-
-
-def _warnings(structure: Structure, drive: Drive, prediction: Prediction) -> list[str]:
-    """Return where the set point lies, and what a linear structure leaves out of a propeller's torque."""
-    remarks = [drive.remark] if drive.remark else []
-    if prediction.not_exact:
-        remarks.append(f"Outputs may be up to 2.5 ms early or late where a held value jumps: {prediction.not_exact}")
-    linear = all(block.is_linear for block in structure.blocks)
-    if not linear or structure.input != "n_set" or not {"n", "M_s"} <= set(prediction.outputs):
-        return remarks
-    neglected = float(np.max(prediction.outputs["n"] ** 2))
-    if neglected < 0.01:
-        return remarks
-    return [
-        *remarks,
-        f"The torque of {structure.name} is linear in the speed; at the quay it goes with the square, up to "
-        f"{100.0 * neglected:.0f} % of the working-point torque more. --structure GAUGE-QUADRATIC has the square, "
-        "GAUGE-TORQUE-RATE limits too.",
-    ]

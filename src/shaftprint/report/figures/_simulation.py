@@ -1,12 +1,12 @@
 """Simulated signals over time, with the band that the covariance of the parameters gives."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.distributions import deviations
+from shaftprint.forecast._simulation import SimulatedSignal
 from shaftprint.plain_table import Symbol
 from shaftprint.report.charts._chart import Chart, Panel, Scale
 from shaftprint.report.charts._marks import Band, Line, Mark
@@ -15,22 +15,6 @@ from shaftprint.report.figures._envelope import STRETCHES, envelope
 
 COVERAGE = 0.95
 PERCENT = 100.0
-
-
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class SimulatedSignal:
-    """An input or an output over time."""
-
-    title: str
-    """What it is, in words or as a symbol."""
-    unit: str
-    """Its unit; empty where none is known."""
-    values: FloatArray
-    """Its values, shape (samples,)."""
-    std: FloatArray | None = None
-    """Standard deviation of each value, shape (samples,); None where none is known."""
-    is_input: bool = False
-    """Whether it drives the model."""
 
 
 def simulation_chart(

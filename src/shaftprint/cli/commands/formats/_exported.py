@@ -12,14 +12,14 @@ from shaftprint.bench._fingerprint import identified_drive
 from shaftprint.catalogue._own_structure import TypedName
 from shaftprint.cli._drive_options import drive_fingerprint_at, is_drive_place, kept_one
 from shaftprint.cli._known_values import named_value
-from shaftprint.cli._options import OWN_FILE_HELP
-from shaftprint.cli._simulated_model import LIMITED_HELP, simulated_model
+from shaftprint.cli._options import LIMITED_HELP, OWN_FILE_HELP
 from shaftprint.cli._terminal import say
 from shaftprint.cli.output._file_to_write import expect_free, expect_no_input
 from shaftprint.cli.output._fingerprint_file import fingerprint_at, fingerprint_file
 from shaftprint.errors import StructureError
 from shaftprint.escape import plain_name
 from shaftprint.export._model import ExportedModel, validation_remark
+from shaftprint.forecast._simulated_model import simulated_model
 from shaftprint.spelling import meant
 
 fingerprint_argument = click.argument("fingerprint", type=click.Path(path_type=Path))

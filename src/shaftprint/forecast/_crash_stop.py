@@ -1,27 +1,25 @@
-"""A crash stop for ``simulate``: the ship of a vessel file, moves of the lever, and when and where it stands."""
+"""A crash stop: the ship of a vessel file, moves of the lever, and when and where it stands."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from types import MappingProxyType
 
-import click
 import numpy as np
 
 from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.catalogue._crash_stop import CRASH_STOP, CrashStopSymbol
 from shaftprint.catalogue._known_propeller import sails_free
-from shaftprint.catalogue._own_structure import TypedName
-from shaftprint.cli._simulated_model import SimulatedModel, expect_parameters
-from shaftprint.cli._simulated_set_point import SAME_WORKING_POINT, Drive, Place
-from shaftprint.cli._simulation_run import Prediction, Run
-from shaftprint.cli._vessel_file import print_disagreements
 from shaftprint.digits import with_deviation
-from shaftprint.errors import FingerprintError, StructureError
+from shaftprint.errors import FingerprintError, RequestError, StructureError
 from shaftprint.fingerprint._fingerprint import Fingerprint
 from shaftprint.fingerprint._model import named_structure
+from shaftprint.forecast._inputs import SAME_WORKING_POINT, Inputs, Point
+from shaftprint.forecast._simulated_model import SimulatedModel, expect_parameters
+from shaftprint.forecast._simulation import Run, Simulation
 from shaftprint.models._structure import Structure
 from shaftprint.simulation._stopped_ship import StoppedShip, stopped_ship
-from shaftprint.vessel._vessel import load_vessel
+from shaftprint.vessel._vessel import Vessel
 
 GEARS: Mapping[str, float] = {"ahead": 1.0, "neutral": 0.0, "astern": -1.0}
 # What follows the last move, where no end is given, and the longest stretch; steps that a closed clutch needs, and the
@@ -41,72 +39,34 @@ class LeverMove:
     """1 ahead, 0 neither clutch, -1 astern."""
 
 
-class _LeverMoveType(click.ParamType):  # type: ignore[type-arg]
-    """``TIME:SPEED:GEAR``."""
-
-    name = "move"
-
-    def convert(self, value: object, param: click.Parameter | None, ctx: click.Context | None) -> LeverMove:
-        """Return a move as it was typed."""
-        try:
-            time, speed, gear = str(value).split(":")
-            move = LeverMove(time_s=float(time), speed_rpm=float(speed), gear=GEARS[gear.strip().lower()])
-        except (ValueError, KeyError):
-            move = None
-        if move is None or not (0.0 <= move.time_s < np.inf and 0.0 < move.speed_rpm < np.inf):
-            self.fail(
-                f"expected a time in s, an engine speed in rpm and one of {', '.join(GEARS)}, such as 5:650:neutral, "
-                f"found {value}.",
-                param,
-                ctx,
-            )
-        return move
-
-
-lever_option = click.option(
-    "--lever",
-    "moves",
-    metavar="TIME:RPM:GEAR",
-    type=_LeverMoveType(),
-    multiple=True,
-    help=f"For {CRASH_STOP}: from this time [s] the lever asks for an engine speed and ahead, neutral or astern, such "
-    "as 5:650:neutral; may be repeated. Ahead at the working point before.",
-)
-
-
-def is_crash_stop(name: TypedName | None) -> bool:
-    """Return whether a user names the structure that needs a vessel file."""
-    return name is not None and name.upper() == CRASH_STOP
-
-
 def crash_stop_run(
-    vessel: str | None,
-    fingerprint: Fingerprint | None,
-    given: Mapping[str, float],
-    moves: tuple[LeverMove, ...],
+    vessel: Vessel,
+    moves: Sequence[LeverMove],
     *,
-    rate_hz: float,
-    span: tuple[float, float] | None,
+    fingerprint: Fingerprint | None = None,
+    given: Mapping[str, float] = MappingProxyType({}),
+    rate_hz: float = 50.0,
+    span: tuple[float, float] | None = None,
 ) -> Run:
     """Return the crash stop of a ship: numbers of its vessel file, of a fingerprint above them, the user's on top.
 
     Parameters
     ----------
     vessel
-        Vessel file of the ship.
+        The ship that is stopped.
+    moves
+        What the lever asks for.
     fingerprint
         Test of the same ship underway at the same speed, for governor, engine and inertias.
     given
-        Values that the user states.
-    moves
-        What the lever asks for.
+        Values that the user states, by parameter.
     rate_hz, span
         Samples a second that are written [Hz]; begin and end [s], until two minutes after the last move if not given.
 
     Raises
     ------
-    click.UsageError
-        If no vessel or no move is given, the moves do not follow each other within the span, or ask for a speed that
+    RequestError
+        If no move is given, the moves do not follow each other within the span, or ask for a speed that
         the engine is not asked for.
     SettingsError, PropellerError
         If the vessel file does not describe a ship that can be stopped like this.
@@ -115,21 +75,17 @@ def crash_stop_run(
     FingerprintError
         If the fingerprint is not of a ship underway, or has another working point: its numbers are over that.
     """
-    if vessel is None:
-        raise click.UsageError(f"{CRASH_STOP} expects --vessel, the ship that is stopped.")
-    known = load_vessel(vessel)
-    print_disagreements(known, vessel)
-    ship = stopped_ship(known)
+    ship = stopped_ship(vessel)
     if fingerprint is not None:
         _expect_of_ship(fingerprint, ship)
     _expect_governed(moves, ship)
-    place = _place(ship)
-    drive = _lever_drive(moves, place, rate_hz=rate_hz, span=span)
+    point = _point(ship)
+    inputs = _lever_inputs(moves, point, rate_hz=rate_hz, span=span)
     return Run(
         model=_model(ship, fingerprint, given),
-        place=place,
-        drive=drive,
-        answers=lambda prediction: _answers(drive, prediction, ship, moves),
+        point=point,
+        inputs=inputs,
+        answers=lambda simulation: _answers(simulation, ship, moves),
     )
 
 
@@ -155,21 +111,21 @@ def _expect_of_ship(fingerprint: Fingerprint, ship: StoppedShip) -> None:
             )
 
 
-def _expect_governed(moves: tuple[LeverMove, ...], ship: StoppedShip) -> None:
+def _expect_governed(moves: Sequence[LeverMove], ship: StoppedShip) -> None:
     """Refuse a lever that asks for what no governor of this engine is asked for."""
     machine = ship.vessel.machine
     lowest, highest = machine.lowest_governed_rpm, max(machine.rated_speed_rpm, machine.full_load[0][-1])
     for move in moves:
         if not lowest <= move.speed_rpm <= highest:
-            raise click.UsageError(
+            raise RequestError(
                 f"--lever: expected engine speeds from {lowest:g} to {highest:g} rpm, found {move.speed_rpm:g} rpm at "
                 f"{move.time_s:g} s."
             )
 
 
-def _place(ship: StoppedShip) -> Place:
+def _point(ship: StoppedShip) -> Point:
     point = ship.vessel.working_point
-    return Place(
+    return Point(
         engine_speed_rpm=point.engine_speed_rpm,
         shaft_torque_nm=point.shaft_torque_nm,
         slope_rpm_per_v=None,
@@ -233,59 +189,59 @@ def _covariance(
     return (*(tested[place].name for place in places), *stated), frozen_float(covariance)
 
 
-def _lever_drive(
-    moves: tuple[LeverMove, ...], place: Place, *, rate_hz: float, span: tuple[float, float] | None
-) -> Drive:
+def _lever_inputs(
+    moves: Sequence[LeverMove], point: Point, *, rate_hz: float, span: tuple[float, float] | None
+) -> Inputs:
     times = [move.time_s for move in moves]
     if not moves or any(later <= earlier for earlier, later in pairwise(times)):
-        raise click.UsageError(f"{CRASH_STOP} expects --lever, one or more, each at a later time than the one before.")
+        raise RequestError(f"{CRASH_STOP} expects --lever, one or more, each at a later time than the one before.")
     begin, end = span or (0.0, times[-1] + _AFTER_S)
     if not begin < times[0] or not times[-1] < end:
-        raise click.UsageError(
+        raise RequestError(
             f"--between: expected a stretch that begins before the first move of the lever, at {times[0]:g} s, where "
             f"the ship sails ahead, and ends after the last, at {times[-1]:g} s; found {begin:g} to {end:g} s."
         )
     if end - begin > _LONGEST_S:
-        raise click.UsageError(
+        raise RequestError(
             f"--between: expected at most {_LONGEST_S:g} s, found {begin:g} to {end:g} s; move the lever earlier."
         )
     if rate_hz < _FEWEST_HZ:
-        raise click.UsageError(
+        raise RequestError(
             f"--rate: expected at least {_FEWEST_HZ:g} rows a second of {CRASH_STOP}, found {rate_hz:g}; a clutch "
             "closes in less than two rows."
         )
     every = int(np.ceil(1.0 / (rate_hz * _STEP_S) - 1e-9))
     time = frozen_float(begin + np.arange(int(np.floor((end - begin) * rate_hz + 1e-9)) + 1) / rate_hz)
     fine = frozen_float(begin + np.arange((time.size - 1) * every + 1) / (rate_hz * every))
-    shown = _asked(moves, place, time)
-    return Drive(
+    shown = _asked(moves, point, time)
+    return Inputs(
         time_s=time,
         every=every,
-        inputs=_asked(moves, place, fine),
+        inputs=_asked(moves, point, fine),
         shown=shown | {"gear": frozen_float(1.0 + shown["gear"])},
         units=dict.fromkeys(shown, "-"),
         hold=False,
     )
 
 
-def _asked(moves: tuple[LeverMove, ...], place: Place, time_s: FloatArray) -> dict[str, FloatArray]:
+def _asked(moves: Sequence[LeverMove], point: Point, time_s: FloatArray) -> dict[str, FloatArray]:
     """Return both inputs at times, deviations from ahead at the working point."""
     latest = np.searchsorted([move.time_s for move in moves], time_s, side="right")
-    speeds = np.array([0.0, *(move.speed_rpm / place.engine_speed_rpm - 1.0 for move in moves)])
+    speeds = np.array([0.0, *(move.speed_rpm / point.engine_speed_rpm - 1.0 for move in moves)])
     gears = np.array([0.0, *(move.gear - 1.0 for move in moves)])
     return {"n_set": frozen_float(speeds[latest]), "gear": frozen_float(gears[latest])}
 
 
-def _answers(drive: Drive, prediction: Prediction, ship: StoppedShip, moves: tuple[LeverMove, ...]) -> list[str]:
+def _answers(simulation: Simulation, ship: StoppedShip, moves: Sequence[LeverMove]) -> list[str]:
     """Return when and where the ship stands, from the first move of the lever on, and whether the engine stalls."""
-    sentences = [_standstill(drive, prediction, ship.speed_m_s, moves)]
+    sentences = [_standstill(simulation, ship.speed_m_s, moves)]
     speed_rpm, idle = ship.vessel.working_point.engine_speed_rpm, ship.vessel.machine.lowest_governed_rpm
-    at = int(np.argmin(prediction.outputs["n"]))
-    slowest = speed_rpm * (1.0 + float(prediction.outputs["n"][at]))
+    at = int(np.argmin(simulation.outputs["n"]))
+    slowest = speed_rpm * (1.0 + float(simulation.outputs["n"][at]))
     if slowest <= 0.0:
         sentences.append("The engine is stopped and turned backwards: what follows that is not to be used.")
     elif slowest < idle * (1.0 - SAME_WORKING_POINT):
-        std = 0.0 if prediction.std is None else speed_rpm * float(prediction.std["n"][at])
+        std = 0.0 if simulation.std is None else speed_rpm * float(simulation.std["n"][at])
         falls = with_deviation(slowest, std) if std else f"{slowest:.0f}"
         sentences.append(
             f"The engine falls to {falls} rpm, below its {idle:g} rpm of idling: it may stall."
@@ -294,9 +250,9 @@ def _answers(drive: Drive, prediction: Prediction, ship: StoppedShip, moves: tup
     return sentences
 
 
-def _standstill(drive: Drive, prediction: Prediction, speed_m_s: float, moves: tuple[LeverMove, ...]) -> str:
-    time, sails = drive.time_s, 1.0 + prediction.outputs["v_s"]
-    distance = speed_m_s * (time - time[0] + prediction.outputs["x_s"])
+def _standstill(simulation: Simulation, speed_m_s: float, moves: Sequence[LeverMove]) -> str:
+    time, sails = simulation.time_s, 1.0 + simulation.outputs["v_s"]
+    distance = speed_m_s * (time - time[0] + simulation.outputs["x_s"])
     begin = moves[0].time_s
     later = np.nonzero(sails <= 0.0)[0]
     if not later.size:
@@ -310,10 +266,10 @@ def _standstill(drive: Drive, prediction: Prediction, speed_m_s: float, moves: t
     seconds = float(time[at - 1] + share * (time[at] - time[at - 1])) - begin
     stood = float(distance[at - 1] + share * (distance[at] - distance[at - 1]))
     metres = stood - float(np.interp(begin, time, distance))
-    if prediction.std is None:
+    if simulation.std is None:
         return f"The ship stands {seconds:.1f} s and {metres:.1f} m after the first move of the lever."
     slope = (sails[at - 1] - sails[at]) / (time[at] - time[at - 1])
     # where the ship stands, a later stop makes no way
-    of_seconds = with_deviation(seconds, float(prediction.std["v_s"][at] / slope))
-    of_metres = with_deviation(metres, float(speed_m_s * prediction.std["x_s"][at]))
+    of_seconds = with_deviation(seconds, float(simulation.std["v_s"][at] / slope))
+    of_metres = with_deviation(metres, float(speed_m_s * simulation.std["x_s"][at]))
     return f"The ship stands {of_seconds} s and {of_metres} m after the first move of the lever."

@@ -3,22 +3,16 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-import click
 import numpy as np
 
 from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.catalogue._own_structure import TypedName, chosen_structures
-from shaftprint.errors import FingerprintError, StructureError
+from shaftprint.errors import FingerprintError, RequestError, StructureError
 from shaftprint.fingerprint._fingerprint import Fingerprint
 from shaftprint.fingerprint._model import model_with_limits, structure_to_use
 from shaftprint.fingerprint._quantity import Quantity
 from shaftprint.models._structure import Structure
 from shaftprint.spelling import meant
-
-LIMITED_HELP = (
-    "GAUGE-QUADRATIC, GAUGE-TORQUE, GAUGE-TORQUE-RATE and so on: GAUGE-CLOSED at large, with limits; "
-    "HYBRID-TORQUE-CLUTCH and so on: GAUGE-HYBRID, whose clutch slips"
-)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -72,7 +66,7 @@ def simulated_model(
 
     Raises
     ------
-    click.UsageError
+    RequestError
         If there is neither a name nor a fingerprint.
     FingerprintError
         If the fingerprint has a parameter that the structure lacks, or its structure is not shipped and none is named.
@@ -87,7 +81,7 @@ def simulated_model(
     elif name is not None:
         (chosen,) = chosen_structures([name])
     else:
-        raise click.UsageError("expected a model: give --fingerprint, or --structure with --set.")
+        raise RequestError("expected a model: give --fingerprint, or --structure with --set.")
     expect_parameters(chosen, given)
     if fingerprint is None:
         return _by_name(chosen, given)

@@ -1,21 +1,20 @@
-"""What drives a simulation: a campaign, or columns of a file, in the units of the structure."""
+"""What moves a simulation: a campaign, or columns of a file, in the units of the structure."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-import click
 import numpy as np
 
 from shaftprint.arrays import FloatArray, frozen_float
-from shaftprint.campaign._campaign import Campaign, load_campaign
+from shaftprint.campaign._campaign import Campaign
 from shaftprint.campaign._setpoint import setpoint
-from shaftprint.errors import RecordingError
+from shaftprint.errors import RecordingError, RequestError
 from shaftprint.fingerprint._fingerprint import Fingerprint
 from shaftprint.models._structure import Structure
 from shaftprint.recording._channel import Channel
 from shaftprint.recording._read import read_recording
-from shaftprint.vessel._vessel import load_vessel
+from shaftprint.vessel._vessel import Vessel
 
 SET_POINT, SET_POINT_CHANNEL = "n_set", "set point"
 # Steps of a simulated campaign: a limit that a jump meets is seen half a step early. Longer stretches than a million
@@ -28,7 +27,7 @@ SAME_WORKING_POINT = 0.05
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Place:
+class Point:
     """The working point about which the structure deviates, and the line from voltage to speed."""
 
     engine_speed_rpm: float
@@ -56,11 +55,11 @@ class Place:
 
         Raises
         ------
-        click.UsageError
+        RequestError
             If nothing says what a volt asks for.
         """
         if self.slope_rpm_per_v is None or (self.intercept_rpm is None and offset_v is None):
-            raise click.UsageError(
+            raise RequestError(
                 "a set point in volt needs --fingerprint, or a campaign, --vessel and --rpm-per-volt, or "
                 "slope_rpm_per_v in the campaign file."
             )
@@ -77,7 +76,7 @@ class Place:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class Drive:
+class Inputs:
     """Inputs over time."""
 
     time_s: FloatArray
@@ -103,24 +102,24 @@ class Drive:
         return frozen_float(self.time_s[0] + interval * np.arange(count))
 
 
-def place_of(fingerprint: Fingerprint | None, vessel: str | None, rpm_per_volt: float | None) -> Place | None:
+def point_of(fingerprint: Fingerprint | None, vessel: Vessel | None, rpm_per_volt: float | None) -> Point | None:
     """Return the working point of a fingerprint or a vessel file; None where neither is given.
 
     Raises
     ------
-    click.UsageError
+    RequestError
         If both are given, or a slope without a vessel file.
     """
     if fingerprint is not None:
         if vessel is not None or rpm_per_volt is not None:
-            raise click.UsageError("--vessel and --rpm-per-volt are for a simulation without --fingerprint.")
+            raise RequestError("--vessel and --rpm-per-volt are for a simulation without --fingerprint.")
         conditions = fingerprint.conditions
         speed = conditions.engine_speed.value
         # what a deviation of the set point is multiplied by, so that speed follows it at low frequency
         scale = fingerprint.quantity("set-point scale").value
         slope = fingerprint.quantity("set-point slope").value
         intercept = fingerprint.quantity("set-point intercept").value
-        return Place(
+        return Point(
             engine_speed_rpm=speed,
             shaft_torque_nm=conditions.shaft_torque.value,
             slope_rpm_per_v=scale * slope,
@@ -128,20 +127,20 @@ def place_of(fingerprint: Fingerprint | None, vessel: str | None, rpm_per_volt: 
         )
     if vessel is None:
         if rpm_per_volt is not None:
-            raise click.UsageError("--rpm-per-volt needs --vessel, which says at what speed.")
+            raise RequestError("--rpm-per-volt needs --vessel, which says at what speed.")
         return None
-    point = load_vessel(vessel).working_point
-    return Place(
-        engine_speed_rpm=point.engine_speed_rpm,
-        shaft_torque_nm=point.driving_torque_nm,
+    stated = vessel.working_point
+    return Point(
+        engine_speed_rpm=stated.engine_speed_rpm,
+        shaft_torque_nm=stated.driving_torque_nm,
         slope_rpm_per_v=rpm_per_volt,
         intercept_rpm=None,
     )
 
 
-def campaign_drive(
-    name: str, structure: Structure, place: Place | None, *, rate_hz: float, span: tuple[float, float] | None
-) -> Drive:
+def campaign_inputs(
+    campaign: Campaign, structure: Structure, point: Point | None, *, rate_hz: float, span: tuple[float, float] | None
+) -> Inputs:
     """Return the set point of a campaign.
 
     It is straight over short times; at a jump it is half-way, so that it is neither late nor early.
@@ -155,69 +154,68 @@ def campaign_drive(
 
     Raises
     ------
-    click.UsageError
+    RequestError
         If the structure has another input than the set point, the line from volt is not known, or the campaign does
         not hold the span.
     """
     if structure.inputs != (SET_POINT,):
-        raise click.UsageError(
+        raise RequestError(
             f"--campaign sets {SET_POINT}, structure {structure.name} goes from {', '.join(structure.inputs)}; give "
             "its inputs with --input."
         )
-    if place is None:
-        raise click.UsageError("--campaign is in volt: give --fingerprint, or --vessel and --rpm-per-volt.")
-    campaign = load_campaign(name)
-    place = _with_lever_of(campaign, place)
+    if point is None:
+        raise RequestError("--campaign is in volt: give --fingerprint, or --vessel and --rpm-per-volt.")
+    point = _with_lever_of(campaign, point)
     begin, end = span or (0.0, campaign.duration_s)
     if end > campaign.duration_s:
-        raise click.UsageError(f"--between: campaign {campaign.name} ends at {campaign.duration_s:g} s, not {end:g} s.")
+        raise RequestError(f"--between: campaign {campaign.name} ends at {campaign.duration_s:g} s, not {end:g} s.")
     step_s = float(np.clip((end - begin) / MOST_STEPS, SHORTEST_STEP_S, LONGEST_STEP_S))
     every = int(np.ceil(1.0 / (rate_hz * step_s) - 1e-9))
     samples = _at_least_two(int(np.floor((end - begin) * rate_hz + 1e-9)) + 1)
     time = frozen_float(begin + np.arange(samples) / rate_hz)
     fine = begin + np.arange((samples - 1) * every + 1) / (rate_hz * every)
-    set_point = 0.5 * (_asked(campaign, place, fine - _BESIDE_S) + _asked(campaign, place, fine + _BESIDE_S))
-    set_point[0] = _asked(campaign, place, fine[:1] + _BESIDE_S)[0]
-    return Drive(
+    set_point = 0.5 * (_asked(campaign, point, fine - _BESIDE_S) + _asked(campaign, point, fine + _BESIDE_S))
+    set_point[0] = _asked(campaign, point, fine[:1] + _BESIDE_S)[0]
+    return Inputs(
         time_s=time,
         every=every,
         inputs={SET_POINT: set_point},
         # a step that is due now has been made
-        shown={SET_POINT: _asked(campaign, place, time + _BESIDE_S)},
+        shown={SET_POINT: _asked(campaign, point, time + _BESIDE_S)},
         units={SET_POINT: "-"},
         hold=False,
-        remark=_remark(campaign, place),
+        remark=_remark(campaign, point),
     )
 
 
-def _with_lever_of(campaign: Campaign, place: Place) -> Place:
+def _with_lever_of(campaign: Campaign, point: Point) -> Point:
     """Return a working point with the line of the campaign's lever, where that is stated and nothing else is."""
     slope = campaign.slope_rpm_per_v
-    if place.slope_rpm_per_v is not None or slope is None:
-        return place
-    at_offset_rpm = place.engine_speed_rpm if campaign.offset_rpm is None else campaign.offset_rpm
-    return replace(place, slope_rpm_per_v=slope, intercept_rpm=at_offset_rpm - slope * campaign.offset_v)
+    if point.slope_rpm_per_v is not None or slope is None:
+        return point
+    at_offset_rpm = point.engine_speed_rpm if campaign.offset_rpm is None else campaign.offset_rpm
+    return replace(point, slope_rpm_per_v=slope, intercept_rpm=at_offset_rpm - slope * campaign.offset_v)
 
 
-def _asked(campaign: Campaign, place: Place, time_s: FloatArray) -> FloatArray:
-    offset_v = campaign.offset_v if place.is_put_out_at(campaign.offset_v) else None
-    return place.deviation(setpoint(campaign, time_s), offset_v=offset_v)
+def _asked(campaign: Campaign, point: Point, time_s: FloatArray) -> FloatArray:
+    offset_v = campaign.offset_v if point.is_put_out_at(campaign.offset_v) else None
+    return point.deviation(setpoint(campaign, time_s), offset_v=offset_v)
 
 
-def _remark(campaign: Campaign, place: Place) -> str:
-    if place.is_put_out_at(campaign.offset_v):
+def _remark(campaign: Campaign, point: Point) -> str:
+    if point.is_put_out_at(campaign.offset_v):
         return (
-            f"{campaign.offset_v:g} V of the campaign is taken as the working point, {place.engine_speed_rpm:.1f} rpm."
+            f"{campaign.offset_v:g} V of the campaign is taken as the working point, {point.engine_speed_rpm:.1f} rpm."
         )
     return (
-        f"{campaign.offset_v:g} V of the campaign is another working point than {place.engine_speed_rpm:.1f} rpm. "
+        f"{campaign.offset_v:g} V of the campaign is another working point than {point.engine_speed_rpm:.1f} rpm. "
         "The fingerprint's line from volt to rpm was taken; a linear structure is carried away from where it holds."
     )
 
 
-def file_drive(
-    path: Path, structure: Structure, place: Place | None, *, hold: bool, span: tuple[float, float] | None
-) -> Drive:
+def file_inputs(
+    path: Path, structure: Structure, point: Point | None, *, hold: bool, span: tuple[float, float] | None
+) -> Inputs:
     """Return inputs that are columns of a file: named as those of the structure, or a set point in rpm or volt.
 
     Raises
@@ -248,9 +246,9 @@ def file_drive(
             last += 1
         _at_least_two(last - first)
         time = start_s + np.arange(first, last) / rate_hz
-        inputs = {name: _in_own_units(channel, path, name, place, first, last) for name, channel in channels.items()}
+        inputs = {name: _in_own_units(channel, path, name, point, first, last) for name, channel in channels.items()}
     units = {name: "-" if name == SET_POINT else channel.unit for name, channel in channels.items()}
-    return Drive(time_s=time, every=1, inputs=inputs, shown=inputs, units=units, hold=hold)
+    return Inputs(time_s=time, every=1, inputs=inputs, shown=inputs, units=units, hold=hold)
 
 
 def _channel(channels: Mapping[str, Channel], name: str, path: Path) -> Channel:
@@ -261,22 +259,22 @@ def _channel(channels: Mapping[str, Channel], name: str, path: Path) -> Channel:
     raise RecordingError(f'{path}: expected a column "{name}"{also}, found {", ".join(channels)}.')
 
 
-def _in_own_units(channel: Channel, path: Path, name: str, place: Place | None, first: int, last: int) -> FloatArray:
+def _in_own_units(channel: Channel, path: Path, name: str, point: Point | None, first: int, last: int) -> FloatArray:
     values = channel.values(first, last)
     if not np.all(np.isfinite(values)):
         at = channel.time_s(first, last)[~np.isfinite(values)][0]
         raise RecordingError(f"{path}, column {channel.name}: expected numbers, found none at {at:g} s.")
     if name != SET_POINT or (channel.name == SET_POINT and channel.unit in ("-", "")):
         return values
-    if place is None:
-        raise click.UsageError(
+    if point is None:
+        raise RequestError(
             f"{path}: a set point in {channel.unit or 'no unit'} needs a working point: give --fingerprint or --vessel."
         )
     match channel.unit:
         case "rpm":
-            return values / place.engine_speed_rpm - 1.0
+            return values / point.engine_speed_rpm - 1.0
         case "V":
-            return place.deviation(values)
+            return point.deviation(values)
         case _:
             raise RecordingError(
                 f'{path}, column {channel.name}: expected a set point in "rpm" or "V", or "{SET_POINT} [-]", found the '
@@ -286,5 +284,5 @@ def _in_own_units(channel: Channel, path: Path, name: str, place: Place | None, 
 
 def _at_least_two(samples: int) -> int:
     if samples < 2:
-        raise click.UsageError("--between: expected a stretch of two samples or more, found less; begin comes first.")
+        raise RequestError("--between: expected a stretch of two samples or more, found less; begin comes first.")
     return samples
