@@ -12,9 +12,9 @@ Command = Callable[..., Any]
 
 
 def gathered_options(
-    record: "type[DataclassInstance]", options: Sequence[Callable[[Command], Command]]
+    record: "type[DataclassInstance]", options: Sequence[Callable[[Command], Command]], *, name: str = "options"
 ) -> Callable[[Command], Command]:
-    """Return what adds options to a command, which takes their values as one ``options``.
+    """Return what adds options to a command, which takes their values as one record.
 
     Parameters
     ----------
@@ -22,13 +22,15 @@ def gathered_options(
         A dataclass whose fields have the names of the options' values.
     options
         Decorators, each of one option, in the order of the help text.
+    name
+        Name under which the command takes the record.
     """
     names = [field.name for field in fields(record)]
 
     def add(command: Command) -> Command:
         @wraps(command)
         def gathered(**values: Any) -> Any:
-            return command(options=record(**{name: values.pop(name) for name in names}), **values)
+            return command(**{name: record(**{field: values.pop(field) for field in names})}, **values)
 
         wrapped: Command = gathered
         for option in reversed(options):

@@ -2,12 +2,16 @@
 
 import math
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any
 
 import click
 
+from shaftprint.cli._gathered_options import gathered_options
 from shaftprint.errors import IdentificationError
+from shaftprint.forecast._ship_before_test import ShipBeforeTest
 from shaftprint.identify.likelihood._prior import Prior
+from shaftprint.vessel._vessel import Vessel
 
 
 def named_prior(text: str) -> tuple[str, Prior]:
@@ -107,3 +111,48 @@ prior_option = click.option(
 hold_option = click.option(
     "--hold", "held", metavar="NAME=VALUE", type=named_value, multiple=True, help="Hold a parameter at a value."
 )
+free_option = click.option(
+    "--free", "freed", metavar="NAME", multiple=True, help="Take nothing as known of a parameter, such as tau_up."
+)
+value_option = click.option(
+    "--value",
+    "values",
+    metavar="NAME=VALUE",
+    type=named_value,
+    multiple=True,
+    help="Value that is assumed; the prior's mean or what is usual when not given.",
+)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class KnownOptions:
+    """What a user knows of a ship before its test."""
+
+    rpm_per_volt: float | None
+    """Slope of the set point [rpm/V]."""
+    priors: tuple[tuple[str, Prior], ...]
+    """Priors instead of those of the vessel file, by parameter."""
+    freed: tuple[str, ...]
+    """Parameters of which nothing is taken as known."""
+    held: tuple[tuple[str, float], ...]
+    """Parameters that are held, and at what value."""
+    values: tuple[tuple[str, float], ...]
+    """Assumed values, by parameter."""
+
+    def ship(self, vessel: Vessel | None, **more: Any) -> ShipBeforeTest:
+        """Return the ship with these and what else is known of it."""
+        return ShipBeforeTest(
+            vessel=vessel,
+            slope_rpm_per_v=self.rpm_per_volt,
+            priors=dict(self.priors),
+            freed=self.freed,
+            held=dict(self.held),
+            values=dict(self.values),
+            **more,
+        )
+
+
+known_options = gathered_options(
+    KnownOptions, (rpm_per_volt_option, prior_option, free_option, hold_option, value_option), name="known"
+)
+"""Adds ``--rpm-per-volt``, ``--prior``, ``--free``, ``--hold`` and ``--value``, taken as one ``known``."""

@@ -3,13 +3,14 @@
 import math
 from collections.abc import Mapping, Sequence
 
-from shaftprint.campaign._campaign import Campaign
 from shaftprint.cli._fingerprint_tables import print_assumed
+from shaftprint.cli._limit_uses import print_limit_uses
 from shaftprint.cli._terminal import print_findings, say
 from shaftprint.cli.output._json import give
 from shaftprint.cli.output._tables import print_table, print_tables
 from shaftprint.digits import fine_unit, interval, plain, unit_text, with_deviation
-from shaftprint.drift._visible import VisibleChange, visible_changes
+from shaftprint.drift._visible import VisibleChange
+from shaftprint.forecast._predict import PredictedTest
 from shaftprint.identify.fit._identification import Estimate
 from shaftprint.identify.prediction._accuracy import Accuracy
 from shaftprint.identify.prediction._identifiability import Identifiability
@@ -18,39 +19,27 @@ from shaftprint.plain_table import MEANING, Symbol, Table, numbers, texts
 from shaftprint.spectra._frequency_response import FrequencyResponse
 
 
-def print_prediction(
-    campaign: Campaign,
-    responses: Sequence[FrequencyResponse],
-    noise: str,
-    possible: Identifiability,
-    accuracy: Accuracy,
-    intervals: Mapping[str, Interval],
-) -> None:
-    """Print how accurate a planned test would be.
-
-    Parameters
-    ----------
-    campaign, responses, noise
-        The test, its lines at each working point, and where their noise comes from.
-    possible
-        What the equations allow.
-    accuracy, intervals
-        The predicted accuracy with the lines.
-    """
+def print_prediction(predicted: PredictedTest) -> None:
+    """Print how accurate a planned test would be, and where it would leave the limits of ship and engine."""
+    possible, accuracy, intervals = predicted.possible, predicted.accuracy, predicted.intervals
+    responses, visible = predicted.responses, predicted.visible
     structure = possible.structure
     print_findings("What the test will find", accuracy.sentences, is_answer=True)
     print_table(_accuracy_table(possible, accuracy, intervals))
     speeds = sum(response.inputs == responses[0].inputs for response in responses)
     at_all = "at all" if speeds == 1 else "at one speed, however long"
     print_findings(f"What these outputs can tell {at_all}", possible.sentences)
-    visible = visible_changes(accuracy)
     print_tables([_visible_table(visible)])
-    say(f"{campaign.name}; {structure.name}: {structure.title}")
-    _print_conditions(responses, noise, accuracy)
+    say(f"{predicted.campaign.name}; {structure.name}: {structure.title}")
+    _print_conditions(responses, predicted.noise_source, accuracy)
     give("parameters", accuracy.parameters)
     give("combinations", accuracy.combinations)
     give("visible_changes", visible)
     give("intervals_95", {name: (ends.lower, ends.upper) for name, ends in intervals.items()})
+    if predicted.limits is not None:
+        print_limit_uses(predicted.limits, is_expected=True)
+    for name in predicted.left_out:
+        say(f"What {name} does to engine and gauge is not in these limits: keep room for it.")
 
 
 def _visible_table(visible: Sequence[VisibleChange]) -> Table:

@@ -2,7 +2,7 @@
 
 from shaftprint.card._disagreements import disagreements
 from shaftprint.cli._terminal import print_findings
-from shaftprint.vessel._vessel import Vessel
+from shaftprint.vessel._vessel import Vessel, load_vessel
 
 
 def print_disagreements(vessel: Vessel, file: str) -> None:
@@ -20,3 +20,10 @@ def print_disagreements(vessel: Vessel, file: str) -> None:
     strange = [one.sentence(file) for one in found if not one.is_contradiction]
     if strange:
         print_findings("Findings on the vessel file", strange)
+
+
+def checked_vessel(file: str) -> Vessel:
+    """Return the vessel of a file, or of a shipped name; whether the file agrees with itself is said."""
+    vessel = load_vessel(file)
+    print_disagreements(vessel, file)
+    return vessel

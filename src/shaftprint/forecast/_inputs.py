@@ -10,11 +10,10 @@ from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.campaign._campaign import Campaign
 from shaftprint.campaign._setpoint import setpoint
 from shaftprint.errors import RecordingError, RequestError
-from shaftprint.fingerprint._fingerprint import Fingerprint
+from shaftprint.forecast._ship_before_test import ShipBeforeTest
 from shaftprint.models._structure import Structure
 from shaftprint.recording._channel import Channel
 from shaftprint.recording._read import read_recording
-from shaftprint.vessel._vessel import Vessel
 
 SET_POINT, SET_POINT_CHANNEL = "n_set", "set point"
 # Steps of a simulated campaign: a limit that a jump meets is seen half a step early. Longer stretches than a million
@@ -102,16 +101,17 @@ class Inputs:
         return frozen_float(self.time_s[0] + interval * np.arange(count))
 
 
-def point_of(fingerprint: Fingerprint | None, vessel: Vessel | None, rpm_per_volt: float | None) -> Point | None:
-    """Return the working point of a fingerprint or a vessel file; None where neither is given.
+def point_of(ship: ShipBeforeTest) -> Point | None:
+    """Return the working point of a first test or a vessel file; None where neither is given.
 
     Raises
     ------
     RequestError
         If both are given, or a slope without a vessel file.
     """
+    fingerprint, vessel, slope_rpm_per_v = ship.first_test, ship.vessel, ship.slope_rpm_per_v
     if fingerprint is not None:
-        if vessel is not None or rpm_per_volt is not None:
+        if vessel is not None or slope_rpm_per_v is not None:
             raise RequestError("--vessel and --rpm-per-volt are for a simulation without --fingerprint.")
         conditions = fingerprint.conditions
         speed = conditions.engine_speed.value
@@ -126,14 +126,14 @@ def point_of(fingerprint: Fingerprint | None, vessel: Vessel | None, rpm_per_vol
             intercept_rpm=speed + scale * (intercept - speed),
         )
     if vessel is None:
-        if rpm_per_volt is not None:
+        if slope_rpm_per_v is not None:
             raise RequestError("--rpm-per-volt needs --vessel, which says at what speed.")
         return None
     stated = vessel.working_point
     return Point(
         engine_speed_rpm=stated.engine_speed_rpm,
         shaft_torque_nm=stated.driving_torque_nm,
-        slope_rpm_per_v=rpm_per_volt,
+        slope_rpm_per_v=slope_rpm_per_v,
         intercept_rpm=None,
     )
 

@@ -8,19 +8,21 @@ import click
 
 from shaftprint.catalogue._own_structure import TypedName
 from shaftprint.cli._command_group import NOT_REACHED
-from shaftprint.cli._known_ship import knowledge_of, stated_ship
-from shaftprint.cli._known_ship_options import KnownShipOptions, known_ship_options
+from shaftprint.cli._known_values import KnownOptions, known_options
 from shaftprint.cli._options import DEFAULT_HELP, OWN_FILE_HELP, vessel_option
-from shaftprint.cli._plan_options import seconds_of, wish_from, wish_of
+from shaftprint.cli._plan_options import limit_of, seconds_of, shares_of, wish_from, wish_of
 from shaftprint.cli._plan_tables import print_planned_test
-from shaftprint.cli._vessel_file import print_disagreements
+from shaftprint.cli._vessel_file import checked_vessel
+from shaftprint.cli.output._fingerprint_file import fingerprint_at
 from shaftprint.cli.output._output_folder import force_option, output_folder
 from shaftprint.cli.output._progress import Steps, no_progress_option, progress
 from shaftprint.design.files._plan_folder import write_plan_files
 from shaftprint.design.files._set_point_samples import RATE_HZ
+from shaftprint.design.inputs._stated_limits import LIMITS, StatedLimit
 from shaftprint.design.inputs._wish import Wish
 from shaftprint.design.planned_test._planned_test import PlannedTest
 from shaftprint.design.planning._from_knowledge import plan_test
+from shaftprint.forecast._knowledge import knowledge_of
 from shaftprint.rehearsal._rehearse import rehearse_on_tug
 from shaftprint.report.plan._plan_page import render_plan
 from shaftprint.vessel._vessel import Vessel
@@ -54,7 +56,27 @@ LONGEST_S = 3600.0
     default=None,
     help="End with a minute of steps, which validate and limits need; by default a test of 5 min and more does.",
 )
-@known_ship_options
+@click.option(
+    "--limit",
+    "limits",
+    metavar="NAME=VALUE",
+    type=limit_of,
+    multiple=True,
+    help=f"Limit, such as set-point=1.0V or rate=600rpm/s; one of {', '.join(LIMITS)}.",
+)
+@click.option(
+    "--speeds",
+    metavar="SHARE,...",
+    type=shares_of,
+    help="Speeds of the legs over that of the working point; as far apart as limits allow, within 1.15,0.78.",
+)
+@click.option("--offset", "offset_v", type=float, help="Set point at the working point [V].")
+@click.option(
+    "--after", type=click.Path(path_type=Path), help="Fingerprint of a first test: its values with their covariance."
+)
+@click.option("--noise-from", type=click.Path(path_type=Path), help="Recording of the ship, for its noise.")
+@click.option("--noise-campaign", metavar="CAMPAIGN", help="Campaign of that recording.")
+@known_options
 @click.option(
     "--rehearse",
     "rehearsals",
@@ -80,7 +102,13 @@ def command(
     within_s: float | None,
     is_shortest: bool,
     stairs: bool | None,
-    options: KnownShipOptions,
+    limits: tuple[StatedLimit, ...],
+    speeds: tuple[float, ...] | None,
+    offset_v: float | None,
+    after: Path | None,
+    noise_from: Path | None,
+    noise_campaign: str | None,
+    known: KnownOptions,
     rehearsals: int,
     rate_hz: float,
     name: str | None,
@@ -96,13 +124,21 @@ def command(
     """
     wish = wish_from(wishes)
     _expect_a_goal(wish, within_s, is_shortest=is_shortest)
-    stated = stated_ship(vessel, structure_name, options)
-    print_disagreements(stated.vessel, vessel)
+    installation = checked_vessel(vessel)
+    ship = known.ship(
+        installation,
+        first_test=None if after is None else fingerprint_at(after),
+        recording=noise_from,
+        recorded=noise_campaign,
+        offset_v=offset_v,
+    )
     with output_folder(output, of="plan", force=force) as folder, progress(hidden=no_progress) as steps:
         planned = plan_test(
-            knowledge_of(stated, steps=steps, within_s=within_s),
+            knowledge_of(
+                ship, limits=limits, speeds=speeds, structure=structure_name, within_s=within_s, progress=steps
+            ),
             wish,
-            name=name or f"Planned test of {stated.vessel.name}",
+            name=name or f"Planned test of {installation.name}",
             within_s=within_s or LONGEST_S,
             is_shortest=is_shortest,
             stairs=stairs,
@@ -110,7 +146,7 @@ def command(
             seed=seed,
             tell=lambda words: steps.tell("Planning", words),
         )
-        planned = _rehearsed(planned, stated.vessel, rehearsals, seed, steps)
+        planned = _rehearsed(planned, installation, rehearsals, seed, steps)
         write_plan_files(planned, folder, rate_hz=rate_hz)
         render_plan(folder, planned)
     print_planned_test(planned, output)

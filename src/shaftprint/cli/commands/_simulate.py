@@ -12,7 +12,7 @@ from shaftprint.cli._known_values import named_value, rpm_per_volt_option
 from shaftprint.cli._options import LIMITED_HELP, NAMES, OWN_FILE_HELP
 from shaftprint.cli._simulation_tables import print_simulation
 from shaftprint.cli._terminal import answer
-from shaftprint.cli._vessel_file import print_disagreements
+from shaftprint.cli._vessel_file import checked_vessel
 from shaftprint.cli.commands._inertia import picture
 from shaftprint.cli.output._file_to_write import expect_free, expect_no_input
 from shaftprint.cli.output._fingerprint_file import fingerprint_at, fingerprint_file
@@ -20,6 +20,7 @@ from shaftprint.cli.output._progress import no_progress_option, progress
 from shaftprint.files import written_whole
 from shaftprint.forecast._crash_stop import GEARS, LeverMove, crash_stop_run
 from shaftprint.forecast._inputs import Inputs, Point, campaign_inputs, file_inputs, point_of
+from shaftprint.forecast._ship_before_test import ShipBeforeTest
 from shaftprint.forecast._simulated_model import simulated_model
 from shaftprint.forecast._simulation import Run, simulated, write_simulation
 from shaftprint.models._structure import Structure
@@ -155,18 +156,19 @@ def command(
             expect_no_input(path, table, None if fingerprint is None else fingerprint_file(fingerprint))
             expect_free(path, force=force)
     identified = None if fingerprint is None else fingerprint_at(fingerprint)
-    installation = None if vessel is None else load_vessel(vessel)
     values = dict(given)
     if structure is not None and structure.upper() == CRASH_STOP:
         _expect_only_a_lever(campaign, table, rpm_per_volt, linear or None, hold or None)
-        if vessel is None or installation is None:
+        if vessel is None:
             raise click.UsageError(f"{CRASH_STOP} expects --vessel, the ship that is stopped.")
-        print_disagreements(installation, vessel)
-        run = crash_stop_run(installation, moves, fingerprint=identified, given=values, rate_hz=rate_hz, span=span)
+        run = crash_stop_run(
+            checked_vessel(vessel), moves, fingerprint=identified, given=values, rate_hz=rate_hz, span=span
+        )
     else:
         if moves:
             raise click.UsageError(f"--lever is for --structure {CRASH_STOP}, whose engine has clutches.")
-        point = point_of(identified, installation, rpm_per_volt)
+        installation = None if vessel is None else load_vessel(vessel)
+        point = point_of(ShipBeforeTest(first_test=identified, vessel=installation, slope_rpm_per_v=rpm_per_volt))
         model = simulated_model(structure, identified, values, linear=linear)
         inputs = _inputs(campaign, table, model.structure, point, hold=hold, span=span, rate_hz=rate_hz)
         run = Run(model=model, point=point, inputs=inputs)

@@ -1,14 +1,11 @@
-"""What ``predict`` knows of a ship before its test: priors and noise, from the vessel file and perhaps a recording."""
+"""Noise and priors of a test that is predicted, from the vessel file and perhaps a recording."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-import click
-
 from shaftprint.campaign._campaign import Campaign
-from shaftprint.cli.output._progress import progress
-from shaftprint.errors import StructureError
+from shaftprint.errors import RequestError, StructureError
 from shaftprint.identify.likelihood._known import priors_from_vessel
 from shaftprint.identify.likelihood._prior import Prior
 from shaftprint.identify.prediction._noise_at_speeds import noise_at
@@ -19,14 +16,17 @@ from shaftprint.survey._assumed_noise import assumed_noise
 from shaftprint.survey._fits import priors_of, stated_working_point
 from shaftprint.survey._measurement import measure
 from shaftprint.survey._noise import noise_at_speeds, noise_of_further
+from shaftprint.survey._progress import Progress
 from shaftprint.survey._trial import load_trial
 from shaftprint.units import rpm_from_rev_s
 from shaftprint.vessel._vessel import Vessel
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class ShipBeforeTest:
-    """What is known of the ship before the test."""
+class TestNoise:
+    """The noise that a planned test would have, and what a fit of it will know."""
+
+    __test__ = False
 
     priors: Mapping[str, Prior]
     """What a fit will know, by parameter."""
@@ -46,9 +46,9 @@ class ShipBeforeTest:
     """The installation; None where no vessel file is given."""
 
 
-def recorded_ship(
-    path: Path, vessel: Vessel, campaign: str | Campaign, chosen: Structure, planned: Campaign, *, no_progress: bool
-) -> ShipBeforeTest:
+def recorded_noise(
+    path: Path, vessel: Vessel, campaign: str | Campaign, chosen: Structure, planned: Campaign, *, progress: Progress
+) -> TestNoise:
     """Return what a recording tells of the noise, and what it and the vessel file know.
 
     Parameters
@@ -61,8 +61,8 @@ def recorded_ship(
         The structure whose test is predicted.
     planned
         The test that is predicted.
-    no_progress
-        Whether nothing is told meanwhile.
+    progress
+        Is told what is being done.
 
     Raises
     ------
@@ -70,8 +70,7 @@ def recorded_ship(
         If the recording cannot be read or does not give usable responses.
     """
     trial = load_trial(vessel, campaign)
-    with progress(hidden=no_progress) as steps:
-        measurement = measure(path, trial, mode="shaftprint", progress=steps)
+    measurement = measure(path, trial, mode="shaftprint", progress=progress)
     signals = measurement.signals
     slope = signals.calibration.slope_rev_s_per_v * signals.dc_scale
     levels = noise_at_speeds(measurement, trial.campaign)
@@ -79,7 +78,7 @@ def recorded_ship(
     noise = noise_at(levels, point_rpm)
     from_point_v = first_leg(planned).level_v - signals.working_point.set_point_v if planned.legs else 0.0
     first_rpm = point_rpm + rpm_from_rev_s(slope) * from_point_v
-    return ShipBeforeTest(
+    return TestNoise(
         priors=priors_of(chosen, trial.vessel, signals),
         noise=noise,
         noise_of_legs={rpm / first_rpm: level for rpm, level in levels.items()},
@@ -90,9 +89,7 @@ def recorded_ship(
     )
 
 
-def assumed_ship(
-    vessel: Vessel | None, rpm_per_volt: float | None, chosen: Structure, planned: Campaign
-) -> ShipBeforeTest:
+def usual_noise(vessel: Vessel | None, rpm_per_volt: float | None, chosen: Structure, planned: Campaign) -> TestNoise:
     """Return the noise of a simulated ship, and what the vessel file knows where there is one.
 
     Parameters
@@ -109,7 +106,7 @@ def assumed_ship(
 
     Raises
     ------
-    click.UsageError
+    RequestError
         If a slope is given and no vessel file.
     StructureError
         If the first leg would stand still.
@@ -117,9 +114,9 @@ def assumed_ship(
     assumed = assumed_noise(vessel, planned)
     if vessel is None:
         if rpm_per_volt is not None:
-            raise click.UsageError("--rpm-per-volt needs --vessel, which says at what speed.")
+            raise RequestError("--rpm-per-volt needs --vessel, which says at what speed.")
         # with less voltage the tug goes faster; its speed plays no part without a vessel
-        return ShipBeforeTest(
+        return TestNoise(
             priors={},
             noise=assumed.sines,
             noise_of_legs=_of_legs(assumed.legs, assumed.sines.set_point_per_v),
@@ -131,7 +128,7 @@ def assumed_ship(
     stated = planned.slope_rpm_per_v if rpm_per_volt is None else rpm_per_volt
     slope = -assumed.sines.set_point_per_v * speed_rpm if stated is None else stated
     offset_share = 1.0 if planned.offset_rpm is None else planned.offset_rpm / speed_rpm
-    return ShipBeforeTest(
+    return TestNoise(
         priors=priors_from_vessel(chosen, vessel, stated_working_point(vessel)),
         noise=replace(assumed.sines, set_point_per_v=abs(slope) / speed_rpm),
         noise_of_legs=_of_legs(assumed.legs, slope / speed_rpm),

@@ -2,8 +2,8 @@
 
 from shaftprint.campaign._campaign import Campaign
 from shaftprint.catalogue._shipped import shipped_structure
-from shaftprint.cli._ship_before_test import ShipBeforeTest
 from shaftprint.errors import StructureError
+from shaftprint.forecast._test_noise import TestNoise
 from shaftprint.identify.prediction._planned_legs import PlannedLeg, planned_beside, planned_legs
 from shaftprint.identify.prediction._planned_response import expected_response, planned_response
 from shaftprint.models._structure import Structure
@@ -16,7 +16,7 @@ from shaftprint.survey._of_vessel import default_structure, expect_one_speed, of
 Pair = tuple[Structure, FrequencyResponse]
 
 
-def planned_pairs(chosen: Structure, campaign: Campaign, ship: ShipBeforeTest) -> list[Pair]:
+def planned_pairs(chosen: Structure, campaign: Campaign, ship: TestNoise) -> list[Pair]:
     """Return the structure with the planned lines from its input to its outputs, at each working point.
 
     A structure with several inputs is taken apart by input, as for ``identify``: each has lines of its own. One that
@@ -49,7 +49,7 @@ def planned_pairs(chosen: Structure, campaign: Campaign, ship: ShipBeforeTest) -
     return pairs
 
 
-def _further(chosen: Structure, campaign: Campaign, ship: ShipBeforeTest) -> list[MovedBeside]:
+def _further(chosen: Structure, campaign: Campaign, ship: TestNoise) -> list[MovedBeside]:
     """Return what the campaign moves of the further inputs of a structure.
 
     Raises
@@ -65,12 +65,12 @@ def _further(chosen: Structure, campaign: Campaign, ship: ShipBeforeTest) -> lis
     return [known[name] for name in chosen.inputs[1:] if name in known]
 
 
-def _legs(campaign: Campaign, ship: ShipBeforeTest) -> tuple[PlannedLeg, ...]:
+def _legs(campaign: Campaign, ship: TestNoise) -> tuple[PlannedLeg, ...]:
     rises = ship.slope_rpm_per_v > 0.0
     return planned_legs(campaign, ship.noise_of_legs, rises=rises, first_share=ship.first_share)
 
 
-def _pairs_of_speed(chosen: Structure, campaign: Campaign, ship: ShipBeforeTest) -> list[Pair]:
+def _pairs_of_speed(chosen: Structure, campaign: Campaign, ship: TestNoise) -> list[Pair]:
     """Return what the lines of the speed's set point tell."""
     loop, of_speed = shipped_structure(default_structure(ship.vessel)), campaign.of_input()
     if ship.vessel is not None:
