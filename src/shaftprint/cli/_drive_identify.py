@@ -14,7 +14,6 @@ from shaftprint.bench._records import read_records
 from shaftprint.bench._responses import RESPONSE_STARTS, identify_responses, read_responses
 from shaftprint.catalogue._own_structure import TypedName
 from shaftprint.cli._drive_options import drive_sources, equipped_drive, expect_not_given, is_given
-from shaftprint.cli._fit_options import FitOptions
 from shaftprint.cli._results import print_paths
 from shaftprint.cli._terminal import print_findings, say
 from shaftprint.cli.output._fingerprint_file import FINGERPRINT
@@ -24,6 +23,7 @@ from shaftprint.cli.output._progress import Steps, progress
 from shaftprint.cli.output._tables import print_tables
 from shaftprint.fingerprint._drive_fingerprint import DriveFingerprint, write_drive_fingerprint
 from shaftprint.report._drive_page import render_drive
+from shaftprint.survey._fit_options import FitOptions
 from shaftprint.tables._drive import drive_assumed_table, drive_record_table, drive_response_table
 from shaftprint.tables._fingerprint import quantity_table
 

@@ -15,13 +15,13 @@ from shaftprint.bench._structures import compare_in_time, without
 from shaftprint.bench._validate import identified_from, validate_drive
 from shaftprint.catalogue._own_structure import TypedName
 from shaftprint.cli._drive_options import drive_fingerprint_at, equipped_drive, file_sha256, holding, is_given, kept_one
-from shaftprint.cli._fit_options import FitOptions
-from shaftprint.cli._known_values import KnownOptions
 from shaftprint.cli._terminal import answer, print_findings, say
 from shaftprint.cli.output._json import give
 from shaftprint.cli.output._progress import progress
 from shaftprint.cli.output._tables import print_table, print_tables
 from shaftprint.fingerprint._drive_fingerprint import DriveFingerprint
+from shaftprint.forecast._ship_before_test import ShipBeforeTest
+from shaftprint.survey._fit_options import FitOptions
 from shaftprint.tables._drive import (
     drive_difference_table,
     drive_prediction_table,
@@ -77,19 +77,19 @@ def predict_on_the_bench(
     names: Sequence[TypedName],
     noise: Mapping[str, float],
     fingerprint: Path | None,
-    known: KnownOptions,
+    known: ShipBeforeTest,
 ) -> None:
     """Print the standard deviations that planned records would give."""
     if not inputs:
         raise click.UsageError("--drive needs --input, a file with the planned inputs; may be repeated.")
     (one,) = equipped_drive(drive_file, names)
-    one, values, priors = holding(one, dict(known.held)), dict(known.values), dict(known.priors)
+    one, values, priors = holding(one, known.held), known.values, known.priors
     kept = None if fingerprint is None else drive_fingerprint_at(fingerprint)
     stds = _noise(kept) | dict(noise)
     records = read_records(inputs, one, planned=True, hold=kept is not None and kept.inputs_hold)
     names_of_all = {parameter.name for parameter in all_parameters(one, records)}
     at = {name: value for name, value in (kept.values if kept else {}).items() if name in names_of_all}
-    at |= dict(values)
+    at |= values
     deviations = predict_drive(one, records, noise_std=stds, kept=kept, values=at, priors=priors)
     give("deviations", deviations)
     lost = [name for name, std in deviations.items() if not np.isfinite(std)]

@@ -12,7 +12,6 @@ from click.core import ParameterSource
 from shaftprint.bench._equipped import EquippedDrive, equipped
 from shaftprint.bench._kept import kept_drive
 from shaftprint.catalogue._own_structure import TypedName, chosen_structures, own_file
-from shaftprint.cli._fit_options import FitOptions, held_structures
 from shaftprint.cli._options import structure_sources
 from shaftprint.cli.output._fingerprint_file import fingerprint_file
 from shaftprint.drive._drive import Drive, load_drive
@@ -21,6 +20,7 @@ from shaftprint.files import read_json
 from shaftprint.fingerprint._drive_fingerprint import DriveFingerprint, is_of_a_drive, read_drive_fingerprint
 from shaftprint.fingerprint._fingerprint import SourceFile
 from shaftprint.identify.likelihood._prior import Prior
+from shaftprint.survey._fit_options import FitOptions
 
 
 def drive_option(command: Callable[..., Any]) -> Callable[..., Any]:
@@ -57,6 +57,7 @@ def expect_not_given(*options: str) -> None:
             "load_percent": "load-repeatability",
             "foreign": "model",
             "variables": "model-variable",
+            "slope_rpm_per_v": "rpm-per-volt",
         }
         title = titles.get(given[0], given[0]).replace("_", "-")
         raise click.UsageError(f"--{title} is for ships; leave it out beside --drive.")
@@ -82,7 +83,7 @@ def equipped_drive(
         return tuple(chosen)
     if options.unweighted or options.mode == "thesis":
         raise click.UsageError("--unweighted and --mode are for ships; leave them out beside --drive.")
-    structures = held_structures([one.structure for one in chosen], options)
+    structures = options.holding([one.structure for one in chosen])
     return tuple(
         replace(one, structure=structure, priors=_priors(one, options))
         for one, structure in zip(chosen, structures, strict=True)
@@ -103,8 +104,8 @@ def _without_structure(drive: Drive, name: str | None) -> Drive:
 
 def _priors(one: EquippedDrive, options: FitOptions) -> dict[str, Prior]:
     free = {parameter.name for parameter in one.structure.free}
-    known = {**one.priors, **dict(options.priors)}
-    unknown = [name for name in dict(options.priors) if name not in free]
+    known = {**one.priors, **options.priors}
+    unknown = [name for name in options.priors if name not in free]
     if unknown:
         raise SettingsError(
             f"--prior {unknown[0]}: expected a free parameter of {one.structure.name}, one of "

@@ -9,7 +9,6 @@ import numpy as np
 
 from shaftprint.catalogue._own_structure import TypedName
 from shaftprint.cli._fingerprint_tables import print_fingerprint
-from shaftprint.cli._fit_options import FitOptions, settings_of, structures_of
 from shaftprint.cli._options import structure_sources
 from shaftprint.cli._report_options import ReportOptions
 from shaftprint.cli._results import write_results
@@ -29,6 +28,7 @@ from shaftprint.report.comparison._tables import difference_table
 from shaftprint.report.comparison._vessel_file_words import vessel_file_sentences
 from shaftprint.report.sections._comparison_cover import change_in_words
 from shaftprint.survey._both_shafts import SurveyOfBoth, load_trials_of_both, run_both
+from shaftprint.survey._fit_options import FitOptions
 from shaftprint.survey._of_vessel import default_structure
 from shaftprint.survey._survey import judged
 from shaftprint.survey._wash import wash_sentences
@@ -54,7 +54,7 @@ def identify_both_lines(
     """Identify both lines, print and write the results of each side and the comparison of both."""
     trials = load_trials_of_both(*vessels, campaign, about.conditions)
     chosen = names or (default_structure(trials[0].vessel, trials[0].campaign),)
-    structures = structures_of(chosen, options, trials[0].vessel)
+    structures = options.structures(chosen, trials[0].vessel)
     of_user = structure_sources(names)
     port, starboard = (replace(trial, sources=(*trial.sources, *of_user)) for trial in trials)
     with output_folder(output, of="identify", force=force) as folder:
@@ -63,7 +63,7 @@ def identify_both_lines(
                 recording,
                 (port, starboard),
                 structures=structures,
-                settings=settings_of(structures, options),
+                settings=options.settings(structures),
                 seed=options.seed,
                 tested_at=about.tested_at,
                 judge=False,

@@ -1,8 +1,7 @@
 """Options such as ``--prior g=0+-0.1`` and ``--hold v=1``: what is known of parameters before a fit."""
 
 import math
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import click
@@ -11,7 +10,6 @@ from shaftprint.cli._gathered_options import gathered_options
 from shaftprint.errors import IdentificationError
 from shaftprint.forecast._ship_before_test import ShipBeforeTest
 from shaftprint.identify.likelihood._prior import Prior
-from shaftprint.vessel._vessel import Vessel
 
 
 def named_prior(text: str) -> tuple[str, Prior]:
@@ -49,6 +47,11 @@ def named_value(text: str) -> tuple[str, float]:
         raise click.BadParameter(f"expected a parameter and its value such as v=1, found {text!r}.") from None
 
 
+def by_name(context: click.Context, parameter: click.Parameter, pairs: Sequence[tuple[str, Any]]) -> dict[str, Any]:
+    """Return values by name, as an option gives them that may be repeated; the last of a name counts."""
+    return dict(pairs)
+
+
 def named_variable(text: str) -> tuple[str, tuple[str, str]]:
     """Return the role, and name and unit, of ``ROLE=NAME [UNIT]``; the unit is empty where none is given.
 
@@ -68,6 +71,7 @@ def rpm_per_volt_option(command: Callable[..., Any]) -> Callable[..., Any]:
     """Add the option ``--rpm-per-volt``."""
     return click.option(
         "--rpm-per-volt",
+        "slope_rpm_per_v",
         type=float,
         callback=_slope,
         help="Engine speed that one volt of set point asks for, with its sign, instead of slope_rpm_per_v of the "
@@ -106,10 +110,17 @@ prior_option = click.option(
     metavar="NAME=MEAN+-STD",
     type=named_prior,
     multiple=True,
+    callback=by_name,
     help="What is known of a parameter beforehand, such as g=0+-0.1; instead of what the vessel file knows.",
 )
 hold_option = click.option(
-    "--hold", "held", metavar="NAME=VALUE", type=named_value, multiple=True, help="Hold a parameter at a value."
+    "--hold",
+    "held",
+    metavar="NAME=VALUE",
+    type=named_value,
+    multiple=True,
+    callback=by_name,
+    help="Hold a parameter at a value.",
 )
 free_option = click.option(
     "--free", "freed", metavar="NAME", multiple=True, help="Take nothing as known of a parameter, such as tau_up."
@@ -120,39 +131,12 @@ value_option = click.option(
     metavar="NAME=VALUE",
     type=named_value,
     multiple=True,
+    callback=by_name,
     help="Value that is assumed; the prior's mean or what is usual when not given.",
 )
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class KnownOptions:
-    """What a user knows of a ship before its test."""
-
-    rpm_per_volt: float | None
-    """Slope of the set point [rpm/V]."""
-    priors: tuple[tuple[str, Prior], ...]
-    """Priors instead of those of the vessel file, by parameter."""
-    freed: tuple[str, ...]
-    """Parameters of which nothing is taken as known."""
-    held: tuple[tuple[str, float], ...]
-    """Parameters that are held, and at what value."""
-    values: tuple[tuple[str, float], ...]
-    """Assumed values, by parameter."""
-
-    def ship(self, vessel: Vessel | None, **more: Any) -> ShipBeforeTest:
-        """Return the ship with these and what else is known of it."""
-        return ShipBeforeTest(
-            vessel=vessel,
-            slope_rpm_per_v=self.rpm_per_volt,
-            priors=dict(self.priors),
-            freed=self.freed,
-            held=dict(self.held),
-            values=dict(self.values),
-            **more,
-        )
-
-
 known_options = gathered_options(
-    KnownOptions, (rpm_per_volt_option, prior_option, free_option, hold_option, value_option), name="known"
+    ShipBeforeTest, (rpm_per_volt_option, prior_option, free_option, hold_option, value_option), name="known"
 )
-"""Adds ``--rpm-per-volt``, ``--prior``, ``--free``, ``--hold`` and ``--value``, taken as one ``known``."""
+"""Adds ``--rpm-per-volt``, ``--prior``, ``--free``, ``--hold`` and ``--value``, taken as one ``known`` ship."""

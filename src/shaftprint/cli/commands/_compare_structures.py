@@ -8,11 +8,12 @@ import numpy as np
 from shaftprint.catalogue._own_structure import TypedName
 from shaftprint.cli._drive_judge import compare_structures_on_the_bench
 from shaftprint.cli._drive_options import drive_option, expect_not_given, only_recording
-from shaftprint.cli._fit_options import FitOptions, fit_options, settings_of, structures_of
+from shaftprint.cli._fit_options import fit_options
 from shaftprint.cli._options import OWN_FILE_HELP, campaign_option, vessel_option
 from shaftprint.cli._results import print_comparison
 from shaftprint.cli.output._progress import no_progress_option, progress
 from shaftprint.identify.comparison._compare import compare_jointly, expect_comparable
+from shaftprint.survey._fit_options import FitOptions
 from shaftprint.survey._measurement import measure, pairs_of
 from shaftprint.survey._survey import settings_by_name
 from shaftprint.survey._trial import load_trial
@@ -72,7 +73,7 @@ def command(
         raise click.UsageError("--without is for drives; hold a parameter of a ship with --hold.")
     recording = only_recording(recordings)
     trial = load_trial(vessel, campaign)
-    structures = structures_of(names, options, trial.vessel)
+    structures = options.structures(names, trial.vessel)
     expect_comparable(structures)
     with progress(hidden=no_progress) as steps:
         measurement = measure(recording, trial, mode=options.mode, progress=steps)
@@ -80,7 +81,7 @@ def command(
         comparison = compare_jointly(
             [pairs_of(structure, measurement) for structure in structures],
             rng=np.random.default_rng(options.seed),
-            settings=settings_by_name(structures, measurement, trial, settings_of(structures, options)),
+            settings=settings_by_name(structures, measurement, trial, options.settings(structures)),
             folds=folds,
         )
     print_comparison(comparison, is_answer=True)

@@ -11,7 +11,7 @@ from shaftprint.catalogue._own_structure import TypedName
 from shaftprint.cli._drive_identify import identify_on_the_bench
 from shaftprint.cli._drive_options import drive_option, only_recording
 from shaftprint.cli._fingerprint_tables import print_fingerprint
-from shaftprint.cli._fit_options import FitOptions, fit_options, settings_of, structures_of
+from shaftprint.cli._fit_options import fit_options
 from shaftprint.cli._identify_both import identify_both_lines
 from shaftprint.cli._limit_tables import print_limits, print_line
 from shaftprint.cli._options import (
@@ -33,6 +33,7 @@ from shaftprint.cli.output._progress import Steps, no_progress_option, progress
 from shaftprint.cli.output._tables import print_table
 from shaftprint.fingerprint._json_file import write_fingerprint
 from shaftprint.survey._everything import with_everything
+from shaftprint.survey._fit_options import FitOptions
 from shaftprint.survey._limits import with_limits
 from shaftprint.survey._of_vessel import default_structure
 from shaftprint.survey._survey import Survey, judged, run
@@ -143,7 +144,7 @@ def command(
         return
     # before the folder is made: a mistake in a settings file leaves none
     trial, rng = load_trial(vessel, campaign), np.random.default_rng(options.seed)
-    structures = structures_of(names or (default_structure(trial.vessel, trial.campaign),), options, trial.vessel)
+    structures = options.structures(names or (default_structure(trial.vessel, trial.campaign),), trial.vessel)
     with output_folder(output, of="identify", force=force) as folder:
         with progress(hidden=no_progress) as steps:
             survey = run(
@@ -151,7 +152,7 @@ def command(
                 trial.vessel,
                 trial.campaign,
                 structures=structures,
-                settings=settings_of(structures, options),
+                settings=options.settings(structures),
                 mode=options.mode,
                 sources=(*trial.sources, *structure_sources(names)),
                 rng=rng,

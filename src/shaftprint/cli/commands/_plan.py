@@ -8,7 +8,7 @@ import click
 
 from shaftprint.catalogue._own_structure import TypedName
 from shaftprint.cli._command_group import NOT_REACHED
-from shaftprint.cli._known_values import KnownOptions, known_options
+from shaftprint.cli._known_values import known_options
 from shaftprint.cli._options import DEFAULT_HELP, OWN_FILE_HELP, vessel_option
 from shaftprint.cli._plan_options import limit_of, seconds_of, shares_of, wish_from, wish_of
 from shaftprint.cli._plan_tables import print_planned_test
@@ -23,6 +23,7 @@ from shaftprint.design.inputs._wish import Wish
 from shaftprint.design.planned_test._planned_test import PlannedTest
 from shaftprint.design.planning._from_knowledge import plan_test
 from shaftprint.forecast._knowledge import knowledge_of
+from shaftprint.forecast._ship_before_test import ShipBeforeTest
 from shaftprint.rehearsal._rehearse import rehearse_on_tug
 from shaftprint.report.plan._plan_page import render_plan
 from shaftprint.vessel._vessel import Vessel
@@ -108,7 +109,7 @@ def command(
     after: Path | None,
     noise_from: Path | None,
     noise_campaign: str | None,
-    known: KnownOptions,
+    known: ShipBeforeTest,
     rehearsals: int,
     rate_hz: float,
     name: str | None,
@@ -125,8 +126,9 @@ def command(
     wish = wish_from(wishes)
     _expect_a_goal(wish, within_s, is_shortest=is_shortest)
     installation = checked_vessel(vessel)
-    ship = known.ship(
-        installation,
+    ship = replace(
+        known,
+        vessel=installation,
         first_test=None if after is None else fingerprint_at(after),
         recording=noise_from,
         recorded=noise_campaign,

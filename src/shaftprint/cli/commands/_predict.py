@@ -1,5 +1,7 @@
 """``shaftprint predict``: what a test would find, before it is made."""
 
+from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 
 import click
@@ -8,12 +10,13 @@ from shaftprint.campaign._campaign import load_campaign
 from shaftprint.catalogue._own_structure import TypedName
 from shaftprint.cli._drive_judge import predict_on_the_bench
 from shaftprint.cli._drive_options import drive_option, expect_not_given
-from shaftprint.cli._known_values import KnownOptions, known_options, named_value
+from shaftprint.cli._known_values import by_name, known_options, named_value
 from shaftprint.cli._options import DEFAULT_HELP, NAMES, OWN_FILE_HELP, campaign_option
 from shaftprint.cli._prediction_tables import print_prediction
 from shaftprint.cli._vessel_file import checked_vessel
 from shaftprint.cli.output._progress import no_progress_option, progress
 from shaftprint.forecast._predict import predict_test
+from shaftprint.forecast._ship_before_test import ShipBeforeTest
 
 
 @click.command("predict")
@@ -31,6 +34,7 @@ from shaftprint.forecast._predict import predict_test
     multiple=True,
     metavar="NAME=STD",
     type=named_value,
+    callback=by_name,
     help="With --drive: noise of one sample of an output; may be repeated.",
 )
 @click.option(
@@ -53,14 +57,14 @@ from shaftprint.forecast._predict import predict_test
 def command(
     drive_file: Path | None,
     inputs: tuple[Path, ...],
-    noise: tuple[tuple[str, float], ...],
+    noise: Mapping[str, float],
     fingerprint: Path | None,
     campaign: str,
     name: TypedName | None,
     vessel: str | None,
     recording: Path | None,
     recorded: str | None,
-    known: KnownOptions,
+    known: ShipBeforeTest,
     no_progress: bool,
 ) -> None:
     """Predict the accuracy of a planned test.
@@ -71,13 +75,14 @@ def command(
     With --drive, the records of planned inputs are predicted instead.
     """
     if drive_file is not None:
-        expect_not_given("campaign", "vessel", "recording", "recorded", "rpm_per_volt", "freed")
+        expect_not_given("campaign", "vessel", "recording", "recorded", "slope_rpm_per_v", "freed")
         chosen_names = () if name is None else (name,)
-        predict_on_the_bench(drive_file, inputs, chosen_names, dict(noise), fingerprint, known)
+        predict_on_the_bench(drive_file, inputs, chosen_names, noise, fingerprint, known)
         return
     if inputs or noise or fingerprint is not None:
         raise click.UsageError("--input, --noise and --fingerprint need --drive.")
-    ship = known.ship(None if vessel is None else checked_vessel(vessel), recording=recording, recorded=recorded)
+    installation = None if vessel is None else checked_vessel(vessel)
+    ship = replace(known, vessel=installation, recording=recording, recorded=recorded)
     with progress(hidden=no_progress) as steps:
         predicted = predict_test(load_campaign(campaign), ship, structure=name, progress=steps)
     print_prediction(predicted)

@@ -1,5 +1,6 @@
 """``shaftprint simulate``: what a model does for a set point."""
 
+from collections.abc import Mapping
 from pathlib import Path
 
 import click
@@ -8,7 +9,7 @@ import numpy as np
 from shaftprint.campaign._campaign import load_campaign
 from shaftprint.catalogue._crash_stop import CRASH_STOP
 from shaftprint.catalogue._own_structure import TypedName
-from shaftprint.cli._known_values import named_value, rpm_per_volt_option
+from shaftprint.cli._known_values import by_name, named_value, rpm_per_volt_option
 from shaftprint.cli._options import LIMITED_HELP, NAMES, OWN_FILE_HELP
 from shaftprint.cli._simulation_tables import print_simulation
 from shaftprint.cli._terminal import answer
@@ -83,6 +84,7 @@ def span_of_time(
     metavar="NAME=VALUE",
     type=named_value,
     multiple=True,
+    callback=by_name,
     help="Value of a parameter; may be repeated.",
 )
 @click.option("--campaign", help=f"Set point of a campaign: {NAMES} thesis.")
@@ -132,13 +134,13 @@ def command(
     fingerprint: Path | None,
     structure: TypedName | None,
     linear: bool,
-    given: tuple[tuple[str, float], ...],
+    given: Mapping[str, float],
     campaign: str | None,
     table: Path | None,
     moves: tuple[LeverMove, ...],
     hold: bool,
     vessel: str | None,
-    rpm_per_volt: float | None,
+    slope_rpm_per_v: float | None,
     span: tuple[float, float] | None,
     rate_hz: float,
     output: Path,
@@ -156,20 +158,19 @@ def command(
             expect_no_input(path, table, None if fingerprint is None else fingerprint_file(fingerprint))
             expect_free(path, force=force)
     identified = None if fingerprint is None else fingerprint_at(fingerprint)
-    values = dict(given)
     if structure is not None and structure.upper() == CRASH_STOP:
-        _expect_only_a_lever(campaign, table, rpm_per_volt, linear or None, hold or None)
+        _expect_only_a_lever(campaign, table, slope_rpm_per_v, linear or None, hold or None)
         if vessel is None:
             raise click.UsageError(f"{CRASH_STOP} expects --vessel, the ship that is stopped.")
         run = crash_stop_run(
-            checked_vessel(vessel), moves, fingerprint=identified, given=values, rate_hz=rate_hz, span=span
+            checked_vessel(vessel), moves, fingerprint=identified, given=given, rate_hz=rate_hz, span=span
         )
     else:
         if moves:
             raise click.UsageError(f"--lever is for --structure {CRASH_STOP}, whose engine has clutches.")
         installation = None if vessel is None else load_vessel(vessel)
-        point = point_of(ShipBeforeTest(first_test=identified, vessel=installation, slope_rpm_per_v=rpm_per_volt))
-        model = simulated_model(structure, identified, values, linear=linear)
+        point = point_of(ShipBeforeTest(first_test=identified, vessel=installation, slope_rpm_per_v=slope_rpm_per_v))
+        model = simulated_model(structure, identified, given, linear=linear)
         inputs = _inputs(campaign, table, model.structure, point, hold=hold, span=span, rate_hz=rate_hz)
         run = Run(model=model, point=point, inputs=inputs)
     with progress(hidden=no_progress) as steps:

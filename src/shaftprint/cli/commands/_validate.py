@@ -8,7 +8,7 @@ import numpy as np
 from shaftprint.catalogue._own_structure import TypedName
 from shaftprint.cli._drive_judge import validate_on_the_bench
 from shaftprint.cli._drive_options import drive_option, expect_not_given, only_recording
-from shaftprint.cli._fit_options import FitOptions, fit_options, held_structures, settings_of, structures_of
+from shaftprint.cli._fit_options import fit_options
 from shaftprint.cli._known_values import named_variable
 from shaftprint.cli._options import DEFAULT_HELP, OWN_FILE_HELP, campaign_option, vessel_option
 from shaftprint.cli._terminal import echo
@@ -26,6 +26,7 @@ from shaftprint.cli.output._tables import print_table
 from shaftprint.fingerprint._fingerprint import Fingerprint
 from shaftprint.fingerprint._model import structure_to_use
 from shaftprint.models._structure import Structure
+from shaftprint.survey._fit_options import FitOptions
 from shaftprint.survey._fits import fit
 from shaftprint.survey._measurement import Measurement, measure
 from shaftprint.survey._of_vessel import default_structure
@@ -142,11 +143,9 @@ def command(
     trial = load_trial(vessel, campaign)
     kept = None if fingerprint is None else fingerprint_at(fingerprint)
     if kept is None:
-        structures = structures_of(
-            [structure or default_structure(trial.vessel, trial.campaign)], options, trial.vessel
-        )
+        structures = options.structures([structure or default_structure(trial.vessel, trial.campaign)], trial.vessel)
     else:
-        structures = held_structures([structure_to_use(structure, kept)], options)
+        structures = options.holding([structure_to_use(structure, kept)])
     with progress(hidden=no_progress) as steps:
         measurement = measure(recording, trial, mode=options.mode, progress=steps)
         asked = Asked(records=records, used=used, allow_in_sample=allow_in_sample, seed=options.seed)
@@ -190,6 +189,6 @@ def _model(
     """Return the model of a fingerprint that was kept, otherwise the one that the sines of the recording give."""
     if kept is not None:
         return fingerprint_model(kept, structures[0], measurement.signals)
-    settings = settings_by_name(structures, measurement, trial, settings_of(structures, options))
+    settings = settings_by_name(structures, measurement, trial, options.settings(structures))
     rng = np.random.default_rng(options.seed)
     return identified_model(fit(structures, measurement, settings=settings, rng=rng, progress=steps)[0])

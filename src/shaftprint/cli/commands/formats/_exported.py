@@ -11,7 +11,7 @@ from shaftprint.arrays import frozen_float
 from shaftprint.bench._fingerprint import identified_drive
 from shaftprint.catalogue._own_structure import TypedName
 from shaftprint.cli._drive_options import drive_fingerprint_at, is_drive_place, kept_one
-from shaftprint.cli._known_values import named_value
+from shaftprint.cli._known_values import by_name, named_value
 from shaftprint.cli._options import LIMITED_HELP, OWN_FILE_HELP
 from shaftprint.cli._terminal import say
 from shaftprint.cli.output._file_to_write import expect_free, expect_no_input
@@ -57,6 +57,7 @@ set_option = click.option(
     metavar="NAME=VALUE",
     type=named_value,
     multiple=True,
+    callback=by_name,
     help="Value of a parameter instead of the fingerprint's; may be repeated.",
 )
 output_option = click.option(

@@ -1,5 +1,6 @@
 """``shaftprint export fmu``: a model as a functional mock-up unit."""
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Literal
 
@@ -59,7 +60,7 @@ def command(
     fingerprint: Path,
     structure: TypedName | None,
     linear: bool,
-    given: tuple[tuple[str, float], ...],
+    given: Mapping[str, float],
     version: str,
     platforms: tuple[str, ...],
     source_only: bool,
@@ -78,7 +79,7 @@ def command(
     """
     if source_only and platforms:
         raise click.UsageError("--source-only compiles nothing: leave --platform out.")
-    model = model_to_export(fingerprint, structure, dict(given), linear=linear)
+    model = model_to_export(fingerprint, structure, given, linear=linear)
     path = file_to_write(output, model, ".fmu", inputs=(fingerprint,), force=force)
     number: Literal[2, 3] = 2 if version == "2" else 3
     with progress(hidden=no_progress) as steps:

@@ -1,5 +1,6 @@
 """``shaftprint export matlab``: a model for MATLAB and Octave."""
 
+from collections.abc import Mapping
 from pathlib import Path
 
 import click
@@ -47,7 +48,7 @@ def command(
     fingerprint: Path,
     structure: TypedName | None,
     linear: bool,
-    given: tuple[tuple[str, float], ...],
+    given: Mapping[str, float],
     recording: Path | None,
     vessel: str | None,
     campaign: str | None,
@@ -61,7 +62,7 @@ def command(
     written beside the data: called in MATLAB it makes the state space with its delays, frd and idfrd
     objects; in bare Octave it computes the response.
     """
-    model = model_to_export(fingerprint, structure, dict(given), linear=linear)
+    model = model_to_export(fingerprint, structure, given, linear=linear)
     path = file_to_write(output, model, ".mat", inputs=(fingerprint, recording), force=force)
     measured = None
     if recording is not None:

@@ -1,5 +1,6 @@
 """``shaftprint export modelica``: a model as Modelica text."""
 
+from collections.abc import Mapping
 from pathlib import Path
 
 import click
@@ -30,7 +31,7 @@ def command(
     fingerprint: Path,
     structure: TypedName | None,
     linear: bool,
-    given: tuple[tuple[str, float], ...],
+    given: Mapping[str, float],
     output: Path | None,
     force: bool,
 ) -> None:
@@ -40,7 +41,7 @@ def command(
     library; its block Line has inputs and outputs in rpm and N m about the working point, and Step is an
     experiment with it.
     """
-    model = model_to_export(fingerprint, structure, dict(given), linear=linear)
+    model = model_to_export(fingerprint, structure, given, linear=linear)
     written = write_modelica(
         model, file_to_write(output, model, ".mo", inputs=(fingerprint,), force=force), overwrite=force
     )

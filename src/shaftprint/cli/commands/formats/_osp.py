@@ -1,5 +1,6 @@
 """``shaftprint export osp``: the variable groups of a model for Open Simulation Platform."""
 
+from collections.abc import Mapping
 from pathlib import Path
 
 import click
@@ -34,7 +35,7 @@ def command(
     fingerprint: Path,
     structure: TypedName | None,
     linear: bool,
-    given: tuple[tuple[str, float], ...],
+    given: Mapping[str, float],
     output: Path | None,
     force: bool,
 ) -> None:
@@ -43,6 +44,6 @@ def command(
     FINGERPRINT is the JSON file, or the folder in which identify or demo has put it. The description is
     written beside the FMU that `shaftprint export fmu` writes, as name_OspModelDescription.xml.
     """
-    model = model_to_export(fingerprint, structure, dict(given), linear=linear)
+    model = model_to_export(fingerprint, structure, given, linear=linear)
     # the FMU may be there already: it stays as it is
     answer(write_osp(model, file_to_write(output, model, ".fmu", inputs=(fingerprint,), force=True), overwrite=force))

@@ -1,5 +1,6 @@
 """``shaftprint export ssp``: the parameters of a model for System Structure and Parameterization."""
 
+from collections.abc import Mapping
 from pathlib import Path
 
 import click
@@ -30,7 +31,7 @@ def command(
     fingerprint: Path,
     structure: TypedName | None,
     linear: bool,
-    given: tuple[tuple[str, float], ...],
+    given: Mapping[str, float],
     output: Path | None,
     force: bool,
 ) -> None:
@@ -39,5 +40,5 @@ def command(
     FINGERPRINT is the JSON file, or the folder in which identify or demo has put it. The names are those of
     the FMU's parameters, so that the set can be given to it in a system structure.
     """
-    model = model_to_export(fingerprint, structure, dict(given), linear=linear)
+    model = model_to_export(fingerprint, structure, given, linear=linear)
     answer(write_ssv(model, file_to_write(output, model, ".ssv", inputs=(fingerprint,), force=force), overwrite=force))
