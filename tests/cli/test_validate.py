@@ -11,11 +11,11 @@ import pytest
 
 from shaftprint.campaign import load_campaign
 from shaftprint.catalogue import structure
-from shaftprint.cli._validation import fingerprint_model
 from shaftprint.errors import FingerprintError
 from shaftprint.fingerprint import read_fingerprint
 from shaftprint.recording import read_recording
 from shaftprint.signals import prepare_signals
+from shaftprint.survey._validate import fingerprint_model
 from shaftprint.vessel import load_vessel
 
 GIVEN = ("--vessel", "stan-tug-1205", "--campaign", "short", "--no-progress")

@@ -9,7 +9,7 @@ from shaftprint.cli._limit_tables import print_limits, print_line
 from shaftprint.cli._options import campaign_option, vessel_option
 from shaftprint.cli._results import print_paths, write_results
 from shaftprint.cli._terminal import say
-from shaftprint.cli._validation import print_validation
+from shaftprint.cli._validation_tables import print_validation
 from shaftprint.cli.output._output_folder import force_option, output_folder
 from shaftprint.cli.output._progress import no_progress_option, progress
 from shaftprint.limits._identify_limits import identify_limits

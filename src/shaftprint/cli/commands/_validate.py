@@ -12,29 +12,23 @@ from shaftprint.cli._fit_options import fit_options
 from shaftprint.cli._known_values import named_variable
 from shaftprint.cli._options import DEFAULT_HELP, OWN_FILE_HELP, campaign_option, vessel_option
 from shaftprint.cli._terminal import echo
-from shaftprint.cli._validation import (
-    Asked,
-    fingerprint_model,
-    print_validation,
-    validated_with_limits,
-    write_validations,
-)
+from shaftprint.cli._validation_tables import print_validation
 from shaftprint.cli.output._fingerprint_file import fingerprint_at
 from shaftprint.cli.output._output_folder import force_option, output_folder
-from shaftprint.cli.output._progress import Steps, no_progress_option, progress
+from shaftprint.cli.output._progress import no_progress_option, progress
 from shaftprint.cli.output._tables import print_table
-from shaftprint.fingerprint._fingerprint import Fingerprint
 from shaftprint.fingerprint._model import structure_to_use
-from shaftprint.models._structure import Structure
+from shaftprint.report._validation_pictures import write_validations
 from shaftprint.survey._fit_options import FitOptions
 from shaftprint.survey._fits import fit
-from shaftprint.survey._measurement import Measurement, measure
+from shaftprint.survey._measurement import measure
 from shaftprint.survey._of_vessel import default_structure
 from shaftprint.survey._survey import settings_by_name
-from shaftprint.survey._trial import Trial, load_trial
+from shaftprint.survey._trial import load_trial
+from shaftprint.survey._validate import Asked, validate_fingerprint
 from shaftprint.tables._validation import models_table
 from shaftprint.validation._foreign import ForeignModel
-from shaftprint.validation._model import Model, identified_model
+from shaftprint.validation._model import identified_model
 from shaftprint.validation._thesis_models import thesis_models
 
 
@@ -149,46 +143,40 @@ def command(
     with progress(hidden=no_progress) as steps:
         measurement = measure(recording, trial, mode=options.mode, progress=steps)
         asked = Asked(records=records, used=used, allow_in_sample=allow_in_sample, seed=options.seed)
-        with_limits = kept is not None and kept.with_limits is not None and structure is None and not linear
         if foreign is not None:
             point = measurement.signals.working_point
             other = ForeignModel(path=foreign, working_point=point, variables=dict(variables))
             first = asked.validated(
                 other.model, measurement.signals, trial, quadratic_propeller=False, predict=other.predict
             )
-        elif kept is not None and with_limits:
-            first = validated_with_limits(kept, measurement, trial, asked, steps=steps)
+        elif kept is not None:
+            first = validate_fingerprint(
+                kept,
+                measurement,
+                trial,
+                asked,
+                structure=structures[0],
+                linear=linear or structure is not None,
+                quadratic_propeller=not linear_torque,
+                progress=steps,
+            )
         else:
-            model = _model(kept, structures, measurement, trial, options, steps=steps)
+            settings = settings_by_name(structures, measurement, trial, options.settings(structures))
+            rng = np.random.default_rng(options.seed)
+            fitted = fit(structures, measurement, settings=settings, rng=rng, progress=steps)[0]
+            model = identified_model(fitted)
             first = asked.validated(model, measurement.signals, trial, quadratic_propeller=not linear_torque)
         steps.begin("Validating the sets of the thesis")
-        others = thesis_models() if thesis_sets else ()
         beside = [
-            asked.validated(one, measurement.signals, trial, quadratic_propeller=not linear_torque) for one in others
+            asked.validated(one, measurement.signals, trial, quadratic_propeller=not linear_torque)
+            for one in (thesis_models() if thesis_sets else ())
         ]
         validations = [first, *beside]
     if output is not None:
         with output_folder(output, of="validate", force=force) as folder, progress(hidden=no_progress) as steps:
-            write_validations(folder, validations, steps=steps)
-    print_validation(validations[0])
+            write_validations(folder, validations, progress=steps)
+    print_validation(first)
     if thesis_sets:
         print_table(models_table(validations))
     if output is not None:
         echo(f"Figures: {output}")
-
-
-def _model(
-    kept: Fingerprint | None,
-    structures: tuple[Structure, ...],
-    measurement: Measurement,
-    trial: Trial,
-    options: FitOptions,
-    *,
-    steps: Steps,
-) -> Model:
-    """Return the model of a fingerprint that was kept, otherwise the one that the sines of the recording give."""
-    if kept is not None:
-        return fingerprint_model(kept, structures[0], measurement.signals)
-    settings = settings_by_name(structures, measurement, trial, options.settings(structures))
-    rng = np.random.default_rng(options.seed)
-    return identified_model(fit(structures, measurement, settings=settings, rng=rng, progress=steps)[0])
