@@ -1,16 +1,15 @@
-from ._crash_stop import LeverMove, crash_stop_run
-from ._inputs import campaign_inputs, file_inputs, point_of
-from ._simulated_model import simulated_model
-from ._simulation import Run, SimulatedSignal, simulated
+from ._crash_stop import LeverMove, crash_stop
+from ._knowledge import knowledge_of
+from ._predict import predict_test
+from ._ship_before_test import ShipBeforeTest
+from ._simulation import SimulatedSignal, simulated_ship
 
 __all__ = [
     "LeverMove",
-    "Run",
+    "ShipBeforeTest",
     "SimulatedSignal",
-    "campaign_inputs",
-    "crash_stop_run",
-    "file_inputs",
-    "point_of",
-    "simulated",
-    "simulated_model",
+    "crash_stop",
+    "knowledge_of",
+    "predict_test",
+    "simulated_ship",
 ]

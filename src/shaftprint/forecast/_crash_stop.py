@@ -3,7 +3,6 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from types import MappingProxyType
 
 import numpy as np
 
@@ -15,11 +14,12 @@ from shaftprint.errors import FingerprintError, RequestError, StructureError
 from shaftprint.fingerprint._fingerprint import Fingerprint
 from shaftprint.fingerprint._model import named_structure
 from shaftprint.forecast._inputs import SAME_WORKING_POINT, Inputs, Point
+from shaftprint.forecast._ship_before_test import ShipBeforeTest
 from shaftprint.forecast._simulated_model import SimulatedModel, expect_parameters
-from shaftprint.forecast._simulation import Run, Simulation
+from shaftprint.forecast._simulation import Run, Simulation, simulated
 from shaftprint.models._structure import Structure
 from shaftprint.simulation._stopped_ship import StoppedShip, stopped_ship
-from shaftprint.vessel._vessel import Vessel
+from shaftprint.survey._progress import SILENT, Progress
 
 GEARS: Mapping[str, float] = {"ahead": 1.0, "neutral": 0.0, "astern": -1.0}
 # What follows the last move, where no end is given, and the longest stretch; steps that a closed clutch needs, and the
@@ -39,34 +39,33 @@ class LeverMove:
     """1 ahead, 0 neither clutch, -1 astern."""
 
 
-def crash_stop_run(
-    vessel: Vessel,
+def crash_stop(
+    known: ShipBeforeTest,
     moves: Sequence[LeverMove],
     *,
-    fingerprint: Fingerprint | None = None,
-    given: Mapping[str, float] = MappingProxyType({}),
     rate_hz: float = 50.0,
     span: tuple[float, float] | None = None,
-) -> Run:
-    """Return the crash stop of a ship: numbers of its vessel file, of a fingerprint above them, the user's on top.
+    progress: Progress = SILENT,
+) -> Simulation:
+    """Return the crash stop of a ship; its ``answers`` say when and where it stands, and whether the engine stalls.
+
+    Numbers are those of the vessel file, of the first test above them, and the values that are stated on top.
 
     Parameters
     ----------
-    vessel
-        The ship that is stopped.
+    known
+        The ship that is stopped; a first test is of the same ship underway at the same speed.
     moves
         What the lever asks for.
-    fingerprint
-        Test of the same ship underway at the same speed, for governor, engine and inertias.
-    given
-        Values that the user states, by parameter.
     rate_hz, span
-        Samples a second that are written [Hz]; begin and end [s], until two minutes after the last move if not given.
+        Samples a second [Hz]; begin and end [s], until two minutes after the last move if not given.
+    progress
+        Is told how far it is.
 
     Raises
     ------
     RequestError
-        If no move is given, the moves do not follow each other within the span, or ask for a speed that
+        If no vessel or no move is given, the moves do not follow each other within the span, or ask for a speed that
         the engine is not asked for.
     SettingsError, PropellerError
         If the vessel file does not describe a ship that can be stopped like this.
@@ -75,18 +74,20 @@ def crash_stop_run(
     FingerprintError
         If the fingerprint is not of a ship underway, or has another working point: its numbers are over that.
     """
-    ship = stopped_ship(vessel)
-    if fingerprint is not None:
-        _expect_of_ship(fingerprint, ship)
+    if known.vessel is None:
+        raise RequestError(f"{CRASH_STOP} expects --vessel, the ship that is stopped.")
+    ship = stopped_ship(known.vessel)
+    if known.first_test is not None:
+        _expect_of_ship(known.first_test, ship)
     _expect_governed(moves, ship)
     point = _point(ship)
-    inputs = _lever_inputs(moves, point, rate_hz=rate_hz, span=span)
-    return Run(
-        model=_model(ship, fingerprint, given),
+    run = Run(
+        model=_model(ship, known.first_test, known.values),
         point=point,
-        inputs=inputs,
+        inputs=_lever_inputs(moves, point, rate_hz=rate_hz, span=span),
         answers=lambda simulation: _answers(simulation, ship, moves),
     )
+    return simulated(run, progress=progress)
 
 
 def _expect_of_ship(fingerprint: Fingerprint, ship: StoppedShip) -> None:

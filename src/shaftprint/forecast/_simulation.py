@@ -8,9 +8,12 @@ from typing import NamedTuple
 import numpy as np
 
 from shaftprint.arrays import FloatArray, frozen_float
+from shaftprint.campaign._campaign import Campaign
+from shaftprint.catalogue._own_structure import TypedName
 from shaftprint.errors import ExactStepsError
-from shaftprint.forecast._inputs import Inputs, Point
-from shaftprint.forecast._simulated_model import SimulatedModel
+from shaftprint.forecast._inputs import Inputs, Point, campaign_inputs, file_inputs, point_of
+from shaftprint.forecast._ship_before_test import ShipBeforeTest
+from shaftprint.forecast._simulated_model import SimulatedModel, simulated_model
 from shaftprint.recording._channel import Channel
 from shaftprint.recording.writers._csv import write_csv
 from shaftprint.simulation._simulate import simulate
@@ -88,15 +91,57 @@ class Simulation:
         return tuple(_remarks(self))
 
 
-def simulated(run: Run, *, progress: Progress = SILENT) -> Simulation:
-    """Return the outputs of a model, and by their exact derivatives what the covariance of its parameters does to them.
+def simulated_ship(
+    ship: ShipBeforeTest,
+    moved: Campaign | Path,
+    *,
+    structure: TypedName | None = None,
+    linear: bool = False,
+    hold: bool = False,
+    span: tuple[float, float] | None = None,
+    rate_hz: float = 50.0,
+    progress: Progress = SILENT,
+) -> Simulation:
+    """Return what a model of a ship does for a set point.
 
     Parameters
     ----------
-    run
-        A model and what moves it: ``campaign_inputs`` or ``file_inputs``; ``crash_stop_run`` gives both.
+    ship
+        Its fingerprint as first test, or vessel file and line of the set point; values are those of parameters.
+    moved
+        A campaign, or a file whose columns are the inputs.
+    structure
+        The model; that of the fingerprint, with its limits where they were found, if not given.
+    linear
+        Whether the linear model is wanted although the fingerprint has the line with its limits.
+    hold
+        Whether a value of the file is kept until the next; it is straight in between otherwise.
+    span
+        Part of the set point [s]; the ship runs steadily before it.
+    rate_hz
+        Samples a second for a campaign [Hz]; a file keeps its own.
     progress
         Is told how far it is.
+
+    Raises
+    ------
+    RequestError
+        If there is neither structure nor fingerprint, or what a volt asks for is not known.
+    StructureError
+        If there is no such structure or parameter, or it has no steady running at the first inputs.
+    """
+    point = point_of(ship)
+    model = simulated_model(structure, ship.first_test, ship.values, linear=linear)
+    inputs = (
+        campaign_inputs(moved, model.structure, point, rate_hz=rate_hz, span=span)
+        if isinstance(moved, Campaign)
+        else file_inputs(moved, model.structure, point, hold=hold, span=span)
+    )
+    return simulated(Run(model=model, point=point, inputs=inputs), progress=progress)
+
+
+def simulated(run: Run, *, progress: Progress = SILENT) -> Simulation:
+    """Return the outputs of a model, and by their exact derivatives what the covariance of its parameters does to them.
 
     Raises
     ------

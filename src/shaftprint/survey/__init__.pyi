@@ -1,5 +1,6 @@
 from ._both_shafts import load_trials_of_both, run_both
 from ._expected_of_ship import expected_of_ship
+from ._fit_options import FitOptions
 from ._fits import fit, priors_of
 from ._legs import leg_tests
 from ._legs_apart import legs_alone
@@ -10,9 +11,11 @@ from ._survey import Survey, run, survey_of
 from ._thesis_mode import ThesisMode
 from ._thesis_way import GAUGE
 from ._trial import Trial, load_trial
+from ._validate import validate_fingerprint
 
 __all__ = [
     "GAUGE",
+    "FitOptions",
     "Measurement",
     "Survey",
     "ThesisMode",
@@ -30,5 +33,6 @@ __all__ = [
     "run",
     "run_both",
     "survey_of",
+    "validate_fingerprint",
     "with_limits",
 ]

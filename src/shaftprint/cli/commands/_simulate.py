@@ -19,12 +19,9 @@ from shaftprint.cli.output._file_to_write import expect_free, expect_no_input
 from shaftprint.cli.output._fingerprint_file import fingerprint_at, fingerprint_file
 from shaftprint.cli.output._progress import no_progress_option, progress
 from shaftprint.files import written_whole
-from shaftprint.forecast._crash_stop import GEARS, LeverMove, crash_stop_run
-from shaftprint.forecast._inputs import Inputs, Point, campaign_inputs, file_inputs, point_of
+from shaftprint.forecast._crash_stop import GEARS, LeverMove, crash_stop
 from shaftprint.forecast._ship_before_test import ShipBeforeTest
-from shaftprint.forecast._simulated_model import simulated_model
-from shaftprint.forecast._simulation import Run, simulated, write_simulation
-from shaftprint.models._structure import Structure
+from shaftprint.forecast._simulation import simulated_ship, write_simulation
 from shaftprint.report.charts._pictures import save_chart
 from shaftprint.report.figures._simulation import simulation_chart
 from shaftprint.vessel._vessel import load_vessel
@@ -158,26 +155,37 @@ def command(
             expect_no_input(path, table, None if fingerprint is None else fingerprint_file(fingerprint))
             expect_free(path, force=force)
     identified = None if fingerprint is None else fingerprint_at(fingerprint)
-    if structure is not None and structure.upper() == CRASH_STOP:
+    is_stop = structure is not None and structure.upper() == CRASH_STOP
+    if is_stop:
         _expect_only_a_lever(campaign, table, slope_rpm_per_v, linear or None, hold or None)
-        if vessel is None:
-            raise click.UsageError(f"{CRASH_STOP} expects --vessel, the ship that is stopped.")
-        run = crash_stop_run(
-            checked_vessel(vessel), moves, fingerprint=identified, given=given, rate_hz=rate_hz, span=span
-        )
-    else:
-        if moves:
-            raise click.UsageError(f"--lever is for --structure {CRASH_STOP}, whose engine has clutches.")
-        installation = None if vessel is None else load_vessel(vessel)
-        point = point_of(ShipBeforeTest(first_test=identified, vessel=installation, slope_rpm_per_v=slope_rpm_per_v))
-        model = simulated_model(structure, identified, given, linear=linear)
-        inputs = _inputs(campaign, table, model.structure, point, hold=hold, span=span, rate_hz=rate_hz)
-        run = Run(model=model, point=point, inputs=inputs)
+    elif moves:
+        raise click.UsageError(f"--lever is for --structure {CRASH_STOP}, whose engine has clutches.")
+    elif (campaign is None) == (table is None):
+        raise click.UsageError("expected one set point: either --campaign or --input.")
+    load = checked_vessel if is_stop else load_vessel
+    ship = ShipBeforeTest(
+        first_test=identified,
+        vessel=None if vessel is None else load(vessel),
+        slope_rpm_per_v=slope_rpm_per_v,
+        values=given,
+    )
     with progress(hidden=no_progress) as steps:
-        simulation = simulated(run, progress=steps)
+        if is_stop:
+            simulation = crash_stop(ship, moves, rate_hz=rate_hz, span=span, progress=steps)
+        else:
+            simulation = simulated_ship(
+                ship,
+                load_campaign(campaign) if campaign is not None else Path(str(table)),
+                structure=structure,
+                linear=linear,
+                hold=hold,
+                span=span,
+                rate_hz=rate_hz,
+                progress=steps,
+            )
         if figure is not None:
             steps.begin("Drawing")
-            chart = simulation_chart(simulation.time_s, simulation.signals, name=run.model.structure.name)
+            chart = simulation_chart(simulation.time_s, simulation.signals, name=simulation.run.model.structure.name)
             with written_whole(figure, overwrite=True) as part:
                 save_chart(chart, part)
         steps.begin("Writing")
@@ -188,24 +196,6 @@ def command(
     for path in (output, figure):
         if path is not None:
             answer(path)
-
-
-def _inputs(
-    campaign: str | None,
-    table: Path | None,
-    structure: Structure,
-    point: Point | None,
-    *,
-    hold: bool,
-    span: tuple[float, float] | None,
-    rate_hz: float,
-) -> Inputs:
-    if (campaign is None) == (table is None):
-        raise click.UsageError("expected one set point: either --campaign or --input.")
-    if campaign is not None:
-        return campaign_inputs(load_campaign(campaign), structure, point, rate_hz=rate_hz, span=span)
-    assert table is not None  # noqa: S101 - one of both was given
-    return file_inputs(table, structure, point, hold=hold, span=span)
 
 
 def _expect_only_a_lever(*others: object) -> None:
