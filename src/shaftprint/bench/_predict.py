@@ -2,7 +2,9 @@
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from pathlib import Path
+from types import MappingProxyType
 
 import numpy as np
 
@@ -11,9 +13,11 @@ from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.bench._equipped import EquippedDrive
 from shaftprint.bench._fit import drive_time_settings
 from shaftprint.bench._per_record import all_parameters, base_name, free_parameters, own_priors, with_structures
+from shaftprint.bench._records import read_records
 from shaftprint.errors import IdentificationError
 from shaftprint.fingerprint._drive_fingerprint import DriveFingerprint, DriveRecord
 from shaftprint.identify.likelihood._prior import Prior
+from shaftprint.models._parameter import Parameter
 from shaftprint.time_domain._identify_in_time import output_error
 from shaftprint.time_domain._noise_model import NoiseModel
 from shaftprint.time_domain._record import Record
@@ -21,6 +25,61 @@ from shaftprint.time_domain._whitening import Whitening
 
 # Rates of a plan and of a record are one but for rounding.
 SAME_RATE = 1e-6
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class PredictedRecords:
+    """What planned records would tell of a drive."""
+
+    parameters: tuple[Parameter, ...]
+    """Its free parameters."""
+    values: Mapping[str, float]
+    """Values at which they are predicted, by parameter."""
+    deviations: Mapping[str, float]
+    """Standard deviation that each would have; infinite where the records say nothing."""
+    noise_source: str
+    """Of what colour the noise is taken to be, in words."""
+
+
+def predict_files(
+    one: EquippedDrive,
+    inputs: Sequence[Path],
+    *,
+    kept: DriveFingerprint | None = None,
+    noise_std: Mapping[str, float] = MappingProxyType({}),
+    values: Mapping[str, float] = MappingProxyType({}),
+    priors: Mapping[str, Prior] = MappingProxyType({}),
+) -> PredictedRecords:
+    """Return what records of planned inputs would tell of a drive.
+
+    Parameters
+    ----------
+    one
+        The drive.
+    inputs
+        Files with the planned inputs, a column each.
+    kept
+        A fingerprint, for values and the largest noise that it has seen of each output.
+    noise_std, values, priors
+        What is stated instead, and known beside the drive file.
+
+    Raises
+    ------
+    IdentificationError
+        If the noise of an output is not known, or the simulation runs away.
+    """
+    records = read_records(inputs, one, planned=True, hold=kept is not None and kept.inputs_hold)
+    names = {parameter.name for parameter in all_parameters(one, records)}
+    at = {name: value for name, value in (kept.values if kept else {}).items() if name in names} | dict(values)
+    seen = [record.noise_std for record in (kept.records if kept else ())]
+    largest = {name: max(record.get(name, 0.0) for record in seen) for name in {name for one in seen for name in one}}
+    stds = largest | dict(noise_std)
+    return PredictedRecords(
+        parameters=tuple(free_parameters(one, records)),
+        values=predicted_at(one, records, values=at, priors=priors),
+        deviations=predict_drive(one, records, noise_std=stds, kept=kept, values=at, priors=priors),
+        noise_source=noise_words(kept, records),
+    )
 
 
 @refusing_none(IdentificationError)

@@ -7,21 +7,22 @@ from typing import Any
 
 import numpy as np
 
-from shaftprint.bench._equipped import EquippedDrive
 from shaftprint.bench._fingerprint import drive_fingerprint
-from shaftprint.bench._fit import STARTS, DriveFit, identify_drive
-from shaftprint.bench._records import read_records
-from shaftprint.bench._responses import RESPONSE_STARTS, identify_responses, read_responses
+from shaftprint.bench._fit import DriveFit
+from shaftprint.bench._identify import identify_files
+from shaftprint.bench._named import named_drives
 from shaftprint.catalogue._own_structure import TypedName
-from shaftprint.cli._drive_options import drive_sources, equipped_drive, expect_not_given, is_given
+from shaftprint.cli._drive_options import expect_not_given, is_given
 from shaftprint.cli._results import print_paths
 from shaftprint.cli._terminal import print_findings, say
 from shaftprint.cli.output._fingerprint_file import FINGERPRINT
 from shaftprint.cli.output._json import give
 from shaftprint.cli.output._output_folder import output_folder
-from shaftprint.cli.output._progress import Steps, progress
+from shaftprint.cli.output._progress import progress
 from shaftprint.cli.output._tables import print_tables
+from shaftprint.drive._drive import load_drive
 from shaftprint.fingerprint._drive_fingerprint import DriveFingerprint, write_drive_fingerprint
+from shaftprint.fingerprint._sources import source_of, structure_sources
 from shaftprint.report._drive_page import render_drive
 from shaftprint.survey._fit_options import FitOptions
 from shaftprint.tables._drive import drive_assumed_table, drive_record_table, drive_response_table
@@ -42,31 +43,22 @@ def identify_on_the_bench(
 ) -> None:
     """Identify a drive from its records, print what was found, and write fingerprint and page into a folder."""
     expect_not_given("vessel", "campaign", "legs", "tested_at", "conditions", "previous", "pdf")
-    (one,) = equipped_drive(drive_file, names if is_given("names") else (), options)
+    chosen = names if is_given("names") else ()
+    (one,) = named_drives(load_drive(drive_file), chosen, options)
     with output_folder(output, of="identify", force=force) as folder:
         with progress(hidden=no_progress) as steps:
-            fit = _fitted(one, recordings, options, steps, hints)
-        sources = drive_sources(recordings, drive_file, names if is_given("names") else ())
+            starts = options.starts if is_given("starts") else None
+            rng = np.random.default_rng(options.seed)
+            fit = identify_files(one, recordings, rng=rng, starts=starts, hints=hints, progress=steps)
+        sources = (
+            *(source_of("recording", path) for path in recordings),
+            source_of("drive", drive_file),
+            *structure_sources(chosen),
+        )
         fingerprint = drive_fingerprint(fit, sources=sources, now=datetime.now(UTC))
         print_drive(fingerprint)
         _write(folder, fit, fingerprint, pictures=pictures, no_progress=no_progress)
     print_paths(output)
-
-
-def _fitted(
-    one: EquippedDrive, paths: Sequence[Path], options: FitOptions, steps: Steps, hints: Mapping[str, Any]
-) -> DriveFit:
-    """Return the fit to records, or to frequency responses where the drive file says that the files hold these."""
-    rng, starts = np.random.default_rng(options.seed), options.starts if is_given("starts") else None
-    if one.drive.responses:
-        steps.begin("Reading the responses")
-        responses = read_responses(paths, one)
-        steps.begin("Fitting the responses")
-        return identify_responses(one, responses, rng=rng, starts=starts or RESPONSE_STARTS)
-    steps.begin("Reading the records")
-    records = read_records(paths, one, **hints)
-    steps.begin("Fitting the records")
-    return identify_drive(one, records, rng=rng, starts=starts or STARTS)
 
 
 def _write(folder: Path, fit: DriveFit, fingerprint: DriveFingerprint, *, pictures: bool, no_progress: bool) -> None:

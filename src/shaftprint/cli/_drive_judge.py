@@ -8,19 +8,22 @@ import numpy as np
 
 from shaftprint.bench._compare import drive_differences
 from shaftprint.bench._fit import STARTS
-from shaftprint.bench._per_record import all_parameters, free_parameters
-from shaftprint.bench._predict import noise_words, predict_drive, predicted_at
+from shaftprint.bench._kept import kept_drive
+from shaftprint.bench._named import holding, named_drives
+from shaftprint.bench._predict import predict_files
 from shaftprint.bench._records import read_records
 from shaftprint.bench._structures import compare_in_time, without
 from shaftprint.bench._validate import identified_from, validate_drive
-from shaftprint.catalogue._own_structure import TypedName
-from shaftprint.cli._drive_options import drive_fingerprint_at, equipped_drive, file_sha256, holding, is_given, kept_one
+from shaftprint.catalogue._own_structure import TypedName, chosen_structures
+from shaftprint.cli._drive_options import drive_fingerprint_at, is_given
 from shaftprint.cli._terminal import answer, print_findings, say
 from shaftprint.cli.output._json import give
 from shaftprint.cli.output._progress import progress
 from shaftprint.cli.output._tables import print_table, print_tables
+from shaftprint.drive._drive import load_drive
 from shaftprint.fingerprint._drive_fingerprint import DriveFingerprint
 from shaftprint.forecast._ship_before_test import ShipBeforeTest
+from shaftprint.recording._recording import sha256_of
 from shaftprint.survey._fit_options import FitOptions
 from shaftprint.tables._drive import (
     drive_difference_table,
@@ -52,7 +55,7 @@ def validate_on_the_bench(
     if fingerprint is None:
         raise click.UsageError("--drive needs --fingerprint, a result of identify from other records.")
     kept = drive_fingerprint_at(fingerprint)
-    one = kept_one(kept, drive_file, name)
+    one = kept_drive(kept, load_drive(drive_file), own=None if name is None else chosen_structures([name])[0])
     with progress(hidden=no_progress) as steps:
         steps.begin("Simulating the records")
         records = read_records(recordings, one, hold=kept.inputs_hold)
@@ -65,7 +68,7 @@ def validate_on_the_bench(
     )
     answer(headline)
     give("missed", {record.fit.record.name: dict(record.missed) for record in validated})
-    seen = identified_from(kept, [file_sha256(path) for path in recordings], records)
+    seen = identified_from(kept, [sha256_of(path) for path in recordings], records)
     if seen:
         say(f"A record was identified from too, {', '.join(seen)}: what it shows is no validation.")
     print_table(validated_drive_table(validated))
@@ -82,31 +85,16 @@ def predict_on_the_bench(
     """Print the standard deviations that planned records would give."""
     if not inputs:
         raise click.UsageError("--drive needs --input, a file with the planned inputs; may be repeated.")
-    (one,) = equipped_drive(drive_file, names)
-    one, values, priors = holding(one, known.held), known.values, known.priors
+    (one,) = named_drives(load_drive(drive_file), names)
     kept = None if fingerprint is None else drive_fingerprint_at(fingerprint)
-    stds = _noise(kept) | dict(noise)
-    records = read_records(inputs, one, planned=True, hold=kept is not None and kept.inputs_hold)
-    names_of_all = {parameter.name for parameter in all_parameters(one, records)}
-    at = {name: value for name, value in (kept.values if kept else {}).items() if name in names_of_all}
-    at |= values
-    deviations = predict_drive(one, records, noise_std=stds, kept=kept, values=at, priors=priors)
-    give("deviations", deviations)
-    lost = [name for name, std in deviations.items() if not np.isfinite(std)]
+    predicted = predict_files(
+        holding(one, known.held), inputs, kept=kept, noise_std=noise, values=known.values, priors=known.priors
+    )
+    give("deviations", predicted.deviations)
+    lost = [name for name, std in predicted.deviations.items() if not np.isfinite(std)]
     answer("The records would tell every parameter." if not lost else f"Not told: {', '.join(lost)}.")
-    say(noise_words(kept, records))
-    assumed = predicted_at(one, records, values=at, priors=priors)
-    print_table(drive_prediction_table(free_parameters(one, records), assumed, deviations))
-
-
-def _noise(kept: DriveFingerprint | None) -> dict[str, float]:
-    """Return the largest noise of each output that a fingerprint has seen."""
-    records = () if kept is None else kept.records
-    found: dict[str, float] = {}
-    for record in records:
-        for name, std in record.noise_std.items():
-            found[name] = max(found.get(name, 0.0), std)
-    return found
+    say(predicted.noise_source)
+    print_table(drive_prediction_table(predicted.parameters, predicted.values, predicted.deviations))
 
 
 def compare_structures_on_the_bench(
@@ -119,7 +107,7 @@ def compare_structures_on_the_bench(
     no_progress: bool,
 ) -> None:
     """Print which structure the records of a drive want."""
-    named = equipped_drive(drive_file, names, options)
+    named = named_drives(load_drive(drive_file), names, options)
     drives = [*named, *(without(named[0], [name]) for name in left_out)]
     with progress(hidden=no_progress) as steps:
         steps.begin("Reading the records")

@@ -9,7 +9,6 @@ import numpy as np
 
 from shaftprint.catalogue._own_structure import TypedName
 from shaftprint.cli._fingerprint_tables import print_fingerprint
-from shaftprint.cli._options import structure_sources
 from shaftprint.cli._report_options import ReportOptions
 from shaftprint.cli._results import write_results
 from shaftprint.cli._terminal import answer, echo, say
@@ -21,6 +20,7 @@ from shaftprint.cli.output._tables import print_tables
 from shaftprint.drift._differ import differ
 from shaftprint.drift._words import finding_sentences
 from shaftprint.fingerprint._json_file import write_fingerprint
+from shaftprint.fingerprint._sources import structure_sources
 from shaftprint.report._comparison import render_comparison
 from shaftprint.report.comparison._cause_table import cause_table
 from shaftprint.report.comparison._differences import Difference, differences

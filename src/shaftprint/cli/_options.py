@@ -1,15 +1,12 @@
 """Options that several commands have: vessel, campaign, and what a recording does not say itself."""
 
-import hashlib
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import click
 
-from shaftprint.catalogue._own_structure import TypedName, own_file
 from shaftprint.catalogue._thesis import CLOSED_LOOPS, COMBINED_LOOP, PITCHED_LOOP
-from shaftprint.fingerprint._fingerprint import SourceFile
 from shaftprint.recording.writers._by_ending import WRITTEN_ENDINGS, WRITTEN_FORMATS
 
 OWN_FILE_HELP = "a shipped one, or my_ship.py:my_loop for one of your own file, which is Python and is run"
@@ -23,16 +20,6 @@ LIMITED_HELP = (
     "HYBRID-TORQUE-CLUTCH and so on: GAUGE-HYBRID, whose clutch slips"
 )
 NAMES = "a path, or the name of a shipped one such as"
-
-
-def structure_sources(names: Sequence[TypedName]) -> tuple[SourceFile, ...]:
-    """Return the user's files that structures were taken from, each once, with their hashes."""
-    files = (own_file(name) for name in names)
-    paths = {file[0].resolve() for file in files if file is not None}
-    return tuple(
-        SourceFile(role="structure", name=path.name, sha256=hashlib.sha256(path.read_bytes()).hexdigest())
-        for path in sorted(paths)
-    )
 
 
 class SettingsPath(click.types.StringParamType):

@@ -21,7 +21,6 @@ from shaftprint.cli._options import (
     hints_of,
     reading_options,
     starboard_option,
-    structure_sources,
     vessel_option,
 )
 from shaftprint.cli._report_options import ReportOptions, report_options
@@ -32,6 +31,7 @@ from shaftprint.cli.output._output_folder import force_option, output_folder
 from shaftprint.cli.output._progress import Steps, no_progress_option, progress
 from shaftprint.cli.output._tables import print_table
 from shaftprint.fingerprint._json_file import write_fingerprint
+from shaftprint.fingerprint._sources import structure_sources
 from shaftprint.survey._everything import with_everything
 from shaftprint.survey._fit_options import FitOptions
 from shaftprint.survey._limits import with_limits

@@ -9,13 +9,15 @@ import numpy as np
 
 from shaftprint.arrays import frozen_float
 from shaftprint.bench._fingerprint import identified_drive
-from shaftprint.catalogue._own_structure import TypedName
-from shaftprint.cli._drive_options import drive_fingerprint_at, is_drive_place, kept_one
+from shaftprint.bench._kept import kept_drive
+from shaftprint.catalogue._own_structure import TypedName, chosen_structures
+from shaftprint.cli._drive_options import drive_fingerprint_at, is_drive_place
 from shaftprint.cli._known_values import by_name, named_value
 from shaftprint.cli._options import LIMITED_HELP, OWN_FILE_HELP
 from shaftprint.cli._terminal import say
 from shaftprint.cli.output._file_to_write import expect_free, expect_no_input
 from shaftprint.cli.output._fingerprint_file import fingerprint_at, fingerprint_file
+from shaftprint.drive._drive import load_drive
 from shaftprint.errors import StructureError
 from shaftprint.escape import plain_name
 from shaftprint.export._model import ExportedModel, validation_remark
@@ -104,7 +106,11 @@ def _drive_to_export(
 ) -> ExportedModel:
     """Return the model of a drive's fingerprint."""
     kept = drive_fingerprint_at(place)
-    one = kept_one(kept, drive_file, structure)
+    one = kept_drive(
+        kept,
+        None if drive_file is None else load_drive(drive_file),
+        own=None if structure is None else chosen_structures([structure])[0],
+    )
     model = identified_drive(kept, one)
     unknown = [name for name in given if name not in model.structure.names]
     if unknown:
