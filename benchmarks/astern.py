@@ -24,11 +24,11 @@ from benchmarks.limits import line_of
 from benchmarks.monte_carlo_recordings import PRIOR_OF_G, Ship, drawn_gauge
 from shaftprint.campaign import load_campaign
 from shaftprint.catalogue import structure
-from shaftprint.cli._demo_truth import fingerprint_truth
 from shaftprint.errors import ShaftprintError
 from shaftprint.fingerprint import physical_quantities
 from shaftprint.fingerprint._findings import findings_of
 from shaftprint.identify import Budget
+from shaftprint.rehearsal._true_fingerprint import fingerprint_truth
 from shaftprint.signals import Signals
 from shaftprint.survey import Survey, run
 from shaftprint.tug import Truth, sail

@@ -22,9 +22,9 @@ from benchmarks.monte_carlo_recordings import Ship
 from benchmarks.pitch import blade_lateness_s, ship
 from shaftprint.campaign import load_campaign
 from shaftprint.catalogue import structure
-from shaftprint.cli._demo_truth import fingerprint_truth
 from shaftprint.errors import IdentificationError, ShaftprintError
 from shaftprint.models import Structure
+from shaftprint.rehearsal._true_fingerprint import fingerprint_truth
 from shaftprint.signals import Signals
 from shaftprint.survey import run
 from shaftprint.tug import Truth, sail

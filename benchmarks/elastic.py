@@ -28,10 +28,10 @@ from benchmarks.monte_carlo_recordings import Ship, drawn_gauge
 from benchmarks.monte_carlo_tables import write_between_marks
 from shaftprint.campaign import Campaign, Sine, load_campaign
 from shaftprint.catalogue import structure
-from shaftprint.cli._demo_truth import fingerprint_truth
 from shaftprint.errors import ShaftprintError
 from shaftprint.fingerprint import Fingerprint
 from shaftprint.identify.likelihood._known import PRIOR_OF_G
+from shaftprint.rehearsal._true_fingerprint import fingerprint_truth
 from shaftprint.signals import Signals
 from shaftprint.survey import Survey, run
 from shaftprint.survey._survey import fingerprint_of

@@ -25,8 +25,8 @@ from benchmarks.drawn_lines import command, counted, numbers_of, rejected_in, ro
 from benchmarks.monte_carlo_recordings import Ship, drawn_gauge
 from shaftprint.campaign import load_campaign
 from shaftprint.catalogue import structure
-from shaftprint.cli._demo_truth import fingerprint_truth
 from shaftprint.errors import ShaftprintError
+from shaftprint.rehearsal._true_fingerprint import fingerprint_truth
 from shaftprint.signals import Signals
 from shaftprint.survey import run
 from shaftprint.tug import Truth, like_stan_tug_1205, sail

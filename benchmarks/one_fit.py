@@ -18,9 +18,9 @@ from benchmarks.limits import VESSEL, line_of
 from shaftprint.arrays import FloatArray
 from shaftprint.campaign import load_campaign
 from shaftprint.catalogue import structure
-from shaftprint.cli._demo_truth import fingerprint_truth
 from shaftprint.errors import ShaftprintError
 from shaftprint.fingerprint import Quantity
+from shaftprint.rehearsal._true_fingerprint import fingerprint_truth
 from shaftprint.signals import Signals
 from shaftprint.survey import run
 from shaftprint.survey._everything import with_everything

@@ -10,7 +10,6 @@ import click
 import numpy as np
 
 from shaftprint.cli._demo_summary import print_summary
-from shaftprint.cli._demo_truth import fingerprint_truth
 from shaftprint.cli._fingerprint_tables import print_fingerprint
 from shaftprint.cli._fleet_answers import print_answers, print_commands
 from shaftprint.cli._fleet_demo import all_tested, fleet_of_the_demo, tests_of_the_demo
@@ -20,6 +19,7 @@ from shaftprint.cli._terminal import echo, say
 from shaftprint.cli.output._output_folder import force_option, output_folder
 from shaftprint.cli.output._progress import Steps, no_progress_option, progress
 from shaftprint.cli.output._tables import print_table
+from shaftprint.rehearsal._true_fingerprint import fingerprint_truth
 from shaftprint.spectra._frequency_response import FrequencyResponse
 from shaftprint.store._add import add
 from shaftprint.store._event import record_event

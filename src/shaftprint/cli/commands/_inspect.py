@@ -11,7 +11,6 @@ from shaftprint.cli._found_tests import print_found_tests
 from shaftprint.cli._inspect_headline import headline, lines_of, lost_parts
 from shaftprint.cli._limit_uses import print_limit_uses
 from shaftprint.cli._options import NAMES, hints_of, reading_options
-from shaftprint.cli._sensor_map import Seen, proposed_sensors
 from shaftprint.cli._signal_tables import print_lines, print_signals
 from shaftprint.cli._terminal import answer, echo, print_findings, say
 from shaftprint.cli._vessel_file import print_disagreements
@@ -37,6 +36,7 @@ from shaftprint.signals._signals import Signals
 from shaftprint.signals.excitation._found_test import FoundTest
 from shaftprint.spectra._spectra import Spectra, estimate_spectra
 from shaftprint.survey._legs import LegMeasurement, legs_of
+from shaftprint.survey._proposed_sensors import Seen, proposed_sensors
 from shaftprint.tables._legs import leg_table
 from shaftprint.tables._recording import clock_map_table
 from shaftprint.vessel._vessel import Vessel, load_vessel

@@ -6,13 +6,16 @@ from typing import Literal
 
 import click
 
+from shaftprint.bench._recorded_drive import recorded_drive
 from shaftprint.card._write import write_vessel
 from shaftprint.cli._card_options import card_of, card_options
 from shaftprint.cli._options import NAMES
 from shaftprint.cli._recorded_campaign import write_recorded_campaign
-from shaftprint.cli._recorded_drive import write_recorded_drive
-from shaftprint.cli._terminal import answer
+from shaftprint.cli._terminal import answer, echo
 from shaftprint.cli._vessel_file import print_disagreements
+from shaftprint.cli.output._file_to_write import expect_free
+from shaftprint.errors import SettingsError
+from shaftprint.files import write_bytes
 from shaftprint.settings import write_template
 
 TESTS: Mapping[str, str] = {
@@ -75,7 +78,12 @@ def command(
     if recorded is not None and kind == "drive":
         if vessel is not None or test is not None or card is not None:
             raise click.UsageError("--from makes a drive file of a recording; write `shaftprint new drive` alone.")
-        write_recorded_drive(recorded, path)
+        expect_free(path, force=False)
+        drive = recorded_drive(recorded)
+        write_bytes(path, drive.text.encode(), noun="drive file", error=SettingsError)
+        answer(f"{path}: {len(drive.channels)} channels of {recorded}; {drive.moved} as the input, by a guess.")
+        if drive.left_out:
+            echo(f"On other clocks, and not in the file: {', '.join(drive.left_out)}.")
         return
     if recorded is not None and vessel is not None:
         if kind != "campaign" or test is not None or card is not None:

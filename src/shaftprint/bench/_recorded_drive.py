@@ -1,15 +1,13 @@
 """The drive file that a recording begins: its channels with their units, and a first structure to fit."""
 
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from shaftprint.arrays import FloatArray
-from shaftprint.cli._terminal import answer, echo
-from shaftprint.cli.output._file_to_write import expect_free
-from shaftprint.errors import RecordingError, SettingsError
+from shaftprint.errors import RecordingError
 from shaftprint.escape import printable, toml_string
-from shaftprint.files import write_bytes
 from shaftprint.recording._channel import Channel
 from shaftprint.recording._read import read_recording
 
@@ -23,8 +21,22 @@ _MOST_SAMPLES = 200_000
 _SPAN = 100.0
 
 
-def write_recorded_drive(recording: Path, file: Path) -> None:
-    """Write a drive file with the channels of a recording; it can be loaded as it stands.
+@dataclass(frozen=True, kw_only=True, slots=True)
+class RecordedDrive:
+    """A drive file as a recording begins it."""
+
+    text: str
+    """The file, which can be loaded as it stands."""
+    channels: tuple[str, ...]
+    """Channels that are in it."""
+    moved: str
+    """The one that is taken for the input, by a guess."""
+    left_out: tuple[str, ...]
+    """Channels on other clocks."""
+
+
+def recorded_drive(recording: Path) -> RecordedDrive:
+    """Return a drive file with the channels of a recording.
 
     Which channel is the input, its name or its steps tell: a guess, as the lag from it to each other channel is.
 
@@ -33,7 +45,6 @@ def write_recorded_drive(recording: Path, file: Path) -> None:
     RecordingError
         If the recording has fewer than two channels on one clock.
     """
-    expect_free(file, force=False)
     with read_recording(recording) as opened:
         channels = list(opened.channels.values())
         first = channels[0]
@@ -47,12 +58,12 @@ def write_recorded_drive(recording: Path, file: Path) -> None:
         values = {one.name: one.values(0, min(one.count, _MOST_SAMPLES)) for one in alike}
         moved = next((one for one in alike if _is_named_as_input(one.name)), None)
         moved = moved or max(alike, key=lambda one: _still(values[one.name]))
-        text = _text(recording, moved, [one for one in alike if one is not moved], values)
-        others = [one.name for one in channels if one not in alike]
-    write_bytes(file, text.encode(), noun="drive file", error=SettingsError)
-    answer(f"{file}: {len(alike)} channels of {recording}; {moved.name} as the input, by a guess.")
-    if others:
-        echo(f"On other clocks, and not in the file: {', '.join(others)}.")
+        return RecordedDrive(
+            text=_text(recording, moved, [one for one in alike if one is not moved], values),
+            channels=tuple(one.name for one in alike),
+            moved=moved.name,
+            left_out=tuple(one.name for one in channels if one not in alike),
+        )
 
 
 def _is_named_as_input(name: str) -> bool:
