@@ -1,11 +1,13 @@
-"""``shaftprint export``: the identified model in the user's tool, one file a format."""
+"""``shaftprint export``: the identified model in the user's tool."""
 
+import importlib
 from collections.abc import Mapping
 from typing import ClassVar
 
 import click
 
 from shaftprint.cli._command_group import LazyGroup
+from shaftprint.cli._speech import speaking
 
 # The one-line help of every format; asking its file for it would import what only that format needs.
 FORMATS = {
@@ -24,6 +26,13 @@ class FormatGroup(LazyGroup):
 
     sections: ClassVar[Mapping[str, Mapping[str, str]]] = {"Formats": FORMATS}
     folder = "shaftprint.cli.commands.formats"
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        """Return the command of a format: a row of the table, or a file of its own where it has options of its own."""
+        if cmd_name not in self.helps or cmd_name in ("fmu", "matlab"):
+            return super().get_command(ctx, cmd_name)
+        table = importlib.import_module(f"{self.folder}._table")
+        return speaking(table.format_command(cmd_name))
 
 
 @click.group("export", cls=FormatGroup, subcommand_metavar="FORMAT [ARGS]...")

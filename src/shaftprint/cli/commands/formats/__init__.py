@@ -1,1 +1,1 @@
-"""The formats of ``shaftprint export``, one file each."""
+"""The formats of ``shaftprint export``: a table, and a file for each that has options of its own."""
