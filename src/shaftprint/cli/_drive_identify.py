@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 
 from shaftprint.bench._fingerprint import drive_fingerprint
-from shaftprint.bench._fit import DriveFit
 from shaftprint.bench._identify import identify_files
 from shaftprint.bench._named import named_drives
 from shaftprint.catalogue._own_structure import TypedName
@@ -17,8 +16,7 @@ from shaftprint.cli._results import print_paths
 from shaftprint.cli._terminal import print_findings, say
 from shaftprint.cli.output._fingerprint_file import FINGERPRINT
 from shaftprint.cli.output._json import give
-from shaftprint.cli.output._output_folder import output_folder
-from shaftprint.cli.output._progress import progress
+from shaftprint.cli.output._results_options import Results
 from shaftprint.cli.output._tables import print_tables
 from shaftprint.drive._drive import load_drive
 from shaftprint.fingerprint._drive_fingerprint import DriveFingerprint, write_drive_fingerprint
@@ -34,19 +32,17 @@ def identify_on_the_bench(
     drive_file: Path,
     names: Sequence[TypedName],
     options: FitOptions,
-    output: Path,
+    results: Results,
     *,
     hints: Mapping[str, Any],
     pictures: bool,
-    force: bool,
-    no_progress: bool,
 ) -> None:
     """Identify a drive from its records, print what was found, and write fingerprint and page into a folder."""
     expect_not_given("vessel", "campaign", "legs", "tested_at", "conditions", "previous", "pdf")
     chosen = names if is_given("names") else ()
     (one,) = named_drives(load_drive(drive_file), chosen, options)
-    with output_folder(output, of="identify", force=force) as folder:
-        with progress(hidden=no_progress) as steps:
+    with results.folder("identify") as folder:
+        with results.progress() as steps:
             starts = options.starts if is_given("starts") else None
             rng = np.random.default_rng(options.seed)
             fit = identify_files(one, recordings, rng=rng, starts=starts, hints=hints, progress=steps)
@@ -57,15 +53,11 @@ def identify_on_the_bench(
         )
         fingerprint = drive_fingerprint(fit, sources=sources, now=datetime.now(UTC))
         print_drive(fingerprint)
-        _write(folder, fit, fingerprint, pictures=pictures, no_progress=no_progress)
-    print_paths(output)
-
-
-def _write(folder: Path, fit: DriveFit, fingerprint: DriveFingerprint, *, pictures: bool, no_progress: bool) -> None:
-    write_drive_fingerprint(fingerprint, folder / FINGERPRINT)
-    with progress(hidden=no_progress) as steps:
-        steps.begin("Writing the report", total=1.0)
-        render_drive(folder, fit, fingerprint, pictures=pictures, progress=steps.reach)
+        write_drive_fingerprint(fingerprint, folder / FINGERPRINT)
+        with results.progress() as steps:
+            steps.begin("Writing the report", total=1.0)
+            render_drive(folder, fit, fingerprint, pictures=pictures, progress=steps.reach)
+    print_paths(results.output)
 
 
 def print_drive(fingerprint: DriveFingerprint) -> None:

@@ -10,12 +10,11 @@ import numpy as np
 from shaftprint.catalogue._own_structure import TypedName
 from shaftprint.cli._fingerprint_tables import print_fingerprint
 from shaftprint.cli._report_options import ReportOptions
-from shaftprint.cli._results import write_results
+from shaftprint.cli._results import Report
 from shaftprint.cli._terminal import answer, echo, say
 from shaftprint.cli.output._fingerprint_file import FINGERPRINT, REPORT
 from shaftprint.cli.output._json import give
-from shaftprint.cli.output._output_folder import output_folder
-from shaftprint.cli.output._progress import progress
+from shaftprint.cli.output._results_options import Results
 from shaftprint.cli.output._tables import print_tables
 from shaftprint.drift._differ import differ
 from shaftprint.drift._words import finding_sentences
@@ -42,14 +41,11 @@ def identify_both_lines(
     campaign: str,
     names: Sequence[TypedName],
     options: FitOptions,
-    output: Path,
+    results: Results,
     *,
-    hints: Mapping[str, Any],
     about: ReportOptions,
-    pictures: bool,
-    no_report: bool,
-    force: bool,
-    no_progress: bool,
+    report: Report | None,
+    hints: Mapping[str, Any],
 ) -> None:
     """Identify both lines, print and write the results of each side and the comparison of both."""
     trials = load_trials_of_both(*vessels, campaign, about.conditions)
@@ -57,8 +53,8 @@ def identify_both_lines(
     structures = options.structures(chosen, trials[0].vessel)
     of_user = structure_sources(names)
     port, starboard = (replace(trial, sources=(*trial.sources, *of_user)) for trial in trials)
-    with output_folder(output, of="identify", force=force) as folder:
-        with progress(hidden=no_progress) as steps:
+    with results.folder("identify") as folder:
+        with results.progress() as steps:
             both = run_both(
                 recording,
                 (port, starboard),
@@ -73,29 +69,20 @@ def identify_both_lines(
         _print(both)
         for side, survey in both.sides.items():
             (folder / side).mkdir()
-            if no_report:
+            if report is None:
                 write_fingerprint(survey.fingerprint, folder / side / FINGERPRINT)
                 continue
-            with progress(hidden=no_progress) as steps:
+            with results.progress() as steps:
                 survey = judged(survey, rng=np.random.default_rng(options.seed), progress=steps)
-                write_results(
-                    folder / side,
-                    recording,
-                    survey,
-                    steps=steps,
-                    pictures=pictures,
-                    previous=about.previous,
-                    pdf=about.pdf,
-                    hints=hints,
-                )
-        if not no_report:
+                report.write(folder / side, recording, survey, hints=hints, steps=steps)
+        if report is not None:
             known = {structure.name: structure for structure in structures}
             fingerprints = {side: one.fingerprint for side, one in both.sides.items()}
             render_comparison(folder / COMPARISON, fingerprints, structures=known, remarks=wash_sentences(both.washes))
     for side in both.sides:
-        echo(f"Fingerprint of {side}: {output / side / FINGERPRINT}")
-    if not no_report:
-        echo(f"Comparison: {output / COMPARISON / REPORT}")
+        echo(f"Fingerprint of {side}: {results.output / side / FINGERPRINT}")
+    if report is not None:
+        echo(f"Comparison: {results.output / COMPARISON / REPORT}")
 
 
 def _print(both: SurveyOfBoth) -> None:

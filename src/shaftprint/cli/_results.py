@@ -1,10 +1,12 @@
 """The results of ``identify`` and ``demo``: files, where they are, and which structure the data want."""
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
+from shaftprint.cli._report_options import ReportOptions
 from shaftprint.cli._terminal import echo, print_findings
 from shaftprint.cli.output._fingerprint_file import FINGERPRINT, REPORT
 from shaftprint.cli.output._json import give
@@ -75,6 +77,29 @@ def write_results(
             pictures=pictures,
             pdf=pdf,
             progress=steps.reach,
+        )
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Report:
+    """What the report of ``identify`` is made with."""
+
+    about: ReportOptions
+    """What the user says of the test."""
+    pictures: bool
+    """Whether the charts are written as pictures, too."""
+
+    def write(self, folder: Path, recording: Path, survey: Survey, *, hints: Mapping[str, Any], steps: Steps) -> None:
+        """Write the results of a survey into a folder."""
+        write_results(
+            folder,
+            recording,
+            survey,
+            steps=steps,
+            pictures=self.pictures,
+            previous=self.about.previous,
+            pdf=self.about.pdf,
+            hints=hints,
         )
 
 

@@ -1,8 +1,6 @@
 """``shaftprint identify``: from a recording to a fingerprint."""
 
-from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
 
 import click
 import numpy as np
@@ -24,11 +22,11 @@ from shaftprint.cli._options import (
     vessel_option,
 )
 from shaftprint.cli._report_options import ReportOptions, report_options
-from shaftprint.cli._results import print_comparison, print_paths, write_results
+from shaftprint.cli._results import Report, print_comparison, print_paths
 from shaftprint.cli._terminal import print_findings, say
 from shaftprint.cli.output._fingerprint_file import FINGERPRINT
-from shaftprint.cli.output._output_folder import force_option, output_folder
-from shaftprint.cli.output._progress import Steps, no_progress_option, progress
+from shaftprint.cli.output._progress import Steps
+from shaftprint.cli.output._results_options import Results, results_options
 from shaftprint.cli.output._tables import print_table
 from shaftprint.fingerprint._json_file import write_fingerprint
 from shaftprint.fingerprint._sources import structure_sources
@@ -71,11 +69,9 @@ from shaftprint.tables._structures import fits_table
     help="Write the fingerprint alone: without page, validation and comparison of structures, in a few seconds.",
 )
 @fit_options
-@click.option("-o", "--output", required=True, type=click.Path(path_type=Path), help="Folder for the results.")
+@results_options("Folder for the results.")
 @report_options
 @reading_options
-@force_option
-@no_progress_option
 def command(
     recordings: tuple[Path, ...],
     drive_file: Path | None,
@@ -88,10 +84,8 @@ def command(
     more: str | None,
     no_report: bool,
     options: FitOptions,
-    output: Path,
+    results: Results,
     about: ReportOptions,
-    force: bool,
-    no_progress: bool,
     **said: object,
 ) -> None:
     """Identify the fingerprint from a recording.
@@ -101,52 +95,34 @@ def command(
     one drive are fitted together. With --starboard both lines of a ship are identified from one
     recording and compared, each with results in a folder of its own.
     """
-    if more is not None and (drive_file is not None or options.mode != "shaftprint"):
+    of_ship = drive_file is None
+    if more is not None and (not of_ship or options.mode != "shaftprint"):
         raise click.UsageError(f"--with {more} is for ships, and for signals of --mode shaftprint: leave it out.")
-    if starboard is not None and drive_file is not None:
+    if starboard is not None and not of_ship:
         raise click.UsageError("--starboard is for ships: leave out --drive.")
-    if no_report and drive_file is not None:
+    if no_report and not of_ship:
         raise click.UsageError("--no-report is for ships, and a drive has a page that is made at once: leave it out.")
     if no_report and (figures or about.pdf):
         raise click.UsageError("--no-report goes with neither --figures nor --pdf: leave one of them out.")
+    if starboard is not None and (more is not None or legs or options.mode != "shaftprint"):
+        raise click.UsageError("--starboard goes with neither --with nor --leg, and with signals of shaftprint.")
     hints = hints_of(**said)
     if drive_file is not None:
-        identify_on_the_bench(
-            recordings,
-            drive_file,
-            names,
-            options,
-            output,
-            hints=hints,
-            pictures=figures,
-            force=force,
-            no_progress=no_progress,
-        )
+        identify_on_the_bench(recordings, drive_file, names, options, results, hints=hints, pictures=figures)
         return
+    report = None if no_report else Report(about=about, pictures=figures)
     recording = only_recording(recordings)
     if starboard is not None:
-        if more is not None or legs or options.mode != "shaftprint":
-            raise click.UsageError("--starboard goes with neither --with nor --leg, and with signals of shaftprint.")
+        vessels = (vessel, starboard)
         identify_both_lines(
-            recording,
-            (vessel, starboard),
-            campaign,
-            names,
-            options,
-            output,
-            hints=hints,
-            about=about,
-            pictures=figures,
-            no_report=no_report,
-            force=force,
-            no_progress=no_progress,
+            recording, vessels, campaign, names, options, results, about=about, report=report, hints=hints
         )
         return
     # before the folder is made: a mistake in a settings file leaves none
     trial, rng = load_trial(vessel, campaign), np.random.default_rng(options.seed)
     structures = options.structures(names or (default_structure(trial.vessel, trial.campaign),), trial.vessel)
-    with output_folder(output, of="identify", force=force) as folder:
-        with progress(hidden=no_progress) as steps:
+    with results.folder("identify") as folder:
+        with results.progress() as steps:
             survey = run(
                 recording,
                 trial.vessel,
@@ -165,44 +141,18 @@ def command(
             )
         # the answer first: what follows takes as long again
         print_fingerprint(survey.fingerprint)
-        with progress(hidden=no_progress) as steps:
+        with results.progress() as steps:
             survey = _with_more(survey, more, rng=rng, steps=steps)
         _print_line(survey)
-        if no_report:
+        if report is None:
             write_fingerprint(survey.fingerprint, folder / FINGERPRINT)
         else:
-            _judge_and_report(
-                folder, recording, survey, rng=rng, pictures=figures, about=about, hints=hints, hidden=no_progress
-            )
-    print_paths(output, report=not no_report)
-
-
-def _judge_and_report(
-    folder: Path,
-    recording: Path,
-    survey: Survey,
-    *,
-    rng: np.random.Generator,
-    pictures: bool,
-    about: ReportOptions,
-    hints: Mapping[str, Any],
-    hidden: bool,
-) -> None:
-    """Validate the model, compare structures, print what came out, and write all of it."""
-    with progress(hidden=hidden) as steps:
-        survey = judged(survey, rng=rng, progress=steps)
-    _print_judgement(survey)
-    with progress(hidden=hidden) as steps:
-        write_results(
-            folder,
-            recording,
-            survey,
-            steps=steps,
-            pictures=pictures,
-            previous=about.previous,
-            pdf=about.pdf,
-            hints=hints,
-        )
+            with results.progress() as steps:
+                survey = judged(survey, rng=rng, progress=steps)
+            _print_judgement(survey)
+            with results.progress() as steps:
+                report.write(folder, recording, survey, hints=hints, steps=steps)
+    print_paths(results.output, report=report is not None)
 
 
 def _with_more(survey: Survey, more: str | None, *, rng: np.random.Generator, steps: Steps) -> Survey:
