@@ -37,9 +37,7 @@ def outcome(seed: int) -> dict[str, Any]:
     begin = time.process_time()
     found = identify_limits(signals, CAMPAIGN, VESSEL)
     true: dict[str, Any] = {**truth.normalised, **ship.levels, "share": 1.0, "T_aw": ship.tug.anti_windup_s}
-    numbers = {
-        one.name: {"value": one.value, "std": one.std, "interval": (one.lower, one.upper)} for one in found.numbers
-    }
+    numbers = {one.name: {"value": one.value, "std": one.std, "interval": one.interval_95} for one in found.numbers}
     for one in found.governor:
         if not np.isfinite(one.std):
             continue

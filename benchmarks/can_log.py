@@ -278,7 +278,7 @@ def outcome(case: Case, seed: int) -> dict[str, Any]:
             error=one.value - true[one.name],
             std=one.std,
             truth=true[one.name],
-            is_held=one.interval_95[0] <= true[one.name] <= one.interval_95[1],
+            is_held=one.limits_95[0] <= true[one.name] <= one.limits_95[1],
         )
         for one in found.parameters
         if one.name in true

@@ -13,7 +13,8 @@ from benchmarks.kept_outcomes import kept
 from benchmarks.monte_carlo_recordings import Ship
 from benchmarks.monte_carlo_tables import write_between_marks
 from shaftprint.distributions import NORMAL_95
-from shaftprint.fingerprint import Fingerprint, Quantity
+from shaftprint.fingerprint import Fingerprint
+from shaftprint.identify import Estimate
 from shaftprint.models import Structure
 
 REJECTED_P = 0.01
@@ -24,7 +25,7 @@ HEADER = (
 )
 
 
-def interval_of(one: Quantity) -> tuple[float, float]:
+def interval_of(one: Estimate) -> tuple[float, float]:
     """Return the interval that is printed for a number."""
     return one.interval_95 or (one.value - NORMAL_95 * one.std, one.value + NORMAL_95 * one.std)
 

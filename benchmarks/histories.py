@@ -27,7 +27,8 @@ from benchmarks.monte_carlo_tables import write_between_marks
 from benchmarks.sailed_histories import FIRST, QUARTER, SOUND, TESTS
 from shaftprint.drift import Event, history_of, watch
 from shaftprint.drift._drift_finding import WatchFinding
-from shaftprint.fingerprint import Fingerprint, Quantity, read_fingerprint
+from shaftprint.fingerprint import Fingerprint, read_fingerprint
+from shaftprint.identify import Estimate
 
 DOCUMENT = ROOT / "docs" / "watching.md"
 BEGIN, END = ("<!-- table of benchmarks/histories.py: begin -->", "<!-- table of benchmarks/histories.py: end -->")
@@ -118,8 +119,8 @@ def tested(drawn: Fingerprint, life: Life, test: int) -> Fingerprint:
     )
 
 
-def _with(numbers: Sequence[Quantity], factors: dict[str, float]) -> tuple[Quantity, ...]:
-    return tuple(one.model_copy(update={"value": one.value * factors.get(one.name, 1.0)}) for one in numbers)
+def _with(numbers: Sequence[Estimate], factors: dict[str, float]) -> tuple[Estimate, ...]:
+    return tuple(replace(one, value=one.value * factors.get(one.name, 1.0)) for one in numbers)
 
 
 def found_at(kept: Sequence[Fingerprint], life: Life, ship: int) -> tuple[int | None, WatchFinding | None]:

@@ -27,7 +27,7 @@ from benchmarks.kept_outcomes import kept
 from benchmarks.nonlinear_fit import with_wide_gauge
 from benchmarks.validation import MOTORING_NM, STRONGER
 from shaftprint.campaign import Campaign, load_campaign, setpoint
-from shaftprint.limits import identify_limits
+from shaftprint.limits import Kind, identify_limits
 from shaftprint.recording import read_recording
 from shaftprint.signals import prepare_signals
 from shaftprint.tug import Noise, Truth, Tug, sail, simulate_signals
@@ -223,12 +223,12 @@ def outcome(seed: int) -> dict[str, Any]:
         "acts_s": min(one.acts_s, CAMPAIGN.duration_s),
         "named": one.kind in named,
         "also": sorted(named - {one.kind}),
-        "also_trusted": sorted({n.kind.name.lower() for n in found.numbers if n.trusted} - {one.kind}),
+        "also_trusted": sorted({Kind(n.limit).name.lower() for n in found.numbers if n.trusted} - {one.kind}),
         "gains": {kind.name.lower(): gain for kind, gain in found.gains.items()},
         "at_bounds": [estimate.name for estimate in found.governor if estimate.at_bound],
         "numbers": {
             n.name: {
-                "value": n.value, "std": n.std, "interval": (n.lower, n.upper),
+                "value": n.value, "std": n.std, "interval": n.interval_95,
                 "true": true.get(n.name), "doubt": n.doubt,
             }
             for n in found.numbers

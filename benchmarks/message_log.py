@@ -84,7 +84,7 @@ def sailed(vessel: Vessel, seed: int, *, tug: Tug, ending: str) -> list[Estimate
             error=one.value - truth[one.name],
             std=one.std,
             truth=truth[one.name],
-            is_held=one.interval_95[0] <= truth[one.name] <= one.interval_95[1],
+            is_held=one.limits_95[0] <= truth[one.name] <= one.limits_95[1],
         )
         for one in found.parameters
         if one.name in truth

@@ -27,8 +27,8 @@ from benchmarks.monte_carlo_tables import table, write_between_marks
 from shaftprint.catalogue import structure
 from shaftprint.distributions import NORMAL_95
 from shaftprint.errors import ShaftprintError
-from shaftprint.fingerprint import Fingerprint, Quantity
-from shaftprint.identify import Settings
+from shaftprint.fingerprint import Fingerprint
+from shaftprint.identify import Estimate, Settings
 from shaftprint.identify.likelihood._known import PRIOR_OF_G
 from shaftprint.models import margins
 from shaftprint.survey import Trial, fit, load_trial, measure, priors_of
@@ -249,11 +249,11 @@ def identified(path: Path, trial: Trial, seed: int, name: str = NAME) -> Fingerp
     return fingerprint_of(fits[0], measurement, trial)
 
 
-def _numbers(found: Fingerprint) -> Iterator[Quantity]:
+def _numbers(found: Fingerprint) -> Iterator[Estimate]:
     yield from (*found.parameters, *found.combinations, *found.physical, *found.margins, *found.calibration)
 
 
-def _row(quantity: Quantity, truth: float, *, trusted: bool) -> Row:
+def _row(quantity: Estimate, truth: float, *, trusted: bool) -> Row:
     if quantity.interval_95 is None:
         lower, upper = (quantity.value + side * NORMAL_95 * quantity.std for side in (-1.0, 1.0))
     else:

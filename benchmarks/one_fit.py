@@ -19,7 +19,7 @@ from shaftprint.arrays import FloatArray
 from shaftprint.campaign import load_campaign
 from shaftprint.catalogue import structure
 from shaftprint.errors import ShaftprintError
-from shaftprint.fingerprint import Quantity
+from shaftprint.identify import Estimate
 from shaftprint.rehearsal._true_fingerprint import fingerprint_truth
 from shaftprint.signals import Signals
 from shaftprint.survey import run
@@ -71,7 +71,7 @@ def outcome(seed: int) -> dict[str, object]:
     }
 
 
-def _covers(found: Quantity, true: float) -> bool:
+def _covers(found: Estimate, true: float) -> bool:
     """Return whether the stated 95 % interval holds the truth."""
     # an open end is no number, and excludes nothing
     low, high = found.limits_95

@@ -29,7 +29,8 @@ from benchmarks.sailed_fleet import VESSEL, tested
 from shaftprint.drift import Sister, judge_sisters
 from shaftprint.drift._causes import CAUSES, Cause
 from shaftprint.drift._dated import DatedTest
-from shaftprint.fingerprint import Fingerprint, Quantity, read_fingerprint, write_fingerprint
+from shaftprint.fingerprint import Fingerprint, read_fingerprint, write_fingerprint
+from shaftprint.identify import Estimate
 from shaftprint.tug import SimulatedFleet, Tolerances
 from shaftprint.tug._simulated_fleet import simulated_fleet
 from shaftprint.tug._simulated_ship import ShipWork, with_works
@@ -98,9 +99,9 @@ HEADER = (
 def built(fingerprint: Fingerprint, factors: dict[str, float], added_s: dict[str, float]) -> Fingerprint:
     """Return a fingerprint whose numbers are those of a ship that was built otherwise."""
 
-    def moved(numbers: Sequence[Quantity]) -> tuple[Quantity, ...]:
+    def moved(numbers: Sequence[Estimate]) -> tuple[Estimate, ...]:
         values = {one.name: one.value * factors.get(one.name, 1.0) + added_s.get(one.name, 0.0) for one in numbers}
-        return tuple(one.model_copy(update={"value": values[one.name]}) for one in numbers)
+        return tuple(replace(one, value=values[one.name]) for one in numbers)
 
     return fingerprint.model_copy(
         update={"parameters": moved(fingerprint.parameters), "physical": moved(fingerprint.physical)}

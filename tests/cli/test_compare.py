@@ -13,7 +13,7 @@ from shaftprint.fingerprint import read_fingerprint, write_fingerprint
 def later(demo, tmp_path):
     """The same line with half as much inertia again behind the gauge."""
     first = read_fingerprint(demo[0] / "fingerprint.json")
-    physical = tuple(q.model_copy(update={"value": 1.5 * q.value}) if q.name == "I_dn" else q for q in first.physical)
+    physical = tuple(replace(q, value=1.5 * q.value) if q.name == "I_dn" else q for q in first.physical)
     place = tmp_path / "later.json"
     write_fingerprint(first.model_copy(update={"physical": physical}), place)
     return place
@@ -108,7 +108,7 @@ def test_folders_of_one_name_are_told_apart_by_their_path(run, demo, later, tmp_
 def test_more_load_from_day_to_day_hides_more(run, demo, tmp_path):
     """A torque coefficient 8 % up is more than chance; not where loads of one ship scatter by 10 %."""
     first = read_fingerprint(demo[0] / "fingerprint.json")
-    physical = tuple(q.model_copy(update={"value": 1.08 * q.value}) if q.name == "K_Q" else q for q in first.physical)
+    physical = tuple(replace(q, value=1.08 * q.value) if q.name == "K_Q" else q for q in first.physical)
     write_fingerprint(first.model_copy(update={"physical": physical}), tmp_path / "fouled.json")
     found = run("compare", demo[0], tmp_path / "fouled.json").output
     assert "changed? Yes: more propeller torque at the same speed: fouled, damaged, or more draught, by 8.0 " in found

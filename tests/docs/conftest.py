@@ -130,7 +130,7 @@ def write_mdf(path, recording):
 def write_last_years(folder, voyage):
     """Write the fingerprints of four springs; in the last there is half as much inertia again behind the gauge."""
     first = read_fingerprint(voyage / "fingerprint.json")
-    more = tuple(q.model_copy(update={"value": 1.5 * q.value}) if q.name == "I_dn" else q for q in first.physical)
+    more = tuple(replace(q, value=1.5 * q.value) if q.name == "I_dn" else q for q in first.physical)
     for year in (2023, 2024, 2025, 2026):
         sources = tuple(
             one.model_copy(update={"sha256": f"{year:064x}"}) if one.role == "recording" else one

@@ -1,5 +1,7 @@
 """The valley of delay, gains and actuator made straight: estimates by SciPy, which share no code with it."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.optimize import least_squares
@@ -65,7 +67,7 @@ def fingerprint(base, place, apart, covariance, speeds):
     factors = {name: np.exp(change) for name, change in shift.items() if name not in TIMES}
     one = made(place, base, **factors)
     parameters = tuple(
-        number.model_copy(update={"value": TRUTH[number.name] + shift[number.name]}) if number.name in TIMES else number
+        replace(number, value=TRUTH[number.name] + shift[number.name]) if number.name in TIMES else number
         for number in one.parameters
     )
     names = ("I_up", *NAMES)

@@ -22,10 +22,8 @@ QUARTER = timedelta(days=91.3125)
 
 def made(place, base, **factors):
     """Return a test of a quarter: a fingerprint with some numbers multiplied, of a recording of its own."""
-    physical = tuple(one.model_copy(update={"value": one.value * factors.get(one.name, 1.0)}) for one in base.physical)
-    parameters = tuple(
-        one.model_copy(update={"value": one.value * factors.get(one.name, 1.0)}) for one in base.parameters
-    )
+    physical = tuple(replace(one, value=one.value * factors.get(one.name, 1.0)) for one in base.physical)
+    parameters = tuple(replace(one, value=one.value * factors.get(one.name, 1.0)) for one in base.parameters)
     sources = tuple(
         one.model_copy(update={"sha256": f"{place:064x}"}) if one.role == "recording" else one for one in base.sources
     )

@@ -11,12 +11,13 @@ import pytest
 from shaftprint.catalogue import structure
 from shaftprint.errors import ExportError, FingerprintError
 from shaftprint.export import to_control, to_xarray, write_csv, write_json
-from shaftprint.fingerprint import Fingerprint, Quantity
+from shaftprint.fingerprint import Fingerprint
+from shaftprint.identify import Estimate
 
 OMEGA = np.array([0.2, 1.0, 5.0])
-K_P = Quantity(name="K_p", unit="-", value=4.6, std=0.4, interval_95=(3.9, 5.5), meaning="gain, of the governor")
-K_I = Quantity(name="K_i", unit="1/s", value=3.8, std=float("inf"))
-T_D = Quantity(
+K_P = Estimate(name="K_p", unit="-", value=4.6, std=0.4, interval_95=(3.9, 5.5), meaning="gain, of the governor")
+K_I = Estimate(name="K_i", unit="1/s", value=3.8, std=float("inf"))
+T_D = Estimate(
     name="t_d", unit="s", value=0.1, std=0.02, interval_95=(0.0, 0.13), interval_open=(True, False), at_bound=True
 )
 
@@ -35,9 +36,9 @@ def fingerprint():
             "parameters": (K_P, K_I, T_D),
             "held": {},
             "covariance": ((0.16, 0.0, 0.002), (0.0, float("inf"), 0.0), (0.002, 0.0, 4e-4)),
-            "combinations": (Quantity(name="K_p / K_i", unit="s", value=1.2, std=0.1),),
-            "physical": (Quantity(name="I", unit="kg m2", value=17.0, std=0.3, expected=16.5, expected_std=1.0),),
-            "margins": (Quantity(name="gain margin", unit="-", value=1.5, std=0.02),),
+            "combinations": (Estimate(name="K_p / K_i", unit="s", value=1.2, std=0.1),),
+            "physical": (Estimate(name="I", unit="kg m2", value=17.0, std=0.3, expected=16.5, expected_std=1.0),),
+            "margins": (Estimate(name="gain margin", unit="-", value=1.5, std=0.02),),
             "calibration": (),
             "verdict": SimpleNamespace(trustworthy=True, reason="fits"),
         }

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from shaftprint.catalogue import ShipRole
-from shaftprint.fingerprint import Quantity, physical_quantities
+from shaftprint.fingerprint import physical_quantities
 from shaftprint.fingerprint._findings import findings_of
-from shaftprint.identify import Budget, BudgetRow, Prior, Settings, Unweighted, budget
+from shaftprint.identify import Budget, BudgetRow, Estimate, Prior, Settings, Unweighted, budget
 from shaftprint.vessel import load_vessel
 
 NO_BUDGET = Budget(sources=(), rows=())
@@ -151,7 +151,7 @@ def test_parameter_of_either_sign_is_compared_with_its_range(sharp, put_by_hand)
     [(3.0, 0.2, True), (-3.0, 0.2, True), (0.39, 0.2, False), (0.41, 0.2, True), (3.0, 2.0, False)],
 )
 def test_zero_of_the_gauge_is_told_from_two_standard_deviations_on(sharp, share, std, said):
-    zero = Quantity(name="gauge zero share", unit="%", value=share, std=std)
+    zero = Estimate(name="gauge zero share", unit="%", value=share, std=std)
     told = [finding for finding in found(sharp, (zero,)) if finding.startswith("gauge zero share")]
     assert bool(told) is said
     if said:
@@ -214,7 +214,7 @@ def test_inertia_off_the_torsional_vibration_calculation(sharp, put_by_hand, jud
 def test_a_value_of_nothing_has_no_factor(sharp, working_point, vessel):
     """An inertia at its bound of zero, with the standard deviation of its fit."""
     values = physical_quantities(sharp, working_point, vessel)
-    nothing = [value.model_copy(update={"value": 0.0}) if value.name == "I_dn" else value for value in values]
+    nothing = [replace(value, value=0.0) if value.name == "I_dn" else value for value in values]
     assert one(found(sharp, tuple(nothing)), "I_dn") == "I_dn = 0 kg m2 against 17 kg m2 of the vessel file."
 
 
@@ -250,7 +250,7 @@ def test_torque_coefficient_of_the_other_direction(gauge_fit, ship, found_value,
     if way == "astern":
         stated = vessel.propeller.model_copy(update={"astern_torque_coefficient": other})
         vessel = vessel.model_copy(update={"propeller": stated})
-    number = Quantity(
+    number = Estimate(
         name="K_Q",
         unit="-",
         value=found_value,

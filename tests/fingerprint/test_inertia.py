@@ -6,7 +6,8 @@ from types import SimpleNamespace
 import pytest
 
 from shaftprint.catalogue import ShipRole
-from shaftprint.fingerprint import Quantity, inertia_beside
+from shaftprint.fingerprint import inertia_beside
+from shaftprint.identify import Estimate
 from shaftprint.vessel import load_vessel
 
 
@@ -14,7 +15,7 @@ def record(**priors):
     """What the comparison reads of a fingerprint: thesis' OL1 result, with an invented tau_up."""
 
     def quantity(name, unit, value, std, role=None):
-        return Quantity(name=name, unit=unit, value=value, std=std, role=role)
+        return Estimate(name=name, unit=unit, value=value, std=std, role=role)
 
     return SimpleNamespace(
         conditions=SimpleNamespace(

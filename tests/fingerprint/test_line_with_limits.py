@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 from shaftprint.errors import FingerprintError
-from shaftprint.fingerprint import Quantity, read_fingerprint, write_fingerprint
-from shaftprint.fingerprint._line_with_limits import LimitNumber, LineWithLimits
+from shaftprint.fingerprint import read_fingerprint, write_fingerprint
+from shaftprint.fingerprint._line_with_limits import LineWithLimits
 from shaftprint.fingerprint._model import model_with_limits
+from shaftprint.identify import Estimate
 from shaftprint.limits import Kind
 from shaftprint.limits._levels_beside import Levels
 from shaftprint.survey._line_with_limits import line_with_limits
@@ -19,8 +20,8 @@ CURVE = ((-0.5, 0.6), (0.0, 1.0), (0.5, 1.1))
 @pytest.fixture(scope="module")
 def with_limits(fingerprint):
     levels = (
-        Quantity(name="m_max", unit="-", value=2.8, std=0.05),
-        Quantity(name="T_aw", unit="s", value=0.5, std=0.02),
+        Estimate(name="m_max", unit="-", value=2.8, std=0.05),
+        Estimate(name="T_aw", unit="s", value=0.5, std=0.02),
     )
     size = len(fingerprint.parameters)
     covariance = np.zeros((size + 2, size + 2))
@@ -31,9 +32,10 @@ def with_limits(fingerprint):
         limits=("torque",),
         curve=CURVE,
         numbers=(
-            LimitNumber(
+            Estimate(
                 limit="torque limit", name="M_max", unit="N m", value=1300.0, std=30.0,
-                interval_95=(1240.0, float("inf")), meaning="highest torque", doubt="the data set no upper end",
+                interval_95=(1240.0, float("inf")), interval_open=(False, True),
+                meaning="highest torque", doubt="the data set no upper end",
             ),
         ),
         not_seen=("deadband: not seen, none wider than d_e_rpm = 2 rpm",),

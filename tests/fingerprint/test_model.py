@@ -5,15 +5,16 @@ import pytest
 
 from shaftprint.catalogue import structure
 from shaftprint.errors import FingerprintError
-from shaftprint.fingerprint import Fingerprint, Quantity
+from shaftprint.fingerprint import Fingerprint
 from shaftprint.fingerprint._model import identified_model
+from shaftprint.identify import Estimate
 
 
 @pytest.fixture
 def fingerprint():
     # in another order than the structure, which begins with the governor's gain
     found = [
-        Quantity(name=name, unit=unit, value=value, std=std)
+        Estimate(name=name, unit=unit, value=value, std=std)
         for name, unit, value, std in (("t_d", "s", 0.12, 0.02), ("K_p", "-", 4.6, 0.4))
     ]
     return Fingerprint.model_construct(

@@ -10,8 +10,8 @@ import pytest
 from shaftprint.campaign import TrialConditions
 from shaftprint.catalogue import ShipRole
 from shaftprint.errors import FingerprintError
-from shaftprint.fingerprint import Quantity, read_fingerprint, write_fingerprint
-from shaftprint.identify import Prior, Settings, Unweighted
+from shaftprint.fingerprint import read_fingerprint, write_fingerprint
+from shaftprint.identify import Estimate, Prior, Settings, Unweighted
 from shaftprint.vessel._ship import Ship
 
 NOW = datetime(2026, 3, 14, 9, 30, tzinfo=UTC)
@@ -60,7 +60,7 @@ def test_ship_and_water_of_the_test_are_kept(gauge_fit, take, vessel, path):
 
 
 def test_loads_back_equal_with_all_that_a_number_can_be(fingerprint, path):
-    odd = Quantity(
+    odd = Estimate(
         name="t_d",
         unit="s",
         value=1.0 / 3.0,
@@ -108,7 +108,7 @@ def test_an_earlier_file_of_an_own_structure_stays_without_roles(fingerprint, pa
 
 def test_a_role_that_is_none_is_refused(fingerprint, path):
     with_field(fingerprint, path, lambda content: content["parameters"][0].update(role="tailor"))
-    with pytest.raises(FingerprintError, match=r"parameters\.0\.role: expected one of inertia downstream, .* 'tailor'"):
+    with pytest.raises(FingerprintError, match=r"parameters\.0: role: expected one of inertia downstream, .* 'tailor'"):
         read_fingerprint(path)
 
 
@@ -127,7 +127,7 @@ def test_a_role_that_is_none_is_refused(fingerprint, path):
     ],
 )
 def test_a_standard_deviation_is_shown_where_it_gives_the_interval(value, std, interval, is_stated):
-    number = Quantity(name="K_p", unit="-", value=value, std=std, interval_95=interval)
+    number = Estimate(name="K_p", unit="-", value=value, std=std, interval_95=interval)
     assert number.stated_std == (std if is_stated else None)
 
 

@@ -22,7 +22,7 @@ def closed(make_response):
 
 
 def test_interval_of_an_estimate_is_its_value_and_1_96_deviations():
-    lower, upper = Estimate(name="K_p", unit="-", value=5.0, std=0.5).interval_95
+    lower, upper = Estimate(name="K_p", unit="-", value=5.0, std=0.5).limits_95
     assert (lower, upper) == pytest.approx((4.0200180077, 5.9799819923))
 
 

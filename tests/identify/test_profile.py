@@ -19,7 +19,7 @@ def test_of_a_linear_structure_are_1_96_deviations(make_response):
     found = identify(structure("OL2"), response, rng=np.random.default_rng(1))
     for parameter in found.parameters:
         interval = profile_intervals(found)[parameter.name]
-        lower, upper = parameter.interval_95
+        lower, upper = parameter.limits_95
         assert interval.lower == pytest.approx(lower, abs=0.011 * parameter.std)
         assert interval.upper == pytest.approx(upper, abs=0.011 * parameter.std)
         assert not interval.lower_open

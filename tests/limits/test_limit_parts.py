@@ -8,10 +8,10 @@ import pytest
 
 from shaftprint.campaign import Campaign
 from shaftprint.catalogue import limited_governor
+from shaftprint.identify import Estimate
 from shaftprint.limits import Kind, LimitFit, limit_hints
 from shaftprint.limits._identify_limits import LEAST_OFFSET_STD, _offset_std
 from shaftprint.limits._level_profile import LevelInterval
-from shaftprint.limits._limit_fit import LimitEstimate
 from shaftprint.limits._numbers import _doubt, doubt_of_governor
 from shaftprint.limits.prediction._noise_colour import ORDER, innovations
 from shaftprint.spectra import Harmonics
@@ -144,7 +144,7 @@ def test_nothing_is_trusted_beside_a_governor_at_the_ends_of_its_range(moved, sa
 def limit_fit(*numbers):
     """What is found, of numbers given as kind, symbol and doubt."""
     estimates = tuple(
-        LimitEstimate(kind=kind, name=name, unit="-", value=1.0, std=0.1, lower=0.8, upper=1.2, meaning="", doubt=doubt)
+        Estimate(limit=kind.value, name=name, unit="-", value=1.0, std=0.1, interval_95=(0.8, 1.2), doubt=doubt)
         for kind, name, doubt in numbers
     )
     gains = dict.fromkeys([kind for kind, _, _ in numbers], 100.0)

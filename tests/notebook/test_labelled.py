@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 import shaftprint as sp
-from shaftprint.fingerprint import Fingerprint, Quantity
+from shaftprint.fingerprint import Fingerprint
+from shaftprint.identify import Estimate
 from shaftprint.notebook._labelled import LabelledData, Variable
 from shaftprint.signals import ChannelSignal, MessageSignal, Signals, SpeedSignal
 
@@ -92,11 +93,11 @@ def test_the_values_of_a_noun_stay_its_own():
 
 
 def test_numbers_of_a_fingerprint_have_interval_unit_meaning_and_kind():
-    profiled = Quantity(name="K_p", unit="-", value=4.6, std=0.4, interval_95=(3.8, 5.4), meaning="gain of governor")
-    stopped = Quantity(
+    profiled = Estimate(name="K_p", unit="-", value=4.6, std=0.4, interval_95=(3.8, 5.4), meaning="gain of governor")
+    stopped = Estimate(
         name="t_d", unit="s", value=0.1, std=0.02, interval_95=(0.0, 0.13), interval_open=(True, False), at_bound=True
     )
-    inertia = Quantity(name="I_dn", unit="kg m2", value=17.0, std=0.5, expected=16.0, expected_std=1.0)
+    inertia = Estimate(name="I_dn", unit="kg m2", value=17.0, std=0.5, expected=16.0, expected_std=1.0)
     fingerprint = Fingerprint.model_construct(
         created=datetime(2026, 3, 14, tzinfo=UTC),
         conditions=SimpleNamespace(vessel="Tug", campaign="short"),

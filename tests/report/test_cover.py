@@ -8,7 +8,8 @@ from typing import get_args
 
 import pytest
 
-from shaftprint.fingerprint import Quantity, ShipIdentity
+from shaftprint.fingerprint import ShipIdentity
+from shaftprint.identify import Estimate
 from shaftprint.reasons import Reason, ReasonKind
 from shaftprint.report.sections._results import summary_section
 from shaftprint.report.sections.first_page._cover_of import cover_of
@@ -127,8 +128,8 @@ def test_what_contradicts_the_vessel_file_is_on_the_first_page(fingerprint):
 
 def test_numbers_have_no_more_digits_than_their_interval_leaves(fingerprint):
     """By hand: half an interval of 2.85 ms leaves whole milliseconds, one of 0.06 hundredths."""
-    delay = Quantity(name="t_d + t_sp", unit="s", value=0.1216, std=0.002, interval_95=(0.1197, 0.1254))
-    margin = Quantity(name="gain margin", unit="-", value=1.5382, std=0.03, interval_95=(1.5241, 1.6462))
+    delay = Estimate(name="t_d + t_sp", unit="s", value=0.1216, std=0.002, interval_95=(0.1197, 0.1254))
+    margin = Estimate(name="gain margin", unit="-", value=1.5382, std=0.03, interval_95=(1.5241, 1.6462))
     made = fingerprint.model_copy(update={"combinations": (delay,), "margins": (margin,), "physical": ()})
     (table,) = cover_of(made).tables
     assert [row[1:3] for row in table.rows] == [("122 ms", "120 to 125"), ("1.54", "1.52 to 1.65")]

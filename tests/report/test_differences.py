@@ -1,6 +1,7 @@
 """Differences of two fingerprints against numbers worked out by hand and against simulated pairs."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -13,9 +14,8 @@ from shaftprint.report.sections._comparison_cover import change_in_words
 
 
 def quantity(fingerprint, **changes):
-    return fingerprint.physical[0].model_copy(
-        update={"name": "I_dn", "unit": "kg m2", "interval_95": None, "interval_open": (False, False)} | changes
-    )
+    usual = {"name": "I_dn", "unit": "kg m2", "interval_95": None, "interval_open": (False, False)}
+    return replace(fingerprint.physical[0], **usual | changes)
 
 
 SCALE, STD = "sensors.shaft_torque.scale_nm_per_unit", "sensors.shaft_torque.scale_std_fraction"
@@ -315,9 +315,9 @@ def test_a_physical_value_is_as_lopsided_as_its_parameter(fingerprint):
     (surer,) = differences(first, other)
     assert surer.outcome == "differs"
     # where the bound of the search ends the interval of K_p, it ends nothing of the action's
-    bounded = gain.model_copy(update={"interval_open": (False, True)})
+    bounded = replace(gain, interval_open=(False, True))
     (unknown, *_) = differences(first.model_copy(update={"parameters": (bounded,)}), other)
     assert unknown.outcome == "cannot be compared"
-    less = with_quantities(fingerprint, actions[0].model_copy(update={"value": 5.0}))
+    less = with_quantities(fingerprint, replace(actions[0], value=5.0))
     (known, *_) = differences(first.model_copy(update={"parameters": (bounded,)}), less)
     assert known.outcome == "differs"

@@ -7,8 +7,7 @@ import pytest
 from tests.report.marks import legend, mark
 
 from shaftprint.catalogue import AHEAD_S
-from shaftprint.limits import Kind
-from shaftprint.limits._limit_fit import LimitEstimate
+from shaftprint.identify import Estimate
 from shaftprint.report import limit_chart
 
 RATE_HZ = 12.5
@@ -23,9 +22,7 @@ def limits(*, level):
         time_s=time, rate_hz=RATE_HZ, used=time > 5.0, inputs={"n": speed, "c": 0.0 * time},
         outputs={"y": predicted + 0.01 * np.cos(40.0 * time)},
     )  # fmt: skip
-    number = LimitEstimate(
-        kind=Kind.TORQUE, name="m_max", unit="-", value=1.9, std=0.05, lower=1.8, upper=2.0, meaning="level"
-    )
+    number = Estimate(limit="torque limit", name="m_max", unit="-", value=1.9, std=0.05, interval_95=(1.8, 2.0))
     part = SimpleNamespace(record=record, predicted=predicted)
     return SimpleNamespace(predicted=part, numbers=(number,) if level else ())
 

@@ -66,7 +66,7 @@ def test_texts_of_files_stay_texts(tmp_path, survey, fingerprint, vessel):
     save_chart(section.pictures[0].chart(), tmp_path / "x.png")
     evil = f"<img src='{tmp_path / 'x.png'}' width='9' height='9'/> & <a href='http://x.y'>z</a> \x1b[2J </para>"
     conditions = fingerprint.conditions.model_copy(update={"vessel": evil, "campaign": evil, "place": evil})
-    first = fingerprint.parameters[0].model_copy(update={"name": evil, "unit": evil, "meaning": evil})
+    first = replace(fingerprint.parameters[0], name=evil, unit=evil, meaning=evil)
     changed = fingerprint.model_copy(
         update={
             "conditions": conditions,

@@ -4,7 +4,7 @@ from types import SimpleNamespace
 import pytest
 
 from shaftprint.catalogue import structure
-from shaftprint.fingerprint import Quantity
+from shaftprint.identify import Estimate
 from shaftprint.markup._html import sentence_html, symbol_html
 from shaftprint.report.sections._results import fit_section
 from shaftprint.tables import Table, limits, parameter_table, texts
@@ -17,22 +17,22 @@ def with_parameters(fingerprint, *quantities):
 
 
 def test_intervals_of_the_profile_and_open_ends(fingerprint):
-    profiled = Quantity(
+    profiled = Estimate(
         name="t_d", unit="s", value=0.0655, std=0.051, interval_95=(0.0, 0.0991), interval_open=(True, False)
     )
-    upper = Quantity(name="K_p", unit="-", value=5.0, std=0.5, interval_95=(4.0, 20.0), interval_open=(False, True))
-    unknown = Quantity(name="v", unit="-", value=1.0, std=math.inf, at_bound=True)
+    upper = Estimate(name="K_p", unit="-", value=5.0, std=0.5, interval_95=(4.0, 20.0), interval_open=(False, True))
+    unknown = Estimate(name="v", unit="-", value=1.0, std=math.inf, at_bound=True)
     table = parameter_table(with_parameters(fingerprint, profiled, upper, unknown), {})
     assert [row[2] for row in table.rows] == ["0.000* to 0.099", "4.00 to 20.00*", "not known"]
     assert table.rows[2][1] == "1.000 (at its bound)"
     assert table.rows[0][3] == "s"
-    assert limits(Quantity(name="a", unit="-", value=1.0, std=1.0)) == pytest.approx((-0.959964, 2.959964))
+    assert limits(Estimate(name="a", unit="-", value=1.0, std=1.0)) == pytest.approx((-0.959964, 2.959964))
 
 
 def test_truth_within_and_not(fingerprint):
-    a = Quantity(name="K_p", unit="-", value=5.0, std=0.5)
-    b = Quantity(name="K_i", unit="1/s", value=5.0, std=0.5)
-    c = Quantity(name="g", unit="-", value=0.0, std=0.1)
+    a = Estimate(name="K_p", unit="-", value=5.0, std=0.5)
+    b = Estimate(name="K_i", unit="1/s", value=5.0, std=0.5)
+    c = Estimate(name="g", unit="-", value=0.0, std=0.1)
     rows = parameter_table(with_parameters(fingerprint, a, b, c), {"K_p": 5.9, "K_i": 6.1}).rows
     assert [row[3:5] for row in rows] == [("5.90", "yes"), ("6.10", "no"), ("–", "–")]
     assert rows[1][5] == "s⁻¹"
@@ -67,8 +67,8 @@ def test_fit_table_without_a_likelihood(fingerprint, identification):
 
 
 def test_expected_values():
-    assert expected_text(Quantity(name="I", unit="kg m2", value=1.0, std=0.1)) == "–"
-    assert expected_text(Quantity(name="I", unit="kg m2", value=1.0, std=0.1, expected=0.04943)) == "0.04943"
+    assert expected_text(Estimate(name="I", unit="kg m2", value=1.0, std=0.1)) == "–"
+    assert expected_text(Estimate(name="I", unit="kg m2", value=1.0, std=0.1, expected=0.04943)) == "0.04943"
 
 
 def test_tables_of_the_signals(signals, spectra):

@@ -314,7 +314,7 @@ def found(make_record):
 def test_profiles_verdict_and_repeats_take_it(found):
     intervals = profile_intervals(found)
     for estimate in found.parameters:
-        low, high = estimate.interval_95
+        low, high = estimate.limits_95
         width = high - low
         assert intervals[estimate.name].lower == pytest.approx(low, abs=0.1 * width)
         assert intervals[estimate.name].upper == pytest.approx(high, abs=0.1 * width)

@@ -12,8 +12,8 @@ from tests.wrong_recordings.trial import Sailed, Trial, clean
 from shaftprint.catalogue import structure
 from shaftprint.distributions import NORMAL_95
 from shaftprint.errors import ShaftprintError
-from shaftprint.fingerprint import Fingerprint, Quantity
-from shaftprint.identify import Settings
+from shaftprint.fingerprint import Fingerprint
+from shaftprint.identify import Estimate, Settings
 from shaftprint.models import Structure, margins
 from shaftprint.survey import Measurement, priors_of, run
 from shaftprint.survey import Trial as SurveyTrial
@@ -124,7 +124,7 @@ def judged(fingerprint: Fingerprint, case: Case) -> Answer:
     return Answer(outcome="WRONG" if trusted else "not trusted, cause not named", words=reasons, wrong=told)
 
 
-def is_right(quantity: Quantity, true: float) -> bool:
+def is_right(quantity: Estimate, true: float) -> bool:
     """Return whether the truth lies in the 95 % interval of a number, or near it."""
     half = NORMAL_95 * quantity.std
     lower, upper = quantity.interval_95 or (quantity.value - half, quantity.value + half)
@@ -132,7 +132,7 @@ def is_right(quantity: Quantity, true: float) -> bool:
     return bool(lower - near <= true <= upper + near)
 
 
-def _numbers(fingerprint: Fingerprint) -> tuple[Quantity, ...]:
+def _numbers(fingerprint: Fingerprint) -> tuple[Estimate, ...]:
     where = fingerprint.conditions
     return (
         *fingerprint.parameters,
@@ -143,6 +143,6 @@ def _numbers(fingerprint: Fingerprint) -> tuple[Quantity, ...]:
     )
 
 
-def _told(wrong: list[str], trusted: list[str], numbers: dict[str, Quantity]) -> tuple[str, ...]:
+def _told(wrong: list[str], trusted: list[str], numbers: dict[str, Estimate]) -> tuple[str, ...]:
     order = sorted(wrong, key=lambda name: name not in trusted)
     return tuple(f"{name}{'*' * (name in trusted)} = {numbers[name].value:.4g}" for name in order)

@@ -9,7 +9,7 @@ from shaftprint.arguments import refusing_none
 from shaftprint.distributions import normal_cdf
 from shaftprint.errors import FingerprintError
 from shaftprint.fingerprint._drive_fingerprint import DriveFingerprint
-from shaftprint.fingerprint._quantity import Quantity
+from shaftprint.identify.fit._estimate import Estimate
 
 Outcome: TypeAlias = Literal["differs", "perhaps", "no difference seen", "cannot be compared"]
 # A difference that chance makes in fewer than this share of pairs counts.
@@ -20,9 +20,9 @@ UNLIKELY = 0.05
 class DriveDifference:
     """One number of two fingerprints beside each other."""
 
-    first: Quantity
+    first: Estimate
     """The number in the fingerprint that others are compared with."""
-    other: Quantity
+    other: Estimate
     """The number in the other fingerprint."""
     std: float
     """Standard deviation of the difference; infinite where a test says nothing of the number."""
@@ -65,11 +65,11 @@ def drive_differences(first: DriveFingerprint, other: DriveFingerprint) -> tuple
     )
 
 
-def _std(one: Quantity, two: Quantity) -> float:
+def _std(one: Estimate, two: Estimate) -> float:
     return float(np.hypot(one.std, two.std))
 
 
-def _difference(one: Quantity, two: Quantity, *, among: int, comparable: bool) -> DriveDifference:
+def _difference(one: Estimate, two: Estimate, *, among: int, comparable: bool) -> DriveDifference:
     std = _std(one, two)
     if not comparable:
         return DriveDifference(first=one, other=two, std=std, p_value=None, outcome="cannot be compared")

@@ -1,6 +1,7 @@
 """From a fit of a drive to the record that is kept, and back to a model."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from datetime import datetime
 from types import MappingProxyType
 
@@ -16,8 +17,7 @@ from shaftprint.errors import FingerprintError
 from shaftprint.fingerprint._drive_fingerprint import DriveFingerprint, DriveRecord, DriveResponse, NoiseOfRecord
 from shaftprint.fingerprint._fingerprint import SourceFile
 from shaftprint.fingerprint._model import IdentifiedModel
-from shaftprint.fingerprint._quantity import Quantity
-from shaftprint.identify.fit._identification import Estimate
+from shaftprint.identify.fit._estimate import Estimate
 from shaftprint.models._structure import Structure
 from shaftprint.time_domain._record_fit import RecordFit
 
@@ -35,8 +35,6 @@ def drive_fingerprint(fit: DriveFit, *, sources: Sequence[SourceFile], now: date
     """
     identification, one = fit.identification, fit.equipped
     structure, parameters = one.structure, identification.objective.parameters
-    meanings = {item.name: item.meaning for item in parameters}
-    meanings |= {item.name: item.meaning for item in identification.objective.combinations}
     return DriveFingerprint(
         shaftprint_version=shaftprint.__version__,
         created=now,
@@ -45,11 +43,11 @@ def drive_fingerprint(fit: DriveFit, *, sources: Sequence[SourceFile], now: date
         structure=structure.name,
         inputs={name: one.units[name] for name in structure.inputs},
         outputs={name: one.units[name] for name in structure.outputs},
-        parameters=tuple(_quantity(fit, estimate, meanings) for estimate in identification.parameters),
+        parameters=tuple(_quantity(fit, estimate) for estimate in identification.parameters),
         held={p.name: p.value for p in parameters if p.held},
         priors=dict(identification.settings.priors),
         covariance=tuple(tuple(row) for row in identification.covariance.tolist()),
-        combinations=tuple(_quantity(fit, estimate, meanings) for estimate in identification.combinations),
+        combinations=tuple(_quantity(fit, estimate) for estimate in identification.combinations),
         records=_records(fit, sources),
         responses=_responses(fit),
         p_value=identification.p_value,
@@ -60,17 +58,14 @@ def drive_fingerprint(fit: DriveFit, *, sources: Sequence[SourceFile], now: date
     )
 
 
-def _quantity(fit: DriveFit, estimate: Estimate, meanings: dict[str, str]) -> Quantity:
+def _quantity(fit: DriveFit, estimate: Estimate) -> Estimate:
     interval = fit.intervals.get(estimate.name)
-    return Quantity(
-        name=estimate.name,
-        unit=estimate.unit,
-        value=estimate.value,
-        std=estimate.std,
+    # the lines of drives have no roles in their files
+    return replace(
+        estimate,
         interval_95=None if interval is None else (interval.lower, interval.upper),
         interval_open=(False, False) if interval is None else (interval.lower_open, interval.upper_open),
-        at_bound=estimate.at_bound,
-        meaning=meanings[estimate.name],
+        role=None,
     )
 
 

@@ -7,7 +7,7 @@ from shaftprint.cli._terminal import print_findings
 from shaftprint.digits import plain_letters, stated, stated_interval, to_digit_of
 from shaftprint.distributions import NORMAL_95
 from shaftprint.fingerprint._fingerprint import Fingerprint
-from shaftprint.fingerprint._quantity import Quantity
+from shaftprint.identify.fit._estimate import Estimate
 from shaftprint.identify.fit._identification import Identification
 
 
@@ -22,7 +22,7 @@ def print_summary(fingerprint: Fingerprint, truth: Mapping[str, float], core: Id
     print_findings("What was found", [*sentences, *_of_the_thesis(fingerprint, core)], is_answer=True)
 
 
-def _value(quantity: Quantity) -> str:
+def _value(quantity: Estimate) -> str:
     """Return the value with its 95 % interval, or with its standard deviation where there is no interval."""
     if quantity.interval_95 is None:
         return stated(quantity.value, quantity.std, quantity.unit)
@@ -30,7 +30,7 @@ def _value(quantity: Quantity) -> str:
     return stated_interval(quantity.value, lower, upper, _shown_std(quantity), quantity.unit)
 
 
-def _shown_std(quantity: Quantity) -> float:
+def _shown_std(quantity: Estimate) -> float:
     """Return the standard deviation that the digits follow: that of the interval, where there is one."""
     if quantity.interval_95 is None:
         return quantity.std
@@ -38,7 +38,7 @@ def _shown_std(quantity: Quantity) -> float:
     return 0.5 * (upper - lower) / NORMAL_95
 
 
-def _given(quantity: Quantity, fingerprint: Fingerprint) -> str:
+def _given(quantity: Estimate, fingerprint: Fingerprint) -> str:
     """Return that a physical value was known beforehand, if its parameter was: then the test did not find it."""
     parameter = fingerprint.multiplied(quantity)
     if parameter is None or parameter.name not in fingerprint.priors or quantity.expected is None:

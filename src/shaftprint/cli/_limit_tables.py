@@ -8,8 +8,9 @@ from shaftprint.cli.output._tables import print_table, print_tables
 from shaftprint.digits import fine_unit, interval, stated_interval, unit_text, with_deviation
 from shaftprint.distributions import NORMAL_95
 from shaftprint.fingerprint._line_with_limits import LineWithLimits
-from shaftprint.identify.fit._identification import Estimate
-from shaftprint.limits._limit_fit import LimitEstimate, LimitFit
+from shaftprint.identify.fit._estimate import Estimate
+from shaftprint.limits._candidates import Kind
+from shaftprint.limits._limit_fit import LimitFit
 from shaftprint.plain_table import MEANING, Symbol, Table, numbers, texts
 from shaftprint.tables._fingerprint import quantity_table
 
@@ -36,21 +37,27 @@ def print_limits(limits: LimitFit) -> None:
     print_findings("Verdict", [f"Numbers that can be trusted: {trusted}.", *doubted])
 
 
-def _first_numbers(limits: LimitFit) -> list[LimitEstimate]:
+def _first_numbers(limits: LimitFit) -> list[Estimate]:
     """Return the number by which each limit is known."""
-    return [next(number for number in limits.numbers if number.kind is kind) for kind in limits.kinds]
+    return [next(number for number in limits.numbers if number.limit == kind.value) for kind in limits.kinds]
 
 
-def _answer(limits: LimitFit, number: LimitEstimate) -> str:
-    value = stated_interval(number.value, number.lower, number.upper, _std(number), number.unit)
+def _answer(limits: LimitFit, number: Estimate) -> str:
+    value = stated_interval(number.value, *_ends(number), _std(number), number.unit)
     trust = "trusted" if number.trusted else f"not trusted, {number.doubt}"
-    gain = f"Likelihood-ratio statistic {limits.gains[number.kind]:.0f}."
-    return f"{number.kind.value}: {number.name} = {value}, {trust}. {gain}"
+    gain = f"Likelihood-ratio statistic {limits.gains[Kind(number.limit)]:.0f}."
+    return f"{number.limit}: {number.name} = {value}, {trust}. {gain}"
 
 
-def _std(number: LimitEstimate) -> float:
+def _ends(number: Estimate) -> tuple[float, float]:
+    """Return the ends of the interval; one that the data did not set is infinite."""
+    return number.interval_95 or number.limits_95
+
+
+def _std(number: Estimate) -> float:
     """Return the standard deviation that the digits follow: that of the interval, which is shown."""
-    width = 0.5 * (number.upper - number.lower) / NORMAL_95
+    lower, upper = _ends(number)
+    width = 0.5 * (upper - lower) / NORMAL_95
     return width if math.isfinite(width) and width > 0.0 else number.std
 
 
@@ -59,12 +66,13 @@ def _number_table(limits: LimitFit) -> Table:
     return Table(title="Numbers of the limits", columns=columns, rows=tuple(map(_number_row, limits.numbers)))
 
 
-def _number_row(number: LimitEstimate) -> tuple[str, ...]:
-    factor, unit = fine_unit(number.unit, number.value, number.std, number.lower, number.upper)
+def _number_row(number: Estimate) -> tuple[str, ...]:
+    lower, upper = _ends(number)
+    factor, unit = fine_unit(number.unit, number.value, number.std, lower, upper)
     return (
         Symbol(number.name),
         with_deviation(factor * number.value, factor * number.std),
-        interval(factor * number.lower, factor * number.upper, factor * number.std),
+        interval(factor * lower, factor * upper, factor * number.std),
         unit_text(unit),
         "yes" if number.trusted else number.doubt,
         number.meaning,

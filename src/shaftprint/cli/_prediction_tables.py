@@ -11,7 +11,7 @@ from shaftprint.cli.output._tables import print_table, print_tables
 from shaftprint.digits import fine_unit, interval, plain, unit_text, with_deviation
 from shaftprint.drift._visible import VisibleChange
 from shaftprint.forecast._predict import PredictedTest
-from shaftprint.identify.fit._identification import Estimate
+from shaftprint.identify.fit._estimate import Estimate
 from shaftprint.identify.prediction._accuracy import Accuracy
 from shaftprint.identify.prediction._identifiability import Identifiability
 from shaftprint.identify.uncertainty._profile import Interval

@@ -13,14 +13,12 @@ import numpy as np
 from shaftprint.arrays import BoolArray, FloatArray
 from shaftprint.catalogue._roles import ShipRole
 from shaftprint.drift._single_test import SingleTest, is_share
-from shaftprint.identify.fit._identification import Estimate
 from shaftprint.identify.judgement._affected_numbers import AFFECTED, depends_on
 from shaftprint.identify.judgement._phrases import listed
 
 if TYPE_CHECKING:
     from shaftprint.drift._dated import DatedTest
     from shaftprint.fingerprint._fingerprint import Fingerprint
-    from shaftprint.fingerprint._quantity import Quantity
 
 NOT_POSITIVE = "it is not larger than zero"
 HELD = "it was held"
@@ -141,10 +139,6 @@ def _absent(name: str, fingerprint: "Fingerprint") -> str:
 
 def _doubted(name: str, fingerprint: "Fingerprint") -> str:
     """Return why the verdict of a test doubts a number; empty where it does not."""
-    number = _estimate(fingerprint.quantity(name))
+    number = fingerprint.quantity(name)
     kinds = (reason.kind for reason in fingerprint.verdict.reasons)
     return next((AFFECTED[kind][1] for kind in kinds if depends_on(number, kind)), "")
-
-
-def _estimate(number: "Quantity") -> Estimate:
-    return Estimate(name=number.name, unit=number.unit, value=number.value, std=number.std, role=number.role)

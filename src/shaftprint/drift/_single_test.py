@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from shaftprint.fingerprint._fingerprint import Fingerprint
-    from shaftprint.fingerprint._quantity import Quantity
+    from shaftprint.identify.fit._estimate import Estimate
     from shaftprint.models._role import Role
 
 SHARES = (ShipRole.TORQUE, ShipRole.ACTUATOR_FREQUENCY, ShipRole.ACTUATOR_DAMPING)
@@ -66,7 +66,7 @@ def single_test(fingerprint: "Fingerprint", names: tuple[str, ...]) -> SingleTes
     )
 
 
-def _stated(fingerprint: "Fingerprint", source: str, numbers: "Sequence[Quantity]", shares: BoolArray) -> FloatArray:
+def _stated(fingerprint: "Fingerprint", source: str, numbers: "Sequence[Estimate]", shares: BoolArray) -> FloatArray:
     """Return the change of each number for one standard deviation of a source of the priors."""
     by_role = {
         fingerprint.quantity(name).role: (prior.mean, prior.by_source(name).get(source, 0.0))

@@ -6,7 +6,7 @@ from typing import TypeAlias
 from shaftprint.distributions import NORMAL_95
 from shaftprint.export._model_response import ModelResponse
 from shaftprint.fingerprint._fingerprint import Fingerprint
-from shaftprint.fingerprint._quantity import Quantity
+from shaftprint.identify.fit._estimate import Estimate
 from shaftprint.models._structure import Structure
 
 Cell: TypeAlias = str | float | bool | None
@@ -21,7 +21,7 @@ def parameter_rows(fingerprint: Fingerprint, structure: Structure) -> list[Row]:
         if parameter.name in quantities:
             rows.append(quantity_row(quantities[parameter.name]) | {"held": False})
             continue
-        held = Quantity(
+        held = Estimate(
             name=parameter.name,
             unit=parameter.unit,
             value=fingerprint.held[parameter.name],
@@ -36,11 +36,11 @@ def number_rows(fingerprint: Fingerprint) -> list[Row]:
     """Return a row for each combination, physical value, margin, calibration and number of a limit."""
     kinds = {kind: numbers for kind, numbers in fingerprint.numbers.items() if kind != "parameter"}
     if fingerprint.with_limits is not None:
-        kinds["limit"] = tuple(one.quantity for one in fingerprint.with_limits.numbers)
+        kinds["limit"] = fingerprint.with_limits.numbers
     return [{"kind": kind, **quantity_row(quantity)} for kind, quantities in kinds.items() for quantity in quantities]
 
 
-def quantity_row(quantity: Quantity) -> Row:
+def quantity_row(quantity: Estimate) -> Row:
     """Return a number with its uncertainty; what is not known, or not finite, is None.
 
     The 95 % interval is that of the profile likelihood where there is one, else the first-order one; an end that the

@@ -6,7 +6,6 @@ from ._inertia import inertia_beside
 from ._json_file import parse_fingerprint, read_fingerprint, write_fingerprint
 from ._model import named_structure
 from ._physical import physical_quantities
-from ._quantity import Quantity
 from ._take import take_fingerprint
 from ._vessel_fields import vessel_fields
 
@@ -14,7 +13,6 @@ __all__ = [
     "WATER",
     "ClockInfluence",
     "Fingerprint",
-    "Quantity",
     "ShipIdentity",
     "SourceFile",
     "inertia_beside",

@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shaftprint.fingerprint._quantity import Quantity
+from shaftprint.identify.fit._estimate import Estimate
 from shaftprint.units import rpm_from_rev_s
 
 if TYPE_CHECKING:
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 DEGREES_PER_REVOLUTION = 360.0
 
 
-def calibration_quantities(signals: "Signals", *, machine: str) -> tuple[Quantity, ...]:
+def calibration_quantities(signals: "Signals", *, machine: str) -> tuple[Estimate, ...]:
     """Return the set-point line, its scale at low frequency and the angles of the strips, with standard deviations.
 
     Parameters
@@ -23,7 +23,7 @@ def calibration_quantities(signals: "Signals", *, machine: str) -> tuple[Quantit
     machine
         What drives the line, in words: engine or motor.
     """
-    scale = Quantity(
+    scale = Estimate(
         name="set-point scale",
         unit="-",
         value=signals.dc_scale,
@@ -34,17 +34,17 @@ def calibration_quantities(signals: "Signals", *, machine: str) -> tuple[Quantit
     return (*_line_quantities(signals.calibration, machine), scale, *strips)
 
 
-def _line_quantities(line: "SetPointCalibration", machine: str) -> tuple[Quantity, Quantity]:
+def _line_quantities(line: "SetPointCalibration", machine: str) -> tuple[Estimate, Estimate]:
     slope_std, intercept_std = np.sqrt(np.diag(line.covariance)).tolist()
     return (
-        Quantity(
+        Estimate(
             name="set-point slope",
             unit="rpm/V",
             value=rpm_from_rev_s(line.slope_rev_s_per_v),
             std=rpm_from_rev_s(slope_std),
             meaning=f"{machine} speed for one volt of set point, from the steady levels",
         ),
-        Quantity(
+        Estimate(
             name="set-point intercept",
             unit="rpm",
             value=rpm_from_rev_s(line.intercept_rev_s),
@@ -54,10 +54,10 @@ def _line_quantities(line: "SetPointCalibration", machine: str) -> tuple[Quantit
     )
 
 
-def _strip_quantities(strips: "StripAngles") -> list[Quantity]:
+def _strip_quantities(strips: "StripAngles") -> list[Estimate]:
     if strips.are_many:
         return [
-            Quantity(
+            Estimate(
                 name=f"{strips.channel} largest error of a tooth",
                 unit="deg",
                 value=DEGREES_PER_REVOLUTION * float(strips.error_rev[strips.worst]),
@@ -67,7 +67,7 @@ def _strip_quantities(strips: "StripAngles") -> list[Quantity]:
         ]
     pairs = zip(strips.angle_rev.tolist(), strips.std_rev.tolist(), strict=True)
     return [
-        Quantity(
+        Estimate(
             name=f"{strips.channel} strip {number}",
             unit="deg",
             value=DEGREES_PER_REVOLUTION * angle,

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from pydantic import FiniteFloat
 
-from shaftprint.fingerprint._quantity import Quantity
+from shaftprint.fingerprint._number import Number
 from shaftprint.records import Record
 from shaftprint.vessel._ship import ImoNumber, ShortName
 
@@ -58,9 +58,9 @@ class Conditions(Record):
     """Depth of the water [m]."""
     wind_m_s: FiniteFloat | None = None
     """Speed of the true wind [m/s]."""
-    engine_speed: Quantity
+    engine_speed: Number
     """Working-point engine speed."""
-    shaft_torque: Quantity
+    shaft_torque: Number
     """Working-point shaft torque at the gauge."""
     set_point_v: float
     """Mean set-point voltage of the working point [V]."""

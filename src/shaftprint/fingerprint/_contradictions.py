@@ -10,7 +10,7 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from shaftprint.fingerprint._quantity import Quantity
+from shaftprint.identify.fit._estimate import Estimate
 from shaftprint.reasons import Reason
 from shaftprint.signals._scale_reasons import scale_reasons
 from shaftprint.signals.levels._speed_scale import ScaleEvidence
@@ -37,7 +37,7 @@ class _Factor:
 
 
 def contradictions(
-    physical: tuple[Quantity, ...], signals: "Signals", vessel: "Vessel", campaign: "Campaign"
+    physical: tuple[Estimate, ...], signals: "Signals", vessel: "Vessel", campaign: "Campaign"
 ) -> tuple[Reason, ...]:
     """Return what a test contradicts of the vessel file so that its numbers are in doubt.
 
@@ -101,7 +101,7 @@ def _scales(
     )
 
 
-def _factor(quantity: Quantity | None) -> _Factor | None:
+def _factor(quantity: Estimate | None) -> _Factor | None:
     """Return how far a number is from what was expected; None where nothing was, or it is not known."""
     if quantity is None or not quantity.expected or not quantity.value > 0.0 or not math.isfinite(quantity.std):
         return None

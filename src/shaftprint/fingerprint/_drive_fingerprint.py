@@ -14,7 +14,7 @@ from shaftprint.errors import FingerprintError, ShaftprintError
 from shaftprint.files import read_json, write_bytes
 from shaftprint.fingerprint._covariance_check import covariance_fault
 from shaftprint.fingerprint._fingerprint import SourceFile
-from shaftprint.fingerprint._quantity import Deviation, Quantity
+from shaftprint.fingerprint._number import Deviation, Number
 from shaftprint.identify.judgement._verdict import Verdict
 from shaftprint.identify.likelihood._prior import Prior
 from shaftprint.notebook._shown import Shown
@@ -106,7 +106,7 @@ class DriveFingerprint(Shown, Record):
     """Unit of each input by its name; empty where it is that of an own structure."""
     outputs: dict[str, str]
     """Unit of each output by its name."""
-    parameters: tuple[Quantity, ...]
+    parameters: tuple[Number, ...]
     """Free parameters."""
     held: dict[str, float]
     """Parameters that were held, with their values."""
@@ -114,7 +114,7 @@ class DriveFingerprint(Shown, Record):
     """Parameters of which something was known before the test; it counts in the standard deviations."""
     covariance: tuple[tuple[float, ...], ...]
     """Covariance of the free parameters, in their order."""
-    combinations: tuple[Quantity, ...]
+    combinations: tuple[Number, ...]
     """Combinations of parameters."""
     records: tuple[DriveRecord, ...]
     """The records that were fitted."""

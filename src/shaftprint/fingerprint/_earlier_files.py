@@ -6,6 +6,7 @@ adds fields to 2.0 and changes none, so what is known here is read of every one 
 
 import json
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 from pydantic import ValidationError
@@ -16,7 +17,7 @@ from shaftprint.errors import FingerprintError, StructureError
 from shaftprint.fingerprint._conditions import WATER
 from shaftprint.fingerprint._fingerprint import SCHEMA_VERSION, Fingerprint
 from shaftprint.fingerprint._physical import GAUGE_ZERO
-from shaftprint.fingerprint._quantity import Quantity
+from shaftprint.identify.fit._estimate import Estimate
 from shaftprint.models._role import Role
 from shaftprint.notebook._summary import shortened
 
@@ -32,6 +33,9 @@ NEW_IN: Mapping[int, tuple[str, ...]] = {
     2: ("joint", "conditions.ship", *(f"conditions.{name}" for name in WATER)),
 }
 """Fields that came with each schema 2.N, dots between their steps."""
+
+# what pydantic calls a field that a model, and one that a dataclass, does not know
+_UNKNOWN = ("extra_forbidden", "unexpected_keyword_argument")
 
 
 def of_earlier_schema(text: str) -> Fingerprint:
@@ -74,7 +78,7 @@ def of_later_schema(text: str) -> Fingerprint:
     try:
         return Fingerprint.model_validate_json(json.dumps(content))
     except ValidationError as error:
-        unknown = [details["loc"] for details in error.errors() if details["type"] == "extra_forbidden"]
+        unknown = [details["loc"] for details in error.errors() if details["type"] in _UNKNOWN]
         if not unknown:
             raise
     for place in unknown:
@@ -111,10 +115,10 @@ def with_roles(fingerprint: Fingerprint) -> Fingerprint:
             "parameters": _named(fingerprint.parameters, roles),
             "combinations": _named(fingerprint.combinations, roles),
             "physical": _named(fingerprint.physical, roles),
-            "margins": tuple(number.model_copy(update={"role": ShipRole.LOOP_GAIN}) for number in fingerprint.margins),
+            "margins": tuple(replace(number, role=ShipRole.LOOP_GAIN) for number in fingerprint.margins),
         }
     )
 
 
-def _named(numbers: tuple[Quantity, ...], roles: Mapping[str, Role | None]) -> tuple[Quantity, ...]:
-    return tuple(number.model_copy(update={"role": roles.get(number.name)}) for number in numbers)
+def _named(numbers: tuple[Estimate, ...], roles: Mapping[str, Role | None]) -> tuple[Estimate, ...]:
+    return tuple(replace(number, role=roles.get(number.name)) for number in numbers)

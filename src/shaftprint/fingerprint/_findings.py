@@ -9,9 +9,9 @@ from shaftprint.catalogue._roles import ShipRole
 from shaftprint.digits import p_value_text, plain_letters, stated, stated_interval
 from shaftprint.distributions import NORMAL_95
 from shaftprint.fingerprint._physical import GAUGE_ZERO
-from shaftprint.fingerprint._quantity import Quantity
 from shaftprint.fingerprint._working_point_share import LOAD_WANDER
-from shaftprint.identify.fit._identification import Estimate, Identification
+from shaftprint.identify.fit._estimate import Estimate
+from shaftprint.identify.fit._identification import Identification
 from shaftprint.identify.judgement._number_precision import doubts_of
 from shaftprint.identify.likelihood._prior import PRIOR_OF
 from shaftprint.identify.uncertainty._budget import Budget
@@ -47,7 +47,7 @@ WHY = {
 
 def findings_of(
     identification: Identification,
-    physical: tuple[Quantity, ...],
+    physical: tuple[Estimate, ...],
     uncertainty: Budget,
     left_out: dict[str, str],
     profile: Profile | None = None,
@@ -182,7 +182,7 @@ def _common(identification: Identification) -> set[str]:
     return {name for part in identification.experiments for name in part.response.common}
 
 
-def _gauge_zero(physical: tuple[Quantity, ...]) -> list[str]:
+def _gauge_zero(physical: tuple[Estimate, ...]) -> list[str]:
     return [
         f"{q.name} = {stated(q.value, q.std, q.unit)}: the torque gauge has a zero offset, there is constant friction, "
         "or the inflow is not zero."
@@ -191,7 +191,7 @@ def _gauge_zero(physical: tuple[Quantity, ...]) -> list[str]:
     ]
 
 
-def _against_expected(physical: tuple[Quantity, ...], vessel: "Vessel | None", *, by_scale: bool) -> list[str]:
+def _against_expected(physical: tuple[Estimate, ...], vessel: "Vessel | None", *, by_scale: bool) -> list[str]:
     findings = []
     for quantity in physical:
         # the zero of the gauge, expected at zero, has its own sentence
@@ -213,7 +213,7 @@ def _factor(ratio: float) -> str:
     return f": a factor {max(ratio, 1.0 / ratio):.2f}" if ratio > 0.0 else ""
 
 
-def _other_direction(quantity: Quantity, vessel: "Vessel | None") -> str:
+def _other_direction(quantity: Estimate, vessel: "Vessel | None") -> str:
     """Return that the torque coefficient is the one of the other direction, where it is; empty where not."""
     if vessel is None or quantity.role != ShipRole.TORQUE:
         return ""
@@ -235,5 +235,5 @@ def _written(estimate: Estimate, profile: Profile | None) -> str:
     return stated_interval(estimate.value, ends.lower, ends.upper, std, estimate.unit)
 
 
-def _unit(number: Estimate | Quantity) -> str:
+def _unit(number: Estimate) -> str:
     return "" if number.unit == "-" else f" {number.unit}"

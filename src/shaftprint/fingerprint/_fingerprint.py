@@ -15,9 +15,10 @@ from shaftprint.fingerprint._joint_numbers import JointNumbers
 from shaftprint.fingerprint._labelled_numbers import labelled_numbers
 from shaftprint.fingerprint._leg_records import LegRecord, NoiseSpectrum
 from shaftprint.fingerprint._line_with_limits import LineWithLimits
-from shaftprint.fingerprint._quantity import Quantity
+from shaftprint.fingerprint._number import Number
 from shaftprint.fingerprint._validation_record import ValidationRecord
 from shaftprint.fingerprint._vessel_fields import FieldValue
+from shaftprint.identify.fit._estimate import Estimate
 from shaftprint.identify.judgement._verdict import Verdict
 from shaftprint.identify.likelihood._prior import Prior
 from shaftprint.identify.prediction._noise_levels import NoiseLevels
@@ -95,7 +96,7 @@ class Fingerprint(Shown, Labelled, Record):
     was not measured."""
     structure: str
     """Name of the model structure."""
-    parameters: tuple[Quantity, ...]
+    parameters: tuple[Number, ...]
     """Free parameters, normalised."""
     held: dict[str, float]
     """Parameters that were held, with their values."""
@@ -103,11 +104,11 @@ class Fingerprint(Shown, Labelled, Record):
     """Parameters of which something was known before the test; it counts in the standard deviations."""
     covariance: tuple[tuple[float, ...], ...]
     """Covariance of the free parameters, in their order."""
-    combinations: tuple[Quantity, ...]
+    combinations: tuple[Number, ...]
     """Combinations of parameters."""
-    physical: tuple[Quantity, ...]
+    physical: tuple[Number, ...]
     """Physical values, each with what was expected."""
-    margins: tuple[Quantity, ...]
+    margins: tuple[Number, ...]
     """Stability margins; empty for a structure without feedback."""
     joint: JointNumbers | None = None
     """Covariance of the numbers of the ship together, by which two tests are compared along causes; None in the file of
@@ -118,7 +119,7 @@ class Fingerprint(Shown, Labelled, Record):
     vessel_fields: dict[str, FieldValue] = Field(default_factory=dict)
     """What the vessel file states, field by field, so that two tests know which errors they share; empty in the file of
     an earlier version."""
-    calibration: tuple[Quantity, ...]
+    calibration: tuple[Number, ...]
     """What the recording itself told of its sensors: the set-point line and the angles of the strips."""
     quality: Quality
     """Fit and data quality."""
@@ -158,7 +159,7 @@ class Fingerprint(Shown, Labelled, Record):
         return self
 
     @property
-    def numbers(self) -> dict[str, tuple[Quantity, ...]]:
+    def numbers(self) -> dict[str, tuple[Estimate, ...]]:
         """All numbers, by what they are."""
         return {
             "parameter": self.parameters,
@@ -183,7 +184,7 @@ class Fingerprint(Shown, Labelled, Record):
         """SHA-256 of the recording; None where the file does not say it."""
         return next((one.sha256 for one in self.sources if one.role == "recording"), None)
 
-    def quantity(self, name: str) -> Quantity:
+    def quantity(self, name: str) -> Estimate:
         """Return a parameter, combination, physical value, margin or calibration by its name.
 
         Raises
@@ -199,7 +200,7 @@ class Fingerprint(Shown, Labelled, Record):
             f"the fingerprint has no {name!r}; it has {', '.join(quantity.name for quantity in quantities)}."
         )
 
-    def multiplied(self, number: Quantity) -> Quantity | None:
+    def multiplied(self, number: Estimate) -> Estimate | None:
         """Return the parameter of which a physical value is a multiple; None where it is none.
 
         A gain on a logged rack is none: its physical value is multiplied by the slope of the rack, which is found too.

@@ -5,13 +5,13 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from shaftprint.arrays import FloatArray
-from shaftprint.fingerprint._quantity import Quantity
+from shaftprint.identify.fit._estimate import Estimate
 from shaftprint.notebook._labelled import LabelledData
 from shaftprint.notebook._labelled_rows import labelled_rows
 
 
 def labelled_numbers(
-    numbers: Mapping[str, Sequence[Quantity]], covariance: FloatArray, facts: Mapping[str, str]
+    numbers: Mapping[str, Sequence[Estimate]], covariance: FloatArray, facts: Mapping[str, str]
 ) -> LabelledData:
     """Return a row for each number; what is not known is nan.
 

@@ -4,7 +4,6 @@ It stands beside the numbers of the linear fit and repeats their values, so that
 fit gives all of them other values.
 """
 
-import math
 from itertools import pairwise
 from typing import Annotated, Final, Literal, Self, TypeAlias
 
@@ -13,47 +12,12 @@ from pydantic import Field, FiniteFloat, model_validator
 from shaftprint.catalogue._limited import limited
 from shaftprint.errors import StructureError
 from shaftprint.fingerprint._covariance_check import covariance_fault
-from shaftprint.fingerprint._quantity import Deviation, Quantity
+from shaftprint.fingerprint._number import Number, NumberOfLimit
 from shaftprint.records import Record
 
 # More corners than any full-load curve has; the equations of the model grow with them.
 MOST_CORNERS: Final = 200
 LimitName = Literal["torque", "rate", "deadband", "ramp", "smoke"]
-
-
-class LimitNumber(Record):
-    """One number of a limit in the units of the ship, as ``limits`` states it."""
-
-    limit: str
-    """The limit that it belongs to, in words."""
-    name: str
-    """Symbol."""
-    unit: str
-    """Unit, ``-`` where there is none."""
-    value: float
-    """Estimate."""
-    std: Deviation
-    """Standard deviation."""
-    interval_95: tuple[float, float]
-    """95 % interval; an end that the data did not set is infinite."""
-    meaning: str
-    """What it is."""
-    doubt: str = ""
-    """Why the number is not trusted; empty where it is."""
-
-    @property
-    def quantity(self) -> Quantity:
-        """The number as other numbers of a fingerprint are."""
-        return Quantity(
-            name=self.name,
-            unit=self.unit,
-            value=self.value,
-            std=self.std,
-            interval_95=self.interval_95,
-            interval_open=(math.isinf(self.interval_95[0]), math.isinf(self.interval_95[1])),
-            meaning=self.meaning,
-        )
-
 
 FoundBy: TypeAlias = Literal["limits", "joint fit"]
 """Which fit gave a line with its limits."""
@@ -69,12 +33,12 @@ class LineWithLimits(Record):
     """Limits that the structure has, by the names of ``catalogue.limited``; empty where none acts."""
     curve: Annotated[tuple[tuple[FiniteFloat, FiniteFloat], ...], Field(max_length=MOST_CORNERS)] = ()
     """Shape of the full-load torque: deviation of the speed, and torque over that at the working-point speed."""
-    numbers: tuple[LimitNumber, ...]
+    numbers: tuple[NumberOfLimit, ...]
     """Levels, rates and widths in the units of the ship; those of a set point that is held or rounded, which the
     structure does not have, too."""
     not_seen: tuple[str, ...] = ()
     """Up to which level the test excludes each limit that does not act, in words."""
-    parameters: tuple[Quantity, ...]
+    parameters: tuple[Number, ...]
     """Parameters of the whole model that were identified, normalised."""
     held: dict[str, FiniteFloat]
     """The others."""

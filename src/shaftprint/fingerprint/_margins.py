@@ -4,8 +4,8 @@ import numpy as np
 
 from shaftprint.catalogue._roles import ShipRole
 from shaftprint.fingerprint._margin_numbers import MEANINGS, margin_numbers, margin_values
-from shaftprint.fingerprint._quantity import Quantity
 from shaftprint.fingerprint._working_point_share import std_of_working_point, widened
+from shaftprint.identify.fit._estimate import Estimate
 from shaftprint.identify.fit._identification import Identification
 from shaftprint.identify.uncertainty._budget import Budget, budget
 from shaftprint.identify.uncertainty._profile import Profile
@@ -15,7 +15,7 @@ UNKNOWN_STD = np.inf
 
 def margin_quantities(
     identification: Identification, profile: Profile | None = None, stated: Budget | None = None
-) -> tuple[Quantity, ...]:
+) -> tuple[Estimate, ...]:
     """Return gain, phase and delay margin with standard deviations to first order; nothing without feedback.
 
     A margin that does not exist, because no gain or delay reaches instability, is left out.
@@ -45,7 +45,7 @@ def margin_quantities(
         further = std_of_working_point(stated, name) if name in std else 0.0
         unit, meaning = MEANINGS[name]
         quantities.append(
-            Quantity(
+            Estimate(
                 name=name,
                 unit=unit,
                 value=value,

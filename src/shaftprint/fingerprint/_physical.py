@@ -22,8 +22,8 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.catalogue._roles import ROLES, ShipRole
-from shaftprint.fingerprint._quantity import Quantity
 from shaftprint.fingerprint._working_point_share import LOAD_WANDER, shares_over_torque, shifts_of_working_point
+from shaftprint.identify.fit._estimate import Estimate
 from shaftprint.identify.fit._identification import Identification
 from shaftprint.identify.likelihood._known import stated_by_vessel
 from shaftprint.identify.uncertainty._budget import Budget, budget
@@ -71,7 +71,7 @@ def physical_numbers(
 
 def physical_quantities(
     identification: Identification, working_point: "WorkingPoint", vessel: "Vessel", stated: Budget | None = None
-) -> tuple[Quantity, ...]:
+) -> tuple[Estimate, ...]:
     """Return physical values with standard deviations, beside the values of the vessel file where it has them.
 
     Parameters
@@ -90,7 +90,7 @@ def physical_quantities(
     for item in numbers:
         row = stated.row(item.number.name)
         quantities.append(
-            Quantity(
+            Estimate(
                 name=row.name,
                 unit=row.unit,
                 value=row.value,

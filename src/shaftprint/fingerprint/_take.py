@@ -2,7 +2,7 @@
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import datetime
 from typing import TYPE_CHECKING
 
@@ -24,7 +24,6 @@ from shaftprint.fingerprint._leg_records import LegRecord, NoiseSpectrum
 from shaftprint.fingerprint._margin_numbers import margin_numbers
 from shaftprint.fingerprint._margins import margin_quantities
 from shaftprint.fingerprint._physical import physical_numbers, physical_quantities
-from shaftprint.fingerprint._quantity import Quantity
 from shaftprint.fingerprint._vessel_fields import vessel_fields
 from shaftprint.fingerprint._working_point_share import (
     shifts_of_working_point,
@@ -32,7 +31,8 @@ from shaftprint.fingerprint._working_point_share import (
     widened,
     widened_covariance,
 )
-from shaftprint.identify.fit._identification import Estimate, Identification
+from shaftprint.identify.fit._estimate import Estimate
+from shaftprint.identify.fit._identification import Identification
 from shaftprint.identify.judgement._verdict import assess
 from shaftprint.identify.uncertainty._budget import Budget, budget
 from shaftprint.identify.uncertainty._profile import Interval, profile
@@ -65,7 +65,7 @@ def take_fingerprint(
     reasons: Sequence[Reason] = (),
     noise: Sequence[NoiseSpectrum] = (),
     torque_ripple: float | None = None,
-    ship: Sequence[Quantity] = (),
+    ship: Sequence[Estimate] = (),
     explained_share: float = 0.0,
 ) -> Fingerprint:
     """Return the fingerprint of an identified line.
@@ -111,7 +111,7 @@ def take_fingerprint(
     physical = (*physical_quantities(identification, signals.working_point, vessel, stated), *ship)
     left_out = _left_out(identification)
     profiled = profile(identification, margins) if identification.is_likelihood else None
-    reported = _Reported(stated, {} if profiled is None else profiled.intervals, _meanings(identification))
+    reported = _Reported(stated, {} if profiled is None else profiled.intervals)
     stated_conditions = conditions_stated(vessel, campaign, trial_conditions, tested_at)
     conditions = _conditions(identification, signals, vessel, left_out, stated_conditions)
     margin = margin_quantities(identification, profiled, stated)
@@ -121,7 +121,7 @@ def take_fingerprint(
         profile=profiled,
         signal_to_noise=signal_to_noise,
         reasons=(*off, *reasons),
-        further=[_estimate(q) for q in (*physical, *margin, conditions.engine_speed, conditions.shaft_torque)],
+        further=[*physical, *margin, conditions.engine_speed, conditions.shaft_torque],
         assumptions=assumptions_of(identification, vessel, margins, {} if profiled is None else profiled.intervals),
         explained_share=explained_share,
     )
@@ -151,18 +151,6 @@ def take_fingerprint(
         quality=_quality(identification, signals, signal_to_noise),
         verdict=verdict,
         findings=findings_of(identification, physical, stated, left_out, profiled, vessel=vessel, reasons=off),
-    )
-
-
-def _estimate(quantity: Quantity) -> Estimate:
-    """Return a number of the fingerprint as the verdict takes it."""
-    return Estimate(
-        name=quantity.name,
-        unit=quantity.unit,
-        value=quantity.value,
-        std=quantity.std,
-        at_bound=quantity.at_bound,
-        role=quantity.role,
     )
 
 
@@ -223,9 +211,9 @@ def _conditions(
     )
 
 
-def _working_point(point: "WorkingPoint", vessel: "Vessel") -> tuple[Quantity, Quantity]:
+def _working_point(point: "WorkingPoint", vessel: "Vessel") -> tuple[Estimate, Estimate]:
     return (
-        Quantity(
+        Estimate(
             name="n_0",
             unit="rpm",
             value=point.engine_speed_rev_s * SECONDS_PER_MINUTE,
@@ -233,7 +221,7 @@ def _working_point(point: "WorkingPoint", vessel: "Vessel") -> tuple[Quantity, Q
             meaning=f"{vessel.machine.word} speed of the working point",
             role=ShipRole.SPEED,
         ),
-        Quantity(
+        Estimate(
             name="M_s0",
             unit="N m",
             value=point.shaft_torque_nm,
@@ -244,37 +232,25 @@ def _working_point(point: "WorkingPoint", vessel: "Vessel") -> tuple[Quantity, Q
     )
 
 
-def _meanings(identification: Identification) -> dict[str, str]:
-    structure = identification.structure
-    parameters = {item.name: item.meaning for item in structure.parameters}
-    return parameters | {item.name: item.meaning for item in structure.combinations}
-
-
 @dataclass(frozen=True, slots=True)
 class _Reported:
     """Turns estimates of the fit into what is reported: with the error of the working point."""
 
     stated: Budget
     intervals: Mapping[str, Interval]
-    meanings: Mapping[str, str]
 
-    def quantity(self, estimate: Estimate) -> Quantity:
+    def quantity(self, estimate: Estimate) -> Estimate:
         """Return a parameter or combination with its standard deviation and interval."""
         interval = self.intervals.get(estimate.name)
         further = std_of_working_point(self.stated, estimate.name)
         is_open = (False, False) if interval is None else (interval.lower_open, interval.upper_open)
-        return Quantity(
-            name=estimate.name,
-            unit=estimate.unit,
-            value=estimate.value,
+        return replace(
+            estimate,
             std=float(np.hypot(estimate.std, further)),
             interval_95=None
             if interval is None
             else widened((interval.lower, interval.upper), estimate.value, further, is_open),
             interval_open=is_open,
-            at_bound=estimate.at_bound,
-            meaning=self.meanings[estimate.name],
-            role=estimate.role,
         )
 
 

@@ -10,7 +10,7 @@ from shaftprint.catalogue._own_structure import TypedName, chosen_structures
 from shaftprint.errors import FingerprintError, RequestError, StructureError
 from shaftprint.fingerprint._fingerprint import Fingerprint
 from shaftprint.fingerprint._model import model_with_limits, structure_to_use
-from shaftprint.fingerprint._quantity import Quantity
+from shaftprint.identify.fit._estimate import Estimate
 from shaftprint.models._structure import Structure
 from shaftprint.spelling import meant
 
@@ -38,7 +38,7 @@ class _Identified:
     """What was identified, of the line for small signals or of that with its limits."""
 
     name: str
-    parameters: tuple[Quantity, ...]
+    parameters: tuple[Estimate, ...]
     held: Mapping[str, float]
     covariance: FloatArray
 

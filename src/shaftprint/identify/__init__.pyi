@@ -1,5 +1,6 @@
 from .comparison._compare import compare_fits, compare_structures
-from .fit._identification import Estimate, Identification
+from .fit._estimate import Estimate
+from .fit._identification import Identification
 from .fit._identify import identify, identify_jointly
 from .fit._refit import refit
 from .fit._scan import scan

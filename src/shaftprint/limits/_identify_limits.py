@@ -9,7 +9,8 @@ import numpy as np
 from shaftprint.campaign._campaign import Campaign
 from shaftprint.catalogue._limited_governor import GovernorSymbol, limited_governor
 from shaftprint.errors import SettingsError
-from shaftprint.identify.fit._identification import Estimate, Identification
+from shaftprint.identify.fit._estimate import Estimate
+from shaftprint.identify.fit._identification import Identification
 from shaftprint.identify.likelihood._prior import Prior
 from shaftprint.limits._candidates import CANDIDATES, Kind
 from shaftprint.limits._governor_fit import GOVERNOR, Fitted, fitted, identified, schwarz

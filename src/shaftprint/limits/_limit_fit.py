@@ -3,49 +3,19 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from shaftprint.identify.fit._identification import Estimate, Identification
+from shaftprint.identify.fit._estimate import Estimate
+from shaftprint.identify.fit._identification import Identification
 from shaftprint.limits._candidates import STRUCTURE_LIMITS, Kind, parameters_of
 from shaftprint.limits.prediction._prediction_error import PredictedTorque
 from shaftprint.notebook._shown import Shown
 from shaftprint.notebook._summary import Summary, shortened
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class LimitEstimate:
-    """One number of a limit, with its 95 % interval."""
-
-    kind: Kind
-    """The limit that it belongs to."""
-    name: str
-    """Symbol."""
-    unit: str
-    """Unit, ``-`` where there is none."""
-    value: float
-    """Estimate."""
-    std: float
-    """Standard deviation: of the fit, and of what the data were divided by."""
-    lower: float
-    """Lower end of the interval; minus infinity where the data set none."""
-    upper: float
-    """Upper end of the interval; infinity where the data set none."""
-    meaning: str
-    """What it is."""
-    at_bound: bool = False
-    """Whether the search stopped at a bound."""
-    doubt: str = ""
-    """Why the number is not trusted; empty where it is."""
-
-    @property
-    def trusted(self) -> bool:
-        """Whether the number may be used."""
-        return not self.doubt
-
-
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
 class LimitFit(Shown):
     """The limits of a line."""
 
-    numbers: tuple[LimitEstimate, ...]
+    numbers: tuple[Estimate, ...]
     """Their levels, rates and widths; the first of each limit is the one by which it is known."""
     gains: Mapping[Kind, float]
     """Fall of minus twice the log-likelihood that each limit brings to the others, the strongest evidence first."""
@@ -60,8 +30,10 @@ class LimitFit(Shown):
 
     def summary(self) -> Summary:
         """Return the limits with their intervals."""
+        ends = {one.name: one.interval_95 or one.limits_95 for one in self.numbers}
         facts = {
-            one.name: f"{one.value:.4g}, 95 % {one.lower:.4g} to {one.upper:.4g} {one.unit}" for one in self.numbers
+            one.name: f"{one.value:.4g}, 95 % {ends[one.name][0]:.4g} to {ends[one.name][1]:.4g} {one.unit}"
+            for one in self.numbers
         }
         return Summary(title="LimitFit", facts={**facts, "not seen": shortened(str(kind) for kind in self.not_seen)})
 
@@ -71,14 +43,14 @@ class LimitFit(Shown):
         return tuple(self.gains)
 
     @property
-    def trusted(self) -> tuple[LimitEstimate, ...]:
+    def trusted(self) -> tuple[Estimate, ...]:
         """The numbers that may be used."""
         return tuple(number for number in self.numbers if number.trusted)
 
     @property
     def trusted_kinds(self) -> tuple[Kind, ...]:
         """The limits whose level may be used; a smoke limit is a share of the torque limit, where there is one."""
-        first = {number.kind: number.trusted for number in reversed(self.numbers)}
+        first = {Kind(number.limit): number.trusted for number in reversed(self.numbers)}
         return tuple(
             kind for kind in self.kinds if first[kind] and (kind is not Kind.SMOKE or first.get(Kind.TORQUE, True))
         )
@@ -86,7 +58,7 @@ class LimitFit(Shown):
     @property
     def doubts(self) -> Mapping[Kind, str]:
         """Why the level of a limit is not to be used, for those of which it is not."""
-        first = {number.kind: number for number in reversed(self.numbers)}
+        first = {Kind(number.limit): number for number in reversed(self.numbers)}
         return {
             kind: first[kind].doubt or "it is a share of a torque limit that is not trusted"
             for kind in self.kinds

@@ -1,5 +1,6 @@
 """Numbers of limits in the units of the ship, and whether they may be trusted."""
 
+import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 
@@ -7,10 +8,10 @@ import numpy as np
 
 from shaftprint.catalogue._limited_governor import GovernorSymbol
 from shaftprint.distributions import NORMAL_95
+from shaftprint.identify.fit._estimate import Estimate
 from shaftprint.limits._candidates import CANDIDATES, Kind, LimitCandidate
 from shaftprint.limits._governor_fit import GOVERNOR, Fitted
 from shaftprint.limits._level_profile import LevelInterval, profile_interval
-from shaftprint.limits._limit_fit import LimitEstimate
 from shaftprint.limits._set_point_quantum import Quantum
 from shaftprint.limits._uncertainty import LevelScatter
 from shaftprint.limits.prediction._held_set_point import Messages
@@ -125,12 +126,12 @@ class Units:
 
 def numbers_of(
     fit: Fitted, spread: LevelScatter, units: Units, reach: Reach, *, say: Callable[[str], None]
-) -> tuple[LimitEstimate, ...]:
+) -> tuple[Estimate, ...]:
     """Return the numbers of all limits, with profile intervals; ``say`` is told which."""
     of_governor = doubt_of_governor(fit)
     by_kind = {candidate.kind: candidate for candidate in CANDIDATES}
     done = set[str]()
-    rows: list[LimitEstimate] = []
+    rows: list[Estimate] = []
     for kind in fit.kinds:
         if kind is Kind.HELD and fit.messages is not None:
             rows.append(_doubted(_cycle(fit.messages), of_governor))
@@ -144,7 +145,7 @@ def numbers_of(
     return tuple(rows)
 
 
-def _doubted(number: LimitEstimate, doubt: str) -> LimitEstimate:
+def _doubted(number: Estimate, doubt: str) -> Estimate:
     """Return a number with a doubt that goes before its own; as it is where there is none."""
     return replace(number, doubt=doubt) if doubt else number
 
@@ -202,7 +203,7 @@ def _below_the_curve(kind: Kind, values: Mapping[str, float], units: Units) -> s
     )
 
 
-def _printed(fit: Fitted, spread: LevelScatter, units: Units, kind: Kind, name: str) -> Iterator[LimitEstimate]:
+def _printed(fit: Fitted, spread: LevelScatter, units: Units, kind: Kind, name: str) -> Iterator[Estimate]:
     parameter = next(p for p in fit.term.structure.free if p.name == name)
     value = fit.values[name]
     at_bound = value in (parameter.lower, parameter.upper)
@@ -213,21 +214,24 @@ def _printed(fit: Fitted, spread: LevelScatter, units: Units, kind: Kind, name: 
     for scale in units.scales(name):
         more = NORMAL_95 * scale.share_std * abs(value)
         lower, upper = (_widened(value, end, more) for end in (interval.lower, interval.upper))
-        yield LimitEstimate(
-            kind=kind,
+        yield Estimate(
+            limit=kind.value,
             name=scale.name,
             unit=scale.unit,
             value=scale.factor * value,
             std=scale.factor * float(np.hypot(spread.std(name), scale.share_std * value)),
-            lower=-np.inf if interval.lower_open else scale.factor * lower,
-            upper=np.inf if interval.upper_open else scale.factor * upper,
+            interval_95=(
+                -math.inf if interval.lower_open else scale.factor * lower,
+                math.inf if interval.upper_open else scale.factor * upper,
+            ),
+            interval_open=(interval.lower_open, interval.upper_open),
             meaning=scale.meaning,
             at_bound=at_bound,
             doubt=doubt,
         )
 
 
-def _cycle(messages: Messages) -> LimitEstimate:
+def _cycle(messages: Messages) -> Estimate:
     """Return the cycle of the messages between which the set point is held."""
     lower, value, upper = (messages.quantile(share) for share in (0.025, 0.5, 0.975))
     meaning = "time from one message with the set point to the next, the last one held between them"
@@ -236,7 +240,7 @@ def _cycle(messages: Messages) -> LimitEstimate:
     )
 
 
-def quantum_number(quantum: Quantum, units: Units, fit: Fitted) -> LimitEstimate:
+def quantum_number(quantum: Quantum, units: Units, fit: Fitted) -> Estimate:
     """Return the step of a quantised set point, beside a governor."""
     value, std = units.speed_rpm * quantum.step, units.speed_rpm * quantum.std
     ends = (value - NORMAL_95 * std, value, value + NORMAL_95 * std)
@@ -246,18 +250,17 @@ def quantum_number(quantum: Quantum, units: Units, fit: Fitted) -> LimitEstimate
 
 def _of_set_point(
     kind: Kind, scale: Scale, ends: tuple[float, float, float], std: float, *, doubt: str = ""
-) -> LimitEstimate:
+) -> Estimate:
     """Return a number of the set point, from lower end, value and upper end; it has no parameter of the governor."""
     lower, value, upper = ends
     interval = LevelInterval(lower=lower, upper=upper, lower_open=False, upper_open=False)
-    return LimitEstimate(
-        kind=kind,
+    return Estimate(
+        limit=kind.value,
         name=scale.name,
         unit=scale.unit,
         value=value,
         std=std,
-        lower=lower,
-        upper=upper,
+        interval_95=(lower, upper),
         meaning=scale.meaning,
         doubt=_doubt(value, interval, at_bound=False) or doubt,
     )

@@ -17,7 +17,7 @@ from shaftprint.store._text import LONGEST_TEXT, expect_short
 if TYPE_CHECKING:
     from shaftprint.fingerprint._conditions import ShipIdentity
     from shaftprint.fingerprint._fingerprint import Fingerprint, SourceFile
-    from shaftprint.fingerprint._quantity import Quantity
+    from shaftprint.identify.fit._estimate import Estimate
 
 
 _LATEST = datetime(9000, 1, 1, tzinfo=UTC)
@@ -139,7 +139,7 @@ def numbers_of(fingerprint: "Fingerprint", *, named: str) -> tuple[StoredNumber,
     return tuple(found.values())
 
 
-def _number(kind: str, quantity: "Quantity", *, trusted: bool, named: str) -> StoredNumber:
+def _number(kind: str, quantity: "Estimate", *, trusted: bool, named: str) -> StoredNumber:
     expect_short(quantity.name, "name of a number", named=named)
     expect_short(quantity.unit, "unit", named=named)
     low, high = quantity.limits_95

@@ -14,7 +14,7 @@ import numpy as np
 from shaftprint.arrays import FloatArray
 from shaftprint.catalogue._limited import limited
 from shaftprint.fingerprint._fingerprint import Fingerprint
-from shaftprint.fingerprint._quantity import Quantity
+from shaftprint.identify.fit._estimate import Estimate
 from shaftprint.identify.fit._identification import Identification
 from shaftprint.identify.likelihood._prior import Prior
 from shaftprint.limits._identify_limits import expect_engine, identify_limits
@@ -131,17 +131,10 @@ def _as_far_off_as_records(of_joint: FloatArray, of_sines: FloatArray) -> FloatA
     return np.asarray(of_joint * np.outer(factor, factor))
 
 
-def _quantity(before: Quantity, value: float, variance: float, *, at_bound: bool) -> Quantity:
+def _quantity(before: Estimate, value: float, variance: float, *, at_bound: bool) -> Estimate:
     """Return a number with another value; its interval, of the profile of another likelihood, goes."""
-    return before.model_copy(
-        update={
-            "value": value,
-            "std": float(np.sqrt(variance)),
-            "interval_95": None,
-            "interval_open": (False, False),
-            "at_bound": at_bound,
-        }
-    )
+    std = float(np.sqrt(variance))
+    return replace(before, value=value, std=std, interval_95=None, interval_open=(False, False), at_bound=at_bound)
 
 
 def _of(fit: Identification, names: list[str]) -> FloatArray:

@@ -4,10 +4,11 @@ from dataclasses import replace
 
 from shaftprint.fingerprint._fingerprint import Fingerprint
 from shaftprint.fingerprint._line_with_limits import FoundBy
+from shaftprint.limits._candidates import Kind
 from shaftprint.limits._identify_limits import expect_engine, identify_limits
 from shaftprint.limits._levels_beside import levels_beside
 from shaftprint.limits._limit_fit import LimitFit
-from shaftprint.survey._line_with_limits import expect_limitable, limit_number, line_with_limits
+from shaftprint.survey._line_with_limits import expect_limitable, line_with_limits
 from shaftprint.survey._progress import SILENT, Progress
 from shaftprint.survey._survey import Survey
 
@@ -61,7 +62,7 @@ def with_levels_beside(
         vessel=survey.vessel,
         working_point=survey.signals.working_point,
         found_by=found_by,
-        numbers=[limit_number(one) for one in limits.numbers if one.kind in limits.trusted_kinds],
+        numbers=[one for one in limits.numbers if Kind(one.limit) in limits.trusted_kinds],
         not_seen=list(limits.not_seen.values()),
     )
     return replace(

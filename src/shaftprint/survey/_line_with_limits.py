@@ -13,10 +13,9 @@ from shaftprint.arrays import FloatArray
 from shaftprint.catalogue._limited import limited
 from shaftprint.errors import FingerprintError
 from shaftprint.fingerprint._fingerprint import Fingerprint
-from shaftprint.fingerprint._line_with_limits import FoundBy, LimitNumber, LineWithLimits
-from shaftprint.fingerprint._quantity import Quantity
+from shaftprint.fingerprint._line_with_limits import FoundBy, LineWithLimits
+from shaftprint.identify.fit._estimate import Estimate
 from shaftprint.limits._levels_beside import Levels
-from shaftprint.limits._limit_fit import LimitEstimate
 from shaftprint.models._structure import Structure
 from shaftprint.signals._working_points import WorkingPoint
 from shaftprint.vessel._vessel import Vessel
@@ -29,7 +28,7 @@ def line_with_limits(
     vessel: Vessel,
     working_point: WorkingPoint,
     found_by: FoundBy = "limits",
-    numbers: Sequence[LimitNumber] = (),
+    numbers: Sequence[Estimate] = (),
     not_seen: Sequence[str] = (),
 ) -> LineWithLimits:
     """Return the model of a line with the limits that were found beside it.
@@ -97,23 +96,9 @@ def expect_limitable(fingerprint: Fingerprint) -> None:
         )
 
 
-def limit_number(one: LimitEstimate) -> LimitNumber:
-    """Return a number of a limit as a fingerprint keeps it."""
-    return LimitNumber(
-        limit=one.kind.value,
-        name=one.name,
-        unit=one.unit,
-        value=one.value,
-        std=one.std,
-        interval_95=(one.lower, one.upper),
-        meaning=one.meaning,
-        doubt=one.doubt,
-    )
-
-
-def _level(structure: Structure, name: str, value: float, std: float) -> Quantity:
+def _level(structure: Structure, name: str, value: float, std: float) -> Estimate:
     parameter = next(p for p in structure.parameters if p.name == name)
-    return Quantity(
+    return Estimate(
         name=name,
         unit=parameter.unit,
         value=value,

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from shaftprint.catalogue._known_propeller import KnownPropeller, sails_free, with_known_propeller
-from shaftprint.fingerprint._quantity import Quantity
+from shaftprint.identify.fit._estimate import Estimate
 from shaftprint.identify.fit._identification import Identification
 from shaftprint.identify.fit._identify import identify
 from shaftprint.identify.likelihood._prior import Prior
@@ -30,7 +30,7 @@ _STARTS = 8
 
 def ship_numbers(
     fit: Identification, signals: Signals, vessel: Vessel, *, rng: np.random.Generator
-) -> tuple[Quantity, ...]:
+) -> tuple[Estimate, ...]:
     """Return what a test underway says of the ship; nothing where it was at the quay or its propeller is not known.
 
     Parameters
@@ -73,7 +73,7 @@ def ship_numbers(
             variances[name] += (value - known.found[name][0]) ** 2
     expected = _expected(hull, propeller.ship_speed_m_s)
     return tuple(
-        Quantity(
+        Estimate(
             name=name,
             unit=unit,
             value=known.found[symbol][0],

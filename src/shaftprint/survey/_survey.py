@@ -18,9 +18,9 @@ from shaftprint.catalogue._shipped import shipped_structure
 from shaftprint.errors import IdentificationError, SettingsError, StructureError
 from shaftprint.fingerprint._fingerprint import Fingerprint, SourceFile
 from shaftprint.fingerprint._leg_records import LegRecord, NoiseSpectrum, leg_record, noise_spectra
-from shaftprint.fingerprint._quantity import Quantity
 from shaftprint.fingerprint._take import take_fingerprint
 from shaftprint.identify.comparison._comparison import StructureComparison
+from shaftprint.identify.fit._estimate import Estimate
 from shaftprint.identify.fit._identification import Identification
 from shaftprint.identify.search._settings import Settings
 from shaftprint.limits._limit_fit import LimitFit
@@ -279,7 +279,7 @@ def _fingerprint(
     )
 
 
-def _ship(identification: Identification, measurement: Measurement, trial: Trial) -> tuple[Quantity, ...]:
+def _ship(identification: Identification, measurement: Measurement, trial: Trial) -> tuple[Estimate, ...]:
     """Return what the test says of a ship underway; nothing where its propellers do not pull at the measured speeds."""
     try:
         # a stream of its own: what a line is found to be does not depend on whether its ship is looked at

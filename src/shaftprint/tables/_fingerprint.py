@@ -10,7 +10,7 @@ from shaftprint.plain_table import MEANING, Column, Symbol, Table, numbers, text
 
 if TYPE_CHECKING:
     from shaftprint.fingerprint._fingerprint import Fingerprint, Quality
-    from shaftprint.fingerprint._quantity import Quantity
+    from shaftprint.identify.fit._estimate import Estimate
     from shaftprint.identify.fit._identification import Identification
     from shaftprint.identify.uncertainty._budget import Budget, BudgetRow
 
@@ -56,7 +56,7 @@ def margin_table(fingerprint: "Fingerprint", truth: Mapping[str, float] = NO_TRU
 
 def quantity_table(
     title: str,
-    quantities: "Sequence[Quantity]",
+    quantities: "Sequence[Estimate]",
     truth: Mapping[str, float] = NO_TRUTH,
     *,
     note: str = INTERVAL_NOTE,
@@ -89,7 +89,7 @@ def quantity_table(
     return Table(title=title, columns=(*columns, *texts("unit"), MEANING), rows=tuple(rows), note=note)
 
 
-def value_text(quantity: "Quantity", factor: float = 1.0) -> str:
+def value_text(quantity: "Estimate", factor: float = 1.0) -> str:
     """Return value and standard deviation; the value alone where only its interval tells how well it is known.
 
     Parameters
@@ -104,7 +104,7 @@ def value_text(quantity: "Quantity", factor: float = 1.0) -> str:
     return with_deviation(factor * quantity.value, factor * std)
 
 
-def _std_of_digits(quantity: "Quantity") -> float:
+def _std_of_digits(quantity: "Estimate") -> float:
     """Return the standard deviation that sets the digits of a number: the one shown, or that of its interval."""
     if quantity.stated_std is not None or quantity.interval_95 is None:
         return quantity.std
@@ -113,18 +113,18 @@ def _std_of_digits(quantity: "Quantity") -> float:
     return width if math.isfinite(width) and width > 0.0 else quantity.std
 
 
-def _ends(quantity: "Quantity") -> tuple[float, ...]:
+def _ends(quantity: "Estimate") -> tuple[float, ...]:
     return (quantity.std,) if quantity.interval_95 is None else quantity.interval_95
 
 
-def limits(quantity: "Quantity") -> tuple[float, float]:
+def limits(quantity: "Estimate") -> tuple[float, float]:
     """Return the 95 % interval of a quantity: the profile's, or else that of its standard deviation."""
     if quantity.interval_95 is not None:
         return quantity.interval_95
     return quantity.value - NORMAL_95 * quantity.std, quantity.value + NORMAL_95 * quantity.std
 
 
-def _interval_text(quantity: "Quantity", factor: float) -> str:
+def _interval_text(quantity: "Estimate", factor: float) -> str:
     lower, upper = limits(quantity)
     if not (math.isfinite(lower) and math.isfinite(upper)):
         return "not known"
@@ -135,14 +135,14 @@ def _interval_text(quantity: "Quantity", factor: float) -> str:
     return f"{text}*" if open_high else text
 
 
-def _truth_cells(quantity: "Quantity", truth: Mapping[str, float], factor: float) -> tuple[str, str]:
+def _truth_cells(quantity: "Estimate", truth: Mapping[str, float], factor: float) -> tuple[str, str]:
     true = truth.get(quantity.name, math.nan)
     lower, upper = limits(quantity)
     inside = "–" if math.isnan(true) else "yes" if lower <= true <= upper else "no"
     return to_digit_of(factor * true, factor * _std_of_digits(quantity)), inside
 
 
-def expected_text(quantity: "Quantity", factor: float = 1.0) -> str:
+def expected_text(quantity: "Estimate", factor: float = 1.0) -> str:
     """Return the value of the vessel file with its standard deviation, where there are such.
 
     Parameters
@@ -157,7 +157,7 @@ def expected_text(quantity: "Quantity", factor: float = 1.0) -> str:
     return with_deviation(factor * quantity.expected, factor * quantity.expected_std)
 
 
-def _difference(quantity: "Quantity") -> str:
+def _difference(quantity: "Estimate") -> str:
     if not quantity.expected:
         return "–"
     return f"{plain(PERCENT * (quantity.value / quantity.expected - 1.0), 1)} %"

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from shaftprint.design.planned_test._planned_test import PlannedTest
     from shaftprint.design.standing._standing import Standing
     from shaftprint.design.views._abort_card import AbortCard
-    from shaftprint.identify.fit._identification import Estimate
+    from shaftprint.identify.fit._estimate import Estimate
 
 PERCENT = 100.0
 _FIRST_ORDER = "Predicted to first order, for the middle of the possible ships"

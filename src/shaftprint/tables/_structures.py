@@ -9,7 +9,8 @@ from shaftprint.plain_table import Table, numbers, texts
 if TYPE_CHECKING:
     from shaftprint.identify.comparison._comparison import Candidate, StructureComparison
     from shaftprint.identify.comparison._likelihood_ratio import LikelihoodRatio
-    from shaftprint.identify.fit._identification import Estimate, Identification
+    from shaftprint.identify.fit._estimate import Estimate
+    from shaftprint.identify.fit._identification import Identification
 
 PERCENT = 100.0
 HOLD_OUT_NOTE = (

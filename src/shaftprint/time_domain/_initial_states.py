@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from shaftprint.arrays import BoolArray, FloatArray
-from shaftprint.identify.fit._identification import Estimate
+from shaftprint.identify.fit._estimate import Estimate
 from shaftprint.identify.fit._pseudo_inverse import PseudoInverse
 from shaftprint.models._structure import Structure
 from shaftprint.simulation._equilibrium import state_names

@@ -13,7 +13,7 @@ import numpy as np
 
 from shaftprint.arrays import BoolArray, FloatArray, frozen_float
 from shaftprint.errors import IdentificationError
-from shaftprint.identify.fit._identification import Estimate
+from shaftprint.identify.fit._estimate import Estimate
 from shaftprint.identify.likelihood._line_test import LineTest
 from shaftprint.identify.likelihood._term import Repeats, TermTest, WhitenedTerm
 from shaftprint.time_domain._assumed import shortened

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from shaftprint.arrays import ComplexArray, FloatArray, frozen_float
-from shaftprint.identify.fit._identification import Estimate
+from shaftprint.identify.fit._estimate import Estimate
 from shaftprint.identify.likelihood._fit_percent import fit_ceiling, fit_percent
 from shaftprint.identify.likelihood._term import FittedTerm
 from shaftprint.identify.likelihood._term_check import TermCheck

@@ -1,6 +1,7 @@
 """The comparison of fingerprints in a real browser, and what it refuses."""
 
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -13,9 +14,7 @@ pytestmark = pytest.mark.slow
 
 def moved(fingerprint, name, share):
     """The fingerprint of a later test, one physical value of which has moved and all else not."""
-    physical = tuple(
-        q.model_copy(update={"value": q.value * (1.0 + share)}) if q.name == name else q for q in fingerprint.physical
-    )
+    physical = tuple(replace(q, value=q.value * (1.0 + share)) if q.name == name else q for q in fingerprint.physical)
     return fingerprint.model_copy(update={"physical": physical})
 
 

@@ -11,6 +11,7 @@ from pydantic import BaseModel
 from shaftprint.cli._terminal import output
 from shaftprint.digits import plain_letters
 from shaftprint.escape import printable
+from shaftprint.models._role import Role
 from shaftprint.plain_table import Table
 
 # An array with more numbers than this is data, not an answer: it stays in the files that the command writes.
@@ -37,6 +38,8 @@ def as_json(noun: object) -> object:
             return noun
         case enum.Enum():
             return as_json(noun.value)
+        case Role():
+            return as_json(noun.name)
         case str():
             return printable(str(noun), keep="\n")
         case float() | np.floating():

@@ -14,7 +14,7 @@ from shaftprint.design.inputs._wish import Wish
 from shaftprint.design.plan._band import Band
 from shaftprint.design.plan._leg import Leg
 from shaftprint.design.plan._timetable import Timetable
-from shaftprint.identify.fit._identification import Estimate
+from shaftprint.identify.fit._estimate import Estimate
 from shaftprint.identify.likelihood._prior import Prior
 from shaftprint.identify.prediction._accuracy import Accuracy, predict_joint_accuracy
 from shaftprint.identify.prediction._noise_levels import NoiseLevels

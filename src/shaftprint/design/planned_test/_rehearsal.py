@@ -14,7 +14,7 @@ from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.design.plan._plan import Plan
 from shaftprint.distributions import NORMAL_95, chi_square_quantile
 from shaftprint.errors import DesignError, ShaftprintError
-from shaftprint.identify.fit._identification import Estimate
+from shaftprint.identify.fit._estimate import Estimate
 from shaftprint.notebook._shown import Shown
 from shaftprint.records import AnyFloats, Floats
 

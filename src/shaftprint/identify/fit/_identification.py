@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 
 from shaftprint.arrays import BoolArray, ComplexArray, FloatArray
-from shaftprint.distributions import NORMAL_95
 from shaftprint.errors import IdentificationError
 from shaftprint.identify.fit._covariance import variance_along
+from shaftprint.identify.fit._estimate import Estimate
 from shaftprint.identify.fit._fit_test import FitTest
 from shaftprint.identify.likelihood._fitted_response import FittedResponse
 from shaftprint.identify.likelihood._line_test import LineTest
@@ -40,29 +40,6 @@ class Cluster:
     """Whether the model is stable there; None where it was not asked."""
     which: tuple[int, ...] = ()
     """Which starts of the draw these are."""
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Estimate:
-    """One number that was found, with its uncertainty."""
-
-    name: str
-    """Name of the parameter or combination."""
-    unit: str
-    """Unit, ``-`` where there is none."""
-    value: float
-    """Estimate."""
-    std: float
-    """Standard deviation; infinite where the data say nothing."""
-    at_bound: bool = False
-    """Whether the search stopped at a bound."""
-    role: Role | None = None
-    """What it is in its line; None where no role was given."""
-
-    @property
-    def interval_95(self) -> tuple[float, float]:
-        """95 % interval from the standard deviation."""
-        return self.value - NORMAL_95 * self.std, self.value + NORMAL_95 * self.std
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
@@ -106,7 +83,7 @@ class Identification(Shown, Labelled):
         texts = {
             "parameter": [one.name for one in estimates],
             "unit": [one.unit for one in estimates],
-            "meaning": [parameter.meaning for parameter in self.objective.free_parameters],
+            "meaning": [one.meaning for one in estimates],
         }
         columns: dict[str, tuple[Sequence[Any], str]] = {
             "value": ([one.value for one in estimates], "estimate"),
@@ -200,6 +177,7 @@ class Identification(Shown, Labelled):
                     value=value,
                     std=float(np.sqrt(self.covariance[i, i])),
                     at_bound=value in (parameter.lower, parameter.upper),
+                    meaning=parameter.meaning,
                     role=parameter.role,
                 )
             )
@@ -228,7 +206,7 @@ class Identification(Shown, Labelled):
     def combinations(self) -> tuple[Estimate, ...]:
         """Every combination of parameters that a structure names, with its standard deviation to first order."""
         return tuple(
-            replace(self.derived(c.name, c.unit, lambda named, of=c.of: of(named)), role=c.role)  # type: ignore[misc]
+            replace(self.derived(c.name, c.unit, lambda named, of=c.of: of(named)), role=c.role, meaning=c.meaning)  # type: ignore[misc]
             for c in self.objective.combinations
         )
 

@@ -9,7 +9,7 @@ What a number is made of follows from its role.
 from collections.abc import Mapping, Sequence
 from typing import get_args
 
-from shaftprint.identify.fit._identification import Estimate
+from shaftprint.identify.fit._estimate import Estimate
 from shaftprint.models._role import Basis
 from shaftprint.reasons import Reason, ReasonKind
 

@@ -5,7 +5,8 @@ from collections.abc import Mapping, Sequence
 
 from shaftprint.catalogue._roles import ShipRole
 from shaftprint.distributions import NORMAL_95
-from shaftprint.identify.fit._identification import Estimate, Identification
+from shaftprint.identify.fit._estimate import Estimate
+from shaftprint.identify.fit._identification import Identification
 from shaftprint.identify.judgement._phrases import number
 from shaftprint.identify.judgement._requirements import Requirements
 from shaftprint.identify.uncertainty._profile import Interval, Profile

@@ -10,7 +10,8 @@ import numpy as np
 
 from shaftprint.catalogue._roles import ShipRole
 from shaftprint.digits import stated
-from shaftprint.identify.fit._identification import Estimate, Identification
+from shaftprint.identify.fit._estimate import Estimate
+from shaftprint.identify.fit._identification import Identification
 from shaftprint.identify.judgement._phrases import number
 from shaftprint.models._role import Role
 from shaftprint.reasons import Reason, ReasonKind

@@ -19,7 +19,8 @@ from typing import TYPE_CHECKING, Literal
 
 from shaftprint.arguments import refusing_none
 from shaftprint.errors import IdentificationError
-from shaftprint.identify.fit._identification import Estimate, Identification
+from shaftprint.identify.fit._estimate import Estimate
+from shaftprint.identify.fit._identification import Identification
 from shaftprint.identify.judgement._affected_numbers import OF_WORKING_POINT, basis_of, by_weight, clause_of
 from shaftprint.identify.judgement._cautions import cautions_of
 from shaftprint.identify.judgement._clock_drift import drift_reasons

@@ -15,7 +15,7 @@ from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.digits import stated
 from shaftprint.errors import IdentificationError
 from shaftprint.identify.fit._covariance import known_covariance, known_variance
-from shaftprint.identify.fit._identification import Estimate
+from shaftprint.identify.fit._estimate import Estimate
 from shaftprint.identify.fit._pseudo_inverse import PseudoInverse
 from shaftprint.identify.likelihood._objective import Objective
 from shaftprint.identify.likelihood._prior import Prior

@@ -7,7 +7,7 @@ from itertools import combinations
 import numpy as np
 
 from shaftprint.arrays import FloatArray
-from shaftprint.identify.fit._identification import Estimate
+from shaftprint.identify.fit._estimate import Estimate
 from shaftprint.identify.likelihood._objective import Objective
 from shaftprint.identify.prediction._formulas import FormulaTerm, ParameterFormula, single, sum_of
 from shaftprint.models._blocks import SecondOrderLag

@@ -14,6 +14,7 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.errors import IdentificationError
+from shaftprint.identify.fit._estimate import Estimate
 from shaftprint.identify.fit._identification import Identification
 from shaftprint.identify.fit._refit import refit_redrawn
 from shaftprint.identify.likelihood._objective import Redrawn
@@ -23,26 +24,6 @@ from shaftprint.models._combination import Combination
 # Percentiles of an interval of 95 % coverage.
 TAILS_PERCENT = (2.5, 97.5)
 FEWEST = 2
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class BootstrapEstimate:
-    """One number and its spread over the repeats."""
-
-    name: str
-    """Name of the parameter or combination."""
-    unit: str
-    """Unit, ``-`` where there is none."""
-    value: float
-    """Estimate."""
-    std: float
-    """Standard deviation over the repeats."""
-    bias: float
-    """Mean over the repeats minus the estimate from which they were drawn."""
-    percentile_95: tuple[float, float]
-    """95 % interval from the 2.5 % and 97.5 % points of the repeats."""
-    basic_95: tuple[float, float]
-    """The same reflected at the estimate: the repeats scatter about it as it scatters about the truth."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -55,8 +36,17 @@ class Bootstrap:
     """Free parameters of each repeat whose fit settled, shape (repeats, free)."""
     failed_share: float
     """Share of the repeats whose fit did not settle; they are left out."""
-    estimates: Mapping[str, BootstrapEstimate]
-    """Every free parameter, combination and further number, by name; one that is infinite in a repeat is left out."""
+    estimates: Mapping[str, Estimate]
+    """Every free parameter, combination and further number, by name, with the standard deviation over the repeats and
+    the interval from their 2.5 % and 97.5 % points; one that is infinite in a repeat is left out."""
+    bias: Mapping[str, float]
+    """Mean over the repeats minus the estimate from which they were drawn, by name."""
+
+    def basic_95(self, name: str) -> tuple[float, float]:
+        """Return the interval reflected at the estimate: repeats scatter about it as it scatters about the truth."""
+        one = self.estimates[name]
+        lower, upper = one.interval_95 or one.limits_95
+        return 2.0 * one.value - upper, 2.0 * one.value - lower
 
 
 def bootstrap(
@@ -91,11 +81,13 @@ def bootstrap(
             f"bootstrap of {objective.name}: expected two fits or more that settle, found {settled.shape[0]} of "
             f"{count}; allow more iterations, or hold a parameter that the test does not know."
         )
+    estimates, bias = _estimates(identification, numbers, settled)
     return Bootstrap(
         names=refits.names,
         values=frozen_float(settled),
         failed_share=1.0 - settled.shape[0] / count,
-        estimates=_estimates(identification, numbers, settled),
+        estimates=estimates,
+        bias=bias,
     )
 
 
@@ -111,12 +103,12 @@ def _prior_means(identification: Identification, count: int, rng: np.random.Gene
 
 def _estimates(
     identification: Identification, numbers: Sequence[Combination], settled: FloatArray
-) -> dict[str, BootstrapEstimate]:
+) -> tuple[dict[str, Estimate], dict[str, float]]:
     objective = identification.objective
     combinations = (*objective.combinations, *numbers)
     best = identification.values[list(objective.free)]
     units = [*(p.unit for p in objective.free_parameters), *(c.unit for c in combinations)]
-    estimates = {}
+    estimates, bias = {}, {}
     for index, (name, unit) in enumerate(zip(all_numbers(objective, numbers), units, strict=True)):
         number = Numbers(objective, combinations, np.full(settled.shape[0], index))
         values = number.values(settled)
@@ -124,13 +116,12 @@ def _estimates(
         if not (np.isfinite(value) and np.isfinite(values).all()):
             continue
         low, high = (float(end) for end in np.percentile(values, TAILS_PERCENT))
-        estimates[name] = BootstrapEstimate(
+        bias[name] = float(np.mean(values)) - value
+        estimates[name] = Estimate(
             name=name,
             unit=unit,
             value=value,
             std=float(np.std(values, ddof=1)),
-            bias=float(np.mean(values)) - value,
-            percentile_95=(low, high),
-            basic_95=(2.0 * value - high, 2.0 * value - low),
+            interval_95=(low, high),
         )
-    return estimates
+    return estimates, bias

@@ -32,7 +32,7 @@ from shaftprint.tables._fingerprint import limits
 
 if TYPE_CHECKING:
     from shaftprint.fingerprint._fingerprint import Fingerprint
-    from shaftprint.fingerprint._quantity import Quantity
+    from shaftprint.identify.fit._estimate import Estimate
 
 Outcome: TypeAlias = Literal["differs", "perhaps", "no difference seen", "cannot be compared"]
 
@@ -45,9 +45,9 @@ TORQUE_COEFFICIENT = "K_Q"
 class Difference:
     """One number of two fingerprints beside each other."""
 
-    first: "Quantity"
+    first: "Estimate"
     """The number in the fingerprint that others are compared with."""
-    other: "Quantity"
+    other: "Estimate"
     """The number in the other fingerprint."""
     interval_95: tuple[float, float] | None
     """95 % interval of the difference in the number's unit; None where it cannot be compared."""
@@ -103,7 +103,7 @@ def differences(
     return (*_judged(kept), *_judged(moving))
 
 
-def _is_of_line(number: "Quantity") -> bool:
+def _is_of_line(number: "Estimate") -> bool:
     """Return whether speed and torque of the working point cancel in a parameter or combination, or do not stand there.
 
     Such a number is of the ship like a physical value. The load of each window is in the fit, so that its wander is not
@@ -112,7 +112,7 @@ def _is_of_line(number: "Quantity") -> bool:
     return number.role is not None and number.role.is_of_line
 
 
-def _moving(difference: Difference, physical: "Sequence[Quantity]") -> Difference:
+def _moving(difference: Difference, physical: "Sequence[Estimate]") -> Difference:
     """Return a number that is normalised with the working point, uncompared where a physical value says the same."""
     difference = replace(difference, normalised=True)
     role = difference.first.role
@@ -148,7 +148,7 @@ def _shared(pair: _Pair, groups: Sequence[str]) -> list[Difference]:
     ]
 
 
-def _difference(a: "Quantity", b: "Quantity", pair: _Pair) -> Difference:
+def _difference(a: "Estimate", b: "Estimate", pair: _Pair) -> Difference:
     (low_a, high_a), open_a = _interval(a, pair.first)
     (low_b, high_b), open_b = _interval(b, pair.other)
     apart = b.value - a.value
@@ -177,14 +177,14 @@ def _unequal(a: float, b: float, own: float) -> float:
     return (1.0 - own) * (a - b) ** 2 + own * (a**2 + b**2)
 
 
-def _between_tests(quantity: "Quantity", load: float) -> float:
+def _between_tests(quantity: "Estimate", load: float) -> float:
     """Return the variance with which a number is another in each test without a change of the ship."""
     if quantity.name == GAUGE_ZERO:
         return (quantity.expected_std or 0.0) ** 2
     return (load * quantity.value) ** 2 if quantity.name == TORQUE_COEFFICIENT else 0.0
 
 
-def _interval(quantity: "Quantity", fingerprint: "Fingerprint") -> tuple[tuple[float, float], tuple[bool, bool]]:
+def _interval(quantity: "Estimate", fingerprint: "Fingerprint") -> tuple[tuple[float, float], tuple[bool, bool]]:
     """Return the 95 % interval of a number and which ends are open, as those of the parameter that it follows from."""
     low, high = limits(quantity)
     parameter = fingerprint.multiplied(quantity)

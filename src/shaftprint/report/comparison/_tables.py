@@ -11,7 +11,7 @@ from shaftprint.tables._fingerprint import limits
 
 if TYPE_CHECKING:
     from shaftprint.fingerprint._fingerprint import Fingerprint
-    from shaftprint.fingerprint._quantity import Quantity
+    from shaftprint.identify.fit._estimate import Estimate
     from shaftprint.report.comparison._differences import Difference
 
 PERCENT = 100.0
@@ -88,7 +88,7 @@ def beside_table(fingerprints: "Mapping[str, Fingerprint]") -> list[Table]:
     return [table for table in tables if table.rows]
 
 
-def _beside(title: str, quantities: "Mapping[str, Sequence[Quantity]]") -> Table:
+def _beside(title: str, quantities: "Mapping[str, Sequence[Estimate]]") -> Table:
     there = {name: {q.name: q for q in column} for name, column in quantities.items()}
     names = list(dict.fromkeys(q for column in there.values() for q in column))
     rows: list[tuple[str, ...]] = []
@@ -100,7 +100,7 @@ def _beside(title: str, quantities: "Mapping[str, Sequence[Quantity]]") -> Table
     return Table(title=title, columns=texts("quantity", *quantities, "unit"), rows=tuple(rows), note=note)
 
 
-def _cell(quantity: "Quantity | None") -> str:
+def _cell(quantity: "Estimate | None") -> str:
     if quantity is None:
         return NOT_THERE
     lower, upper = limits(quantity)
@@ -142,7 +142,7 @@ def stated_table(fingerprints: "Mapping[str, Fingerprint]") -> Table:
     return Table(title="Stated of the tests", columns=texts("what", *fingerprints), rows=rows)
 
 
-def _working(quantity: "Quantity") -> str:
+def _working(quantity: "Estimate") -> str:
     return f"{with_deviation(quantity.value, quantity.std)} {unit_text(quantity.unit)}"
 
 

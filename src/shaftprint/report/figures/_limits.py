@@ -62,8 +62,9 @@ def _over_speed(limits: "LimitFit") -> list[Mark]:
     if level is not None:
         order = np.argsort(at)[few]
         shown, shape = at[order], 1.0 + curve[used][order]
-        if np.isfinite([level.lower, level.upper]).all():
-            marks.append(Band(x=shown, lower=level.lower * shape, upper=level.upper * shape, shade=1))
+        lower, upper = level.interval_95 or level.limits_95
+        if np.isfinite([lower, upper]).all():
+            marks.append(Band(x=shown, lower=lower * shape, upper=upper * shape, shade=1))
         marks.append(Line(x=shown, y=level.value * shape, name="torque limit, 95 %", shade=1, dash="solid"))
     return marks
 

@@ -12,6 +12,7 @@ import numpy as np
 from shaftprint.campaign._campaign import Campaign
 from shaftprint.catalogue._thesis import structure
 from shaftprint.errors import IdentificationError
+from shaftprint.identify.fit._estimate import Estimate
 from shaftprint.identify.fit._identification import Identification
 from shaftprint.identify.fit._identify import identify
 from shaftprint.identify.likelihood._known import priors_from_vessel
@@ -30,7 +31,7 @@ from shaftprint.time_domain.nonlinear._covariance import with_scatter_of_blocks
 from shaftprint.time_domain.nonlinear._drive import with_exact_jumps
 from shaftprint.time_domain.nonlinear._jump_resonance import JumpStretch, jump_stretches, without_jumps
 from shaftprint.time_domain.nonlinear._limited_sines import limited_sines
-from shaftprint.time_domain.nonlinear._numbers import LimitNumber, limit_numbers
+from shaftprint.time_domain.nonlinear._numbers import limit_numbers
 from shaftprint.time_domain.nonlinear._orders import without_orders
 from shaftprint.time_domain.nonlinear._search import Part, best_ends, first_pass, free_values, from_these
 from shaftprint.time_domain.nonlinear._settings import NonlinearSettings
@@ -48,7 +49,7 @@ class NonlinearFit:
     """The fit: parameters of line and limits with their covariance, and what it leaves; records first, sines last."""
     linear: Identification
     """The linear fit to the sines from which it started."""
-    limits: tuple[LimitNumber, ...]
+    limits: tuple[Estimate, ...]
     """Levels, rates and widths in the units of the ship."""
     lines: tuple[str, ...]
     """Sines that were fitted as frequency responses."""

@@ -1,36 +1,18 @@
 """Levels, rates and widths of limits in the units of the ship, with all of their uncertainty."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 import numpy as np
 
 from shaftprint.catalogue._limited_governor import GovernorSymbol
-from shaftprint.identify.fit._identification import Estimate, Identification
+from shaftprint.identify.fit._estimate import Estimate
+from shaftprint.identify.fit._identification import Identification
 from shaftprint.signals._working_points import WorkingPoint
 from shaftprint.units import rpm_from_rev_s
 from shaftprint.vessel._vessel import Vessel
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class LimitNumber:
-    """One number of a limit."""
-
-    name: str
-    """GovernorSymbol, with the unit where it is not that of the structure."""
-    unit: str
-    """Unit, ``-`` where there is none."""
-    value: float
-    """Estimate."""
-    std: float
-    """Standard deviation: of the fit, and of working point and torque scale by which the data were divided."""
-    meaning: str
-    """What it is."""
-    at_bound: bool = False
-    """Whether the search stopped at a bound."""
-
-
-def limit_numbers(fit: Identification, working_point: WorkingPoint, vessel: Vessel) -> tuple[LimitNumber, ...]:
+def limit_numbers(fit: Identification, working_point: WorkingPoint, vessel: Vessel) -> tuple[Estimate, ...]:
     """Return the numbers of the limits of a fit.
 
     With the working point ``M_s0`` wrong by a share ``e``, deviations are right in N m: ``m_max = 1 + dM / M_s0`` is
@@ -48,7 +30,7 @@ def limit_numbers(fit: Identification, working_point: WorkingPoint, vessel: Vess
     return tuple(number for name in estimates for number in _numbers(estimates[name], working_point, vessel))
 
 
-def _numbers(estimate: Estimate, point: WorkingPoint, vessel: Vessel) -> Iterator[LimitNumber]:
+def _numbers(estimate: Estimate, point: WorkingPoint, vessel: Vessel) -> Iterator[Estimate]:
     doubt = point.shaft_torque_std_nm / point.shaft_torque_nm
     gauge = vessel.sensors.shaft_torque.scale_std
     brake_nm = point.shaft_torque_nm / vessel.gearbox.shaft_over_brake
@@ -56,11 +38,9 @@ def _numbers(estimate: Estimate, point: WorkingPoint, vessel: Vessel) -> Iterato
     curve = vessel.machine.full_load
     full_nm = float(np.interp(rpm_from_rev_s(speed), *curve))
 
-    def number(
-        name: str, unit: str, meaning: str, *, scale: float = 1.0, shares: tuple[float, ...] = ()
-    ) -> LimitNumber:
+    def number(name: str, unit: str, meaning: str, *, scale: float = 1.0, shares: tuple[float, ...] = ()) -> Estimate:
         parts = (scale * estimate.std, *(scale * share for share in shares))
-        return LimitNumber(
+        return Estimate(
             name=name,
             unit=unit,
             value=scale * estimate.value,

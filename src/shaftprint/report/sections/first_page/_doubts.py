@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from shaftprint.fingerprint._fingerprint import Fingerprint
-    from shaftprint.fingerprint._quantity import Quantity
+    from shaftprint.identify.fit._estimate import Estimate
 
 # A number may differ from the expected one by so many standard deviations of both before anyone should look, and act.
 FAR, TOO_FAR = 2.0, 3.5
@@ -19,7 +19,7 @@ def doubt_of(fingerprint: "Fingerprint", name: str) -> str:
     return f"It cannot be told: {reason}." if reason else ""
 
 
-def deviations_apart(quantity: "Quantity") -> float | None:
+def deviations_apart(quantity: "Estimate") -> float | None:
     """Return how many standard deviations of both a number is from the vessel file; None where that is not known."""
     spread = (quantity.std**2 + (quantity.expected_std or 0.0) ** 2) ** 0.5
     if quantity.expected is None or not 0.0 < spread < float("inf"):
@@ -27,7 +27,7 @@ def deviations_apart(quantity: "Quantity") -> float | None:
     return float(abs(quantity.value - quantity.expected) / spread)
 
 
-def is_off(quantity: "Quantity") -> bool:
+def is_off(quantity: "Estimate") -> bool:
     """Return whether a number is farther from the vessel file than its deviations let expect."""
     apart = deviations_apart(quantity)
     return bool(quantity.expected) and apart is not None and apart > TOO_FAR

@@ -10,7 +10,7 @@ from shaftprint.tables._fingerprint import expected_text
 
 if TYPE_CHECKING:
     from shaftprint.fingerprint._fingerprint import Fingerprint
-    from shaftprint.fingerprint._quantity import Quantity
+    from shaftprint.identify.fit._estimate import Estimate
 
 PERCENT = 100.0
 SAME_PERCENT = 0.5
@@ -129,7 +129,7 @@ def other_contradictions(fingerprint: "Fingerprint") -> list[Card]:
     ]
 
 
-def _contradiction(quantity: "Quantity") -> str:
+def _contradiction(quantity: "Estimate") -> str:
     value, interval = shown(quantity)
     what = quantity.meaning or quantity.name
     return f"{what[:1].upper()}{what[1:]}: {value} ({interval}), in the vessel file {expected_text(quantity)}."

@@ -11,7 +11,7 @@ from shaftprint.units import MILLI
 
 if TYPE_CHECKING:
     from shaftprint.fingerprint._fingerprint import Fingerprint
-    from shaftprint.fingerprint._quantity import Quantity
+    from shaftprint.identify.fit._estimate import Estimate
 
 NUMBERS = (
     ("I_dn", "Inertia behind the torque gauge: propeller, shaft, entrained water"),
@@ -42,7 +42,7 @@ def number_table(fingerprint: "Fingerprint") -> list[Table]:
     return [Table(title="What was found", columns=columns, rows=tuple(rows))]
 
 
-def shown(quantity: "Quantity") -> tuple[str, str]:
+def shown(quantity: "Estimate") -> tuple[str, str]:
     """Return a value with its unit and its 95 % interval, with the digits that the interval leaves; times in ms."""
     scale, unit = _scale(quantity)
     value, lower, upper = (scale * number for number in (quantity.value, *limits(quantity)))
@@ -53,7 +53,7 @@ def shown(quantity: "Quantity") -> tuple[str, str]:
     return text, f"{plain(lower, decimals)} to {plain(upper, decimals)}"
 
 
-def expected_shown(quantity: "Quantity") -> str:
+def expected_shown(quantity: "Estimate") -> str:
     """Return the value of the vessel file; where it has no deviation, with the digits of the measured value."""
     scale, _ = _scale(quantity)
     if quantity.expected is None or quantity.expected_std:
@@ -62,7 +62,7 @@ def expected_shown(quantity: "Quantity") -> str:
     return plain(scale * quantity.expected, _decimals(scale * quantity.value, upper - lower))
 
 
-def _scale(quantity: "Quantity") -> tuple[float, str]:
+def _scale(quantity: "Estimate") -> tuple[float, str]:
     return (MILLI, "ms") if quantity.unit == "s" else (1.0, unit_text(quantity.unit))
 
 

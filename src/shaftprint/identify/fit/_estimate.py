@@ -1,53 +1,19 @@
-"""A number with its unit and uncertainty, as a fingerprint keeps it."""
+"""The noun ``Estimate``: one number that was found, with unit and uncertainty, the same from the fit to the file."""
 
 import math
-from typing import Annotated, Final, TypeAlias
+from dataclasses import dataclass
+from typing import Final
 
-from pydantic import AfterValidator, BeforeValidator, PlainSerializer
-
-from shaftprint.catalogue._roles import ROLES
 from shaftprint.distributions import NORMAL_95
 from shaftprint.models._role import Role
-from shaftprint.records import Record
 
 # An end of the interval further than this share of its width from the end that a standard deviation gives: only the
 # interval is shown.
 ENDS_ALIKE: Final = 0.25
 
 
-def _not_negative(std: float) -> float:
-    if std < 0.0:
-        raise ValueError(f"expected a standard deviation that is not negative, found {std:g}")
-    return std
-
-
-Deviation: TypeAlias = Annotated[float, AfterValidator(_not_negative)]
-"""A standard deviation; it may be infinite."""
-
-
-def _role_of(name: object) -> object:
-    """Return the role of a name that stands in a file."""
-    if not isinstance(name, str):
-        return name
-    if name not in ROLES:
-        raise ValueError(f"expected one of {', '.join(ROLES)}, found {name!r}")
-    return ROLES[name]
-
-
-def _name_of(role: Role | None) -> str | None:
-    """Return the name of a role for a file; none for a role that only an own structure knows."""
-    return role.name if role is not None and role.name in ROLES else None
-
-
-NamedRole: TypeAlias = Annotated[
-    Role | None,
-    BeforeValidator(_role_of),
-    PlainSerializer(_name_of, return_type=str | None),
-]
-"""A role, in files by its name."""
-
-
-class Quantity(Record):
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Estimate:
     """A number with its unit and uncertainty."""
 
     name: str
@@ -56,22 +22,27 @@ class Quantity(Record):
     """Unit, ``-`` where there is none."""
     value: float
     """Estimate."""
-    std: Deviation
+    std: float
     """Standard deviation to first order; infinite where the test says nothing about it."""
     interval_95: tuple[float, float] | None = None
-    """95 % interval from the profile likelihood; None where there is none."""
+    """95 % interval where the standard deviation alone does not give it, as from the profile likelihood."""
     interval_open: tuple[bool, bool] = (False, False)
     """Whether an end of the interval is only a bound of the search: the data set none."""
     at_bound: bool = False
     """Whether the search stopped at a bound."""
     expected: float | None = None
     """Value from another source, such as the torsional vibration calculation."""
-    expected_std: Deviation | None = None
+    expected_std: float | None = None
     """Standard deviation of that value."""
     meaning: str = ""
     """What it stands for."""
-    role: NamedRole = None
+    role: Role | None = None
     """What it is in the line, one of ``catalogue.ROLES``; None where it has none, as in files of earlier versions."""
+    limit: str = ""
+    """The limit of governor or engine that it belongs to, in words; empty for other numbers. This and the next stand in
+    files with the limits only."""
+    doubt: str = ""
+    """Why it is not to be used, beside what the verdict says; empty where it may be."""
 
     @property
     def stated_std(self) -> float | None:
@@ -99,3 +70,8 @@ class Quantity(Record):
         ends = self.interval_95 or (self.value - half, self.value + half)
         lower, upper = (math.nan if is_open else end for end, is_open in zip(ends, self.interval_open, strict=True))
         return lower, upper
+
+    @property
+    def trusted(self) -> bool:
+        """Whether nothing speaks against the number itself; the verdict of a test says more."""
+        return not self.doubt
