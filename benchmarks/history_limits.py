@@ -26,8 +26,8 @@ sys.path.insert(0, str(ROOT))
 from benchmarks.histories import DOCUMENT, SEED
 from benchmarks.monte_carlo_tables import write_between_marks
 from benchmarks.sailed_histories import SOUND, TESTS
+from shaftprint.choices import LOAD_REPEATABILITY
 from shaftprint.drift._along import whitened
-from shaftprint.drift._differ import LOAD_REPEATABILITY
 from shaftprint.drift._pair import pair_of
 from shaftprint.fingerprint import Fingerprint, read_fingerprint
 

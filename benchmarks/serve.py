@@ -34,7 +34,7 @@ from benchmarks.mutations import mutated
 from benchmarks.served_fleet import Life, documents
 from benchmarks.store import fill, ships
 from benchmarks.timing import print_table
-from shaftprint.drift._class_numbers import NEWEST_TESTS
+from shaftprint.choices import NEWEST_TESTS
 from shaftprint.errors import ServerError
 from shaftprint.store import add_document, create_store, document, history, open_store
 from shaftprint.web.calculator._client import Calculator

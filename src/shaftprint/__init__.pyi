@@ -5,6 +5,7 @@ from shaftprint import bench as bench
 from shaftprint import campaign as campaign
 from shaftprint import card as card
 from shaftprint import catalogue as catalogue
+from shaftprint import choices as choices
 from shaftprint import clocks as clocks
 from shaftprint import design as design
 from shaftprint import digits as digits
@@ -20,6 +21,7 @@ from shaftprint import fleet as fleet
 from shaftprint import forecast as forecast
 from shaftprint import identify as identify
 from shaftprint import kernels as kernels
+from shaftprint import late as late
 from shaftprint import limits as limits
 from shaftprint import markup as markup
 from shaftprint import memory as memory

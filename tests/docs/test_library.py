@@ -22,7 +22,7 @@ INNER = {
     *("arguments", "arrays", "digits", "distributions", "escape", "files"),
     *("kernels", "markup", "memory", "normalisation", "notebook", "plain_table", "publication", "reasons", "records"),
     "sender_cycle",
-    *("spelling", "zones"),
+    *("spelling", "zones", "late", "choices"),
 }
 
 

@@ -5,13 +5,12 @@ from ._own_structure import chosen_structures
 from ._roles import ShipRole
 from ._sailing_blocks import SailingShaft, SailingSpeed, SailingTorque
 from ._shipped import shipped_structure
-from ._thesis import CLOSED_LOOPS, STRUCTURES, structure
+from ._thesis import STRUCTURES, structure
 from ._thesis_figures import thesis_families
 from ._two_masses import two_mass_line
 
 __all__ = [
     "AHEAD_S",
-    "CLOSED_LOOPS",
     "STRUCTURES",
     "KnownPropeller",
     "SailingShaft",

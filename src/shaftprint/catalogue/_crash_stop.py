@@ -26,6 +26,7 @@ from shaftprint.catalogue._gauge import TAU_DN, TAU_UP
 from shaftprint.catalogue._known_propeller import HIGHEST_WAKE
 from shaftprint.catalogue._limited import DROOP, M_MAX, M_MIN, LimitedEngine, parameters_of, shape_of
 from shaftprint.catalogue._sailing import TAU_U, E
+from shaftprint.choices import CRASH_STOP
 from shaftprint.errors import StructureError
 from shaftprint.models._diagram import Diagram
 from shaftprint.models._parameter import Parameter
@@ -35,8 +36,6 @@ from shaftprint.models.equations._formula import Formula, choose, maximum, numbe
 from shaftprint.models.equations._limits import rate_limited
 from shaftprint.propeller._four_quadrants import FourQuadrantCurve
 
-CRASH_STOP = "CRASH-STOP"
-"""Name of the structure."""
 W = Parameter("w", "-", -0.2, HIGHEST_WAKE, 0.2, "wake fraction")
 T_C = Parameter("t_c", "s", 0.01, 20.0, 1.0, "time in which a clutch closes or opens")
 RATIO_ASTERN = Parameter("i_r", "-", 0.3, 3.0, 1.0, "ratio of the train astern over that of the train ahead", held=True)

@@ -8,12 +8,12 @@ from collections.abc import Callable, Container, Mapping
 from functools import cache
 
 from shaftprint.catalogue._bent_line import B_SET, with_bend
-from shaftprint.catalogue._crash_stop import CRASH_STOP
 from shaftprint.catalogue._drives import DRIVES
 from shaftprint.catalogue._hybrid_at_large import limited_hybrid
 from shaftprint.catalogue._limited import limited
 from shaftprint.catalogue._roles import ShipRole
 from shaftprint.catalogue._thesis import STRUCTURES, structure
+from shaftprint.choices import CRASH_STOP
 from shaftprint.errors import StructureError
 from shaftprint.models._role import Role
 from shaftprint.models._structure import Structure

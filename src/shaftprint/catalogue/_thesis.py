@@ -217,14 +217,6 @@ STRUCTURES: Mapping[str, Callable[[], Structure]] = {
 }
 
 
-CLOSED_LOOPS: Mapping[str, str] = {"engine": "GAUGE-CLOSED", "motor": "GAUGE-MOTOR", "hybrid": "GAUGE-HYBRID"}
-"""Names of the closed loops of ships, by what drives the line."""
-PITCHED_LOOP = "GAUGE-PITCH"
-"""Name of the closed loop of an engine and a propeller of controllable pitch, at the quay."""
-COMBINED_LOOP = "GAUGE-COMBINATOR"
-"""Name of the same with a lever that asks for speed and pitch together."""
-
-
 def structure(name: str) -> Structure:
     """Return a shipped structure by its name, in capitals or not.
 

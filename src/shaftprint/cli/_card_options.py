@@ -1,11 +1,17 @@
 """Options of ``new vessel``: what stands on a ship's card."""
 
+from __future__ import annotations
+
 from collections.abc import Callable, Mapping
 from typing import Any, Literal, cast
 
 import click
 
-from shaftprint.card._card import Card, Gauge, Pulses
+from shaftprint.late import late
+
+with late():
+    from shaftprint.card._card import Card, Gauge, Pulses
+
 
 # Wider than any ship, and so that no power of them is beyond all numbers.
 _POSITIVE = click.FloatRange(1e-6, 1e9)

@@ -1,14 +1,19 @@
 """The last lines of the demo: what was found, in words, with the truth beside it."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 
-from shaftprint.catalogue._roles import ShipRole
 from shaftprint.cli._terminal import print_findings
 from shaftprint.digits import plain_letters, stated, stated_interval, to_digit_of
-from shaftprint.distributions import NORMAL_95
-from shaftprint.fingerprint._fingerprint import Fingerprint
-from shaftprint.identify.fit._estimate import Estimate
-from shaftprint.identify.fit._identification import Identification
+from shaftprint.late import late
+
+with late():
+    from shaftprint import distributions
+    from shaftprint.catalogue._roles import ShipRole
+    from shaftprint.fingerprint._fingerprint import Fingerprint
+    from shaftprint.identify.fit._estimate import Estimate
+    from shaftprint.identify.fit._identification import Identification
 
 
 def print_summary(fingerprint: Fingerprint, truth: Mapping[str, float], core: Identification) -> None:
@@ -35,7 +40,7 @@ def _shown_std(quantity: Estimate) -> float:
     if quantity.interval_95 is None:
         return quantity.std
     lower, upper = quantity.interval_95
-    return 0.5 * (upper - lower) / NORMAL_95
+    return 0.5 * (upper - lower) / distributions.NORMAL_95
 
 
 def _given(quantity: Estimate, fingerprint: Fingerprint) -> str:

@@ -1,16 +1,12 @@
 """``shaftprint identify --drive``: from records of a drive to its fingerprint."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping, Sequence
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
-from shaftprint.bench._fingerprint import drive_fingerprint
-from shaftprint.bench._identify import identify_files
-from shaftprint.bench._named import named_drives
-from shaftprint.catalogue._own_structure import TypedName
 from shaftprint.cli._drive_options import expect_not_given, is_given
 from shaftprint.cli._results import print_paths
 from shaftprint.cli._terminal import print_findings, say
@@ -18,13 +14,22 @@ from shaftprint.cli.output._fingerprint_file import FINGERPRINT
 from shaftprint.cli.output._json import give
 from shaftprint.cli.output._results_options import Results
 from shaftprint.cli.output._tables import print_tables
-from shaftprint.drive._drive import load_drive
-from shaftprint.fingerprint._drive_fingerprint import DriveFingerprint, write_drive_fingerprint
-from shaftprint.fingerprint._sources import source_of, structure_sources
-from shaftprint.report._drive_page import render_drive
-from shaftprint.survey._fit_options import FitOptions
-from shaftprint.tables._drive import drive_assumed_table, drive_record_table, drive_response_table
-from shaftprint.tables._fingerprint import quantity_table
+from shaftprint.late import late
+
+with late():
+    import numpy as np
+
+    from shaftprint.bench._fingerprint import drive_fingerprint
+    from shaftprint.bench._identify import identify_files
+    from shaftprint.bench._named import named_drives
+    from shaftprint.catalogue._own_structure import TypedName
+    from shaftprint.drive._drive import load_drive
+    from shaftprint.fingerprint._drive_fingerprint import DriveFingerprint, write_drive_fingerprint
+    from shaftprint.fingerprint._sources import source_of, structure_sources
+    from shaftprint.report._drive_page import render_drive
+    from shaftprint.survey._fit_options import FitOptions
+    from shaftprint.tables._drive import drive_assumed_table, drive_record_table, drive_response_table
+    from shaftprint.tables._fingerprint import quantity_table
 
 
 def identify_on_the_bench(

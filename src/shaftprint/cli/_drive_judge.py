@@ -1,36 +1,42 @@
 """What the judging commands do with a drive: compare, validate, predict, compare structures."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import click
-import numpy as np
 
-from shaftprint.bench._compare import drive_differences
-from shaftprint.bench._fit import STARTS
-from shaftprint.bench._kept import kept_drive
-from shaftprint.bench._named import holding, named_drives
-from shaftprint.bench._predict import predict_files
-from shaftprint.bench._records import read_records
-from shaftprint.bench._structures import compare_in_time, without
-from shaftprint.bench._validate import identified_from, validate_drive
-from shaftprint.catalogue._own_structure import TypedName, chosen_structures
 from shaftprint.cli._drive_options import drive_fingerprint_at, is_given
 from shaftprint.cli._terminal import answer, print_findings, say
 from shaftprint.cli.output._json import give
 from shaftprint.cli.output._progress import progress
 from shaftprint.cli.output._tables import print_table, print_tables
-from shaftprint.drive._drive import load_drive
-from shaftprint.fingerprint._drive_fingerprint import DriveFingerprint
-from shaftprint.forecast._ship_before_test import ShipBeforeTest
-from shaftprint.recording._recording import sha256_of
-from shaftprint.survey._fit_options import FitOptions
-from shaftprint.tables._drive import (
-    drive_difference_table,
-    drive_prediction_table,
-    time_comparison_table,
-    validated_drive_table,
-)
+from shaftprint.late import late
+
+with late():
+    import numpy as np
+
+    from shaftprint.bench import _fit
+    from shaftprint.bench._compare import drive_differences
+    from shaftprint.bench._kept import kept_drive
+    from shaftprint.bench._named import holding, named_drives
+    from shaftprint.bench._predict import predict_files
+    from shaftprint.bench._records import read_records
+    from shaftprint.bench._structures import compare_in_time, without
+    from shaftprint.bench._validate import identified_from, validate_drive
+    from shaftprint.catalogue._own_structure import TypedName, chosen_structures
+    from shaftprint.drive._drive import load_drive
+    from shaftprint.fingerprint._drive_fingerprint import DriveFingerprint
+    from shaftprint.forecast._ship_before_test import ShipBeforeTest
+    from shaftprint.recording._recording import sha256_of
+    from shaftprint.survey._fit_options import FitOptions
+    from shaftprint.tables._drive import (
+        drive_difference_table,
+        drive_prediction_table,
+        time_comparison_table,
+        validated_drive_table,
+    )
 
 
 def compare_on_the_bench(named: Mapping[str, DriveFingerprint]) -> None:
@@ -113,7 +119,7 @@ def compare_structures_on_the_bench(
         steps.begin("Reading the records")
         records = read_records(recordings, drives[0])
         steps.begin("Fitting the structures")
-        starts = options.starts if is_given("starts") else STARTS
+        starts = options.starts if is_given("starts") else _fit.STARTS
         comparison = compare_in_time(drives, records, rng=np.random.default_rng(options.seed), starts=starts)
     best = comparison.candidates[0].name
     print_findings(f"Which structure: {best}", comparison.sentences, is_answer=True)

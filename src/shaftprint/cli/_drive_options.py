@@ -1,5 +1,7 @@
 """The option ``--drive`` and what the commands do with it: a drive file in place of vessel and campaign."""
 
+from __future__ import annotations
+
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
@@ -10,7 +12,10 @@ from click.core import ParameterSource
 from shaftprint.cli.output._fingerprint_file import fingerprint_file
 from shaftprint.errors import FingerprintError
 from shaftprint.files import read_json
-from shaftprint.fingerprint._drive_fingerprint import DriveFingerprint, is_of_a_drive, read_drive_fingerprint
+from shaftprint.late import late
+
+with late():
+    from shaftprint.fingerprint._drive_fingerprint import DriveFingerprint, is_of_a_drive, read_drive_fingerprint
 
 
 def drive_option(command: Callable[..., Any]) -> Callable[..., Any]:

@@ -1,5 +1,7 @@
 """A fingerprint on the terminal: verdict, conditions, tables, findings."""
 
+from __future__ import annotations
+
 from collections import Counter
 from collections.abc import Mapping, Sequence
 
@@ -7,22 +9,27 @@ from shaftprint.cli._terminal import print_findings, say
 from shaftprint.cli.output._json import give
 from shaftprint.cli.output._tables import print_tables
 from shaftprint.digits import stated
-from shaftprint.fingerprint._fingerprint import Fingerprint
-from shaftprint.tables._conditions import ship_text, tested_text, water_facts
-from shaftprint.tables._fingerprint import (
-    NO_TRUTH,
-    budget_table,
-    combination_table,
-    fit_table,
-    margin_table,
-    parameter_table,
-    physical_table,
-    quantity_table,
-)
+from shaftprint.late import late
+
+with late():
+    from shaftprint.tables._fingerprint import (
+        budget_table,
+        combination_table,
+        fit_table,
+        margin_table,
+        parameter_table,
+        physical_table,
+        quantity_table,
+    )
+
+
+with late():
+    from shaftprint.fingerprint._fingerprint import Fingerprint
+    from shaftprint.tables._conditions import ship_text, tested_text, water_facts
 
 
 def print_fingerprint(
-    fingerprint: Fingerprint, *, truth: Mapping[str, float] = NO_TRUTH, line: str | None = None
+    fingerprint: Fingerprint, *, truth: Mapping[str, float] | None = None, line: str | None = None
 ) -> None:
     """Print verdict, conditions, parameters, physical values, margins, budget, quality and findings.
 
@@ -35,7 +42,7 @@ def print_fingerprint(
     line
         Which line of a ship it is of, where there are several.
     """
-    verdict = fingerprint.verdict
+    verdict, truth = fingerprint.verdict, truth or {}
     title = f"Verdict: {'trustworthy' if verdict.trustworthy else 'not trustworthy'}"
     print_findings(title if line is None else f"{line}. {title}", verdict.sentences, is_answer=True)
     give("fingerprint" if line is None else f"fingerprint of {line}", fingerprint)

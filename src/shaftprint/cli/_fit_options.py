@@ -1,10 +1,16 @@
 """The options of the commands that fit structures: which, what is known, how they are weighed and searched."""
 
+from __future__ import annotations
+
 import click
 
 from shaftprint.cli._gathered_options import gathered_options
 from shaftprint.cli._known_values import hold_option, prior_option
-from shaftprint.survey._fit_options import FitOptions
+from shaftprint.late import late
+
+with late():
+    from shaftprint.survey._fit_options import FitOptions
+
 
 _OPTIONS = (
     prior_option,
@@ -28,6 +34,6 @@ _OPTIONS = (
     click.option("--seed", type=click.IntRange(min=0), default=1, show_default=True, help="Seed of the starts."),
 )
 
-fit_options = gathered_options(FitOptions, _OPTIONS)
+fit_options = gathered_options(lambda **values: FitOptions(**values), _OPTIONS)
 """Adds ``--prior``, ``--free``, ``--hold``, ``--mode``, ``--unweighted``, ``--starts`` and ``--seed``, taken as one
 ``options``."""

@@ -1,19 +1,25 @@
 """What the fleet of the demo says, with what was done to it beside."""
 
-from pathlib import Path
+from __future__ import annotations
 
-import numpy as np
+from pathlib import Path
 
 from shaftprint.cli._fleet_demo import CLASS, FOULING_PER_YEAR, INJECTION_PER_YEAR, PROPORTIONAL, RETUNED, WORN
 from shaftprint.cli._terminal import answer, echo, say
-from shaftprint.drift._class_numbers import sister_of
-from shaftprint.drift._history import history_of
-from shaftprint.drift._sister_words import sister_sentences
-from shaftprint.drift._sisters import judge_sisters
-from shaftprint.drift._watch import watch
-from shaftprint.drift._words import watch_sentences
-from shaftprint.store._class_histories import class_histories
-from shaftprint.store._store import Store
+from shaftprint.late import late
+
+with late():
+    import numpy as np
+
+    from shaftprint.drift._class_numbers import sister_of
+    from shaftprint.drift._history import history_of
+    from shaftprint.drift._sister_words import sister_sentences
+    from shaftprint.drift._sisters import judge_sisters
+    from shaftprint.drift._watch import watch
+    from shaftprint.drift._words import watch_sentences
+    from shaftprint.store._class_histories import class_histories
+    from shaftprint.store._store import Store
+
 
 SEED = 1
 PERCENT = 100.0

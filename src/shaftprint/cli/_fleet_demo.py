@@ -1,5 +1,7 @@
 """The fleet of the demo: eight sister ships over five years, from raw recordings into a store."""
 
+from __future__ import annotations
+
 import os
 import tempfile
 from collections.abc import Iterator, Sequence
@@ -10,19 +12,23 @@ from functools import partial
 from multiprocessing import get_context
 from pathlib import Path
 
-import numpy as np
+from shaftprint.late import late
 
-from shaftprint.campaign._trial_conditions import TrialConditions
-from shaftprint.catalogue._thesis import structure
-from shaftprint.fingerprint._json_file import write_fingerprint
-from shaftprint.identify.search._settings import Settings
-from shaftprint.survey._fits import fit, priors_of
-from shaftprint.survey._measurement import measure
-from shaftprint.survey._survey import fingerprint_of
-from shaftprint.survey._trial import Trial, load_trial
-from shaftprint.tug._simulated_fleet import SimulatedFleet, sail_test, simulated_fleet
-from shaftprint.tug._simulated_ship import ShipWork, Wear, with_works
-from shaftprint.vessel._ship import Ship
+with late():
+    import numpy as np
+
+    from shaftprint.campaign._trial_conditions import TrialConditions
+    from shaftprint.catalogue._thesis import structure
+    from shaftprint.fingerprint._json_file import write_fingerprint
+    from shaftprint.identify.search._settings import Settings
+    from shaftprint.survey._fits import fit, priors_of
+    from shaftprint.survey._measurement import measure
+    from shaftprint.survey._survey import fingerprint_of
+    from shaftprint.survey._trial import Trial, load_trial
+    from shaftprint.tug._simulated_fleet import SimulatedFleet, sail_test, simulated_fleet
+    from shaftprint.tug._simulated_ship import ShipWork, Wear, with_works
+    from shaftprint.vessel._ship import Ship
+
 
 VESSEL, CAMPAIGN, STRUCTURE = "stan-tug-1205", "short", "GAUGE-CLOSED"
 CLASS, LINE, PLACE = "Stan Tug 1205", "port", "simulated"

@@ -1,5 +1,7 @@
 """What the commands have in common that work on the jobs of a store."""
 
+from __future__ import annotations
+
 import contextlib
 import os
 import signal
@@ -9,14 +11,19 @@ from typing import Any
 
 import click
 
+from shaftprint.choices import WORK_LIMIT_S
 from shaftprint.cli._terminal import answer, print_findings
 from shaftprint.cli.output._json import give
 from shaftprint.cli.output._progress import progress
-from shaftprint.fleet._lane import Event
-from shaftprint.fleet._work import LIMIT_S, Worked, work
-from shaftprint.store._job import Job, JobCounts
-from shaftprint.store._ledger import job_counts, jobs
-from shaftprint.store._store import Store
+from shaftprint.late import late
+
+with late():
+    from shaftprint.fleet._lane import Event
+    from shaftprint.fleet._work import Worked, work
+    from shaftprint.store._job import Job, JobCounts
+    from shaftprint.store._ledger import job_counts, jobs
+    from shaftprint.store._store import Store
+
 
 MOST_SHOWN = 20
 """Refusals that are printed; ``--json`` has all of them."""
@@ -34,7 +41,7 @@ def work_options(command: Callable[..., Any]) -> Callable[..., Any]:
     minutes = click.option(
         "--minutes",
         type=click.FloatRange(min=0.1),
-        default=LIMIT_S / 60.0,
+        default=WORK_LIMIT_S / 60.0,
         show_default=True,
         help="How long one recording may take.",
     )

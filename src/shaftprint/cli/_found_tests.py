@@ -1,14 +1,19 @@
 """Where the tests of a campaign are in the recorded set point, as a table and as lines of a campaign file."""
 
-from shaftprint.campaign._campaign import Campaign
-from shaftprint.campaign._excitations import Sine
-from shaftprint.campaign._file_text import tests_text
+from __future__ import annotations
+
 from shaftprint.cli._terminal import echo, say
 from shaftprint.cli.output._tables import print_table
 from shaftprint.errors import SignalError
+from shaftprint.late import late
 from shaftprint.plain_table import Table, numbers, texts
-from shaftprint.signals.excitation._found_test import FoundTest, common_shift_s
-from shaftprint.signals.excitation._proposed_campaign import proposed_campaign
+
+with late():
+    from shaftprint.campaign import _excitations
+    from shaftprint.campaign._campaign import Campaign
+    from shaftprint.campaign._file_text import tests_text
+    from shaftprint.signals.excitation._found_test import FoundTest, common_shift_s
+    from shaftprint.signals.excitation._proposed_campaign import proposed_campaign
 
 
 def print_found_tests(found: tuple[FoundTest, ...], campaign: Campaign) -> None:
@@ -39,7 +44,7 @@ def _row(test: FoundTest) -> tuple[str, ...]:
     planned = test.planned
     if not test.is_found:
         return (planned.name, f"{planned.start_s:g}", "not found", "", "", "", "no")
-    sine = isinstance(planned, Sine)
+    sine = isinstance(planned, _excitations.Sine)
     return (
         planned.name,
         f"{planned.start_s:g}",

@@ -1,13 +1,12 @@
 """``shaftprint identify --starboard``: both lines of a ship from one recording, and how they differ."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
-from shaftprint.catalogue._own_structure import TypedName
 from shaftprint.cli._fingerprint_tables import print_fingerprint
 from shaftprint.cli._report_options import ReportOptions
 from shaftprint.cli._results import Report
@@ -16,21 +15,28 @@ from shaftprint.cli.output._fingerprint_file import FINGERPRINT, REPORT
 from shaftprint.cli.output._json import give
 from shaftprint.cli.output._results_options import Results
 from shaftprint.cli.output._tables import print_tables
-from shaftprint.drift._differ import differ
-from shaftprint.drift._words import finding_sentences
-from shaftprint.fingerprint._json_file import write_fingerprint
-from shaftprint.fingerprint._sources import structure_sources
-from shaftprint.report._comparison import render_comparison
-from shaftprint.report.comparison._cause_table import cause_table
-from shaftprint.report.comparison._differences import Difference, differences
-from shaftprint.report.comparison._tables import difference_table
-from shaftprint.report.comparison._vessel_file_words import vessel_file_sentences
-from shaftprint.report.sections._comparison_cover import change_in_words
-from shaftprint.survey._both_shafts import SurveyOfBoth, load_trials_of_both, run_both
-from shaftprint.survey._fit_options import FitOptions
-from shaftprint.survey._of_vessel import default_structure
-from shaftprint.survey._survey import judged
-from shaftprint.survey._wash import wash_sentences
+from shaftprint.late import late
+
+with late():
+    import numpy as np
+
+    from shaftprint.catalogue._own_structure import TypedName
+    from shaftprint.drift._differ import differ
+    from shaftprint.drift._words import finding_sentences
+    from shaftprint.fingerprint._json_file import write_fingerprint
+    from shaftprint.fingerprint._sources import structure_sources
+    from shaftprint.report._comparison import render_comparison
+    from shaftprint.report.comparison._cause_table import cause_table
+    from shaftprint.report.comparison._differences import Difference, differences
+    from shaftprint.report.comparison._tables import difference_table
+    from shaftprint.report.comparison._vessel_file_words import vessel_file_sentences
+    from shaftprint.report.sections._comparison_cover import change_in_words
+    from shaftprint.survey._both_shafts import SurveyOfBoth, load_trials_of_both, run_both
+    from shaftprint.survey._fit_options import FitOptions
+    from shaftprint.survey._of_vessel import default_structure
+    from shaftprint.survey._survey import judged
+    from shaftprint.survey._wash import wash_sentences
+
 
 COMPARISON = "comparison"
 

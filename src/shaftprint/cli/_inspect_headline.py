@@ -3,15 +3,21 @@
 It is made when everything has been looked at, so that nothing that stands below it says otherwise.
 """
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 
-import numpy as np
+from shaftprint.late import late
 
-from shaftprint.campaign._campaign import Campaign
-from shaftprint.identify.judgement._line_quality import good_lines
-from shaftprint.identify.judgement._phrases import listed
-from shaftprint.signals._signals import Signals
-from shaftprint.spectra._spectra import Spectra
+with late():
+    import numpy as np
+
+    from shaftprint.campaign._campaign import Campaign
+    from shaftprint.identify.judgement._line_quality import good_lines
+    from shaftprint.identify.judgement._phrases import listed
+    from shaftprint.signals._signals import Signals
+    from shaftprint.spectra._spectra import Spectra
+
 
 # GAUGE-CLOSED has about ten free parameters and a line gives four numbers: twice what is needed at the least.
 FEWEST_LINES = 5

@@ -1,5 +1,7 @@
 """Options such as ``--prior g=0+-0.1`` and ``--hold v=1``: what is known of parameters before a fit."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Callable, Sequence
 from typing import Any
@@ -8,8 +10,11 @@ import click
 
 from shaftprint.cli._gathered_options import gathered_options
 from shaftprint.errors import IdentificationError
-from shaftprint.forecast._ship_before_test import ShipBeforeTest
-from shaftprint.identify.likelihood._prior import Prior
+from shaftprint.late import late
+
+with late():
+    from shaftprint.forecast._ship_before_test import ShipBeforeTest
+    from shaftprint.identify.likelihood._prior import Prior
 
 
 def named_prior(text: str) -> tuple[str, Prior]:
@@ -137,6 +142,8 @@ value_option = click.option(
 
 
 known_options = gathered_options(
-    ShipBeforeTest, (rpm_per_volt_option, prior_option, free_option, hold_option, value_option), name="known"
+    lambda **values: ShipBeforeTest(**values),
+    (rpm_per_volt_option, prior_option, free_option, hold_option, value_option),
+    name="known",
 )
 """Adds ``--rpm-per-volt``, ``--prior``, ``--free``, ``--hold`` and ``--value``, taken as one ``known`` ship."""

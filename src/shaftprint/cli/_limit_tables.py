@@ -1,18 +1,24 @@
 """Limits on the terminal: the answer, what may be trusted, the tables, and the whole line with them."""
 
+from __future__ import annotations
+
 import math
 
 from shaftprint.cli._terminal import print_findings
 from shaftprint.cli.output._json import give
 from shaftprint.cli.output._tables import print_table, print_tables
 from shaftprint.digits import fine_unit, interval, stated_interval, unit_text, with_deviation
-from shaftprint.distributions import NORMAL_95
-from shaftprint.fingerprint._line_with_limits import LineWithLimits
-from shaftprint.identify.fit._estimate import Estimate
-from shaftprint.limits._candidates import Kind
-from shaftprint.limits._limit_fit import LimitFit
+from shaftprint.late import late
 from shaftprint.plain_table import MEANING, Symbol, Table, numbers, texts
-from shaftprint.tables._fingerprint import quantity_table
+
+with late():
+    from shaftprint import distributions
+    from shaftprint.fingerprint._line_with_limits import LineWithLimits
+    from shaftprint.identify.fit._estimate import Estimate
+    from shaftprint.limits._candidates import Kind
+    from shaftprint.limits._limit_fit import LimitFit
+    from shaftprint.tables._fingerprint import quantity_table
+
 
 FITS = {"limits": "the fit to small signals, levels beside its governor", "joint fit": "all of the test in one fit"}
 NOTE = "± is one standard deviation, with that of the working point."
@@ -57,7 +63,7 @@ def _ends(number: Estimate) -> tuple[float, float]:
 def _std(number: Estimate) -> float:
     """Return the standard deviation that the digits follow: that of the interval, which is shown."""
     lower, upper = _ends(number)
-    width = 0.5 * (upper - lower) / NORMAL_95
+    width = 0.5 * (upper - lower) / distributions.NORMAL_95
     return width if math.isfinite(width) and width > 0.0 else number.std
 
 

@@ -1,12 +1,17 @@
 """The limits of ship and engine on the terminal: what a test leaves, and how near it comes to each."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 
 from shaftprint.cli._terminal import print_findings
 from shaftprint.cli.output._json import give
 from shaftprint.cli.output._tables import print_table
-from shaftprint.design.operation._limit_use import LimitUse
-from shaftprint.tables._limit_uses import limit_use_sentences, limit_use_table
+from shaftprint.late import late
+
+with late():
+    from shaftprint.design.operation._limit_use import LimitUse
+    from shaftprint.tables._limit_uses import limit_use_sentences, limit_use_table
 
 
 def print_limit_uses(uses: Sequence[LimitUse], *, is_expected: bool) -> None:

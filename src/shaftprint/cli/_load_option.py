@@ -5,7 +5,7 @@ from typing import Any
 
 import click
 
-from shaftprint.drift._differ import LOAD_REPEATABILITY
+from shaftprint.choices import LOAD_REPEATABILITY
 
 PERCENT = 100.0
 

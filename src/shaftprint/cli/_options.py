@@ -6,8 +6,7 @@ from typing import Any
 
 import click
 
-from shaftprint.catalogue._thesis import CLOSED_LOOPS, COMBINED_LOOP, PITCHED_LOOP
-from shaftprint.recording.writers._by_ending import WRITTEN_ENDINGS, WRITTEN_FORMATS
+from shaftprint.choices import CLOSED_LOOPS, COMBINED_LOOP, PITCHED_LOOP, WRITTEN_ENDINGS, WRITTEN_FORMATS
 
 OWN_FILE_HELP = "a shipped one, or my_ship.py:my_loop for one of your own file, which is Python and is run"
 DEFAULT_HELP = (

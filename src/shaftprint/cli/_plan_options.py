@@ -1,18 +1,24 @@
 """Options of ``plan`` as they are typed: wishes, limits, lengths and speeds, such as ``t_d=10%`` and ``12min``."""
 
+from __future__ import annotations
+
 import math
 import re
 from collections.abc import Sequence
 
 import click
 
-from shaftprint.design.inputs._stated_limits import LIMITS, StatedLimit
-from shaftprint.design.inputs._wish import Wish
+from shaftprint.late import late
 from shaftprint.spelling import meant
-from shaftprint.units import SECONDS_PER_MINUTE
+
+with late():
+    from shaftprint.design.inputs import _stated_limits
+    from shaftprint.design.inputs._stated_limits import StatedLimit
+    from shaftprint.design.inputs._wish import Wish
+
 
 _NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*([^\d\s].*?)?\s*$")
-_SECONDS = {"s": 1.0, "sec": 1.0, "min": SECONDS_PER_MINUTE, "h": 60.0 * SECONDS_PER_MINUTE}
+_SECONDS = {"s": 1.0, "sec": 1.0, "min": 60.0, "h": 3600.0}
 _PERCENT = 100.0
 
 
@@ -59,10 +65,10 @@ def limit_of(text: str) -> StatedLimit:
         If there is no such limit, or its number or unit is another.
     """
     name, _, stated = text.partition("=")
-    kind = LIMITS.get(name.strip())
+    kind = _stated_limits.LIMITS.get(name.strip())
     if kind is None:
-        advice = meant(name.strip(), LIMITS)
-        raise click.BadParameter(f"expected one of {', '.join(LIMITS)}, found {name.strip()!r}.{advice}")
+        advice = meant(name.strip(), _stated_limits.LIMITS)
+        raise click.BadParameter(f"expected one of {', '.join(_stated_limits.LIMITS)}, found {name.strip()!r}.{advice}")
     number, unit = _number(stated)
     if number is None or not number > 0.0 or unit not in kind.units:
         units = " or ".join(one or "no unit" for one in kind.units)

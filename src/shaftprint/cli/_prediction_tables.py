@@ -1,5 +1,7 @@
 """The predicted accuracy of a test on the terminal."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Mapping, Sequence
 
@@ -9,14 +11,17 @@ from shaftprint.cli._terminal import print_findings, say
 from shaftprint.cli.output._json import give
 from shaftprint.cli.output._tables import print_table, print_tables
 from shaftprint.digits import fine_unit, interval, plain, unit_text, with_deviation
-from shaftprint.drift._visible import VisibleChange
-from shaftprint.forecast._predict import PredictedTest
-from shaftprint.identify.fit._estimate import Estimate
-from shaftprint.identify.prediction._accuracy import Accuracy
-from shaftprint.identify.prediction._identifiability import Identifiability
-from shaftprint.identify.uncertainty._profile import Interval
+from shaftprint.late import late
 from shaftprint.plain_table import MEANING, Symbol, Table, numbers, texts
-from shaftprint.spectra._frequency_response import FrequencyResponse
+
+with late():
+    from shaftprint.drift._visible import VisibleChange
+    from shaftprint.forecast._predict import PredictedTest
+    from shaftprint.identify.fit._estimate import Estimate
+    from shaftprint.identify.prediction._accuracy import Accuracy
+    from shaftprint.identify.prediction._identifiability import Identifiability
+    from shaftprint.identify.uncertainty._profile import Interval
+    from shaftprint.spectra._frequency_response import FrequencyResponse
 
 
 def print_prediction(predicted: PredictedTest) -> None:

@@ -1,16 +1,21 @@
 """The campaign file that a recording shows, with what of it no such file can say."""
 
+from __future__ import annotations
+
 from pathlib import Path
 
-from shaftprint.campaign._file_text import campaign_text
 from shaftprint.cli._terminal import answer, print_findings
 from shaftprint.cli.output._file_to_write import expect_free
 from shaftprint.errors import SettingsError
 from shaftprint.files import write_bytes
-from shaftprint.recording._read import read_recording
-from shaftprint.signals._describe_recording import describe_set_point
-from shaftprint.signals.description._describe import Description
-from shaftprint.vessel._vessel import load_vessel
+from shaftprint.late import late
+
+with late():
+    from shaftprint.campaign._file_text import campaign_text
+    from shaftprint.recording._read import read_recording
+    from shaftprint.signals._describe_recording import describe_set_point
+    from shaftprint.signals.description._describe import Description
+    from shaftprint.vessel._vessel import load_vessel
 
 
 def write_recorded_campaign(recording: Path, vessel: str, file: Path) -> None:

@@ -1,17 +1,22 @@
 """Options of ``identify`` for the report: what the recording does not say of itself, and what to compare it with."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
 
 import click
 
-from shaftprint.campaign._trial_conditions import TrialConditions, load_trial_conditions
 from shaftprint.cli._dates import Moment
 from shaftprint.cli._gathered_options import gathered_options
 from shaftprint.cli.output._fingerprint_file import fingerprint_at
-from shaftprint.fingerprint._fingerprint import Fingerprint
-from shaftprint.report._page import expect_reportlab
+from shaftprint.late import late
+
+with late():
+    from shaftprint.campaign._trial_conditions import TrialConditions, load_trial_conditions
+    from shaftprint.fingerprint._fingerprint import Fingerprint
+    from shaftprint.report._page import expect_reportlab
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -1,5 +1,7 @@
 """The results of ``identify`` and ``demo``: files, where they are, and which structure the data want."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,15 +14,18 @@ from shaftprint.cli.output._fingerprint_file import FINGERPRINT, REPORT
 from shaftprint.cli.output._json import give
 from shaftprint.cli.output._progress import Steps
 from shaftprint.cli.output._tables import print_tables
-from shaftprint.fingerprint._fingerprint import Fingerprint
-from shaftprint.fingerprint._json_file import write_fingerprint
-from shaftprint.identify.comparison._comparison import StructureComparison
-from shaftprint.recording._read import read_recording
-from shaftprint.report._render import render_report
-from shaftprint.spectra._frequency_response import FrequencyResponse
-from shaftprint.survey._survey import Survey
-from shaftprint.survey._thesis_mode import ThesisMode
-from shaftprint.tables._structures import structure_tables
+from shaftprint.late import late
+
+with late():
+    from shaftprint.fingerprint._fingerprint import Fingerprint
+    from shaftprint.fingerprint._json_file import write_fingerprint
+    from shaftprint.identify.comparison._comparison import StructureComparison
+    from shaftprint.recording._read import read_recording
+    from shaftprint.report._render import render_report
+    from shaftprint.spectra._frequency_response import FrequencyResponse
+    from shaftprint.survey._survey import Survey
+    from shaftprint.survey._thesis_mode import ThesisMode
+    from shaftprint.tables._structures import structure_tables
 
 
 def write_results(

@@ -1,18 +1,23 @@
 """``shaftprint sail --starboard``: both lines of a ship in one recording."""
 
+from __future__ import annotations
+
 from pathlib import Path
 
 import click
 
-from shaftprint.campaign._both_shafts import load_campaign_of_both
+from shaftprint.choices import NATIVE_ENDINGS
 from shaftprint.cli._terminal import answer
 from shaftprint.cli._vessel_file import print_disagreements
 from shaftprint.cli.output._progress import progress
-from shaftprint.recording.writers._by_ending import NATIVE_ENDINGS
-from shaftprint.survey._both_shafts import load_trials_of_both
-from shaftprint.tug._like_stan_tug import like_stan_tug_1205, with_lever_of
-from shaftprint.tug._sail_both import sail_both
-from shaftprint.tug._truth import truth_path
+from shaftprint.late import late
+
+with late():
+    from shaftprint.campaign._both_shafts import load_campaign_of_both
+    from shaftprint.survey._both_shafts import load_trials_of_both
+    from shaftprint.tug._like_stan_tug import like_stan_tug_1205, with_lever_of
+    from shaftprint.tug._sail_both import sail_both
+    from shaftprint.tug._truth import truth_path
 
 
 def sail_both_lines(

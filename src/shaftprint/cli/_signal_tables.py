@@ -1,21 +1,26 @@
 """The signals and test lines of a recording on the terminal."""
 
-import numpy as np
+from __future__ import annotations
 
 from shaftprint.cli._terminal import echo, say
 from shaftprint.cli.output._tables import print_table, print_tables
 from shaftprint.digits import plain_letters, with_deviation
-from shaftprint.signals._signals import Signals
-from shaftprint.spectra._spectra import Spectra
-from shaftprint.tables._signals import (
-    local_ratio_table,
-    overall_ratio_table,
-    repair_table,
-    speed_table,
-    step_table,
-    strip_table,
-)
-from shaftprint.units import rpm_from_rev_s
+from shaftprint.late import late
+
+with late():
+    import numpy as np
+
+    from shaftprint.signals._signals import Signals
+    from shaftprint.spectra._spectra import Spectra
+    from shaftprint.tables._signals import (
+        local_ratio_table,
+        overall_ratio_table,
+        repair_table,
+        speed_table,
+        step_table,
+        strip_table,
+    )
+    from shaftprint.units import rpm_from_rev_s
 
 
 def print_signals(signals: Signals) -> None:

@@ -1,15 +1,21 @@
 """A simulation on the terminal: what it was made with, and what came out."""
 
+from __future__ import annotations
+
 import math
 
-import numpy as np
-
-from shaftprint.arrays import FloatArray
 from shaftprint.cli._terminal import say
 from shaftprint.cli.output._tables import print_table
 from shaftprint.digits import rounded, unit_text, with_deviation
-from shaftprint.forecast._simulation import Simulation
+from shaftprint.late import late
 from shaftprint.plain_table import MEANING, Table, numbers, texts
+
+with late():
+    import numpy as np
+
+    from shaftprint.arrays import FloatArray
+    from shaftprint.forecast._simulation import Simulation
+
 
 VALUE_DIGITS, RANGE_DIGITS, STD_DIGITS = 6, 5, 2
 # Of the largest value: less is what rounding leaves of zero.

@@ -1,5 +1,7 @@
 """What the actions of ``shaftprint store`` have in common: which store, and times in a zone."""
 
+from __future__ import annotations
+
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from datetime import UTC, datetime, tzinfo
@@ -9,8 +11,12 @@ import click
 
 from shaftprint.cli._dates import DATE_FORMATS, Moment, zone_option
 from shaftprint.cli._terminal import echo
-from shaftprint.store._store import Store, open_store
+from shaftprint.late import late
 from shaftprint.zones import in_zone
+
+with late():
+    from shaftprint.store._store import Store, open_store
+
 
 DEFAULT_STORE = "shaftprint.db"
 

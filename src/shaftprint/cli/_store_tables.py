@@ -1,14 +1,20 @@
 """Tables of a store: lines with their newest test, tests of a ship, their numbers, what was done."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Sequence
 from datetime import tzinfo
 
 from shaftprint.cli._terminal import print_document, print_findings
 from shaftprint.digits import interval, with_deviation
+from shaftprint.late import late
 from shaftprint.plain_table import Column, Symbol, Table
-from shaftprint.store._nouns import Event, Fault, HistoryEntry, LineSummary, StoredNumber
 from shaftprint.zones import utc_text
+
+with late():
+    from shaftprint.store._nouns import Event, Fault, HistoryEntry, LineSummary, StoredNumber
+
 
 SHOWN_HASH = 12
 DAMAGED = 1

@@ -1,10 +1,15 @@
 """A validation on the terminal."""
 
+from __future__ import annotations
+
 from shaftprint.cli._terminal import print_findings
 from shaftprint.cli.output._json import give
 from shaftprint.cli.output._tables import print_tables
-from shaftprint.tables._validation import excerpt_name, misfit_table, step_number_table
-from shaftprint.validation._validation import Validation
+from shaftprint.late import late
+
+with late():
+    from shaftprint.tables._validation import excerpt_name, misfit_table, step_number_table
+    from shaftprint.validation._validation import Validation
 
 
 def print_validation(validation: Validation) -> None:

@@ -1,8 +1,13 @@
 """What is said of a vessel file before anything is made of it: whether it agrees with itself."""
 
-from shaftprint.card._disagreements import disagreements
+from __future__ import annotations
+
 from shaftprint.cli._terminal import print_findings
-from shaftprint.vessel._vessel import Vessel, load_vessel
+from shaftprint.late import late
+
+with late():
+    from shaftprint.card._disagreements import disagreements
+    from shaftprint.vessel._vessel import Vessel, load_vessel
 
 
 def print_disagreements(vessel: Vessel, file: str) -> None:

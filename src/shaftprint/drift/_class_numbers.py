@@ -8,6 +8,7 @@ import numpy as np
 
 from shaftprint.arrays import BoolArray, FloatArray
 from shaftprint.catalogue._roles import ShipRole
+from shaftprint.choices import NEWEST_TESTS
 from shaftprint.drift._causes import GAUGE_SCALE, Cause
 from shaftprint.drift._dated import DatedTest
 from shaftprint.drift._doubts import judged_in
@@ -22,8 +23,6 @@ from shaftprint.fingerprint._vessel_fields import BEHIND, TVC
 if TYPE_CHECKING:
     from shaftprint.models._role import Role
 
-NEWEST_TESTS = 3
-"""Tests of a ship that stand for it, the newest ones."""
 OTHER_TOLERANCES: Final[dict["Role", float]] = {
     ShipRole.ACTUATOR_DAMPING: 0.03,
     # a test finds what the builder states

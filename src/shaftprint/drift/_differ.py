@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shaftprint.arrays import FloatArray
+from shaftprint.choices import LOAD_REPEATABILITY
 from shaftprint.drift._along import Whitened, p_value_of_largest, whitened
 from shaftprint.drift._causes import Cause
 from shaftprint.drift._finding import Finding, ShipChange, SizedCause, odds_against
@@ -15,9 +16,6 @@ if TYPE_CHECKING:
 
 UNLIKELY = 0.05
 """A change that chance makes in fewer than this share of unchanged pairs counts."""
-LOAD_REPEATABILITY = 0.005
-"""Standard deviation of the torque that one propeller takes at one speed from day to day, as a share, beside what the
-windows of a test show of it. No test of one day tells it; see docs/watching.md."""
 MOST_CHANGES = 3
 ROUNDS = 2
 """How often a change that was found is taken off before the valley is made straight: see ``_straight``."""

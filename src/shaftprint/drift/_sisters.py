@@ -12,6 +12,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from shaftprint.arrays import FloatArray
+from shaftprint.choices import LOAD_REPEATABILITY
 from shaftprint.distributions import deviations, f_tail, normal_cdf
 from shaftprint.drift._along import p_value_of_largest
 from shaftprint.drift._between_ships import (
@@ -26,7 +27,7 @@ from shaftprint.drift._between_ships import (
 from shaftprint.drift._causes import Cause
 from shaftprint.drift._class_finding import CauseSpread, ClassFinding, NumberSpread, ShipNumber, ShipSize, ShipStanding
 from shaftprint.drift._class_numbers import ClassNumbers, Sister, class_numbers
-from shaftprint.drift._differ import LOAD_REPEATABILITY, NOT_DETERMINED, NOT_TOLD, UNLIKELY
+from shaftprint.drift._differ import NOT_DETERMINED, NOT_TOLD, UNLIKELY
 from shaftprint.drift._discoveries import discoveries
 from shaftprint.drift._finding import ShipChange, SizedCause, odds_against
 from shaftprint.drift._single_test import is_share

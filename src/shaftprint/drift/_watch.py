@@ -16,8 +16,9 @@ from datetime import timedelta
 
 import numpy as np
 
+from shaftprint.choices import LOAD_REPEATABILITY
 from shaftprint.drift._course_search import FEWEST_TESTS, CourseSearch
-from shaftprint.drift._differ import LOAD_REPEATABILITY, MOST_CHANGES, NOT_DETERMINED, NOT_TOLD, ROUNDS, UNLIKELY
+from shaftprint.drift._differ import MOST_CHANGES, NOT_DETERMINED, NOT_TOLD, ROUNDS, UNLIKELY
 from shaftprint.drift._drift_finding import Drift, WatchFinding
 from shaftprint.drift._history import SECONDS_PER_YEAR, History
 from shaftprint.drift._series import series_of

@@ -6,8 +6,9 @@ from typing import Any, Final
 
 from shaftprint import __version__
 from shaftprint.arguments import refusing_none
+from shaftprint.choices import WORK_LIMIT_S
 from shaftprint.errors import StoreError
-from shaftprint.fleet._work import LIMIT_S, Worked, work
+from shaftprint.fleet._work import Worked, work
 from shaftprint.store._ledger import job_counts
 from shaftprint.store._store import open_store
 
@@ -15,7 +16,7 @@ _WAIT_S: Final = 60.0
 _LOOK_S: Final = 5.0
 
 
-def work_until_empty(url: str, limit_s: float = LIMIT_S) -> dict[str, int]:
+def work_until_empty(url: str, limit_s: float = WORK_LIMIT_S) -> dict[str, int]:
     """Do the jobs of a store until none is left, on the computer that calls this; return what was done."""
     with open_store(url) as store:
         worked = work(store, limit_s=limit_s)
@@ -23,7 +24,7 @@ def work_until_empty(url: str, limit_s: float = LIMIT_S) -> dict[str, int]:
 
 
 @refusing_none(StoreError)
-def work_on_dask(address: str, url: str, *, limit_s: float = LIMIT_S) -> Worked:
+def work_on_dask(address: str, url: str, *, limit_s: float = WORK_LIMIT_S) -> Worked:
     """Let every thread of a Dask cluster do the jobs of a store until none is left.
 
     A worker of Dask that dies is replaced by another, or not: its job is taken by others when its lease has ended.

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from shaftprint.arguments import refusing_none
+from shaftprint.choices import WORK_LIMIT_S
 from shaftprint.errors import DatabaseError, ShaftprintError, StoreError
 from shaftprint.fleet._computer import Limits
 from shaftprint.fleet._lane import Event, Lane
@@ -17,8 +18,6 @@ from shaftprint.store._store import Store
 
 # Each beat may write the step of every job that has gone on.
 _BEAT_S: Final = 5.0
-LIMIT_S: Final = 3600.0
-"""How long one recording may take where nothing else is said [s]."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -43,7 +42,7 @@ def work(
     wait: bool = False,
     report: Callable[[Event], None] | None = None,
     stop: threading.Event | None = None,
-    limit_s: float = LIMIT_S,
+    limit_s: float = WORK_LIMIT_S,
     most_file: int | None = None,
     forbidden: Callable[[Job], str | None] | None = None,
 ) -> Worked:

@@ -7,8 +7,9 @@ from itertools import pairwise
 import numpy as np
 
 from shaftprint.arrays import FloatArray, frozen_float
-from shaftprint.catalogue._crash_stop import CRASH_STOP, CrashStopSymbol
+from shaftprint.catalogue._crash_stop import CrashStopSymbol
 from shaftprint.catalogue._known_propeller import sails_free
+from shaftprint.choices import CRASH_STOP
 from shaftprint.digits import with_deviation
 from shaftprint.errors import FingerprintError, RequestError, StructureError
 from shaftprint.fingerprint._fingerprint import Fingerprint

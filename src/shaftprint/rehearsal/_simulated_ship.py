@@ -9,7 +9,7 @@ import numpy as np
 
 from shaftprint.catalogue._known_propeller import OF_THE_SHIP, sails_free
 from shaftprint.catalogue._roles import ShipRole
-from shaftprint.catalogue._thesis import CLOSED_LOOPS
+from shaftprint.choices import CLOSED_LOOPS
 from shaftprint.design.operation._limit_use import stated_limits
 from shaftprint.errors import DesignError
 from shaftprint.tug._like_stan_tug import like_stan_tug_1205

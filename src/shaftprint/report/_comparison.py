@@ -6,7 +6,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from shaftprint.catalogue._thesis import STRUCTURES, structure
-from shaftprint.drift._differ import LOAD_REPEATABILITY, differ
+from shaftprint.choices import LOAD_REPEATABILITY
+from shaftprint.drift._differ import differ
 from shaftprint.drift._finding import Finding
 from shaftprint.drift._shared_errors import are_two_lines
 from shaftprint.errors import ReportError

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from shaftprint.choices import NEWEST_TESTS
 from shaftprint.store._late_rooms import drift_room
 from shaftprint.store._line_history import LineHistory
 
@@ -20,7 +21,7 @@ def sisters_of(
     lines
         Lines of one class; they are called by their ship, and by their position too where there are several.
     newest
-        Tests that stand for a ship, ``drift.NEWEST_TESTS`` by default.
+        Tests that stand for a ship, ``choices.NEWEST_TESTS`` by default.
     """
     drift = drift_room()
     several = len({one.line.position for one in lines}) > 1
@@ -29,7 +30,7 @@ def sisters_of(
         name = f"{one.line.ship.name}, {one.line.position}" if several else one.line.ship.name
         history = drift.history_of(one.fingerprints, one.events)
         if history.tests:
-            sisters.append(drift.sister_of(name, history, newest=newest or drift.NEWEST_TESTS))
+            sisters.append(drift.sister_of(name, history, newest=newest or NEWEST_TESTS))
         else:
             left_out.append(name)
     return tuple(sisters), tuple(left_out)

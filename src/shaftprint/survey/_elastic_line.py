@@ -8,7 +8,7 @@ import numpy as np
 
 from shaftprint.catalogue._roles import ShipRole
 from shaftprint.catalogue._shipped import shipped_structure
-from shaftprint.catalogue._thesis import CLOSED_LOOPS
+from shaftprint.choices import CLOSED_LOOPS
 from shaftprint.digits import p_value_text, plain, plain_letters, with_deviation
 from shaftprint.errors import IdentificationError
 from shaftprint.identify.comparison._criteria import criteria_of

@@ -1,13 +1,20 @@
 """Whether a recording hints at a limit that acts: by harmonics of sines and failed steps, or by what its legs reach."""
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
-from shaftprint.design.operation._limit_use import LimitUse, limit_uses, stated_limits
-from shaftprint.design.operation._recorded import recorded_operation
 from shaftprint.digits import plain, plain_letters
-from shaftprint.limits._limit_hints import limit_hints
+from shaftprint.late import late
 from shaftprint.survey._measurement import Measurement
 from shaftprint.survey._trial import Trial
+
+with late():
+    from shaftprint.design.operation._limit_use import limit_uses, stated_limits
+    from shaftprint.design.operation._recorded import recorded_operation
+    from shaftprint.limits._limit_hints import limit_hints
+
+if TYPE_CHECKING:
+    from shaftprint.design.operation._limit_use import LimitUse
 
 
 def hints_of(
@@ -33,7 +40,7 @@ def hints_of(
     return (*_of_legs(uses), *of_sines)
 
 
-def _of_legs(uses: Sequence[LimitUse]) -> tuple[str, ...]:
+def _of_legs(uses: "Sequence[LimitUse]") -> tuple[str, ...]:
     reached = [_words(use) for use in uses if use.is_reached]
     if reached:
         return (
@@ -43,6 +50,6 @@ def _of_legs(uses: Sequence[LimitUse]) -> tuple[str, ...]:
     return (f"No leg reaches a limit that the vessel file states; nearest comes {_words(nearest)}.",)
 
 
-def _words(use: LimitUse) -> str:
+def _words(use: "LimitUse") -> str:
     numbers = f"{plain(use.value, 0)} of {plain(use.allowed, 0)} {use.unit}"
     return plain_letters(f"{use.excitation} to {use.limit} at {use.time_s:.1f} s, {numbers}")

@@ -6,6 +6,7 @@ covariance beside a given one, the covariance of the levels with the line is ``S
 """
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,15 +16,17 @@ from shaftprint.errors import FingerprintError
 from shaftprint.fingerprint._fingerprint import Fingerprint
 from shaftprint.fingerprint._line_with_limits import FoundBy, LineWithLimits
 from shaftprint.identify.fit._estimate import Estimate
-from shaftprint.limits._levels_beside import Levels
 from shaftprint.models._structure import Structure
 from shaftprint.signals._working_points import WorkingPoint
 from shaftprint.vessel._vessel import Vessel
 
+if TYPE_CHECKING:
+    from shaftprint.limits._levels_beside import Levels
+
 
 def line_with_limits(
     fingerprint: Fingerprint,
-    levels: Levels,
+    levels: "Levels",
     *,
     vessel: Vessel,
     working_point: WorkingPoint,
@@ -108,7 +111,7 @@ def _level(structure: Structure, name: str, value: float, std: float) -> Estimat
     )
 
 
-def _joint(fingerprint: Fingerprint, levels: Levels, names: Sequence[str]) -> FloatArray:
+def _joint(fingerprint: Fingerprint, levels: "Levels", names: Sequence[str]) -> FloatArray:
     """Return the covariance of the linear parameters and of some levels, in this order."""
     linear = [quantity.name for quantity in fingerprint.parameters]
     of_line = fingerprint.covariance_of(linear)

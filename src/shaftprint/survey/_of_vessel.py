@@ -6,7 +6,7 @@ from shaftprint.campaign._campaign import Campaign
 from shaftprint.catalogue._bent_line import with_bend
 from shaftprint.catalogue._own_structure import TypedName
 from shaftprint.catalogue._roles import ShipRole
-from shaftprint.catalogue._thesis import CLOSED_LOOPS, COMBINED_LOOP, PITCHED_LOOP
+from shaftprint.choices import CLOSED_LOOPS, COMBINED_LOOP, PITCHED_LOOP
 from shaftprint.errors import StructureError
 from shaftprint.models._structure import Structure
 from shaftprint.normalisation import inertia_time_s

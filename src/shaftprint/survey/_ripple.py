@@ -63,7 +63,11 @@ def _over_load(channel: "Channel", signals: "Signals", trial: "Trial", start_s: 
     beside = torque_nm[count // 2 : -(count // 2)] - np.convolve(torque_nm, weights, mode="valid")
     time_s = channel.time_s(first + count // 2, last - count // 2)
     speed = signals.engine_speed.values
-    speed_rev_s = np.interp(time_s, signals.start_s + np.arange(speed.size) / signals.rate_hz, speed)
+    # of the grid no more than the excitation and a sample on either side
+    ends = (time_s[[0, -1]] - signals.start_s) * signals.rate_hz + [-1.0, 3.0]
+    begin, end = np.clip(ends, 0, speed.size).astype(int).tolist()
+    grid_s = signals.start_s + np.arange(begin, end) / signals.rate_hz
+    speed_rev_s = np.interp(time_s, grid_s, speed[begin:end])
     point = signals.working_point
     load_nm = abs(point.shaft_torque_nm) * (speed_rev_s / point.engine_speed_rev_s) ** 2
     turning = load_nm > 0.0

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from functools import cached_property, partial
 from pathlib import Path
-from typing import Any, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
@@ -23,7 +23,6 @@ from shaftprint.identify.comparison._comparison import StructureComparison
 from shaftprint.identify.fit._estimate import Estimate
 from shaftprint.identify.fit._identification import Identification
 from shaftprint.identify.search._settings import Settings
-from shaftprint.limits._limit_fit import LimitFit
 from shaftprint.models._structure import Structure
 from shaftprint.notebook._shown import Shown
 from shaftprint.notebook._summary import Summary, shortened
@@ -54,8 +53,12 @@ from shaftprint.survey._trial import Trial, load_trial
 from shaftprint.survey._twist import twist_reasons
 from shaftprint.survey._validation_apart import with_validation
 from shaftprint.survey._validations import failed_steps, validations_of, validations_with_limits
-from shaftprint.validation._validation import Validation
 from shaftprint.vessel._vessel import Vessel
+
+if TYPE_CHECKING:
+    from shaftprint.limits._limit_fit import LimitFit
+    from shaftprint.validation._validation import Validation
+
 
 SettingsOf: TypeAlias = Callable[[Structure, Measurement, Trial], Settings]
 """Gives how a structure is fitted to a measurement of a trial."""
@@ -79,9 +82,9 @@ class Survey(Shown):
     """How well the first structure explains each leg of the campaign."""
     legs_alone: tuple[LegAlone, ...] = ()
     """Each leg with a model of its own, where one model does not explain all."""
-    limit_fit: LimitFit | None = None
+    limit_fit: "LimitFit | None" = None
     """Limits of governor and engine; None where they were not looked for."""
-    validations: tuple[Validation, ...] = ()
+    validations: "tuple[Validation, ...]" = ()
     """The first structure, with its limits where they were looked for, held against records that it has not seen."""
     remarks: tuple[str, ...] = ()
     """What could not be done, in words."""

@@ -7,6 +7,7 @@ step after step is taken out instead; one that alone shows a limit has no fit th
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -18,17 +19,26 @@ from shaftprint.fingerprint._fingerprint import Fingerprint
 from shaftprint.fingerprint._line_with_limits import LineWithLimits
 from shaftprint.fingerprint._model import model_with_limits
 from shaftprint.fingerprint._validation_record import StretchRecord, ValidationRecord
-from shaftprint.limits._candidates import Kind
-from shaftprint.limits._levels_beside import Levels, levels_beside
+from shaftprint.late import late
 from shaftprint.signals._signals import Signals
 from shaftprint.survey._line_with_limits import line_with_limits
 from shaftprint.survey._progress import SILENT, Progress
 from shaftprint.survey._trial import Trial
-from shaftprint.validation._model import Model
-from shaftprint.validation._prediction import simulated_prediction
-from shaftprint.validation._validate import joined, validate
-from shaftprint.validation._validation import Validation
-from shaftprint.validation._validation_records import Excerpt, default_records, excerpts_of
+
+with late():
+    from shaftprint.limits import _candidates
+    from shaftprint.limits._levels_beside import levels_beside
+    from shaftprint.validation import _prediction
+    from shaftprint.validation._model import Model
+    from shaftprint.validation._validate import joined, validate
+    from shaftprint.validation._validation_records import default_records, excerpts_of
+
+if TYPE_CHECKING:
+    from shaftprint.limits._candidates import Kind
+    from shaftprint.limits._levels_beside import Levels
+    from shaftprint.validation._validation import Validation
+    from shaftprint.validation._validation_records import Excerpt
+
 
 # What follows a record still answers it [s].
 AFTER_S = 5.0
@@ -36,7 +46,7 @@ AFTER_S = 5.0
 BEFORE_S = 1.0
 
 
-def limited_model(line: LineWithLimits, *, used: Sequence[str] = ()) -> Model:
+def limited_model(line: LineWithLimits, *, used: Sequence[str] = ()) -> "Model":
     """Return the model of a line with its limits, for a validation."""
     model = model_with_limits(line)
     lost = ~np.isfinite(np.diag(model.covariance))
@@ -58,7 +68,7 @@ def validated_apart(
     rng: np.random.Generator,
     records: Sequence[str] | None = None,
     progress: Progress = SILENT,
-) -> Validation:
+) -> "Validation":
     """Hold the line with its limits against records of the recording that it was found in.
 
     Parameters
@@ -96,7 +106,7 @@ def validated_apart(
     return replace(whole, findings=(*whole.findings, *_how_judged(task.line, whole, trial.campaign, names)))
 
 
-def _how_judged(line: LineWithLimits, whole: Validation, campaign: Campaign, names: Sequence[str]) -> list[str]:
+def _how_judged(line: LineWithLimits, whole: "Validation", campaign: Campaign, names: Sequence[str]) -> list[str]:
     """Return which fits judged, and what none could judge."""
     said = ["each excerpt is judged by limits that were fitted without it"]
     judged = {(one.excerpt.record, one.excerpt.title) for one in whole.comparisons}
@@ -122,7 +132,7 @@ class _Task:
     def of(cls, fingerprint: Fingerprint, signals: Signals, trial: Trial, rng: np.random.Generator) -> "_Task":
         return cls(fingerprint, limits_of(fingerprint), signals, trial, rng)
 
-    def of_record(self, name: str) -> list[Validation]:
+    def of_record(self, name: str) -> "list[Validation]":
         """Return a record held against fits that did not use it."""
         campaign = self.trial.campaign
         large: list[Chirp | Staircase] = [*campaign.chirps, *campaign.staircases]
@@ -137,7 +147,7 @@ class _Task:
             return []
         return self._step_by_step(test)
 
-    def _step_by_step(self, stairs: Staircase) -> list[Validation]:
+    def _step_by_step(self, stairs: Staircase) -> "list[Validation]":
         """Return a staircase whose steps are judged one by one; it is not judged as a whole."""
         validations = []
         for step in range(len(stairs.levels_v)):
@@ -147,7 +157,7 @@ class _Task:
                 validations.append(self._validated(self._line(without), stairs.name, at))
         return validations
 
-    def _without(self, apart: Sequence[tuple[float, float]]) -> Levels:
+    def _without(self, apart: Sequence[tuple[float, float]]) -> "Levels":
         values = {quantity.name: quantity.value for quantity in self.line.parameters} | self.line.held
         linear = {quantity.name: quantity.value for quantity in self.fingerprint.parameters} | self.fingerprint.held
         return levels_beside(
@@ -160,17 +170,17 @@ class _Task:
             apart=apart,
         )
 
-    def _shows_all(self, levels: Levels) -> bool:
+    def _shows_all(self, levels: "Levels") -> bool:
         linear = {quantity.name for quantity in self.fingerprint.parameters}
         return {quantity.name for quantity in self.line.parameters} - linear == set(levels.names)
 
-    def _line(self, levels: Levels) -> LineWithLimits:
+    def _line(self, levels: "Levels") -> LineWithLimits:
         return line_with_limits(
             self.fingerprint, levels, vessel=self.trial.vessel, working_point=self.signals.working_point
         )
 
-    def _validated(self, line: LineWithLimits, name: str, step_s: float | None = None) -> Validation:
-        def chosen(excerpt: Excerpt) -> bool:
+    def _validated(self, line: LineWithLimits, name: str, step_s: float | None = None) -> "Validation":
+        def chosen(excerpt: "Excerpt") -> bool:
             return step_s is None or excerpt.step_s == step_s
 
         return validate(
@@ -179,7 +189,7 @@ class _Task:
             self.trial.campaign,
             rng=self.rng,
             records=(name,),
-            predict=simulated_prediction,
+            predict=_prediction.simulated_prediction,
             quadratic_propeller=False,
             chosen=chosen,
         )
@@ -201,13 +211,13 @@ def limits_of(fingerprint: Fingerprint) -> LineWithLimits:
     return fingerprint.with_limits
 
 
-def kinds_of(line: LineWithLimits) -> tuple[Kind, ...]:
+def kinds_of(line: LineWithLimits) -> "tuple[Kind, ...]":
     """Return the limits of a line, as they are looked for."""
     words = {number.limit for number in line.numbers}
-    return tuple(kind for kind in Kind if kind.value in words)
+    return tuple(kind for kind in _candidates.Kind if kind.value in words)
 
 
-def with_validation(fingerprint: Fingerprint, validations: Sequence[Validation]) -> Fingerprint:
+def with_validation(fingerprint: Fingerprint, validations: "Sequence[Validation]") -> Fingerprint:
     """Return a fingerprint that says what its model was worth on records that its fit had not seen.
 
     A validation that does not pass is a finding too.
@@ -219,7 +229,7 @@ def with_validation(fingerprint: Fingerprint, validations: Sequence[Validation])
     return fingerprint.model_copy(update={"validation": record, "findings": findings})
 
 
-def _record(validation: Validation) -> ValidationRecord:
+def _record(validation: "Validation") -> ValidationRecord:
     """Return what a fingerprint keeps of a validation."""
     return ValidationRecord(
         model=validation.model.name,

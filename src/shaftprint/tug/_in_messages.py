@@ -2,15 +2,14 @@
 
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import Any, Final
+from typing import Any
 
+from shaftprint.choices import MESSAGES
 from shaftprint.errors import SettingsError
 from shaftprint.tug._tug import Tug
 from shaftprint.tug.sensors._speed_meter import SPEED_STEP_RPM
 from shaftprint.vessel._vessel import Vessel
 
-MESSAGES: Final = ("torque", "speed", "set-point")
-"""What may come in messages."""
 # Steps of a set point on a bus by its unit: SAE J1939-71, pedal (SPN 91) and desired speed (SPN 515).
 _STEPS = {"%": 0.4, "rpm": SPEED_STEP_RPM}
 

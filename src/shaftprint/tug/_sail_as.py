@@ -6,10 +6,11 @@ from collections.abc import Callable
 from pathlib import Path
 
 from shaftprint.campaign._campaign import Campaign
+from shaftprint.choices import NATIVE_ENDINGS
 from shaftprint.errors import RecordingError
 from shaftprint.files import reason, written_whole
 from shaftprint.recording._read import read_recording
-from shaftprint.recording.writers._by_ending import NATIVE_ENDINGS, expect_known_ending, write_by_ending
+from shaftprint.recording.writers._by_ending import expect_known_ending, write_by_ending
 from shaftprint.tug._sail import sail
 from shaftprint.tug._truth import Truth, truth_path
 from shaftprint.tug._tug import Tug

@@ -1,10 +1,11 @@
 """``shaftprint compare``: two or more fingerprints beside each other."""
 
+from __future__ import annotations
+
 from pathlib import Path
 
 import click
 
-from shaftprint.catalogue._own_structure import TypedName, chosen_structures
 from shaftprint.cli._drive_judge import compare_on_the_bench
 from shaftprint.cli._drive_options import drive_fingerprint_at, is_drive_place
 from shaftprint.cli._load_option import load_repeatability_option
@@ -14,17 +15,22 @@ from shaftprint.cli.output._fingerprint_file import FINGERPRINT, REPORT, fingerp
 from shaftprint.cli.output._json import give
 from shaftprint.cli.output._output_folder import force_option, output_folder
 from shaftprint.cli.output._tables import print_tables
-from shaftprint.drift._differ import differ
-from shaftprint.drift._finding import Finding
-from shaftprint.drift._shared_errors import are_two_lines
-from shaftprint.drift._words import finding_sentences
-from shaftprint.fingerprint._fingerprint import Fingerprint
-from shaftprint.report._comparison import render_comparison
-from shaftprint.report.comparison._cause_table import cause_table
-from shaftprint.report.comparison._differences import Difference, differences
-from shaftprint.report.comparison._tables import difference_table, stated_table
-from shaftprint.report.comparison._vessel_file_words import vessel_file_sentences
-from shaftprint.report.sections._comparison_cover import change_in_words
+from shaftprint.late import late
+
+with late():
+    from shaftprint.catalogue._own_structure import TypedName, chosen_structures
+    from shaftprint.drift._differ import differ
+    from shaftprint.drift._finding import Finding
+    from shaftprint.drift._shared_errors import are_two_lines
+    from shaftprint.drift._words import finding_sentences
+    from shaftprint.fingerprint._fingerprint import Fingerprint
+    from shaftprint.report._comparison import render_comparison
+    from shaftprint.report.comparison._cause_table import cause_table
+    from shaftprint.report.comparison._differences import Difference, differences
+    from shaftprint.report.comparison._tables import difference_table, stated_table
+    from shaftprint.report.comparison._vessel_file_words import vessel_file_sentences
+    from shaftprint.report.sections._comparison_cover import change_in_words
+
 
 FEWEST = 2
 PERCENT = 100.0

@@ -1,22 +1,28 @@
 """``shaftprint compare-structures``: which of several structures a recording wants."""
 
+from __future__ import annotations
+
 from pathlib import Path
 
 import click
-import numpy as np
 
-from shaftprint.catalogue._own_structure import TypedName
 from shaftprint.cli._drive_judge import compare_structures_on_the_bench
 from shaftprint.cli._drive_options import drive_option, expect_not_given, only_recording
 from shaftprint.cli._fit_options import fit_options
 from shaftprint.cli._options import OWN_FILE_HELP, campaign_option, vessel_option
 from shaftprint.cli._results import print_comparison
 from shaftprint.cli.output._progress import no_progress_option, progress
-from shaftprint.identify.comparison._compare import compare_jointly, expect_comparable
-from shaftprint.survey._fit_options import FitOptions
-from shaftprint.survey._measurement import measure, pairs_of
-from shaftprint.survey._survey import settings_by_name
-from shaftprint.survey._trial import load_trial
+from shaftprint.late import late
+
+with late():
+    import numpy as np
+
+    from shaftprint.catalogue._own_structure import TypedName
+    from shaftprint.identify.comparison._compare import compare_jointly, expect_comparable
+    from shaftprint.survey._fit_options import FitOptions
+    from shaftprint.survey._measurement import measure, pairs_of
+    from shaftprint.survey._survey import settings_by_name
+    from shaftprint.survey._trial import load_trial
 
 
 @click.command("compare-structures")

@@ -1,10 +1,12 @@
 """``shaftprint continue``: what is known so far of a planned test, and what is still missing."""
 
+from __future__ import annotations
+
 from pathlib import Path
 
 import click
 
-from shaftprint.catalogue._own_structure import TypedName, chosen_structures
+from shaftprint.choices import SET_POINT_RATE_HZ
 from shaftprint.cli._command_group import NOT_REACHED
 from shaftprint.cli._options import OWN_FILE_HELP, vessel_option
 from shaftprint.cli._terminal import answer, echo, print_findings
@@ -13,15 +15,20 @@ from shaftprint.cli.output._json import give
 from shaftprint.cli.output._output_folder import force_option, output_folder
 from shaftprint.cli.output._progress import no_progress_option, progress
 from shaftprint.cli.output._tables import print_tables
-from shaftprint.design.files._plan_folder import CAMPAIGN, write_plan_files
-from shaftprint.design.files._plan_json import read_plan
-from shaftprint.design.files._set_point_samples import RATE_HZ
-from shaftprint.design.standing._standing import Standing
-from shaftprint.rehearsal._continue import standing_after
-from shaftprint.report.plan._plan_page import render_plan
-from shaftprint.survey._measurement import measure
-from shaftprint.survey._trial import load_trial
-from shaftprint.tables._plan import planned_leg_table, standing_leg_table, standing_table
+from shaftprint.late import late
+
+with late():
+    from shaftprint.catalogue._own_structure import TypedName, chosen_structures
+    from shaftprint.design.files import _plan_folder
+    from shaftprint.design.files._plan_folder import write_plan_files
+    from shaftprint.design.files._plan_json import read_plan
+    from shaftprint.design.standing._standing import Standing
+    from shaftprint.rehearsal._continue import standing_after
+    from shaftprint.report.plan._plan_page import render_plan
+    from shaftprint.survey._measurement import measure
+    from shaftprint.survey._trial import load_trial
+    from shaftprint.tables._plan import planned_leg_table, standing_leg_table, standing_table
+
 
 NEXT = "next"
 """Folder for what is missing, in that of the plan."""
@@ -42,7 +49,12 @@ NEXT = "next"
     "--structure", "own", metavar="NAME", help=f"Structure of the plan where it is your own: {OWN_FILE_HELP}."
 )
 @click.option(
-    "--rate", "rate_hz", type=float, default=RATE_HZ, show_default=True, help="Samples a second of the set point [Hz]."
+    "--rate",
+    "rate_hz",
+    type=float,
+    default=SET_POINT_RATE_HZ,
+    show_default=True,
+    help="Samples a second of the set point [Hz].",
 )
 @click.option("--seed", type=click.IntRange(min=0), default=1, show_default=True, help="Seed of the starts.")
 @click.option(
@@ -74,7 +86,7 @@ def command(
     """
     test = read_plan(place, structure=None if own is None else chosen_structures([own])[0])
     folder = place if place.is_dir() else place.parent
-    trial = load_trial(vessel, str(folder / CAMPAIGN) if campaign is None else campaign)
+    trial = load_trial(vessel, str(folder / _plan_folder.CAMPAIGN) if campaign is None else campaign)
     with progress(hidden=no_progress) as steps:
         measurement = measure(recording, trial, progress=steps)
         steps.begin("Fitting what was recorded so far")
@@ -107,4 +119,4 @@ def print_standing(standing: Standing, folder: Path) -> None:
     if standing.remaining is not None:
         print_tables([planned_leg_table(standing.remaining)])
         echo(f"Page:      {folder / REPORT}")
-        echo(f"Campaign:  {folder / CAMPAIGN}")
+        echo(f"Campaign:  {folder / _plan_folder.CAMPAIGN}")

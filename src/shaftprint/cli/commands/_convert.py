@@ -1,21 +1,27 @@
 """``shaftprint convert``: recordings of other formats into the native container, or into another format."""
 
+from __future__ import annotations
+
 from dataclasses import replace
 from pathlib import Path
 
 import click
 
+from shaftprint.choices import NATIVE_ENDINGS
 from shaftprint.cli._options import cut_options, hints_of, output_options, reading_options
 from shaftprint.cli._terminal import answer, echo
 from shaftprint.cli.output._file_to_write import expect_no_input
 from shaftprint.cli.output._progress import no_progress_option, progress
 from shaftprint.errors import RecordingError
-from shaftprint.recording._channel import Channel
-from shaftprint.recording._cut import cut
-from shaftprint.recording._read import read_recording
-from shaftprint.recording._recording import Recording
-from shaftprint.recording.writers._by_ending import NATIVE_ENDINGS, expect_known_ending, held_date, write_by_ending
-from shaftprint.signals._at_rate import at_rate
+from shaftprint.late import late
+
+with late():
+    from shaftprint.recording._channel import Channel
+    from shaftprint.recording._cut import cut
+    from shaftprint.recording._read import read_recording
+    from shaftprint.recording._recording import Recording
+    from shaftprint.recording.writers._by_ending import expect_known_ending, held_date, write_by_ending
+    from shaftprint.signals._at_rate import at_rate
 
 
 @click.command("convert")

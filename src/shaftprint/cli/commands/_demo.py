@@ -1,5 +1,7 @@
 """``shaftprint demo``: the whole way, from a ship whose truth is known to its fingerprint."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
@@ -7,7 +9,6 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 import click
-import numpy as np
 
 from shaftprint.cli._demo_summary import print_summary
 from shaftprint.cli._fingerprint_tables import print_fingerprint
@@ -19,19 +20,25 @@ from shaftprint.cli._terminal import echo, say
 from shaftprint.cli.output._output_folder import force_option, output_folder
 from shaftprint.cli.output._progress import Steps, no_progress_option, progress
 from shaftprint.cli.output._tables import print_table
-from shaftprint.rehearsal._true_fingerprint import fingerprint_truth
-from shaftprint.spectra._frequency_response import FrequencyResponse
-from shaftprint.store._add import add
-from shaftprint.store._event import record_event
-from shaftprint.store._store import create_store
-from shaftprint.survey._measurement import measure
-from shaftprint.survey._survey import Survey, survey_of
-from shaftprint.survey._thesis_mode import ThesisMode
-from shaftprint.survey._thesis_way import line_selections, thesis_way, weighted_fits
-from shaftprint.survey._trial import Trial, load_trial, settings_text
-from shaftprint.tables._structures import fits_table
-from shaftprint.tug._sail import sail
-from shaftprint.tug._truth import Truth
+from shaftprint.late import late
+
+with late():
+    import numpy as np
+
+    from shaftprint.rehearsal._true_fingerprint import fingerprint_truth
+    from shaftprint.spectra._frequency_response import FrequencyResponse
+    from shaftprint.store._add import add
+    from shaftprint.store._event import record_event
+    from shaftprint.store._store import create_store
+    from shaftprint.survey import _measurement, _thesis_way
+    from shaftprint.survey._survey import Survey, survey_of
+    from shaftprint.survey._thesis_mode import ThesisMode
+    from shaftprint.survey._thesis_way import thesis_way, weighted_fits
+    from shaftprint.survey._trial import Trial, load_trial, settings_text
+    from shaftprint.tables._structures import fits_table
+    from shaftprint.tug._sail import sail
+    from shaftprint.tug._truth import Truth
+
 
 VESSEL = "stan-tug-1205"
 FULL, SHORT = "thesis", "short"
@@ -136,9 +143,9 @@ def _identify(recording: Path, trial: Trial, *, seed: int, steps: Steps) -> _Res
     rng = np.random.default_rng(seed)
     with ThreadPoolExecutor(max_workers=1) as beside:
         # the file is read both ways at once: most of either is done by compiled code
-        other = beside.submit(measure, recording, trial, mode="thesis")
-        measurement = measure(recording, trial, progress=steps)
-        selections = beside.submit(line_selections, measurement, trial)
+        other = beside.submit(_measurement.measure, recording, trial, mode="thesis")
+        measurement = _measurement.measure(recording, trial, progress=steps)
+        selections = beside.submit(_thesis_way.line_selections, measurement, trial)
         fits = weighted_fits(measurement, trial, rng=rng, progress=steps)
         thesis = thesis_way(other.result(), trial, rng=rng, progress=steps)
         survey = survey_of(fits, measurement, trial, rng=rng, progress=steps)

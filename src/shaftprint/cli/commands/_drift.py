@@ -1,10 +1,11 @@
 """``shaftprint drift``: the tests of one line over the years."""
 
+from __future__ import annotations
+
 from datetime import UTC, datetime, tzinfo
 from pathlib import Path
 
 import click
-import numpy as np
 
 from shaftprint.cli._cause_size import CauseSize
 from shaftprint.cli._dates import Moment, zone_option
@@ -15,15 +16,22 @@ from shaftprint.cli.output._fingerprint_file import REPORT, fingerprint_at
 from shaftprint.cli.output._json import give
 from shaftprint.cli.output._output_folder import force_option, output_folder
 from shaftprint.cli.output._tables import print_tables
-from shaftprint.drift._causes import Cause, may_happen
-from shaftprint.drift._dated import EVENTS, Event
-from shaftprint.drift._history import History, history_of
-from shaftprint.drift._watch import watch
-from shaftprint.drift._words import limit_sentence, watch_sentences
-from shaftprint.fingerprint._fingerprint import Fingerprint
-from shaftprint.report._history_page import render_history, sizes_of_tests
-from shaftprint.report.comparison._history_tables import course_table, history_table
-from shaftprint.store._line_history import line_history
+from shaftprint.late import late
+from shaftprint.store._nouns import KINDS
+
+with late():
+    import numpy as np
+
+    from shaftprint.drift._causes import Cause, may_happen
+    from shaftprint.drift._dated import Event
+    from shaftprint.drift._history import History, history_of
+    from shaftprint.drift._watch import watch
+    from shaftprint.drift._words import limit_sentence, watch_sentences
+    from shaftprint.fingerprint._fingerprint import Fingerprint
+    from shaftprint.report._history_page import render_history, sizes_of_tests
+    from shaftprint.report.comparison._history_tables import course_table, history_table
+    from shaftprint.store._line_history import line_history
+
 
 FEWEST = 2
 PERCENT = 100.0
@@ -38,8 +46,8 @@ class EventAt(click.ParamType):  # type: ignore[type-arg]
     def convert(self, value: object, param: click.Parameter | None, ctx: click.Context | None) -> tuple[str, datetime]:
         """Return kind and time of an event."""
         kind, _, moment = str(value).partition("=")
-        if kind not in EVENTS:
-            self.fail(f"expected KIND=DATE with one of {', '.join(EVENTS)}, such as docking=2026-05-01.", param, ctx)
+        if kind not in KINDS:
+            self.fail(f"expected KIND=DATE with one of {', '.join(KINDS)}, such as docking=2026-05-01.", param, ctx)
         at: datetime = Moment().convert(moment, param, ctx)
         return kind, at
 
@@ -54,7 +62,7 @@ class EventAt(click.ParamType):  # type: ignore[type-arg]
     multiple=True,
     type=EventAt(),
     metavar="KIND=DATE",
-    help=f"What was done to the ship: {', '.join(EVENTS)}; numbers that it concerns begin anew. May be repeated.",
+    help=f"What was done to the ship: {', '.join(KINDS)}; numbers that it concerns begin anew. May be repeated.",
 )
 @click.option(
     "--limit",

@@ -1,9 +1,10 @@
 """``shaftprint explain``: where the numbers of the thesis' way come from."""
 
+from __future__ import annotations
+
 from pathlib import Path
 
 import click
-import numpy as np
 
 from shaftprint.cli._options import campaign_option, vessel_option
 from shaftprint.cli._results import print_paths, write_results
@@ -12,18 +13,18 @@ from shaftprint.cli.output._output_folder import force_option, output_folder
 from shaftprint.cli.output._progress import no_progress_option, progress
 from shaftprint.cli.output._tables import print_table
 from shaftprint.digits import plain_letters
-from shaftprint.report.thesis._explanation import Explanation, explain_thesis
-from shaftprint.report.thesis._words import (
-    damping_table,
-    explanation_sentences,
-    gain_table,
-    inertia_table,
-    integral_table,
-)
-from shaftprint.survey._measurement import measure
-from shaftprint.survey._survey import Survey, fingerprint_of
-from shaftprint.survey._thesis_way import line_selections, thesis_way, weighted_fits
-from shaftprint.survey._trial import load_trial
+from shaftprint.late import late
+
+with late():
+    import numpy as np
+
+    from shaftprint.report.thesis import _words
+    from shaftprint.report.thesis._explanation import Explanation, explain_thesis
+    from shaftprint.report.thesis._words import explanation_sentences
+    from shaftprint.survey._measurement import measure
+    from shaftprint.survey._survey import Survey, fingerprint_of
+    from shaftprint.survey._thesis_way import line_selections, thesis_way, weighted_fits
+    from shaftprint.survey._trial import load_trial
 
 
 @click.command("explain")
@@ -64,7 +65,7 @@ def command(
 
 
 def _print(explanation: Explanation) -> None:
-    tables = (inertia_table, damping_table, gain_table, integral_table)
+    tables = (_words.inertia_table, _words.damping_table, _words.gain_table, _words.integral_table)
     for sentence, make in zip(explanation_sentences(explanation), tables, strict=True):
         print_table(make(explanation))
         say(f"{plain_letters(sentence)}\n")

@@ -1,11 +1,11 @@
 """``shaftprint identify``: from a recording to a fingerprint."""
 
+from __future__ import annotations
+
 from pathlib import Path
 
 import click
-import numpy as np
 
-from shaftprint.catalogue._own_structure import TypedName
 from shaftprint.cli._drive_identify import identify_on_the_bench
 from shaftprint.cli._drive_options import drive_option, only_recording
 from shaftprint.cli._fingerprint_tables import print_fingerprint
@@ -28,16 +28,22 @@ from shaftprint.cli.output._fingerprint_file import FINGERPRINT
 from shaftprint.cli.output._progress import Steps
 from shaftprint.cli.output._results_options import Results, results_options
 from shaftprint.cli.output._tables import print_table
-from shaftprint.fingerprint._json_file import write_fingerprint
-from shaftprint.fingerprint._sources import structure_sources
-from shaftprint.survey._everything import with_everything
-from shaftprint.survey._fit_options import FitOptions
-from shaftprint.survey._limits import with_limits
-from shaftprint.survey._of_vessel import default_structure
-from shaftprint.survey._survey import Survey, judged, run
-from shaftprint.survey._trial import load_trial
-from shaftprint.tables._legs import leg_test_table
-from shaftprint.tables._structures import fits_table
+from shaftprint.late import late
+
+with late():
+    import numpy as np
+
+    from shaftprint.catalogue._own_structure import TypedName
+    from shaftprint.fingerprint._json_file import write_fingerprint
+    from shaftprint.fingerprint._sources import structure_sources
+    from shaftprint.survey._everything import with_everything
+    from shaftprint.survey._fit_options import FitOptions
+    from shaftprint.survey._limits import with_limits
+    from shaftprint.survey._of_vessel import default_structure
+    from shaftprint.survey._survey import Survey, judged, run
+    from shaftprint.survey._trial import load_trial
+    from shaftprint.tables._legs import leg_test_table
+    from shaftprint.tables._structures import fits_table
 
 
 @click.command("identify")

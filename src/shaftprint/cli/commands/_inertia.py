@@ -1,5 +1,7 @@
 """``shaftprint inertia``: inertia and torsional modes by calculation."""
 
+from __future__ import annotations
+
 from pathlib import Path
 
 import click
@@ -11,22 +13,26 @@ from shaftprint.cli.output._json import give
 from shaftprint.cli.output._tables import print_table
 from shaftprint.digits import plain_letters
 from shaftprint.files import written_whole
-from shaftprint.fingerprint._inertia import inertia_beside
-from shaftprint.report.charts._pictures import save_chart
-from shaftprint.report.figures._modes import mode_chart
-from shaftprint.tables._inertia import (
-    expected_inertia_table,
-    inertia_budget_table,
-    mass_table,
-    mode_table,
-    two_mass_sentence,
-    water_table,
-)
-from shaftprint.torsion._expected_inertia import ExpectedInertia, InertiaComparison, expected_inertia
-from shaftprint.torsion._line import torsional_line
-from shaftprint.torsion._modes import Modes, modes
-from shaftprint.torsion._two_masses import two_masses
-from shaftprint.vessel._vessel import Vessel, load_vessel
+from shaftprint.late import late
+
+with late():
+    from shaftprint.fingerprint._inertia import inertia_beside
+    from shaftprint.report.charts._pictures import save_chart
+    from shaftprint.report.figures._modes import mode_chart
+    from shaftprint.tables._inertia import (
+        expected_inertia_table,
+        inertia_budget_table,
+        mass_table,
+        mode_table,
+        two_mass_sentence,
+        water_table,
+    )
+    from shaftprint.torsion._expected_inertia import ExpectedInertia, InertiaComparison, expected_inertia
+    from shaftprint.torsion._line import torsional_line
+    from shaftprint.torsion._modes import Modes, modes
+    from shaftprint.torsion._two_masses import two_masses
+    from shaftprint.vessel._vessel import Vessel, load_vessel
+
 
 SUFFIXES = (".svg", ".png", ".pdf")
 

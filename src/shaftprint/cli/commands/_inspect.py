@@ -1,12 +1,13 @@
 """``shaftprint inspect``: what is in a recording, and whether it is good enough."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 import click
 
-from shaftprint.campaign._campaign import Campaign, load_campaign
 from shaftprint.cli._found_tests import print_found_tests
 from shaftprint.cli._inspect_headline import headline, lines_of, lost_parts
 from shaftprint.cli._limit_uses import print_limit_uses
@@ -16,30 +17,35 @@ from shaftprint.cli._terminal import answer, echo, print_findings, say
 from shaftprint.cli._vessel_file import print_disagreements
 from shaftprint.cli.output._progress import no_progress_option, progress
 from shaftprint.cli.output._tables import print_table, print_tables
-from shaftprint.clocks._logger_clock import LoggerClock, logger_clocks
-from shaftprint.design.operation._limit_use import LimitUse, limit_uses, stated_limits
-from shaftprint.design.operation._recorded import recorded_operation
 from shaftprint.errors import ShaftprintError, SignalError
-from shaftprint.fingerprint._clock_influence import clock_findings, clock_influences
-from shaftprint.limits._limit_hints import limit_hints
+from shaftprint.late import late
 from shaftprint.plain_table import Table, numbers, texts
-from shaftprint.recording._level_watch import LevelWatch, watch_levels
-from shaftprint.recording._levels import Levels
-from shaftprint.recording._messages import judge_messages
-from shaftprint.recording._read import read_recording
-from shaftprint.recording._recording import Recording
-from shaftprint.signals._channel_readings import ChannelReadings, read_channels
-from shaftprint.signals._contradictions import contradictions
-from shaftprint.signals._inspect import ChannelReport, PulseReport, channel_reports
-from shaftprint.signals._prepare import find_tests, prepare_signals
-from shaftprint.signals._signals import Signals
-from shaftprint.signals.excitation._found_test import FoundTest
-from shaftprint.spectra._spectra import Spectra, estimate_spectra
-from shaftprint.survey._legs import LegMeasurement, legs_of
-from shaftprint.survey._proposed_sensors import Seen, proposed_sensors
-from shaftprint.tables._legs import leg_table
-from shaftprint.tables._recording import clock_map_table
-from shaftprint.vessel._vessel import Vessel, load_vessel
+
+with late():
+    from shaftprint.campaign._campaign import Campaign, load_campaign
+    from shaftprint.clocks._logger_clock import LoggerClock, logger_clocks
+    from shaftprint.design.operation._limit_use import LimitUse, limit_uses, stated_limits
+    from shaftprint.design.operation._recorded import recorded_operation
+    from shaftprint.fingerprint._clock_influence import clock_findings, clock_influences
+    from shaftprint.limits._limit_hints import limit_hints
+    from shaftprint.recording._level_watch import LevelWatch, watch_levels
+    from shaftprint.recording._levels import Levels
+    from shaftprint.recording._messages import judge_messages
+    from shaftprint.recording._read import read_recording
+    from shaftprint.recording._recording import Recording
+    from shaftprint.signals._channel_readings import ChannelReadings, read_channels
+    from shaftprint.signals._contradictions import contradictions
+    from shaftprint.signals._inspect import ChannelReport, PulseReport, channel_reports
+    from shaftprint.signals._prepare import find_tests, prepare_signals
+    from shaftprint.signals._signals import Signals
+    from shaftprint.signals.excitation._found_test import FoundTest
+    from shaftprint.spectra._spectra import Spectra, estimate_spectra
+    from shaftprint.survey._legs import LegMeasurement, legs_of
+    from shaftprint.survey._proposed_sensors import Seen, proposed_sensors
+    from shaftprint.tables._legs import leg_table
+    from shaftprint.tables._recording import clock_map_table
+    from shaftprint.vessel._vessel import Vessel, load_vessel
+
 
 _MOST_GAPS = 20
 # More strips than this are teeth, of which the worst is named.

@@ -1,5 +1,7 @@
 """``shaftprint join``: files that one logger wrote one after the other, in one file."""
 
+from __future__ import annotations
+
 from contextlib import ExitStack
 from pathlib import Path
 
@@ -8,10 +10,13 @@ import click
 from shaftprint.cli._options import cut_options
 from shaftprint.cli._terminal import answer, echo
 from shaftprint.cli.output._file_to_write import expect_no_input
-from shaftprint.clocks._merge import joined
-from shaftprint.recording._cut import cut
-from shaftprint.recording._read import read_recording
-from shaftprint.recording._write import write_recording
+from shaftprint.late import late
+
+with late():
+    from shaftprint.clocks._merge import joined
+    from shaftprint.recording._cut import cut
+    from shaftprint.recording._read import read_recording
+    from shaftprint.recording._write import write_recording
 
 
 @click.command("join")

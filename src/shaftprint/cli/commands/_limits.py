@@ -1,9 +1,10 @@
 """``shaftprint limits``: which limits a line has, and how large they are."""
 
+from __future__ import annotations
+
 from pathlib import Path
 
 import click
-import numpy as np
 
 from shaftprint.cli._limit_tables import print_limits, print_line
 from shaftprint.cli._options import campaign_option, vessel_option
@@ -12,11 +13,17 @@ from shaftprint.cli._terminal import say
 from shaftprint.cli._validation_tables import print_validation
 from shaftprint.cli.output._output_folder import force_option, output_folder
 from shaftprint.cli.output._progress import no_progress_option, progress
-from shaftprint.limits._identify_limits import identify_limits
-from shaftprint.survey._limits import with_limits
-from shaftprint.survey._measurement import measure
-from shaftprint.survey._survey import judged, run
-from shaftprint.survey._trial import Trial, load_trial
+from shaftprint.late import late
+
+with late():
+    import numpy as np
+
+    from shaftprint.limits._identify_limits import identify_limits
+    from shaftprint.survey._limits import with_limits
+    from shaftprint.survey._measurement import measure
+    from shaftprint.survey._survey import judged, run
+    from shaftprint.survey._trial import Trial, load_trial
+
 
 # As for ``identify``.
 SEED = 1

@@ -1,26 +1,33 @@
 """``shaftprint merge``: recordings of several loggers on one clock, in one file."""
 
+from __future__ import annotations
+
 from pathlib import Path
 
 import click
-import numpy as np
 
 from shaftprint.cli._options import NAMES
 from shaftprint.cli._terminal import answer
 from shaftprint.cli.output._file_to_write import expect_no_input
 from shaftprint.cli.output._tables import print_tables
-from shaftprint.clocks._align import align
-from shaftprint.clocks._alignment import Alignment
-from shaftprint.clocks._clock_map import ClockMap
-from shaftprint.clocks._coarse import LONG_S
-from shaftprint.clocks._logger_clock import logger_clocks
-from shaftprint.clocks._merge import merged
-from shaftprint.recording._read import read_recording
-from shaftprint.recording._recording import Recording
-from shaftprint.recording._write import write_recording
-from shaftprint.signals._content import Content, content_of
-from shaftprint.tables._recording import clock_map_table
-from shaftprint.vessel._vessel import Vessel, load_vessel
+from shaftprint.late import late
+
+with late():
+    import numpy as np
+
+    from shaftprint.clocks import _coarse
+    from shaftprint.clocks._align import align
+    from shaftprint.clocks._alignment import Alignment
+    from shaftprint.clocks._clock_map import ClockMap
+    from shaftprint.clocks._logger_clock import logger_clocks
+    from shaftprint.clocks._merge import merged
+    from shaftprint.recording._read import read_recording
+    from shaftprint.recording._recording import Recording
+    from shaftprint.recording._write import write_recording
+    from shaftprint.signals._content import Content, content_of
+    from shaftprint.tables._recording import clock_map_table
+    from shaftprint.vessel._vessel import Vessel, load_vessel
+
 
 RATE_HZ, SHORT_RATE_HZ = 50.0, 200.0
 """Rate at which contents are compared [Hz], and that at which short ones are, where a shaft that rings tells most."""
@@ -101,7 +108,7 @@ def _contents(
 ) -> tuple[Content, Content]:
     """Return what the shared channels of both show."""
     channels = other.channel(names[1]), reference.channel(names[0])
-    rate_hz = SHORT_RATE_HZ if min(channel.duration_s for channel in channels) < LONG_S else RATE_HZ
+    rate_hz = SHORT_RATE_HZ if min(channel.duration_s for channel in channels) < _coarse.LONG_S else RATE_HZ
     sensors = {} if ship is None else {sensor.channel: sensor for sensor in ship.sensors.speed}
     moving, still = (content_of(channel, sensors.get(channel.name), rate_hz=rate_hz) for channel in channels)
     return moving, still

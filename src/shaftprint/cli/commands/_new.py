@@ -1,13 +1,13 @@
 """``shaftprint new``: a commented settings file to fill in, or the campaign that a recording shows."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Literal
 
 import click
 
-from shaftprint.bench._recorded_drive import recorded_drive
-from shaftprint.card._write import write_vessel
 from shaftprint.cli._card_options import card_of, card_options
 from shaftprint.cli._options import NAMES
 from shaftprint.cli._recorded_campaign import write_recorded_campaign
@@ -16,7 +16,13 @@ from shaftprint.cli._vessel_file import print_disagreements
 from shaftprint.cli.output._file_to_write import expect_free
 from shaftprint.errors import SettingsError
 from shaftprint.files import write_bytes
-from shaftprint.settings import write_template
+from shaftprint.late import late
+
+with late():
+    from shaftprint.bench._recorded_drive import recorded_drive
+    from shaftprint.card._write import write_vessel
+    from shaftprint.settings import write_template
+
 
 TESTS: Mapping[str, str] = {
     "12min": "12 minutes, two speeds",

@@ -1,12 +1,14 @@
 """``shaftprint plan``: the strongest test within a time, or the shortest that meets the wishes."""
 
+from __future__ import annotations
+
 from dataclasses import replace
 from datetime import UTC, datetime
 from pathlib import Path
 
 import click
 
-from shaftprint.catalogue._own_structure import TypedName
+from shaftprint.choices import SET_POINT_RATE_HZ, STATED_LIMITS
 from shaftprint.cli._command_group import NOT_REACHED
 from shaftprint.cli._known_values import known_options
 from shaftprint.cli._options import DEFAULT_HELP, OWN_FILE_HELP, vessel_option
@@ -16,17 +18,21 @@ from shaftprint.cli._vessel_file import checked_vessel
 from shaftprint.cli.output._fingerprint_file import fingerprint_at
 from shaftprint.cli.output._output_folder import force_option, output_folder
 from shaftprint.cli.output._progress import Steps, no_progress_option, progress
-from shaftprint.design.files._plan_folder import write_plan_files
-from shaftprint.design.files._set_point_samples import RATE_HZ
-from shaftprint.design.inputs._stated_limits import LIMITS, StatedLimit
-from shaftprint.design.inputs._wish import Wish
-from shaftprint.design.planned_test._planned_test import PlannedTest
-from shaftprint.design.planning._from_knowledge import plan_test
-from shaftprint.forecast._knowledge import knowledge_of
-from shaftprint.forecast._ship_before_test import ShipBeforeTest
-from shaftprint.rehearsal._rehearse import rehearse_on_tug
-from shaftprint.report.plan._plan_page import render_plan
-from shaftprint.vessel._vessel import Vessel
+from shaftprint.late import late
+
+with late():
+    from shaftprint.catalogue._own_structure import TypedName
+    from shaftprint.design.files._plan_folder import write_plan_files
+    from shaftprint.design.inputs._stated_limits import StatedLimit
+    from shaftprint.design.inputs._wish import Wish
+    from shaftprint.design.planned_test._planned_test import PlannedTest
+    from shaftprint.design.planning._from_knowledge import plan_test
+    from shaftprint.forecast._knowledge import knowledge_of
+    from shaftprint.forecast._ship_before_test import ShipBeforeTest
+    from shaftprint.rehearsal._rehearse import rehearse_on_tug
+    from shaftprint.report.plan._plan_page import render_plan
+    from shaftprint.vessel._vessel import Vessel
+
 
 LONGEST_S = 3600.0
 
@@ -63,7 +69,7 @@ LONGEST_S = 3600.0
     metavar="NAME=VALUE",
     type=limit_of,
     multiple=True,
-    help=f"Limit, such as set-point=1.0V or rate=600rpm/s; one of {', '.join(LIMITS)}.",
+    help=f"Limit, such as set-point=1.0V or rate=600rpm/s; one of {', '.join(STATED_LIMITS)}.",
 )
 @click.option(
     "--speeds",
@@ -87,7 +93,12 @@ LONGEST_S = 3600.0
     help="Sail so many raw recordings of the assumed ship and identify them: seconds each.",
 )
 @click.option(
-    "--rate", "rate_hz", type=float, default=RATE_HZ, show_default=True, help="Samples a second of the set point [Hz]."
+    "--rate",
+    "rate_hz",
+    type=float,
+    default=SET_POINT_RATE_HZ,
+    show_default=True,
+    help="Samples a second of the set point [Hz].",
 )
 @click.option("--name", help="Name of the test.")
 @click.option("--seed", type=click.IntRange(min=0), default=1, show_default=True, help="Seed of all randomness.")

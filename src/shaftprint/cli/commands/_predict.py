@@ -1,13 +1,13 @@
 """``shaftprint predict``: what a test would find, before it is made."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 
 import click
 
-from shaftprint.campaign._campaign import load_campaign
-from shaftprint.catalogue._own_structure import TypedName
 from shaftprint.cli._drive_judge import predict_on_the_bench
 from shaftprint.cli._drive_options import drive_option, expect_not_given
 from shaftprint.cli._known_values import by_name, known_options, named_value
@@ -15,8 +15,13 @@ from shaftprint.cli._options import DEFAULT_HELP, NAMES, OWN_FILE_HELP, campaign
 from shaftprint.cli._prediction_tables import print_prediction
 from shaftprint.cli._vessel_file import checked_vessel
 from shaftprint.cli.output._progress import no_progress_option, progress
-from shaftprint.forecast._predict import predict_test
-from shaftprint.forecast._ship_before_test import ShipBeforeTest
+from shaftprint.late import late
+
+with late():
+    from shaftprint.campaign._campaign import load_campaign
+    from shaftprint.catalogue._own_structure import TypedName
+    from shaftprint.forecast._predict import predict_test
+    from shaftprint.forecast._ship_before_test import ShipBeforeTest
 
 
 @click.command("predict")

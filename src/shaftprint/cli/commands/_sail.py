@@ -1,21 +1,27 @@
 """``shaftprint sail``: a raw recording of a simulated tug."""
 
+from __future__ import annotations
+
 import math
 from pathlib import Path
 
 import click
 
+from shaftprint.choices import MESSAGES
 from shaftprint.cli._options import output_options, starboard_option
 from shaftprint.cli._sail_both import sail_both_lines
 from shaftprint.cli._terminal import answer, echo
 from shaftprint.cli._vessel_file import print_disagreements
 from shaftprint.cli.output._progress import no_progress_option, progress
-from shaftprint.recording.writers._by_ending import expect_known_ending
-from shaftprint.survey._trial import load_trial
-from shaftprint.tug._in_messages import MESSAGES, in_messages
-from shaftprint.tug._like_stan_tug import like_stan_tug_1205, with_lever_of
-from shaftprint.tug._sail_as import sail_as
-from shaftprint.tug._truth import truth_path
+from shaftprint.late import late
+
+with late():
+    from shaftprint.recording.writers._by_ending import expect_known_ending
+    from shaftprint.survey._trial import load_trial
+    from shaftprint.tug._in_messages import in_messages
+    from shaftprint.tug._like_stan_tug import like_stan_tug_1205, with_lever_of
+    from shaftprint.tug._sail_as import sail_as
+    from shaftprint.tug._truth import truth_path
 
 
 @click.command("sail")

@@ -1,28 +1,35 @@
 """``shaftprint sensitivity``: what each parameter does to the response."""
 
+from __future__ import annotations
+
 import math
 from functools import partial
 from pathlib import Path
-from typing import TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
 import click
 
-from shaftprint.catalogue._own_structure import TypedName, chosen_structures
-from shaftprint.catalogue._thesis_figures import thesis_families
 from shaftprint.cli._options import SettingsPath
 from shaftprint.cli._terminal import answer
 from shaftprint.cli.output._output_folder import force_option, output_folder
 from shaftprint.cli.output._progress import no_progress_option, progress
 from shaftprint.escape import plain_name
-from shaftprint.report.charts._chart import Chart
-from shaftprint.report.charts._pictures import save_chart
-from shaftprint.report.figures._sensitivity import sensitivity_chart
-from shaftprint.spectra._frequency_response import FrequencyResponse
-from shaftprint.spectra._open_loop import open_loop
-from shaftprint.survey._measurement import measure
-from shaftprint.survey._trial import load_trial
+from shaftprint.late import late
 
-Drawings: TypeAlias = dict[str, partial[Chart]]
+with late():
+    from shaftprint.catalogue._own_structure import TypedName, chosen_structures
+    from shaftprint.catalogue._thesis_figures import thesis_families
+    from shaftprint.report.charts._chart import Chart
+    from shaftprint.report.charts._pictures import save_chart
+    from shaftprint.report.figures import _sensitivity
+    from shaftprint.spectra._frequency_response import FrequencyResponse
+    from shaftprint.spectra._open_loop import open_loop
+    from shaftprint.survey._measurement import measure
+    from shaftprint.survey._trial import load_trial
+
+
+if TYPE_CHECKING:
+    Drawings: TypeAlias = dict[str, partial[Chart]]
 
 ALL_OF_THE_THESIS = "THESIS"
 
@@ -99,12 +106,14 @@ def command(
         answer(output / f"{stem}.{suffix}")
 
 
-def _of_structure(name: TypedName, span: tuple[float, float]) -> "Drawings":
+def _of_structure(name: TypedName, span: tuple[float, float]) -> Drawings:
     (chosen,) = chosen_structures([name])
     drawings = {}
     for output, cause in chosen.channels:
         stem = f"{chosen.name}_{output}" + (f"_{cause}" if len(chosen.inputs) > 1 else "")
-        drawings[plain_name(stem)] = partial(sensitivity_chart, chosen, output=output, cause=cause, span_rad_s=span)
+        drawings[plain_name(stem)] = partial(
+            _sensitivity.sensitivity_chart, chosen, output=output, cause=cause, span_rad_s=span
+        )
     return drawings
 
 
@@ -126,10 +135,10 @@ def _measured(recording: Path | None, vessel: str | None, campaign: str | None) 
     return {"governor": governor, "core": core}
 
 
-def _of_the_thesis(responses: dict[str, FrequencyResponse]) -> "Drawings":
+def _of_the_thesis(responses: dict[str, FrequencyResponse]) -> Drawings:
     return {
         f"figure_{family.figure}": partial(
-            sensitivity_chart,
+            _sensitivity.sensitivity_chart,
             family.structure,
             output=family.output,
             vary=family.vary,

@@ -1,14 +1,13 @@
 """``shaftprint simulate``: what a model does for a set point."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from pathlib import Path
 
 import click
-import numpy as np
 
-from shaftprint.campaign._campaign import load_campaign
-from shaftprint.catalogue._crash_stop import CRASH_STOP
-from shaftprint.catalogue._own_structure import TypedName
+from shaftprint.choices import CRASH_STOP
 from shaftprint.cli._known_values import by_name, named_value, rpm_per_volt_option
 from shaftprint.cli._options import LIMITED_HELP, NAMES, OWN_FILE_HELP
 from shaftprint.cli._simulation_tables import print_simulation
@@ -19,12 +18,20 @@ from shaftprint.cli.output._file_to_write import expect_free, expect_no_input
 from shaftprint.cli.output._fingerprint_file import fingerprint_at, fingerprint_file
 from shaftprint.cli.output._progress import no_progress_option, progress
 from shaftprint.files import written_whole
-from shaftprint.forecast._crash_stop import GEARS, LeverMove, crash_stop
-from shaftprint.forecast._ship_before_test import ShipBeforeTest
-from shaftprint.forecast._simulation import simulated_ship, write_simulation
-from shaftprint.report.charts._pictures import save_chart
-from shaftprint.report.figures._simulation import simulation_chart
-from shaftprint.vessel._vessel import load_vessel
+from shaftprint.late import late
+
+with late():
+    import numpy as np
+
+    from shaftprint.campaign._campaign import load_campaign
+    from shaftprint.catalogue._own_structure import TypedName
+    from shaftprint.forecast import _crash_stop
+    from shaftprint.forecast._crash_stop import LeverMove, crash_stop
+    from shaftprint.forecast._ship_before_test import ShipBeforeTest
+    from shaftprint.forecast._simulation import simulated_ship, write_simulation
+    from shaftprint.report.charts._pictures import save_chart
+    from shaftprint.report.figures._simulation import simulation_chart
+    from shaftprint.vessel import _vessel
 
 
 class _LeverMoveType(click.ParamType):  # type: ignore[type-arg]
@@ -36,13 +43,13 @@ class _LeverMoveType(click.ParamType):  # type: ignore[type-arg]
         """Return a move as it was typed."""
         try:
             time, speed, gear = str(value).split(":")
-            move = LeverMove(time_s=float(time), speed_rpm=float(speed), gear=GEARS[gear.strip().lower()])
+            move = LeverMove(time_s=float(time), speed_rpm=float(speed), gear=_crash_stop.GEARS[gear.strip().lower()])
         except (ValueError, KeyError):
             move = None
         if move is None or not (0.0 <= move.time_s < np.inf and 0.0 < move.speed_rpm < np.inf):
             self.fail(
-                f"expected a time in s, an engine speed in rpm and one of {', '.join(GEARS)}, such as 5:650:neutral, "
-                f"found {value}.",
+                f"expected a time in s, an engine speed in rpm and one of {', '.join(_crash_stop.GEARS)}, "
+                f"such as 5:650:neutral, found {value}.",
                 param,
                 ctx,
             )
@@ -162,7 +169,7 @@ def command(
         raise click.UsageError(f"--lever is for --structure {CRASH_STOP}, whose engine has clutches.")
     elif (campaign is None) == (table is None):
         raise click.UsageError("expected one set point: either --campaign or --input.")
-    load = checked_vessel if is_stop else load_vessel
+    load = checked_vessel if is_stop else _vessel.load_vessel
     ship = ShipBeforeTest(
         first_test=identified,
         vessel=None if vessel is None else load(vessel),

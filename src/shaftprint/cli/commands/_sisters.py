@@ -1,10 +1,13 @@
 """``shaftprint sisters``: the ships of a class against each other."""
 
+from __future__ import annotations
+
 from datetime import UTC, datetime
 from pathlib import Path
 
 import click
 
+from shaftprint.choices import NEWEST_TESTS
 from shaftprint.cli._cause_size import CauseSize
 from shaftprint.cli._load_option import load_repeatability_option
 from shaftprint.cli._store_options import opened_store, store_option
@@ -13,14 +16,17 @@ from shaftprint.cli.output._fingerprint_file import REPORT
 from shaftprint.cli.output._json import give
 from shaftprint.cli.output._output_folder import force_option, output_folder
 from shaftprint.cli.output._tables import print_tables
-from shaftprint.drift._causes import Cause
-from shaftprint.drift._class_numbers import NEWEST_TESTS
-from shaftprint.drift._sister_words import sister_sentences
-from shaftprint.drift._sisters import judge_sisters
-from shaftprint.report._class_page import render_class
-from shaftprint.report.comparison._sister_tables import cause_spread_table, number_spread_table, sister_table
-from shaftprint.store._class_histories import class_histories
-from shaftprint.store._sisters import sisters_of
+from shaftprint.late import late
+
+with late():
+    from shaftprint.drift._causes import Cause
+    from shaftprint.drift._sister_words import sister_sentences
+    from shaftprint.drift._sisters import judge_sisters
+    from shaftprint.report._class_page import render_class
+    from shaftprint.report.comparison._sister_tables import cause_spread_table, number_spread_table, sister_table
+    from shaftprint.store._class_histories import class_histories
+    from shaftprint.store._sisters import sisters_of
+
 
 PERCENT = 100.0
 

@@ -1,27 +1,33 @@
 """``shaftprint structures``: the model structures that come with the package, and the user's own."""
 
+from __future__ import annotations
+
 import click
 
-from shaftprint.catalogue._drives import DRIVES
-from shaftprint.catalogue._own_structure import TypedName, chosen_structures
-from shaftprint.catalogue._thesis import STRUCTURES
 from shaftprint.cli._terminal import echo, say
 from shaftprint.cli.output._json import give
 from shaftprint.cli.output._tables import print_table
-from shaftprint.models._parameter import Parameter
-from shaftprint.models._structure import Structure
+from shaftprint.late import late
 from shaftprint.plain_table import MEANING, Symbol, Table, numbers, texts
+
+with late():
+    from shaftprint.catalogue import _drives, _own_structure, _thesis
+    from shaftprint.catalogue._own_structure import chosen_structures
+    from shaftprint.models._parameter import Parameter
+    from shaftprint.models._structure import Structure
 
 
 @click.command("structures")
 @click.argument("names", metavar="[NAME]...", nargs=-1)
-def command(names: tuple[TypedName, ...]) -> None:
+def command(names: tuple[_own_structure.TypedName, ...]) -> None:
     """List the model structures with their parameters and bounds.
 
     With one or more NAMEs only those. A NAME such as my_ship.py:my_loop is a structure in a file of your
     own, which is Python and is run. Held parameters keep their value unless they are freed.
     """
-    structures = chosen_structures(names or tuple(map(TypedName, (*STRUCTURES, *DRIVES))))
+    structures = chosen_structures(
+        names or tuple(map(_own_structure.TypedName, (*_thesis.STRUCTURES, *_drives.DRIVES)))
+    )
     give("parameters", {chosen.name: chosen.parameters for chosen in structures})
     for chosen in structures:
         print_table(_parameter_table(chosen))

@@ -1,11 +1,11 @@
 """``shaftprint validate``: a model against chirps and steps that it was not identified from."""
 
+from __future__ import annotations
+
 from pathlib import Path
 
 import click
-import numpy as np
 
-from shaftprint.catalogue._own_structure import TypedName
 from shaftprint.cli._drive_judge import validate_on_the_bench
 from shaftprint.cli._drive_options import drive_option, expect_not_given, only_recording
 from shaftprint.cli._fit_options import fit_options
@@ -17,19 +17,25 @@ from shaftprint.cli.output._fingerprint_file import fingerprint_at
 from shaftprint.cli.output._output_folder import force_option, output_folder
 from shaftprint.cli.output._progress import no_progress_option, progress
 from shaftprint.cli.output._tables import print_table
-from shaftprint.fingerprint._model import structure_to_use
-from shaftprint.report._validation_pictures import write_validations
-from shaftprint.survey._fit_options import FitOptions
-from shaftprint.survey._fits import fit
-from shaftprint.survey._measurement import measure
-from shaftprint.survey._of_vessel import default_structure
-from shaftprint.survey._survey import settings_by_name
-from shaftprint.survey._trial import load_trial
-from shaftprint.survey._validate import Asked, validate_fingerprint
-from shaftprint.tables._validation import models_table
-from shaftprint.validation._foreign import ForeignModel
-from shaftprint.validation._model import identified_model
-from shaftprint.validation._thesis_models import thesis_models
+from shaftprint.late import late
+
+with late():
+    import numpy as np
+
+    from shaftprint.catalogue._own_structure import TypedName
+    from shaftprint.fingerprint._model import structure_to_use
+    from shaftprint.report._validation_pictures import write_validations
+    from shaftprint.survey._fit_options import FitOptions
+    from shaftprint.survey._fits import fit
+    from shaftprint.survey._measurement import measure
+    from shaftprint.survey._of_vessel import default_structure
+    from shaftprint.survey._survey import settings_by_name
+    from shaftprint.survey._trial import load_trial
+    from shaftprint.survey._validate import Asked, validate_fingerprint
+    from shaftprint.tables._validation import models_table
+    from shaftprint.validation._foreign import ForeignModel
+    from shaftprint.validation._model import identified_model
+    from shaftprint.validation._thesis_models import thesis_models
 
 
 @click.command("validate")

@@ -1,12 +1,18 @@
 """The fingerprint that a user names, by its file or by the folder of results with it."""
 
+from __future__ import annotations
+
 import hashlib
 import re
 from pathlib import Path
 
 from shaftprint.errors import FingerprintError
-from shaftprint.fingerprint._fingerprint import Fingerprint
-from shaftprint.fingerprint._json_file import read_fingerprint
+from shaftprint.late import late
+
+with late():
+    from shaftprint.fingerprint._fingerprint import Fingerprint
+    from shaftprint.fingerprint._json_file import read_fingerprint
+
 
 FINGERPRINT = "fingerprint.json"
 REPORT = "index.html"

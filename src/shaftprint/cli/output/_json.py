@@ -1,18 +1,24 @@
 """Nouns and tables as JSON."""
 
+from __future__ import annotations
+
 import dataclasses
 import enum
 import math
 from collections.abc import Collection, Mapping
 
-import numpy as np
-from pydantic import BaseModel
-
 from shaftprint.cli._terminal import output
 from shaftprint.digits import plain_letters
 from shaftprint.escape import printable
-from shaftprint.models._role import Role
+from shaftprint.late import late
 from shaftprint.plain_table import Table
+
+with late():
+    import numpy as np
+    import pydantic
+
+    from shaftprint.models import _role
+
 
 # An array with more numbers than this is data, not an answer: it stays in the files that the command writes.
 MOST_NUMBERS = 10_000
@@ -32,13 +38,13 @@ def as_json(noun: object) -> object:
     10 000 numbers their shape.
     """
     match noun:
-        case BaseModel():
+        case pydantic.BaseModel():
             return as_json(noun.model_dump())
         case None | bool() | int():
             return noun
         case enum.Enum():
             return as_json(noun.value)
-        case Role():
+        case _role.Role():
             return as_json(noun.name)
         case str():
             return printable(str(noun), keep="\n")

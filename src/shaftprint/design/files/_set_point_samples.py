@@ -8,13 +8,12 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.campaign._setpoint import setpoint
+from shaftprint.choices import SET_POINT_RATE_HZ
 from shaftprint.errors import DesignError
 
 if TYPE_CHECKING:
     from shaftprint.design.planned_test._planned_test import PlannedTest
 
-RATE_HZ = 100.0
-"""Samples a second where nobody says otherwise [Hz]: the steps take 0.2 % of a line of 3.4 Hz."""
 # So many samples a period of the fastest line: the steps then take 1.6 % of it, which the recorded voltage shows.
 _FEWEST_A_PERIOD = 10.0
 _MOST_SAMPLES = 50_000_000
@@ -34,7 +33,7 @@ class SetPointSamples:
     """The engine speed that it asks for [rpm], shape (samples,)."""
 
 
-def set_point_samples(test: "PlannedTest", *, rate_hz: float = RATE_HZ) -> SetPointSamples:
+def set_point_samples(test: "PlannedTest", *, rate_hz: float = SET_POINT_RATE_HZ) -> SetPointSamples:
     """Return the set point for a generator with a zero-order hold.
 
     A held sample is late by half of its length on average (Franklin, Powell, Workman, Digital Control of Dynamic

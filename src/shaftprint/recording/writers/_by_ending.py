@@ -6,6 +6,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Literal
 
+from shaftprint.choices import ENDINGS_OF_FORMATS, WRITTEN_FORMATS
 from shaftprint.errors import RecordingError
 from shaftprint.recording._channel import Channel
 from shaftprint.recording._write import write_recording
@@ -18,9 +19,6 @@ from shaftprint.recording.writers._nmea_2000 import write_nmea_2000
 from shaftprint.recording.writers._tdms import write_tdms, write_tdms_appended
 from shaftprint.recording.writers._uff import write_uff
 
-NATIVE_ENDINGS = (".nc", ".h5", ".hdf5")
-"""Endings of the native container."""
-
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class _WrittenFormat:
@@ -28,8 +26,6 @@ class _WrittenFormat:
 
     name: str
     """Its name, as ``--format`` has it."""
-    endings: tuple[str, ...]
-    """Endings of its files; the first format of an ending is written where no name is given."""
     write: Callable[..., tuple[str, ...] | None]
     """Takes path, channels, ``overwrite`` and, where it holds it, ``began``; returns what is lost, a sentence each.
 
@@ -39,29 +35,27 @@ class _WrittenFormat:
     keeps_times: bool = True
     """Whether samples keep times of their own beside the rate."""
 
+    @property
+    def endings(self) -> tuple[str, ...]:
+        """Endings of its files; the first format of an ending is written where no name is given."""
+        return ENDINGS_OF_FORMATS[self.name]
 
-_NATIVE = _WrittenFormat(name="native", endings=NATIVE_ENDINGS, write=write_recording, date="as it is")
+
+_NATIVE = _WrittenFormat(name="native", write=write_recording, date="as it is")
 
 # One row a format; with its writer that is all that there is to add.
 _FORMATS = (
     _NATIVE,
-    _WrittenFormat(name="csv", endings=(".csv",), write=write_csv, keeps_times=False),
-    _WrittenFormat(name="mat", endings=(".mat",), write=write_mat_v73, keeps_times=False),
-    _WrittenFormat(name="mdf4", endings=(".mf4",), write=write_mdf4, date="as it is"),
-    _WrittenFormat(name="tdms", endings=(".tdms",), write=write_tdms, date="in UTC", keeps_times=False),
-    _WrittenFormat(
-        name="tdms-appended", endings=(".tdms",), write=write_tdms_appended, date="in UTC", keeps_times=False
-    ),
-    _WrittenFormat(name="lvm", endings=(".lvm",), write=write_lvm, date="without offset"),
-    _WrittenFormat(name="uff", endings=(".uff", ".unv"), write=write_uff, date="without offset"),
-    _WrittenFormat(name="can", endings=(".blf", ".asc", ".log"), write=write_can_log, date="without offset"),
-    _WrittenFormat(name="nmea2000", endings=(".blf", ".asc", ".log"), write=write_nmea_2000, date="without offset"),
+    _WrittenFormat(name="csv", write=write_csv, keeps_times=False),
+    _WrittenFormat(name="mat", write=write_mat_v73, keeps_times=False),
+    _WrittenFormat(name="mdf4", write=write_mdf4, date="as it is"),
+    _WrittenFormat(name="tdms", write=write_tdms, date="in UTC", keeps_times=False),
+    _WrittenFormat(name="tdms-appended", write=write_tdms_appended, date="in UTC", keeps_times=False),
+    _WrittenFormat(name="lvm", write=write_lvm, date="without offset"),
+    _WrittenFormat(name="uff", write=write_uff, date="without offset"),
+    _WrittenFormat(name="can", write=write_can_log, date="without offset"),
+    _WrittenFormat(name="nmea2000", write=write_nmea_2000, date="without offset"),
 )
-
-WRITTEN_FORMATS = tuple(one.name for one in _FORMATS)
-"""Names of the formats that can be written."""
-WRITTEN_ENDINGS = tuple(dict.fromkeys(ending for one in _FORMATS for ending in one.endings))
-"""Endings of the files that can be written."""
 
 
 def expect_known_ending(path: Path, *, format: str | None = None) -> None:

@@ -24,8 +24,8 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal, TypeAlias
 
+from shaftprint.choices import LOAD_REPEATABILITY
 from shaftprint.distributions import NORMAL_95, normal_cdf
-from shaftprint.drift._differ import LOAD_REPEATABILITY
 from shaftprint.drift._shared_errors import shared_errors
 from shaftprint.fingerprint._physical import GAUGE_ZERO
 from shaftprint.tables._fingerprint import limits

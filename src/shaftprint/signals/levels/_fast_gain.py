@@ -134,6 +134,8 @@ def fast_gains(
         late_s = common[1] / common[0] if common[0] else 0.0
         columns[:, _OF_GAIN] = square + late_s * np.gradient(square) * rate
         white = _whitening(values - columns @ common, used)
+        # freed before the next are made, which are as large
+        del of_noise
         of_noise = (_filtered(white, columns), _filtered(white, motion), _filtered(white, values))
         common = _solved(*of_noise, used)
     columns, motion, values = of_noise
@@ -226,7 +228,9 @@ def _parts(values: FloatArray, begins: IntArray, length: int) -> FloatArray:
 
 def _solved(columns: FloatArray, motion: FloatArray, values: FloatArray, used: BoolArray) -> FloatArray:
     """Return the numbers of the terms."""
-    return np.asarray(np.linalg.lstsq(motion[used].T @ columns[used], motion[used].T @ values[used], rcond=None)[0])
+    if not used.all():
+        columns, motion, values = columns[used], motion[used], values[used]
+    return np.asarray(np.linalg.lstsq(motion.T @ columns, motion.T @ values, rcond=None)[0])
 
 
 def _whitening(noise: FloatArray, used: BoolArray) -> FloatArray:
@@ -240,9 +244,12 @@ def _whitening(noise: FloatArray, used: BoolArray) -> FloatArray:
 
 
 def _filtered(taps: FloatArray, values: FloatArray) -> FloatArray:
-    rows = (values - values[:1]).T
-    filtered = [np.convolve(row, taps)[: row.size] for row in np.atleast_2d(rows)]
-    return np.asarray(filtered[0] if values.ndim == 1 else np.column_stack(filtered))
+    if values.ndim == 1:
+        return np.convolve(values - values[0], taps)[: values.size]
+    filtered = np.empty_like(values)
+    for column in range(values.shape[1]):
+        filtered[:, column] = _filtered(taps, values[:, column])
+    return filtered
 
 
 def _variance(noise: FloatArray, pieces: list[slice], whole: BoolArray) -> FloatArray:

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from shaftprint.arrays import FloatArray
+from shaftprint.arrays import ComplexArray, FloatArray
 
 # Transition from pass to stop takes about 3.3 / length of a Hamming window: half of the cut-off frequency here.
 _LENGTH_TIMES_CUT_OFF = 6.6
@@ -35,21 +35,24 @@ def low_pass(values: FloatArray, rate_hz: float, highest_hz: float, *, out: Floa
     # a windowed sinc (Oppenheim and Schafer, "Discrete-Time Signal Processing", section 7.5)
     taps = np.sinc(2.0 * highest_hz / rate_hz * np.arange(-half, half + 1)) * np.hamming(2 * half + 1)
     taps /= taps.sum()
+    size = 1 << (_BLOCK_OF_TAPS * taps.size).bit_length()
+    response = np.fft.rfft(taps, size)
     smooth = np.empty_like(values) if out is None else out
     # one signal after the other: the transforms of all together would need several times their memory
     for row in np.ndindex(values.shape[:-1]):
-        smooth[row] = _convolved(np.pad(values[row], half, mode="edge"), taps)
+        smooth[row] = _convolved(np.pad(values[row], half, mode="edge"), response, size, taps.size)
     return smooth
 
 
-def _convolved(values: FloatArray, taps: FloatArray) -> FloatArray:
-    """Return where taps lie wholly on values, shape (values - taps + 1,): block by block, overlaps saved."""
-    size = 1 << (_BLOCK_OF_TAPS * taps.size).bit_length()
-    new = size - taps.size + 1
-    response = np.fft.rfft(taps, size)
-    out = np.empty(values.size - taps.size + 1)
+def _convolved(values: FloatArray, response: ComplexArray, size: int, taps: int) -> FloatArray:
+    """Return where taps lie wholly on values, shape (values - taps + 1,): block by block, overlaps saved.
+
+    The response is that of the taps at the frequencies of a block of ``size`` samples.
+    """
+    new = size - taps + 1
+    out = np.empty(values.size - taps + 1)
     for first in range(0, out.size, new):
         block = np.fft.irfft(np.fft.rfft(values[first : first + size], size) * response, size)
         part = out[first : first + new]
-        part[:] = block[taps.size - 1 : taps.size - 1 + part.size]
+        part[:] = block[taps - 1 : taps - 1 + part.size]
     return out

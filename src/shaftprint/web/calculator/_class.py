@@ -3,7 +3,7 @@
 import os
 from typing import Any
 
-from shaftprint.drift._class_numbers import NEWEST_TESTS
+from shaftprint.choices import NEWEST_TESTS
 from shaftprint.drift._sister_words import sister_sentences
 from shaftprint.drift._sisters import judge_sisters
 from shaftprint.report.comparison._sister_tables import cause_spread_table, sister_table

@@ -3,7 +3,8 @@
 import os
 from typing import Any
 
-from shaftprint.drift._differ import LOAD_REPEATABILITY, differ
+from shaftprint.choices import LOAD_REPEATABILITY
+from shaftprint.drift._differ import differ
 from shaftprint.drift._words import finding_sentences
 from shaftprint.fingerprint._json_file import parse_fingerprint
 from shaftprint.report.comparison._cause_table import cause_table

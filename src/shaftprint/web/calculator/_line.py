@@ -5,8 +5,8 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from shaftprint.choices import LOAD_REPEATABILITY
 from shaftprint.distributions import NORMAL_95
-from shaftprint.drift._differ import LOAD_REPEATABILITY
 from shaftprint.drift._history import history_of
 from shaftprint.drift._watch import watch
 from shaftprint.drift._words import watch_sentences

@@ -1,9 +1,10 @@
 """``shaftprint fleet report``: the report of one job, made when somebody wants it."""
 
+from __future__ import annotations
+
 from pathlib import Path
 
 import click
-import numpy as np
 
 from shaftprint.cli._results import print_paths, write_results
 from shaftprint.cli._store_options import opened_store, store_option
@@ -11,14 +12,19 @@ from shaftprint.cli._terminal import say
 from shaftprint.cli.output._output_folder import force_option, output_folder
 from shaftprint.cli.output._progress import no_progress_option, progress
 from shaftprint.errors import StoreError
-from shaftprint.fingerprint._json_file import fingerprint_sha256, parse_fingerprint
-from shaftprint.fleet._arguments import arguments_of
-from shaftprint.fleet.computing._identify import survey_of_job
-from shaftprint.store._history import document
-from shaftprint.store._job import Job
-from shaftprint.store._ledger import job
-from shaftprint.store._store import Store
-from shaftprint.survey._survey import judged
+from shaftprint.late import late
+
+with late():
+    import numpy as np
+
+    from shaftprint.fingerprint._json_file import fingerprint_sha256, parse_fingerprint
+    from shaftprint.fleet._arguments import arguments_of
+    from shaftprint.fleet.computing._identify import survey_of_job
+    from shaftprint.store._history import document
+    from shaftprint.store._job import Job
+    from shaftprint.store._ledger import job
+    from shaftprint.store._store import Store
+    from shaftprint.survey._survey import judged
 
 
 @click.command("report")

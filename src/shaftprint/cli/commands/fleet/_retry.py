@@ -1,10 +1,15 @@
 """``shaftprint fleet retry``: refused jobs wait again."""
 
+from __future__ import annotations
+
 import click
 
 from shaftprint.cli._store_options import opened_store, store_option
 from shaftprint.cli._terminal import answer
-from shaftprint.store._ledger import job, retry
+from shaftprint.late import late
+
+with late():
+    from shaftprint.store._ledger import job, retry
 
 
 @click.command("retry")

@@ -1,5 +1,7 @@
 """``shaftprint fleet run``: recordings into the ledger, and workers that identify them."""
 
+from __future__ import annotations
+
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
@@ -12,13 +14,16 @@ from shaftprint.cli._store_options import opened_store, store_option
 from shaftprint.cli._terminal import answer
 from shaftprint.cli.output._json import give
 from shaftprint.cli.output._progress import no_progress_option
-from shaftprint.fleet._dask import work_on_dask
-from shaftprint.fleet._lists import recordings_in, recordings_of_list
-from shaftprint.fleet._submit import submit
-from shaftprint.fleet._work import Worked
-from shaftprint.store._job import Job
-from shaftprint.store._ledger import jobs
-from shaftprint.store._store import Store
+from shaftprint.late import late
+
+with late():
+    from shaftprint.fleet._dask import work_on_dask
+    from shaftprint.fleet._lists import recordings_in, recordings_of_list
+    from shaftprint.fleet._submit import submit
+    from shaftprint.fleet._work import Worked
+    from shaftprint.store._job import Job
+    from shaftprint.store._ledger import jobs
+    from shaftprint.store._store import Store
 
 
 @click.command("run")

@@ -1,5 +1,7 @@
 """``shaftprint fleet status``: what has become of the jobs of a store."""
 
+from __future__ import annotations
+
 import click
 
 from shaftprint import __version__
@@ -8,10 +10,13 @@ from shaftprint.cli._store_options import opened_store, store_option
 from shaftprint.cli._terminal import say
 from shaftprint.cli.output._json import give
 from shaftprint.cli.output._tables import print_tables
+from shaftprint.late import late
 from shaftprint.plain_table import Column, Table
-from shaftprint.store._job import Job
-from shaftprint.store._ledger import job_counts, jobs
 from shaftprint.zones import utc_text
+
+with late():
+    from shaftprint.store._job import Job
+    from shaftprint.store._ledger import job_counts, jobs
 
 
 @click.command("status")

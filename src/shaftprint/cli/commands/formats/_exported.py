@@ -1,28 +1,35 @@
 """The model that ``export`` writes: of a fingerprint, its own structure or one that has limits too."""
 
+from __future__ import annotations
+
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import click
-import numpy as np
 
-from shaftprint.arrays import frozen_float
-from shaftprint.bench._fingerprint import identified_drive
-from shaftprint.bench._kept import kept_drive
-from shaftprint.catalogue._own_structure import TypedName, chosen_structures
 from shaftprint.cli._drive_options import drive_fingerprint_at, is_drive_place
 from shaftprint.cli._known_values import by_name, named_value
 from shaftprint.cli._options import LIMITED_HELP, OWN_FILE_HELP
 from shaftprint.cli._terminal import say
 from shaftprint.cli.output._file_to_write import expect_free, expect_no_input
 from shaftprint.cli.output._fingerprint_file import fingerprint_at, fingerprint_file
-from shaftprint.drive._drive import load_drive
 from shaftprint.errors import StructureError
 from shaftprint.escape import plain_name
-from shaftprint.export._model import ExportedModel, validation_remark
-from shaftprint.forecast._simulated_model import simulated_model
+from shaftprint.late import late
 from shaftprint.spelling import meant
+
+with late():
+    import numpy as np
+
+    from shaftprint.arrays import frozen_float
+    from shaftprint.bench._fingerprint import identified_drive
+    from shaftprint.bench._kept import kept_drive
+    from shaftprint.catalogue._own_structure import TypedName, chosen_structures
+    from shaftprint.drive._drive import load_drive
+    from shaftprint.export._model import ExportedModel, validation_remark
+    from shaftprint.forecast._simulated_model import simulated_model
+
 
 fingerprint_argument = click.argument("fingerprint", type=click.Path(path_type=Path))
 DRIVE = "shaftprint.drive"

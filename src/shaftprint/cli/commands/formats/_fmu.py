@@ -1,13 +1,13 @@
 """``shaftprint export fmu``: a model as a functional mock-up unit."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Literal
 
 import click
-import numpy as np
 
-from shaftprint.catalogue._own_structure import TypedName
 from shaftprint.cli._terminal import answer, say
 from shaftprint.cli.commands.formats._exported import (
     file_to_write,
@@ -20,8 +20,15 @@ from shaftprint.cli.commands.formats._exported import (
     structure_option,
 )
 from shaftprint.cli.output._progress import no_progress_option, progress
-from shaftprint.export._fmu import WrittenFmu, write_fmu
 from shaftprint.export._fmu_build import PLATFORMS
+from shaftprint.late import late
+
+with late():
+    import numpy as np
+
+    from shaftprint.catalogue._own_structure import TypedName
+    from shaftprint.export._fmu import WrittenFmu, write_fmu
+
 
 ALL = "all"
 # times the fastest pole: where the rule of Runge and Kutta stops being stable

@@ -1,11 +1,12 @@
 """``shaftprint export matlab``: a model for MATLAB and Octave."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from pathlib import Path
 
 import click
 
-from shaftprint.catalogue._own_structure import TypedName
 from shaftprint.cli._options import NAMES
 from shaftprint.cli._terminal import answer
 from shaftprint.cli.commands.formats._exported import (
@@ -19,11 +20,15 @@ from shaftprint.cli.commands.formats._exported import (
 )
 from shaftprint.cli.output._fingerprint_file import fingerprint_at
 from shaftprint.cli.output._progress import no_progress_option, progress
-from shaftprint.export._matlab import write_matlab
-from shaftprint.models._structure import Structure
-from shaftprint.spectra._frequency_response import FrequencyResponse
-from shaftprint.survey._measurement import measure, response_of
-from shaftprint.survey._trial import load_trial
+from shaftprint.late import late
+
+with late():
+    from shaftprint.catalogue._own_structure import TypedName
+    from shaftprint.export._matlab import write_matlab
+    from shaftprint.models._structure import Structure
+    from shaftprint.spectra._frequency_response import FrequencyResponse
+    from shaftprint.survey._measurement import measure, response_of
+    from shaftprint.survey._trial import load_trial
 
 
 @click.command("matlab")

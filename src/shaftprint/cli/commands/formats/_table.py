@@ -1,12 +1,13 @@
 """The formats of ``shaftprint export`` that need no options of their own: one row each."""
 
+from __future__ import annotations
+
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
 import click
 
-from shaftprint.catalogue._own_structure import TypedName
 from shaftprint.cli._options import OWN_FILE_HELP
 from shaftprint.cli._terminal import answer, say
 from shaftprint.cli.commands.formats._exported import (
@@ -19,15 +20,20 @@ from shaftprint.cli.commands.formats._exported import (
     structure_option,
 )
 from shaftprint.cli.output._fingerprint_file import fingerprint_at
-from shaftprint.export._csv import write_csv
-from shaftprint.export._json import write_json
-from shaftprint.export._model import ExportedModel, exported_model
-from shaftprint.export._osp import write_osp
-from shaftprint.export._ssp import write_ssv
-from shaftprint.export.modelica._write import write_modelica
-from shaftprint.fingerprint._fingerprint import Fingerprint
-from shaftprint.fingerprint._model import structure_to_use
-from shaftprint.models._structure import Structure
+from shaftprint.late import late
+
+with late():
+    from shaftprint.catalogue._own_structure import TypedName
+    from shaftprint.export._csv import write_csv
+    from shaftprint.export._json import write_json
+    from shaftprint.export._model import ExportedModel, exported_model
+    from shaftprint.export._osp import write_osp
+    from shaftprint.export._ssp import write_ssv
+    from shaftprint.export.modelica._write import write_modelica
+    from shaftprint.fingerprint._fingerprint import Fingerprint
+    from shaftprint.fingerprint._model import structure_to_use
+    from shaftprint.models._structure import Structure
+
 
 Paths = tuple[Path, ...]
 _PLACE = "FINGERPRINT is the JSON file, or the folder in which identify or demo has put it."

@@ -1,5 +1,7 @@
 """``shaftprint store add``: fingerprints into the store."""
 
+from __future__ import annotations
+
 from datetime import UTC, datetime, tzinfo
 from pathlib import Path
 
@@ -10,9 +12,13 @@ from shaftprint.cli._store_options import moment_option, opened_store, store_opt
 from shaftprint.cli._terminal import answer
 from shaftprint.cli.output._fingerprint_file import fingerprint_at, fingerprint_file
 from shaftprint.cli.output._json import give
-from shaftprint.store._add import add
-from shaftprint.store._nouns import Added
-from shaftprint.store._stated import Stated
+from shaftprint.late import late
+
+with late():
+    from shaftprint.store._add import add
+    from shaftprint.store._nouns import Added
+    from shaftprint.store._stated import Stated
+
 
 SHOWN_HASH = 12
 

@@ -1,5 +1,7 @@
 """``shaftprint store check``: whether every record is as it was written."""
 
+from __future__ import annotations
+
 import click
 
 from shaftprint.cli._store_options import opened_store, store_option
@@ -7,7 +9,10 @@ from shaftprint.cli._store_tables import DAMAGED
 from shaftprint.cli._terminal import answer, print_document, print_findings
 from shaftprint.cli.output._json import give
 from shaftprint.cli.output._progress import no_progress_option, progress
-from shaftprint.store._check import check
+from shaftprint.late import late
+
+with late():
+    from shaftprint.store._check import check
 
 
 @click.command("check")

@@ -1,5 +1,7 @@
 """``shaftprint store event``: what was done to a shaft line."""
 
+from __future__ import annotations
+
 from datetime import datetime, tzinfo
 
 import click
@@ -8,9 +10,12 @@ from shaftprint.cli._dates import zone_option
 from shaftprint.cli._store_options import instant, moment_option, opened_store, store_option
 from shaftprint.cli._terminal import answer
 from shaftprint.cli.output._json import give
-from shaftprint.store._event import record_event, withdraw_event
+from shaftprint.late import late
 from shaftprint.store._nouns import KINDS
 from shaftprint.zones import utc_text
+
+with late():
+    from shaftprint.store._event import record_event, withdraw_event
 
 
 @click.command("event")

@@ -1,5 +1,7 @@
 """``shaftprint store export``: all records in one file."""
 
+from __future__ import annotations
+
 from pathlib import Path
 
 import click
@@ -8,8 +10,11 @@ from shaftprint.cli._store_options import opened_store, store_option
 from shaftprint.cli._store_tables import DAMAGED, print_damage
 from shaftprint.cli._terminal import answer
 from shaftprint.cli.output._file_to_write import expect_free
-from shaftprint.store._export import export_store
-from shaftprint.store._nouns import Fault
+from shaftprint.late import late
+
+with late():
+    from shaftprint.store._export import export_store
+    from shaftprint.store._nouns import Fault
 
 
 @click.command("export")

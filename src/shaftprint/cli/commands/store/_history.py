@@ -1,5 +1,7 @@
 """``shaftprint store history``: the tests of a ship in the order of time."""
 
+from __future__ import annotations
+
 from datetime import UTC, tzinfo
 
 import click
@@ -16,7 +18,10 @@ from shaftprint.cli._store_tables import (
 from shaftprint.cli._terminal import answer
 from shaftprint.cli.output._json import give
 from shaftprint.cli.output._tables import print_tables
-from shaftprint.store._history import history
+from shaftprint.late import late
+
+with late():
+    from shaftprint.store._history import history
 
 
 @click.command("history")

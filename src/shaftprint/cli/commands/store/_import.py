@@ -1,5 +1,7 @@
 """``shaftprint store import``: the records of an export into the store."""
 
+from __future__ import annotations
+
 from pathlib import Path
 
 import click
@@ -7,7 +9,10 @@ import click
 from shaftprint.cli._store_options import opened_store, store_option
 from shaftprint.cli._terminal import answer
 from shaftprint.cli.output._json import give
-from shaftprint.store._import import import_store
+from shaftprint.late import late
+
+with late():
+    from shaftprint.store._import import import_store
 
 
 @click.command("import")

@@ -1,5 +1,7 @@
 """``shaftprint store list``: all lines with their newest test."""
 
+from __future__ import annotations
+
 from datetime import UTC, tzinfo
 
 import click
@@ -9,7 +11,10 @@ from shaftprint.cli._store_tables import line_table
 from shaftprint.cli._terminal import answer
 from shaftprint.cli.output._json import give
 from shaftprint.cli.output._tables import print_tables
-from shaftprint.store._history import newest
+from shaftprint.late import late
+
+with late():
+    from shaftprint.store._history import newest
 
 
 @click.command("list")

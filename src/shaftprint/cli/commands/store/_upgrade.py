@@ -1,10 +1,15 @@
 """``shaftprint store upgrade``: a store of an earlier version brought up to date."""
 
+from __future__ import annotations
+
 import click
 
 from shaftprint.cli._store_options import store_option
 from shaftprint.cli._terminal import answer
-from shaftprint.store._store import upgrade_store
+from shaftprint.late import late
+
+with late():
+    from shaftprint.store._store import upgrade_store
 
 
 @click.command("upgrade")
