@@ -4,11 +4,11 @@ A noun that stands in a file is its own record: a dataclass whose arrays are ``F
 is a field of a ``Record`` like any number, and keeps by ``__post_init__`` what its numbers must be together.
 """
 
-from typing import Annotated, Any, Final, TypeAlias
+from typing import Annotated, Any, Final, TypeAlias, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BaseModel, ConfigDict, Field, GetCoreSchemaHandler, ValidationError
+from pydantic import BaseModel, ConfigDict, Field, GetCoreSchemaHandler, TypeAdapter, ValidationError
 from pydantic_core import CoreSchema, core_schema
 
 from shaftprint.arrays import FloatArray, frozen_complex, frozen_float
@@ -89,6 +89,30 @@ AnyFloats: TypeAlias = Annotated[FloatArray, _Numbers(is_bounded=False)]
 """An array of numbers that may be infinite."""
 TwoRows: TypeAlias = Annotated[NDArray[np.complex128], _TwoRows(is_bounded=True)]
 """A complex array of finite numbers."""
+
+
+_Noun = TypeVar("_Noun")
+
+
+def noun_of(kind: type[_Noun], content: object, *, named: str) -> _Noun:
+    """Return a frozen dataclass of what stands in a JSON file; fields that it does not know are refused.
+
+    Parameters
+    ----------
+    named
+        What it is called where a field is wrong, such as ``truth``.
+
+    Raises
+    ------
+    ValueError
+        If a field is missing, not known or of another type; all of them are named.
+    """
+    try:
+        # dataclasses take their settings from what holds them
+        holder = TypeAdapter(dict[str, kind], config=ConfigDict(extra="forbid"))  # type: ignore[valid-type]
+        return holder.validate_python({named: content})[named]
+    except ValidationError as error:
+        raise ValueError(faults(error)) from None
 
 
 def faults(error: ValidationError, *, most: int | None = None) -> str:

@@ -20,7 +20,7 @@ def answers(fingerprint, validations=()):
 
 
 def with_physical(fingerprint, name, **changes):
-    changed = [q.model_copy(update=changes) if q.name == name else q for q in fingerprint.physical]
+    changed = [replace(q, **changes) if q.name == name else q for q in fingerprint.physical]
     return fingerprint.model_copy(update={"physical": tuple(changed)})
 
 

@@ -70,6 +70,11 @@ def test_truth_lies_beside_the_recording(vessel: Vessel, campaign: Any, tmp_path
     assert truth_path(tmp_path / "test.nc") == tmp_path / "test.truth.json"
     assert read_truth(tmp_path / "test.truth.json") == truth
     assert sorted(path.name for path in tmp_path.iterdir()) == ["test.nc", "test.truth.json"]
+    content = json.loads((tmp_path / "test.truth.json").read_text(encoding="utf-8"))
+    content["normalised"]["K_p"], content["evil"] = "many", 1
+    (tmp_path / "wrong.json").write_text(json.dumps(content), encoding="utf-8")
+    with pytest.raises(RecordingError, match=r"truth\.normalised\.K_p: .* valid number.*; truth\.evil"):
+        read_truth(tmp_path / "wrong.json")
     assert truth.normalised == pytest.approx(
         {
             "tau_up": 1.01601, "tau_dn": 0.31982, "tau_t": 1.33583, "k_q": 2.0, "g": 0.0, "v": 1.0, "K_p": 5.7,

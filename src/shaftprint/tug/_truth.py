@@ -10,6 +10,7 @@ import numpy as np
 from shaftprint.campaign._campaign import Campaign
 from shaftprint.errors import RecordingError
 from shaftprint.notebook._shown import Shown
+from shaftprint.records import noun_of
 from shaftprint.tug._pitch_actuation import pitch_truth
 from shaftprint.tug._sailing import sailing_truth, way_of
 from shaftprint.tug._tug import Tug
@@ -255,10 +256,6 @@ def read_truth(path: str | Path) -> Truth:
         schema = content.pop("schema")
         if schema != SCHEMA:
             raise RecordingError(f"{path}: expected truth of schema {SCHEMA}, found {schema}; simulate it again.")
-        content["strips"] = tuple(
-            StripTruth(**strip | {"angle_deg": tuple(strip["angle_deg"])}) for strip in content["strips"]
-        )
-        content["faults"] = tuple(Fault(**fault) for fault in content["faults"])
-        return Truth(**content)
-    except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
+        return noun_of(Truth, content, named="truth")
+    except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
         raise RecordingError(f"{path}: expected a truth file written beside a recording, found {error!r}.") from None
