@@ -24,8 +24,9 @@ class FitWay(Settings):
     offset: Literal["none", "constant", "drift"] = "constant"
     """What the sensors of the outputs may add: nothing, a constant that is found, or a line in time."""
     inputs_hold: Annotated[bool, Field(strict=True)] | None = None
-    """Whether inputs hold from sample to sample, as those of a computer, instead of going straight. If not given, the
-    records of an identification tell it, where an input jumps; elsewhere inputs go straight."""
+    """true if an input is a step between samples, as the output of a PLC, computer or drive (zero-order hold); false if
+    it was sampled from an analogue signal, and is taken as a straight line from sample to sample. If not given, the
+    records of an identification tell it, where an input jumps; elsewhere it is false."""
     longest_step_s: PositiveNumber | None = None
     """Longest step of the simulation [s]; a quarter of the time between samples where not given."""
 

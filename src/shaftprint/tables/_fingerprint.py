@@ -19,8 +19,8 @@ PERCENT = 100.0
 SMALLEST_PERCENT = 0.5
 NO_TRUTH: Mapping[str, float] = {}
 INTERVAL_NOTE = (
-    "± is one standard deviation; it is left out where it does not tell what the interval tells. The 95 % interval is "
-    "that of the profile likelihood where there is one; an open end, marked with an asterisk, is a bound of the search "
+    "± is one standard deviation. It is not shown where the interval says something else. The 95 % interval is that of "
+    " the profile likelihood where there is one; an open end, marked with an asterisk, is a bound of the search "
     "and not a result."
 )
 PHYSICAL_NOTE = (

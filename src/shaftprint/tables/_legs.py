@@ -46,7 +46,7 @@ def leg_test_table(tests: Sequence["LegTest"], *, p_value: float | None) -> Tabl
             for one in tests
         ),
         note=(
-            "p is the probability of misfits that large or larger if one line with one governor made all legs. All "
+            "p is the probability of a misfit at least this large if the same model holds at all speeds. All "
             f"together: p = {p_value_text(p_value)}."
         ),
     )

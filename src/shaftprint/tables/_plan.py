@@ -109,8 +109,8 @@ def standing_table(standing: "Standing") -> Table:
         columns=(*texts("quantity"), *numbers("value ± std", "wished std", "predicted of wish"), *texts("met", "unit")),
         rows=tuple(rows),
         note=(
-            "Stop by what is predicted with the recorded periods, not by the estimated std: who stops when that "
-            "happens to be small has intervals that hold too seldom."
+            "Decide when to stop from the standard deviation that is predicted with the recorded periods. Stopping "
+            "when the estimated one happens to be small makes the intervals too narrow."
         ),
     )
 

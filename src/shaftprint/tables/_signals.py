@@ -159,8 +159,8 @@ def local_ratio_table(spectra: "Spectra") -> Table:
         title="Local signal-to-noise ratio [dB], 20 bins on each side (as table 3.7)",
         columns=(*texts("line"), *numbers("[Hz]", "[rad/s]"), *channels, *texts("used")),
         rows=tuple(rows),
-        note="0 dB means as much noise as signal; the thesis asks for 3 dB. A line below it stays in a fit that is "
-        "weighted by the noise: there it counts for as little as it knows.",
+        note="0 dB means as much noise as signal; the thesis requires 3 dB. Weaker frequencies are kept: the "
+        "fit weights each by its noise.",
     )
 
 

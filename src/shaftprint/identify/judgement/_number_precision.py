@@ -75,7 +75,10 @@ def _doubt(
     prior = identification.settings.priors.get(estimate.name)
     if prior is not None and std > requirements.largest_prior_share * prior.std:
         reduction = max(100.0 * (1.0 - std / prior.std), 0.0)
-        return f"it is mostly its prior: the data reduce the prior standard deviation by {reduction:.0f} % only"
+        return (
+            "the test adds almost nothing to what was known before: it reduces the standard deviation by "
+            f"{reduction:.0f} % only"
+        )
     size = _size(identification, estimate)
     if std > requirements.largest_std * size:
         return f"it is known to {100.0 * std / size:.0f} % only" if size > 0.0 else "it cannot be distinguished from 0"

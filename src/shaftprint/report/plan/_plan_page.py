@@ -118,13 +118,13 @@ def _lines(test: "PlannedTest") -> Section:
     return _with_picture(
         title="Lines and what they tell",
         words=(
-            "Above, the amplitude of each line. Below, what a line of 1 rpm at a frequency would still tell in a "
-            "second beside this test: the fall of the logarithm of the volume that all numbers may lie in. A plan "
-            "without limits of peaks has its lines where the curve is highest."
+            "Above, the amplitude at each test frequency. Below, how much a sine of 1 rpm at each frequency would "
+            "still reduce the joint uncertainty of all numbers, per second (D-optimality). Without limits of the "
+            "peaks the test frequencies lie where this curve is highest."
         ),
         picture=Picture(
             name="lines",
-            caption="Amplitudes of the lines, and the information of a line of 1 rpm in a second.",
+            caption="Amplitudes, and how much a sine of 1 rpm would still reduce the joint uncertainty, per second.",
             alt="Amplitudes over frequency above the information that a line gives in a second; a leg a column.",
             chart=lambda: planned_line_chart(line_worths(test.plan)),
         ),

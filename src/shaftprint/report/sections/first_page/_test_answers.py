@@ -64,8 +64,9 @@ def gauge(fingerprint: "Fingerprint") -> list[Card]:
     question = "Is the torque gauge in order?"
     half = NORMAL_95 * zero.std
     words = (
-        f"Torque and speed go together as they must in bollard pull when the zero of the gauge is off by "
-        f"{with_deviation(zero.value, zero.std)} % of the torque; up to {plain(COMMON_ZERO, 0)} % is common."
+        f"Zero error of the gauge: {with_deviation(zero.value, zero.std)} % of the torque; up to "
+        f"{plain(COMMON_ZERO, 0)} % is common. It is found from the torque, which follows the square "
+        "of the speed in bollard pull."
     )
     if fingerprint.verdict.trustworthy and abs(zero.value) + half <= COMMON_ZERO:
         return [Card(question=question, state="fine", sentence=words)]
