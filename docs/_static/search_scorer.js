@@ -1,8 +1,10 @@
 // What tells how to do something comes first, what tells why the code is as it is last; a page before a place within one.
+// A term or symbol that the glossary has is explained there: it comes before pages that only use the word.
 const scoreOfPlace = (page) => {
   if (page.startsWith("reference/")) return -40;
   if (page.startsWith("decisions")) return -20;
-  return page.startsWith("tutorials/") || page.startsWith("theory/") || page === "glossary" || page === "what-to-measure" ? 3 : 0;
+  if (page === "glossary") return 9;
+  return page.startsWith("tutorials/") || page.startsWith("theory/") || page === "what-to-measure" ? 3 : 0;
 };
 
 var Scorer = {

@@ -37,3 +37,11 @@ def test_a_guide_comes_before_an_attribute_and_a_decision():
         "reference/generated/models/Delay",
         "reference/generated/models",
     ]
+
+
+@pytest.mark.skipif(shutil.which("node") is None, reason="node is not here")
+def test_a_term_is_looked_up_in_the_glossary_before_pages_that_use_it():
+    # "delay margin": both words in the text of many pages, in a title of one
+    pages = ["theory/equations", "theory/estimation", "tutorials/recording-to-fingerprint", "glossary", "drives"]
+    results = [[page, page, "", None, 5] for page in pages] + [["simulation", "Simulation", "", None, 15]]
+    assert ranked(results)[:2] == ["simulation", "glossary"]
