@@ -9,6 +9,7 @@ from types import ModuleType
 
 import click
 from page_shell import WIDTH
+from room_diagram import with_rooms
 from sphinx.application import Sphinx
 
 import shaftprint
@@ -16,7 +17,6 @@ from shaftprint.cli import shaftprint as program
 
 FOLDER = "reference/generated"
 COMMANDS_PAGE = "commands"
-ROOMS_TABLE = "<!-- rooms -->"
 # The command line is described by its commands, the entry point by none of them.
 NOT_DESCRIBED = {"__main__", "cli"}
 # Rooms whose folders have names for other rooms that are not at the room's own door.
@@ -161,15 +161,9 @@ def link_names(app: Sphinx, page: str, source: list[str]) -> None:
 
 
 def list_rooms(app: Sphinx, page: str, source: list[str]) -> None:
-    """Put a table of the rooms, with what each is for, in the order of the data, on the page of the reference."""
-    if page != "reference/index":
-        return
-    order = re.findall(r"^generated/(\w+)$", source[0], flags=re.MULTILINE)
-    rows = ["| room | what it is for |", "|---|---|"]
-    for room in (name for name in order if name != COMMANDS_PAGE):
-        words = first_sentence(importlib.import_module(f"shaftprint.{room}")).replace("``", "`").replace("|", "\\|")
-        rows.append(f"| [{room}](generated/{room}.rst) | {words} |")
-    source[0] = source[0].replace(ROOMS_TABLE, "\n".join(rows))
+    """Put a table of the rooms, with what each is for, and their pages on the page of the reference."""
+    if page == "reference/index":
+        source[0] = with_rooms(source[0])
 
 
 def setup(app: Sphinx) -> dict[str, bool]:

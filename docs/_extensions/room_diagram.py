@@ -1,18 +1,17 @@
-"""The drawing and the table of docs/rooms.md, from the layers in pyproject.toml and the imports in the source.
+"""The rooms: drawing, table, order and stub, from the layers in pyproject.toml, docstrings and imports.
 
-Run ``python docs/_extensions/room_diagram.py`` after a change of either: it writes both into the page.
+A room is entered in one place, the layers: all else that lists rooms is made here.
 """
 
 import ast
-import re
 import tomllib
 from functools import cache
 from pathlib import Path
 
+import shaftprint
+
 ROOT = Path(__file__).parents[2]
 SOURCE = ROOT / "src" / "shaftprint"
-PAGE = ROOT / "docs" / "rooms.md"
-MADE = re.compile(r"(?<=<!-- made -->\n\n).*?(?=\n\n<!-- end -->)", flags=re.DOTALL)
 
 
 def floors() -> list[list[str]]:
@@ -47,22 +46,62 @@ def drawing() -> str:
     return f"┌{edge}┐\n" + f"\n├{edge}┤\n".join(lines) + f"\n└{edge}┘"
 
 
+def purpose(room: str) -> str:
+    """Return the first paragraph of the docstring of a room or leaf module, as Markdown."""
+    folder = SOURCE / room
+    path = folder / "__init__.py" if folder.is_dir() else folder.with_suffix(".py")
+    text = ast.get_docstring(ast.parse(path.read_text(encoding="utf-8"))) or ""
+    return " ".join(text.split("\n\n")[0].split()).replace("``", "`").replace("|", "\\|")
+
+
+def in_order() -> list[str]:
+    """Return rooms and leaf modules in the order of the data; what is no folder comes last."""
+    names = [name for floor in reversed(floors()) for name in floor]
+    return sorted(names, key=lambda name: not (SOURCE / name).is_dir())
+
+
 def table() -> str:
-    """Return which rooms each room imports; the leaf modules of the lowest floor are left out."""
+    """Return what each room is for and which others it imports; leaf modules of the lowest floor are left out there."""
     leaves = set(floors()[-1])
     order = [name for floor in floors() for name in floor]
-    lines = ["| room | imports |", "|---|---|"]
-    for room in order:
-        if room not in leaves:
-            names = [f"`{name}`" for name in order if name in imports()[room] - leaves]
-            lines.append(f"| `{room}` | {', '.join(names) or 'no room'} |")
+    lines = ["| room | what it is for | imports |", "|---|---|---|"]
+    for room in in_order():
+        names = [f"`{name}`" for name in order if name in imports()[room] - leaves]
+        lines.append(f"| `{room}` | {purpose(room)} | {', '.join(names) or '-'} |")
     return "\n".join(lines)
 
 
-def made() -> str:
-    """Return all of the page that is made from the code."""
+def rooms_page() -> str:
+    """Return all of the page of the rooms that is made from the code."""
     return f"```text\n{drawing()}\n```\n\n{table()}"
 
 
-if __name__ == "__main__":
-    PAGE.write_text(MADE.sub(lambda _: made(), PAGE.read_text(encoding="utf-8")), encoding="utf-8")
+def stub() -> str:
+    """Return what type checkers see of the package."""
+    names = sorted(set(in_order()) - {"cli"})
+    lines = [f"from shaftprint import {name} as {name}" for name in names]
+    return "\n".join(
+        [
+            "# What type checkers see of the rooms, which __init__.py loads when they are first used.",
+            "# Made by docs/_extensions/made_pages.py.",
+            *lines,
+            "from shaftprint.survey import run as open_survey  # noqa: F401",
+            "",
+            "__version__: str",
+            "",
+        ]
+    )
+
+
+def listed_rooms() -> tuple[str, ...]:
+    """Return what the reference describes, in the order of the data; what a session does not offer comes last."""
+    offered = dir(shaftprint)
+    return tuple(sorted((name for name in in_order() if name != "cli"), key=lambda name: name not in offered))
+
+
+def with_rooms(page: str) -> str:
+    """Return the page of the reference with the table of the rooms, and with their pages in its contents."""
+    rows = [f"| [{room}](generated/{room}.rst) | {purpose(room)} |" for room in listed_rooms()]
+    text = page.replace("<!-- rooms -->", "\n".join(["| room | what it is for |", "|---|---|", *rows]))
+    pages = "".join(f"generated/{room}\n" for room in listed_rooms())
+    return text.replace("generated/commands\n", f"generated/commands\n{pages}")

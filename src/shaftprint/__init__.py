@@ -37,71 +37,15 @@ Verbs take the noun first and the rest by keyword. Errors that a user can mend a
 """
 
 import importlib
+import pkgutil
 from typing import Any
 
 __version__ = "0.1.0"
 
-_ROOMS = (
-    "bench",
-    "campaign",
-    "card",
-    "catalogue",
-    "clocks",
-    "design",
-    "drift",
-    "drive",
-    "errors",
-    "export",
-    "fingerprint",
-    "fleet",
-    "forecast",
-    "identify",
-    "limits",
-    "models",
-    "propeller",
-    "recording",
-    "rehearsal",
-    "report",
-    "settings",
-    "signals",
-    "simulation",
-    "spectra",
-    "store",
-    "survey",
-    "tables",
-    "time_domain",
-    "torsion",
-    "tug",
-    "units",
-    "validation",
-    "vessel",
-    "web",
-)
-
-_INNER_ROOMS = (
-    "arguments",
-    "arrays",
-    "choices",
-    "cli",
-    "digits",
-    "distributions",
-    "escape",
-    "files",
-    "kernels",
-    "late",
-    "markup",
-    "memory",
-    "normalisation",
-    "notebook",
-    "plain_table",
-    "publication",
-    "reasons",
-    "records",
-    "sender_cycle",
-    "spelling",
-    "zones",
-)
-"""What the rooms are made with; no word of the field, so a session does not offer it."""
+_NOT_OFFERED = {"cli", "kernels", "markup", "notebook", "publication"}
+"""Rooms that others are made with; no word of the field, so a session does not offer them."""
+_OFFERED_FILES = {"errors", "settings", "units"}
+"""Leaf modules that a session offers."""
 
 _VERB = "open_survey"
 """All of ``shaftprint identify`` in one call, ``survey.run``."""
@@ -117,7 +61,8 @@ def __getattr__(name: str) -> Any:
     """
     if name == _VERB:
         return importlib.import_module("shaftprint.survey").run
-    if name in _ROOMS or name in _INNER_ROOMS:
+    rooms = _rooms()
+    if name in rooms:
         return importlib.import_module(f"shaftprint.{name}")
     message = f"module 'shaftprint' has no attribute {name!r}"
     if name.startswith("_"):
@@ -126,8 +71,16 @@ def __getattr__(name: str) -> Any:
     answers = importlib.import_module("shaftprint.notebook").closest_names(name)
     if answers:
         raise AttributeError(f"{message}; is {' or '.join(answers)} meant?")
-    raise AttributeError(f"{message}; its rooms are {', '.join(_ROOMS)}.")
+    raise AttributeError(f"{message}; its rooms are {', '.join(room for room in rooms if rooms[room])}.")
 
 
 def __dir__() -> list[str]:
-    return ["__version__", _VERB, *_ROOMS]
+    return ["__version__", _VERB, *(room for room, is_offered in _rooms().items() if is_offered)]
+
+
+def _rooms() -> dict[str, bool]:
+    """Return all rooms and leaf modules, which are what lies in this folder, with whether a session offers them."""
+    found = {module.name: module.ispkg for module in pkgutil.iter_modules(__path__) if module.name != "__main__"}
+    return {
+        name: name not in _NOT_OFFERED if is_room else name in _OFFERED_FILES for name, is_room in sorted(found.items())
+    }

@@ -1,4 +1,5 @@
 # What type checkers see of the rooms, which __init__.py loads when they are first used.
+# Made by docs/_extensions/made_pages.py.
 from shaftprint import arguments as arguments
 from shaftprint import arrays as arrays
 from shaftprint import bench as bench

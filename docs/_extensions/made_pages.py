@@ -1,0 +1,30 @@
+"""What is made from the code and kept in files of the repository, so that it is read there too.
+
+Run ``python docs/_extensions/made_pages.py`` after a change of rooms, imports, roles, kinds of channels or heads of
+decisions. It writes what stands between ``<!-- made -->`` and ``<!-- end -->`` of the pages, and the package's stub.
+"""
+
+import re
+
+from decision_index import index
+from room_diagram import ROOT, SOURCE, rooms_page, stub
+
+MADE = re.compile(r"(?<=<!-- made -->\n\n).*?(?=\n\n<!-- end -->)", flags=re.DOTALL)
+PAGES = {
+    ROOT / "docs" / "rooms.md": rooms_page,
+    ROOT / "docs" / "decisions.md": index,
+}
+"""Pages with a made part, and what makes it."""
+STUB = SOURCE / "__init__.pyi"
+
+
+def write() -> None:
+    """Write all of it."""
+    for page, make in PAGES.items():
+        text = page.read_text(encoding="utf-8")
+        page.write_text(MADE.sub(lambda _, make=make: make(), text), encoding="utf-8")
+    STUB.write_text(stub(), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    write()
