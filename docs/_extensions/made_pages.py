@@ -7,12 +7,14 @@ decisions. It writes what stands between ``<!-- made -->`` and ``<!-- end -->`` 
 import re
 
 from decision_index import index
+from feature_map import feature_map
 from room_diagram import ROOT, SOURCE, rooms_page, stub
 
 MADE = re.compile(r"(?<=<!-- made -->\n\n).*?(?=\n\n<!-- end -->)", flags=re.DOTALL)
 PAGES = {
     ROOT / "docs" / "rooms.md": rooms_page,
     ROOT / "docs" / "decisions.md": index,
+    ROOT / "docs" / "house.md": feature_map,
 }
 """Pages with a made part, and what makes it."""
 STUB = SOURCE / "__init__.pyi"

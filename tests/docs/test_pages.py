@@ -13,6 +13,7 @@ from pages import (
     ROOT,
     SHELL,
     SHOWN,
+    berth,
     blocks,
     commands_of,
     inline_lines,
@@ -34,8 +35,10 @@ WITH_COMMANDS = [page for page in PAGES if commands_of(page)]
 LONG = {"docs/thesis-figures.md", "docs/gallery.md"} | {
     f"docs/tutorials/{name}.md" for name in ("first-fingerprint", "own-structure", "logger-file", "two-loggers", "fmu")
 }
-SLOW = {"docs/planning.md", "docs/command-output.md", "docs/tutorials/recording-to-fingerprint.md"}
+SLOW = {"docs/house.md", "docs/planning.md", "docs/command-output.md", "docs/tutorials/recording-to-fingerprint.md"}
 DEAR = {"long": LONG, "slow": SLOW}
+# their first lines ask for the short demo
+WITH_DEMO = {"docs/house.md"}
 # Kinds of blocks, each with the file that holds them against something.
 CHECKED = dict.fromkeys(PYTHON, "test_pages.py")
 CHECKED |= dict.fromkeys(SHELL, "test_page_commands.py, test_page_programs.py and test_page_output.py")
@@ -66,7 +69,9 @@ def test_what_is_no_line_for_a_shell_is_there(page):
         if page not in OPENED
     ],
 )
-def test_python_of_a_page_runs(page, tmp_path, monkeypatch, capsys):
+def test_python_of_a_page_runs(page, tmp_path, monkeypatch, capsys, request):
+    if page in WITH_DEMO:
+        berth(request.getfixturevalue("demo")[0], tmp_path / "demo")
     monkeypatch.chdir(tmp_path)
     names = {"__name__": "page"}
     for text in python_of(page):

@@ -48,3 +48,21 @@ def test_every_room_and_leaf_module_is_on_a_floor():
 @pytest.mark.parametrize("room", [name for floor in floors() for name in floor])
 def test_every_room_and_leaf_module_says_what_it_is_for(room):
     assert len(purpose(room)) > 20
+
+
+HOUSE = (ROOT / "docs" / "house.md").read_text(encoding="utf-8")
+
+
+def test_the_house_shows_twelve_nouns_with_their_files():
+    """A test of the pages runs what it shows of them."""
+    shown = re.findall(r"^\*\*(\w+)\*\*, `([\w/]+\.py)`: .*?^```python\n(.*?)^```", HOUSE, flags=re.M | re.S)
+    assert len(shown) == 12
+    for noun, path, lines in shown:
+        assert re.search(rf"^class {noun}\b", (SOURCE / path).read_text(encoding="utf-8"), flags=re.M), noun
+        assert len(lines.splitlines()) <= 10, noun
+
+
+def test_files_that_the_house_names_are_there():
+    named = re.findall(r"`([\w/]+/_?\w+\.py)`", HOUSE)
+    assert len(named) > 100
+    assert [path for path in named if not (SOURCE / path).exists()] == []

@@ -48,7 +48,7 @@ def standing_after(
             "sailed with --campaign."
         )
     limits, gearbox = test.plan.limits, trial.vessel.gearbox
-    torque_nm = limits.brake_torque_nm * gearbox.ratio * gearbox.efficiency
+    torque_nm = limits.brake_torque_nm * gearbox.shaft_over_brake
     pairs = leg_pairs(
         test.plan.ship.structure,
         measurement.legs,

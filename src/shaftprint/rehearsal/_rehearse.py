@@ -83,7 +83,7 @@ def _identified(
         test.plan.ship.structure,
         legs_of(signals, campaign),
         engine_speed_rpm=limits.engine_speed_rpm,
-        shaft_torque_nm=limits.brake_torque_nm * vessel.gearbox.ratio * vessel.gearbox.efficiency,
+        shaft_torque_nm=limits.brake_torque_nm * vessel.gearbox.shaft_over_brake,
     )
     how, rng = Settings(priors=dict(test.plan.priors)), np.random.default_rng(seed)
     return fit_of(pairs, rng=rng, settings=how)

@@ -1,6 +1,5 @@
 """The simulated tug that has the numbers which a plan assumes of its ship, and the limits that it was planned for."""
 
-import math
 from collections.abc import Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
@@ -12,6 +11,7 @@ from shaftprint.catalogue._roles import ShipRole
 from shaftprint.choices import CLOSED_LOOPS
 from shaftprint.design.operation._limit_use import stated_limits
 from shaftprint.errors import DesignError
+from shaftprint.normalisation import Normalisation
 from shaftprint.tug._like_stan_tug import like_stan_tug_1205
 from shaftprint.tug._tug import Tug
 from shaftprint.units import rev_s_from_rpm
@@ -78,10 +78,12 @@ def tug_of_plan(test: "PlannedTest", vessel: "Vessel") -> Tug:
             f"{CLOSED_LOOPS[vessel.drive]}, which is what can be simulated, found one without "
             f"{', '.join(missing)}; plan it without --rehearse."
         )
-    speed_rev_s = rev_s_from_rpm(limits.engine_speed_rpm)
-    torque_nm = limits.brake_torque_nm * vessel.gearbox.ratio * vessel.gearbox.efficiency
-    # tau = 2 pi I n_s0 / M_s0 (thesis eq. 2.23)
-    per_second = torque_nm * vessel.gearbox.ratio / (2.0 * math.pi * speed_rev_s)
+    torque_nm = limits.brake_torque_nm * vessel.gearbox.shaft_over_brake
+    point = Normalisation(
+        engine_speed_rev_s=rev_s_from_rpm(limits.engine_speed_rpm),
+        gear_ratio=vessel.gearbox.ratio,
+        shaft_torque_nm=torque_nm,
+    )
     optional = {name: _value(plan, role) for name, role in _OPTIONAL.items()}
     motoring_nm = float(np.interp(limits.engine_speed_rpm, *np.array(limits.motoring).T))
     tug = Tug(
@@ -101,7 +103,7 @@ def tug_of_plan(test: "PlannedTest", vessel: "Vessel") -> Tug:
         tug = replace(tug, motoring_torque_nm=motoring_nm)
     stated = {name: value for name, value in (values | optional).items() if value is not None}
     numbers: dict[str, Any] = {
-        name: value * per_second if name in _INERTIAS else value for name, value in stated.items()
+        name: value * point.inertia_kg_m2 if name in _INERTIAS else value for name, value in stated.items()
     }
     return replace(tug, **numbers)
 
