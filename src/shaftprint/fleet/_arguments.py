@@ -8,6 +8,7 @@ from pydantic import Field, ValidationError, field_validator
 
 from shaftprint.campaign._trial_conditions import TrialConditions
 from shaftprint.errors import SettingsError, StoreError
+from shaftprint.records import faults
 from shaftprint.settings import Name, PositiveInteger, Settings
 from shaftprint.store._nouns import Line, Ship
 from shaftprint.store._stated import Stated
@@ -93,9 +94,7 @@ def arguments_of(content: Any, *, named: str) -> JobArguments:
     try:
         return JobArguments.model_validate(content)
     except ValidationError as error:
-        first = error.errors()[0]
-        field = ".".join(map(str, first["loc"])) or "arguments"
-        raise StoreError(f"{named}: {field}: {first['msg']}; expected what shaftprint fleet run puts in.") from None
+        raise StoreError(f"{named}: {faults(error)}; expected what shaftprint fleet run puts in.") from None
 
 
 def job_arguments(
@@ -131,9 +130,7 @@ def job_arguments(
             **known,
         )
     except ValidationError as error:
-        first = error.errors()[0]
-        field = ".".join(map(str, first["loc"])) or "conditions"
-        raise SettingsError(f"{named}: {field}: {first['msg']}.") from None
+        raise SettingsError(f"{named}: {faults(error)}.") from None
 
 
 def _absolute(path_or_name: str | Path) -> str:
