@@ -4,6 +4,7 @@ from .inputs._assumed_ship import assumed_ship, ship_of_fit
 from .inputs._gauge_range import GaugeRange
 from .inputs._limits import Limits, limits_from_vessel
 from .inputs._set_point_line import SetPointLine
+from .inputs._stated_limits import StatedLimit
 from .inputs._wish import Wish, no_worse_than
 from .operation._expected import expected_operation
 from .operation._limit_use import limit_uses
@@ -15,6 +16,7 @@ from .planned_test._rehearsal import rehearse
 from .planned_test._remedies import remedies
 from .planned_test._verdict import plan_sentences
 from .planning._design import design_campaign
+from .planning._from_knowledge import plan_test
 from .planning._replan import replan
 from .planning._shortest import shortest
 from .search._search import Effort
@@ -26,6 +28,7 @@ __all__ = [
     "Plan",
     "PlannedTest",
     "SetPointLine",
+    "StatedLimit",
     "Wish",
     "assumed_ship",
     "campaign_of",
@@ -36,6 +39,7 @@ __all__ = [
     "limits_from_vessel",
     "no_worse_than",
     "plan_sentences",
+    "plan_test",
     "read_plan",
     "recorded_operation",
     "rehearse",

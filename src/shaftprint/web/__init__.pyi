@@ -1,13 +1,12 @@
 from ._server import serve
 from ._settings import Listen, Serving, listen_at
-from .access._password import LONGEST, SHORTEST, hashed
+from .access._password import LONGEST, hashed
 from .access._person import Person
 from .access._users import ROLES, with_user
 
 __all__ = [
     "LONGEST",
     "ROLES",
-    "SHORTEST",
     "Listen",
     "Person",
     "Serving",
