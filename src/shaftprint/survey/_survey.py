@@ -59,7 +59,6 @@ if TYPE_CHECKING:
     from shaftprint.limits._limit_fit import LimitFit
     from shaftprint.validation._validation import Validation
 
-
 SettingsOf: TypeAlias = Callable[[Structure, Measurement, Trial], Settings]
 """Gives how a structure is fitted to a measurement of a trial."""
 
