@@ -216,7 +216,8 @@ def test_a_folder_that_may_be_read_only_is_read_and_nothing_is_made_in_it(tmp_pa
     for folder in list(tmp_path.parents)[:3]:
         folder.chmod(folder.stat().st_mode | 0o055)
     code = (
-        "import os, sys\nfrom shaftprint.store import create_store, open_store\nfrom shaftprint.errors import StoreError\n"
+        "import os, sys\n"
+        "from shaftprint.store import create_store, open_store\nfrom shaftprint.errors import StoreError\n"
         # what is loaded late is loaded while the program's own files may be read
         "open_store(sys.argv[1]).close()\n"
         "if os.getuid() == 0:\n    os.setgroups([])\n    os.setgid(65534)\n    os.setuid(65534)\n"
