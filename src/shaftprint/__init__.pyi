@@ -38,6 +38,7 @@ from shaftprint import records as records
 from shaftprint import rehearsal as rehearsal
 from shaftprint import report as report
 from shaftprint import sender_cycle as sender_cycle
+from shaftprint import service as service
 from shaftprint import settings as settings
 from shaftprint import signals as signals
 from shaftprint import simulation as simulation

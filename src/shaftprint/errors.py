@@ -14,6 +14,7 @@
     ├── IdentificationError   a fit that cannot be set up or has no acceptable result
     ├── DesignError           a test that cannot be planned within its limits
     ├── ValidationError       a model that cannot be held against a record
+    ├── ServiceError          logs of ordinary service that cannot be used, or show nothing
     ├── FingerprintError      a fingerprint file that cannot be read or compared
     ├── PublicationError      a folder into which results cannot be put, or not as a whole
     ├── ReportError           a report that cannot be written
@@ -73,6 +74,10 @@ class DesignError(ShaftprintError):
 
 class ValidationError(ShaftprintError):
     """A model cannot be held against a record."""
+
+
+class ServiceError(ShaftprintError):
+    """Logs of ordinary service cannot be used, or show nothing of the line."""
 
 
 class FingerprintError(ShaftprintError):

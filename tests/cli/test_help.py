@@ -49,6 +49,7 @@ def test_commands_are_those_that_were_asked_for():
         "export",
         "show",
         "limits",
+        "service",
         "merge",
         "join",
         "simulate",

@@ -30,6 +30,7 @@ RUN_ELSEWHERE = {
     "stan-tug-1205-astern",
     "stan-tug-1205-underway",
     "--starboard",
+    "--service",
     "my_ship.py:my_loop",
 }
 # What a command calls when it begins to calculate.
@@ -38,7 +39,8 @@ BEGINS = {
     "inspect": ("read_recording",),
     "limits": ("identify_limits",),
     "plan": ("plan_test",),
-    "sail": ("sail_as", "sail_both_lines"),
+    "sail": ("sail_as", "sail_both_lines", "sail_service"),
+    "service": ("scan", "fit_service"),
     "sensitivity": ("sensitivity_chart",),
     "simulate": ("predicted",),
 }
@@ -85,23 +87,26 @@ def is_run_elsewhere(line):
     name, *words = shlex.split(line)
     of_its_own = not RUN_ELSEWHERE.isdisjoint(words)
     longest = ("identify", "inspect", "plan", "sail", "simulate")
-    return name in ("limits", "sensitivity") or (name in longest and of_its_own)
+    return name in ("limits", "sensitivity", "service") or (name in longest and of_its_own)
 
 
 @pytest.mark.parametrize("line", [line for line in commands() if is_run_elsewhere(line)])
 def test_a_command_that_is_run_elsewhere_is_understood(line, ashore, without_zig, monkeypatch):
     words = shlex.split(line)
     folder = ashore(words)
-    if not words[1].startswith("-") and words[0] != "sail" and not (folder / words[1]).exists():
+    if not words[1].startswith("-") and words[0] not in ("sail", "service") and not (folder / words[1]).exists():
         # what another line of the page sails
         berth(folder / "recording.nc", folder / words[1])
 
     def begin(*_, **__):
         raise Begun
 
-    module = sys.modules[shaftprint.get_command(click.Context(shaftprint), words[0]).callback.__module__]
+    command = shaftprint.get_command(click.Context(shaftprint), words[0])
+    if isinstance(command, click.Group):
+        command = command.get_command(click.Context(command), words[1])
+    module = sys.modules[command.callback.__module__]
     for name in BEGINS[words[0]]:
-        monkeypatch.setattr(module, name, begin)
+        monkeypatch.setattr(module, name, begin, raising=words[0] != "service")
     with pytest.raises(Begun):
         CliRunner().invoke(shaftprint, words, catch_exceptions=False)
 

@@ -142,11 +142,15 @@ class Campaign(Shown, Settings):
             *faults_beside(self._of_further_inputs, self.legs, self.further_offsets_v),
             *faults_of(self.moves, ramp_s=self.ramp_s, ramp_v_per_s=self.ramp_v_per_s),
         ]
-        if not self.excitations:
-            errors.append("expected at least one sine, multisine, binary sequence, chirp or staircase, found none.")
+        errors += self._without_excitations()
         if errors:
             raise ValueError(" ".join(errors))
         return self
+
+    def _without_excitations(self) -> list[str]:
+        if self.excitations:
+            return []
+        return ["expected at least one sine, multisine, binary sequence, chirp or staircase, found none."]
 
     def _without_offset(self) -> list[str]:
         missing = [name for name in self.inputs if name != SPEED_SET_POINT and name not in self.further_offsets_v]

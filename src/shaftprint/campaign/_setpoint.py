@@ -12,6 +12,7 @@ from shaftprint.campaign._binary_sequence import BinarySequence
 from shaftprint.campaign._campaign import Campaign
 from shaftprint.campaign._excitation import Excitation
 from shaftprint.campaign._excitations import SPEED_SET_POINT, Chirp, Sine, Staircase
+from shaftprint.campaign._lever_course import LeverCourse
 from shaftprint.campaign._multisine import Multisine
 from shaftprint.errors import SettingsError
 
@@ -41,6 +42,8 @@ def setpoint(campaign: Campaign, time_s: ArrayLike, *, input: str = SPEED_SET_PO
     voltage = np.full(time.shape, offset_v)
     if time.size == 0:
         return voltage
+    if isinstance(campaign, LeverCourse) and input == SPEED_SET_POINT:
+        return campaign.voltage(time)
     first, last = float(time.min()), float(time.max())
     for move in campaign.moves if input == SPEED_SET_POINT else ():
         inside = (time >= move.free_s[0]) & (time < move.free_s[1])

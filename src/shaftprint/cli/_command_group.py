@@ -36,6 +36,7 @@ SECTIONS = {
     },
     "Identify": {
         "identify": "Identify the fingerprint from a recording.",
+        "service": "Identify a line from the logs of its ordinary service, without a test.",
         "limits": "Find which limits a line has, and their levels and rates with uncertainty.",
         "structures": "List the model structures with their parameters and bounds.",
     },

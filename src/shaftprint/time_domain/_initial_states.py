@@ -22,9 +22,11 @@ from shaftprint.time_domain._record import Record
 
 # Most steps towards initial states, and the share of what they leave of a record below which what one does is nothing:
 # the first is exact where the outputs depend on them linearly, and what the last leaves is projected out with them.
-STATE_STEPS, SMALL_STEP = 5, 1e-4
+STATE_STEPS, SMALL_STEP = 4, 1e-4
 # From this step on they are near, and effects stay as they are: each costs a simulation.
 NEAR = 2
+# Times that a step is halved before none is found to help.
+HALVINGS = 8
 # Change of a state over which its effect is taken.
 STATE_CHANGE = 1e-3
 
@@ -71,40 +73,75 @@ def best_states(
     first
         States to begin with, shape (states,).
     """
-    states, effects = first, np.zeros(0)
+    runs = effects_of(simulated, first)
+    if runs is None:
+        return None
+    states, (run, effects) = first, runs
     for step in range(STATE_STEPS):
-        if step < NEAR:
-            runs = effects_of(simulated, states)
+        if 0 < step < NEAR:
+            runs = effects_of(simulated, states, run)
             if runs is None:
                 return None
-            run, effects = runs
-        else:
-            again = simulated(states)
-            if again is None:
-                return None
-            run = again[0]
+            effects = runs[1]
         moves, left = whitened(effects).T, data - whitened(run[None])[0]
         change, *_ = np.linalg.lstsq(moves, left, rcond=1e-9)
-        states = states + change
         if np.linalg.norm(moves @ change) <= SMALL_STEP * np.linalg.norm(left):
+            # what it leaves is projected out with the effects
+            states = states + change
             break
+        nearer = _nearer(simulated, lambda run: data - whitened(run[None])[0], states=states, change=change, left=left)
+        if nearer is None:
+            break
+        states, run = nearer
     return states, effects
 
 
+def _nearer(
+    simulated: Callable[[FloatArray], FloatArray | None],
+    left_by: Callable[[FloatArray], FloatArray],
+    *,
+    states: FloatArray,
+    change: FloatArray,
+    left: FloatArray,
+) -> tuple[FloatArray, FloatArray] | None:
+    """Return states that leave less of a record than before, and their outputs; None where no step does.
+
+    A step that is right for small changes may be far too long where a limit acts, or the loop is hardly damped: it is
+    halved until it helps.
+    """
+    for _ in range(HALVINGS):
+        run = simulated(states + change)
+        if run is not None:
+            still_left = left_by(run[0])
+            if still_left @ still_left < left @ left:
+                return states + change, run[0]
+        change = 0.5 * change
+    return None
+
+
 def effects_of(
-    simulated: Callable[[FloatArray], FloatArray | None], states: FloatArray
+    simulated: Callable[[FloatArray], FloatArray | None], states: FloatArray, run: FloatArray | None = None
 ) -> tuple[FloatArray, FloatArray] | None:
     """Return the outputs from some states, and what one unit of each state adds; None where a simulation runs away.
+
+    Parameters
+    ----------
+    simulated
+        From states, shape (states,), to outputs, shape (1, samples, outputs); None where the simulation runs away.
+    states
+        The states, shape (states,).
+    run
+        Their outputs, where they are known, shape (samples, outputs).
 
     Returns
     -------
         Outputs of shape (samples, outputs), and effects of shape (states, samples, outputs).
     """
     steps = STATE_CHANGE * np.eye(states.size)
-    moved = [simulated(states + step) for step in (np.zeros(states.size), *steps)]
-    if any(run is None for run in moved):
+    moved = [simulated(states) if run is None else run[None], *(simulated(states + step) for step in steps)]
+    if any(one is None for one in moved):
         return None
-    runs = np.concatenate([run for run in moved if run is not None])
+    runs = np.concatenate([one for one in moved if one is not None])
     return runs[0], (runs[1:] - runs[0]) / STATE_CHANGE
 
 

@@ -131,7 +131,7 @@ def _record(
         used=frozen_bool(used),
         drive={"n_set": frozen_float(drive)},
         every=every,
-        load=_load(outputs, used),
+        load=load_of(outputs["n"], outputs["M_s"], used, rate / every),
         averaging_s=sensor.averaging_s,
         hold_s=sensor.hold_s,
         pick_up_delay_s=sensor.delay_s,
@@ -200,10 +200,26 @@ def _lost(signals: Signals, name: str, time_s: FloatArray, every: int) -> BoolAr
     return lost
 
 
-def _load(outputs: dict[str, FloatArray], used: BoolArray) -> float:
-    """Return mean torque over mean squared speed, relative to the working point; 1 where the shaft stands."""
+def load_of(n: FloatArray, torque: FloatArray, used: BoolArray, rate_hz: float) -> float:
+    """Return the mean load over that of the working point: torque over the square of the speed; 1 where none is used.
+
+    A record that ends faster than it began has accelerated the propeller: that torque is no load. Its size, the inertia
+    time behind the gauge, is taken from the record.
+
+    Parameters
+    ----------
+    n, torque
+        Deviations of speed and torque [-], shape (samples,).
+    used
+        Which samples count, shape (samples,).
+    rate_hz
+        Samples a second [Hz].
+    """
     if not used.any():
         return 1.0
-    torque = 1.0 + float(np.mean(outputs["M_s"][used]))
-    square = float(np.mean((1.0 + outputs["n"][used]) ** 2))
-    return torque / square if torque > 0.0 and square > 0.0 else 1.0
+    square, whole = (1.0 + n[used]) ** 2, 1.0 + torque[used]
+    rise = np.gradient(n)[used] * rate_hz if n.size > 1 else np.zeros(square.size)
+    (_, inertia_s), *_ = np.linalg.lstsq(np.stack([square, rise], axis=1), whole, rcond=1e-9)
+    mean = float(np.mean(whole)) - max(float(inertia_s), 0.0) * float(np.mean(rise))
+    mean_square = float(np.mean(square))
+    return mean / mean_square if mean > 0.0 and mean_square > 0.0 else 1.0

@@ -10,9 +10,12 @@ from ._truth import Truth, normalised_truth, read_truth, truth_path
 from ._tug import Tug
 from .plant._physics import build_plant
 from .plant._plant import derivatives, governor_rack
+from .service._habits import Habits, lever_course
+from .service._sail_service import sail_service
 
 __all__ = [
     "Coupling",
+    "Habits",
     "Noise",
     "Sailing",
     "SimulatedFleet",
@@ -22,11 +25,13 @@ __all__ = [
     "build_plant",
     "derivatives",
     "governor_rack",
+    "lever_course",
     "like_stan_tug_1205",
     "linearised_response",
     "normalised_truth",
     "read_truth",
     "sail",
+    "sail_service",
     "simulate_signals",
     "truth_path",
 ]

@@ -6,12 +6,14 @@ from pathlib import Path
 
 from shaftprint.arguments import refusing_none
 from shaftprint.campaign._campaign import Campaign
+from shaftprint.campaign._lever_course import LeverCourse
 from shaftprint.errors import RecordingError, SettingsError
 from shaftprint.files import reason, written_whole
 from shaftprint.recording._writer import RecordingWriter
 from shaftprint.tug._crew import Crew
 from shaftprint.tug._truth import Truth, truth_path, truth_text
 from shaftprint.tug._tug import Tug
+from shaftprint.tug.plant._clutch import declutched
 from shaftprint.tug.plant._disturbance import Disturbance
 from shaftprint.tug.plant._voyage import voyage
 from shaftprint.vessel._vessel import Vessel
@@ -97,13 +99,14 @@ def _record(
         chunk=CHUNK,
         disturbance=Disturbance(tug.noise, 1.0 / crew.rate_hz, crew.process),
     )
+    out_s = campaign.declutched_s if isinstance(campaign, LeverCourse) else ()
     done = 0
     waiting: Future[None] | None = None
     with ThreadPoolExecutor(max_workers=1) as second_thread:
         for stretch in stretches:
             if waiting is not None:
                 waiting.result()
-            waiting = second_thread.submit(crew.write, writer, stretch)
+            waiting = second_thread.submit(crew.write, writer, declutched(stretch, out_s) if out_s else stretch)
             done += stretch.time_s.size
             progress(done / crew.samples)
     if waiting is not None:

@@ -22,12 +22,17 @@ with late():
     from shaftprint.tug._like_stan_tug import like_stan_tug_1205, with_lever_of
     from shaftprint.tug._sail_as import sail_as
     from shaftprint.tug._truth import truth_path
+    from shaftprint.tug.service._sail_service import sail_service
+    from shaftprint.vessel._vessel import load_vessel
+
+MOST_HOURS = 200.0
+"""Hours of ordinary service that are simulated at once."""
 
 
 @click.command("sail")
 @click.argument("vessel")
-@click.argument("campaign")
-@output_options("Recording to write")
+@click.argument("campaign", required=False)
+@output_options("Recording to write, or folder with --service")
 @starboard_option
 @click.option("--seed", type=click.IntRange(min=0), default=1, show_default=True, help="Seed of all randomness.")
 @click.option(
@@ -39,11 +44,17 @@ with late():
 )
 @click.option("--jitter", type=click.FloatRange(0.0, 28.0), default=0.0, help="Of messages, % of their cycle (rms).")
 @click.option("--lost", type=click.FloatRange(0.0, 99.0), default=0.0, help="Messages that are lost [%].")
+@click.option(
+    "--service",
+    metavar="HOURS",
+    help="Ordinary service in place of a campaign, such as 8h: a crew moves the lever, a file an hour is written.",
+)
+@click.option("--ending", default=".nc", show_default=True, help="Ending of the files of --service.")
 @click.option("--force", is_flag=True, help="Replace an existing recording.")
 @no_progress_option
 def command(
     vessel: str,
-    campaign: str,
+    campaign: str | None,
     output: Path,
     chosen_format: str | None,
     starboard: str | None,
@@ -51,6 +62,8 @@ def command(
     rates: tuple[str, ...],
     jitter: float,
     lost: float,
+    service: str | None,
+    ending: str,
     force: bool,
     no_progress: bool,
 ) -> None:
@@ -65,7 +78,18 @@ def command(
     ending writes it: what that loses is said, and logs of a CAN bus get a DBC file beside them. With --messages the
     shaft torque, a speed in rpm or a set point in % or rpm come over a bus. With --starboard both lines of a ship are
     sailed in one recording; each propeller feels the wash of the other, and both the same sea.
+
+    With --service HOURS the ship works: a crew with habits of its own moves the lever, lets the engine idle and takes
+    the clutch out, and no campaign is given. What its logger keeps goes into the folder of --output, a file an hour,
+    with the truth beside; stan-tug-1205-service has the sensors for that.
     """
+    if service is not None:
+        if campaign is not None or starboard is not None or rates or jitter or lost:
+            raise click.UsageError("--service goes with a vessel, --seed, --ending and --force alone.")
+        _work(vessel, output, hours=_hours(service), ending=ending, seed=seed, force=force, no_progress=no_progress)
+        return
+    if campaign is None:
+        raise click.UsageError("Missing argument 'CAMPAIGN': name one such as thesis, or give --service 8h.")
     if output.is_dir():
         raise click.ClickException(f"{output}: expected a file for the recording, found a folder; add a file name.")
     expect_known_ending(output, format=chosen_format)
@@ -98,6 +122,28 @@ def command(
         echo(f"{output}: {remark}", err=True)
     answer(f"{output}: the raw recording of {trial.campaign.duration_s:g} s.")
     answer(f"{truth_path(output)}: what was put into it.")
+
+
+def _work(vessel: str, output: Path, *, hours: float, ending: str, seed: int, force: bool, no_progress: bool) -> None:
+    """Write logs of ordinary service."""
+    with progress(hidden=no_progress) as steps:
+        steps.begin("Working", total=1.0)
+        files, truth = sail_service(
+            load_vessel(vessel), output, hours=hours, seed=seed, ending=ending, overwrite=force, progress=steps.reach
+        )
+    answer(f"{output}: {len(files)} files of {truth.duration_s / 3600.0:g} hours of ordinary service.")
+    answer(f"{truth_path(output / 'log.nc')}: what was put into them.")
+
+
+def _hours(text: str) -> float:
+    """Return a number of hours, with or without their unit."""
+    try:
+        hours = float(text.strip().removesuffix("h"))
+    except ValueError:
+        hours = 0.0
+    if not 0.0 < hours <= MOST_HOURS:
+        raise click.UsageError(f'--service: expected up to {MOST_HOURS:g} hours, such as 8h, found "{text}".')
+    return hours
 
 
 def _rate(text: str) -> tuple[str, float]:

@@ -30,11 +30,11 @@ def without_orders(signals: Signals, vessel: Vessel) -> Signals:
     count = max(round(signals.samples / (STRETCH_S * signals.rate_hz)), 1)
     for part in np.array_split(np.arange(signals.samples), count):
         stretch = slice(int(part[0]), int(part[-1]) + 1)
-        torque[stretch] -= _orders(torque[stretch], speed[stretch], signals.rate_hz, orders)
+        torque[stretch] -= orders_in(torque[stretch], speed[stretch], signals.rate_hz, orders)
     return signals.with_channel("M_s", values=frozen_float(torque))
 
 
-def _orders(torque: FloatArray, speed_rev_s: FloatArray, rate_hz: float, orders: tuple[float, ...]) -> FloatArray:
+def orders_in(torque: FloatArray, speed_rev_s: FloatArray, rate_hz: float, orders: tuple[float, ...]) -> FloatArray:
     """Return the orders of the engine in a torque [N m], shape (samples,)."""
     good = np.isfinite(torque) & np.isfinite(speed_rev_s)
     if not good.any():

@@ -1,0 +1,199 @@
+"""What ordinary service tells of a simulated tug, and whether its intervals hold: the tables of docs/service.md.
+
+Each seed is another ship, crew and weather: governor, delays, inertias, slope of the engine, strength and colour of the
+disturbances, and habits at the lever are drawn. Its logs are written, read back, scanned and fitted as ``shaftprint
+service`` does, the fit from numbers that are wrong by 3 %. Run ``python benchmarks/service.py --seeds 12 --hours 1
+--outcomes FOLDER``; outcomes that the folder holds are not made again. With ``--write`` the table goes into the
+document. An hour of service takes 7 s of a processor to sail and 3 s to scan and fit.
+"""
+
+import argparse
+import json
+import sys
+import tempfile
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+ROOT = Path(__file__).resolve().parent.parent
+# Run as a file, the folder of the benchmarks is on the path, not the one above.
+sys.path.insert(0, str(ROOT))
+
+from benchmarks.kept_outcomes import kept
+from benchmarks.monte_carlo_tables import write_between_marks
+from shaftprint.distributions import NORMAL_95
+from shaftprint.service import fit_service, scan
+from shaftprint.service._fit import along, fit_segments
+from shaftprint.service._model import FREE, ServiceModel, service_model
+from shaftprint.service._score import noise_of, scores, simulated
+from shaftprint.service._segment_file import read_segments
+from shaftprint.tug import Tug, sail_service
+from shaftprint.vessel import load_vessel
+from shaftprint.vessel._vessel import Vessel
+
+DOCUMENT = ROOT / "docs" / "service.md"
+BEGIN, END = ("<!-- table of benchmarks/service.py: begin -->", "<!-- table of benchmarks/service.py: end -->")
+VESSEL = "stan-tug-1205-service"
+DIRECTIONS: Mapping[str, tuple[str, ...]] = {
+    "a lower proportional gain": ("K_p",),
+    "less torque for the same rack": ("K_p", "K_i"),
+    "a longer delay": ("t_d",),
+    "more inertia behind the gauge": ("tau_dn",),
+}
+"""Causes and the parameters that each moves, by the same share."""
+# Numbers from which a fit begins are wrong by so much.
+_OLD = 0.03
+_PERCENT = 100.0
+
+
+def drawn(seed: int, vessel: Vessel) -> Tug:
+    """Return a tug in some weather."""
+    rng = np.random.default_rng((seed, 5))
+
+    def about(value: float, spread: float) -> float:
+        return float(value * np.exp(spread * rng.standard_normal()))
+
+    usual = Tug.stan_tug_1205()
+    noise = usual.noise
+    sizes = ("inflow_rms", "surge_rms", "combustion_rms", "hunting_rms", "demand_rms")
+    noise = replace(noise, **{name: about(getattr(noise, name), 0.3) for name in sizes})
+    return replace(
+        usual,
+        noise=replace(noise, hunting_hz=about(noise.hunting_hz, 0.1)),
+        proportional_gain=about(usual.proportional_gain, 0.06),
+        integral_gain_per_s=about(usual.integral_gain_per_s, 0.08),
+        governor_delay_s=about(usual.governor_delay_s, 0.08),
+        set_point_latency_s=about(usual.set_point_latency_s, 0.1),
+        natural_frequency_rad_s=about(usual.natural_frequency_rad_s, 0.05),
+        damping_ratio=about(usual.damping_ratio, 0.08),
+        inertia_upstream_kg_m2=about(vessel.inertia_upstream_kg_m2, 0.02),
+        inertia_downstream_kg_m2=about(vessel.inertia_downstream_kg_m2, 0.05),
+        g=float(0.1 * rng.standard_normal()),
+    )
+
+
+def outcome(seed: int, hours: float) -> dict[str, Any]:
+    """Return what some hours of service of one ship tell, beside its truth."""
+    vessel = load_vessel(VESSEL)
+    model = service_model(vessel)
+    with tempfile.TemporaryDirectory() as place:
+        files, truth = sail_service(vessel, Path(place) / "logs", hours=hours, seed=seed, tug=drawn(seed, vessel))
+        table = Path(place) / "segments.csv"
+        begin = time.process_time()
+        found = scan(files, vessel)
+        scanned_s = time.process_time() - begin
+        if found.refused:
+            return {"seed": seed, "hours": hours, "refused": found.refused}
+        found.write(table)
+        day = fit_service(table, vessel, now=datetime.now(UTC))
+        segments, line, _ = read_segments(table)
+    true = np.array([truth.normalised.get(name, float(name == "c_set")) for name in FREE])
+    point = {
+        "speed_rev_s": model.engine_speed_rev_s,
+        "torque_nm": model.shaft_torque_nm,
+        "tau_dn": model.values["tau_dn"],
+    }
+    records = [one.record(line, **point) for one in segments if not one.reason]
+    rng = np.random.default_rng((seed, 6))
+    begin = time.process_time()
+    fit = fit_segments(records, _at(model, true * np.exp(_OLD * rng.standard_normal(true.size) * _moved())))
+    fitted_s = time.process_time() - begin
+    begin = time.process_time()
+    runs = simulated(records, model, true)
+    each = scores(runs, noise_of(runs))
+    scored_s = time.process_time() - begin
+    causes = {}
+    for cause, names in DIRECTIONS.items():
+        direction = np.array([value if name in names else 0.0 for name, value in zip(FREE, true, strict=True)])
+        causes[cause] = along(each, direction)
+    return {
+        "seed": seed,
+        "hours": hours,
+        "moves": len(segments),
+        "used": len(records),
+        "true": dict(zip(FREE, true.tolist(), strict=True)),
+        "value": dict(zip(FREE, fit.theta.tolist(), strict=True)),
+        "std": dict(zip(FREE, fit.std.tolist(), strict=True)),
+        "from_usual": {name: float(x) for name, x in zip(FREE, day.fit.theta, strict=True)},
+        "causes": causes,
+        "cpu_s": {"scan": scanned_s, "fit": fitted_s, "score": scored_s},
+    }
+
+
+def _moved() -> np.ndarray[Any, np.dtype[np.float64]]:
+    """Return which numbers an older fingerprint has wrong: not what the vessel file knows."""
+    return np.array([float(name not in ("c_set", "t_gauge")) for name in FREE])
+
+
+def _at(model: ServiceModel, theta: np.ndarray[Any, np.dtype[np.float64]]) -> ServiceModel:
+    return replace(model, values={**model.values, **dict(zip(FREE, theta.tolist(), strict=True))})
+
+
+def report(outcomes: Sequence[Mapping[str, Any]]) -> str:
+    """Return the table of all outcomes."""
+    used = [one for one in outcomes if "refused" not in one]
+    hours = {one["hours"] for one in used}
+    text = [
+        f"{len(used)} seeds of {' and '.join(f'{h:g}' for h in sorted(hours))} h, each another ship, crew and weather; "
+        f"{len(outcomes) - len(used)} refused. {np.mean([one['used'] for one in used]):.0f} of "
+        f"{np.mean([one['moves'] for one in used]):.0f} moves were used on average.",
+        "",
+        "| number | stated deviation, median | rms error | rms z | 95 % intervals that hold |",
+        "|---|---|---|---|---|",
+    ]
+    every = []
+    for name in FREE:
+        true, value, std = (np.array([one[key][name] for one in used]) for key in ("true", "value", "std"))
+        z = (value - true) / std
+        every.append(z)
+        share = np.abs(true) if name not in ("g", "t_gauge") else np.ones(len(used))
+        unit = " %" if name not in ("g", "t_gauge") else (" ms" if name == "t_gauge" else "")
+        factor = {"g": 1.0, "t_gauge": 1e3}.get(name, _PERCENT)
+        text.append(
+            f"| `{name}` | {factor * np.median(std / share):.2g}{unit} | "
+            f"{factor * np.sqrt(np.mean(((value - true) / share) ** 2)):.2g}{unit} | {np.sqrt(np.mean(z**2)):.2f} | "
+            f"{np.count_nonzero(np.abs(z) < NORMAL_95)} of {z.size} |"
+        )
+    held = np.abs(np.array(every)) < NORMAL_95
+    text.append(f"| all | | | {np.sqrt(np.mean(np.square(every))):.2f} | {_PERCENT * held.mean():.1f} % |")
+    text += ["", "| change, all else known | one standard deviation, median | rms z at no change |", "|---|---|---|"]
+    for cause in DIRECTIONS:
+        size, std = np.array([one["causes"][cause] for one in used]).T
+        text.append(f"| {cause} | {_PERCENT * np.median(std):.2g} % | {np.sqrt(np.mean((size / std) ** 2)):.2f} |")
+    cpu = {name: np.median([one["cpu_s"][name] / one["hours"] for one in used]) for name in ("scan", "fit", "score")}
+    text += [
+        "",
+        f"CPU seconds an hour of service, median: scan {cpu['scan']:.1f}, fit from 3 % {cpu['fit']:.1f}, "
+        f"score at known numbers {cpu['score']:.2f}.",
+    ]
+    return "\n".join(text)
+
+
+def main() -> None:
+    """Make what is missing, and print the table."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--seeds", type=int, default=12, help="how many ships")
+    parser.add_argument("--hours", type=float, default=1.0, help="hours of service of each")
+    parser.add_argument("--outcomes", type=Path, required=True, help="folder in which outcomes are kept")
+    parser.add_argument("--write", action="store_true", help="write the table into docs/service.md")
+    options = parser.parse_args()
+    options.outcomes.mkdir(parents=True, exist_ok=True)
+    outcomes = []
+    for seed in range(1, options.seeds + 1):
+        path = options.outcomes / f"{seed}-{options.hours:g}h.json"
+        outcomes.append(kept(path, lambda seed=seed: outcome(seed, options.hours)))
+        last = outcomes[-1]
+        print(json.dumps({name: last.get(name) for name in ("seed", "used", "refused", "cpu_s")}), flush=True)
+    table = report(outcomes)
+    print(table)
+    if options.write:
+        write_between_marks(DOCUMENT, table, BEGIN, END)
+
+
+if __name__ == "__main__":
+    main()

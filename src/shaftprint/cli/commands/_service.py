@@ -1,0 +1,30 @@
+"""``shaftprint service``: a fingerprint from ordinary service, one file an action."""
+
+from collections.abc import Mapping
+from typing import ClassVar
+
+import click
+
+from shaftprint.cli._command_group import LazyGroup
+
+# The one-line help of every action; asking its file for it would import the fingerprint's room.
+ACTIONS = {
+    "scan": "Find the moves of the lever in logs, and say what they would tell.",
+    "fit": "Identify the fingerprint from the moves that a scan has found.",
+}
+
+
+class ActionGroup(LazyGroup):
+    """The actions by name."""
+
+    sections: ClassVar[Mapping[str, Mapping[str, str]]] = {"Actions": ACTIONS}
+    folder = "shaftprint.cli.commands.service"
+
+
+@click.group("service", cls=ActionGroup, subcommand_metavar="ACTION [ARGS]...")
+def command() -> None:
+    """Identify a line from the logs of its ordinary service, without a test.
+
+    Needed are lever, engine speed and shaft torque, logged by one logger 20 times a second or more often, every value
+    kept. Begin with `shaftprint service scan`.
+    """

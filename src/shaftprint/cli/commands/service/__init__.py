@@ -1,0 +1,1 @@
+"""The actions of ``shaftprint service``, one file each."""

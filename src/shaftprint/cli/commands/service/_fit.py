@@ -1,0 +1,63 @@
+"""``shaftprint service fit``: the fingerprint of a line from segments of its service."""
+
+from __future__ import annotations
+
+from datetime import UTC, datetime
+from pathlib import Path
+
+import click
+
+from shaftprint.cli._fingerprint_tables import print_fingerprint
+from shaftprint.cli._options import vessel_option
+from shaftprint.cli._results import print_paths
+from shaftprint.cli.output._fingerprint_file import FINGERPRINT, fingerprint_at
+from shaftprint.cli.output._output_folder import force_option, output_folder
+from shaftprint.cli.output._progress import no_progress_option, progress
+from shaftprint.late import late
+
+with late():
+    from shaftprint.fingerprint._json_file import write_fingerprint
+    from shaftprint.service._service_fit import fit_service
+    from shaftprint.vessel._vessel import load_vessel
+
+SCORE_FILE, VALUE_FILE = "scores.csv", "values.json"
+"""Files of a day beside the fingerprint: slope and curvature of each segment, and at which values."""
+
+
+@click.command("fit")
+@click.argument("segments", type=click.Path(path_type=Path))
+@vessel_option
+@click.option(
+    "--fingerprint",
+    type=click.Path(path_type=Path),
+    help="One of an earlier test or of other days to begin from; none of its numbers counts.",
+)
+@click.option(
+    "-o",
+    "--output",
+    required=True,
+    type=click.Path(path_type=Path),
+    help="Folder for the fingerprint, and for what each segment tells.",
+)
+@force_option
+@no_progress_option
+def command(
+    segments: Path, *, vessel: str, fingerprint: Path | None, output: Path, force: bool, no_progress: bool
+) -> None:
+    """Identify the fingerprint from the moves that a scan has found.
+
+    SEGMENTS is the table that `shaftprint service scan -o` wrote, as edited since. The fingerprint has the layout of
+    one from a test, with ordinary service as its test. Beside it, for each segment, stand slope and curvature of the
+    likelihood at its values.
+    """
+    installation = load_vessel(vessel)
+    earlier = None if fingerprint is None else fingerprint_at(fingerprint)
+    with output_folder(output, of="service", force=force) as folder:
+        with progress(hidden=no_progress) as steps:
+            steps.begin("Fitting")
+            day = fit_service(segments, installation, fingerprint=earlier, now=datetime.now(UTC))
+        write_fingerprint(day.fingerprint, folder / FINGERPRINT)
+        (folder / SCORE_FILE).write_text(day.scores_text(), encoding="utf-8")
+        (folder / VALUE_FILE).write_text(day.theta_text(), encoding="utf-8")
+    print_fingerprint(day.fingerprint)
+    print_paths(output, report=False)

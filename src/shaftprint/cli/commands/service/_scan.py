@@ -1,0 +1,127 @@
+"""``shaftprint service scan``: what logs of ordinary service would tell."""
+
+from __future__ import annotations
+
+from collections import Counter
+from pathlib import Path
+
+import click
+
+from shaftprint.cli._command_group import NOT_REACHED
+from shaftprint.cli._options import vessel_option
+from shaftprint.cli._terminal import answer, print_findings, say
+from shaftprint.cli.output._file_to_write import expect_free
+from shaftprint.cli.output._fingerprint_file import fingerprint_at
+from shaftprint.cli.output._json import give
+from shaftprint.cli.output._progress import no_progress_option, progress
+from shaftprint.cli.output._tables import print_tables
+from shaftprint.late import late
+from shaftprint.plain_table import Column, Table
+
+with late():
+    from shaftprint.service._scan import Scan, scan
+    from shaftprint.service._segment_file import channel_file
+    from shaftprint.vessel._vessel import load_vessel
+
+
+@click.command("scan")
+@click.argument("logs", nargs=-1, required=True, type=click.Path(path_type=Path))
+@vessel_option
+@click.option(
+    "--fingerprint",
+    type=click.Path(path_type=Path),
+    help="One of an earlier test or of other days, against which the clock of the lever is held.",
+)
+@click.option(
+    "-o",
+    "--output",
+    type=click.Path(path_type=Path),
+    help="Table of segments to write (CSV); what their channels did goes beside it, for service fit.",
+)
+@click.option("--force", is_flag=True, help="Replace an existing table.")
+@no_progress_option
+@click.pass_context
+def command(
+    context: click.Context,
+    logs: tuple[Path, ...],
+    *,
+    vessel: str,
+    fingerprint: Path | None,
+    output: Path | None,
+    force: bool,
+    no_progress: bool,
+) -> None:
+    """Find the moves of the lever in logs, and say what they would tell.
+
+    LOGS are the files of one logger in order of time, in any readable format. Around each move a segment of half a
+    minute is cut out, with its swing, what the ship was doing, what it tells about each number were all others known,
+    and why it is not used. Edit the column `used` of the table to take segments out. A log that shows less than every
+    value, a lever that follows the load, a ship with way on, or a clock that is off ends with code 3 and the cause.
+    """
+    if output is not None:
+        expect_free(output, force=force)
+        expect_free(channel_file(output), force=force)
+    installation = load_vessel(vessel)
+    earlier = None if fingerprint is None else fingerprint_at(fingerprint)
+    with progress(hidden=no_progress) as steps:
+        steps.begin("Reading", total=1.0)
+        found = scan(logs, installation, fingerprint=earlier, progress=steps.reach)
+    answer(found.headline)
+    give("scan", _as_given(found))
+    print_tables(_tables(found))
+    print_findings("Could not be read", found.left_out)
+    if output is not None and found.line is not None:
+        found.write(output)
+        say(f"{output}: {len(found.segments)} segments, {len(found.used)} of them used.")
+    if found.refused:
+        context.exit(NOT_REACHED)
+
+
+def _as_given(found: Scan) -> dict[str, object]:
+    return {
+        "moves": len(found.segments),
+        "used": len(found.used),
+        "seconds": found.seconds,
+        "std": found.accuracy,
+        "refused": found.refused,
+        "found": found.found,
+        "line": found.line,
+        "segments": found.rows,
+    }
+
+
+def _tables(found: Scan) -> list[Table]:
+    """Return what the ship was doing, why moves are not used, and what was asked of the log."""
+    reasons = Counter(one.reason for one in found.segments if one.reason)
+    tables = [
+        Table(
+            title="What the ship was doing",
+            columns=(Column("state"), Column("minutes", number=True)),
+            rows=tuple((name, f"{seconds / 60.0:.1f}") for name, seconds in sorted(found.seconds.items())),
+        )
+    ]
+    if reasons:
+        tables.append(
+            Table(
+                title="Moves of the lever that are not used",
+                columns=(Column("why"), Column("moves", number=True)),
+                rows=tuple((reason, str(count)) for reason, count in reasons.most_common()),
+            )
+        )
+    if found.found:
+        tables.append(
+            Table(
+                title="Asked of the whole log",
+                columns=(Column("what"), Column("found", number=True), Column("unit"), Column("verdict")),
+                rows=tuple(
+                    (
+                        one.what,
+                        "–" if one.value != one.value else f"{one.value:.2g}",
+                        one.unit,
+                        "refused" if one.refused else "nothing to tell by" if one.value != one.value else "good",
+                    )
+                    for one in found.found
+                ),
+            )
+        )
+    return tables

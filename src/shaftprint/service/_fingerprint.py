@@ -1,0 +1,253 @@
+"""The fingerprint of a line from its service: in the layout of a test's, with ``ordinary service`` as its test.
+
+Its working point has the speed of the vessel file and the mean load of the service. Numbers are those of the closed
+loop for small signals, GAUGE-CLOSED; what they rest on, and no log shows, is said in the verdict.
+"""
+
+import hashlib
+from collections.abc import Sequence
+from datetime import datetime
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+import shaftprint
+from shaftprint.arrays import FloatArray
+from shaftprint.catalogue._roles import ShipRole
+from shaftprint.catalogue._shipped import shipped_structure
+from shaftprint.errors import ServiceError
+from shaftprint.fingerprint._conditions import Conditions, ShipIdentity
+from shaftprint.fingerprint._fingerprint import Fingerprint, Quality, SourceFile
+from shaftprint.fingerprint._vessel_fields import vessel_fields
+from shaftprint.identify.fit._estimate import Estimate
+from shaftprint.identify.judgement._verdict import Verdict
+from shaftprint.identify.likelihood._prior import PRIOR_OF, Prior
+from shaftprint.identify.uncertainty._budget import Budget
+from shaftprint.models._nyquist import is_stable
+from shaftprint.models._structure import Structure
+from shaftprint.service._fit import ServiceFit
+from shaftprint.service._model import FREE, ServiceModel
+from shaftprint.service._segment import LeverLine, Segment
+from shaftprint.service._ship_numbers import (
+    GAUGE_SCALE,
+    GAUGE_ZERO,
+    SERVICE,
+    budget_row,
+    combination_numbers,
+    joint_of,
+    margin_numbers_of,
+    parameter_numbers,
+    physical_numbers_of,
+    quantity_of,
+)
+from shaftprint.units import SECONDS_PER_MINUTE
+
+if TYPE_CHECKING:
+    from shaftprint.vessel._vessel import Vessel
+
+ORDINARY_SERVICE = "ordinary service"
+"""What stands in a fingerprint in place of the name of a test."""
+STRUCTURE = "GAUGE-CLOSED"
+# Numbers that go with the torque over the speed of the working point.
+_OVER_TORQUE = ("K_p", "K_i", "tau_dn", "tau_up", "g")
+# A number is known well enough to this share of it; a set-point scale or a slope near nothing to this much.
+_WELL_ENOUGH, _WELL_ENOUGH_NEAR_NOTHING = 0.15, 0.1
+ASSUMPTIONS = (
+    "Nobody trims the lever against the load at the moments at which he moves it anyway: no log shows that.",
+    "The ship lies at the quay or makes little way, and its propeller takes the square of the speed.",
+    "The set point that was logged is what the control unit follows, with no rate limit of its own.",
+)
+
+
+def fingerprint_of_service(
+    fit: ServiceFit,
+    model: ServiceModel,
+    vessel: "Vessel",
+    *,
+    line: LeverLine,
+    segments: Sequence[Segment],
+    of: int,
+    load: tuple[float, float],
+    table: Path,
+    now: datetime,
+) -> Fingerprint:
+    """Return the fingerprint of a line from its service.
+
+    Parameters
+    ----------
+    fit, model
+        The fit, normalised at the working point of the vessel file, and its model.
+    vessel
+        The installation.
+    line
+        What the lever asks for.
+    segments, of
+        The segments that were fitted, and how many moves there were.
+    load
+        Mean load over that of the working point, and its standard deviation.
+    table
+        The table of segments.
+    now
+        Time of making, with time zone.
+
+    Raises
+    ------
+    ServiceError
+        If ``now`` has no time zone.
+    """
+    if now.tzinfo is None:
+        raise ServiceError("now: expected a time with time zone, such as datetime.now(UTC), found one without.")
+    structure = shipped_structure(STRUCTURE, set(FREE))
+    scale = np.array([1.0 / load[0] if name in _OVER_TORQUE else 1.0 for name in FREE])
+    theta, covariance = fit.theta * scale, fit.covariance * np.outer(scale, scale)
+    of_prior = {PRIOR_OF + name: change * scale for name, change in fit.of_prior.items()}
+    held = {p.name: p.value for p in structure.parameters if p.name not in FREE} | {"k_q": 2.0}
+    torque_nm = load[0] * model.shaft_torque_nm
+    parameters = _parameters(structure, theta, covariance)
+    combinations = combination_numbers(structure, theta, held)
+    physical = physical_numbers_of(structure, theta, model, vessel, torque_nm=torque_nm, load_std=load[1] / load[0])
+    margins = margin_numbers_of(structure, theta, held)
+    numbers = [*parameter_numbers(structure, theta), *combinations, *physical, *margins]
+    budget = Budget(
+        sources=(SERVICE, *of_prior, GAUGE_SCALE, GAUGE_ZERO),
+        rows=tuple(budget_row(one, covariance, of_prior) for one in numbers),
+    )
+    quantities = {
+        kind: tuple(quantity_of(one, covariance) for one in group)
+        for kind, group in (("combinations", combinations), ("physical", physical), ("margins", margins))
+    }
+    stable = is_stable(structure, structure.vector(dict(zip(FREE, theta.tolist(), strict=True)) | held))
+    every = (*parameters, *quantities["combinations"], *quantities["physical"], *quantities["margins"])
+    seconds = sum(one.seconds for one in segments)
+    return Fingerprint(
+        shaftprint_version=shaftprint.__version__,
+        created=now,
+        sources=(SourceFile(role="recording", name=table.name, sha256=_sha256(table)),),
+        conditions=_conditions(vessel, model, line, torque_nm=torque_nm, torque_std_nm=load[1] * model.shaft_torque_nm),
+        structure=STRUCTURE,
+        parameters=parameters,
+        held=held,
+        priors={
+            name: Prior(model.known[name] * factor, std * factor)
+            for name, std in model.prior_std.items()
+            for factor in (float(scale[FREE.index(name)]),)
+        },
+        covariance=tuple(tuple(row) for row in covariance.tolist()),
+        combinations=quantities["combinations"],
+        physical=quantities["physical"],
+        margins=quantities["margins"],
+        joint=joint_of(physical, parameter_numbers(structure, theta), covariance, of_prior),
+        budget=budget,
+        vessel_fields=vessel_fields(vessel),
+        calibration=(),
+        quality=_quality(fit, segments),
+        verdict=_verdict(every, used=len(segments), of=of, seconds=seconds, stable=stable),
+        findings=_findings(fit, segments, of, line),
+    )
+
+
+def _parameters(structure: Structure, theta: FloatArray, covariance: FloatArray) -> tuple[Estimate, ...]:
+    about = {parameter.name: parameter for parameter in structure.parameters}
+    return tuple(
+        Estimate(
+            name=name,
+            unit=about[name].unit,
+            value=float(theta[k]),
+            std=float(np.sqrt(covariance[k, k])),
+            meaning=about[name].meaning,
+            role=about[name].role,
+        )
+        for k, name in enumerate(FREE)
+    )
+
+
+def _conditions(
+    vessel: "Vessel", model: ServiceModel, line: LeverLine, *, torque_nm: float, torque_std_nm: float
+) -> Conditions:
+    at_v = line.middle_v + (model.engine_speed_rev_s - line.middle_rev_s) / line.slope_rev_s_per_v
+    return Conditions(
+        vessel=vessel.name,
+        campaign=ORDINARY_SERVICE,
+        ship=None if vessel.ship is None else ShipIdentity(**vessel.ship.model_dump()),
+        engine_speed=Estimate(
+            name="n_0",
+            unit="rpm",
+            value=model.engine_speed_rev_s * SECONDS_PER_MINUTE,
+            std=0.0,
+            meaning=f"{vessel.machine.word} speed of the working point",
+            role=ShipRole.SPEED,
+        ),
+        shaft_torque=Estimate(
+            name="M_s0",
+            unit="N m",
+            value=torque_nm,
+            std=torque_std_nm,
+            meaning="shaft torque of the working point, by the mean load of the service",
+            role=ShipRole.TORQUE,
+        ),
+        set_point_v=at_v,
+        speed_channel=vessel.sensors.speed[0].name,
+        mode="shaftprint",
+        lines_used=(),
+        lines_left_out={},
+    )
+
+
+def _quality(fit: ServiceFit, segments: Sequence[Segment]) -> Quality:
+    count = sum(one.count for one in fit.scores)
+    met = sum(one.meets_limit for one in fit.scores)
+    return Quality(
+        weighting="segments of service",
+        fit_percent={},
+        fit_ceiling={},
+        chi_square=None,
+        p_value=None,
+        degrees_of_freedom=count - len(FREE),
+        starts=1,
+        starts_at_optimum=1,
+        snr_overall={},
+        snr_local_db={},
+        repairs={},
+        remarks=(f"In {met} of {len(segments)} segments a limit of the torque acted.",),
+    )
+
+
+def _verdict(numbers: Sequence[Estimate], *, used: int, of: int, seconds: float, stable: bool) -> Verdict:
+    doubts = {}
+    for one in numbers:
+        share = one.std / abs(one.value) if one.value else np.inf
+        if share > _WELL_ENOUGH and one.std > _WELL_ENOUGH_NEAR_NOTHING * (one.unit == "-" and abs(one.value) < 1.0):
+            doubts[one.name] = f"known to {100.0 * share:.0f} % only" if np.isfinite(share) else "not known"
+    trusted = tuple(one.name for one in numbers if one.name not in doubts)
+    of_line = any(one.name in trusted and one.role is not None and one.role.is_of_line for one in numbers)
+    usable = of_line and stable
+    words = f"{used} segments of {seconds:.0f} s around {of} moves of the lever in ordinary service"
+    if not stable:
+        reason = f"The loop that explains {words} is not stable, as a line in service is."
+    elif not of_line:
+        reason = f"No number of the line is known well enough by {words}; give more logs."
+    else:
+        reason = f"Numbers from {words} can be used within their intervals."
+    return Verdict(
+        trustworthy=usable,
+        reason=reason,
+        sentences=(reason, *ASSUMPTIONS),
+        trusted=trusted if usable else (),
+        not_trusted=doubts if usable else {one.name: "no number may be used" for one in numbers},
+        loop=None,
+        assumptions=ASSUMPTIONS,
+    )
+
+
+def _findings(fit: ServiceFit, segments: Sequence[Segment], of: int, line: LeverLine) -> tuple[str, ...]:
+    return (
+        f"From ordinary service: {len(segments)} of {of} moves of the lever were used, no test was made.",
+        f"Where the lever stands still, the speed is within {line.spread_rpm:.2g} rpm of its line "
+        f"({line.stretches} stretches).",
+        f"The fit took {fit.steps} steps; the last was {fit.last_step:.1g} standard deviations long.",
+    )
+
+
+def _sha256(path: Path) -> str:
+    return hashlib.sha256(path.read_bytes()).hexdigest()

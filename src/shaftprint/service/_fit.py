@@ -1,0 +1,227 @@
+"""From segments to parameters: a few steps of Gauss and Newton, and intervals from the scatter of the segments.
+
+Fingerprints are right to a few per cent, so that two or three steps from one of them are enough. The noise is taken
+anew where a step was long. What the noise model says of the uncertainty is too little where noise is not one all the
+time; segments are independent of each other, so that the scatter of their slopes is the variance of the sum::
+
+    cov = H^-1 (sum_c g_c g_c^T) H^-1
+
+(White, 1982; Liang and Zeger, 1986), in full, with the correlations that it has; a standard deviation is never less
+than that of the noise model. To it comes a floor: what was left of the errors in many hours of simulated service
+however long they were.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from types import MappingProxyType
+
+import numpy as np
+
+from shaftprint.arrays import FloatArray, frozen_float
+from shaftprint.errors import ServiceError
+from shaftprint.service._model import FREE, ServiceModel
+from shaftprint.service._score import Score, noise_of, scores, simulated
+from shaftprint.time_domain._record import Record
+from shaftprint.time_domain._simulator import Simulator
+from shaftprint.time_domain._whitening import Whitening
+
+FEWEST_SEGMENTS = 8
+"""Segments below which their scatter says nothing."""
+# Steps at most; a step below so many standard deviations is the last, and so is the second below one of them: what a
+# limit is barely met by makes the likelihood rough. One beyond asks for the noise anew, so many times at most.
+_MOST_STEPS, _LAST, _SHORT, _NOISE_ANEW, _MOST_NOISES = 12, 0.3, 1.0, 1.5, 4
+# Times that a step is halved before the fit ends.
+_HALVINGS = 6
+FLOOR: Mapping[str, float] = MappingProxyType({"K_p": 0.003, "K_i": 0.003, "tau_dn": 0.002})
+"""Share of each number below which its standard deviation does not fall, however long the service."""
+FLOOR_S: Mapping[str, float] = MappingProxyType({"t_d": 1e-3, "t_sp": 1e-3})
+"""The same for delays [s]."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class ServiceFit:
+    """Parameters of a line from its service."""
+
+    theta: FloatArray
+    """Values of the free parameters, in the order of ``FREE``, shape (free,)."""
+    covariance: FloatArray
+    """Their covariance, shape (free, free)."""
+    of_noise: FloatArray
+    """What the noise model alone says of it, shape (free, free)."""
+    of_prior: Mapping[str, FloatArray]
+    """Change of them for one standard deviation of what the vessel file knows, by the number, shape (free,)."""
+    scores: tuple[Score, ...]
+    """What each segment tells, at these values."""
+    whitening: Whitening
+    """The filter by which it was weighed."""
+    steps: int
+    """Steps that were taken."""
+    last_step: float
+    """Size of the last one, over the standard deviation in its direction."""
+
+    @property
+    def std(self) -> FloatArray:
+        """Standard deviations, shape (free,)."""
+        return np.asarray(np.sqrt(np.diag(self.covariance)))
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Sums:
+    """Slope and curvature of the likelihood of all segments, and what is known beforehand."""
+
+    slope: FloatArray
+    """Slope at the parameters, shape (free,)."""
+    information: FloatArray
+    """Curvature, shape (free, free)."""
+    prior: FloatArray
+    """That of what is known beforehand, shape (free, free)."""
+
+    @property
+    def step(self) -> FloatArray:
+        """Where the likelihood is greatest, as seen from the parameters, shape (free,)."""
+        return np.asarray(np.linalg.solve(self.information, self.slope))
+
+
+def sums_of(each: Sequence[Score], model: ServiceModel, theta: FloatArray) -> Sums:
+    """Return the sums over segments, with the prior of the vessel file once."""
+    prior = np.diag([1.0 / model.prior_std[name] ** 2 if name in model.prior_std else 0.0 for name in FREE])
+    return Sums(
+        slope=np.sum([one.slope for one in each], axis=0) + prior @ (model.theta_known - theta),
+        information=np.sum([one.information for one in each], axis=0) + prior,
+        prior=prior,
+    )
+
+
+def fit_segments(records: Sequence[Record], model: ServiceModel, *, simulator: Simulator | None = None) -> ServiceFit:
+    """Return the parameters that explain segments best.
+
+    Parameters
+    ----------
+    records
+        The segments.
+    model
+        The model, with the values to begin from.
+    simulator
+        How it is simulated.
+
+    Raises
+    ------
+    ServiceError
+        If there are too few segments, or the steps do not end.
+    """
+    if len(records) < FEWEST_SEGMENTS:
+        raise ServiceError(
+            f"service: expected {FEWEST_SEGMENTS} or more moves of the lever that can be used, found {len(records)}; "
+            "give more logs."
+        )
+    theta = model.theta
+    runs = simulated(records, model, theta, simulator)
+    whitening = noise_of(runs)
+    each = scores(runs, whitening)
+    size = before = np.inf
+    for step_number in range(1, _MOST_STEPS + 1):
+        sums = sums_of(each, model, theta)
+        step = sums.step
+        before, size = size, float(np.sqrt(step @ sums.information @ step))
+        misfit = _misfit(each, sums, model, theta)
+        for _ in range(_HALVINGS):
+            tried = _within(theta + step)
+            try:
+                new_runs = simulated(records, model, tried, simulator)
+            except ServiceError:
+                step = 0.5 * step
+                continue
+            new_each = scores(new_runs, whitening)
+            # from afar the filter still holds what the start leaves, and its misfit is no guide
+            if step_number <= _MOST_NOISES or size < _SHORT or _misfit(new_each, sums, model, tried) <= misfit:
+                break
+            step = 0.5 * step
+        else:
+            raise ServiceError(
+                "service: expected a fit that comes nearer to the segments with each step, found none that does; "
+                "begin from a fingerprint of this line (--fingerprint)."
+            )
+        theta, runs, each = tried, new_runs, new_each
+        if size < _LAST or max(size, before) < _SHORT:
+            break
+        if size > _NOISE_ANEW and step_number <= _MOST_NOISES:
+            whitening = noise_of(runs)
+            each = scores(runs, whitening)
+    else:
+        if size > _SHORT:
+            raise ServiceError(
+                f"service: expected a fit that comes to rest within {_MOST_STEPS} steps, found one whose last step was "
+                f"{size:.2g} standard deviations long; begin from a fingerprint of this line (--fingerprint)."
+            )
+    sums = sums_of(each, model, theta)
+    of_noise: FloatArray = np.linalg.inv(sums.information).astype(np.float64)
+    return ServiceFit(
+        theta=frozen_float(theta),
+        covariance=frozen_float(with_floor(clustered(each, sums, of_noise), theta)),
+        of_noise=frozen_float(of_noise),
+        of_prior={name: frozen_float(of_noise[:, FREE.index(name)] / std) for name, std in model.prior_std.items()},
+        scores=tuple(each),
+        whitening=whitening,
+        steps=step_number,
+        last_step=size,
+    )
+
+
+def clustered(each: Sequence[Score], sums: Sums, of_noise: FloatArray) -> FloatArray:
+    """Return the covariance from the scatter of segments, no deviation less than that of the noise, (free, free).
+
+    Parameters
+    ----------
+    each
+        What each segment tells, at the greatest likelihood.
+    sums
+        Their sums.
+    of_noise
+        Covariance by the noise model, shape (free, free).
+    """
+    slopes = np.array([one.slope for one in each])
+    # as many slopes as parameters would fit any data: each segment counts as if it had not been fitted
+    shares = np.array([np.trace(of_noise @ one.information) for one in each]) / len(of_noise)
+    slopes = slopes / np.maximum(1.0 - shares, 0.5)[:, None]
+    count = len(each)
+    variance = count / (count - 1.0) * slopes.T @ slopes + sums.prior
+    scatter = of_noise @ variance @ of_noise
+    wider = np.sqrt(np.maximum(np.diag(of_noise) / np.diag(scatter), 1.0))
+    return np.asarray(scatter * np.outer(wider, wider))
+
+
+def with_floor(covariance: FloatArray, theta: FloatArray) -> FloatArray:
+    """Return a covariance with what no length of service takes away, shape (free, free)."""
+    floor = [FLOOR.get(name, 0.0) * value + FLOOR_S.get(name, 0.0) for name, value in zip(FREE, theta, strict=True)]
+    return np.asarray(covariance + np.diag(np.square(floor)))
+
+
+def _misfit(each: Sequence[Score], sums: Sums, model: ServiceModel, theta: FloatArray) -> float:
+    """Return twice the negative log likelihood, up to a constant: noise has a size of its own in each segment."""
+    known = model.theta_known - theta
+    return sum(2.0 * one.count * float(np.log(one.level)) for one in each) + float(known @ sums.prior @ known)
+
+
+def _within(theta: FloatArray) -> FloatArray:
+    """Return parameters that can be: what cannot be below zero is not."""
+    least = {"K_p": 0.05, "K_i": 0.05, "omega_n": 1.0, "zeta": 0.05, "t_d": 0.0, "tau_dn": 0.01, "tau_up": 0.01}
+    return np.maximum(theta, [least.get(name, -np.inf) for name in FREE])
+
+
+def along(each: Sequence[Score], direction: FloatArray) -> tuple[float, float]:
+    """Return how far the likelihood goes along a direction in which all else is known, and its standard deviation.
+
+    That is by the scatter of the segments alone. The direction is that of a cause, such as a gain that is lower.
+
+    Parameters
+    ----------
+    each
+        What each segment tells, at an earlier fingerprint.
+    direction
+        Change of the parameters for one unit of the cause, shape (free,).
+    """
+    slopes = np.array([direction @ one.slope for one in each])
+    curvatures = np.array([direction @ one.information @ direction for one in each])
+    size = float(slopes.sum() / curvatures.sum())
+    left = slopes - size * curvatures
+    return size, float(np.sqrt(np.sum(left**2)) / curvatures.sum())

@@ -1,0 +1,171 @@
+"""The model that service is compared with: the closed loop at large, with what is known of it beforehand."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from shaftprint.arrays import FloatArray
+from shaftprint.catalogue._limited import limited
+from shaftprint.catalogue._roles import ShipRole
+from shaftprint.errors import ServiceError
+from shaftprint.identify.likelihood._known import stated_by_vessel
+from shaftprint.models._structure import Structure
+from shaftprint.normalisation import Normalisation
+from shaftprint.units import SECONDS_PER_MINUTE
+
+if TYPE_CHECKING:
+    from shaftprint.fingerprint._fingerprint import Fingerprint
+    from shaftprint.vessel._vessel import Vessel
+
+FREE = ("K_p", "K_i", "omega_n", "zeta", "t_d", "t_sp", "tau_dn", "tau_up", "g", "c_set", "t_gauge")
+"""Parameters that service is asked for."""
+BESIDE = ("k_q", "m_max", "m_min", "T_aw")
+"""Parameters that each segment has for itself: its load, and the limits where it meets one."""
+_SPEED_SLOPE_STD, _SCALE_STD, _INERTIA_STD = 0.3, 0.005, 0.03
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class ServiceModel:
+    """A structure at the working point of the vessel file, with where a fit begins and what the file knows."""
+
+    structure: Structure
+    """The closed loop, with the limits of the torque."""
+    values: Mapping[str, float]
+    """Values to begin with, by name; of held parameters too."""
+    known: Mapping[str, float]
+    """What the vessel file knows, by name."""
+    prior_std: Mapping[str, float]
+    """Standard deviations of that, by name."""
+    engine_speed_rev_s: float
+    """Engine speed of the working point [rev/s]."""
+    shaft_torque_nm: float
+    """Shaft torque of the working point [N m]."""
+    is_of_fingerprint: bool
+    """Whether the values are those of a fingerprint, against which a log can be held."""
+
+    @property
+    def theta(self) -> FloatArray:
+        """Values of the free parameters, shape (free,)."""
+        return np.array([self.values[name] for name in FREE])
+
+    @property
+    def theta_known(self) -> FloatArray:
+        """What is known of the free parameters beforehand, shape (free,); where nothing is, their values."""
+        return np.array([self.known.get(name, self.values[name]) for name in FREE])
+
+    def vector(self, theta: FloatArray, load: float) -> FloatArray:
+        """Return all parameters under a load over that of the working point, shape (parameters,).
+
+        A propeller that takes ``l (1 + n)^2`` has the slope ``2 l``; what it takes more at the working point moves the
+        limits, which are counted from there.
+        """
+        own = {**self.values, **dict(zip(FREE, theta.tolist(), strict=True))}
+        own["k_q"] = 2.0 * load
+        own["m_max"] = max(self.values["m_max"] - (load - 1.0), 0.1)
+        own["m_min"] = self.values["m_min"] - (load - 1.0)
+        return np.array([own[name] for name in self.structure.names])
+
+
+def service_model(vessel: "Vessel", fingerprint: "Fingerprint | None" = None) -> ServiceModel:
+    """Return the model of a line in service.
+
+    Parameters
+    ----------
+    vessel
+        The installation.
+    fingerprint
+        One of an earlier test or of other days, to begin from; usual values where there is none.
+
+    Raises
+    ------
+    ServiceError
+        If the line is of a kind whose service cannot be compared with a model yet.
+    """
+    _expect_line(vessel)
+    speed = vessel.working_point.engine_speed_rpm / SECONDS_PER_MINUTE
+    torque = vessel.working_point.driving_torque_nm
+    structure = limited("torque", curve=vessel.machine.full_load_shape(speed))
+    point = Normalisation(engine_speed_rev_s=speed, gear_ratio=vessel.gearbox.ratio, shaft_torque_nm=torque)
+    values = {parameter.name: parameter.value for parameter in structure.parameters}
+    prior_std = {"g": _SPEED_SLOPE_STD, "c_set": _SCALE_STD, "t_gauge": vessel.sensors.shaft_torque.latency_std}
+    stated = stated_by_vessel(ShipRole.INERTIA_UPSTREAM, vessel)
+    if stated is not None:
+        values["tau_up"] = point.inertia_time_s(stated[0])
+        share = np.hypot(stated[1] / stated[0], vessel.sensors.shaft_torque.scale_std)
+        prior_std["tau_up"] = float(values["tau_up"] * share)
+    downstream = stated_by_vessel(ShipRole.INERTIA_DOWNSTREAM, vessel)
+    if downstream is not None:
+        values["tau_dn"] = point.inertia_time_s(downstream[0])
+    known = {name: values[name] for name in prior_std}
+    values |= _limits(vessel, speed, torque)
+    if fingerprint is not None:
+        values |= _of_fingerprint(fingerprint, point, values)
+    return ServiceModel(
+        structure=structure,
+        values=values,
+        known=known,
+        prior_std={name: max(std, 1e-4) for name, std in prior_std.items()},
+        engine_speed_rev_s=speed,
+        shaft_torque_nm=torque,
+        is_of_fingerprint=fingerprint is not None,
+    )
+
+
+def _expect_line(vessel: "Vessel") -> None:
+    """Refuse lines that have no model here.
+
+    Raises
+    ------
+    ServiceError
+        If it is such a one.
+    """
+    kinds = {
+        "the ship sails free": vessel.is_underway,
+        "a motor drives the line": vessel.motor is not None,
+        "an electric machine is on the gearbox": vessel.shaft_machine is not None,
+        "the pitch is controllable": vessel.pitch is not None,
+        "the shaft turns astern": vessel.working_point.is_astern,
+    }
+    for kind, is_so in kinds.items():
+        if is_so:
+            raise ServiceError(
+                f"vessel {vessel.name}: expected an engine with a fixed propeller at the quay, whose service can be "
+                f"compared with a model, found that {kind}; make a test of it (shaftprint plan)."
+            )
+
+
+def _limits(vessel: "Vessel", speed_rev_s: float, torque_nm: float) -> dict[str, float]:
+    """Return the limits of the torque at the working point, over the brake torque there."""
+    brake = torque_nm / vessel.gearbox.shaft_over_brake
+    rpm = speed_rev_s * SECONDS_PER_MINUTE
+    highest = float(np.interp(rpm, *vessel.machine.full_load)) / brake
+    motoring = vessel.motoring
+    lowest = {} if motoring is None else {"m_min": -float(np.interp(rpm, *motoring)) / brake}
+    return {"m_max": highest, **lowest}
+
+
+def _of_fingerprint(fingerprint: "Fingerprint", point: Normalisation, usual: Mapping[str, float]) -> dict[str, float]:
+    """Return the values of a fingerprint at the working point of the vessel file.
+
+    Raises
+    ------
+    ServiceError
+        If it is of a structure with other numbers.
+    """
+    tested = fingerprint.conditions
+    torque = tested.shaft_torque.value / point.shaft_torque_nm
+    speed = tested.engine_speed.value / SECONDS_PER_MINUTE / point.engine_speed_rev_s
+    own = {quantity.name: quantity.value for quantity in fingerprint.parameters} | fingerprint.held
+    missing = [name for name in ("K_p", "K_i", "t_d", "tau_dn") if name not in own]
+    if missing:
+        raise ServiceError(
+            f"fingerprint of {tested.vessel}: expected one of a gauge-aware structure such as GAUGE-CLOSED, found "
+            f"{fingerprint.structure}, which has no {missing[0]}; leave --fingerprint out or name another."
+        )
+    # gains and inertia times go with the torque over the speed of the point at which they are normalised
+    factor = torque / speed
+    scaled = dict.fromkeys(("K_p", "K_i", "tau_dn", "tau_up"), factor) | {"g": factor}
+    values = {name: own[name] * scaled.get(name, 1.0) for name in FREE if name in own}
+    return {name: value for name, value in values.items() if name in usual and name not in ("c_set",)}

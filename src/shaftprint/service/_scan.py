@@ -1,0 +1,247 @@
+"""From logs to segments: which moves of the lever can be used, what they tell, and why others cannot."""
+
+from collections import Counter
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from shaftprint.arguments import refusing_none
+from shaftprint.arrays import FloatArray
+from shaftprint.errors import ServiceError
+from shaftprint.notebook._shown import Shown
+from shaftprint.notebook._summary import Summary, shortened
+from shaftprint.service._fit import FEWEST_SEGMENTS, sums_of
+from shaftprint.service._gather import Gathered, gather, lever_line
+from shaftprint.service._model import FREE, ServiceModel, service_model
+from shaftprint.service._score import Score, noise_of, scores, simulated
+from shaftprint.service._segment import LeverLine, Segment
+from shaftprint.service._segment_file import USED, write_segments
+from shaftprint.service._vetting import Found, lever_follows_load, shift_of_lever, way_on
+from shaftprint.units import rpm_from_rev_s
+
+if TYPE_CHECKING:
+    from shaftprint.fingerprint._fingerprint import Fingerprint
+    from shaftprint.vessel._vessel import Vessel
+
+TOLD = ("K_p", "K_i", "t_d", "t_sp", "tau_dn", "omega_n")
+"""Numbers of which the table says what each segment tells."""
+_TOO_LOUD = 3.0
+_PERCENT = 100.0
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
+class Scan(Shown):
+    """What logs of service would tell of a line."""
+
+    segments: tuple[Segment, ...]
+    """Every move of the lever; those with a reason are not used."""
+    line: LeverLine | None
+    """The speed that the lever asks for; None where too little stands still."""
+    seconds: dict[str, float]
+    """How long the ship was doing what [s]."""
+    left_out: tuple[str, ...]
+    """What could not be read, in sentences."""
+    found: tuple[Found, ...]
+    """What was asked of the whole log."""
+    refused: str
+    """Why nothing may be fitted to it; empty where it may."""
+    accuracy: dict[str, float]
+    """Standard deviation that the used segments would give each number [its unit]; empty where they are too few."""
+    values: dict[str, float]
+    """Value of each number with which that was reckoned."""
+    rows: tuple[dict[str, str], ...]
+    """What the table says of each segment."""
+    facts: dict[str, object]
+    """What a fit has to know beside the segments."""
+
+    @property
+    def used(self) -> tuple[Segment, ...]:
+        """The segments that are used."""
+        return tuple(one for one in self.segments if not one.reason)
+
+    @property
+    def headline(self) -> str:
+        """What the logger saw, and what it would tell, in one sentence."""
+        hours = sum(self.seconds.values()) / 3600.0
+        saw = f"Your logger saw {len(self.used)} useful moves of the lever in {hours:.3g} hours"
+        if self.refused:
+            return f"{saw}, but nothing may be fitted to them: {self.refused}"
+        if not self.accuracy:
+            return f"{saw}; {FEWEST_SEGMENTS} and more are needed: give more logs."
+        known = {
+            name: f"{_PERCENT * self.accuracy[name] / abs(self.values[name]):.2g} %"
+            for name in ("K_p", "delay", "tau_dn")
+        }
+        return (
+            f"{saw}; with them K_p would be known to {known['K_p']}, the delay to {known['delay']} and the inertia "
+            f"behind the gauge to {known['tau_dn']}."
+        )
+
+    def summary(self) -> Summary:
+        """Return what was seen, and why moves are not used."""
+        reasons = Counter(one.reason for one in self.segments if one.reason)
+        facts = {
+            "what": self.headline,
+            "doing": ", ".join(f"{name} {seconds / 60.0:.0f} min" for name, seconds in self.seconds.items()),
+            "not used": shortened([f"{count}: {reason}" for reason, count in reasons.most_common()]),
+            "could not be read": shortened(self.left_out),
+        }
+        return Summary(title="Scan of service", facts=facts)
+
+    def write(self, path: str | Path) -> None:
+        """Write the table of segments, and what their channels did beside it.
+
+        Raises
+        ------
+        ServiceError
+            If there is nothing to write, or a file cannot be written.
+        """
+        if self.line is None:
+            raise ServiceError(f"{path}: nothing is written: {self.refused}")
+        write_segments(Path(path), self.segments, self.line, self.rows, self.facts)
+
+
+@refusing_none(ServiceError)
+def scan(
+    logs: Sequence[str | Path],
+    vessel: "Vessel",
+    *,
+    fingerprint: "Fingerprint | None" = None,
+    progress: Callable[[float], None] | None = None,
+) -> Scan:
+    """Look through logs of ordinary service: moves of the lever, what they would tell, and what speaks against them.
+
+    Parameters
+    ----------
+    logs
+        Files of one logger, in order of time.
+    vessel
+        The installation.
+    fingerprint
+        One of an earlier test or of other days, against which the clock of the lever is held.
+    progress
+        Is told the share that is done, 0 to 1.
+
+    Raises
+    ------
+    ServiceError
+        If a log is too slow, or kept by a historian that compresses, or the line has no model here.
+    RecordingError
+        If a file cannot be read.
+    """
+    model = service_model(vessel, fingerprint)
+    gathered = gather(logs, vessel, progress=progress)
+    left_out = tuple(f"{one.log}, {one.seconds:.0f} s: {one.reason}" for one in gathered.left_out)
+    seconds = dict(gathered.seconds)
+    try:
+        line = lever_line(gathered.still)
+    except ServiceError as error:
+        return Scan(
+            segments=gathered.segments, line=None, seconds=seconds, left_out=left_out, found=(), refused=str(error),
+            accuracy={}, values={}, rows=(), facts={},
+        )  # fmt: skip
+    segments, found, each = _judged(gathered, line, model)
+    accuracy, values = _accuracy([score for score in each if score is not None], model)
+    load, load_std = _load(gathered)
+    return Scan(
+        segments=segments,
+        line=line,
+        seconds=seconds,
+        left_out=left_out,
+        found=found,
+        refused=" Also: ".join(one.refused for one in found if one.refused),
+        accuracy=accuracy,
+        values=values,
+        rows=tuple(_row(one, score, line, model) for one, score in zip(segments, each, strict=True)),
+        facts={
+            "load": load,
+            "load_std": load_std,
+            "vessel": vessel.name,
+            "seconds": seconds,
+            "logs": [str(Path(log).name) for log in logs],
+            "refused": " Also: ".join(one.refused for one in found if one.refused),
+        },
+    )
+
+
+def _judged(
+    gathered: Gathered, line: LeverLine, model: ServiceModel
+) -> tuple[tuple[Segment, ...], tuple[Found, ...], list[Score | None]]:
+    """Return segments with their reasons, what was found of the whole log, and what each segment tells."""
+    usable = [one for one in gathered.segments if not one.reason]
+    found = [lever_follows_load(gathered.still), way_on(usable)]
+    each: dict[int, Score] = {}
+    if usable:
+        records = [
+            one.record(
+                line,
+                speed_rev_s=model.engine_speed_rev_s,
+                torque_nm=model.shaft_torque_nm,
+                tau_dn=model.values["tau_dn"],
+            )
+            for one in usable
+        ]
+        runs = simulated(records, model, model.theta)
+        if model.is_of_fingerprint:
+            found.append(shift_of_lever(runs))
+        each = dict(zip(map(id, usable), scores(runs, noise_of(runs)), strict=True))
+        typical = float(np.median([score.level for score in each.values()]))
+        loud = {key for key, score in each.items() if score.level > _TOO_LOUD * typical}
+    segments = tuple(
+        replace(one, reason="speed and torque do there what no noise of this line does")
+        if model.is_of_fingerprint and id(one) in each and id(one) in loud
+        else one
+        for one in gathered.segments
+    )
+    kept = [each.get(id(one)) if not new.reason else None for one, new in zip(gathered.segments, segments, strict=True)]
+    return segments, tuple(found), kept
+
+
+def _accuracy(each: Sequence[Score], model: ServiceModel) -> tuple[dict[str, float], dict[str, float]]:
+    """Return standard deviations of numbers and of the sum of the delays, and their values."""
+    if len(each) < FEWEST_SEGMENTS:
+        return {}, {}
+    covariance = np.linalg.inv(sums_of(each, model, model.theta).information)
+    delays = np.array([float(name in ("t_d", "t_sp")) for name in FREE])
+    accuracy = {name: float(np.sqrt(covariance[k, k])) for k, name in enumerate(FREE)}
+    accuracy["delay"] = float(np.sqrt(delays @ covariance @ delays))
+    values = dict(zip(FREE, model.theta.tolist(), strict=True))
+    return accuracy, values | {"delay": values["t_d"] + values["t_sp"]}
+
+
+def _load(gathered: Gathered) -> tuple[float, float]:
+    """Return the mean load over that of the working point and its standard deviation, by still stretches."""
+    still = gathered.still
+    numbers, place = np.unique(still.stretch, return_inverse=True)
+    weight = np.bincount(place).astype(np.float64)
+    means: FloatArray = np.bincount(place, weights=still.load) / weight
+    mean = float(np.average(means, weights=weight))
+    left = weight * (means - mean)
+    return mean, float(np.sqrt(np.sum(left**2)) / weight.sum() * np.sqrt(numbers.size / max(numbers.size - 1, 1)))
+
+
+def _row(segment: Segment, score: Score | None, line: LeverLine, model: ServiceModel) -> dict[str, str]:
+    """Return what the table says of a segment."""
+    speeds = rpm_from_rev_s(line.speed_rev_s(segment.lever_v)) if segment.lever_v.size else np.zeros(1)
+    row = {
+        "log": Path(segment.log).name,
+        "move_s": f"{segment.move_s:.2f}",
+        "seconds": f"{segment.seconds:.1f}" if segment.speed_rev_s.size else "",
+        "swing_rpm": f"{np.ptp(speeds):.0f}",
+        "from_rpm": f"{speeds[0]:.0f}",
+        "to_rpm": f"{speeds[-1]:.0f}",
+        "state": segment.state,
+        USED: "no" if segment.reason else "yes",
+        "reason": segment.reason or ("" if score is None or not score.meets_limit else "meets a limit of the torque"),
+        "noise": "" if score is None else f"{score.level:.3g}",
+    }
+    for name in TOLD:
+        # what it would be known to by this segment alone, were all other numbers known
+        information = 0.0 if score is None else float(score.information[FREE.index(name), FREE.index(name)])
+        row[f"{name}_percent"] = (
+            f"{_PERCENT / np.sqrt(information) / abs(model.values[name]):.3g}" if information > 0.0 else ""
+        )
+    return row

@@ -1,0 +1,182 @@
+"""What segments tell of the parameters: slope ``g`` and curvature ``H`` of the likelihood, one pair a segment.
+
+Each segment is short, begins in steady running and has for itself what no model knows: its load, an offset and a drift
+of either output, and the limits where it meets them. These are projected out. The torque is compared without what the
+propeller takes at the speed of the same moment, ``M - l (1 + n)^2``: the disturbances of the line move speed and torque
+together, the more the faster it turns, and what is left has one colour at all speeds. Its size goes with the load,
+``(1 + n)^2``, and is a segment's own beyond that.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from shaftprint.arrays import FloatArray
+from shaftprint.errors import ServiceError
+from shaftprint.service._model import BESIDE, FREE, ServiceModel
+from shaftprint.time_domain._noise_model import NoiseModel, estimate_noise
+from shaftprint.time_domain._record import Record
+from shaftprint.time_domain._simulator import ExactDelays, Simulator, on_record
+from shaftprint.time_domain._whitening import Whitening
+
+MEMORY_S = 2.0
+"""Longest memory of the noise [s]."""
+# What a limit changes in a segment, over its noise, from which on it counts as met.
+_MET = 1e-9
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Simulated:
+    """A segment beside its simulation, as they are compared."""
+
+    record: Record
+    """The data."""
+    weight: FloatArray
+    """One over the square of the speed, by which noise is made alike, shape (samples,)."""
+    residuals: FloatArray
+    """Weighted data less model, shape (samples, outputs)."""
+    slopes: FloatArray
+    """Weighted derivatives of the model to the free parameters, shape (free, samples, outputs)."""
+    beside: FloatArray
+    """Weighted columns of what is the segment's own, shape (columns, samples, outputs)."""
+    meets_limit: bool
+    """Whether a limit of the torque acted in the model."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Score:
+    """What one segment tells."""
+
+    slope: FloatArray
+    """Slope ``g`` of the log likelihood at the parameters, shape (free,)."""
+    information: FloatArray
+    """Curvature ``H`` there, shape (free, free)."""
+    level: float
+    """Size of its noise over that of all segments."""
+    count: int
+    """Samples of both outputs less what is projected out."""
+    meets_limit: bool
+    """Whether a limit of the torque acted in the model."""
+
+
+def simulated(
+    records: Sequence[Record], model: ServiceModel, theta: FloatArray, simulator: Simulator | None = None
+) -> list[Simulated]:
+    """Return segments beside their simulation at some parameters.
+
+    Parameters
+    ----------
+    records
+        The segments.
+    model
+        The model.
+    theta
+        Its free parameters, shape (free,).
+    simulator
+        How it is simulated.
+
+    Raises
+    ------
+    ServiceError
+        If a simulation runs away.
+    """
+    runs = []
+    for record in records:
+        run = _simulated(record, model, theta, simulator or ExactDelays())
+        if run is None:
+            raise ServiceError(
+                f"{record.name}: the simulation of {model.structure.name} runs away at "
+                + ", ".join(f"{name} = {value:.4g}" for name, value in zip(FREE, theta, strict=True))
+                + "; begin from a fingerprint of this line (--fingerprint)."
+            )
+        runs.append(run)
+    return runs
+
+
+def _simulated(record: Record, model: ServiceModel, theta: FloatArray, simulator: Simulator) -> Simulated | None:
+    structure = model.structure
+    run = on_record(simulator, structure, model.vector(theta, record.load), record, (*FREE, *BESIDE))
+    if run is None:
+        return None
+    names = tuple(structure.outputs)
+    n, torque = names.index("n"), names.index("M_s")
+    measured = np.stack([record.outputs[name] for name in names], axis=1)
+    load, speed = record.load, run[0, :, n]
+    own = run[1:].copy()
+    own[:, :, torque] -= 2.0 * load * (1.0 + speed) * own[:, :, n]
+    residuals = measured - run[0]
+    residuals[:, torque] -= load * ((1.0 + measured[:, n]) ** 2 - (1.0 + speed) ** 2)
+    weight = 1.0 / (1.0 + _smooth(measured[:, n], record.rate_hz)) ** 2
+    position = np.linspace(-1.0, 1.0, record.samples)
+    free = len(FREE)
+    met = [column for column in own[free:] if np.abs(column).max() > _MET]
+    columns = [np.zeros_like(measured) for _ in range(4)]
+    for output in range(2):
+        columns[2 * output][:, output] = 1.0
+        columns[2 * output + 1][:, output] = position
+    return Simulated(
+        record=record,
+        weight=weight,
+        residuals=residuals * weight[:, None],
+        slopes=own[:free] * weight[:, None],
+        beside=np.stack([*columns, *met]) * weight[:, None],
+        meets_limit=len(met) > 1,
+    )
+
+
+def _smooth(values: FloatArray, rate_hz: float) -> FloatArray:
+    """Return means over half a second, shape (samples,)."""
+    half = max(round(0.25 * rate_hz), 1)
+    padded = np.pad(values, half, mode="edge")
+    sums = np.cumsum(np.concatenate([[0.0], padded]))
+    return np.asarray((sums[2 * half + 1 :] - sums[: -2 * half - 1]) / (2 * half + 1))
+
+
+def noise_of(runs: Sequence[Simulated]) -> Whitening:
+    """Return the filter that makes the noise of segments white, which have one colour and sizes of their own.
+
+    Raises
+    ------
+    IdentificationError
+        If an output has no noise at all.
+    """
+    kept, stretches, first = [], [], 0
+    for run in runs:
+        left = _left(run.residuals[None], run.beside)[0]
+        kept.append(left / np.sqrt(np.mean(left[:, 0] ** 2)))
+        stretches.append(slice(first, first + len(left)))
+        first += len(left)
+    rate_hz = runs[0].record.rate_hz
+    noise: NoiseModel = estimate_noise(np.concatenate(kept), stretches, max_order=round(MEMORY_S * rate_hz))
+    return Whitening(noise=noise)
+
+
+def _left(rows: FloatArray, columns: FloatArray) -> FloatArray:
+    """Return rows without what lies in columns, both of shape (..., samples, outputs)."""
+    flat, basis = rows.reshape(len(rows), -1), columns.reshape(len(columns), -1)
+    basis = basis / np.linalg.norm(basis, axis=1)[:, None]
+    orthogonal, triangle = np.linalg.qr(basis.T)
+    orthogonal = orthogonal[:, np.abs(np.diag(triangle)) > 1e-7]
+    return np.asarray(flat - (flat @ orthogonal) @ orthogonal.T).reshape(rows.shape)
+
+
+def scores(runs: Sequence[Simulated], whitening: Whitening) -> list[Score]:
+    """Return what each segment tells at the parameters of the runs."""
+    return [_score(run, whitening) for run in runs]
+
+
+def _score(run: Simulated, whitening: Whitening) -> Score:
+    rows = np.concatenate([run.residuals[None], run.slopes, run.beside])
+    white = whitening.whitened(rows, [slice(0, run.record.samples)])
+    free = len(FREE)
+    left = _left(white[: 1 + free], white[1 + free :]).reshape(1 + free, -1)
+    count = left.shape[1] - len(run.beside)
+    power = float(left[0] @ left[0]) / count
+    return Score(
+        slope=left[1:] @ left[0] / power,
+        information=left[1:] @ left[1:].T / power,
+        level=float(np.sqrt(power)),
+        count=count,
+        meets_limit=run.meets_limit,
+    )

@@ -1,0 +1,157 @@
+"""What speaks against a whole log, before anything is fitted to it.
+
+A fit of output and model takes the lever for an input that nothing on board moves. Where somebody trims it against the
+load, or its clock is off, the numbers are wrong and the misfit need not show it (Box and MacGregor, The analysis of
+closed-loop dynamic-stochastic systems, Technometrics 16, 1974). So each of these is asked for itself:
+
+- does the still lever follow the load of some seconds before?
+- by which shift of the lever does the log agree best with an earlier fingerprint?
+- does the torque go with the square of the speed across moves, as it does at the quay?
+
+Somebody who trims against the load only when he moves the lever anyway is seen by none of them.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from shaftprint.arrays import FloatArray
+from shaftprint.service._gather import MEAN_S, StillMeans
+from shaftprint.service._score import Simulated
+from shaftprint.service._segment import Segment
+
+LATEST_S = 0.02
+"""Shift of the lever's clock from which on a log is refused [s]."""
+# A lever follows the load from this many standard deviations on; a crew without that in mind stays below 2.3 an hour.
+_FOLLOWS_STD = 4.0
+# Scatter is taken over so many seconds together.
+_TOGETHER_S = 30.0
+# Shifts that are tried [s], in steps of a sample.
+_REACH_S = 0.5
+# A ship with way on takes a torque whose load rises with the speed across a move: by more than this share of it, beyond
+# so many standard deviations, in moves of so much of the speed.
+_WAY, _WAY_STD, _LEAST_MOVE = 0.1, 4.0, 0.08
+_BEFORE_SAMPLES, _AFTER_S, _UNTIL_S = 40, 4.0, 9.0
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Found:
+    """One thing that was asked of a log."""
+
+    what: str
+    """What was asked, in a few words."""
+    value: float
+    """What was found; not a number where the log does not tell."""
+    unit: str
+    """Its unit."""
+    refused: str = ""
+    """Why the log is refused; empty where it is not."""
+
+
+def lever_follows_load(still: StillMeans) -> Found:
+    """Return by how many standard deviations a still lever follows the load of the five seconds before.
+
+    Parameters
+    ----------
+    still
+        Means of lever and load where the lever stands still.
+    """
+    what = "still lever on the load before it"
+    same = still.stretch[2:] == still.stretch[:-2]
+    lever = (still.lever_v[2:] - still.lever_v[1:-1])[same]
+    load = (still.load[1:-1] - still.load[:-2])[same]
+    moves = np.abs(lever) > 0.0
+    if np.count_nonzero(moves) < 10 or not np.any(load):
+        return Found(what=what, value=float("nan"), unit="std")
+    product = lever * (load - load.mean())
+    length = max(round(_TOGETHER_S / MEAN_S), 1)
+    sums = np.add.reduceat(product, np.arange(0, product.size, length))
+    ratio = float(product.sum() / np.sqrt(np.sum(sums**2)))
+    refused = ""
+    if abs(ratio) > _FOLLOWS_STD:
+        refused = (
+            f"while it stands still, the lever follows the load of the seconds before ({abs(ratio):.0f} standard "
+            "deviations): somebody, or a load controller, trims it against the load, and what the governor does cannot "
+            "be told from what he does; log the demand that the control unit takes, or use hours without that."
+        )
+    return Found(what=what, value=ratio, unit="std", refused=refused)
+
+
+def shift_of_lever(runs: Sequence[Simulated]) -> Found:
+    """Return by how much the lever is late against speed and torque, beside an earlier fingerprint [ms].
+
+    Parameters
+    ----------
+    runs
+        Segments beside the simulation of that fingerprint.
+    """
+    rate_hz = runs[0].record.rate_hz
+    reach = round(_REACH_S * rate_hz)
+    shifts = np.arange(-reach, reach + 1)
+    cost = np.zeros(shifts.size)
+    for run in runs:
+        measured = run.record.outputs["n"]
+        model = measured - run.residuals[:, 0] / run.weight
+        kept = slice(reach, measured.size - reach)
+        size = float(np.mean((run.residuals[:, 0] - run.residuals[:, 0].mean()) ** 2))
+        for place, shift in enumerate(shifts):
+            left = (measured - np.roll(model, shift))[kept] * run.weight[kept]
+            cost[place] += float(np.sum((left - left.mean()) ** 2)) / size
+    best = int(np.clip(np.argmin(cost), 1, cost.size - 2))
+    below, at, above = cost[best - 1 : best + 2]
+    bend = below - 2.0 * at + above
+    shift_s = -float(shifts[best] + (0.5 * (below - above) / bend if bend > 0.0 else 0.0)) / rate_hz
+    refused = ""
+    if abs(shift_s) > LATEST_S:
+        side = "early" if shift_s < 0.0 else "late"
+        refused = (
+            f"against the fingerprint the lever is {1e3 * abs(shift_s):.0f} ms {side}, and {1e3 * LATEST_S:.0f} ms are "
+            "too many for delays and gains: lever, speed and torque do not share one clock (or the latency of the set "
+            "point was changed); log all three with one logger, or bring its files onto one clock (shaftprint merge)."
+        )
+    return Found(what="clock of the lever beside the fingerprint", value=1e3 * shift_s, unit="ms", refused=refused)
+
+
+def way_on(segments: Sequence[Segment]) -> Found:
+    """Return how much the load rises with the speed across moves: nothing at the quay, more with way on.
+
+    Parameters
+    ----------
+    segments
+        Usable segments.
+    """
+    what = "load that rises with the speed across a move"
+    rows = []
+    for segment in segments:
+        rate = segment.rate_hz / segment.every
+        after = round((segment.move_end_s - segment.start_s + _AFTER_S) * rate)
+        until = min(round((segment.move_end_s - segment.start_s + _UNTIL_S) * rate), segment.speed_rev_s.size)
+        before = slice(0, round((segment.move_s - segment.start_s) * rate))
+        if until - after < _BEFORE_SAMPLES:
+            continue
+        speeds = [float(np.mean(segment.speed_rev_s[part])) for part in (before, slice(after, until))]
+        loads = [
+            float(np.mean(segment.torque_nm[part]) / np.mean(segment.speed_rev_s[part] ** 2))
+            for part in (before, slice(after, until))
+        ]
+        if min(*speeds, *loads) > 0.0 and abs(np.log(speeds[1] / speeds[0])) > _LEAST_MOVE:
+            rows.append((float(np.log(speeds[1] / speeds[0])), float(np.log(loads[1] / loads[0]))))
+    if len(rows) < 6:
+        return Found(what=what, value=float("nan"), unit="-")
+    moves, loads_moved = np.array(rows).T
+    slope, std = _through_zero(moves, loads_moved)
+    refused = ""
+    if abs(slope) > _WAY and abs(slope) > _WAY_STD * std:
+        refused = (
+            f"torque over the square of the speed changes with each move of the lever (exponent {slope:+.2f} +/- "
+            f"{std:.2f} beyond 2): the ship has way on, or the propeller another pitch, and the model is that of the "
+            "quay; use hours at the quay, or make a test underway."
+        )
+    return Found(what=what, value=slope, unit="-", refused=refused)
+
+
+def _through_zero(x: FloatArray, y: FloatArray) -> tuple[float, float]:
+    """Return the slope of a line through zero and its standard deviation, whatever the scatter depends on."""
+    slope = float(x @ y / (x @ x))
+    return slope, float(np.sqrt(np.sum((x * (y - slope * x)) ** 2)) / (x @ x))

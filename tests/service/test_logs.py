@@ -1,0 +1,104 @@
+"""Logs in a row: what follows on each other, what is refused, and what the ship was doing."""
+
+import numpy as np
+import pytest
+
+from shaftprint.errors import ServiceError
+from shaftprint.recording import Channel, write_recording
+from shaftprint.service._log import blocks
+from shaftprint.service._scan import scan
+from shaftprint.service._states import STATES, state_of_seconds
+from shaftprint.vessel import load_vessel
+
+
+@pytest.fixture(scope="module")
+def vessel():
+    return load_vessel("stan-tug-1205-service")
+
+
+def log(path, *, seconds, rate_hz, start_s=0.0, held=1):
+    """Write a log of a lever that stands still, each value of speed and torque kept for so many samples."""
+    rng = np.random.default_rng(7)
+    count = round(seconds * rate_hz)
+    noise = np.repeat(rng.standard_normal((2, count // held + 1)), held, axis=1)[:, :count]
+    channels = {
+        "LeverSpeed": ("rpm", np.full(count, 1183.75)),
+        "EngineSpeed": ("rpm", 1183.8 + 5.0 * noise[0]),
+        "M_s": ("V", 3.45 + 0.05 * noise[1]),
+    }
+    write_recording(
+        path,
+        [
+            Channel(
+                name=name,
+                unit=unit,
+                rate_hz=rate_hz,
+                start_s=start_s,
+                count=count,
+                source=lambda start, stop, values=values: values[start:stop],
+            )
+            for name, (unit, values) in channels.items()
+        ],
+    )
+    return path
+
+
+def test_files_that_follow_on_each_other_are_one(tmp_path, vessel):
+    files = [log(tmp_path / f"{k}.nc", seconds=100.0, rate_hz=100.0, start_s=100.0 * k) for k in (0, 1, 3)]
+    first, second, third = blocks(files, vessel, keep_s=30.0, told=pytest.fail)
+    assert (first.goes_on, second.goes_on, third.goes_on) == (True, False, False)
+    assert second.lever_v.size == 13_000
+    assert second.new == third.new == 10_000
+    assert second.start_s == pytest.approx(70.0, abs=0.02)
+    assert np.array_equal(second.speed_rev_s[:3000], first.speed_rev_s[-3000:])
+
+
+def test_one_value_a_second_is_refused_with_what_to_change(tmp_path, vessel):
+    with pytest.raises(ServiceError, match=r"20 times a second .*, found 1 values a second; .* historian to"):
+        scan([log(tmp_path / "slow.nc", seconds=900.0, rate_hz=1.0)], vessel)
+
+
+def test_a_historian_that_keeps_its_last_value_is_refused(tmp_path, vessel):
+    with pytest.raises(ServiceError, match=r"the last kept for 0\.2 s at a time .* deadband and compression"):
+        scan([log(tmp_path / "held.nc", seconds=300.0, rate_hz=100.0, held=20)], vessel)
+
+
+def test_a_lever_that_never_moves_gives_no_line_but_an_answer(tmp_path, vessel):
+    found = scan([log(tmp_path / "still.nc", seconds=300.0, rate_hz=100.0)], vessel)
+    assert found.line is None
+    assert "at several speeds ahead" in found.headline
+    assert found.seconds == {"ahead": 300.0}
+
+
+def test_no_logs_are_refused(vessel):
+    with pytest.raises(ServiceError, match="expected at least one log, found none"):
+        scan([], vessel)
+
+
+@pytest.mark.parametrize(
+    ("speed_rpm", "torque_nm", "state"),
+    [
+        (0.0, 0.0, "standing"),
+        (600.0, 3.0, "clutch out"),
+        (600.0, 443.0, "idle"),
+        (1183.8, 1725.0, "ahead"),
+        (1183.8, -1100.0, "astern"),
+        (1183.8, np.nan, "not told"),
+    ],
+)
+def test_states_are_told_by_speed_and_torque(vessel, speed_rpm, torque_nm, state):
+    (found,) = state_of_seconds(np.array([speed_rpm / 60.0]), np.array([torque_nm]), vessel)
+    assert STATES[found] == state
+
+
+def test_lines_without_a_model_are_refused(vessel):
+    hull = load_vessel("stan-tug-1205-underway")
+    with pytest.raises(ServiceError, match="found that the ship sails free"):
+        scan(["log.nc"], hull)
+
+
+def test_shipped_tug_in_service_is_the_same_tug(vessel):
+    other = load_vessel("stan-tug-1205")
+    same = {"name": other.name, "sensors": other.sensors, "logger": other.logger}
+    assert vessel.model_copy(update=same) == other
+    assert vessel.sensors.set_point.volts(1183.8) == pytest.approx(-5.0, abs=1e-6)

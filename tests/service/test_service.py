@@ -1,0 +1,136 @@
+"""A simulated tug at work: what its logs tell is its truth, and what is wrong with them is found."""
+
+from dataclasses import replace
+from datetime import UTC, datetime
+
+import numpy as np
+import pytest
+
+from shaftprint.errors import ServiceError
+from shaftprint.fingerprint import read_fingerprint, write_fingerprint
+from shaftprint.service import fit_service, scan
+from shaftprint.service._fit import along, clustered, sums_of
+from shaftprint.service._gather import gather, lever_line
+from shaftprint.service._model import FREE, service_model
+from shaftprint.service._score import Score, simulated
+from shaftprint.service._segment_file import read_segments
+from shaftprint.service._vetting import shift_of_lever
+from shaftprint.tug import Habits, Tug, lever_course, sail_service
+from shaftprint.vessel import load_vessel
+
+NOW = datetime(2026, 11, 28, 12, tzinfo=UTC)
+
+
+@pytest.fixture(scope="module")
+def vessel():
+    return load_vessel("stan-tug-1205-service")
+
+
+def test_a_course_begins_and_ends_within_its_hours(vessel):
+    course = lever_course(Habits(), Tug(), vessel, hours=2.0, rng=np.random.default_rng(1))
+    rpm = -250.97 * (np.array(course.corner_v) - 0.04947603) - 83.467
+    assert rpm.min() >= 599.9
+    assert rpm.max() <= 1650.1
+    assert course.corner_s[-1] < 7200.0
+    assert 60 < len(course.corner_s) / 2 < 240
+    assert all(later > earlier for earlier, later in zip(course.corner_s, course.corner_s[1:], strict=False))
+
+
+def scores_of(size, rng, scatter):
+    """Return segments that each tell two numbers, their slopes so many times as scattered as stated."""
+    information = np.zeros((len(FREE), len(FREE)))
+    information[0, 0], information[1, 1] = 4.0, 9.0
+    information[range(2, len(FREE)), range(2, len(FREE))] = 1.0
+    return [
+        Score(
+            slope=scatter * np.sqrt(np.diag(information)) * rng.standard_normal(len(FREE)),
+            information=information,
+            level=1.0,
+            count=1000,
+            meets_limit=False,
+        )
+        for _ in range(size)
+    ]
+
+
+def test_intervals_are_as_wide_as_segments_scatter_and_no_narrower_than_the_noise(vessel):
+    model, rng = service_model(vessel), np.random.default_rng(3)
+    for scatter, expected in ((3.0, 3.0), (0.3, 1.0)):
+        each = scores_of(800, rng, scatter)
+        sums = sums_of(each, model, model.theta)
+        of_noise = np.linalg.inv(sums.information)
+        wider = np.sqrt(np.diag(clustered(each, sums, of_noise)) / np.diag(of_noise))
+        # K_p and K_i have no prior
+        assert wider[:2] == pytest.approx(expected, rel=0.1)
+
+
+def test_size_along_a_direction_has_the_scatter_of_the_segments():
+    rng = np.random.default_rng(4)
+    direction = np.eye(len(FREE))[0]
+    found = [along(scores_of(100, rng, 2.0), direction) for _ in range(200)]
+    sizes, std = np.array(found).T
+    assert np.std(sizes) == pytest.approx(2.0 / np.sqrt(4.0 * 100), rel=0.15)
+    assert np.mean(std) == pytest.approx(np.std(sizes), rel=0.15)
+
+
+@pytest.fixture(scope="module")
+def worked(vessel, tmp_path_factory):
+    """Return the logs of half an hour of a busy crew, and the truth."""
+    folder = tmp_path_factory.mktemp("service")
+    habits = Habits(shortest_hold_s=12.0, longest_hold_s=60.0, idles_per_hour=4.0, idle_s=(40.0, 60.0), declutched=1.0)
+    return sail_service(vessel, folder, hours=0.5, seed=5, habits=habits, ending=".nc")
+
+
+@pytest.mark.slow
+def test_service_tells_the_truth_without_a_test(worked, vessel, tmp_path):
+    files, truth = worked
+    found = scan(files, vessel)
+    assert not found.refused
+    assert found.seconds["clutch out"] > 20.0
+    assert len(found.used) > 15
+    found.write(tmp_path / "segments.csv")
+    day = fit_service(tmp_path / "segments.csv", vessel, now=NOW)
+    for quantity in day.fingerprint.parameters:
+        expected = truth.normalised.get(quantity.name, {"c_set": 1.0, "t_gauge": 0.0}.get(quantity.name))
+        assert abs(quantity.value - expected) < 4.0 * quantity.std, quantity.name
+    inertia = day.fingerprint.quantity("tau_dn")
+    assert inertia.std < 0.02 * inertia.value
+    assert day.fingerprint.conditions.campaign == "ordinary service"
+    write_fingerprint(day.fingerprint, tmp_path / "fingerprint.json")
+    assert read_fingerprint(tmp_path / "fingerprint.json") == day.fingerprint
+    # a line for each segment, slope and upper half of the curvature
+    lines = day.scores_text().splitlines()
+    assert len(lines) == 1 + len(day.segments)
+    assert lines[0].count(",") == 2 + 11 + 66
+
+
+@pytest.mark.slow
+def test_segments_are_taken_out_by_hand(worked, vessel, tmp_path):
+    files, _ = worked
+    scan(files, vessel).write(tmp_path / "segments.csv")
+    text = (tmp_path / "segments.csv").read_text()
+    (tmp_path / "segments.csv").write_text(text.replace(",yes,", ",no,", 1))
+    segments, _, _ = read_segments(tmp_path / "segments.csv")
+    assert [one.reason for one in segments].count("taken out by hand") == 1
+    (tmp_path / "segments.csv").write_text(text.replace(",yes,", ",maybe,", 1))
+    with pytest.raises(ServiceError, match='expected "yes" or "no" in the column used, found "maybe"'):
+        read_segments(tmp_path / "segments.csv")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("late_s", [0.0, 0.1])
+def test_clock_of_the_lever_is_held_against_a_fingerprint(worked, vessel, late_s):
+    files, truth = worked
+    gathered = gather(files, vessel)
+    model = service_model(vessel)
+    model = replace(model, values={**model.values, **{k: v for k, v in truth.normalised.items() if k in FREE}})
+    line = lever_line(gathered.still)
+    point = {"speed_rev_s": model.engine_speed_rev_s, "torque_nm": model.shaft_torque_nm, "tau_dn": 0.32}
+    late = [
+        replace(one, lever_v=np.roll(one.lever_v, round(late_s * one.rate_hz)))
+        for one in gathered.segments
+        if not one.reason
+    ]
+    found = shift_of_lever(simulated([one.record(line, **point) for one in late], model, model.theta))
+    assert found.value == pytest.approx(1e3 * late_s, abs=12.0)
+    assert bool(found.refused) == (late_s > 0.02)

@@ -1,0 +1,77 @@
+"""What is asked of a whole log, on levers and loads that were made up."""
+
+import numpy as np
+import pytest
+
+from shaftprint.service._gather import StillMeans, lever_line
+from shaftprint.service._segment import Segment
+from shaftprint.service._vetting import lever_follows_load, way_on
+
+
+def still(gain, *, count=600, seed=3):
+    """Return a lever that is trimmed by a gain against the load of five seconds before, ten stretches."""
+    rng = np.random.default_rng(seed)
+    load = 1.0 + 0.014 * np.cumsum(rng.standard_normal(count)) / 5.0
+    lever = -5.0 + 1e-3 * rng.standard_normal(count)
+    lever[1:] += gain * 4.7 * 0.5 * (load[:-1] - 1.0)
+    stretch = np.repeat(np.arange(10.0), count // 10)
+    return StillMeans(lever_v=lever, speed_rev_s=-4.0 * lever, load=load, stretch=stretch)
+
+
+@pytest.mark.parametrize("gain", [1.0, 0.3])
+def test_somebody_who_trims_against_the_load_is_seen(gain):
+    found = lever_follows_load(still(gain))
+    assert found.value > 8.0
+    assert "trims it against the load" in found.refused
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_a_lever_that_is_left_alone_does_not_follow(seed):
+    assert not lever_follows_load(still(0.0, seed=seed)).refused
+
+
+def test_a_lever_without_any_noise_tells_nothing():
+    alone = still(0.0)
+    quiet = StillMeans(
+        lever_v=np.full(alone.load.size, -5.0), speed_rev_s=alone.speed_rev_s, load=alone.load, stretch=alone.stretch
+    )
+    found = lever_follows_load(quiet)
+    assert np.isnan(found.value)
+    assert not found.refused
+
+
+def segment(before, after, exponent, rng):
+    """Return a move between two speeds [rev/s] of a propeller whose torque goes with a power of the speed."""
+    time = np.arange(540) / 20.0
+    speed = np.where(time < 2.0, before, after) * (1.0 + 0.005 * rng.standard_normal(time.size))
+    return Segment(
+        log="made up",
+        start_s=0.0,
+        move_s=2.0,
+        move_end_s=2.3,
+        rate_hz=100.0,
+        every=5,
+        lever_v=np.zeros(1),
+        speed_rev_s=speed,
+        torque_nm=1725.0 * (speed / 20.0) ** exponent * (1.0 + 0.03 * rng.standard_normal(time.size)),
+        state="ahead",
+    )
+
+
+@pytest.mark.parametrize(("exponent", "is_refused"), [(2.0, False), (2.42, True)])
+def test_way_on_shows_in_the_torque_across_moves(exponent, is_refused):
+    rng = np.random.default_rng(5)
+    found = way_on([segment(*rng.uniform(12.0, 26.0, 2), exponent, rng) for _ in range(40)])
+    assert found.value == pytest.approx(exponent - 2.0, abs=0.05)
+    assert bool(found.refused) == is_refused
+
+
+def test_line_of_the_lever_is_found_beside_a_stretch_that_is_off():
+    rng = np.random.default_rng(2)
+    stretch = np.repeat(np.arange(20.0), 6)
+    lever = np.repeat(rng.uniform(-7.0, -3.0, 20), 6)
+    speed = -1.39 - 4.183 * lever + 0.01 * rng.standard_normal(lever.size)
+    speed[stretch == 4.0] += 3.0
+    line = lever_line(StillMeans(lever_v=lever, speed_rev_s=speed, load=np.ones(lever.size), stretch=stretch))
+    assert line.slope_rev_s_per_v == pytest.approx(-4.183, abs=0.01)
+    assert line.stretches == 19
