@@ -1,16 +1,21 @@
 """Whether every record of a store is as it was written."""
 
+from __future__ import annotations
+
 import json
 from collections.abc import Callable, Collection, Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
 from shaftprint.arguments import refusing_none
 from shaftprint.errors import FingerprintError, StoreError
+from shaftprint.late import late
 from shaftprint.store._document import SHOWN_HASH, document_sha256, inflated
-from shaftprint.store._late_rooms import fingerprint_room
 from shaftprint.store._nouns import Fault, StoredFingerprint, StoredNumber
 from shaftprint.store._record import numbers_of
 from shaftprint.store._store import Store, part_with_database
+
+with late():
+    from shaftprint.fingerprint._json_file import parse_fingerprint
 
 if TYPE_CHECKING:
     from shaftprint.store.database._reader import Reader
@@ -53,7 +58,7 @@ def _documents(store: Store, report: Callable[[int], None]) -> Iterator[Fault]:
 
 
 def document_faults(
-    reader: "Reader", found: Mapping[int, StoredFingerprint], report: Callable[[int], None]
+    reader: Reader, found: Mapping[int, StoredFingerprint], report: Callable[[int], None]
 ) -> Iterator[Fault]:
     """Give which of some fingerprints, by their number in the database, are not as they were written."""
     keys = list(found)
@@ -65,7 +70,7 @@ def document_faults(
             yield Fault(record=_name(found[key]), found=fault)
 
 
-def line_faults(reader: "Reader", lines: Collection[int], found: Mapping[int, StoredFingerprint]) -> tuple[Fault, ...]:
+def line_faults(reader: Reader, lines: Collection[int], found: Mapping[int, StoredFingerprint]) -> tuple[Fault, ...]:
     """Return what of some lines, and of their fingerprints, is not as it was written."""
     rows = part_with_database().line_faults(reader.connection, lines)
     return (*rows, *document_faults(reader, found, _nobody))
@@ -84,7 +89,7 @@ def _fault(one: StoredFingerprint, kept: Any, numbers: list[StoredNumber] | None
     if document_sha256(content) != one.sha256:
         return "its document has another SHA-256 than it had"
     try:
-        expected = numbers_of(fingerprint_room().parse_fingerprint(content, named="document"), named="document")
+        expected = numbers_of(parse_fingerprint(content, named="document"), named="document")
     except (FingerprintError, StoreError) as error:
         return f"its document is no fingerprint: {error}"
     if numbers is None:

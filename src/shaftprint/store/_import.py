@@ -1,5 +1,7 @@
 """The records of an export are put into a store, all of them or none; what is there already is not put in twice."""
 
+from __future__ import annotations
+
 import hashlib
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -10,16 +12,19 @@ from typing import TYPE_CHECKING, Any
 from shaftprint.arguments import refusing_none
 from shaftprint.errors import FingerprintError, StoreError
 from shaftprint.files import reason
+from shaftprint.late import late
 from shaftprint.store._fields import moment_of, short_text
 from shaftprint.store._job import Job
 from shaftprint.store._job_lines import job_of_content
-from shaftprint.store._late_rooms import vessel_room
 from shaftprint.store._lines import HEADER, LONGEST_LINE, record_of_line
 from shaftprint.store._nouns import KINDS, Event, Line, Ship
 from shaftprint.store._record import Record, record_of
 from shaftprint.store._stated import Stated, possible_time
 from shaftprint.store._store import Store, part_with_database
 from shaftprint.store._text import LONGEST_TEXT
+
+with late():
+    from shaftprint.vessel._ship import is_imo_number
 
 if TYPE_CHECKING:
     from shaftprint.store.database._ledger import Ledger
@@ -68,7 +73,7 @@ def import_store(store: Store, path: str | Path, *, now: datetime | None = None)
         raise StoreError(f"{file}: expected an export of a store, but it cannot be read: {reason(refusal)}.") from None
 
 
-def _put(writer: "Writer", ledger: "Ledger", file: Path, now: datetime | None) -> Imported:
+def _put(writer: Writer, ledger: Ledger, file: Path, now: datetime | None) -> Imported:
     put_jobs = part_with_database().put_jobs
     waiting: list[tuple[Record, Ship, datetime]] = []
     asked: list[Job] = []
@@ -146,13 +151,13 @@ def _records(file: Path) -> Iterator[tuple[str, dict[str, Any]]]:
 
 def _ship(content: Mapping[str, Any], class_name: object = None) -> Ship:
     number = content["imo_number"]
-    if number is not None and (type(number) is not int or not vessel_room().is_imo_number(number)):
+    if number is not None and (type(number) is not int or not is_imo_number(number)):
         raise StoreError(f"expected an IMO number, found {str(number)[:40]!r}")
     of_class = None if class_name is None else short_text(class_name, "class of ships")
     return Ship(name=short_text(content["name"], "name of a ship"), imo_number=number, class_name=of_class)
 
 
-def _put_event(writer: "Writer", record: Mapping[str, Any], named: str, now: datetime | None) -> bool:
+def _put_event(writer: Writer, record: Mapping[str, Any], named: str, now: datetime | None) -> bool:
     ship = _ship(record["ship"])
     line_id = writer.fleet.line_id(writer.fleet.ship_id(ship, named=named), short_text(record["line"], "shaft line"))
     if record["what"] not in KINDS:

@@ -1,5 +1,7 @@
 """The tests of one line as ``drift`` takes them: fingerprints with their times, and what was done between them."""
 
+from __future__ import annotations
+
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from datetime import datetime
@@ -7,16 +9,20 @@ from typing import TYPE_CHECKING
 
 from shaftprint.arguments import refusing_none
 from shaftprint.errors import StoreError
+from shaftprint.late import late
 from shaftprint.store._document import SHOWN_HASH
 from shaftprint.store._find import lines_called, name_of, ship_called
 from shaftprint.store._history import document
-from shaftprint.store._late_rooms import drift_room, fingerprint_room
 from shaftprint.store._nouns import Event as StoredEvent
 from shaftprint.store._nouns import Line, Ship, StoredFingerprint
 from shaftprint.store._store import Store
 
-if TYPE_CHECKING:
+with late():
     from shaftprint.drift._dated import Event
+    from shaftprint.drift._history import history_of
+    from shaftprint.fingerprint._json_file import parse_fingerprint
+
+if TYPE_CHECKING:
     from shaftprint.fingerprint._fingerprint import Fingerprint
 
 
@@ -26,10 +32,10 @@ class LineHistory:
 
     line: Line
     """The line."""
-    fingerprints: "dict[str, Fingerprint]" = field(repr=False)
+    fingerprints: dict[str, Fingerprint] = field(repr=False)
     """Its fingerprints by the time of their test; of one recording also those of other versions of the program, which
     show whether these find the same."""
-    events: "tuple[Event, ...]"
+    events: tuple[Event, ...]
     """What was done to it."""
 
 
@@ -55,9 +61,8 @@ def line_history(store: Store, ship: str | Ship, *, line: str | None = None, new
         If there is no such ship or line, it has no test, or it is not said which of several lines.
     """
     tested, kept, stated = _records(store, ship, line)
-    event_of = drift_room().Event
     events = tuple(
-        event_of(kind=event.kind, at=event.at, numbers=event.numbers, note=event.note)
+        Event(kind=event.kind, at=event.at, numbers=event.numbers, note=event.note)
         for event in stated
         if event.line.position == tested.position and event.withdrawn is None
     )
@@ -79,7 +84,7 @@ def line_history(store: Store, ship: str | Ship, *, line: str | None = None, new
 
 def _records(
     store: Store, ship: str | Ship, line: str | None
-) -> "tuple[Line, list[StoredFingerprint], list[StoredEvent]]":
+) -> tuple[Line, list[StoredFingerprint], list[StoredEvent]]:
     """Return a line, what is kept of its fingerprints in the order of time, and what was done to its ship."""
     with store.database.reading() as connection:
         reader = store.database.reader(connection)
@@ -129,12 +134,12 @@ def _tested_at(of_test: Mapping[str, StoredFingerprint]) -> datetime:
     return next(iter(of_test.values())).trial.tested_at
 
 
-def _read(store: Store, kept: StoredFingerprint, name: str) -> "Fingerprint":
-    fingerprint: Fingerprint = fingerprint_room().parse_fingerprint(document(store, kept.sha256), named=name)
+def _read(store: Store, kept: StoredFingerprint, name: str) -> Fingerprint:
+    fingerprint = parse_fingerprint(document(store, kept.sha256), named=name)
     conditions = fingerprint.conditions.model_copy(update={"tested_at": kept.trial.tested_at})
     return fingerprint.model_copy(update={"conditions": conditions})
 
 
-def _judged(fingerprints: "dict[str, Fingerprint]", events: "tuple[Event, ...]", begin: datetime) -> int:
+def _judged(fingerprints: dict[str, Fingerprint], events: tuple[Event, ...], begin: datetime) -> int:
     """Return how many tests since a time can be judged."""
-    return sum(test.at >= begin for test in drift_room().history_of(fingerprints, events).tests)
+    return sum(test.at >= begin for test in history_of(fingerprints, events).tests)

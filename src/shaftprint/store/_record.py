@@ -1,5 +1,7 @@
 """What is kept of a fingerprint beside its document: where it belongs, and its numbers to be found quickly."""
 
+from __future__ import annotations
+
 import hashlib
 import math
 from collections.abc import Mapping, Sequence
@@ -8,11 +10,15 @@ from datetime import UTC, datetime, tzinfo
 from typing import TYPE_CHECKING, Any
 
 from shaftprint.errors import StoreError
+from shaftprint.late import late
 from shaftprint.store._document import document_sha256, expect_length
-from shaftprint.store._late_rooms import fingerprint_room
 from shaftprint.store._nouns import StoredNumber, Trial
 from shaftprint.store._stated import Stated, possible_time, ship_of, time_of_test
 from shaftprint.store._text import LONGEST_TEXT, expect_short
+
+with late():
+    from shaftprint.fingerprint import _conditions
+    from shaftprint.fingerprint._json_file import parse_fingerprint
 
 if TYPE_CHECKING:
     from shaftprint.fingerprint._conditions import ShipIdentity
@@ -27,7 +33,7 @@ _LATEST = datetime(9000, 1, 1, tzinfo=UTC)
 class Record:
     """A fingerprint as it is put into the store."""
 
-    ship: "ShipIdentity"
+    ship: ShipIdentity
     """Ship and line."""
     trial: Trial
     """The test."""
@@ -77,8 +83,7 @@ def record_of(
         If the document is no fingerprint.
     """
     expect_length(document, named=named)
-    room = fingerprint_room()
-    fingerprint: Fingerprint = room.parse_fingerprint(document, named=named)
+    fingerprint = parse_fingerprint(document, named=named)
     conditions = fingerprint.conditions
     tested_at = time_of_test(conditions, stated.tested_at, zone, named=named, now=now)
     needs_time = conditions.tested_at is None or conditions.tested_at.tzinfo is None
@@ -92,7 +97,7 @@ def record_of(
             tested_at=tested_at,
             place=conditions.place or None,
             recording_sha256=_recording(fingerprint.sources),
-            **{name: getattr(conditions, name) for name in room.WATER},
+            **{name: getattr(conditions, name) for name in _conditions.WATER},
         ),
         document=document,
         sha256=document_sha256(document),
@@ -107,7 +112,7 @@ def record_of(
     )
 
 
-def _recording(sources: "Sequence[SourceFile]") -> str | None:
+def _recording(sources: Sequence[SourceFile]) -> str | None:
     """Return the SHA-256 that stands for the recordings of a test."""
     hashes = sorted(one.sha256.lower() for one in sources if one.role == "recording")
     if len(hashes) == 1 and len(hashes[0]) == hashlib.sha256().digest_size * 2 and hashes[0].isalnum():
@@ -115,12 +120,12 @@ def _recording(sources: "Sequence[SourceFile]") -> str | None:
     return hashlib.sha256("\n".join(hashes).encode(errors="replace")).hexdigest() if hashes else None
 
 
-def _hash(source: "SourceFile", named: str) -> str:
+def _hash(source: SourceFile, named: str) -> str:
     expect_short(source.sha256, "SHA-256", named=named)
     return source.sha256
 
 
-def numbers_of(fingerprint: "Fingerprint", *, named: str) -> tuple[StoredNumber, ...]:
+def numbers_of(fingerprint: Fingerprint, *, named: str) -> tuple[StoredNumber, ...]:
     """Return the numbers of a fingerprint as they are kept, each name of a kind once.
 
     Raises
@@ -139,7 +144,7 @@ def numbers_of(fingerprint: "Fingerprint", *, named: str) -> tuple[StoredNumber,
     return tuple(found.values())
 
 
-def _number(kind: str, quantity: "Estimate", *, trusted: bool, named: str) -> StoredNumber:
+def _number(kind: str, quantity: Estimate, *, trusted: bool, named: str) -> StoredNumber:
     expect_short(quantity.name, "name of a number", named=named)
     expect_short(quantity.unit, "unit", named=named)
     low, high = quantity.limits_95

@@ -1,11 +1,17 @@
 """Lines of a class as ``drift`` holds them against each other."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from shaftprint.choices import NEWEST_TESTS
-from shaftprint.store._late_rooms import drift_room
+from shaftprint.late import late
 from shaftprint.store._line_history import LineHistory
+
+with late():
+    from shaftprint.drift._class_numbers import sister_of
+    from shaftprint.drift._history import history_of
 
 if TYPE_CHECKING:
     from shaftprint.drift._class_numbers import Sister
@@ -13,7 +19,7 @@ if TYPE_CHECKING:
 
 def sisters_of(
     lines: Sequence[LineHistory], *, newest: int | None = None
-) -> "tuple[tuple[Sister, ...], tuple[str, ...]]":
+) -> tuple[tuple[Sister, ...], tuple[str, ...]]:
     """Return the lines that have a test that can be judged as sisters, and the names of those that have none.
 
     Parameters
@@ -23,14 +29,13 @@ def sisters_of(
     newest
         Tests that stand for a ship, ``choices.NEWEST_TESTS`` by default.
     """
-    drift = drift_room()
     several = len({one.line.position for one in lines}) > 1
     sisters, left_out = [], []
     for one in lines:
         name = f"{one.line.ship.name}, {one.line.position}" if several else one.line.ship.name
-        history = drift.history_of(one.fingerprints, one.events)
+        history = history_of(one.fingerprints, one.events)
         if history.tests:
-            sisters.append(drift.sister_of(name, history, newest=newest or NEWEST_TESTS))
+            sisters.append(sister_of(name, history, newest=newest or NEWEST_TESTS))
         else:
             left_out.append(name)
     return tuple(sisters), tuple(left_out)

@@ -1,16 +1,22 @@
 """What a user states of a fingerprint whose file does not say it: which ship and line, and when it was tested."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from datetime import UTC, datetime, tzinfo
 from typing import TYPE_CHECKING, Any
 
 from shaftprint.errors import StoreError
-from shaftprint.store._late_rooms import fingerprint_room, vessel_room
+from shaftprint.late import late
 from shaftprint.store._text import expect_short
 from shaftprint.zones import in_zone, possible, utc_text
 
+with late():
+    from shaftprint.fingerprint._conditions import ShipIdentity
+    from shaftprint.vessel._ship import is_imo_number
+
 if TYPE_CHECKING:
-    from shaftprint.fingerprint._conditions import Conditions, ShipIdentity
+    from shaftprint.fingerprint._conditions import Conditions
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -39,7 +45,7 @@ def utc_iso(moment: datetime) -> str:
 
 
 def time_of_test(
-    conditions: "Conditions", stated: datetime | None, zone: tzinfo | None, *, named: str, now: datetime | None = None
+    conditions: Conditions, stated: datetime | None, zone: tzinfo | None, *, named: str, now: datetime | None = None
 ) -> datetime:
     """Return when a test was made: as its document says, else as stated; nothing is guessed.
 
@@ -65,7 +71,7 @@ def possible_time(moment: datetime, *, now: datetime | None, named: str) -> date
         raise StoreError(f"{named}: {error}; correct it.") from None
 
 
-def _time_of_test(conditions: "Conditions", stated: datetime | None, zone: tzinfo | None, *, named: str) -> datetime:
+def _time_of_test(conditions: Conditions, stated: datetime | None, zone: tzinfo | None, *, named: str) -> datetime:
     shown = conditions.tested_at
     if stated is not None:
         instant = _instant(stated, zone, named=named)
@@ -97,7 +103,7 @@ def _instant(shown: datetime, zone: tzinfo | None, *, named: str) -> datetime:
         raise StoreError(f"{named}: {error}; state it with --tested-at and its offset.") from None
 
 
-def ship_of(conditions: "Conditions", stated: Stated, *, named: str) -> "ShipIdentity":
+def ship_of(conditions: Conditions, stated: Stated, *, named: str) -> ShipIdentity:
     """Return ship and line of a fingerprint: as its document says, what it leaves open as stated.
 
     Raises
@@ -105,7 +111,7 @@ def ship_of(conditions: "Conditions", stated: Stated, *, named: str) -> "ShipIde
     StoreError
         If neither says it, or they differ.
     """
-    if stated.imo_number is not None and not vessel_room().is_imo_number(stated.imo_number):
+    if stated.imo_number is not None and not is_imo_number(stated.imo_number):
         raise StoreError(
             f"--imo: expected seven digits of which the last checks the others, found {stated.imo_number}."
         )
@@ -121,10 +127,7 @@ def ship_of(conditions: "Conditions", stated: Stated, *, named: str) -> "ShipIde
     class_name = None if document is None else document.class_name
     for text, what in ((name, "name of a ship"), (line, "shaft line"), (class_name, "class of ships")):
         expect_short(text, what, named=named)
-    identity: ShipIdentity = fingerprint_room().ShipIdentity(
-        name=name, imo_number=number, class_name=class_name, line=line
-    )
-    return identity
+    return ShipIdentity(name=name, imo_number=number, class_name=class_name, line=line)
 
 
 def _agreed(document: str | None, stated: str | None, option: str, noun: str, *, named: str) -> str:
