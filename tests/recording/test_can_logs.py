@@ -323,3 +323,23 @@ def test_raw_log_without_bus_numbers(tmp_path, dbc):
     path = raw_log(tmp_path / "log.mf4", [(TIMES, EEC1, CONTENT)])
     with read_recording(path, dbc=dbc) as recording:
         assert np.nanmax(np.abs(values(recording, "EngineSpeed") - RPM)) < 1e-9
+
+
+@pytest.mark.parametrize("ending", [".asc", ".trc", ".log"])
+def test_a_row_that_is_cut_anywhere_is_left_out_and_counted(tmp_path, dbc, ending):
+    """The library takes some of them for a shorter frame, or for a byte of one figure, and passes over others."""
+    whole = write(tmp_path / f"log{ending}", [frame(t, c.tobytes()) for t, c in zip(TIMES[:4], CONTENT, strict=False)])
+    rows = [row for row in whole.read_text(encoding="utf-8").splitlines(keepends=True) if "TriggerBlock" not in row]
+    begin = "".join(rows[:-1])
+    last = rows[-1].rstrip()
+    for length in range(len(last) - len(last.lstrip()) + 3, len(last)):
+        whole.write_text(begin + last[:length], encoding="utf-8")
+        with read_recording(whole, dbc=dbc) as recording:
+            assert values(recording, "EngineSpeed") == pytest.approx(RPM[:3]), last[:length]
+            assert recording.left_out.get("rows at the cut end of the file") == "1, which hold no values.", last[
+                :length
+            ]
+    whole.write_text(begin + rows[-1], encoding="utf-8")
+    with read_recording(whole, dbc=dbc) as recording:
+        assert values(recording, "EngineSpeed") == pytest.approx(RPM[:4])
+        assert "rows at the cut end of the file" not in recording.left_out

@@ -141,3 +141,23 @@ def test_signals_in_one_channel_called_time_are_taken_apart(tmp_path):
         assert np.array_equal(recording.channel("Time 2").values(0, 200), -FIRST)
     with pytest.raises(RecordingError, match=r"--interleaved"):
         read_recording(tmp_path / "log.tdms")
+
+
+def test_a_number_of_samples_that_was_lost_is_told(tmp_path):
+    """Its samples are in the file, and become those of the other channel: the grammar of the format allows both."""
+    path = tmp_path / "log.tdms"
+    with TdmsWriter(path, "w") as file:
+        for _ in range(2):
+            file.write_segment([ChannelObject("G", name, FIRST, properties={"wf_increment": 0.01}) for name in "ab"])
+    told = bytearray(path.read_bytes())
+    with read_recording(path) as recording:
+        assert recording.left_out == {}
+    # 20 bytes of raw data index: their length, type 10 (double), one dimension, number of values
+    at = told.index(bytes([20, 0, 0, 0, 10, 0, 0, 0, 1, 0, 0, 0]), 2000)
+    told[at + 12 : at + 20] = bytes(8)
+    path.write_bytes(told)
+    with read_recording(path) as recording:
+        assert recording.left_out == {
+            "segment 2, /'G'/'a'": "0 samples beside 2 rounds of the other channels: if their number was damaged, "
+            "these hold them among their own; copy the file again from the logger, or compare the lengths."
+        }

@@ -44,6 +44,9 @@ _SHOWN = re.compile(
     r"\[(?P<length>\d+)\]\s+(?P<data>(?:[0-9A-F]{2}\s*)+|remote request)"
 )
 _FIRST_LINES = 12
+_CUT = "rows at the cut end of the file"
+# How a row with a frame, or a part of one, begins.
+_ROW_BEGINS = re.compile(r"\s*[\d(]")
 
 
 def kind_of(path: Path, begin: str) -> str:
@@ -117,6 +120,8 @@ class _Lines:
         self._file = file
         self._next: str | None = None
         self.rows = 0
+        self.last = ""
+        self.last_is_row = False
 
     def __iter__(self) -> "_Lines":
         return self
@@ -126,7 +131,10 @@ class _Lines:
         if not line:
             raise StopIteration
         self._next = self._file.readline()
-        return self.changed(line)
+        self.last, before = line, self.rows
+        line = self.changed(line)
+        self.last_is_row = self.rows > before
+        return line
 
     def changed(self, line: str) -> str:
         """Return the line as the library is to read it."""
@@ -136,6 +144,11 @@ class _Lines:
     def is_at_end(self) -> bool:
         """Whether no line is left."""
         return self._next == ""
+
+    @property
+    def is_cut(self) -> bool:
+        """Whether the last line does not end, as where a file is cut off."""
+        return self.is_at_end and not self.last.endswith("\n")
 
     def close(self) -> None:
         """Leave the file to who has opened it."""
@@ -254,18 +267,37 @@ def _expect_version(path: Path, file: TextIO) -> None:
 
 
 def _whole(messages: Iterator[Any], lines: _Lines, log: FrameLog) -> Iterator[Any]:
-    """Yield messages up to a last line that is cut."""
+    """Yield messages up to a last line that is cut, which the library may take for a shorter frame, or pass over."""
+    has_given_last = False
     while True:
         try:
             message = next(messages)
         except StopIteration:
+            if lines.is_cut and not has_given_last and _ROW_BEGINS.match(lines.last):
+                log.count(_CUT)
+                # counted once
+                lines.rows -= lines.last_is_row
             return
         except (ValueError, IndexError, KeyError):
             if not lines.is_at_end:
                 raise
-            log.count("rows at the cut end of the file")
+            log.count(_CUT)
+            lines.rows -= lines.last_is_row
+            return
+        has_given_last = lines.is_at_end
+        if has_given_last and lines.is_cut and not _is_whole(message, lines.last, log.kind):
+            log.count(_CUT)
+            lines.rows -= lines.last_is_row
             return
         yield message
+
+
+def _is_whole(message: Any, row: str, kind: str) -> bool:
+    """Return whether a row that does not end with its line has all bytes that it announces; candump announces none."""
+    if kind == "candump":
+        return False
+    is_short = not message.is_remote_frame and len(message.data) < message.dlc
+    return not is_short and len(row.split()[-1]) != 1
 
 
 def _blocks(

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from shaftprint.errors import RecordingError
+from shaftprint.escape import printable
 from shaftprint.recording.readers._clock import Hole
 from shaftprint.recording.readers._epoch import seconds_from
 
@@ -92,8 +93,11 @@ class _ChannelParts:
                     part.properties.setdefault(key, value)
 
 
-def parts_of(nptdms: Any, raw: Any) -> dict[str, list[Part]]:
-    """Return the parts of every channel, by its path in the file.
+def parts_of(nptdms: Any, raw: Any) -> tuple[dict[str, list[Part]], dict[str, str]]:
+    """Return the parts of every channel, by its path in the file, and what is doubtful in segments.
+
+    A segment holds as many rounds of samples as its length allows. Where it states none of one channel and several
+    rounds of the others, the others may have been given what was of the one.
 
     Parameters
     ----------
@@ -114,7 +118,14 @@ def parts_of(nptdms: Any, raw: Any) -> dict[str, list[Part]]:
     reader._update_object_properties = listen
     reader.read_metadata()
     channels: dict[str, _ChannelParts] = {}
-    for segment, properties in zip(reader._segments, of_segments, strict=True):
+    doubts: dict[str, str] = {}
+    for number, (segment, properties) in enumerate(zip(reader._segments, of_segments, strict=True), start=1):
+        empty = [one.path for one in segment.ordered_objects if one.has_data and not one.number_values]
+        if empty and segment.num_chunks > 1:
+            doubts[f"segment {number}, {', '.join(map(printable, empty[:3]))}"] = (
+                f"0 samples beside {segment.num_chunks} rounds of the other channels: if their number was damaged, "
+                "these hold them among their own; copy the file again from the logger, or compare the lengths."
+            )
         samples = {one.path: nptdms.reader._number_of_segment_values(one, segment) for one in segment.ordered_objects}
         for path in dict.fromkeys((*properties, *samples)):
             channel = channels.setdefault(path, _ChannelParts())
@@ -122,7 +133,7 @@ def parts_of(nptdms: Any, raw: Any) -> dict[str, list[Part]]:
                 {key: _plain(value) for key, value in properties.get(path, ()) if _is_of_interest(key)},
                 samples.get(path, 0),
             )
-    return {path: channel.parts for path, channel in channels.items()}
+    return {path: channel.parts for path, channel in channels.items()}, doubts
 
 
 def _plain(value: Any) -> Any:

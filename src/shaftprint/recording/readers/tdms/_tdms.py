@@ -71,12 +71,13 @@ def read(path: Path, **hints: object) -> Recording:
     try:
         with told_as_damage(path, NAME) as said:
             file = nptdms.TdmsFile.open(raw)
+            parts, doubts = parts_of(nptdms, raw)
             return _Source(
                 path=path,
                 file=file,
                 opened=opened,
-                parts=parts_of(nptdms, raw),
-                gathered=Gathered(path=path, left_out=remarks(said, "npTDMS")),
+                parts=parts,
+                gathered=Gathered(path=path, left_out=remarks(said, "npTDMS") | doubts),
                 rate_hz=rate,
                 time_unit=time_unit,
                 interleaved=interleaved,
