@@ -5,7 +5,7 @@ import pytest
 from scipy.signal import lfilter
 
 from shaftprint.campaign import Campaign
-from shaftprint.signals.levels._set_point_steadiness import expect_steady_set_point
+from shaftprint.signals.levels._set_point_steadiness import Amplitudes, change_of, expect_steady_set_point
 from shaftprint.signals.levels._steadiness import expect_steady_gauge
 
 RATE_HZ, PERIOD_S = 50.0, 20.0
@@ -180,3 +180,26 @@ def test_amplitudes_that_were_set_by_hand_are_not_named(sines):
         return -5.0 + (volts + 5.0) * by_hand[np.minimum(time // 50.0, 6).astype(int)]
 
     assert set_point(sines, put) == []
+
+
+@pytest.mark.parametrize(("size", "named"), [(0.0, 0), (0.05, 24)])
+def test_scatter_that_grows_with_the_frequency_is_no_change_of_the_amplitude(size, named):
+    """Values that a gateway sends late by a time of their own make it so; by chance three stretches may look higher."""
+    hertz = np.repeat((0.02, 0.04, 0.06, 0.15, 0.3, 0.5, 0.8, 1.25, 2.0, 3.3), 6)
+    start_s = 25.0 * np.arange(hertz.size)
+    found = []
+    for seed in range(24):
+        noise = 0.006 * hertz * np.random.default_rng(seed).standard_normal(hertz.size)
+        found.append(
+            change_of(
+                Amplitudes(
+                    start_s=start_s,
+                    stop_s=start_s + 25.0,
+                    log_ratio=noise + size * (start_s > 700.0),
+                    test=np.repeat(np.arange(10), 6),
+                    kinds=("sine",) * 10,
+                    frequency_hz=hertz[::6],
+                )
+            )
+        )
+    assert sum(one is not None for one in found) == named

@@ -7,7 +7,8 @@ scatter that it shows itself, so that what was set by hand is none:
 
 - within a line, what its stretches show (in a leg its periods), whatever the line as a whole is;
 - from line to line, the recorded over the asked amplitude. A set point that is held or filtered falls smoothly with the
-  frequency, and between legs, which hold the same lines, not at all.
+  frequency, and between legs, which hold the same lines, not at all. Values that are sent some time after they were
+  taken scatter in proportion to the frequency; how much, the stretches within the lines show.
 
 The stretch in which the change lies is left out: it is of neither amplitude.
 
@@ -38,6 +39,9 @@ _STRETCHES = 6
 _SLOW_HZ = 1.0
 # Scatter that is expected before any is seen, and how many values that counts for: of stretches, sines, legs.
 _OF_STRETCHES, _OF_SINES, _OF_LEGS, _COUNTS = 1e-3, 1e-3, 2e-4, 4
+# Fewest stretches of a line, and lines, that tell how the scatter grows with the frequency; the least scatter; corners
+# that are tried; median of the square of a normal number.
+_FEWEST_TO_SCATTER, _FEWEST_LINES, _LEAST_SCATTER, _TRIED, _MEDIAN_OF_SQUARE = 4, 4, 1e-5, 30, 0.455
 # Highest frequency over the corners of filters of first order whose mixtures resemble what a set point passes.
 _CORNERS = (0.8, 3.0)
 # Length of the stretches on either side of a change [s]: what is shorter is a disturbance.
@@ -239,6 +243,7 @@ def change_of(amplitudes: Amplitudes) -> AmplitudeChange | None:
         Of every stretch.
     """
     begin_s, end_s = amplitudes.start_s, amplitudes.stop_s
+    scatter = _scatter(amplitudes)
     length_s = np.append(0.0, np.cumsum(end_s - begin_s))
     tried = []
     for before in range(1, begin_s.size):
@@ -249,7 +254,7 @@ def change_of(amplitudes: Amplitudes) -> AmplitudeChange | None:
             unseen = _UNSEEN if after == before else 0.0
             first_s = end_s[before - 1] - unseen * (end_s[before - 1] - begin_s[before - 1])
             last_s = begin_s[after] + unseen * (end_s[after] - begin_s[after])
-            tried.append((*_compared(amplitudes, before, after), float(first_s), float(last_s)))
+            tried.append((*_compared(amplitudes, scatter, before, after), float(first_s), float(last_s)))
     likelihood, size, _, _ = max(tried, default=(0.0, 0.0, 0.0, 0.0))
     if not (likelihood > _THRESHOLD and _LEAST < abs(size) < _MOST):
         return None
@@ -261,13 +266,43 @@ def change_of(amplitudes: Amplitudes) -> AmplitudeChange | None:
     )
 
 
-def _compared(amplitudes: Amplitudes, before: int, after: int) -> tuple[float, float]:
+def _scatter(amplitudes: Amplitudes) -> FloatArray:
+    """Return how far the stretches of each sine scatter, as all sines together tell, shape (tests,); 0 where untold.
+
+    The scatter is that of values which are late by a time of their own, ``s^2 (corner^2 + f^2)``. It is told by the
+    differences of neighbours, in the middle, so that a change of the amplitude does not pass for scatter.
+    """
+    tests, variances, counts = [], [], []
+    for test, kind in enumerate(amplitudes.kinds):
+        values = amplitudes.log_ratio[amplitudes.test == test]
+        if kind != "sine" or values.size < _FEWEST_TO_SCATTER:
+            continue
+        tests.append(test)
+        variances.append(float(np.median(np.diff(values) ** 2)) / (2.0 * _MEDIAN_OF_SQUARE) + _LEAST_SCATTER**2)
+        counts.append(values.size)
+    if len(tests) < _FEWEST_LINES:
+        return np.zeros(len(amplitudes.kinds))
+    frequency_hz, variance, count = amplitudes.frequency_hz[tests], np.array(variances), np.array(counts)
+
+    def fitted(corner_hz: float) -> tuple[float, float]:
+        shape = corner_hz**2 + frequency_hz**2
+        size = float(count @ (variance / shape)) / count.sum()
+        return float(count @ (np.log(size * shape) + variance / (size * shape))), size
+
+    corners_hz = np.geomspace(0.1 * frequency_hz.min(), 10.0 * frequency_hz.max(), _TRIED)
+    corner_hz = min(corners_hz, key=lambda corner_hz: fitted(corner_hz)[0])
+    return np.sqrt(fitted(corner_hz)[1] * (corner_hz**2 + amplitudes.frequency_hz**2))
+
+
+def _compared(amplitudes: Amplitudes, scatter: FloatArray, before: int, after: int) -> tuple[float, float]:
     """Return twice the gain in log-likelihood, and the size of a change of the logarithm.
 
     Parameters
     ----------
     amplitudes
         Of every stretch.
+    scatter
+        How far the stretches of each test scatter, shape (tests,).
     before, after
         How many stretches are before the change, and the first one after it.
     """
@@ -285,15 +320,17 @@ def _compared(amplitudes: Amplitudes, before: int, after: int) -> tuple[float, f
             if min(of_course.sum(), of_course.size - of_course.sum()) < _FEWEST_BESIDE:
                 return 0.0, 0.0
             centred = of_values - of_values.mean(), of_course - of_course.mean()
-            parts.append((*centred, _OF_STRETCHES))
+            parts.append((*centred, float(np.hypot(_OF_STRETCHES, scatter[test]))))
         else:
-            means.append((kind, amplitudes.frequency_hz[test], of_values.mean(), of_course[0]))
-    of_sines = np.array([row[1:] for row in means if row[0] == "sine"]).reshape(-1, 3)
+            expected = float(np.hypot(_OF_SINES, scatter[test] / np.sqrt(of_values.size)))
+            means.append((kind, expected, amplitudes.frequency_hz[test], of_values.mean(), of_course[0]))
+    of_sines = np.array([row[1:] for row in means if row[0] == "sine"]).reshape(-1, 4)
     if len(of_sines):
-        smooth = _smooth(of_sines[:, 0] / of_sines[:, 0].max())
-        rest = of_sines[:, 1:] - smooth @ np.linalg.lstsq(smooth, of_sines[:, 1:], rcond=None)[0]
-        parts.append((rest[:, 0], rest[:, 1], _OF_SINES))
-    of_legs = np.array([row[2:] for row in means if row[0] == "leg"]).reshape(-1, 2)
+        smooth = _smooth(of_sines[:, 1] / of_sines[:, 1].max()) / of_sines[:, :1]
+        lines = of_sines[:, 2:] / of_sines[:, :1]
+        rest = lines - smooth @ np.linalg.lstsq(smooth, lines, rcond=None)[0]
+        parts.append((rest[:, 0], rest[:, 1], 1.0))
+    of_legs = np.array([row[3:] for row in means if row[0] == "leg"]).reshape(-1, 2)
     if len(of_legs):
         rest = of_legs - of_legs.mean(axis=0)
         parts.append((rest[:, 0], rest[:, 1], _OF_LEGS))
