@@ -14,10 +14,10 @@ from shaftprint.arrays import FloatArray
 from shaftprint.errors import SignalError
 from shaftprint.signals._channels import Counts
 from shaftprint.signals._gaps import Gap, bridge, clock_gaps, gaps_of_missing, joined, runs_of
-from shaftprint.signals.conditioning._condition import Reading, conditioned
+from shaftprint.signals.conditioning._condition import Reading
 from shaftprint.signals.conditioning._outliers import fault_limits
 from shaftprint.signals.kinds._angle_range import angle_range, range_of_small_steps, wrapped
-from shaftprint.signals.kinds._kind import Source
+from shaftprint.signals.kinds._kind import Source, conditioned_on
 from shaftprint.signals.kinds._message_reading import read_messages
 from shaftprint.signals.kinds._speed_reading import LONGEST_GAP_VALUES, REACH_VALUES, SpeedReading
 from shaftprint.signals.kinds._splined_messages import comes_in_messages
@@ -59,14 +59,7 @@ def read_encoder(source: Source[SpeedSensor], clock: "Clock") -> SpeedReading:
         reading = _splined(channel, sensor, whole, clock, latency_s)
     else:
         turning = _turning(channel, sensor, whole)
-        reading = conditioned(
-            turning,
-            fault_limits(turning, holds=False),
-            clock.grid(turning, latency_s),
-            mode=clock.mode,
-            block_samples=clock.block_samples(turning),
-            advance=clock.advance,
-        )
+        reading = conditioned_on(clock, turning, fault_limits(turning, holds=False), latency_s)
         _sharpen(reading.values, step=clock.rate_hz / channel.rate_hz)
     usual, ahead = _usual(reading.values, clock, channel.name)
     speed = ahead * reading.values

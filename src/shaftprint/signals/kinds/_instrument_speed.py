@@ -14,9 +14,10 @@ import scipy
 from shaftprint.errors import SignalError
 from shaftprint.signals._channels import blocks
 from shaftprint.signals._gaps import bridge, clock_gaps, gaps_of_missing, joined
-from shaftprint.signals.conditioning._condition import Reading, conditioned
+from shaftprint.signals.conditioning._condition import Reading
 from shaftprint.signals.conditioning._outliers import FaultLimits, fault_limits
 from shaftprint.signals.kinds._current_loop import alive_counts
+from shaftprint.signals.kinds._kind import conditioned_on
 from shaftprint.signals.kinds._message_reading import read_messages
 from shaftprint.signals.kinds._speed_reading import LONGEST_GAP_VALUES, REACH_VALUES, SpeedReading
 from shaftprint.signals.kinds._splined_messages import comes_in_messages, no_numbers, splined, unknown_age
@@ -54,14 +55,7 @@ def read_instrument(
     """
     latency_s = clock.latency_s(sensor.latency_s)
     if not comes_in_messages(channel, clock):
-        reading = conditioned(
-            channel,
-            instrument_limits(channel, sensor),
-            clock.grid(channel, latency_s),
-            mode=clock.mode,
-            block_samples=clock.block_samples(channel),
-            advance=clock.advance,
-        )
+        reading = conditioned_on(clock, channel, instrument_limits(channel, sensor), latency_s)
     else:
         reading = _splined(channel, sensor, clock, latency_s)
         if sensor.latency_std_s is None:

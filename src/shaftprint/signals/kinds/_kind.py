@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, ClassVar, Generic, Protocol, TypeVar
 
 from shaftprint.signals._channel_signals import ChannelRole, ChannelSignal
 from shaftprint.signals._channels import find_channel
-from shaftprint.signals.conditioning._condition import Reading
+from shaftprint.signals.conditioning._condition import Reading, conditioned
 
 if TYPE_CHECKING:
     from shaftprint.arrays import FloatArray
@@ -53,6 +53,18 @@ class Source(Generic[SensorT]):
     """The installation."""
     spare: bool = False
     """Whether another sensor shows the same, so that this one is left out where it fails."""
+
+
+def conditioned_on(clock: "Clock", channel: "Channel", limits: "FaultLimits", latency_s: float = 0.0) -> Reading:
+    """Return a channel that shows everything late by a latency [s] on the common clock, as ``conditioned`` does."""
+    return conditioned(
+        channel,
+        limits,
+        clock.grid(channel, latency_s),
+        mode=clock.mode,
+        block_samples=clock.block_samples(channel),
+        advance=clock.advance,
+    )
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

@@ -8,9 +8,9 @@ import numpy as np
 from shaftprint.arrays import frozen_float
 from shaftprint.errors import SignalError
 from shaftprint.signals._channel_signals import ChannelRole, ExcitationSignal
-from shaftprint.signals.conditioning._condition import Reading, conditioned
+from shaftprint.signals.conditioning._condition import Reading
 from shaftprint.signals.conditioning._outliers import FaultLimits, fault_limits
-from shaftprint.signals.kinds._kind import ChannelKind, Source, SteadyState, steady_parts
+from shaftprint.signals.kinds._kind import ChannelKind, Source, SteadyState, conditioned_on, steady_parts
 from shaftprint.vessel._machine_torque import MachineTorqueSensor
 
 if TYPE_CHECKING:
@@ -31,16 +31,9 @@ class MachineTorque(ChannelKind[MachineTorqueSensor]):
 
     def read(self, source: Source[MachineTorqueSensor], clock: "Clock") -> Reading:
         """Return the torque on the grid."""
-        channel, sensor = source.channel, source.sensor
+        sensor = source.sensor
         latency_s = clock.latency_s(sensor.latency_s)
-        reading = conditioned(
-            channel,
-            self.limits(source),
-            clock.grid(channel, latency_s),
-            mode=clock.mode,
-            block_samples=clock.block_samples(channel),
-            advance=clock.advance,
-        )
+        reading = conditioned_on(clock, source.channel, self.limits(source), latency_s)
         geared = self._geared(source)
         values = geared * (sensor.torque_nm_per_v * reading.values + sensor.torque_nm_at_zero_v)
         return replace(reading, values=values, gaps=tuple(gap.earlier(latency_s) for gap in reading.gaps))

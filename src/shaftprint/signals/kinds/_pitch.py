@@ -8,9 +8,9 @@ import numpy as np
 from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.errors import SignalError
 from shaftprint.signals._channel_signals import ChannelRole, ChannelSignal, ExcitationSignal
-from shaftprint.signals.conditioning._condition import Reading, conditioned
+from shaftprint.signals.conditioning._condition import Reading
 from shaftprint.signals.conditioning._outliers import FaultLimits, fault_limits
-from shaftprint.signals.kinds._kind import ChannelKind, Source, SteadyState, steady_parts
+from shaftprint.signals.kinds._kind import ChannelKind, Source, SteadyState, conditioned_on, steady_parts
 from shaftprint.signals.kinds._set_point import read_voltage
 from shaftprint.vessel._pitch_sensors import PitchSensor, PitchSetPointSensor
 
@@ -68,16 +68,9 @@ class Pitch(ChannelKind[PitchSensor]):
 
     def read(self, source: Source[PitchSensor], clock: "Clock") -> Reading:
         """Return the pitch on the grid."""
-        channel, sensor = source.channel, source.sensor
+        sensor = source.sensor
         latency_s = clock.latency_s(sensor.latency_s)
-        reading = conditioned(
-            channel,
-            self.limits(source),
-            clock.grid(channel, latency_s),
-            mode=clock.mode,
-            block_samples=clock.block_samples(channel),
-            advance=clock.advance,
-        )
+        reading = conditioned_on(clock, source.channel, self.limits(source), latency_s)
         values = sensor.pitch_ratio_per_v * reading.values + sensor.pitch_ratio_at_zero_v
         return replace(reading, values=values, gaps=tuple(gap.earlier(latency_s) for gap in reading.gaps))
 

@@ -13,9 +13,9 @@ from shaftprint.arrays import frozen_float
 from shaftprint.errors import SignalError
 from shaftprint.signals._channel_signals import ChannelRole, ExcitationSignal
 from shaftprint.signals._channels import middle_of
-from shaftprint.signals.conditioning._condition import Reading, conditioned
+from shaftprint.signals.conditioning._condition import Reading
 from shaftprint.signals.conditioning._outliers import FaultLimits, fault_limits
-from shaftprint.signals.kinds._kind import ChannelKind, Source, SteadyState
+from shaftprint.signals.kinds._kind import ChannelKind, Source, SteadyState, conditioned_on
 from shaftprint.signals.kinds._message_reading import read_messages
 from shaftprint.signals.kinds._splined_messages import comes_in_messages, splined
 from shaftprint.units import rpm_from_rev_s
@@ -122,11 +122,4 @@ def _read_messages(channel: "Channel", sensor: SetPointSensor, clock: "Clock") -
 
 def read_voltage(channel: "Channel", clock: "Clock") -> Reading:
     """Return the voltage of a set point on the grid [V]."""
-    return conditioned(
-        channel,
-        fault_limits(channel, holds=False),
-        clock.grid(channel),
-        mode=clock.mode,
-        block_samples=clock.block_samples(channel),
-        advance=clock.advance,
-    )
+    return conditioned_on(clock, channel, fault_limits(channel, holds=False))

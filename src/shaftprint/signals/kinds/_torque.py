@@ -13,10 +13,10 @@ from shaftprint.signals._channel_signals import ChannelSignal
 from shaftprint.signals._channels import middle_of
 from shaftprint.signals._gaps import EVERYTHING, Coverage
 from shaftprint.signals._signals import Repair
-from shaftprint.signals.conditioning._condition import Reading, conditioned
+from shaftprint.signals.conditioning._condition import Reading
 from shaftprint.signals.conditioning._outliers import FaultLimits, fault_limits
 from shaftprint.signals.kinds._current_loop import alive_counts
-from shaftprint.signals.kinds._kind import ChannelKind, Source, SteadyState
+from shaftprint.signals.kinds._kind import ChannelKind, Source, SteadyState, conditioned_on
 from shaftprint.signals.kinds._splined_messages import comes_in_messages
 from shaftprint.signals.kinds._torque_messages import torque_messages
 from shaftprint.vessel._current_loop import LIVE_ZERO_MA
@@ -62,14 +62,7 @@ class ShaftTorque(ChannelKind[ShaftTorqueSensor]):
         if comes_in_messages(channel, clock):
             reading = torque_messages(source, self.limits(source), clock, latency_s)
         else:
-            reading = conditioned(
-                channel,
-                self.limits(source),
-                clock.grid(channel, latency_s),
-                mode=clock.mode,
-                block_samples=clock.block_samples(channel),
-                advance=clock.advance,
-            )
+            reading = conditioned_on(clock, source.channel, self.limits(source), latency_s)
         return reading.of(source.vessel.driving_torque_nm, earlier_s=latency_s)
 
     def judge(self, source: Source[ShaftTorqueSensor], reading: Reading) -> tuple[str, ...]:
