@@ -291,7 +291,7 @@ def _scatter(amplitudes: Amplitudes) -> FloatArray:
 
     corners_hz = np.geomspace(0.1 * frequency_hz.min(), 10.0 * frequency_hz.max(), _TRIED)
     corner_hz = min(corners_hz, key=lambda corner_hz: fitted(corner_hz)[0])
-    return np.sqrt(fitted(corner_hz)[1] * (corner_hz**2 + amplitudes.frequency_hz**2))
+    return np.asarray(np.sqrt(fitted(corner_hz)[1] * (corner_hz**2 + amplitudes.frequency_hz**2)))
 
 
 def _compared(amplitudes: Amplitudes, scatter: FloatArray, before: int, after: int) -> tuple[float, float]:
