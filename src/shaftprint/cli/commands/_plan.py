@@ -16,8 +16,8 @@ from shaftprint.cli._plan_options import limit_of, seconds_of, shares_of, wish_f
 from shaftprint.cli._plan_tables import print_planned_test
 from shaftprint.cli._vessel_file import checked_vessel
 from shaftprint.cli.output._fingerprint_file import fingerprint_at
-from shaftprint.cli.output._output_folder import force_option, output_folder
-from shaftprint.cli.output._progress import Steps, no_progress_option, progress
+from shaftprint.cli.output._progress import Steps
+from shaftprint.cli.output._results_options import Results, results_options
 from shaftprint.late import late
 
 with late():
@@ -102,9 +102,7 @@ LONGEST_S = 3600.0
 )
 @click.option("--name", help="Name of the test.")
 @click.option("--seed", type=click.IntRange(min=0), default=1, show_default=True, help="Seed of all randomness.")
-@click.option("-o", "--output", required=True, type=click.Path(path_type=Path), help="Folder for the plan.")
-@force_option
-@no_progress_option
+@results_options("Folder for the plan.")
 @click.pass_context
 def command(
     context: click.Context,
@@ -125,9 +123,7 @@ def command(
     rate_hz: float,
     name: str | None,
     seed: int,
-    output: Path,
-    force: bool,
-    no_progress: bool,
+    results: Results,
 ) -> None:
     """Plan the strongest test within a time, or the shortest that meets your wishes.
 
@@ -145,7 +141,7 @@ def command(
         recorded=noise_campaign,
         offset_v=offset_v,
     )
-    with output_folder(output, of="plan", force=force) as folder, progress(hidden=no_progress) as steps:
+    with results.folder("plan") as folder, results.progress() as steps:
         planned = plan_test(
             knowledge_of(
                 ship, limits=limits, speeds=speeds, structure=structure_name, within_s=within_s, progress=steps
@@ -162,7 +158,7 @@ def command(
         planned = _rehearsed(planned, installation, rehearsals, seed, steps)
         write_plan_files(planned, folder, rate_hz=rate_hz)
         render_plan(folder, planned)
-    print_planned_test(planned, output)
+    print_planned_test(planned, results.output)
     if wish.names and not planned.plan.is_enough:
         context.exit(NOT_REACHED)
 

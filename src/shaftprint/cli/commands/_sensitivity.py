@@ -11,8 +11,7 @@ import click
 
 from shaftprint.cli._options import SettingsPath
 from shaftprint.cli._terminal import answer
-from shaftprint.cli.output._output_folder import force_option, output_folder
-from shaftprint.cli.output._progress import no_progress_option, progress
+from shaftprint.cli.output._results_options import Results, results_options
 from shaftprint.escape import plain_name
 from shaftprint.late import late
 
@@ -49,7 +48,6 @@ def ascending(context: click.Context, parameter: click.Parameter, span: tuple[fl
 
 @click.command("sensitivity")
 @click.argument("name", metavar="STRUCTURE")
-@click.option("-o", "--output", required=True, type=click.Path(path_type=Path), help="Folder for the figures.")
 @click.option(
     "--format", "suffix", type=click.Choice(["svg", "png", "pdf"]), default="svg", show_default=True,
     help="Kind of picture.",
@@ -73,18 +71,15 @@ def ascending(context: click.Context, parameter: click.Parameter, span: tuple[fl
 )
 @click.option("--vessel", type=SettingsPath("vessel", "stan-tug-1205"), help="Vessel file of the recording.")
 @click.option("--campaign", type=SettingsPath("campaign", "thesis"), help="Campaign file of the recording.")
-@force_option
-@no_progress_option
+@results_options("Folder for the figures.")
 def command(
     name: TypedName,
-    output: Path,
     suffix: str,
     span: tuple[float, float],
     recording: Path | None,
     vessel: str | None,
     campaign: str | None,
-    force: bool,
-    no_progress: bool,
+    results: Results,
 ) -> None:
     """Draw the effect of each parameter of a structure on its response.
 
@@ -97,13 +92,13 @@ def command(
         raise click.UsageError("--recording goes with the figures of the thesis only: shaftprint sensitivity thesis.")
     responses = _measured(recording, vessel, campaign)
     drawings = _of_the_thesis(responses) if of_the_thesis else _of_structure(name, span)
-    with output_folder(output, of="sensitivity", force=force) as folder, progress(hidden=no_progress) as steps:
+    with results.folder("sensitivity") as folder, results.progress() as steps:
         steps.begin("Drawing", total=float(len(drawings)))
         for stem, draw in drawings.items():
             save_chart(draw(), folder / f"{stem}.{suffix}")
             steps.advance(1.0)
     for stem in drawings:
-        answer(output / f"{stem}.{suffix}")
+        answer(results.output / f"{stem}.{suffix}")
 
 
 def _of_structure(name: TypedName, span: tuple[float, float]) -> Drawings:
