@@ -29,7 +29,10 @@ FEWEST_SEGMENTS = 8
 """Segments below which their scatter says nothing."""
 # Steps at most; a step below so many standard deviations is the last, and so is the second below one of them: what a
 # limit is barely met by makes the likelihood rough. One beyond asks for the noise anew, so many times at most.
-_MOST_STEPS, _LAST, _SHORT, _NOISE_ANEW, _MOST_NOISES = 12, 0.3, 1.0, 1.5, 4
+_MOST_STEPS, _LAST, _SHORT, _NOISE_ANEW, _MOST_NOISES = 12, 0.3, 1.5, 1.5, 4
+# Where no part of a step helps, it was rough ground if the step was below so many standard deviations: eleven numbers
+# are known to three of them together.
+_ROUGH = 3.0
 # Times that a step is halved before the fit ends.
 _HALVINGS = 6
 FLOOR: Mapping[str, float] = MappingProxyType({"K_p": 0.003, "K_i": 0.003, "tau_dn": 0.002})
@@ -137,6 +140,8 @@ def fit_segments(records: Sequence[Record], model: ServiceModel, *, simulator: S
                 break
             step = 0.5 * step
         else:
+            if size < _ROUGH:
+                break
             raise ServiceError(
                 "service: expected a fit that comes nearer to the segments with each step, found none that does; "
                 "begin from a fingerprint of this line (--fingerprint)."
