@@ -24,6 +24,11 @@ def named_drives(
         Structures that the user names: shipped drives, or those of files of the user's own; none for that of the file.
     options
         What the user holds and knows beside the file.
+
+    Raises
+    ------
+    RequestError
+        If an option is asked for that ships alone have.
     """
     chosen = [_named(drive, name) for name in names] or [equipped(drive)]
     if options is None:

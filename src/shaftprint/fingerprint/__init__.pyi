@@ -1,5 +1,5 @@
 from ._clock_influence import ClockInfluence
-from ._conditions import WATER, ShipIdentity
+from ._conditions import ShipIdentity
 from ._drive_fingerprint import read_drive_fingerprint
 from ._fingerprint import Fingerprint, SourceFile
 from ._inertia import inertia_beside
@@ -10,7 +10,6 @@ from ._take import take_fingerprint
 from ._vessel_fields import vessel_fields
 
 __all__ = [
-    "WATER",
     "ClockInfluence",
     "Fingerprint",
     "ShipIdentity",

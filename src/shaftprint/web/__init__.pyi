@@ -1,12 +1,10 @@
 from ._server import serve
 from ._settings import Listen, Serving, listen_at
-from .access._password import LONGEST, hashed
+from .access._password import hashed
 from .access._person import Person
-from .access._users import ROLES, with_user
+from .access._users import with_user
 
 __all__ = [
-    "LONGEST",
-    "ROLES",
     "Listen",
     "Person",
     "Serving",
