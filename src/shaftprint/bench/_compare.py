@@ -39,10 +39,7 @@ def drive_differences(first: DriveFingerprint, other: DriveFingerprint) -> tuple
     Errors of both tests are taken as independent; what both took from the same data sheet errs alike in both, so that
     their difference is known better than stated.
 
-    Raises
-    ------
-    FingerprintError
-        If they are of different structures.
+    Raises FingerprintError if they are of different structures.
     """
     if first.structure != other.structure:
         raise FingerprintError(

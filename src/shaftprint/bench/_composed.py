@@ -21,11 +21,8 @@ from shaftprint.spelling import meant
 def composed(drive: Drive) -> Structure:
     """Return the structure that the blocks of a drive file make.
 
-    Raises
-    ------
-    SettingsError
-        If a signal comes from nowhere, goes nowhere or is both input and output of a block, or a block lacks a
-        parameter.
+    Raises SettingsError if a signal comes from nowhere, goes nowhere or is both input and output of a block, or a block
+    lacks a parameter.
     """
     inputs = tuple(one.name for one in drive.inputs)
     outputs = tuple(one.name for one in drive.outputs)

@@ -107,10 +107,7 @@ def _structure(drive: Drive, own: Structure | None) -> Structure:
 def _goes_straight(drive: Drive, units: Mapping[str, str]) -> bool:
     """Return whether the signals of a shipped structure are ways and forces, in place of angles and torques.
 
-    Raises
-    ------
-    SettingsError
-        If some are and others are not.
+    Raises SettingsError if some are and others are not.
     """
     turning = [one for one in drive.signals if unit_along(units[one.name]) != units[one.name]]
     straight = [one for one in turning if unit_factor(one.unit, unit_along(units[one.name])) is not None]

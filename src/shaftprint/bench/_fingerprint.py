@@ -26,12 +26,7 @@ from shaftprint.time_domain._record_fit import RecordFit
 def drive_fingerprint(fit: DriveFit, *, sources: Sequence[SourceFile], now: datetime) -> DriveFingerprint:
     """Return what is kept of a fit.
 
-    Parameters
-    ----------
-    sources
-        Recordings, drive file and own structure with their hashes.
-    now
-        Time of making, with time zone.
+    ``sources``: recordings, drive file and own structure with their hashes. ``now``: time of making, with time zone.
     """
     identification, one = fit.identification, fit.equipped
     structure, parameters = one.structure, identification.objective.parameters
@@ -119,21 +114,10 @@ def identified_drive(
 ) -> IdentifiedModel:
     """Return the model that the fingerprint of a drive describes.
 
-    Parameters
-    ----------
-    fingerprint
-        A saved fingerprint.
-    one
-        The drive, whose structure it names.
-    record
-        The record whose own values it has; where none is named, the drive file states what differs between records.
-    beside
-        Own values of the record that the fingerprint does not have; they are held.
-
-    Raises
-    ------
-    FingerprintError
-        If the structure has another name or other parameters than the fingerprint, or a parameter several values.
+    ``fingerprint``: a saved fingerprint. ``one``: the drive, whose structure it names. ``record``: the record whose own
+    values it has; where none is named, the drive file states what differs between records. ``beside``: own values of
+    the record that the fingerprint does not have; they are held. Raises FingerprintError if the structure has another
+    name or other parameters than the fingerprint, or a parameter several values.
     """
     structure = one.structure if record is None else record_structure(one, record)
     kept, bases = fingerprint.values, set(one.structure.names)

@@ -194,10 +194,7 @@ class ByMagnitude(Draw):
 def drive_time_settings(one: EquippedDrive, records: Sequence[Record]) -> TimeSettings:
     """Return how the records of a drive are compared with its structure.
 
-    Raises
-    ------
-    SettingsError
-        If the start is known of a state that the equations do not have.
+    Raises SettingsError if the start is known of a state that the equations do not have.
     """
     fit = one.drive.fit
     step_s = fit.longest_step_s or 1.0 / (STEPS_A_SAMPLE * max(record.rate_hz for record in records))

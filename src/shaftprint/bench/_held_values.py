@@ -22,10 +22,7 @@ def kept_for(values: FloatArray) -> float:
     A coarse reading stands still for long by itself and then changes by its smallest step. What changes by more has
     moved on for as long as it was kept, so that only such changes count.
 
-    Parameters
-    ----------
-    values
-        The samples, shape (samples,).
+    ``values``: the samples, shape (samples,).
     """
     changes = np.diff(values)
     moved = np.abs(changes) > ROUNDING * np.ptp(values)

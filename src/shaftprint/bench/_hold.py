@@ -54,12 +54,7 @@ def input_way(
 ) -> InputWay:
     """Return how inputs go between samples: as the drive file says, or as explains the records better.
 
-    Parameters
-    ----------
-    fit
-        The fit to records as they were read.
-    settings, time
-        How it was searched and compared.
+    ``fit``: the fit to records as they were read. ``settings``, ``time``: how it was searched and compared.
     """
     hold, says = records[0].hold, one.drive.fit.inputs_hold
     if not any(jump_within_a_sample(record) for record in records):

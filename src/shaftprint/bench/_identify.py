@@ -25,25 +25,9 @@ def identify_files(
 ) -> DriveFit:
     """Return the fit to records, or to frequency responses where the drive file says that the files hold these.
 
-    Parameters
-    ----------
-    one
-        The drive.
-    paths
-        Its files.
-    rng
-        Draws the starts of the search.
-    starts
-        Their number; as many as are usual where not given.
-    hints
-        What the files do not say themselves.
-    progress
-        Is told what is being done.
-
-    Raises
-    ------
-    ShaftprintError
-        If a file cannot be read, or the fit has no acceptable result.
+    ``one``: the drive. ``paths``: its files. ``rng``: draws the starts of the search. ``starts``: their number; as many
+    as are usual where not given. ``hints``: what the files do not say themselves. ``progress``: is told what is being
+    done. Raises ShaftprintError if a file cannot be read, or the fit has no acceptable result.
     """
     if one.drive.responses:
         progress.begin("Reading the responses")

@@ -15,19 +15,9 @@ def kept_drive(
 ) -> EquippedDrive:
     """Return the drive of a fingerprint with its structure.
 
-    Parameters
-    ----------
-    fingerprint
-        What was kept.
-    drive
-        Its drive file; not needed where the structure is a shipped one.
-    own
-        The user's own structure, where it was identified with one.
-
-    Raises
-    ------
-    FingerprintError
-        If the structure is none that is shipped, and neither file nor structure is given.
+    ``fingerprint``: what was kept. ``drive``: its drive file; not needed where the structure is a shipped one. ``own``:
+    the user's own structure, where it was identified with one. Raises FingerprintError if the structure is none that is
+    shipped, and neither file nor structure is given.
     """
     if drive is not None:
         return equipped(_without_structure(drive) if own is not None else drive, own=own)

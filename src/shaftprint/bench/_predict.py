@@ -94,25 +94,11 @@ def predict_drive(
 ) -> dict[str, float]:
     """Return the standard deviation that each free parameter would have; infinite where the records say nothing.
 
-    Parameters
-    ----------
-    one
-        The drive.
-    records
-        Planned inputs; what stands as outputs is replaced by those of the model.
-    noise_std
-        Standard deviation of the noise of a sample of each output, in its unit.
-    kept
-        A fingerprint whose noise it has the colour of, where records have the rate of those; it is white elsewhere.
-    values
-        Values of parameters at which to predict; usual ones where not given.
-    priors
-        What is known beside the drive file.
-
-    Raises
-    ------
-    IdentificationError
-        If the noise of an output is not stated, or the simulation runs away.
+    ``one``: the drive. ``records``: planned inputs; what stands as outputs is replaced by those of the model.
+    ``noise_std``: standard deviation of the noise of a sample of each output, in its unit. ``kept``: a fingerprint
+    whose noise it has the colour of, where records have the rate of those; it is white elsewhere. ``values``: values of
+    parameters at which to predict; usual ones where not given. ``priors``: what is known beside the drive file. Raises
+    IdentificationError if the noise of an output is not stated, or the simulation runs away.
     """
     structure = one.structure
     missing = [name for name in structure.outputs if not noise_std.get(name, 0.0) > 0.0]
@@ -145,17 +131,8 @@ def predicted_at(
 ) -> dict[str, float]:
     """Return every parameter at which records are predicted: as stated, else as known, else as usual.
 
-    Parameters
-    ----------
-    values
-        What is stated; that of a parameter with own values stands for all of them that are not stated themselves.
-    priors
-        What is known beside the drive file.
-
-    Raises
-    ------
-    StructureError
-        If no record has one of them.
+    ``values``: what is stated; that of a parameter with own values stands for all of them that are not stated
+    themselves. ``priors``: what is known beside the drive file. Raises StructureError if no record has one of them.
     """
     known = own_priors(one, records, {**one.priors, **priors})
     means = {name: prior.mean for name, prior in known.items()}
@@ -189,10 +166,7 @@ def planned_noise(
 ) -> NoiseModel:
     """Return noise of the colour that a fingerprint keeps, white without, with the stated standard deviations.
 
-    Parameters
-    ----------
-    outputs
-        Names of the outputs, in the order of the structure.
+    ``outputs``: names of the outputs, in the order of the structure.
     """
     sizes, coloured = np.array([noise_std[name] for name in outputs]), coloured_record(kept, rate_hz)
     if kept is None or coloured is None or coloured.noise is None:

@@ -40,10 +40,7 @@ def recorded_drive(recording: Path) -> RecordedDrive:
 
     Which channel is the input, its name or its steps tell: a guess, as the lag from it to each other channel is.
 
-    Raises
-    ------
-    RecordingError
-        If the recording has fewer than two channels on one clock.
+    Raises RecordingError if the recording has fewer than two channels on one clock.
     """
     with read_recording(recording) as opened:
         channels = list(opened.channels.values())

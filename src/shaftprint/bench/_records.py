@@ -75,10 +75,7 @@ def read_records(
 def expect_different_names(what: str, names: Sequence[str]) -> None:
     """Refuse records or responses of which two have one name.
 
-    Raises
-    ------
-    RecordingError
-        If there are two.
+    Raises RecordingError if there are two.
     """
     twice = next((name for name in names if names.count(name) > 1), None)
     if twice is not None:

@@ -46,10 +46,7 @@ class ResponseFile:
 def read_responses(paths: Sequence[Path], one: EquippedDrive) -> tuple[ResponseFile, ...]:
     """Return the frequency response of each file; lines in which something is no number are left out and counted.
 
-    Raises
-    ------
-    RecordingError
-        If a file cannot be read or lacks a column, or fewer than three lines are left.
+    Raises RecordingError if a file cannot be read or lacks a column, or fewer than three lines are left.
     """
     files = tuple(_read(path, one) for path in paths)
     expect_different_names("responses", [file.name for file in files])
@@ -62,15 +59,8 @@ def identify_responses(
 ) -> DriveFit:
     """Fit the structure of a drive, for small motions, to its frequency responses, and judge the fit.
 
-    Parameters
-    ----------
-    starts
-        Starts of the search that are drawn at first; more follow until several agree.
-
-    Raises
-    ------
-    IdentificationError
-        If there are too few lines, or no start reached a model that is stable.
+    ``starts``: starts of the search that are drawn at first; more follow until several agree. Raises
+    IdentificationError if there are too few lines, or no start reached a model that is stable.
     """
     pairs = [(structure, file.response) for structure, file in with_structures(one, files)]
     free, known = free_parameters(one, files), own_priors(one, files, one.priors)

@@ -102,21 +102,10 @@ def search_drive(
 ) -> Searched:
     """Return the fit of a drive's structure to its records, from as many starts as it takes.
 
-    Parameters
-    ----------
-    settings
-        How to search, with the number of starts that are drawn at first.
-    time
-        How the records are compared with the structure.
-    rng
-        Source of the start values.
-    further
-        Free parameters to start from too, such as the optimum of a structure that this one holds.
-
-    Raises
-    ------
-    IdentificationError
-        If there are too few data, or no start reached a model that stays within bounds.
+    ``settings``: how to search, with the number of starts that are drawn at first. ``time``: how the records are
+    compared with the structure. ``rng``: source of the start values. ``further``: free parameters to start from too,
+    such as the optimum of a structure that this one holds. Raises IdentificationError if there are too few data, or no
+    start reached a model that stays within bounds.
     """
     white = _White(one, records, settings, time, rng)
     ends = white.ends(settings.starts)

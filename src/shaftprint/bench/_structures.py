@@ -79,10 +79,7 @@ class TimeComparison:
 def without(one: EquippedDrive, names: Sequence[str]) -> EquippedDrive:
     """Return a drive without what some parameters stand for: they are held at zero, and the structure is named so.
 
-    Raises
-    ------
-    StructureError
-        If one is no parameter of the structure, or cannot be zero.
+    Raises StructureError if one is no parameter of the structure, or cannot be zero.
     """
     structure = one.structure.held_at(**dict.fromkeys(names, 0.0))
     titled = replace(structure, name=f"{structure.name} without {', '.join(names)}")
@@ -96,21 +93,9 @@ def compare_in_time(
 ) -> TimeComparison:
     """Fit several structures to the same records and say which of them these want.
 
-    Parameters
-    ----------
-    drives
-        The drive once with each structure, of the same inputs and outputs.
-    records
-        Its records.
-    rng
-        Source of the start values.
-    starts
-        Starts of each search.
-
-    Raises
-    ------
-    IdentificationError
-        If structures differ in inputs or outputs or share a name, or one cannot be fitted.
+    ``drives``: the drive once with each structure, of the same inputs and outputs. ``records``: its records. ``rng``:
+    source of the start values. ``starts``: starts of each search. Raises IdentificationError if structures differ in
+    inputs or outputs or share a name, or one cannot be fitted.
     """
     expect_comparable([one.structure for one in drives])
     # the smaller ones first: what holds them starts from their optima

@@ -38,10 +38,7 @@ class ValidatedRecord:
 def identified_from(kept: DriveFingerprint, files: Sequence[str], records: Sequence[Record]) -> tuple[str, ...]:
     """Return the names of records that share time with those that a fingerprint was identified from.
 
-    Parameters
-    ----------
-    files
-        SHA-256 of each file; every one gave as many of the records, in their order.
+    ``files``: SHA-256 of each file; every one gave as many of the records, in their order.
     """
     each = len(records) // len(files)
     of = [file for file in files for _ in range(each)]

@@ -19,12 +19,7 @@ def turn_of(unit: str) -> float | None:
 def unwrapped(values: FloatArray, turn: float) -> FloatArray | None:
     """Return an angle that goes on from turn to turn; None where it does so already.
 
-    Parameters
-    ----------
-    values
-        The angle; what is no number stays so, shape (samples,).
-    turn
-        One turn in its unit.
+    ``values``: the angle; what is no number stays so, shape (samples,). ``turn``: one turn in its unit.
     """
     finite = np.isfinite(values)
     angle = values[finite]

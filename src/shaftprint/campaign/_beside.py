@@ -20,14 +20,8 @@ def runs_beside(multisine: Multisine, leg: "Leg") -> bool:
 def faults_beside(multisines: Iterable[Multisine], legs: "Iterable[Leg]", middles_v: Mapping[str, float]) -> list[str]:
     """Return what is wrong with multisines of further inputs, one sentence each.
 
-    Parameters
-    ----------
-    multisines
-        Those that move something else than the set point of the speed.
-    legs
-        Those of the speed.
-    middles_v
-        Voltage of each further input outside of its tests [V].
+    ``multisines``: those that move something else than the set point of the speed. ``legs``: those of the speed.
+    ``middles_v``: voltage of each further input outside of its tests [V].
     """
     every, errors = tuple(legs), []
     taken: dict[tuple[str, int], str] = {}

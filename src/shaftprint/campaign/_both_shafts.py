@@ -137,14 +137,7 @@ class CampaignOfBoth(Shown, Settings):
 def load_campaign_of_both(path_or_name: str | Path) -> CampaignOfBoth:
     """Read a campaign file of both shafts, or a shipped one by its name such as ``at-once``.
 
-    Parameters
-    ----------
-    path_or_name
-        Path of a TOML file, or the name of a shipped campaign of both shafts.
-
-    Raises
-    ------
-    SettingsError
-        If the file cannot be used; the message lists every field that is wrong.
+    ``path_or_name``: path of a TOML file, or the name of a shipped campaign of both shafts. Raises SettingsError if the
+    file cannot be used; the message lists every field that is wrong.
     """
     return load_settings(path_or_name, CampaignOfBoth, shipped=files(__package__) / "shipped_for_both")

@@ -20,12 +20,7 @@ _DIGITS = 12
 def campaign_text(campaign: Campaign, *, remarks: str = "") -> str:
     """Return a campaign as the text of a TOML file.
 
-    Parameters
-    ----------
-    campaign
-        The campaign.
-    remarks
-        What is said at the head of the file, as comments, a line each.
+    ``remarks``: what is said at the head of the file, as comments, a line each.
     """
     values = campaign.model_dump(exclude_none=True, exclude={*TESTS, "further_offsets_v"})
     # a control character would end the comment and begin a setting

@@ -50,14 +50,8 @@ class Leg(Settings):
     def value_at(self, time_s: FloatArray) -> FloatArray:
         """Return the set point.
 
-        Parameters
-        ----------
-        time_s
-            Times since the start of the recording [s], any shape; the leg is continued periodically beyond its ends.
-
-        Returns
-        -------
-        Set point [V], the level included, shape of ``time_s``.
+        ``time_s``: times since the start of the recording [s], any shape; the leg is continued periodically beyond its
+        ends.
         """
 
     @property

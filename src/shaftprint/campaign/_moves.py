@@ -61,14 +61,9 @@ def moves_of(
     A ramp to a leg ends where the leg starts, with the value with which that begins; the ramp back to the offset begins
     where a leg stops. Between two legs the set point waits at the last value of the first.
 
-    Parameters
-    ----------
-    tests
-        What moves the set point of the speed, in order of time.
-    offset_v, duration_s
-        Set point outside of every test [V], and length of the campaign [s].
-    ramp_s, ramp_v_per_s
-        Time [s] or rate [V/s] of every ramp; without both they jump.
+    ``tests``: what moves the set point of the speed, in order of time. ``offset_v``, ``duration_s``: set point outside
+    of every test [V], and length of the campaign [s]. ``ramp_s``, ``ramp_v_per_s``: time [s] or rate [V/s] of every
+    ramp; without both they jump.
     """
     moves = []
     for before, after in pairwise((None, *tests, None)):
@@ -99,12 +94,7 @@ def moves_of(
 def faults_of(moves: "Sequence[Move]", *, ramp_s: float | None, ramp_v_per_s: float | None) -> list[str]:
     """Return what is wrong with the ramps of a campaign, one sentence each.
 
-    Parameters
-    ----------
-    moves
-        From `moves_of`.
-    ramp_s, ramp_v_per_s
-        What the campaign states of them.
+    ``moves``: from `moves_of`. ``ramp_s``, ``ramp_v_per_s``: what the campaign states of them.
     """
     if ramp_s is not None and ramp_v_per_s is not None:
         return ["expected one of ramp_s and ramp_v_per_s, found both."]

@@ -51,10 +51,7 @@ class Derived:
 def gear_ratio(card: Card) -> Derived:
     """Return engine speed over propeller speed.
 
-    Raises
-    ------
-    SettingsError
-        If the card has neither the ratio nor the speed of the propeller.
+    Raises SettingsError if the card has neither the ratio nor the speed of the propeller.
     """
     if card.gear_ratio is not None:
         return Derived(value=card.gear_ratio, origin="")

@@ -29,14 +29,10 @@ def series_torque(
 ) -> SeriesTorque | None:
     """Return ``K_Q`` at zero advance by the series that is nearest to a propeller; None where none was tested.
 
-    Parameters
-    ----------
-    series
-        Name of the series; with a nozzle in it Ka4-70 in nozzle 19A, whatever the blades, else Wageningen B.
-    blades, area_ratio, pitch_ratio
-        The propeller; an area ratio that is not known is that of usual open propellers.
-    astern
-        Whether the shaft turns astern; open propellers alone have a series for that, and one of them.
+    ``series``: name of the series; with a nozzle in it Ka4-70 in nozzle 19A, whatever the blades, else Wageningen B.
+    ``blades``, ``area_ratio``, ``pitch_ratio``: the propeller; an area ratio that is not known is that of usual open
+    propellers. ``astern``: whether the shaft turns astern; open propellers alone have a series for that, and one of
+    them.
     """
     try:
         if astern:
@@ -72,10 +68,7 @@ def open_water_curve(propeller: Propeller) -> OpenWaterCurve | None:
 def four_quadrant_curve(propeller: Propeller) -> FourQuadrantCurve:
     """Return thrust and torque of a propeller with ship and shaft each ahead or astern.
 
-    Raises
-    ------
-    PropellerError
-        If no such curves are known of the propeller, or of its pitch.
+    Raises PropellerError if no such curves are known of the propeller, or of its pitch.
     """
     if propeller.series is None:
         raise PropellerError(

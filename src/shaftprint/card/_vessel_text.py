@@ -30,10 +30,7 @@ _MOST_DIGITS = 6
 def vessel_text(card: Card) -> str:
     """Return the vessel file that follows from a card.
 
-    Raises
-    ------
-    SettingsError
-        If the card has neither gear ratio nor propeller speed, or a gauge in volts without its scale.
+    Raises SettingsError if the card has neither gear ratio nor propeller speed, or a gauge in volts without its scale.
     """
     parts = (_head(card), _engine(card), _gearbox(card), _propeller(card), _point(card), _limits(card), _inertia(card))
     return "\n\n".join("\n".join(part) for part in (*parts, _sensors(card))) + "\n"

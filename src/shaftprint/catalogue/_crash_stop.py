@@ -101,19 +101,9 @@ def crash_stop(propeller: FourQuadrantPropeller, *, curve: tuple[tuple[float, fl
     for astern. Outputs are the speeds of engine and shaft ``n`` and ``n_s``, ``M_s``, the rack ``X``, ``v_s`` and
     ``x_s``, how far the ship is ahead of one that sails on, over the speed at the working point [s].
 
-    Parameters
-    ----------
-    propeller
-        Curves and working point.
-    curve
-        Shape of the full-load torque, as in ``limited``.
-
-    Raises
-    ------
-    StructureError
-        If the propeller does not pull at its working point.
-    PropellerError
-        If the curves do not hold the pitch.
+    ``propeller``: curves and working point. ``curve``: shape of the full-load torque, as in ``limited``. Raises
+    StructureError if the propeller does not pull at its working point; PropellerError if the curves do not hold the
+    pitch.
     """
     if not propeller.pulls:
         raise StructureError(

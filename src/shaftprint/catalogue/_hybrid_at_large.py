@@ -38,19 +38,9 @@ def limited_hybrid(
     Inputs are ``n_set`` and ``M_m``. Outputs are the speed ``n`` of the diesel, that of the line ``n_l``, ``M_s``, the
     rack ``X`` and the torque ``M_c`` of the clutch over that of the shaft, a deviation.
 
-    Parameters
-    ----------
-    limits
-        Names of limits: those of ``limited``, and ``clutch``; without it the clutch is rigid.
-    curve, period_s
-        As in ``limited``.
-    name
-        What to call it; from the limits if not given.
-
-    Raises
-    ------
-    StructureError
-        If there is no limit of a name, or a smoke limit without a torque limit.
+    ``limits``: names of limits: those of ``limited``, and ``clutch``; without it the clutch is rigid. ``curve``,
+    ``period_s``: as in ``limited``. ``name``: what to call it; from the limits if not given. Raises StructureError if
+    there is no limit of a name, or a smoke limit without a torque limit.
     """
     of_engine = tuple(limit for limit in limits if limit != CLUTCHED)
     has_clutch = CLUTCHED in limits

@@ -95,16 +95,9 @@ def sailing_values(
 ) -> dict[str, float]:
     """Return the values of a free-sailing structure by its names, within its bounds; nothing of one that does not.
 
-    Parameters
-    ----------
-    structure
-        FREE-CORE, FREE-SHIP, FREE-CLOSED, FREE-LOG or FREE-PITCH.
-    exponent
-        Slope of the resistance, ``d ln R / d ln v``.
-    time_s
-        Time of the ship, ``m v / R`` [s].
-    slopes
-        Of thrust and torque coefficient, ``KnownPropeller.slopes``, where they are known.
+    ``structure``: FREE-CORE, FREE-SHIP, FREE-CLOSED, FREE-LOG or FREE-PITCH. ``exponent``: slope of the resistance, ``d
+    ln R / d ln v``. ``time_s``: time of the ship, ``m v / R`` [s]. ``slopes``: of thrust and torque coefficient,
+    ``KnownPropeller.slopes``, where they are known.
     """
     if not sails_free(structure):
         return {}

@@ -107,10 +107,7 @@ def limited(
 def parameters_of(limits: tuple[str, ...]) -> tuple[Parameter, ...]:
     """Return the parameters that some limits bring.
 
-    Raises
-    ------
-    StructureError
-        If there is no limit of a name, or a smoke limit without a torque limit.
+    Raises StructureError if there is no limit of a name, or a smoke limit without a torque limit.
     """
     unknown = [limit for limit in limits if limit not in OPTIONS]
     if unknown:
@@ -155,10 +152,7 @@ class LimitedEngine:
     ) -> tuple[Formula, Formula]:
         """Return brake torque and rack.
 
-        Parameters
-        ----------
-        observer
-            What the brake torque adds to the rate of the governor's integrator.
+        ``observer``: what the brake torque adds to the rate of the governor's integrator.
         """
         if "ramp" in self._limits:
             demand = rate_limited(flow, demand, p.r_s, period_s=self._period_s)

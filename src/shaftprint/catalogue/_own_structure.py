@@ -164,10 +164,7 @@ def _beside(path: Path) -> Iterator[None]:
 def _one_sentence(path: Path, *, prefix: str | None = None) -> Iterator[None]:
     """Turn whatever goes wrong in a user's file into one sentence with the line where it did.
 
-    Parameters
-    ----------
-    prefix
-        What stands before errors of ours that come from no line of the file.
+    ``prefix``: what stands before errors of ours that come from no line of the file.
     """
     try:
         yield

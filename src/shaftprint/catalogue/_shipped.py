@@ -69,10 +69,7 @@ def _limited_structure(name: str) -> Structure | None:
 def expect_roles(structure: Structure) -> None:
     """Check that every parameter with name and unit of one of the ship says by its role whether it is that.
 
-    Raises
-    ------
-    StructureError
-        If one has no role: nothing that the ship is known by would reach it.
+    Raises StructureError if one has no role: nothing that the ship is known by would reach it.
     """
     for parameter in structure.parameters:
         role = _shipped_roles().get((parameter.name, parameter.unit))

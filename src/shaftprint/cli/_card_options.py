@@ -78,10 +78,7 @@ _OF_GAUGE = "gauge_"
 def pulses(text: str) -> Pulses:
     """Return the pick-up of ``CHANNEL=PULSES``; pulses are a number or a wheel such as ``60-2``.
 
-    Raises
-    ------
-    click.BadParameter
-        If the text is something else.
+    Raises click.BadParameter if the text is something else.
     """
     channel, _, wheel = text.rpartition("=")
     if not channel or not wheel:
@@ -106,10 +103,7 @@ def card_options(command: Callable[..., Any]) -> Callable[..., Any]:
 def card_of(said: Mapping[str, Any]) -> Card | None:
     """Return the card that the options state; None where there are none.
 
-    Raises
-    ------
-    click.UsageError
-        If something is missing that cannot be derived.
+    Raises click.UsageError if something is missing that cannot be derived.
     """
     stated = {field: value for field, value in said.items() if value not in (None, False, ())}
     if not stated:

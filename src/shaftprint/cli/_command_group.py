@@ -118,10 +118,7 @@ class CommandGroup(LazyGroup):
     def invoke(self, ctx: click.Context) -> Any:
         """Run a command; what the user can mend ends in one sentence and a non-zero exit code.
 
-        Raises
-        ------
-        click.ClickException
-            For an error that the user can mend; click prints it and exits with 1.
+        Raises click.ClickException for an error that the user can mend; click prints it and exits with 1.
         """
         try:
             returned = super().invoke(ctx)

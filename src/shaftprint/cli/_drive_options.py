@@ -38,10 +38,7 @@ def is_given(option: str) -> bool:
 def expect_not_given(*options: str) -> None:
     """Refuse options of ships beside ``--drive``.
 
-    Raises
-    ------
-    click.UsageError
-        If one of them was given.
+    Raises click.UsageError if one of them was given.
     """
     given = [name for name in options if is_given(name)]
     if given:
@@ -61,10 +58,7 @@ def expect_not_given(*options: str) -> None:
 def only_recording(recordings: Sequence[Path]) -> Path:
     """Return the one recording of a ship.
 
-    Raises
-    ------
-    click.UsageError
-        If there are several.
+    Raises click.UsageError if there are several.
     """
     if len(recordings) > 1:
         raise click.UsageError(
@@ -87,9 +81,6 @@ def is_drive_place(place: Path) -> bool:
 def drive_fingerprint_at(place: Path) -> DriveFingerprint:
     """Return the fingerprint of a drive that is named by its file or folder.
 
-    Raises
-    ------
-    FingerprintError
-        If there is none.
+    Raises FingerprintError if there is none.
     """
     return read_drive_fingerprint(fingerprint_file(place))

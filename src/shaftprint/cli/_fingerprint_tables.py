@@ -33,14 +33,8 @@ def print_fingerprint(
 ) -> None:
     """Print verdict, conditions, parameters, physical values, margins, budget, quality and findings.
 
-    Parameters
-    ----------
-    fingerprint
-        What to print.
-    truth
-        True values by the names of parameters, combinations and physical values, where they are known.
-    line
-        Which line of a ship it is of, where there are several.
+    ``fingerprint``: what to print. ``truth``: true values by the names of parameters, combinations and physical values,
+    where they are known. ``line``: which line of a ship it is of, where there are several.
     """
     verdict, truth = fingerprint.verdict, truth or {}
     title = f"Verdict: {'trustworthy' if verdict.trustworthy else 'not trustworthy'}"

@@ -88,16 +88,8 @@ def tests_of_the_demo() -> tuple[FleetTest, ...]:
 def tested(seed: int, recordings: Path | None, folder: Path, test: FleetTest) -> Path:
     """Sail a test, identify it from its recording and write its fingerprint; return the file.
 
-    Parameters
-    ----------
-    seed
-        Seed of the fleet.
-    recordings
-        Where the recording stays; None where it is deleted.
-    folder
-        Where the fingerprint goes.
-    test
-        Which test.
+    ``seed``: seed of the fleet. ``recordings``: where the recording stays; None where it is deleted. ``folder``: where
+    the fingerprint goes. ``test``: which test.
     """
     rng = np.random.default_rng([seed, NAMES.index(test.ship), test.number])
     trial, chosen = load_trial(VESSEL, CAMPAIGN), structure(STRUCTURE)
@@ -130,18 +122,9 @@ def all_tested(
 ) -> Iterator[Path]:
     """Yield the fingerprint's file of each test as they are made, several at once.
 
-    Parameters
-    ----------
-    tests
-        The tests.
-    folder
-        Where the fingerprints go.
-    seed
-        Seed of the fleet.
-    recordings
-        Where recordings stay; None where they are deleted.
-    processes
-        How many at once; as many as there are processors when not given, eight at most.
+    ``folder``: where the fingerprints go. ``seed``: seed of the fleet. ``recordings``: where recordings stay; None
+    where they are deleted. ``processes``: how many at once; as many as there are processors when not given, eight at
+    most.
     """
     test = partial(tested, seed, recordings, folder)
     count = processes or min(os.cpu_count() or 1, MOST_PROCESSES)

@@ -12,14 +12,8 @@ def gathered_options(
 ) -> Callable[[Command], Command]:
     """Return what adds options to a command, which takes their values as one record.
 
-    Parameters
-    ----------
-    build
-        Makes the record of the values, which have the names of the options.
-    options
-        Decorators, each of one option, in the order of the help text.
-    name
-        Name under which the command takes the record.
+    ``build``: makes the record of the values, which have the names of the options. ``options``: Decorators, each of one
+    option, in the order of the help text. ``name``: name under which the command takes the record.
     """
 
     def add(command: Command) -> Command:

@@ -29,16 +29,9 @@ FEWEST_AT_CROSSOVER = 2
 def headline(parts: Sequence[Spectra], *, planned: int = 0, worst: str = "", lost: Sequence[str] = ()) -> str:
     """Return in a few sentences whether a test is good enough to identify a propulsion line.
 
-    Parameters
-    ----------
-    parts
-        Spectra of the sines, or of every leg; empty where they are refused.
-    planned
-        Number of lines of the campaign, those of all legs.
-    worst
-        What is worst of all that was found, in one sentence; empty where nothing speaks against the recording.
-    lost
-        What the recording does not hold of its campaign, from ``lost_parts``.
+    ``parts``: spectra of the sines, or of every leg; empty where they are refused. ``planned``: number of lines of the
+    campaign, those of all legs. ``worst``: what is worst of all that was found, in one sentence; empty where nothing
+    speaks against the recording. ``lost``: what the recording does not hold of its campaign, from ``lost_parts``.
     """
     if not parts:
         return f"Not good enough. {worst}"

@@ -20,10 +20,7 @@ with late():
 def named_prior(text: str) -> tuple[str, Prior]:
     """Return the name and the prior of ``NAME=MEAN+-STD``, a mean and a standard deviation.
 
-    Raises
-    ------
-    click.BadParameter
-        If the text is not of that form.
+    Raises click.BadParameter if the text is not of that form.
     """
     name, numbers = _split(text.replace("+/-", "+-"))
     mean, _, std = numbers.partition("+-")
@@ -40,10 +37,7 @@ def named_prior(text: str) -> tuple[str, Prior]:
 def named_value(text: str) -> tuple[str, float]:
     """Return the name and the number of ``NAME=VALUE``.
 
-    Raises
-    ------
-    click.BadParameter
-        If the text is not of that form.
+    Raises click.BadParameter if the text is not of that form.
     """
     name, number = _split(text)
     try:
@@ -60,10 +54,7 @@ def by_name(context: click.Context, parameter: click.Parameter, pairs: Sequence[
 def named_variable(text: str) -> tuple[str, tuple[str, str]]:
     """Return the role, and name and unit, of ``ROLE=NAME [UNIT]``; the unit is empty where none is given.
 
-    Raises
-    ------
-    click.BadParameter
-        If the text is not of that form.
+    Raises click.BadParameter if the text is not of that form.
     """
     role, name = _split(text)
     title, bracket, unit = name.removesuffix("]").rpartition(" [")
@@ -98,10 +89,7 @@ def _split(text: str) -> tuple[str, str]:
 def _number(text: str) -> float:
     """Return a finite number.
 
-    Raises
-    ------
-    ValueError
-        If the text is anything else.
+    Raises ValueError if the text is anything else.
     """
     number = float(text)
     if not math.isfinite(number):

@@ -17,12 +17,7 @@ with late():
 def print_limit_uses(uses: Sequence[LimitUse], *, is_expected: bool) -> None:
     """Print which excitation leaves which limit of the vessel file, and the nearest instant to each.
 
-    Parameters
-    ----------
-    uses
-        From ``limit_uses``.
-    is_expected
-        Whether they are of a campaign that has not been sailed.
+    ``uses``: from ``limit_uses``. ``is_expected``: whether they are of a campaign that has not been sailed.
     """
     expected = "Expected with the assumed values, without noise and as if no limit acted."
     recorded = "Averaged over 0.1 s; the brake torque from torque and speed at the gauge and the upstream inertia."

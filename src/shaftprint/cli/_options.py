@@ -97,10 +97,7 @@ def reading_options(command: Callable[..., Any]) -> Callable[..., Any]:
 def output_options(what: str) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
     """Return what adds the options ``--output`` and ``--format`` of a recording.
 
-    Parameters
-    ----------
-    what
-        What ``--output`` is, up to its endings.
+    ``what``: what ``--output`` is, up to its endings.
     """
     endings = f"{', '.join(WRITTEN_ENDINGS[:-1])} or {WRITTEN_ENDINGS[-1]}"
     output = click.option("-o", "--output", required=True, type=click.Path(path_type=Path), help=f"{what}: {endings}.")

@@ -25,10 +25,7 @@ _PERCENT = 100.0
 def wish_of(text: str) -> tuple[str, float, bool]:
     """Return name, standard deviation and whether it is over the value, of ``t_d=10%`` or ``g=0.05``.
 
-    Raises
-    ------
-    click.BadParameter
-        If the text is not of that form.
+    Raises click.BadParameter if the text is not of that form.
     """
     name, _, stated = text.rpartition("=")
     number, unit = _number(stated)
@@ -43,10 +40,7 @@ def wish_of(text: str) -> tuple[str, float, bool]:
 def wish_from(wishes: Sequence[tuple[str, float, bool]]) -> Wish:
     """Return the wishes of a command line.
 
-    Raises
-    ------
-    click.UsageError
-        If a number is wished for twice.
+    Raises click.UsageError if a number is wished for twice.
     """
     names = [name for name, _, _ in wishes]
     twice = sorted({name for name in names if names.count(name) > 1})
@@ -59,10 +53,7 @@ def wish_from(wishes: Sequence[tuple[str, float, bool]]) -> Wish:
 def limit_of(text: str) -> StatedLimit:
     """Return a limit of ``rate=600rpm/s``.
 
-    Raises
-    ------
-    click.BadParameter
-        If there is no such limit, or its number or unit is another.
+    Raises click.BadParameter if there is no such limit, or its number or unit is another.
     """
     name, _, stated = text.partition("=")
     kind = _stated_limits.LIMITS.get(name.strip())
@@ -79,10 +70,7 @@ def limit_of(text: str) -> StatedLimit:
 def seconds_of(text: str) -> float:
     """Return a length of time [s] of ``12min``, ``90s`` or ``1.5h``.
 
-    Raises
-    ------
-    click.BadParameter
-        If the text is not of that form.
+    Raises click.BadParameter if the text is not of that form.
     """
     number, unit = _number(text)
     if number is None or not number > 0.0 or unit not in _SECONDS:
@@ -93,10 +81,7 @@ def seconds_of(text: str) -> float:
 def shares_of(text: str) -> tuple[float, ...]:
     """Return speeds over that of the working point of ``0.78,1.15``.
 
-    Raises
-    ------
-    click.BadParameter
-        If the text is not of that form.
+    Raises click.BadParameter if the text is not of that form.
     """
     numbers = [_number(one) for one in text.split(",")]
     if any(number is None or not number > 0.0 or unit for number, unit in numbers):

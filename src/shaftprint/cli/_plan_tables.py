@@ -20,12 +20,7 @@ with late():
 def print_planned_test(planned: PlannedTest, folder: Path) -> None:
     """Print what a planned test reaches.
 
-    Parameters
-    ----------
-    planned
-        The test.
-    folder
-        Where its files are.
+    ``planned``: the test. ``folder``: where its files are.
     """
     first, *others = planned.sentences
     answer(first)

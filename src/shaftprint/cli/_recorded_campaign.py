@@ -21,12 +21,8 @@ with late():
 def write_recorded_campaign(recording: Path, vessel: str, file: Path) -> None:
     """Write the campaign that the set point of a recording shows.
 
-    Parameters
-    ----------
-    recording, vessel
-        The recording, and the vessel file that says which channel is the set point.
-    file
-        The campaign file, which must not exist yet.
+    ``recording``, ``vessel``: the recording, and the vessel file that says which channel is the set point. ``file``:
+    the campaign file, which must not exist yet.
     """
     expect_free(file, force=False)
     with read_recording(recording) as opened:

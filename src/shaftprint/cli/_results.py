@@ -44,28 +44,12 @@ def write_results(
 ) -> None:
     """Write fingerprint, figures and report of a survey into a folder.
 
-    Parameters
-    ----------
-    folder
-        Where they go.
-    recording, survey
-        The raw recording, and what was identified from it.
-    steps
-        Progress of the command.
-    thesis
-        The same recording done the thesis' way, to compare.
-    line_selection
-        What other ways to measure a sine give, to compare.
-    truth
-        True values by name, where they are known.
-    pictures
-        Whether the charts are written as pictures, too.
-    previous
-        Fingerprint of an earlier test, with which the first page compares.
-    pdf
-        Whether the first pages are written as PDF too.
-    hints
-        What the recording does not say itself.
+    ``folder``: where they go. ``recording``, ``survey``: the raw recording, and what was identified from it. ``steps``:
+    progress of the command. ``thesis``: the same recording done the thesis' way, to compare. ``line_selection``: what
+    other ways to measure a sine give, to compare. ``truth``: true values by name, where they are known. ``pictures``:
+    whether the charts are written as pictures, too. ``previous``: fingerprint of an earlier test, with which the first
+    page compares. ``pdf``: whether the first pages are written as PDF too. ``hints``: what the recording does not say
+    itself.
     """
     write_fingerprint(survey.fingerprint, folder / FINGERPRINT)
     steps.begin("Writing the report", total=1.0)

@@ -25,10 +25,7 @@ def sail_both_lines(
 ) -> None:
     """Simulate both lines of a ship in a campaign and write one raw recording.
 
-    Raises
-    ------
-    click.ClickException
-        If the recording is to be of another format than the native container.
+    Raises click.ClickException if the recording is to be of another format than the native container.
     """
     if output.suffix.lower() not in NATIVE_ENDINGS:
         raise click.ClickException(

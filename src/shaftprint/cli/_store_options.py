@@ -58,10 +58,7 @@ def moment_option(
 def instant(shown: datetime, zone: tzinfo | None, *, option: str) -> datetime:
     """Return the instant of a time that was typed.
 
-    Raises
-    ------
-    click.UsageError
-        If it has no offset and no zone was stated, or clocks of the zone show it twice or never.
+    Raises click.UsageError if it has no offset and no zone was stated, or clocks of the zone show it twice or never.
     """
     if shown.tzinfo is None and zone is None:
         raise click.UsageError(

@@ -87,12 +87,8 @@ def _put(text: str = "", *, err: bool = False) -> None:
 def echo(line: object = "", *, err: bool = False) -> None:
     """Print one line as it is.
 
-    Parameters
-    ----------
-    line
-        Text or a path; line breaks at its end leave empty lines, others are replaced.
-    err
-        Whether it goes to the error output.
+    ``line``: text or a path; line breaks at its end leave empty lines, others are replaced. ``err``: whether it goes to
+    the error output.
     """
     chosen = output()
     text = terminal_line(str(line))
@@ -125,12 +121,8 @@ def answer(text: str | Path) -> None:
 def print_findings(title: str, findings: Sequence[str], *, is_answer: bool = False) -> None:
     """Print findings in words, one a line, under a title.
 
-    Parameters
-    ----------
-    title, findings
-        What they are on, and they.
-    is_answer
-        Whether they are what the user has asked for: then they are printed with ``--quiet`` too.
+    ``title``, ``findings``: what they are on, and they. ``is_answer``: whether they are what the user has asked for:
+    then they are printed with ``--quiet`` too.
     """
     chosen = output()
     if chosen.document is not None:

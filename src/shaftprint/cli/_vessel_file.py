@@ -13,10 +13,7 @@ with late():
 def print_disagreements(vessel: Vessel, file: str) -> None:
     """Print what in a vessel file contradicts itself, as part of the answer, and what is strange; nothing else.
 
-    Parameters
-    ----------
-    vessel, file
-        What was read, and the path or name of a shipped file it was read from.
+    ``vessel``, ``file``: what was read, and the path or name of a shipped file it was read from.
     """
     found = disagreements(vessel)
     contradictions = [one.sentence(file) for one in found if one.is_contradiction]

@@ -31,10 +31,7 @@ class ClockMap:
     def __post_init__(self) -> None:
         """Check the numbers and make the covariance read-only.
 
-        Raises
-        ------
-        ClockError
-            If a number is not finite, the drift turns time round, or the covariance is none.
+        Raises ClockError if a number is not finite, the drift turns time round, or the covariance is none.
         """
         covariance = frozen_float(self.covariance)
         object.__setattr__(self, "covariance", covariance)

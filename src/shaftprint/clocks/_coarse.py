@@ -54,15 +54,8 @@ def coarse_offset(other: Content, reference: Content) -> float:
 
     The changes of both are correlated at every shift; the best must stand out.
 
-    Parameters
-    ----------
-    other, reference
-        What both have seen, at least 5 values a second.
-
-    Raises
-    ------
-    ClockError
-        If there is nothing in common, or the content repeats itself so that several shifts fit.
+    ``other``, ``reference``: what both have seen, at least 5 values a second. Raises ClockError if there is nothing in
+    common, or the content repeats itself so that several shifts fit.
     """
     names = f"channels {reference.name} and {other.name}"
     shorter_s = _shorter_s(other, reference)

@@ -27,14 +27,8 @@ def shared_band(
 ) -> tuple[FloatArray, FloatArray]:
     """Return both contents filtered, each of shape (samples,).
 
-    Parameters
-    ----------
-    slow, fast
-        Contents at the same instants, as nearly as the map of the clocks is known, shape (samples,).
-    rate_hz
-        Their rate [Hz].
-    chance
-        Coherence up to so many times what chance gives tells nothing.
+    ``slow``, ``fast``: contents at the same instants, as nearly as the map of the clocks is known, shape (samples,).
+    ``rate_hz``: their rate [Hz]. ``chance``: coherence up to so many times what chance gives tells nothing.
     """
     length = min(round(SEGMENT_S * rate_hz), slow.size // 3)
     straight_slow, straight_fast = scipy.signal.detrend(slow), scipy.signal.detrend(fast)

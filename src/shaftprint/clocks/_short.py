@@ -34,21 +34,9 @@ def short_line(
 ) -> tuple[ClockMap, list[WindowDelay]]:
     """Return the map from the slower content's clock to the faster one's, and the one delay on which it rests.
 
-    Parameters
-    ----------
-    slow, fast
-        What both loggers have seen.
-    offset_s
-        What the faster content's clock reads more, roughly [s].
-    drift_std
-        Standard deviation of the drift, which a short recording does not tell [s/s].
-    names
-        The channels, for messages.
-
-    Raises
-    ------
-    ClockError
-        If the delay cannot be told.
+    ``slow``, ``fast``: what both loggers have seen. ``offset_s``: what the faster content's clock reads more, roughly
+    [s]. ``drift_std``: standard deviation of the drift, which a short recording does not tell [s/s]. ``names``: the
+    channels, for messages. Raises ClockError if the delay cannot be told.
     """
     for _ in range(3):
         there_s = slow.time_s + offset_s

@@ -51,14 +51,8 @@ class WindowDelay:
 def delays_of(slow: Content, fast: Content, expected: FloatArray, within_s: float) -> list[WindowDelay]:
     """Return the delay of every stretch, in order of time.
 
-    Parameters
-    ----------
-    slow, fast
-        What both loggers have seen.
-    expected
-        Delay that is looked around, at each value of ``slow`` [s].
-    within_s
-        How far from it to look [s].
+    ``slow``, ``fast``: what both loggers have seen. ``expected``: delay that is looked around, at each value of
+    ``slow`` [s]. ``within_s``: how far from it to look [s].
     """
     inside = (slow.time_s + expected > fast.start_s) & (slow.time_s + expected < fast.time_s[-1])
     time_s, expected = slow.time_s[inside], expected[inside]

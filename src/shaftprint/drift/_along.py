@@ -37,12 +37,8 @@ class Whitened:
 
         At 1 a test of this kind cannot tell them apart.
 
-        Parameters
-        ----------
-        chosen
-            Directions beside which a further change is asked for.
-        asked
-            Which directions; all when not given. Shape (asked, asked).
+        ``chosen``: directions beside which a further change is asked for. ``asked``: which directions; all when not
+        given. Shape (asked, asked).
         """
         left = self._left(chosen)[:, list(range(self.directions.shape[1]) if asked is None else asked)]
         unit = left / np.linalg.norm(left, axis=0)
@@ -83,19 +79,9 @@ class Whitened:
 def whitened(difference: FloatArray, covariance: FloatArray, directions: FloatArray) -> Whitened:
     """Return a difference and directions with the covariance taken out.
 
-    Parameters
-    ----------
-    difference
-        Shape (numbers,).
-    covariance
-        Covariance of the difference, positive definite, shape (numbers, numbers).
-    directions
-        Shape (numbers, directions).
-
-    Raises
-    ------
-    numpy.linalg.LinAlgError
-        If the covariance is not positive definite.
+    ``difference``: shape (numbers,). ``covariance``: covariance of the difference, positive definite, shape (numbers,
+    numbers). ``directions``: shape (numbers, directions). Raises numpy.linalg.LinAlgError if the covariance is not
+    positive definite.
     """
     # numbers of different units: factor the correlation
     scale = np.sqrt(np.diag(covariance))
@@ -109,12 +95,7 @@ def whitened(difference: FloatArray, covariance: FloatArray, directions: FloatAr
 def p_value_of_largest(score: float, cosines: FloatArray) -> float:
     """Return how probable it is at most that chance makes the largest of several ``|z|`` that large or larger.
 
-    Parameters
-    ----------
-    score
-        The largest ``z``.
-    cosines
-        Correlation of the ``z``, shape (directions, directions).
+    ``score``: the largest ``z``. ``cosines``: correlation of the ``z``, shape (directions, directions).
     """
     limit = abs(score)
     single = 2.0 * float(normal_cdf(-limit))

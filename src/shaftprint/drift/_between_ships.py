@@ -70,12 +70,7 @@ def between_ships(numbers: ClassNumbers, spread: Spread) -> FloatArray:
 def spread_of(numbers: ClassNumbers, ships: tuple[int, ...]) -> Spread:
     """Return how much some ships of a class differ, and their mean.
 
-    Parameters
-    ----------
-    numbers
-        Numbers of all ships of the class.
-    ships
-        Places of those that tell it, two at least.
+    ``numbers``: numbers of all ships of the class. ``ships``: places of those that tell it, two at least.
     """
     count = numbers.building.shape[1]
     common = np.ones(count)
@@ -118,19 +113,9 @@ def _spread(numbers: ClassNumbers, ships: tuple[int, ...], scales: FloatArray, k
 def departure_of(numbers: ClassNumbers, ship: int, spread: Spread) -> Departure:
     """Return how far a ship is from the class that others tell.
 
-    Parameters
-    ----------
-    numbers
-        Numbers of all ships of the class.
-    ship
-        Place of the ship.
-    spread
-        What others tell; the ship may be among them, for its distance from a mean that it has a part in.
-
-    Raises
-    ------
-    numpy.linalg.LinAlgError
-        If the covariance is not positive definite.
+    ``numbers``: numbers of all ships of the class. ``ship``: place of the ship. ``spread``: what others tell; the ship
+    may be among them, for its distance from a mean that it has a part in. Raises numpy.linalg.LinAlgError if the
+    covariance is not positive definite.
     """
     size, count = numbers.values.shape[1], len(numbers.values)
     against = -spread.weights
@@ -154,14 +139,8 @@ def departure_of(numbers: ClassNumbers, ship: int, spread: Spread) -> Departure:
 def _freedom(variance: FloatArray, added: FloatArray, spread: Spread) -> FloatArray:
     """Return the degrees of freedom of variances that are in part estimated, by their own variances (Satterthwaite).
 
-    Parameters
-    ----------
-    variance
-        The variances, shape (variances,).
-    added
-        What each tolerance, at a scale of 1, adds to them; shape (variances, tolerances).
-    spread
-        What the scales are, and how well they are known.
+    ``variance``: the variances, shape (variances,). ``added``: what each tolerance, at a scale of 1, adds to them;
+    shape (variances, tolerances). ``spread``: what the scales are, and how well they are known.
     """
     relative = np.einsum("dt,tu,du->d", added, spread.scale_covariance, added) / np.maximum(variance, 1e-300) ** 2
     # no fewer than if it were told by itself
@@ -172,12 +151,7 @@ def _freedom(variance: FloatArray, added: FloatArray, spread: Spread) -> FloatAr
 def prediction(numbers: ClassNumbers, spread: Spread) -> tuple[FloatArray, FloatArray]:
     """Return variance and degrees of freedom of each true number of a new sister about the mean; shape (numbers,) each.
 
-    Parameters
-    ----------
-    numbers
-        Numbers of all ships of the class.
-    spread
-        What its ships tell.
+    ``numbers``: numbers of all ships of the class. ``spread``: what its ships tell.
     """
     count, size = numbers.values.shape
     mean = np.diag(numbers.covariance_of(spread.weights))

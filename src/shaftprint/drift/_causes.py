@@ -220,12 +220,7 @@ ALL_CAUSES: tuple[Cause, ...] = (*CAUSES, GAUGE)
 def by_role(cause: Cause, roles: Mapping[str, Role | None]) -> tuple[str, ...]:
     """Return the numbers that a cause moves by their roles; none where one that it should move is not there.
 
-    Parameters
-    ----------
-    cause
-        The cause.
-    roles
-        Role of each number.
+    ``roles``: role of each number.
     """
     if not may_happen(cause, roles.values()):
         return ()

@@ -94,10 +94,7 @@ class ClassNumbers:
     def covariance_of(self, sums: FloatArray) -> FloatArray:
         """Return the covariance of weighted sums of the numbers that tests leave open.
 
-        Parameters
-        ----------
-        sums
-            Weights of the numbers of all ships, those of one ship together; shape (sums, ships * numbers).
+        ``sums``: weights of the numbers of all ships, those of one ship together; shape (sums, ships * numbers).
         """
         count, size = self.values.shape
         of_ship = sums.reshape(-1, count, size).transpose(1, 0, 2)
@@ -111,15 +108,10 @@ def class_numbers(
 ) -> ClassNumbers:
     """Return the numbers that all tests of all ships have, a mean of each ship.
 
-    Parameters
-    ----------
-    ships
-        Ships of one class, each with one test at least.
-    load_repeatability
-        Standard deviation of the torque that a propeller takes at one speed from day to day, as a share.
-    tolerances
-        Standard deviations between sisters as they are built, by cause: shares, or times [s]. Where they are given
-        they are known, and so are the usual ones of other causes.
+    ``ships``: ships of one class, each with one test at least. ``load_repeatability``: standard deviation of the torque
+    that a propeller takes at one speed from day to day, as a share. ``tolerances``: standard deviations between sisters
+    as they are built, by cause: shares, or times [s]. Where they are given they are known, and so are the usual ones of
+    other causes.
     """
     tests = [test.fingerprint for ship in ships for test in ship.tests]
     judged = judged_in([test for ship in ships for test in ship.tests])

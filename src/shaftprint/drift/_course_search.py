@@ -54,10 +54,7 @@ class CourseSearch:
     def of(cls, series: Series, tests: int) -> "CourseSearch":
         """Return the search in a series of which a number of tests was made.
 
-        Raises
-        ------
-        numpy.linalg.LinAlgError
-            If the covariance is not positive definite.
+        Raises numpy.linalg.LinAlgError if the covariance is not positive definite.
         """
         courses: list[tuple[int, Shape, int]] = []
         columns: list[FloatArray] = []

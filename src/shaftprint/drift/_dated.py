@@ -49,10 +49,7 @@ class Event:
     def __post_init__(self) -> None:
         """Check kind and time.
 
-        Raises
-        ------
-        FingerprintError
-            If the kind is not known, or the time has no zone.
+        Raises FingerprintError if the kind is not known, or the time has no zone.
         """
         if self.kind not in EVENTS:
             raise FingerprintError(f"event: expected one of {', '.join(EVENTS)}, found {self.kind!r}.")

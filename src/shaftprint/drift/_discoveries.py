@@ -10,12 +10,7 @@ def discoveries(p_values: Sequence[float], share: float) -> tuple[int, ...]:
     false discovery rate", Journal of the Royal Statistical Society B 57, 1995): the largest ``i`` for which the
     ``i``-th smallest is no larger than ``share i / count``.
 
-    Parameters
-    ----------
-    p_values
-        Probability of each that chance alone makes as much or more.
-    share
-        The share, such as 0.05.
+    ``p_values``: probability of each that chance alone makes as much or more. ``share``: the share, such as 0.05.
     """
     ordered = sorted(range(len(p_values)), key=lambda at: p_values[at])
     count = len(p_values)

@@ -17,12 +17,7 @@ _SMALLEST, _SHIFT, _BISECTIONS = 1e-3, 10.0, 60
 def worth_of_common(variances: FloatArray, freedom: float) -> float:
     """Return how many differences what the variances have in common is worth, ``d0`` between 2 and 200.
 
-    Parameters
-    ----------
-    variances
-        Each over what it is expected to be, shape (variances,).
-    freedom
-        Degrees of freedom of each.
+    ``variances``: each over what it is expected to be, shape (variances,). ``freedom``: degrees of freedom of each.
     """
     if variances.size < 2:
         return MOST_WORTH

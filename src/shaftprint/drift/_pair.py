@@ -49,14 +49,9 @@ def pair_of(
 ) -> Pair | None:
     """Return the difference of two fingerprints; None where one of them does not hold its numbers together.
 
-    Parameters
-    ----------
-    first, other
-        Two fingerprints of one ship, the earlier one first.
-    load_repeatability
-        Standard deviation of the torque that a propeller takes at one speed from day to day, as a share.
-    moved
-        What a change of the ship has done to the numbers, shape (numbers,); nothing when not given.
+    ``first``, ``other``: two fingerprints of one ship, the earlier one first. ``load_repeatability``: standard
+    deviation of the torque that a propeller takes at one speed from day to day, as a share. ``moved``: what a change of
+    the ship has done to the numbers, shape (numbers,); nothing when not given.
     """
     if first.joint is None or other.joint is None:
         return None
@@ -87,14 +82,8 @@ def not_judged(
 ) -> tuple[Cause, ...]:
     """Return the causes that move numbers which were left out, so that they are not excluded.
 
-    Parameters
-    ----------
-    causes
-        Those that are judged.
-    doubts
-        Why each number is not judged; empty where it is.
-    fingerprints
-        Fingerprints that have these numbers.
+    ``causes``: those that are judged. ``doubts``: why each number is not judged; empty where it is. ``fingerprints``:
+    fingerprints that have these numbers.
     """
     of_all = {
         name: one.quantity(name).role for one in fingerprints if one.joint is not None for name in one.joint.names
@@ -144,12 +133,8 @@ def _covariance(before: SingleTest, after: SingleTest, shared: SharedErrors, *, 
 def directions_of(roles: "dict[str, Role | None]", scale: FloatArray | None) -> tuple[tuple[Cause, ...], FloatArray]:
     """Return what may have moved the numbers, and how.
 
-    Parameters
-    ----------
-    roles
-        Role of each number.
-    scale
-        What one standard deviation of the scale of the gauge does to them; None where it is known exactly.
+    ``roles``: role of each number. ``scale``: what one standard deviation of the scale of the gauge does to them; None
+    where it is known exactly.
     """
     names = list(roles)
     moved = {cause: by_role(cause, roles) for cause in CAUSES}

@@ -22,14 +22,9 @@ def program_epochs(
 ) -> tuple[Event, ...]:
     """Return an event for each test of another version than the one before, where their numbers may differ.
 
-    Parameters
-    ----------
-    tests
-        Tests of one line in the order of time, each recording once.
-    fingerprints
-        All fingerprints of the line, with those of the same recording by other versions.
-    events
-        What was stated; a change of the program between two tests that stands there already is not repeated.
+    ``tests``: tests of one line in the order of time, each recording once. ``fingerprints``: all fingerprints of the
+    line, with those of the same recording by other versions. ``events``: what was stated; a change of the program
+    between two tests that stands there already is not repeated.
     """
     shown = _shown_alike(fingerprints)
     epochs = []

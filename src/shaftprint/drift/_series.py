@@ -49,17 +49,10 @@ class Series:
 def series_of(history: History, *, made: int, load_repeatability: float, moved: FloatArray | None = None) -> Series:
     """Return the numbers that all tests of a history have, with their covariance.
 
-    Parameters
-    ----------
-    history
-        The tests, with copies of the last one for those that are still to come.
-    made
-        Number of tests that were made.
-    load_repeatability
-        Standard deviation of the torque that a propeller takes at one speed from day to day, as a share.
-    moved
-        What a change of the ship has done to the numbers of the tests that were made, shape (made, numbers); nothing
-        when not given. What events have done is seen here.
+    ``history``: the tests, with copies of the last one for those that are still to come. ``made``: number of tests that
+    were made. ``load_repeatability``: standard deviation of the torque that a propeller takes at one speed from day to
+    day, as a share. ``moved``: what a change of the ship has done to the numbers of the tests that were made, shape
+    (made, numbers); nothing when not given. What events have done is seen here.
     """
     fingerprints = [test.fingerprint for test in history.tests]
     judged = judged_in(history.tests[:made])
@@ -130,12 +123,8 @@ def own_covariances(
     In its tightest directions a covariance holds at its own estimates alone: each test's turns a little as these move
     along the valley of delay and gains. Taken as they are, many of them would cut each other's ellipsoids to a point.
 
-    Parameters
-    ----------
-    tests, singles
-        The tests; those behind the last of ``whole`` are still to come and like the last one.
-    whole
-        Whether a test says something of every number, shape (made,): else its shape is that of the others.
+    ``tests``, ``singles``: the tests; those behind the last of ``whole`` are still to come and like the last one.
+    ``whole``: whether a test says something of every number, shape (made,): else its shape is that of the others.
     """
     variances = np.array([np.diag(one.own) for one in singles])
     for at in range(len(tests)):

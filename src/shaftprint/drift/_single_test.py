@@ -46,10 +46,7 @@ def is_share(role: "Role | None") -> bool:
 def single_test(fingerprint: "Fingerprint", names: tuple[str, ...]) -> SingleTest:
     """Return a test with some of its numbers, in the coordinates in which tests are compared.
 
-    Raises
-    ------
-    FingerprintError
-        If the fingerprint does not hold its numbers together.
+    Raises FingerprintError if the fingerprint does not hold its numbers together.
     """
     joint = fingerprint.joint
     if joint is None:

@@ -7,10 +7,7 @@ from shaftprint.drift._words import ALIKE, odds_text, open_sentences, size_text,
 def sister_sentences(finding: ClassFinding) -> tuple[str, ...]:
     """Return which ships of a class are not as their sisters are, and in what, the answer first.
 
-    Parameters
-    ----------
-    finding
-        What ``judge_sisters`` has found.
+    ``finding``: what ``judge_sisters`` has found.
     """
     if finding.because:
         return (f"It cannot be told: {finding.because}.",)

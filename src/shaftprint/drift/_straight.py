@@ -46,17 +46,9 @@ def straightened(
     Told it is where all tests are of one structure, a shipped one, with the frequencies of their lines, at as many
     speeds each.
 
-    Parameters
-    ----------
-    tests
-        Fingerprints.
-    singles
-        Their numbers, see ``single_test``.
-    names
-        Names of these numbers.
-    moved
-        What changes of the ship have done to the numbers of each test, so that it is no way along the valley; shape
-        (tests, numbers), nothing when not given.
+    ``tests``: fingerprints. ``singles``: their numbers, see ``single_test``. ``names``: names of these numbers.
+    ``moved``: what changes of the ship have done to the numbers of each test, so that it is no way along the valley;
+    shape (tests, numbers), nothing when not given.
     """
     model = _model_of(tests)
     if model is None:

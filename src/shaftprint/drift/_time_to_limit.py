@@ -30,19 +30,9 @@ class TimeToLimit:
 def time_to_limit(course: DatedCause, limit: float, history: History) -> TimeToLimit:
     """Return when a ramp reaches a limit.
 
-    Parameters
-    ----------
-    course
-        The ramp.
-    limit
-        Size of the cause that it must not pass, of either sign: a share, or a time [s].
-    history
-        The tests in which it was found.
-
-    Raises
-    ------
-    FingerprintError
-        If it is a step, or the limit is zero or no share above -1.
+    ``course``: the ramp. ``limit``: size of the cause that it must not pass, of either sign: a share, or a time [s].
+    ``history``: the tests in which it was found. Raises FingerprintError if it is a step, or the limit is zero or no
+    share above -1.
     """
     if course.shape != "ramp":
         raise FingerprintError(f"{course.cause.name}: expected a ramp, found a step; it goes on to no limit.")

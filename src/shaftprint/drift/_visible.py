@@ -37,10 +37,7 @@ def visible_changes(accuracy: "Accuracy") -> tuple[VisibleChange, ...]:
     What was known beforehand is the same in both and cancels. A change of the propeller is not among them: it is seen
     in the torque of the working point, of which no prediction knows how the load wanders.
 
-    Parameters
-    ----------
-    accuracy
-        What one of them would give.
+    ``accuracy``: what one of them would give.
     """
     free = [parameter for parameter in accuracy.objective.parameters if not parameter.held]
     names = [one.name for one in free]

@@ -20,10 +20,7 @@ UNEXPLAINED = 0.001
 def finding_sentences(finding: Finding) -> tuple[str, ...]:
     """Return whether the ship has changed and what may have changed, the answer first.
 
-    Parameters
-    ----------
-    finding
-        What ``differ`` has found.
+    ``finding``: what ``differ`` has found.
     """
     if finding.because:
         return (f"It cannot be told: {finding.because}.",)
@@ -88,12 +85,7 @@ def _p(p_value: float) -> str:
 def watch_sentences(finding: WatchFinding, history: History) -> tuple[str, ...]:
     """Return whether a ship drifts, since when and how fast, and what may have changed, the answer first.
 
-    Parameters
-    ----------
-    finding
-        What ``watch`` has found.
-    history
-        The tests in which it was found.
+    ``finding``: what ``watch`` has found. ``history``: the tests in which it was found.
     """
     if finding.because:
         return (f"It cannot be told: {finding.because}.",)
@@ -109,14 +101,8 @@ def watch_sentences(finding: WatchFinding, history: History) -> tuple[str, ...]:
 def limit_sentence(finding: WatchFinding, cause: Cause, limit: float, history: History) -> str:
     """Return when a cause reaches a limit if it goes on as it did, in a sentence.
 
-    Parameters
-    ----------
-    finding
-        What ``watch`` has found.
-    cause, limit
-        Which cause, and the size that it must not pass: a share, or a time [s].
-    history
-        The tests in which it was found.
+    ``finding``: what ``watch`` has found. ``cause``, ``limit``: which cause, and the size that it must not pass: a
+    share, or a time [s]. ``history``: the tests in which it was found.
     """
     asked = f"{cause.name}, {cause.in_unit(limit):g} {cause.unit}"
     ramps = (drift.best for drift in finding.drifts if drift.best.cause == cause and drift.best.shape == "ramp")
@@ -131,12 +117,7 @@ def limit_sentence(finding: WatchFinding, cause: Cause, limit: float, history: H
 def _course_text(course: DatedCause, days: Sequence[str]) -> str:
     """Return what a course says: what has happened, by how much, and since when.
 
-    Parameters
-    ----------
-    course
-        The course.
-    days
-        When each test was made, in words.
+    ``days``: when each test was made, in words.
     """
     size = f"{course.words}, by {size_text(course)}"
     if course.shape == "ramp":

@@ -21,10 +21,7 @@ def identifier(text: str) -> str:
 def c_number(value: float) -> str:
     """Return a number as C writes it, exact to the last bit.
 
-    Raises
-    ------
-    ExportError
-        If it is infinite or not a number: such a value must never become a limit.
+    Raises ExportError if it is infinite or not a number: such a value must never become a limit.
     """
     if not math.isfinite(value):
         raise ExportError(f"export: expected finite numbers in the equations, found {value}; give the limit a value.")
@@ -44,10 +41,7 @@ def c_integers(values: Sequence[int]) -> str:
 def c_function(name: str, formulas: Sequence[Formula], leaves: Mapping[str, Sequence[str]]) -> str:
     """Return a function that fills ``out`` with the values of formulas, each part computed once.
 
-    Parameters
-    ----------
-    leaves
-        For each kind of leaf the member of ``Values`` it stands in, and the names of its places.
+    ``leaves``: for each kind of leaf the member of ``Values`` it stands in, and the names of its places.
     """
     used: dict[str, str] = {}
     lines: list[str] = []

@@ -77,21 +77,10 @@ def host_platform() -> str:
 def build_binary(folder: Path, sources: Sequence[str], name: str, binary: Path) -> None:
     """Compile sources to a shared library.
 
-    Parameters
-    ----------
-    folder
-        Where the sources are.
-    sources
-        Their file names.
-    name
-        System to build for, one of ``PLATFORMS``. What was compiled before from the same sources is taken as it is.
-    binary
-        File to write; in systems where a library knows its name, it is that of the file.
-
-    Raises
-    ------
-    ExportError
-        If there is no compiler for that system, or it fails.
+    ``folder``: where the sources are. ``sources``: their file names. ``name``: system to build for, one of
+    ``PLATFORMS``. What was compiled before from the same sources is taken as it is. ``binary``: file to write; in
+    systems where a library knows its name, it is that of the file. Raises ExportError if there is no compiler for that
+    system, or it fails.
     """
     compiler = _compiler(name)
     options = [*FLAGS, *sources]

@@ -93,10 +93,7 @@ class FmuEquations:
     def header(self, token: str) -> str:
         """Return ``model.h``.
 
-        Parameters
-        ----------
-        token
-            What ties binary and model description together.
+        ``token``: what ties binary and model description together.
         """
         numbers = self.sizes | {f"VR_{name}": first for name, first in self.references.items()}
         lines = [f"#define {name} {value}\n" for name, value in numbers.items()]
@@ -107,10 +104,7 @@ class FmuEquations:
     def source(self, title: str) -> str:
         """Return ``model.c``.
 
-        Parameters
-        ----------
-        title
-            What the equations are of.
+        ``title``: what the equations are of.
         """
         formulas = self._formulas()
         functions = [c_function(f"model_{name}", formulas[name], self._leaves()) for name in FUNCTIONS]

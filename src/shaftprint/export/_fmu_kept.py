@@ -18,12 +18,7 @@ MOST_KEPT: Final = 200
 def place_of_binary(command: Sequence[str], folder: Path) -> Path | None:
     """Return the file of what a command makes of the sources in a folder; None where nothing can be kept.
 
-    Parameters
-    ----------
-    command
-        Compiler and options, and what tells one version of the compiler from another.
-    folder
-        The sources.
+    ``command``: compiler and options, and what tells one version of the compiler from another. ``folder``: the sources.
     """
     cache = private_folder("fmu")
     if cache is None:

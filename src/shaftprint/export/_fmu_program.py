@@ -111,15 +111,8 @@ class FmuProgram:
 def fmu_program(structure: Structure, values: FloatArray) -> FmuProgram:
     """Return the equations of a structure for export.
 
-    Parameters
-    ----------
-    values
-        Parameter values, shape (parameters,); those that are held at zero are taken out of the equations.
-
-    Raises
-    ------
-    StructureError
-        If a block has no equations in time.
+    ``values``: parameter values, shape (parameters,); those that are held at zero are taken out of the equations.
+    Raises StructureError if a block has no equations in time.
     """
     pairs = zip(structure.parameters, values, strict=True)
     gone = frozenset(p.name for p, value in pairs if p.held and value == 0.0)
@@ -154,10 +147,7 @@ def _rows(formulas: Sequence[Formula], leaves: Sequence[Formula]) -> list[Formul
 def largest_pole(ready: FmuProgram, values: FloatArray) -> float:
     """Return the size of the fastest pole about the working point [rad/s], while late signals stand still.
 
-    Parameters
-    ----------
-    values
-        Parameter values, shape (sets, parameters): the largest of all sets is returned.
+    ``values``: parameter values, shape (sets, parameters): the largest of all sets is returned.
     """
     program, sets = ready.program, values.shape[0]
     if not program.states:

@@ -86,10 +86,7 @@ def write_matlab(
 def matlab_name(stem: str) -> str:
     """Return a text as the name of a function in MATLAB: letters, digits and underscores, a letter first.
 
-    Raises
-    ------
-    ExportError
-        If it holds no letter.
+    Raises ExportError if it holds no letter.
     """
     name = re.sub(r"[^A-Za-z0-9_]", "_", stem)
     name = re.sub(r"^[^A-Za-z]+", "", name)[:LONGEST_NAME]

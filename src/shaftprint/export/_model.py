@@ -46,10 +46,7 @@ class ExportedModel(Shown):
     def __post_init__(self) -> None:
         """Check that every number may stand in a file that others compute with.
 
-        Raises
-        ------
-        ExportError
-            If a number is not finite, the working point is zero, or shapes do not fit.
+        Raises ExportError if a number is not finite, the working point is zero, or shapes do not fit.
         """
         if self.values.shape != (len(self.structure.parameters),):
             raise ExportError(

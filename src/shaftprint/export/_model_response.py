@@ -94,15 +94,8 @@ def usual_frequencies() -> FloatArray:
 def model_response(model: ExportedModel, omega_rad_s: ArrayLike | None = None) -> ModelResponse:
     """Return the response of a model with its covariance.
 
-    Parameters
-    ----------
-    omega_rad_s
-        Frequencies [rad/s], shape (frequencies,); 0.05 to 50 rad/s if not given.
-
-    Raises
-    ------
-    ExportError
-        If the frequencies are not positive, ascending and finite.
+    ``omega_rad_s``: frequencies [rad/s], shape (frequencies,); 0.05 to 50 rad/s if not given. Raises ExportError if the
+    frequencies are not positive, ascending and finite.
     """
     omega = np.atleast_1d(np.asarray(usual_frequencies() if omega_rad_s is None else omega_rad_s, dtype=np.float64))
     if not (np.all(np.isfinite(omega)) and np.all(omega > 0.0) and np.all(np.diff(omega) > 0.0)):

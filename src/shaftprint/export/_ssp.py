@@ -49,10 +49,7 @@ def write_ssv(model: ExportedModel, path: str | Path, *, overwrite: bool = False
 def parameter_set(model: ExportedModel, name: str) -> bytes:
     """Return the parameter set as XML.
 
-    Parameters
-    ----------
-    name
-        Name of the set, by which ecos takes it.
+    ``name``: name of the set, by which ecos takes it.
     """
     register_namespace("ssv", SSV)
     register_namespace("ssc", SSC)

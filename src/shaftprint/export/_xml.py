@@ -8,10 +8,7 @@ from shaftprint.escape import xml_text
 def xml_document(root: Element) -> bytes:
     """Return a tree as a document in UTF-8 that every parser of XML 1.0 reads, whatever its texts hold.
 
-    Parameters
-    ----------
-    root
-        The tree; characters in it that XML has no room for are replaced.
+    ``root``: the tree; characters in it that XML has no room for are replaced.
     """
     for element in root.iter():
         for name, value in element.items():

@@ -32,15 +32,9 @@ def assumptions_of(
 ) -> tuple[str, ...]:
     """Return the assumptions behind the numbers of one fit, in sentences.
 
-    Parameters
-    ----------
-    identification
-        The fit.
-    vessel
-        What was tested.
-    margins, intervals
-        Margins as numbers, and the profile-likelihood intervals by name; without them it is not said which numbers
-        rest on the inertia upstream of the gauge.
+    ``identification``: the fit. ``vessel``: what was tested. ``margins``, ``intervals``: margins as numbers, and the
+    profile-likelihood intervals by name; without them it is not said which numbers rest on the inertia upstream of the
+    gauge.
     """
     return tuple(_assumptions(identification, vessel, margins, intervals or {}))
 

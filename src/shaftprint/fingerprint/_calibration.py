@@ -16,12 +16,7 @@ DEGREES_PER_REVOLUTION = 360.0
 def calibration_quantities(signals: "Signals", *, machine: str) -> tuple[Estimate, ...]:
     """Return the set-point line, its scale at low frequency and the angles of the strips, with standard deviations.
 
-    Parameters
-    ----------
-    signals
-        What was measured.
-    machine
-        What drives the line, in words: engine or motor.
+    ``signals``: what was measured. ``machine``: what drives the line, in words: engine or motor.
     """
     scale = Estimate(
         name="set-point scale",

@@ -57,12 +57,8 @@ def clock_influences(
 ) -> tuple[ClockInfluence, ...]:
     """Return what the uncertainty of every merged logger's clock does to the response; nothing if no line is used.
 
-    Parameters
-    ----------
-    clocks
-        Clock maps of the recording (see ``logger_clocks``).
-    spectra, signals
-        What was measured from it.
+    ``clocks``: clock maps of the recording (see ``logger_clocks``). ``spectra``, ``signals``: what was measured from
+    it.
     """
     if not spectra.response.used.any():
         return ()

@@ -79,14 +79,8 @@ def conditions_stated(
 ) -> Mapping[str, Any]:
     """Return the conditions that no recording shows, as fields of ``Conditions``.
 
-    Parameters
-    ----------
-    vessel, campaign
-        What was tested and what was asked of it.
-    trial
-        Where and in what water, where somebody says so.
-    tested_at
-        When the recording began, where that is known.
+    ``vessel``, ``campaign``: what was tested and what was asked of it. ``trial``: where and in what water, where
+    somebody says so. ``tested_at``: when the recording began, where that is known.
     """
     ship = None if vessel.ship is None else ShipIdentity(**vessel.ship.model_dump())
     water = {} if trial is None else {name: getattr(trial, name) for name in WATER}

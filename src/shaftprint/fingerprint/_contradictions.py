@@ -41,12 +41,8 @@ def contradictions(
 ) -> tuple[Reason, ...]:
     """Return what a test contradicts of the vessel file so that its numbers are in doubt.
 
-    Parameters
-    ----------
-    physical
-        Physical values beside those of the vessel file.
-    signals, vessel, campaign
-        Where the test was made, what was tested, and what was asked of it.
+    ``physical``: physical values beside those of the vessel file. ``signals``, ``vessel``, ``campaign``: where the test
+    was made, what was tested, and what was asked of it.
     """
     named = {quantity.name: quantity for quantity in physical}
     coefficient, inertia = (_factor(named.get(name)) for name in ("K_Q", "I_dn"))

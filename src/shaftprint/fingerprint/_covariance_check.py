@@ -13,12 +13,8 @@ _ROUNDING = 1e-6
 def covariance_fault(rows: Sequence[Sequence[float]], std: Sequence[float]) -> str:
     """Return in words why a matrix cannot be the covariance of parameters; empty where it can.
 
-    Parameters
-    ----------
-    rows
-        The matrix.
-    std
-        Standard deviation of each parameter; of one that is not finite or zero nothing is asked.
+    ``rows``: the matrix. ``std``: standard deviation of each parameter; of one that is not finite or zero nothing is
+    asked.
     """
     size, lengths = len(std), sorted({len(row) for row in rows})
     if len(rows) != size or (rows and lengths != [size]):

@@ -159,10 +159,7 @@ class DriveFingerprint(Shown, Record):
     def covariance_of(self, names: Sequence[str]) -> FloatArray:
         """Return the covariance of some of the parameters, shape (names, names).
 
-        Raises
-        ------
-        FingerprintError
-            If one of them is not a free parameter.
+        Raises FingerprintError if one of them is not a free parameter.
         """
         order = [quantity.name for quantity in self.parameters]
         foreign = [name for name in names if name not in order]
@@ -175,10 +172,7 @@ class DriveFingerprint(Shown, Record):
 def write_drive_fingerprint(fingerprint: DriveFingerprint, path: str | Path) -> None:
     """Write the fingerprint of a drive as JSON, whole or not at all; an existing file is replaced.
 
-    Raises
-    ------
-    FingerprintError
-        If the file cannot be written.
+    Raises FingerprintError if the file cannot be written.
     """
     write_bytes(Path(path), drive_fingerprint_content(fingerprint), noun="fingerprint", error=FingerprintError)
 

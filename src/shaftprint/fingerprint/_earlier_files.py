@@ -41,10 +41,7 @@ _UNKNOWN = ("extra_forbidden", "unexpected_keyword_argument")
 def of_earlier_schema(text: str) -> Fingerprint:
     """Return the fingerprint of a file of an earlier schema: 1 has neither legs nor noise, 2.0 no limits.
 
-    Raises
-    ------
-    ValidationError
-        If a field is wrong.
+    Raises ValidationError if a field is wrong.
     """
     content = json.loads(text)
     earlier = Fingerprint.model_validate_json(json.dumps(content | {"schema_version": SCHEMA_VERSION}))
@@ -67,10 +64,7 @@ def _is_there(content: Any, steps: Sequence[str]) -> bool:
 def of_later_schema(text: str) -> Fingerprint:
     """Return what is known here of a file of a later schema 2.N; a finding says what is not.
 
-    Raises
-    ------
-    ValidationError
-        If a field that is known here is wrong.
+    Raises ValidationError if a field that is known here is wrong.
     """
     content = json.loads(text)
     later = content["schema_version"]

@@ -73,12 +73,8 @@ def joint_numbers(
 ) -> JointNumbers:
     """Return the joint covariance of the physical values and of the parameters that are of the line alone.
 
-    Parameters
-    ----------
-    identification, working_point, vessel
-        The fit, where it was made, and what was tested.
-    shifts
-        What the working point does to the parameters, see ``shifts_of_working_point``.
+    ``identification``, ``working_point``, ``vessel``: the fit, where it was made, and what was tested. ``shifts``: what
+    the working point does to the parameters, see ``shifts_of_working_point``.
     """
     numbers = physical_numbers(identification, working_point, vessel)
     chosen = [item for item in numbers if item.number.name != GAUGE_ZERO]

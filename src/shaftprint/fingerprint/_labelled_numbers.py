@@ -15,14 +15,8 @@ def labelled_numbers(
 ) -> LabelledData:
     """Return a row for each number; what is not known is nan.
 
-    Parameters
-    ----------
-    numbers
-        The numbers by what they are.
-    covariance
-        Covariance of the parameters, shape (parameters, parameters).
-    facts
-        On the whole.
+    ``numbers``: the numbers by what they are. ``covariance``: covariance of the parameters, shape (parameters,
+    parameters). ``facts``: on the whole.
     """
     kinds = [kind for kind, quantities in numbers.items() for _ in quantities]
     rows = [quantity for quantities in numbers.values() for quantity in quantities]

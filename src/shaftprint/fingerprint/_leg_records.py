@@ -81,12 +81,7 @@ class NoiseSpectrum(Record):
 def leg_record(leg: "LegState", *, main: "WorkingPoint", p_value: float | None) -> LegRecord:
     """Return what is kept of a leg.
 
-    Parameters
-    ----------
-    main
-        The working point of the fingerprint.
-    p_value
-        That of the leg in a fit to all legs; None without one.
+    ``main``: the working point of the fingerprint. ``p_value``: that of the leg in a fit to all legs; None without one.
     """
     point = leg.working_point
     load = point.shaft_torque_nm / point.engine_speed_rev_s**2

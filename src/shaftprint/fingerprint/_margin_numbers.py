@@ -46,10 +46,7 @@ def margin_numbers(structure: Structure, values: FloatArray) -> tuple[Combinatio
     A margin that does not exist, because no gain or delay reaches instability, is left out, and so is one that
     the sweep around the estimate does not see as ``models.margins`` does.
 
-    Parameters
-    ----------
-    values
-        All parameters of the structure, shape (parameters,).
+    ``values``: all parameters of the structure, shape (parameters,).
     """
     if structure.loop is None:
         return ()

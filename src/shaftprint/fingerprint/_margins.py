@@ -20,14 +20,9 @@ def margin_quantities(
 
     A margin that does not exist, because no gain or delay reaches instability, is left out.
 
-    Parameters
-    ----------
-    identification
-        The fit.
-    profile
-        Its profile likelihood with the margins among the numbers that were asked for; without it there is no interval.
-    stated
-        Its uncertainty budget with the margins among the numbers; made here when not given.
+    ``identification``: the fit. ``profile``: its profile likelihood with the margins among the numbers that were asked
+    for; without it there is no interval. ``stated``: its uncertainty budget with the margins among the numbers; made
+    here when not given.
     """
     margins = identification.margins
     if margins is None:

@@ -41,17 +41,8 @@ class IdentifiedModel:
 def identified_model(fingerprint: Fingerprint, structure: Structure) -> IdentifiedModel:
     """Return the model of a saved fingerprint.
 
-    Parameters
-    ----------
-    fingerprint
-        A saved fingerprint.
-    structure
-        The structure that it names.
-
-    Raises
-    ------
-    FingerprintError
-        If the structure has other parameters than the fingerprint.
+    ``fingerprint``: a saved fingerprint. ``structure``: the structure that it names. Raises FingerprintError if the
+    structure has other parameters than the fingerprint.
     """
     estimates = {quantity.name: quantity.value for quantity in fingerprint.parameters}
     named = estimates | fingerprint.held
@@ -116,11 +107,7 @@ def named_structure(fingerprint: Fingerprint) -> Structure:
 def structure_to_use(name: TypedName | None, fingerprint: Fingerprint) -> Structure:
     """Return the structure that the user names, otherwise the shipped one of a fingerprint.
 
-    Raises
-    ------
-    StructureError
-        If there is no such structure, or its file fails.
-    FingerprintError
-        If the user names none, and the fingerprint none that is shipped.
+    Raises StructureError if there is no such structure, or its file fails; FingerprintError if the user names none, and
+    the fingerprint none that is shipped.
     """
     return named_structure(fingerprint) if name is None else chosen_structures([name])[0]

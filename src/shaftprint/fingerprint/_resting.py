@@ -23,18 +23,9 @@ def resting_on(
 ) -> tuple[str, ...]:
     """Return the names of the numbers that leave their 95 % intervals where one parameter is held at another value.
 
-    Parameters
-    ----------
-    identification
-        The fit.
-    margins
-        Its margins as numbers.
-    intervals
-        The intervals of parameters, combinations and margins, by name.
-    name
-        A free parameter.
-    at
-        The values at which it is held; those beyond its bounds are taken at them.
+    ``identification``: the fit. ``margins``: its margins as numbers. ``intervals``: the intervals of parameters,
+    combinations and margins, by name. ``name``: a free parameter. ``at``: the values at which it is held; those beyond
+    its bounds are taken at them.
     """
     objective = identification.objective
     place = [p.name for p in objective.free_parameters].index(name)

@@ -52,12 +52,7 @@ def _flat(path: str, content: object) -> Iterator[tuple[str, FieldValue]]:
 def stated_behind(source: str, fields: Mapping[str, FieldValue]) -> tuple[object, ...]:
     """Return what a vessel file states of a source of error; nothing where it states none.
 
-    Parameters
-    ----------
-    source
-        Name of a source of the budget.
-    fields
-        Fields of the vessel file, see ``vessel_fields``.
+    ``source``: name of a source of the budget. ``fields``: fields of the vessel file, see ``vessel_fields``.
     """
     if source == TVC:
         return _upstream(fields)

@@ -46,13 +46,8 @@ def shifts_of_working_point(
 ) -> dict[str, dict[str, float]]:
     """Return the change of each parameter for one standard deviation of each source, by source and parameter.
 
-    Parameters
-    ----------
-    identification, point
-        The fit, and where it was made.
-    rack_share
-        Standard deviation of the working point of a logged rack over its value; it enters the structures that have the
-        rack among their channels.
+    ``identification``, ``point``: the fit, and where it was made. ``rack_share``: standard deviation of the working
+    point of a logged rack over its value; it enters the structures that have the rack among their channels.
     """
     roles = {name: role for part in identification.parts for name, role in part.structure.roles.items()}
     changes = _changes(identification, {name: 1.0 for name, role in roles.items() if role.over_torque})

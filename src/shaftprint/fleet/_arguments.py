@@ -86,10 +86,7 @@ class JobArguments(Settings):
 def arguments_of(content: Any, *, named: str) -> JobArguments:
     """Return the arguments that a ledger holds.
 
-    Raises
-    ------
-    StoreError
-        If they are not those of such a job.
+    Raises StoreError if they are not those of such a job.
     """
     try:
         return JobArguments.model_validate(content)
@@ -102,19 +99,9 @@ def job_arguments(
 ) -> JobArguments:
     """Return arguments for a recording, with paths that do not depend on the folder one is in.
 
-    Parameters
-    ----------
-    recording, vessel, campaign
-        The files; vessel and campaign may be shipped names.
-    named
-        Where they are stated, for errors.
-    facts
-        Other fields of ``JobArguments`` and of ``TrialConditions``; those that are None count as not stated.
-
-    Raises
-    ------
-    SettingsError
-        If a field cannot be used.
+    ``recording``, ``vessel``, ``campaign``: the files; vessel and campaign may be shipped names. ``named``: where they
+    are stated, for errors. ``facts``: other fields of ``JobArguments`` and of ``TrialConditions``; those that are None
+    count as not stated. Raises SettingsError if a field cannot be used.
     """
     known = {name: value for name, value in facts.items() if value is not None}
     conditions = {name: known.pop(name) for name in OF_CONDITIONS if name in known}

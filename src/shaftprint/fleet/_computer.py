@@ -51,12 +51,7 @@ class Computer:
     def compute(self, arguments: Mapping[str, Any], tell: Callable[[str], None]) -> Outcome:
         """Identify a recording.
 
-        Parameters
-        ----------
-        arguments
-            Those of the job.
-        tell
-            Is told each step.
+        ``arguments``: those of the job. ``tell``: is told each step.
         """
         process = self._running()
         late = threading.Event()

@@ -140,12 +140,8 @@ class Lane:
     def _patiently(self, verb: Callable[[], _T], *, job: Job | None = None) -> _T:
         """Call a verb of the store, again where the database cannot do it now.
 
-        Raises
-        ------
-        DatabaseError
-            If it cannot for minutes.
-        StoreError
-            If it takes other things, and again and again not what this job has given: then it is the job.
+        Raises DatabaseError if it cannot for minutes; StoreError if it takes other things, and again and again not what
+        this job has given: then it is the job.
         """
         begin, pause_s, alone = time.monotonic(), 0.5, 0
         while True:

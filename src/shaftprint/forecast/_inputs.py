@@ -45,17 +45,8 @@ class Point:
     def deviation(self, volts: FloatArray, *, offset_v: float | None = None) -> FloatArray:
         """Return the set point as a deviation from the working point [-].
 
-        Parameters
-        ----------
-        volts
-            Set point [V].
-        offset_v
-            Set point that is put out at the working point [V]; as measured by the line if not given.
-
-        Raises
-        ------
-        RequestError
-            If nothing says what a volt asks for.
+        ``volts``: set point [V]. ``offset_v``: set point that is put out at the working point [V]; as measured by the
+        line if not given. Raises RequestError if nothing says what a volt asks for.
         """
         if self.slope_rpm_per_v is None or (self.intercept_rpm is None and offset_v is None):
             raise RequestError(
@@ -104,10 +95,7 @@ class Inputs:
 def point_of(ship: ShipBeforeTest) -> Point | None:
     """Return the working point of a first test or a vessel file; None where neither is given.
 
-    Raises
-    ------
-    RequestError
-        If both are given, or a slope without a vessel file.
+    Raises RequestError if both are given, or a slope without a vessel file.
     """
     fingerprint, vessel, slope_rpm_per_v = ship.first_test, ship.vessel, ship.slope_rpm_per_v
     if fingerprint is not None:
@@ -145,18 +133,9 @@ def campaign_inputs(
 
     It is straight over short times; at a jump it is half-way, so that it is neither late nor early.
 
-    Parameters
-    ----------
-    rate_hz
-        Samples a second that are written [Hz].
-    span
-        Begin and end [s]; the whole campaign if not given.
-
-    Raises
-    ------
-    RequestError
-        If the structure has another input than the set point, the line from volt is not known, or the campaign does
-        not hold the span.
+    ``rate_hz``: samples a second that are written [Hz]. ``span``: begin and end [s]; the whole campaign if not given.
+    Raises RequestError if the structure has another input than the set point, the line from volt is not known, or the
+    campaign does not hold the span.
     """
     if structure.inputs != (SET_POINT,):
         raise RequestError(
@@ -218,10 +197,7 @@ def file_inputs(
 ) -> Inputs:
     """Return inputs that are columns of a file: named as those of the structure, or a set point in rpm or volt.
 
-    Raises
-    ------
-    RecordingError
-        If the file cannot be read, a column is missing, or two have different clocks.
+    Raises RecordingError if the file cannot be read, a column is missing, or two have different clocks.
     """
     with read_recording(path) as recording:
         channels = {name: _channel(recording.channels, name, path) for name in structure.inputs}

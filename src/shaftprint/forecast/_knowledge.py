@@ -153,10 +153,7 @@ def _first_test(stated: _Stated, limits: Limits, within_s: float | None) -> tupl
 def _speeds(stated: _Stated, limits: Limits) -> tuple[float, ...]:
     """Return the speeds of the legs over that of the working point, which after a first test is that of the test.
 
-    Raises
-    ------
-    RequestError
-        If speeds are asked for where a ship has one.
+    Raises RequestError if speeds are asked for where a ship has one.
     """
     shares, vessel_rpm = stated.speeds, stated.vessel.working_point.engine_speed_rpm
     if stated.vessel.why_one_speed:

@@ -22,10 +22,7 @@ def planned_pairs(chosen: Structure, campaign: Campaign, ship: TestNoise) -> lis
     A structure with several inputs is taken apart by input, as for ``identify``: each has lines of its own. One that
     the campaign does not move has none.
 
-    Raises
-    ------
-    StructureError
-        If the lines of a campaign do not give these.
+    Raises StructureError if the lines of a campaign do not give these.
     """
     if ship.vessel is not None:
         expect_one_speed(campaign, ship.vessel)
@@ -52,10 +49,7 @@ def planned_pairs(chosen: Structure, campaign: Campaign, ship: TestNoise) -> lis
 def _further(chosen: Structure, campaign: Campaign, ship: TestNoise) -> list[MovedBeside]:
     """Return what the campaign moves of the further inputs of a structure.
 
-    Raises
-    ------
-    StructureError
-        If an input is none that a campaign moves, or nothing is known of the noise under it.
+    Raises StructureError if an input is none that a campaign moves, or nothing is known of the noise under it.
     """
     there = () if ship.vessel is None else moved_beside(ship.vessel, campaign)
     known = {one.symbol: one for one in there if one.symbol in ship.noise_beside}

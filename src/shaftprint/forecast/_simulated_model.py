@@ -53,25 +53,11 @@ def simulated_model(
 ) -> SimulatedModel:
     """Return the model to simulate.
 
-    Parameters
-    ----------
-    name
-        Structure; that of the fingerprint, with its limits where they were found, if not given.
-    fingerprint
-        Where values and covariance come from.
-    given
-        Values that the user states.
-    linear
-        Whether the linear model is wanted although the fingerprint has the line with its limits.
-
-    Raises
-    ------
-    RequestError
-        If there is neither a name nor a fingerprint.
-    FingerprintError
-        If the fingerprint has a parameter that the structure lacks, or its structure is not shipped and none is named.
-    StructureError
-        If there is no such structure or parameter, or a value is missing.
+    ``name``: structure; that of the fingerprint, with its limits where they were found, if not given. ``fingerprint``:
+    where values and covariance come from. ``given``: values that the user states. ``linear``: whether the linear model
+    is wanted although the fingerprint has the line with its limits. Raises RequestError if there is neither a name nor
+    a fingerprint; FingerprintError if the fingerprint has a parameter that the structure lacks, or its structure is not
+    shipped and none is named; StructureError if there is no such structure or parameter, or a value is missing.
     """
     line = fingerprint.with_limits if fingerprint is not None and name is None and not linear else None
     if line is not None:
@@ -98,10 +84,7 @@ def simulated_model(
 def expect_parameters(chosen: Structure, given: Mapping[str, float]) -> None:
     """Refuse values that a user states of what is no parameter of a structure.
 
-    Raises
-    ------
-    StructureError
-        If there is no parameter of a name.
+    Raises StructureError if there is no parameter of a name.
     """
     unknown = [name for name in given if name not in chosen.names]
     if unknown:

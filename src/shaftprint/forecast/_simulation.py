@@ -143,10 +143,7 @@ def simulated_ship(
 def simulated(run: Run, *, progress: Progress = SILENT) -> Simulation:
     """Return the outputs of a model, and by their exact derivatives what the covariance of its parameters does to them.
 
-    Raises
-    ------
-    StructureError
-        If the structure cannot be simulated, or has no steady running at the first inputs.
+    Raises StructureError if the structure cannot be simulated, or has no steady running at the first inputs.
     """
     model, drive = run.model, run.inputs
     groups = [model.uncertain[first : first + AT_ONCE] for first in range(0, len(model.uncertain), AT_ONCE)] or [()]
@@ -258,10 +255,7 @@ def _signal(
 def write_simulation(path: Path, simulation: Simulation, *, overwrite: bool) -> None:
     """Write the signals as CSV, whole or not at all: a column each, and one for each standard deviation.
 
-    Raises
-    ------
-    RecordingError
-        If the file cannot be written.
+    Raises RecordingError if the file cannot be written.
     """
     columns, time_s = [], simulation.time_s
     for signal in simulation.signals:

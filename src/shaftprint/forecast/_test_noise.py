@@ -51,23 +51,9 @@ def recorded_noise(
 ) -> TestNoise:
     """Return what a recording tells of the noise, and what it and the vessel file know.
 
-    Parameters
-    ----------
-    path, campaign
-        The recording, and what was asked of the ship in it.
-    vessel
-        The installation.
-    chosen
-        The structure whose test is predicted.
-    planned
-        The test that is predicted.
-    progress
-        Is told what is being done.
-
-    Raises
-    ------
-    ShaftprintError
-        If the recording cannot be read or does not give usable responses.
+    ``path``, ``campaign``: the recording, and what was asked of the ship in it. ``vessel``: the installation.
+    ``chosen``: the structure whose test is predicted. ``planned``: the test that is predicted. ``progress``: is told
+    what is being done. Raises ShaftprintError if the recording cannot be read or does not give usable responses.
     """
     trial = load_trial(vessel, campaign)
     measurement = measure(path, trial, mode="shaftprint", progress=progress)
@@ -92,24 +78,10 @@ def recorded_noise(
 def usual_noise(vessel: Vessel | None, rpm_per_volt: float | None, chosen: Structure, planned: Campaign) -> TestNoise:
     """Return the noise of a simulated ship, and what the vessel file knows where there is one.
 
-    Parameters
-    ----------
-    vessel
-        The installation, if any.
-    rpm_per_volt
-        Change of the engine speed for one volt [rpm/V]; that of the campaign, or as on the Stan Tug, where it is not
-        given.
-    chosen
-        The structure whose test is predicted.
-    planned
-        The test that is predicted.
-
-    Raises
-    ------
-    RequestError
-        If a slope is given and no vessel file.
-    StructureError
-        If the first leg would stand still.
+    ``vessel``: the installation, if any. ``rpm_per_volt``: change of the engine speed for one volt [rpm/V]; that of the
+    campaign, or as on the Stan Tug, where it is not given. ``chosen``: the structure whose test is predicted.
+    ``planned``: the test that is predicted. Raises RequestError if a slope is given and no vessel file; StructureError
+    if the first leg would stand still.
     """
     assumed = assumed_noise(vessel, planned)
     if vessel is None:
@@ -143,17 +115,9 @@ def usual_noise(vessel: Vessel | None, rpm_per_volt: float | None, chosen: Struc
 def _first_share(planned: Campaign, per_v: float, offset_share: float) -> float:
     """Return the speed of the leg nearest to the offset over that of the vessel file's working point.
 
-    Parameters
-    ----------
-    per_v
-        Change of the speed for one volt, over that of the working point [1/V].
-    offset_share
-        Speed for which the campaign's offset asks, over that of the working point.
-
-    Raises
-    ------
-    StructureError
-        If the first leg would stand still.
+    ``per_v``: change of the speed for one volt, over that of the working point [1/V]. ``offset_share``: speed for which
+    the campaign's offset asks, over that of the working point. Raises StructureError if the first leg would stand
+    still.
     """
     share = offset_share + (per_v * (first_leg(planned).level_v - planned.offset_v) if planned.legs else 0.0)
     if not share > 0.0:

@@ -41,11 +41,8 @@ class Kernel:
 def compiled(**options: Any) -> Callable[[Callable[..., Any]], Any]:
     """Return a decorator that compiles a function when it is first called, and keeps what was compiled.
 
-    Parameters
-    ----------
-    options
-        Options of ``numba.njit``, without ``cache``: numba would look for a folder by itself, beside the source or in
-        the user's home, take one that others can write, and raise where there is none.
+    ``options``: options of ``numba.njit``, without ``cache``: numba would look for a folder by itself, beside the
+    source or in the user's home, take one that others can write, and raise where there is none.
     """
     return lambda function: Kernel(function, options)
 

@@ -13,10 +13,7 @@ _OTHERS = stat.S_IWGRP | stat.S_IWOTH
 def cache_folder() -> Path:
     """Return the folder of what is kept: ``SHAFTPRINT_CACHE`` where it is set, else the system's cache folder.
 
-    Raises
-    ------
-    RuntimeError
-        If the user has no home.
+    Raises RuntimeError if the user has no home.
     """
     chosen = os.environ.get("SHAFTPRINT_CACHE")
     if chosen:
@@ -37,10 +34,7 @@ def private_folder(name: str = "kernels") -> Path | None:
     to the system, and be closed to others for writing; a folder such as ``/tmp``, where nobody can take away what is
     another's, may be around it. On Windows it must lie in the user's profile, which is closed to others.
 
-    Parameters
-    ----------
-    name
-        Its name: what is kept in it.
+    ``name``: its name: what is kept in it.
     """
     try:
         wanted = cache_folder() / name

@@ -104,14 +104,9 @@ def starts_of(
 ) -> list[dict[str, float]]:
     """Return the values of its parameters to try, the strongest limit first.
 
-    Parameters
-    ----------
-    values
-        Present value of every parameter.
-    torque
-        Brake torque that the governor asks for, over that of the working point, shape (samples,).
-    full
-        Full-load torque of the vessel file over the brake torque of the working point.
+    ``values``: present value of every parameter. ``torque``: brake torque that the governor asks for, over that of the
+    working point, shape (samples,). ``full``: full-load torque of the vessel file over the brake torque of the working
+    point.
     """
     match candidate.kind:
         case Kind.TORQUE if values[GovernorSymbol.UNBOOSTED_TORQUE] < IDLE[GovernorSymbol.UNBOOSTED_TORQUE]:

@@ -112,18 +112,9 @@ def fitted(
 ) -> Fitted:
     """Return the best governor with some limits, from given values on.
 
-    Parameters
-    ----------
-    record
-        The test; of a held set point with the jumps as late as the messages have them.
-    priors
-        What is known of the set point's scale and offset.
-    iterations
-        Limit of steps.
-    negligible
-        Fall of minus twice the log-likelihood that is not worth a step.
-    held
-        Names of parameters that stay although they would be free.
+    ``record``: the test; of a held set point with the jumps as late as the messages have them. ``priors``: what is
+    known of the set point's scale and offset. ``iterations``: limit of steps. ``negligible``: fall of minus twice the
+    log-likelihood that is not worth a step. ``held``: names of parameters that stay although they would be free.
     """
     free = [name for name in (*GOVERNOR, *parameters_of(kinds)) if name not in held]
     term = PredictionError.of(whole, record, values, free)

@@ -52,10 +52,7 @@ LIMITS = ("torque", "rate", "deadband", "ramp", "smoke")
 def expect_engine(vessel: Vessel) -> None:
     """Refuse a line that a motor drives: what a converter limits is set in it, and no governor's limits are looked for.
 
-    Raises
-    ------
-    SettingsError
-        If a motor drives the line.
+    Raises SettingsError if a motor drives the line.
     """
     if vessel.motor is not None:
         raise SettingsError(

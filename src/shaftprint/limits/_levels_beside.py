@@ -80,25 +80,11 @@ def levels_beside(
 
     A limit that the test does not ask for goes. Where stretches are taken out, its level would be what they had said.
 
-    Parameters
-    ----------
-    governor
-        Parameters of the governor, delays and ``g`` by name; others do not count.
-    signals, campaign, vessel
-        As for ``identify_limits``.
-    kinds
-        The limits; a set point that is held or rounded does not count.
-    start
-        Values of their parameters to begin with.
-    apart
-        Stretches that are not used, begin and end of each [s].
-
-    Raises
-    ------
-    SignalError
-        If the recording does not hold the tests of the campaign.
-    IdentificationError
-        If the governor cannot be simulated on the measured speed.
+    ``governor``: parameters of the governor, delays and ``g`` by name; others do not count. ``signals``, ``campaign``,
+    ``vessel``: as for ``identify_limits``. ``kinds``: the limits; a set point that is held or rounded does not count.
+    ``start``: values of their parameters to begin with. ``apart``: stretches that are not used, begin and end of each
+    [s]. Raises SignalError if the recording does not hold the tests of the campaign; IdentificationError if the
+    governor cannot be simulated on the measured speed.
     """
     test = governor_test(signals, campaign, vessel).without(apart)
     whole, record, priors = whole_governor(), test.record(drive_hz=COARSE_HZ), set_point_priors(signals)

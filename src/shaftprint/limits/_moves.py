@@ -62,14 +62,8 @@ def rest_moves(
     A line that rests near its torque limit has an optimum with the limit acting at rest, a lower level, a lower set
     point and a slower governor, and one without.
 
-    Parameters
-    ----------
-    calm
-        Governor of the calm part of the test.
-    offset
-        Offset of the set point in the slow parts of the test.
-    priors
-        What is known of the set point's scale and offset.
+    ``calm``: governor of the calm part of the test. ``offset``: offset of the set point in the slow parts of the test.
+    ``priors``: what is known of the set point's scale and offset.
     """
     scale, known = priors[GovernorSymbol.SET_POINT_SCALE].mean, priors[GovernorSymbol.SET_POINT_OFFSET]
     offsets: list[float] = []

@@ -138,12 +138,7 @@ class Search:
         return self._pushed(here, delay_moves(here))
 
     def run(self) -> tuple[Fitted, list[Scanned]]:
-        """Let limits join the governor until chance explains what the next one would gain.
-
-        Returns
-        -------
-        The governor with its limits, and the levels of those that did not join, tried at the end.
-        """
+        """Let limits join the governor until chance explains what the next one would gain."""
         here = linear = self.linear()
         engines_tried = False
         for _ in range(MOST_ROUNDS):
@@ -339,10 +334,7 @@ class Search:
     ) -> Fitted:
         """Return the best governor with some limits, from given values on.
 
-        Parameters
-        ----------
-        at_rest
-            Whether the offset of the set point is first held where its slow parts have it, if it is not known.
+        ``at_rest``: whether the offset of the set point is first held where its slow parts have it, if it is not known.
         """
         if at_rest and self.priors[GovernorSymbol.SET_POINT_OFFSET].std > SAME_OFFSET:
             known = {GovernorSymbol.SET_POINT_OFFSET: Prior(self.offset, AT_REST_STD)}

@@ -73,12 +73,7 @@ class Quantum:
 def quantum_of(best: Fitted, test: GovernorTest, campaign: Campaign) -> Quantum | None:
     """Look for steps of the set point in what a governor leaves; None where no sine or chirp moves it enough.
 
-    Parameters
-    ----------
-    best
-        The governor with its limits.
-    test
-        The test, held between messages if it is.
+    ``best``: the governor with its limits. ``test``: the test, held between messages if it is.
     """
     rounding = _Rounding.of(best, test, campaign)
     if rounding is None:

@@ -48,10 +48,7 @@ class LevelScatter:
     def covariance(self, of_model: FloatArray) -> FloatArray:
         """Return a covariance with these deviations and the correlations of another, shape (free, free).
 
-        Parameters
-        ----------
-        of_model
-            Covariance by the noise model, shape (free, free); infinite where the data say nothing.
+        ``of_model``: covariance by the noise model, shape (free, free); infinite where the data say nothing.
         """
         std = np.hypot(self.noise, self.systematic)
         of_noise = np.sqrt(np.diag(of_model))

@@ -22,10 +22,7 @@ SHEET = "page.css"
 def environment(templates: Mapping[str, str]) -> Environment:
     """Return what fills templates in: whatever it writes is escaped here, and nowhere else.
 
-    Parameters
-    ----------
-    templates
-        Text of each template by its name; that of a table is there already.
+    ``templates``: text of each template by its name; that of a table is there already.
     """
     made = Environment(
         loader=DictLoader({TABLE: template_text(__package__, TABLE), **templates}),
@@ -55,11 +52,6 @@ def style_sheet() -> str:
 def template_text(room: str, name: str) -> str:
     """Return the text of a file in the folder ``templates`` of a room.
 
-    Parameters
-    ----------
-    room
-        Name of the package.
-    name
-        Name of the file.
+    ``room``: name of the package. ``name``: name of the file.
     """
     return (files(room) / "templates" / name).read_text(encoding="utf-8")

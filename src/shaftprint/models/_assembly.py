@@ -19,10 +19,7 @@ def channel_paths(
 ) -> dict[tuple[str, str], Expression]:
     """Return the expression of each channel by output and input, outputs slowest.
 
-    Raises
-    ------
-    StructureError
-        If there is no output, an input has no name, or an output does not name each input.
+    Raises StructureError if there is no output, an input has no name, or an output does not name each input.
     """
     if isinstance(inputs, str):
         raise StructureError(
@@ -62,10 +59,8 @@ def _words(value: object) -> str:
 def block_parameters(structure: str, blocks: Iterable[Block]) -> dict[str, Parameter]:
     """Return every parameter of the blocks by name.
 
-    Raises
-    ------
-    StructureError
-        If two blocks describe a parameter of one name differently, or something else stands for a parameter.
+    Raises StructureError if two blocks describe a parameter of one name differently, or something else stands for a
+    parameter.
     """
     parameters: dict[str, Parameter] = {}
     for block, parameter in ((owner, p) for owner in blocks for p in owner.parameters):
@@ -87,15 +82,7 @@ def expect_combinations(
 ) -> None:
     """Check that combinations are made of parameters that there are.
 
-    Parameters
-    ----------
-    values
-        Every parameter by name.
-
-    Raises
-    ------
-    StructureError
-        If one is not.
+    ``values``: every parameter by name. Raises StructureError if one is not.
     """
     if isinstance(combinations, Combination):
         raise StructureError(f"structure {structure}: expected a tuple of combinations such as ({combinations.name},).")
@@ -113,10 +100,7 @@ def expect_combinations(
 def expect_tie(structure: str, ties: Iterable[Tie], name: str, new: Iterable[object]) -> None:
     """Check that a parameter can be tied, and that what comes with it are parameters.
 
-    Raises
-    ------
-    StructureError
-        If not.
+    Raises StructureError if not.
     """
     others = [item for item in new if not isinstance(item, Parameter)]
     if others:
@@ -132,10 +116,7 @@ def expect_tie(structure: str, ties: Iterable[Tie], name: str, new: Iterable[obj
 def expect_known_names(structure: str, known: Sequence[str], names: Iterable[str]) -> None:
     """Check that names are those of parameters.
 
-    Raises
-    ------
-    StructureError
-        If not.
+    Raises StructureError if not.
     """
     unknown = [name for name in names if name not in known]
     if unknown:
@@ -145,10 +126,7 @@ def expect_known_names(structure: str, known: Sequence[str], names: Iterable[str
 def expect_new_names(structure: str, known: Sequence[str], names: Iterable[str]) -> None:
     """Check that names are not those of parameters, and each once.
 
-    Raises
-    ------
-    StructureError
-        If not.
+    Raises StructureError if not.
     """
     given = list(names)
     repeated = [name for index, name in enumerate(given) if name in known or name in given[:index]]
@@ -178,10 +156,7 @@ def distinct_nodes(paths: Iterable[Expression]) -> list[Expression]:
 def outermost_loop(structure: str, nodes: Iterable[Expression]) -> Expression | None:
     """Return the loop gain of the feedback that lies in no other feedback; None where there is no feedback.
 
-    Raises
-    ------
-    StructureError
-        If there is more than one.
+    Raises StructureError if there is more than one.
     """
     loops = [node for node in nodes if isinstance(node, Sensitivity)]
     inner = {id(node) for outer in loops for node in outer.loop.nodes()}
@@ -197,10 +172,7 @@ def outermost_loop(structure: str, nodes: Iterable[Expression]) -> Expression | 
 def expect_single_roles(structure: str, roles: Mapping[str, Role]) -> None:
     """Check that no two parameters have one role.
 
-    Raises
-    ------
-    StructureError
-        If two have.
+    Raises StructureError if two have.
     """
     first: dict[Role, str] = {}
     for name, role in roles.items():

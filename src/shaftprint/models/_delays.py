@@ -91,10 +91,7 @@ class ZeroOrderHold(Block):
     def __post_init__(self) -> None:
         """Check the period.
 
-        Raises
-        ------
-        StructureError
-            If it is not positive and finite.
+        Raises StructureError if it is not positive and finite.
         """
         if not 0.0 < self.period_s < math.inf:
             raise StructureError(f"hold: expected a period above 0 s, found {self.period_s}.")

@@ -36,10 +36,7 @@ def factors(expression: Expression) -> list[Expression]:
 def through(flow: Flow, expression: Expression, signal: Formula) -> Formula:
     """Return what an expression makes of a signal.
 
-    Raises
-    ------
-    StructureError
-        If a part has no equations in time.
+    Raises StructureError if a part has no equations in time.
     """
     return along(flow, factors(expression), signal)
 

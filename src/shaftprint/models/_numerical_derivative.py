@@ -33,14 +33,8 @@ def numerical_derivative(
 ) -> Derivative:
     """Return the derivative of a block's response to its parameter number ``index``.
 
-    Parameters
-    ----------
-    s
-        Laplace variable [rad/s], shape (frequencies,).
-    response
-        Response there, shape (sets, frequencies).
-    values
-        Sets of the parameters, each of shape (sets, 1).
+    ``s``: laplace variable [rad/s], shape (frequencies,). ``response``: response there, shape (sets, frequencies).
+    ``values``: sets of the parameters, each of shape (sets, 1).
     """
     exact = []
     for row in range(response.shape[0]):

@@ -34,10 +34,7 @@ def unstable_poles(structure: Structure, values: ArrayLike) -> int:
 
     A structure without feedback is counted by the poles of its blocks and inverses.
 
-    Raises
-    ------
-    StructureError
-        If the loop holds the inverse of something with a delay.
+    Raises StructureError if the loop holds the inverse of something with a delay.
     """
     table = np.asarray(values, dtype=np.float64)
     if structure.loop is None:
@@ -56,10 +53,7 @@ def stable_rows(structure: Structure, values: ArrayLike) -> BoolArray:
     The same count as :func:`is_stable`, for all sets in one sweep; a set whose path is too sharp for the sweep is
     counted alone.
 
-    Parameters
-    ----------
-    values
-        Parameter values, shape (rows, parameters).
+    ``values``: parameter values, shape (rows, parameters).
     """
     table = np.asarray(values, dtype=np.float64)
     loop = structure.loop
@@ -81,10 +75,7 @@ def stable_rows(structure: Structure, values: ArrayLike) -> BoolArray:
 def loop_gain(structure: Structure, values: ArrayLike, s: ArrayLike) -> ComplexArray:
     """Return the loop gain ``L`` of a structure, shape (frequencies,).
 
-    Raises
-    ------
-    StructureError
-        If the structure has no feedback loop.
+    Raises StructureError if the structure has no feedback loop.
     """
     table = np.asarray(values, dtype=np.float64)
     return evaluate(loop_of(structure), structure, table, np.atleast_1d(s))
@@ -93,10 +84,7 @@ def loop_gain(structure: Structure, values: ArrayLike, s: ArrayLike) -> ComplexA
 def loop_of(structure: Structure) -> Expression:
     """Return the loop gain as an expression.
 
-    Raises
-    ------
-    StructureError
-        If the structure has no feedback loop.
+    Raises StructureError if the structure has no feedback loop.
     """
     loop = structure.loop
     if loop is None:

@@ -34,10 +34,7 @@ class FunctionBlock(Block):
     def __post_init__(self) -> None:
         """Check that function and parameters belong together.
 
-        Raises
-        ------
-        StructureError
-            If they do not.
+        Raises StructureError if they do not.
         """
         expect_function(self.function, ("s",), self.of)
 
@@ -67,10 +64,7 @@ class RationalBlock(Block):
     def __post_init__(self) -> None:
         """Check that formulas and parameters belong together.
 
-        Raises
-        ------
-        StructureError
-            If they do not.
+        Raises StructureError if they do not.
         """
         expect_function(self.coefficients, (), self.of)
 
@@ -104,10 +98,7 @@ class RationalBlock(Block):
     def _lists(self, *values: ArrayLike) -> tuple[Sequence[ArrayLike], Sequence[ArrayLike]]:
         """Return both lists of coefficients.
 
-        Raises
-        ------
-        StructureError
-            If there are not two, each a list: an array alone would be taken for the list of its rows.
+        Raises StructureError if there are not two, each a list: an array alone would be taken for the list of its rows.
         """
         lists = self.coefficients(*values)
         if isinstance(lists, list | tuple) and [isinstance(part, list | tuple) for part in lists] == [True, True]:
@@ -130,17 +121,8 @@ class RationalBlock(Block):
 def expect_function(function: object, first: tuple[str, ...], of: Iterable[Parameter] | Parameter) -> None:
     """Check that a function takes as many values as there are parameters.
 
-    Parameters
-    ----------
-    first
-        What it takes before the parameters.
-    of
-        Parameters, in the order in which it takes them.
-
-    Raises
-    ------
-    StructureError
-        If it does not, or the parameters are not parameters.
+    ``first``: what it takes before the parameters. ``of``: parameters, in the order in which it takes them. Raises
+    StructureError if it does not, or the parameters are not parameters.
     """
     if isinstance(of, Parameter):
         raise StructureError(f"block of {of.name}: expected a tuple of parameters, such as ({of.name},).")

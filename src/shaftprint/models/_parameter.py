@@ -30,10 +30,8 @@ class Parameter:
     def __post_init__(self) -> None:
         """Check the bounds.
 
-        Raises
-        ------
-        StructureError
-            If the bounds are not in order or the value lies outside them, or a text stands where a number belongs.
+        Raises StructureError if the bounds are not in order or the value lies outside them, or a text stands where a
+        number belongs.
         """
         texts, numbers = (self.unit, self.meaning), (self.lower, self.upper, self.value)
         if not all(isinstance(text, str) for text in texts) or any(isinstance(number, str) for number in numbers):

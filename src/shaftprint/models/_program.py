@@ -76,15 +76,9 @@ class Program:
 def program_of(structure: Structure, zeros: Iterable[str] = ()) -> Program:
     """Return the equations of a structure.
 
-    Parameters
-    ----------
-    zeros
-        Names of parameters that are zero for good: a lag without time constant or a delay of nothing has no equations.
-
-    Raises
-    ------
-    StructureError
-        If a block has no equations in time, or there is an algebraic loop that cannot be solved.
+    ``zeros``: names of parameters that are zero for good: a lag without time constant or a delay of nothing has no
+    equations. Raises StructureError if a block has no equations in time, or there is an algebraic loop that cannot be
+    solved.
     """
     inputs = {name: Formula("input", name=name, place=i) for i, name in enumerate(structure.inputs)}
     flow = Flow(parameters=_leaves(structure, frozenset(zeros)), inputs=inputs)
@@ -139,15 +133,8 @@ def completed(
 ) -> Program:
     """Return a program from collected equations.
 
-    Parameters
-    ----------
-    outputs
-        Signal and shift of each output by its name.
-
-    Raises
-    ------
-    StructureError
-        If a state has no rate, or there is an algebraic loop that cannot be solved.
+    ``outputs``: signal and shift of each output by its name. Raises StructureError if a state has no rate, or there is
+    an algebraic loop that cannot be solved.
     """
     resolver = _Resolver(flow, name)
     missing = [state.name for state in flow.states if state.place not in flow.rates]
@@ -204,10 +191,8 @@ class _Resolver:
     def change(self, formula: Formula) -> Formula:
         """Return how fast a formula changes that has been resolved.
 
-        Raises
-        ------
-        StructureError
-            If it contains how fast an input or a late signal changes: those have corners, or are known too roughly.
+        Raises StructureError if it contains how fast an input or a late signal changes: those have corners, or are
+        known too roughly.
         """
         return swept([formula], self._slope_in_time)[0]
 

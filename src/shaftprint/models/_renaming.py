@@ -46,22 +46,15 @@ class Renaming:
     def combination(self, one: Combination, values: Mapping[str, FloatArray]) -> Combination:
         """Return a combination, under a name of its own if a renamed parameter is in it.
 
-        Parameters
-        ----------
-        one
-            The combination, in the former names.
-        values
-            Every parameter by its former name, for which it is looked which of them the combination is made of.
+        ``one``: the combination, in the former names. ``values``: every parameter by its former name, for which it is
+        looked which of them the combination is made of.
         """
         return _renamed_combination(one, self._names, values)
 
     def of(self, expression: Expression) -> Expression:
         """Return an expression with the new names.
 
-        Raises
-        ------
-        StructureError
-            If a parameter stands in a block that is no dataclass.
+        Raises StructureError if a parameter stands in a block that is no dataclass.
         """
         if id(expression) not in self._done:
             # the expression is kept with its answer, so that its identity is not given to another

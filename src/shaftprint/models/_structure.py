@@ -82,12 +82,9 @@ class Structure(Shown):
     def __post_init__(self) -> None:
         """Collect channels, blocks, their parameters and the feedback loop.
 
-        Raises
-        ------
-        StructureError
-            If two blocks describe a parameter of one name differently, two parameters have one role, an input has no
-            expression, a tie or a combination names an unknown parameter, or there is more than one outermost feedback
-            loop.
+        Raises StructureError if two blocks describe a parameter of one name differently, two parameters have one role,
+        an input has no expression, a tie or a combination names an unknown parameter, or there is more than one
+        outermost feedback loop.
         """
         object.__setattr__(self, "inputs", self.inputs or (self.input,))
         paths = channel_paths(self.name, self.outputs, self.inputs)

@@ -26,10 +26,7 @@ class Tabulated(Block):
     def __post_init__(self) -> None:
         """Check the table and make it read-only.
 
-        Raises
-        ------
-        StructureError
-            If there is not one value for each frequency, or frequencies do not ascend from above 0.
+        Raises StructureError if there is not one value for each frequency, or frequencies do not ascend from above 0.
         """
         omega, values = frozen_float(self.omega_rad_s), frozen_complex(self.values)
         if omega.ndim != 1 or omega.size == 0 or omega.shape != values.shape:

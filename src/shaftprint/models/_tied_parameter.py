@@ -61,14 +61,8 @@ class Tie:
 def through_ties(ties: Sequence[Tie], slopes: Gradient, values: Mapping[str, FloatArray]) -> Gradient:
     """Return derivatives to independent parameters: those that reach the response through a tie are added.
 
-    Parameters
-    ----------
-    ties
-        Parameters that follow.
-    slopes
-        Derivatives of a response to the parameters of its blocks, tied ones included.
-    values
-        Independent parameters by name, each of shape (..., 1).
+    ``ties``: parameters that follow. ``slopes``: derivatives of a response to the parameters of its blocks, tied ones
+    included. ``values``: independent parameters by name, each of shape (..., 1).
     """
     gradient = dict(slopes)
     for tie in ties:

@@ -51,10 +51,7 @@ class LabelledData:
     def dataset(self) -> "Dataset":
         """Return everything as a dataset of xarray.
 
-        Raises
-        ------
-        ExportError
-            If xarray is not installed.
+        Raises ExportError if xarray is not installed.
         """
         xarray = library("xarray", "to_xarray")
 
@@ -70,10 +67,7 @@ class LabelledData:
     def frame(self) -> "DataFrame":
         """Return what has the dimensions of the rows as a table of pandas; ``attrs`` holds units and meanings.
 
-        Raises
-        ------
-        ExportError
-            If pandas is not installed.
+        Raises ExportError if pandas is not installed.
         """
         pandas = library("pandas", "to_pandas")
         shape = tuple(self.coordinates[name].values.size for name in self.rows)
@@ -111,10 +105,7 @@ class Labelled(ABC):
     def to_xarray(self) -> "Dataset":
         """Return its data as a dataset of xarray: dimensions by name, units and meanings as attributes.
 
-        Raises
-        ------
-        ExportError
-            If xarray is not installed.
+        Raises ExportError if xarray is not installed.
         """
         return self.labelled().dataset()
 
@@ -123,9 +114,6 @@ class Labelled(ABC):
 
         What does not fit the rows of one table, such as a covariance, is in ``to_xarray`` only.
 
-        Raises
-        ------
-        ExportError
-            If pandas is not installed.
+        Raises ExportError if pandas is not installed.
         """
         return self.labelled().frame()

@@ -20,20 +20,10 @@ def labelled_rows(
 ) -> LabelledData:
     """Return a row for each number.
 
-    Parameters
-    ----------
-    row
-        What a row is; ``texts`` has the names of all under it.
-    texts
-        What is said of each number, by name.
-    columns
-        Numbers of each row with what they mean, by name; what is not known is nan.
-    uncertain
-        Names of the parameters that have a covariance.
-    covariance
-        Their covariance, shape (uncertain, uncertain).
-    facts
-        On the whole.
+    ``row``: what a row is; ``texts`` has the names of all under it. ``texts``: what is said of each number, by name.
+    ``columns``: numbers of each row with what they mean, by name; what is not known is nan. ``uncertain``: names of the
+    parameters that have a covariance. ``covariance``: their covariance, shape (uncertain, uncertain). ``facts``: on the
+    whole.
     """
     variables = {
         name: Variable(dims=(row,), values=np.array(values), meaning=meaning)

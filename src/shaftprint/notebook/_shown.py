@@ -70,12 +70,7 @@ def _of_list(values: list[Any]) -> str:
 def field_words(names: Iterable[str], foreign: type) -> list[str]:
     """Return the names of an object without the public ones that it has of a library, for completion in a session.
 
-    Parameters
-    ----------
-    names
-        All its names.
-    foreign
-        The class of the library.
+    ``names``: all its names. ``foreign``: the class of the library.
     """
     hidden = {name for name in dir(foreign) if not name.startswith("_")}
     return sorted(set(names) - hidden)

@@ -65,10 +65,7 @@ class FourQuadrantCurve(Shown):
 
         Between the pitches that were tested the polynomial through all of them holds for each coefficient.
 
-        Raises
-        ------
-        PropellerError
-            If the pitch lies outside what was tested.
+        Raises PropellerError if the pitch lies outside what was tested.
         """
         table = self.of_pitch(pitch_ratio)
         angle = np.asarray(advance_angle_rad, dtype=np.float64)[..., None] * np.arange(table.shape[0])
@@ -78,17 +75,8 @@ class FourQuadrantCurve(Shown):
     def bollard(self, pitch_ratio: float, *, astern: bool) -> Bollard:
         """Return thrust and torque coefficients where no water comes towards the propeller.
 
-        Parameters
-        ----------
-        pitch_ratio
-            Pitch over diameter.
-        astern
-            Whether the shaft turns astern.
-
-        Raises
-        ------
-        PropellerError
-            If the pitch lies outside what was tested.
+        ``pitch_ratio``: pitch over diameter. ``astern``: whether the shaft turns astern. Raises PropellerError if the
+        pitch lies outside what was tested.
         """
         thrust, torque = self.at(math.pi if astern else 0.0, pitch_ratio)
         # K = C pi/8 (0.7 pi)^2
@@ -106,21 +94,10 @@ class FourQuadrantCurve(Shown):
     ) -> ThrustAndTorque:
         """Return thrust and torque at any speed of shaft and water; both are 0 where both stand.
 
-        Parameters
-        ----------
-        shaft_speed_rev_s
-            Speed of the shaft [rev/s], negative astern.
-        advance_m_s
-            Speed of the propeller through the water [m/s], negative astern.
-        pitch_ratio, diameter_m
-            The propeller.
-        water_density_kg_m3
-            Density of the water [kg/m3].
-
-        Raises
-        ------
-        PropellerError
-            If the pitch lies outside what was tested.
+        ``shaft_speed_rev_s``: speed of the shaft [rev/s], negative astern. ``advance_m_s``: speed of the propeller
+        through the water [m/s], negative astern. ``pitch_ratio``, ``diameter_m``: the propeller.
+        ``water_density_kg_m3``: density of the water [kg/m3]. Raises PropellerError if the pitch lies outside what was
+        tested.
         """
         around = self.around_m(diameter_m) * np.asarray(shaft_speed_rev_s, dtype=np.float64)
         along = np.asarray(advance_m_s, dtype=np.float64)
@@ -136,10 +113,7 @@ class FourQuadrantCurve(Shown):
     def of_pitch(self, pitch_ratio: float) -> FloatArray:
         """Return ``A_T``, ``B_T``, ``A_Q`` and ``B_Q`` of each multiple of the advance angle, shape (multiples, 4).
 
-        Raises
-        ------
-        PropellerError
-            If the pitch lies outside what was tested.
+        Raises PropellerError if the pitch lies outside what was tested.
         """
         lowest, highest = float(self.pitch_ratios[0]), float(self.pitch_ratios[-1])
         if not lowest <= pitch_ratio <= highest:

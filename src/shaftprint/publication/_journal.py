@@ -36,10 +36,7 @@ class Journal:
 def read_journal(folder: Path) -> Journal:
     """Return the journal of a folder, which may have come from anywhere.
 
-    Raises
-    ------
-    PublicationError
-        If it is none, or names a file that may lie outside of the folder.
+    Raises PublicationError if it is none, or names a file that may lie outside of the folder.
     """
     path = folder / JOURNAL
     try:
@@ -68,10 +65,7 @@ def is_inner(name: str) -> bool:
 def expect_inside(folder: Path, names: Iterable[PurePosixPath]) -> None:
     """Check that no link leads a name out of a folder.
 
-    Raises
-    ------
-    PublicationError
-        If one does.
+    Raises PublicationError if one does.
     """
     root = folder.resolve()
     parents = {name.parent: name for name in names}

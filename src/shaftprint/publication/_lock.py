@@ -26,10 +26,7 @@ _HELD = (errno.EWOULDBLOCK, errno.EACCES, errno.EDEADLK)
 def locked(folder: Path) -> Iterator[None]:
     """Hold the lock of a folder; its file is deleted at the end.
 
-    Raises
-    ------
-    PublicationError
-        If another process holds it, or the disk knows no locks.
+    Raises PublicationError if another process holds it, or the disk knows no locks.
     """
     descriptor = _held(folder)
     try:

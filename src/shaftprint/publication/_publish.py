@@ -19,10 +19,7 @@ def staged(folder: Path) -> Iterator[Path]:
     What an earlier command left unfinished is completed first. The folder is made if it does not exist, and deleted
     again where nothing was put into it.
 
-    Raises
-    ------
-    PublicationError
-        If another command writes there, or what an earlier one left cannot be completed.
+    Raises PublicationError if another command writes there, or what an earlier one left cannot be completed.
     """
     is_new = not folder.exists()
     folder.mkdir(parents=True, exist_ok=True)
@@ -44,18 +41,10 @@ def staged(folder: Path) -> Iterator[Path]:
 def publish(staging: Path, *, discards: Collection[PurePosixPath] = ()) -> None:
     """Put all files of the hidden folder that ``staged`` gave in place of earlier ones: all, or none of them.
 
-    Parameters
-    ----------
-    staging
-        The hidden folder.
-    discards
-        Files of earlier results, relative to the folder, that are deleted unless new ones have their names.
-
-    Raises
-    ------
-    PublicationError
-        If the place of a file is taken by a folder or a link that leads elsewhere: nothing has changed then. If files
-        cannot be moved that another program has open: the new results count then, and the next command moves them.
+    ``staging``: the hidden folder. ``discards``: files of earlier results, relative to the folder, that are deleted
+    unless new ones have their names. Raises PublicationError if the place of a file is taken by a folder or a link that
+    leads elsewhere: nothing has changed then. If files cannot be moved that another program has open: the new results
+    count then, and the next command moves them.
     """
     folder = staging.parent
     names = _names(staging)
@@ -81,10 +70,7 @@ def complete(folder: Path) -> None:
 
     Everything that reads results calls this first; where nothing is unfinished it looks for one file only.
 
-    Raises
-    ------
-    PublicationError
-        If they cannot be moved.
+    Raises PublicationError if they cannot be moved.
     """
     if not (folder / JOURNAL).exists():
         return

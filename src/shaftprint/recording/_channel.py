@@ -66,10 +66,8 @@ class Channel:
     def __post_init__(self) -> None:
         """Check that the channel can be placed in time.
 
-        Raises
-        ------
-        RecordingError
-            If the rate is not positive, the scale is zero, a number is not finite, or messages have no times.
+        Raises RecordingError if the rate is not positive, the scale is zero, a number is not finite, or messages have
+        no times.
         """
         numbers = (self.rate_hz, self.start_s, self.scale, self.offset)
         if not np.all(np.isfinite(numbers)) or self.rate_hz <= 0.0 or self.scale == 0.0:

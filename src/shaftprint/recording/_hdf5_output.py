@@ -22,17 +22,8 @@ class Hdf5Output:
     def __init__(self, path: Path, **options: Any) -> None:
         """Open the file.
 
-        Parameters
-        ----------
-        path
-            The file, which is replaced.
-        options
-            Further options of ``h5py.File``.
-
-        Raises
-        ------
-        OSError
-            If it cannot be opened.
+        ``path``: the file, which is replaced. ``options``: further options of ``h5py.File``. Raises OSError if it
+        cannot be opened.
         """
         self._raw = path.open("w+b", buffering=0)
         self._disk = _Disk(self._raw)
@@ -47,10 +38,7 @@ class Hdf5Output:
     def calls(self) -> Iterator[None]:
         """Raise what failed while HDF5's library was called, after it has ended.
 
-        Raises
-        ------
-        OSError
-            If something could not be written.
+        Raises OSError if something could not be written.
         """
         with _uninterrupted():
             yield
@@ -59,10 +47,7 @@ class Hdf5Output:
     def close(self) -> None:
         """Close the file.
 
-        Raises
-        ------
-        OSError
-            If the last blocks cannot be written.
+        Raises OSError if the last blocks cannot be written.
         """
         try:
             with self.calls():

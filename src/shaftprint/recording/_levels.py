@@ -101,17 +101,8 @@ class Tally:
 def levels_of(channels: Sequence[Channel], *, reach: Callable[[float], None] | None = None) -> list[Levels]:
     """Return the levels of channels, read once, block by block: some formats have all channels in one record.
 
-    Parameters
-    ----------
-    channels
-        The channels of a recording.
-    reach
-        Is told the share that is done, 0 to 1.
-
-    Raises
-    ------
-    RecordingError
-        If the file cannot be read.
+    ``channels``: the channels of a recording. ``reach``: is told the share that is done, 0 to 1. Raises RecordingError
+    if the file cannot be read.
     """
     tallies = [Tally(channel) for channel in channels]
     read_on(tallies, reach=reach)

@@ -87,10 +87,7 @@ def judge_messages(channel: Channel) -> Messages:
 def stamped_values(channel: Channel, *, count: int) -> tuple[FloatArray, FloatArray]:
     """Return so many samples of a channel with ``stamps`` from the first on: their times [s] and values, (count,) each.
 
-    Raises
-    ------
-    RecordingError
-        If the file cannot be read.
+    Raises RecordingError if the file cannot be read.
     """
     blocks = [(start, min(start + BLOCK_SAMPLES, count)) for start in range(0, count, BLOCK_SAMPLES)]
     time_s = np.concatenate([channel.stamps_s(*block) for block in blocks] or [np.empty(0)])
@@ -101,14 +98,8 @@ def stamped_values(channel: Channel, *, count: int) -> tuple[FloatArray, FloatAr
 def messages_of(time_s: FloatArray, values: FloatArray, *, period_s: float) -> Messages:
     """Return what messages tell of their sender.
 
-    Parameters
-    ----------
-    time_s
-        When they came [s], ascending, shape (messages,).
-    values
-        What they hold, shape (messages,); those that are no numbers do not count.
-    period_s
-        Time from one to the next, as nearly as it is known [s].
+    ``time_s``: when they came [s], ascending, shape (messages,). ``values``: what they hold, shape (messages,); those
+    that are no numbers do not count. ``period_s``: time from one to the next, as nearly as it is known [s].
     """
     is_number = np.isfinite(values)
     time_s, values = time_s[is_number], values[is_number]

@@ -44,12 +44,7 @@ class Spool:
     def __init__(self, path: Path, names: Sequence[str]) -> None:
         """Begin empty columns.
 
-        Parameters
-        ----------
-        path
-            The file that is unpacked, for messages.
-        names
-            Name of each column.
+        ``path``: the file that is unpacked, for messages. ``names``: name of each column.
         """
         self._path = path
         self._most = max(_ALWAYS, MOST_TIMES * path.stat().st_size)
@@ -66,10 +61,7 @@ class Spool:
     def append(self, block: FloatArray) -> None:
         """Add rows, shape (rows, columns).
 
-        Raises
-        ------
-        RecordingError
-            If they are more than a file of that length has, or the disk does not take them.
+        Raises RecordingError if they are more than a file of that length has, or the disk does not take them.
         """
         for number, column in enumerate(block.T):
             self.append_column(number, column)

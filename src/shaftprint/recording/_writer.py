@@ -42,16 +42,9 @@ class RecordingWriter:
     ) -> None:
         """Say where the recording belongs; nothing is written before the ``with`` block begins.
 
-        Parameters
-        ----------
-        path
-            The finished file.
-        attributes
-            Facts on the whole recording, such as ``{"ship": "Stan Tug 1205"}``.
-        began
-            Date of second 0, where it is known.
-        overwrite
-            Whether a file of that name may be replaced.
+        ``path``: the finished file. ``attributes``: facts on the whole recording, such as ``{"ship": "Stan Tug
+        1205"}``. ``began``: date of second 0, where it is known. ``overwrite``: whether a file of that name may be
+        replaced.
         """
         self._path = Path(path)
         self._attributes = {**(attributes or {}), **({} if began is None else {BEGAN: began.isoformat()})}
@@ -64,10 +57,7 @@ class RecordingWriter:
     def __enter__(self) -> Self:
         """Open the file under its temporary name.
 
-        Raises
-        ------
-        RecordingError
-            If the file exists and may not be replaced, or its folder cannot be written.
+        Raises RecordingError if the file exists and may not be replaced, or its folder cannot be written.
         """
         root = {"Conventions": "CF-1.11", "format": FORMAT, "format_version": VERSION}
         try:
@@ -91,10 +81,7 @@ class RecordingWriter:
     ) -> None:
         """Finish the file and give it its name, or delete it after an error.
 
-        Raises
-        ------
-        RecordingError
-            If the last samples cannot be written.
+        Raises RecordingError if the last samples cannot be written.
         """
         if error is not None:
             # what closing says of the same full disk is not said again

@@ -56,17 +56,8 @@ def tug_of_plan(test: "PlannedTest", vessel: "Vessel") -> Tug:
 
     Underway it sails free as the ship of the vessel file does, with its mass, resistance, wake and thrust deduction.
 
-    Parameters
-    ----------
-    test
-        What is sailed.
-    vessel
-        The installation.
-
-    Raises
-    ------
-    DesignError
-        If the structure of the plan lacks a number that the simulated ship needs.
+    ``test``: what is sailed. ``vessel``: the installation. Raises DesignError if the structure of the plan lacks a
+    number that the simulated ship needs.
     """
     plan, limits = test.plan, test.plan.limits
     needed = _NEEDED | (_OF_ENGINE if vessel.motor is None else _OF_MOTOR)
@@ -115,13 +106,8 @@ def simulated_truth(plan: "Plan", sailed: Mapping[str, float] | None = None) -> 
     latency of the set point. Underway the scale of the set point is left out: the volts of one speed are made rpm by
     slow lines, whose speed the ship bends, and what that errs by is what the fit finds.
 
-    Parameters
-    ----------
-    plan
-        What is sailed.
-    sailed
-        ``normalised_truth`` of the simulated ship, for slopes and times of one that sails free; those of the plan where
-        it is not given.
+    ``plan``: what is sailed. ``sailed``: ``normalised_truth`` of the simulated ship, for slopes and times of one that
+    sails free; those of the plan where it is not given.
     """
     structure, values = plan.ship.structure, plan.ship.by_name
     for role, ideal in _IDEAL.items():

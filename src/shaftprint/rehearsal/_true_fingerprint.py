@@ -17,14 +17,8 @@ DEGREES_PER_REVOLUTION = 360.0
 def fingerprint_truth(truth: Truth, structure: Structure, signals: Signals) -> dict[str, float]:
     """Return what is true by the names of parameters, combinations, physical values, margins and calibration.
 
-    Parameters
-    ----------
-    truth
-        What was put into the recording.
-    structure
-        The structure that was identified.
-    signals
-        Their working point is the one at which the estimates are normalised.
+    ``truth``: what was put into the recording. ``structure``: the structure that was identified. ``signals``: their
+    working point is the one at which the estimates are normalised.
     """
     values = structure.vector(_parameters(truth, structure, signals))
     named = dict(zip(structure.names, values.tolist(), strict=True))

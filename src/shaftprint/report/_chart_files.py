@@ -37,16 +37,8 @@ def write_charts(
 ) -> dict[str, ChartFiles]:
     """Write the data of each chart, and pictures of it where asked for; return where they are, by name.
 
-    Parameters
-    ----------
-    shown
-        Charts in the order of the page.
-    part
-        Folder that will be the report's.
-    pictures
-        Whether pictures are written, too.
-    progress
-        Is told the finished share, from 0 to 1.
+    ``shown``: charts in the order of the page. ``part``: folder that will be the report's. ``pictures``: whether
+    pictures are written, too. ``progress``: is told the finished share, from 0 to 1.
     """
     files = {}
     for number, picture in enumerate(shown, start=1):
@@ -59,14 +51,8 @@ def write_charts(
 def write_scripts(part: Path, own: Mapping[str, str], library: bytes) -> tuple[str, ...]:
     """Write the page's own scripts and plotly's; return where they are, plotly's last.
 
-    Parameters
-    ----------
-    part
-        Folder that will be the report's.
-    own
-        The page's own scripts by the name of the file.
-    library
-        plotly's script as it is in its package.
+    ``part``: folder that will be the report's. ``own``: the page's own scripts by the name of the file. ``library``:
+    plotly's script as it is in its package.
     """
     for name, text in own.items():
         (part / PLOTS / name).write_text(text, encoding="utf-8")

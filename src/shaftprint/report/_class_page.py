@@ -39,25 +39,10 @@ def render_class(
 ) -> Path:
     """Write a page on a class of ships, ``index.html`` with its figure; return its path.
 
-    Parameters
-    ----------
-    directory
-        Where the page goes; made if it does not exist.
-    class_name
-        What the ships have in common.
-    ships, finding
-        The ships, and what ``judge_sisters`` has found.
-    now
-        Time of making, with time zone.
-    pictures
-        Whether the chart is written as SVG, PDF and PNG too.
-    overwrite
-        Whether an earlier page there may be replaced.
-
-    Raises
-    ------
-    FileExistsError
-        If there is a page already and ``overwrite`` is false.
+    ``directory``: where the page goes; made if it does not exist. ``class_name``: what the ships have in common.
+    ``ships``, ``finding``: the ships, and what ``judge_sisters`` has found. ``now``: time of making, with time zone.
+    ``pictures``: whether the chart is written as SVG, PDF and PNG too. ``overwrite``: whether an earlier page there may
+    be replaced. Raises FileExistsError if there is a page already and ``overwrite`` is false.
     """
     state: State = "look" if finding.odd else "open" if finding.because else "fine"
     tests = [test for ship in ships for test in ship.tests]

@@ -44,29 +44,13 @@ def render_comparison(
 ) -> Path:
     """Write a report on two or more fingerprints, ``index.html`` with its figures; return the path of the page.
 
-    Parameters
-    ----------
-    directory
-        Where the report goes; made if it does not exist. Other files there are left alone.
-    fingerprints
-        Fingerprints by the name that the report gives them; the first is the one that others are compared with.
-    structures
-        Structures of one's own by name; those that are shipped are known.
-    load_repeatability
-        As in ``differences``.
-    remarks
-        What else the tests say of the lines beside each other, in sentences.
-    pictures
-        Whether every chart is written as SVG, PDF and PNG too, into the folder ``figures``.
-    overwrite
-        Whether an earlier report there may be replaced.
-
-    Raises
-    ------
-    FileExistsError
-        If there is a report already and ``overwrite`` is false.
-    ReportError
-        If there are fewer than two fingerprints, or plotly is not installed.
+    ``directory``: where the report goes; made if it does not exist. Other files there are left alone. ``fingerprints``:
+    fingerprints by the name that the report gives them; the first is the one that others are compared with.
+    ``structures``: structures of one's own by name; those that are shipped are known. ``load_repeatability``: as in
+    ``differences``. ``remarks``: what else the tests say of the lines beside each other, in sentences. ``pictures``:
+    whether every chart is written as SVG, PDF and PNG too, into the folder ``figures``. ``overwrite``: whether an
+    earlier report there may be replaced. Raises FileExistsError if there is a report already and ``overwrite`` is
+    false; ReportError if there are fewer than two fingerprints, or plotly is not installed.
     """
     if len(fingerprints) < FEWEST:
         raise ReportError(

@@ -52,10 +52,7 @@ def open_loop_curve(closed: Curve) -> Curve:
 
     ``M_s / e = (M_s / n_set) / (1 - n / n_set)``.
 
-    Raises
-    ------
-    StructureError
-        If the structure has no outputs ``n`` and ``M_s`` of the input ``n_set``.
+    Raises StructureError if the structure has no outputs ``n`` and ``M_s`` of the input ``n_set``.
     """
     model = closed.structure
     if model.input != "n_set" or not {"n", "M_s"} <= set(model.outputs):
@@ -81,10 +78,7 @@ def closed_loop_curve(core: Curve, governor: Curve) -> Curve:
 
     It has no covariance: both were fitted to the same data, and how their errors go together is not known.
 
-    Raises
-    ------
-    StructureError
-        If the two structures are not of that kind.
+    Raises StructureError if the two structures are not of that kind.
     """
     channels = [(c.structure.input, tuple(c.structure.outputs)) for c in (core, governor)]
     if channels != [("M_s", ("n",)), ("e", ("M_s",))]:
@@ -107,19 +101,8 @@ def closed_loop_curve(core: Curve, governor: Curve) -> Curve:
 def fingerprint_curve(fingerprint: Fingerprint, structure: Structure, label: str) -> Curve:
     """Return the curve of a fingerprint; without a band where the test says nothing of one of its parameters.
 
-    Parameters
-    ----------
-    fingerprint
-        A saved fingerprint.
-    structure
-        The structure that it names.
-    label
-        What the legend calls it.
-
-    Raises
-    ------
-    FingerprintError
-        If the structure has other parameters than the fingerprint.
+    ``fingerprint``: a saved fingerprint. ``structure``: the structure that it names. ``label``: what the legend calls
+    it. Raises FingerprintError if the structure has other parameters than the fingerprint.
     """
     model = identified_model(fingerprint, structure)
     return Curve(

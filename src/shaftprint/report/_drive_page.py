@@ -35,27 +35,11 @@ def render_drive(
 ) -> Path:
     """Write the page of a drive, ``index.html`` with its charts; return its path.
 
-    Parameters
-    ----------
-    directory
-        Where the page goes; made if it does not exist. Other files there are left alone.
-    fit
-        What was found, with the records.
-    fingerprint
-        What is kept of it.
-    pictures
-        Whether every chart is written as SVG, PDF and PNG too.
-    overwrite
-        Whether an earlier page there may be replaced.
-    progress
-        Is told the finished share, from 0 to 1.
-
-    Raises
-    ------
-    FileExistsError
-        If there is a page already and ``overwrite`` is false.
-    ReportError
-        If plotly is not installed.
+    ``directory``: where the page goes; made if it does not exist. Other files there are left alone. ``fit``: what was
+    found, with the records. ``fingerprint``: what is kept of it. ``pictures``: whether every chart is written as SVG,
+    PDF and PNG too. ``overwrite``: whether an earlier page there may be replaced. ``progress``: is told the finished
+    share, from 0 to 1. Raises FileExistsError if there is a page already and ``overwrite`` is false; ReportError if
+    plotly is not installed.
     """
     page = Page(
         title=f"Fingerprint of {fingerprint.drive}",

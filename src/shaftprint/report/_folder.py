@@ -20,19 +20,9 @@ def report_written_whole(directory: Path, *, overwrite: bool) -> Iterator[Path]:
 
     Other files in ``directory`` are left alone. When the block raises, ``directory`` stays as it was.
 
-    Parameters
-    ----------
-    directory
-        Where the report belongs; made if it does not exist.
-    overwrite
-        Whether page, figures and plots of an earlier report may be replaced.
-
-    Raises
-    ------
-    FileExistsError
-        If there is a page or a folder of figures or plots and ``overwrite`` is false.
-    PublicationError
-        If another command writes there, or the report cannot be put in place.
+    ``directory``: where the report belongs; made if it does not exist. ``overwrite``: whether page, figures and plots
+    of an earlier report may be replaced. Raises FileExistsError if there is a page or a folder of figures or plots and
+    ``overwrite`` is false; PublicationError if another command writes there, or the report cannot be put in place.
     """
     with staged(directory) as part:
         _expect_free(directory, overwrite=overwrite)

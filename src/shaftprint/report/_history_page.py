@@ -43,27 +43,11 @@ def render_history(
 ) -> Path:
     """Write a page on the history of a line, ``index.html`` with its figure; return its path.
 
-    Parameters
-    ----------
-    directory
-        Where the page goes; made if it does not exist.
-    title
-        What the line is called.
-    history, finding
-        The tests, and what ``watch`` has found in them.
-    now
-        Time of making, with time zone.
-    load_repeatability
-        As in ``watch``.
-    pictures
-        Whether the chart is written as SVG, PDF and PNG too.
-    overwrite
-        Whether an earlier page there may be replaced.
-
-    Raises
-    ------
-    FileExistsError
-        If there is a page already and ``overwrite`` is false.
+    ``directory``: where the page goes; made if it does not exist. ``title``: what the line is called. ``history``,
+    ``finding``: the tests, and what ``watch`` has found in them. ``now``: time of making, with time zone.
+    ``load_repeatability``: as in ``watch``. ``pictures``: whether the chart is written as SVG, PDF and PNG too.
+    ``overwrite``: whether an earlier page there may be replaced. Raises FileExistsError if there is a page already and
+    ``overwrite`` is false.
     """
     sizes = sizes_of_tests(history, load_repeatability=load_repeatability)
     sentences = watch_sentences(finding, history)

@@ -74,29 +74,12 @@ def write_page(
 ) -> Path:
     """Write a page with its charts, whole or not at all; return its path.
 
-    Parameters
-    ----------
-    directory
-        Where the page goes; made if it does not exist. Other files there are left alone.
-    page
-        What it says.
-    pictures
-        Whether the charts are written as pictures too.
-    overwrite
-        Whether an earlier report there may be replaced.
-    progress
-        Is told the finished share, from 0 to 1.
-    further
-        Pages beside it, by their files; the folder's names of figures are those of all pages.
-    pdf
-        Whether what is not folded of the page is written as PDF too.
-
-    Raises
-    ------
-    FileExistsError
-        If there is a report already and ``overwrite`` is false.
-    ReportError
-        If plotly is not installed, or ReportLab is not and a PDF is asked for.
+    ``directory``: where the page goes; made if it does not exist. Other files there are left alone. ``page``: what it
+    says. ``pictures``: whether the charts are written as pictures too. ``overwrite``: whether an earlier report there
+    may be replaced. ``progress``: is told the finished share, from 0 to 1. ``further``: pages beside it, by their
+    files; the folder's names of figures are those of all pages. ``pdf``: whether what is not folded of the page is
+    written as PDF too. Raises FileExistsError if there is a report already and ``overwrite`` is false; ReportError if
+    plotly is not installed, or ReportLab is not and a PDF is asked for.
     """
     folder = Path(directory)
     library = plotly_script()
@@ -117,10 +100,7 @@ def write_page(
 def page_as_pdf(page: Page, path: Path) -> None:
     """Write what is not folded of a page as PDF.
 
-    Raises
-    ------
-    ReportError
-        If ReportLab is not installed.
+    Raises ReportError if ReportLab is not installed.
     """
     expect_reportlab()
     importlib.import_module(PAPER).write_pdf(
@@ -136,10 +116,7 @@ def page_as_pdf(page: Page, path: Path) -> None:
 def expect_reportlab() -> None:
     """Refuse where what writes PDF is not installed.
 
-    Raises
-    ------
-    ReportError
-        If ReportLab is not installed.
+    Raises ReportError if ReportLab is not installed.
     """
     if find_spec("reportlab") is None:
         raise ReportError('PDF: expected the package reportlab, found none; pip install "shaftprint[pdf]".')

@@ -78,15 +78,7 @@ def plot(noun: Noun) -> "Figure":
 def chart_of(noun: Noun) -> Chart:
     """Return the chart that shows a noun best; see ``plot``.
 
-    Parameters
-    ----------
-    noun
-        What is shown.
-
-    Raises
-    ------
-    ReportError
-        If nothing is known to draw of such a noun.
+    ``noun``: what is shown. Raises ReportError if nothing is known to draw of such a noun.
     """
     match noun:
         case Chart():

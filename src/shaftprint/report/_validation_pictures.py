@@ -17,14 +17,8 @@ AROUND_STEP_S = (0.5, 4.0)
 def write_validations(folder: Path, validations: Sequence[Validation], *, progress: Progress = SILENT) -> None:
     """Write a figure of all errors, and one of each chirp band, each staircase and its largest step.
 
-    Parameters
-    ----------
-    folder
-        Where they go.
-    validations
-        The model that is validated, and the sets of the thesis if they are to stand beside it.
-    progress
-        Is told how far it is.
+    ``folder``: where they go. ``validations``: the model that is validated, and the sets of the thesis if they are to
+    stand beside it. ``progress``: is told how far it is.
     """
     first = validations[0]
     shown = _shown(first)

@@ -74,27 +74,10 @@ def fingerprint_of_service(
 ) -> Fingerprint:
     """Return the fingerprint of a line from its service.
 
-    Parameters
-    ----------
-    fit, model
-        The fit, normalised at the working point of the vessel file, and its model.
-    vessel
-        The installation.
-    line
-        What the lever asks for.
-    segments, of
-        The segments that were fitted, and how many moves there were.
-    load
-        Mean load over that of the working point, and its standard deviation.
-    table
-        The table of segments.
-    now
-        Time of making, with time zone.
-
-    Raises
-    ------
-    ServiceError
-        If ``now`` has no time zone.
+    ``fit``, ``model``: the fit, normalised at the working point of the vessel file, and its model. ``vessel``: the
+    installation. ``line``: what the lever asks for. ``segments``, ``of``: the segments that were fitted, and how many
+    moves there were. ``load``: mean load over that of the working point, and its standard deviation. ``table``: the
+    table of segments. ``now``: time of making, with time zone. Raises ServiceError if ``now`` has no time zone.
     """
     if now.tzinfo is None:
         raise ServiceError("now: expected a time with time zone, such as datetime.now(UTC), found one without.")

@@ -98,19 +98,8 @@ def sums_of(each: Sequence[Score], model: ServiceModel, theta: FloatArray) -> Su
 def fit_segments(records: Sequence[Record], model: ServiceModel, *, simulator: Simulator | None = None) -> ServiceFit:
     """Return the parameters that explain segments best.
 
-    Parameters
-    ----------
-    records
-        The segments.
-    model
-        The model, with the values to begin from.
-    simulator
-        How it is simulated.
-
-    Raises
-    ------
-    ServiceError
-        If there are too few segments, or the steps do not end.
+    ``records``: the segments. ``model``: the model, with the values to begin from. ``simulator``: how it is simulated.
+    Raises ServiceError if there are too few segments, or the steps do not end.
     """
     if len(records) < FEWEST_SEGMENTS:
         raise ServiceError(
@@ -175,14 +164,8 @@ def fit_segments(records: Sequence[Record], model: ServiceModel, *, simulator: S
 def clustered(each: Sequence[Score], sums: Sums, of_noise: FloatArray) -> FloatArray:
     """Return the covariance from the scatter of segments, no deviation less than that of the noise, (free, free).
 
-    Parameters
-    ----------
-    each
-        What each segment tells, at the greatest likelihood.
-    sums
-        Their sums.
-    of_noise
-        Covariance by the noise model, shape (free, free).
+    ``each``: what each segment tells, at the greatest likelihood. ``sums``: their sums. ``of_noise``: covariance by the
+    noise model, shape (free, free).
     """
     slopes = np.array([one.slope for one in each])
     # as many slopes as parameters would fit any data: each segment counts as if it had not been fitted
@@ -218,12 +201,8 @@ def along(each: Sequence[Score], direction: FloatArray) -> tuple[float, float]:
 
     That is by the scatter of the segments alone. The direction is that of a cause, such as a gain that is lower.
 
-    Parameters
-    ----------
-    each
-        What each segment tells, at an earlier fingerprint.
-    direction
-        Change of the parameters for one unit of the cause, shape (free,).
+    ``each``: what each segment tells, at an earlier fingerprint. ``direction``: change of the parameters for one unit
+    of the cause, shape (free,).
     """
     slopes = np.array([direction @ one.slope for one in each])
     curvatures = np.array([direction @ one.information @ direction for one in each])

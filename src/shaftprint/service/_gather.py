@@ -72,21 +72,8 @@ def gather(
 ) -> Gathered:
     """Return what logs of service hold, from one reading; memory does not grow with what lies between the moves.
 
-    Parameters
-    ----------
-    logs
-        Files, in order of time.
-    vessel
-        The installation.
-    progress
-        Is told the share that is done, 0 to 1.
-
-    Raises
-    ------
-    ServiceError
-        If a log does not show what a governor does.
-    RecordingError
-        If a file cannot be read.
+    ``logs``: files, in order of time. ``vessel``: the installation. ``progress``: is told the share that is done, 0 to
+    1. Raises ServiceError if a log does not show what a governor does; RecordingError if a file cannot be read.
     """
     left_out: list[LeftOut] = []
     segments: list[Segment] = []
@@ -235,10 +222,7 @@ def _why_not(block: Block, move: Move, doing: NDArray[np.int8], seconds: float, 
 def lever_line(still: StillMeans) -> LeverLine:
     """Return the line of the lever from where it stands still: a governor holds the speed that is asked for.
 
-    Raises
-    ------
-    ServiceError
-        If too little stood still, at too few speeds, or the speed does not follow the lever.
+    Raises ServiceError if too little stood still, at too few speeds, or the speed does not follow the lever.
     """
     numbers = np.unique(still.stretch)
     levels = np.array(

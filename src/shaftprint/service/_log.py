@@ -89,25 +89,10 @@ def blocks(
 ) -> Iterator[Block]:
     """Yield what the logs hold in order of time, block by block.
 
-    Parameters
-    ----------
-    logs
-        Files, in order of time.
-    vessel
-        Says which channel carries what.
-    keep_s
-        How much of a block comes again with the one that follows on it [s].
-    told
-        Is told of every stretch that cannot be read.
-    progress
-        Is told the share that is done, 0 to 1.
-
-    Raises
-    ------
-    ServiceError
-        If there is no file, or a file is too slow for what a governor does.
-    RecordingError
-        If a file cannot be read at all.
+    ``logs``: files, in order of time. ``vessel``: says which channel carries what. ``keep_s``: how much of a block
+    comes again with the one that follows on it [s]. ``told``: is told of every stretch that cannot be read.
+    ``progress``: is told the share that is done, 0 to 1. Raises ServiceError if there is no file, or a file is too slow
+    for what a governor does; RecordingError if a file cannot be read at all.
     """
     if not logs:
         raise ServiceError("service: expected at least one log, found none; name the logger's files in order of time.")
@@ -144,10 +129,7 @@ def _parts(recording: "Recording", vessel: "Vessel") -> Iterator[tuple["Recordin
 def grid_hz(rates_hz: Sequence[float], path: Path) -> float:
     """Return the rate of the grid for channels of some rates [Hz].
 
-    Raises
-    ------
-    ServiceError
-        If they are too slow.
+    Raises ServiceError if they are too slow.
     """
     slowest = min(rates_hz)
     for rate in _GRIDS_HZ:
@@ -215,10 +197,7 @@ def _names(vessel: "Vessel") -> tuple[str, str, str]:
 def expect_every_value(readings: "ChannelReadings", path: Path) -> None:
     """Refuse a log whose values are kept for longer than a governor takes to answer: that of a historian.
 
-    Raises
-    ------
-    ServiceError
-        If speed or torque repeat their last value.
+    Raises ServiceError if speed or torque repeat their last value.
     """
     for name, held in readings.held.items():
         if name != "n_set" and held.hold_s > 1.0 / RECORD_HZ and held.share > _HELD_SHARE:

@@ -71,17 +71,8 @@ class ServiceModel:
 def service_model(vessel: "Vessel", fingerprint: "Fingerprint | None" = None) -> ServiceModel:
     """Return the model of a line in service.
 
-    Parameters
-    ----------
-    vessel
-        The installation.
-    fingerprint
-        One of an earlier test or of other days, to begin from; usual values where there is none.
-
-    Raises
-    ------
-    ServiceError
-        If the line is of a kind whose service cannot be compared with a model yet.
+    ``vessel``: the installation. ``fingerprint``: one of an earlier test or of other days, to begin from; usual values
+    where there is none. Raises ServiceError if the line is of a kind whose service cannot be compared with a model yet.
     """
     _expect_line(vessel)
     speed = vessel.working_point.engine_speed_rpm / SECONDS_PER_MINUTE
@@ -116,10 +107,7 @@ def service_model(vessel: "Vessel", fingerprint: "Fingerprint | None" = None) ->
 def _expect_line(vessel: "Vessel") -> None:
     """Refuse lines that have no model here.
 
-    Raises
-    ------
-    ServiceError
-        If it is such a one.
+    Raises ServiceError if it is such a one.
     """
     kinds = {
         "the ship sails free": vessel.is_underway,
@@ -149,10 +137,7 @@ def _limits(vessel: "Vessel", speed_rev_s: float, torque_nm: float) -> dict[str,
 def _of_fingerprint(fingerprint: "Fingerprint", point: Normalisation, usual: Mapping[str, float]) -> dict[str, float]:
     """Return the values of a fingerprint at the working point of the vessel file.
 
-    Raises
-    ------
-    ServiceError
-        If it is of a structure with other numbers.
+    Raises ServiceError if it is of a structure with other numbers.
     """
     tested = fingerprint.conditions
     torque = tested.shaft_torque.value / point.shaft_torque_nm

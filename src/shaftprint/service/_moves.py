@@ -49,14 +49,8 @@ class Move:
 def moving(lever_v: FloatArray, rate_hz: float, *, range_v: float) -> BoolArray:
     """Return where the lever moves, shape (samples,).
 
-    Parameters
-    ----------
-    lever_v
-        Set point [V], shape (samples,).
-    rate_hz
-        Samples a second [Hz].
-    range_v
-        Change of the set point from standing to the speed of the working point [V].
+    ``lever_v``: set point [V], shape (samples,). ``rate_hz``: samples a second [Hz]. ``range_v``: change of the set
+    point from standing to the speed of the working point [V].
     """
     lag = max(round(_WITHIN_S * rate_hz), 1)
     if lever_v.size <= lag:

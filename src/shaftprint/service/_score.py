@@ -65,21 +65,8 @@ def simulated(
 ) -> list[Simulated]:
     """Return segments beside their simulation at some parameters.
 
-    Parameters
-    ----------
-    records
-        The segments.
-    model
-        The model.
-    theta
-        Its free parameters, shape (free,).
-    simulator
-        How it is simulated.
-
-    Raises
-    ------
-    ServiceError
-        If a simulation runs away.
+    ``records``: the segments. ``theta``: its free parameters, shape (free,). ``simulator``: how it is simulated. Raises
+    ServiceError if a simulation runs away.
     """
     runs = []
     for record in records:
@@ -136,10 +123,7 @@ def _smooth(values: FloatArray, rate_hz: float) -> FloatArray:
 def noise_of(runs: Sequence[Simulated]) -> Whitening:
     """Return the filter that makes the noise of segments white, which have one colour and sizes of their own.
 
-    Raises
-    ------
-    IdentificationError
-        If an output has no noise at all.
+    Raises IdentificationError if an output has no noise at all.
     """
     kept, stretches, first = [], [], 0
     for run in runs:

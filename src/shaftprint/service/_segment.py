@@ -73,14 +73,8 @@ class Segment:
     def record(self, line: LeverLine, *, speed_rev_s: float, torque_nm: float, tau_dn: float) -> Record:
         """Return it as a record of deviations, its load without the torque that accelerates the propeller.
 
-        Parameters
-        ----------
-        line
-            What the lever asks for.
-        speed_rev_s, torque_nm
-            Engine speed [rev/s] and shaft torque [N m] of the working point.
-        tau_dn
-            Inertia time behind the gauge [s].
+        ``line``: what the lever asks for. ``speed_rev_s``, ``torque_nm``: engine speed [rev/s] and shaft torque [N m]
+        of the working point. ``tau_dn``: inertia time behind the gauge [s].
         """
         decimator = Decimator(every=self.every)
         drive = line.speed_rev_s(self.lever_v) / speed_rev_s - 1.0

@@ -32,23 +32,9 @@ def write_segments(
 ) -> None:
     """Write segments, both files whole.
 
-    Parameters
-    ----------
-    path
-        The table.
-    segments
-        The segments, in its order.
-    line
-        What the lever asks for.
-    rows
-        What the table says of each; columns in the order of the first.
-    facts
-        What else the fit has to know, such as the load.
-
-    Raises
-    ------
-    ServiceError
-        If a file cannot be written.
+    ``path``: the table. ``segments``: the segments, in its order. ``line``: what the lever asks for. ``rows``: what the
+    table says of each; columns in the order of the first. ``facts``: what else the fit has to know, such as the load.
+    Raises ServiceError if a file cannot be written.
     """
     text = io.StringIO(newline="")
     table = csv.DictWriter(text, fieldnames=list(rows[0]) if rows else [USED, REASON], lineterminator="\n")
@@ -74,15 +60,7 @@ def write_segments(
 def read_segments(path: str | Path) -> tuple[tuple[Segment, ...], LeverLine, dict[str, object]]:
     """Return segments, the line of the lever and the facts; what the table takes out has a reason.
 
-    Parameters
-    ----------
-    path
-        The table.
-
-    Raises
-    ------
-    ServiceError
-        If a file is missing, is no such file, or both do not belong together.
+    ``path``: the table. Raises ServiceError if a file is missing, is no such file, or both do not belong together.
     """
     path = Path(path)
     try:

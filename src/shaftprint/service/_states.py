@@ -29,13 +29,8 @@ def idle_rpm(vessel: "Vessel") -> float:
 def state_of_seconds(speed_rev_s: FloatArray, torque_nm: FloatArray, vessel: "Vessel") -> NDArray[np.int8]:
     """Return what the ship was doing in each second, as places in ``STATES``.
 
-    Parameters
-    ----------
-    speed_rev_s, torque_nm
-        Mean engine speed [rev/s] and mean driving torque [N m] of each second, shape (seconds,); not a number where a
-        channel is missing.
-    vessel
-        Idle speed and working point.
+    ``speed_rev_s``, ``torque_nm``: mean engine speed [rev/s] and mean driving torque [N m] of each second, shape
+    (seconds,); not a number where a channel is missing. ``vessel``: idle speed and working point.
     """
     idle = idle_rpm(vessel) / SECONDS_PER_MINUTE
     point = vessel.working_point

@@ -52,10 +52,7 @@ class Found:
 def lever_follows_load(still: StillMeans) -> Found:
     """Return by how many standard deviations a still lever follows the load of the five seconds before.
 
-    Parameters
-    ----------
-    still
-        Means of lever and load where the lever stands still.
+    ``still``: means of lever and load where the lever stands still.
     """
     what = "still lever on the load before it"
     same = still.stretch[2:] == still.stretch[:-2]
@@ -81,10 +78,7 @@ def lever_follows_load(still: StillMeans) -> Found:
 def shift_of_lever(runs: Sequence[Simulated]) -> Found:
     """Return by how much the lever is late against speed and torque, beside an earlier fingerprint [ms].
 
-    Parameters
-    ----------
-    runs
-        Segments beside the simulation of that fingerprint.
+    ``runs``: segments beside the simulation of that fingerprint.
     """
     rate_hz = runs[0].record.rate_hz
     reach = round(_REACH_S * rate_hz)
@@ -116,10 +110,7 @@ def shift_of_lever(runs: Sequence[Simulated]) -> Found:
 def way_on(segments: Sequence[Segment]) -> Found:
     """Return how much the load rises with the speed across moves: nothing at the quay, more with way on.
 
-    Parameters
-    ----------
-    segments
-        Usable segments.
+    ``segments``: usable segments.
     """
     what = "load that rises with the speed across a move"
     rows = []

@@ -34,19 +34,9 @@ def at_rate(recording: "Recording", rate_hz: float, *, straight: Collection[str]
     rate within 0.5 %, or by straight lines. Where more than one of their values in a row is missing, and a filter's
     length about missing samples, there is no number.
 
-    Parameters
-    ----------
-    recording
-        The recording, open; closing the result closes it.
-    rate_hz
-        The rate [Hz].
-    straight
-        Names of slower or uneven channels that go straight from value to value, as what jumps does.
-
-    Raises
-    ------
-    SignalError
-        If the rate is no positive number, the channels have no time in common, or one has fewer than four values.
+    ``recording``: the recording, open; closing the result closes it. ``rate_hz``: the rate [Hz]. ``straight``: names of
+    slower or uneven channels that go straight from value to value, as what jumps does. Raises SignalError if the rate
+    is no positive number, the channels have no time in common, or one has fewer than four values.
     """
     if not (math.isfinite(rate_hz) and rate_hz > 0.0):
         raise SignalError(f"--rate: expected a positive rate in Hz, found {rate_hz:g}.")

@@ -15,10 +15,7 @@ if TYPE_CHECKING:
 def changes_of_set_point(vessel: "Vessel", campaign: "Campaign", readings: "Readings") -> tuple[Reason, ...]:
     """Return what says that the set point changed within the tests.
 
-    Parameters
-    ----------
-    vessel, campaign, readings
-        Of the recording; the set point still in volts.
+    ``vessel``, ``campaign``, ``readings``: of the recording; the set point still in volts.
     """
     clock = readings.clock
     if clock.mode == "thesis":
@@ -36,10 +33,7 @@ def changes_of_set_point(vessel: "Vessel", campaign: "Campaign", readings: "Read
 def changes_of_gauge(vessel: "Vessel", campaign: "Campaign", readings: "Readings") -> tuple[Reason, ...]:
     """Return what says that the torque gauge changed within the tests.
 
-    Parameters
-    ----------
-    vessel, campaign, readings
-        Of the recording.
+    ``vessel``, ``campaign``, ``readings``: of the recording.
     """
     clock = readings.clock
     if clock.mode == "thesis":

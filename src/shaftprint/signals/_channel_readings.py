@@ -54,17 +54,9 @@ def read_channels(
 ) -> ChannelReadings:
     """Read every channel that the vessel file names.
 
-    Parameters
-    ----------
-    recording, vessel, mode, rate_hz, chunk_s, progress
-        As for `prepare_signals`.
-    partly
-        Whether a speed alone will do, as in a trial of a pick-up; else every channel has to be there.
-
-    Raises
-    ------
-    SignalError
-        If a channel is missing, empty, or in another unit.
+    ``recording``, ``vessel``, ``mode``, ``rate_hz``, ``chunk_s``, ``progress``: as for `prepare_signals`. ``partly``:
+    whether a speed alone will do, as in a trial of a pick-up; else every channel has to be there. Raises SignalError if
+    a channel is missing, empty, or in another unit.
     """
     sources, missing = find_sources(recording, vessel, partly=partly)
     clock = common_clock(logger_channels(sources), mode=mode, rate_hz=rate_hz, chunk_s=chunk_s, progress=progress)

@@ -22,12 +22,7 @@ def spline_gain(frequency_hz: float, rate_hz: float) -> float:
     signal processing: Part I", IEEE Transactions on Signal Processing 41 (1993): frequency response of the cardinal
     cubic spline).
 
-    Parameters
-    ----------
-    frequency_hz
-        Frequency of the sine [Hz].
-    rate_hz
-        Values a second [Hz].
+    ``frequency_hz``: frequency of the sine [Hz]. ``rate_hz``: values a second [Hz].
     """
     images = np.sinc(frequency_hz / rate_hz + np.arange(-_IMAGES, _IMAGES + 1)) ** 4
     return float(images[_IMAGES] / images.sum())

@@ -40,25 +40,11 @@ def find_channel(
 ) -> "Channel":
     """Return a channel that holds samples in the expected unit.
 
-    Parameters
-    ----------
-    recording
-        Where to look.
-    name
-        Name of the channel, from the vessel file.
-    unit
-        Unit that the vessel file gives for it; spaces and multiplication dots do not count.
-    use
-        What the channel is needed for, in words.
-    way_out
-        What to do where the channel is missing, in words.
-    takes_messages
-        Whether messages at times of their own will do.
-
-    Raises
-    ------
-    SignalError
-        If the channel is missing, empty, in another unit, or on no clock where it has to be.
+    ``recording``: where to look. ``name``: name of the channel, from the vessel file. ``unit``: unit that the vessel
+    file gives for it; spaces and multiplication dots do not count. ``use``: what the channel is needed for, in words.
+    ``way_out``: what to do where the channel is missing, in words. ``takes_messages``: whether messages at times of
+    their own will do. Raises SignalError if the channel is missing, empty, in another unit, or on no clock where it has
+    to be.
     """
     if name not in recording.channels:
         raise MissingChannel(
@@ -86,17 +72,7 @@ def find_channel(
 def expect_one_clock(channel: "Channel", use: str) -> None:
     """Refuse messages at times of their own where a filter needs samples at one rate.
 
-    Parameters
-    ----------
-    channel
-        The channel.
-    use
-        What it is needed for, in words.
-
-    Raises
-    ------
-    SignalError
-        If its samples lie on no clock.
+    ``use``: what it is needed for, in words. Raises SignalError if its samples lie on no clock.
     """
     if channel.is_uneven:
         raise SignalError(
@@ -108,14 +84,8 @@ def expect_one_clock(channel: "Channel", use: str) -> None:
 def blocks(channel: "Channel", block_samples: int, advance: Advance | None = None) -> Iterator[Counts]:
     """Yield the raw counts of a channel, in order, as int16 or float64; nan where there is no finite value.
 
-    Parameters
-    ----------
-    channel
-        What to read.
-    block_samples
-        Samples of one block; results do not depend on it.
-    advance
-        Is told the number of samples after each block.
+    ``channel``: what to read. ``block_samples``: samples of one block; results do not depend on it. ``advance``: is
+    told the number of samples after each block.
     """
     for first in range(0, channel.count, block_samples):
         last = min(first + block_samples, channel.count)
@@ -129,10 +99,7 @@ def spots(channel: "Channel") -> list[Counts]:
 
     Samples that are not numbers are left out.
 
-    Raises
-    ------
-    SignalError
-        If there is no number in any of them.
+    Raises SignalError if there is no number in any of them.
     """
     stretches = _stretches(channel, _SPOT_SAMPLES)
     numbers = [counts for counts in stretches if counts.size]

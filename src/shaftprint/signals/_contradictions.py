@@ -41,14 +41,8 @@ def contradictions(
     torque, one that turns astern a negative one, and torque goes with the square of the speed. With the signals of a
     test the speed that was asked for says more.
 
-    Parameters
-    ----------
-    reports
-        What each channel holds, from ``inspect_channels``.
-    vessel
-        Says which channel carries what.
-    signals, campaign
-        The prepared signals and what was asked of the ship, where both are there.
+    ``reports``: what each channel holds, from ``inspect_channels``. ``vessel``: says which channel carries what.
+    ``signals``, ``campaign``: the prepared signals and what was asked of the ship, where both are there.
     """
     of_channels = (*_of_speeds(reports, vessel), *_of_torque(reports, vessel))
     return of_channels or _of_scales(reports, vessel, signals, campaign)

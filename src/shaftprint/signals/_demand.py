@@ -38,21 +38,9 @@ def delay_of_demand(
 ) -> tuple[SetPointDelay | None, tuple[str, ...]]:
     """Return how late the demand is, nothing where the sines do not tell, and what the reader should know.
 
-    Parameters
-    ----------
-    recording
-        Holds the channel with the demand.
-    sensor
-        What the vessel file says of it.
-    campaign
-        What was asked.
-    readings
-        What was read, the set point still in volts.
-
-    Raises
-    ------
-    SignalError
-        If the channel is missing, empty or in another unit.
+    ``recording``: holds the channel with the demand. ``sensor``: what the vessel file says of it. ``campaign``: what
+    was asked. ``readings``: what was read, the set point still in volts. Raises SignalError if the channel is missing,
+    empty or in another unit.
     """
     channel = find_channel(
         recording,
@@ -138,10 +126,7 @@ def _delay(lines: FloatArray) -> tuple[float, float, float]:
 
     A line is late by whole turns more where the slower ones say so.
 
-    Parameters
-    ----------
-    lines
-        Frequency [rad/s], ascending, phase, its deviation, sign; shape (lines, 4).
+    ``lines``: frequency [rad/s], ascending, phase, its deviation, sign; shape (lines, 4).
     """
     # a demand in rpm may fall where the voltage rises
     turned = 0.0 if lines[0, 3] > 0.0 else np.pi

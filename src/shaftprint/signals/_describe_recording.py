@@ -22,20 +22,10 @@ _LOOKED_HZ = 200.0
 def describe_set_point(recording: "Recording", vessel: "Vessel", *, name: str | None = None) -> Description:
     """Return the campaign that the recorded set point shows, and what of it no campaign file can describe.
 
-    Parameters
-    ----------
-    recording
-        The raw recording, open.
-    vessel
-        Says which channel is the set point, and what it is in volts of the campaign.
-    name
-        Name of the campaign; that of the recording where it is not given.
-
-    Raises
-    ------
-    SignalError
-        If the channel of the set point is missing, in another unit, or does not move, or if nothing in it is an
-        excitation that a campaign file can describe.
+    ``recording``: the raw recording, open. ``vessel``: says which channel is the set point, and what it is in volts of
+    the campaign. ``name``: name of the campaign; that of the recording where it is not given. Raises SignalError if the
+    channel of the set point is missing, in another unit, or does not move, or if nothing in it is an excitation that a
+    campaign file can describe.
     """
     sensor = vessel.sensors.set_point
     channel = find_channel(recording, sensor.channel, unit=sensor.unit, use="set point")

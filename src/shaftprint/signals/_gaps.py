@@ -80,16 +80,8 @@ class Coverage:
     def missing(self, start_s: float, stop_s: float, *, channel: str | None = None) -> str:
         """Say why a window cannot be used; nothing where it can.
 
-        Parameters
-        ----------
-        start_s, stop_s
-            The window [s].
-        channel
-            The only channel whose gaps count; by default those of all count.
-
-        Returns
-        -------
-        The reason, to follow a colon and without a full stop; empty where the window is whole.
+        ``start_s``, ``stop_s``: the window [s]. ``channel``: the only channel whose gaps count; by default those of all
+        count.
         """
         if start_s < self.start_s - self.step_s or stop_s > self.stop_s + self.step_s:
             return f"the recording lasts from {self.start_s:.1f} to {self.stop_s:.1f} s"
@@ -107,12 +99,8 @@ class Coverage:
     def lost(self, time_s: FloatArray, *, channel: str | None = None) -> BoolArray:
         """Return which instants lie in a gap, shape of ``time_s``.
 
-        Parameters
-        ----------
-        time_s
-            Instants in seconds of the recording.
-        channel
-            The only channel whose gaps count; by default those of all count.
+        ``time_s``: instants in seconds of the recording. ``channel``: the only channel whose gaps count; by default
+        those of all count.
         """
         is_lost = np.zeros(time_s.shape, dtype=np.bool_)
         for gap in self.gaps:
@@ -141,16 +129,8 @@ def clock_gaps(channel: "Channel") -> list[Gap]:
 def gaps_of_missing(channel: "Channel", missing: BoolArray, *, longest: float, reach_s: float = 0.0) -> list[Gap]:
     """Return the runs of missing samples over which no line is to be trusted.
 
-    Parameters
-    ----------
-    channel
-        What has no values.
-    missing
-        Which of its samples, shape (samples,).
-    longest
-        Samples of the longest run that is no gap.
-    reach_s
-        How far beyond both ends a gap reaches [s].
+    ``channel``: what has no values. ``missing``: which of its samples, shape (samples,). ``longest``: samples of the
+    longest run that is no gap. ``reach_s``: how far beyond both ends a gap reaches [s].
     """
     return [
         Gap(
@@ -196,14 +176,7 @@ def runs_of(wrong: BoolArray) -> list[tuple[int, int]]:
 def bridge(values: FloatArray, gaps: Iterable[Gap], *, start_s: float, rate_hz: float) -> None:
     """Put straight lines through the gaps of a signal on the grid, in place; at an end its last value goes on.
 
-    Parameters
-    ----------
-    values
-        The signal, shape (samples,).
-    gaps
-        Its gaps.
-    start_s, rate_hz
-        The grid.
+    ``values``: the signal, shape (samples,). ``gaps``: its gaps. ``start_s``, ``rate_hz``: the grid.
     """
     for first_s, last_s in merged(gaps, start_s - 1.0, start_s + values.size / rate_hz + 1.0):
         first = max(math.ceil((first_s - start_s) * rate_hz), 0)
@@ -224,12 +197,7 @@ def within(gap: Gap, others: Sequence[Gap]) -> bool:
 def gap_findings(gaps: Sequence[Gap], windows: Sequence[tuple[str, float, float]]) -> tuple[str, ...]:
     """Return one sentence for each gap with the names of the windows that it costs.
 
-    Parameters
-    ----------
-    gaps
-        In order of time.
-    windows
-        Name, start and stop [s] of everything that is measured.
+    ``gaps``: in order of time. ``windows``: name, start and stop [s] of everything that is measured.
     """
     groups = list(_side_by_side(gaps))
     if len(groups) > _MOST_LISTED:

@@ -77,12 +77,8 @@ class HeldSamples:
 def held_samples(runs: Runs, *, stated_s: float) -> HeldSamples | None:
     """Return how a channel keeps its last value; None where equal neighbours are what its steps and noise give.
 
-    Parameters
-    ----------
-    runs
-        Its runs of equal samples.
-    stated_s
-        For how long the vessel file says that each value is held [s]; 0 where none is.
+    ``runs``: its runs of equal samples. ``stated_s``: for how long the vessel file says that each value is held [s]; 0
+    where none is.
     """
     if runs.changes.size == 0 or runs.samples == 0:
         return None

@@ -102,12 +102,7 @@ def inspect_channels(recording: "Recording", vessel: "Vessel") -> tuple[ChannelR
 def channel_reports(readings: ChannelReadings, levels: Mapping[str, Levels]) -> tuple[ChannelReport, ...]:
     """Return what each channel that was read holds: speeds and torque first, then what a test moves.
 
-    Parameters
-    ----------
-    readings
-        What every channel gave, from `read_channels`.
-    levels
-        Levels of the raw channels by name.
+    ``readings``: what every channel gave, from `read_channels`. ``levels``: levels of the raw channels by name.
     """
     sources = sorted(readings.sources, key=lambda source: _ORDER.index(source.kind.role))
     return tuple(_report(source, readings, levels[source.channel.name]) for source in sources)

@@ -17,14 +17,8 @@ def channels_about(
 
     One on a clock of its own that does not cover the leg is left out.
 
-    Parameters
-    ----------
-    state
-        The leg.
-    channels
-        Every channel by its symbol or, of speeds, by the sensor's name.
-    rate_hz, start_s
-        The grid.
+    ``state``: the leg. ``channels``: every channel by its symbol or, of speeds, by the sensor's name. ``rate_hz``,
+    ``start_s``: the grid.
     """
     about = {name: _about(one, state, rate_hz, start_s) for name, one in channels.items()}
     return {name: one for name, one in about.items() if one is not None}

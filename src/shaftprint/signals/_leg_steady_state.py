@@ -20,12 +20,7 @@ def samples_of_legs(campaign: "Campaign", readings: "Readings") -> tuple[LegSamp
 
     Of what it holds, the periods that the generator put out.
 
-    Parameters
-    ----------
-    campaign
-        What was asked of the ship.
-    readings
-        What was read, the set point still in volts.
+    ``campaign``: what was asked of the ship. ``readings``: what was read, the set point still in volts.
     """
     clock = readings.clock
     grid = {"rate_hz": clock.rate_hz, "start_s": clock.start_s}
@@ -50,12 +45,7 @@ def samples_of_legs(campaign: "Campaign", readings: "Readings") -> tuple[LegSamp
 def stopped_generators(samples: tuple[LegSamples, ...], readings: "Readings") -> tuple[str, ...]:
     """Return of every leg that the generator did not put out whole what was used of it.
 
-    Parameters
-    ----------
-    samples
-        From `samples_of_legs`.
-    readings
-        What was read.
+    ``samples``: from `samples_of_legs`. ``readings``: what was read.
     """
     found = ((one, leg_periods(one.leg, readings.coverage)) for one in samples)
     return tuple(
@@ -74,19 +64,9 @@ def steady_state_of_legs(
 
     The leg whose level is nearest to the offset of the campaign is the working point of the recording.
 
-    Parameters
-    ----------
-    campaign, readings
-        What was asked of the ship, and what was read.
-    samples
-        From `samples_of_legs`.
-    channel
-        Name of the set-point channel, for messages.
-
-    Raises
-    ------
-    SignalError
-        If the recording holds no leg, or the speed does not follow the set point.
+    ``campaign``, ``readings``: what was asked of the ship, and what was read. ``samples``: from `samples_of_legs`.
+    ``channel``: name of the set-point channel, for messages. Raises SignalError if the recording holds no leg, or the
+    speed does not follow the set point.
     """
     if not samples:
         first = campaign.legs[0]

@@ -30,12 +30,8 @@ def tracked_orders(vessel: "Vessel", speeds: Mapping[str, "SpeedSignal"]) -> tup
 
     Where its shaft has none, the one that is identified is taken, through the gear ratio of the vessel file.
 
-    Parameters
-    ----------
-    vessel
-        Says which orders there are, and which pick-up is on which shaft.
-    speeds
-        Speeds of the recording by name, the one that is identified first.
+    ``vessel``: says which orders there are, and which pick-up is on which shaft. ``speeds``: speeds of the recording by
+    name, the one that is identified first.
     """
     return tuple(_tracked(order, vessel, speeds) for order in vessel.orders)
 

@@ -228,10 +228,7 @@ def _differences_from_campaign(
 ) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """Return what the recording does not hold of a campaign, and what differs from it.
 
-    Raises
-    ------
-    SignalError
-        If it does not show what the campaign asked, or the torque does not move.
+    Raises SignalError if it does not show what the campaign asked, or the torque does not move.
     """
     sensors, coverage = vessel.sensors, readings.coverage
     grid = {"rate_hz": readings.clock.rate_hz, "start_s": readings.clock.start_s}

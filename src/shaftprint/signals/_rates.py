@@ -23,12 +23,7 @@ def expect_one_rate(recording: "Recording", channels: "Sequence[Channel]") -> tu
     Where recordings were merged, the clocks are known and rates may differ. Messages have the times of the logger: that
     of their sender, whose rate is found from them, says nothing.
 
-    Parameters
-    ----------
-    recording
-        Says whether it was merged.
-    channels
-        Channels of set point, speeds and torque.
+    ``recording``: says whether it was merged. ``channels``: channels of set point, speeds and torque.
     """
     if CLOCK_MAPS in recording.attributes:
         return ()

@@ -67,10 +67,7 @@ class Readings:
 def usable_readings(channels: ChannelReadings) -> Readings:
     """Return what a test can be made of; a spare sensor that fails is left out.
 
-    Raises
-    ------
-    SignalError
-        If a channel that is no spare cannot be used.
+    Raises SignalError if a channel that is no spare cannot be used.
     """
     read, sources, clock = channels.by_name, channels.sources, channels.clock
     by_name: dict[str, Reading] = {}
@@ -104,10 +101,7 @@ def usable_readings(channels: ChannelReadings) -> Readings:
 def _usable(source: "Source[Any]", channels: ChannelReadings) -> Reading:
     """Return what a channel gave, with what the reader should know of it.
 
-    Raises
-    ------
-    SignalError
-        If it cannot be used.
+    Raises SignalError if it cannot be used.
     """
     if source.name in channels.problems:
         raise channels.problems[source.name]
@@ -122,10 +116,7 @@ def _findings(readings: Iterable[Reading]) -> Iterator[str]:
 def _without_gaps_of_its_own(reading: Reading, gaps: Sequence[Gap]) -> Reading:
     """Return what a spare sensor gives if it misses nothing but what the other channels miss too.
 
-    Raises
-    ------
-    SignalError
-        If it has a gap of its own: that must not cost the windows of the first sensor.
+    Raises SignalError if it has a gap of its own: that must not cost the windows of the first sensor.
     """
     for gap in reading.gaps:
         if not within(gap, gaps):

@@ -37,22 +37,11 @@ def scale_reasons(
 ) -> tuple[Reason, ...]:
     """Return a reason where the speed is off by one factor, or the torque is that of another shaft.
 
-    Parameters
-    ----------
-    point
-        Mean speed and torque, and the set point at which they were.
-    vessel
-        The vessel file.
-    campaign
-        Says which speed was asked for; None where nobody says what was done in the recording.
-    levels_rpm
-        Mean engine speeds that were governed [rpm].
-    legs
-        Mean speed and torque of each leg, by its name: one factor for all of them is not all that can be wrong.
-    of_fit
-        What a fit tells of the scales besides, by its name.
-    beside
-        Found over expected of what follows from them, by name, to be told.
+    ``point``: mean speed and torque, and the set point at which they were. ``vessel``: the vessel file. ``campaign``:
+    says which speed was asked for; None where nobody says what was done in the recording. ``levels_rpm``: mean engine
+    speeds that were governed [rpm]. ``legs``: mean speed and torque of each leg, by its name: one factor for all of
+    them is not all that can be wrong. ``of_fit``: what a fit tells of the scales besides, by its name. ``beside``:
+    found over expected of what follows from them, by name, to be told.
     """
     further = of_fit or {}
     evidence = (*scale_evidence(point, vessel, campaign), *further.values())

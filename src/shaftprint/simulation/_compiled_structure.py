@@ -56,10 +56,7 @@ class Built:
 
         Delays that vary are those at rest.
 
-        Raises
-        ------
-        StructureError
-            If a formula is not finite, as where it divides by a time constant of zero.
+        Raises StructureError if a formula is not finite, as where it divides by a time constant of zero.
         """
         if None not in self.functions:
             self.functions[None] = plain_function(self._of_parameters)
@@ -112,10 +109,7 @@ _BUILT: "weakref.WeakKeyDictionary[Structure, dict[frozenset[str], Built]]" = we
 def build(structure: Structure, zeros: frozenset[str]) -> Built:
     """Return the equations and kernels of a structure, made once.
 
-    Parameters
-    ----------
-    zeros
-        Names of parameters that are zero for good.
+    ``zeros``: names of parameters that are zero for good.
     """
     built = _BUILT.setdefault(structure, {})
     if zeros not in built:

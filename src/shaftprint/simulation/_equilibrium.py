@@ -63,10 +63,7 @@ def equilibrium(structure: Structure, values: ArrayLike, inputs: Mapping[str, fl
 def state_names(structure: Structure, values: ArrayLike) -> tuple[str, ...]:
     """Return what the equations of a structure call their states, each once, as ``Equilibrium`` does.
 
-    Parameters
-    ----------
-    values
-        Parameter values, shape (parameters,): a lag that is held at zero has no state.
+    ``values``: parameter values, shape (parameters,): a lag that is held at zero has no state.
     """
     vector = np.asarray(values, dtype=np.float64)
     return _each_once(build(structure, held_zeros(structure, vector)).program.states)
@@ -81,10 +78,7 @@ def _each_once(names: Sequence[str]) -> tuple[str, ...]:
 def input_vector(structure: Structure, inputs: Mapping[str, float]) -> FloatArray:
     """Return the inputs in their order.
 
-    Raises
-    ------
-    StructureError
-        If one is missing, or not one of the structure's.
+    Raises StructureError if one is missing, or not one of the structure's.
     """
     if set(inputs) != set(structure.inputs):
         raise StructureError(

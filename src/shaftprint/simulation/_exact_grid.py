@@ -32,12 +32,8 @@ class ExactGrid:
     def between(cls, keys_s: FloatArray, jumps_s: FloatArray, longest_step_s: float) -> Self:
         """Return a grid with nodes at some times, two at jumps.
 
-        Parameters
-        ----------
-        keys_s
-            Times that must be nodes, the first and the last of the grid among them, ascending.
-        jumps_s
-            Those among them at which something jumps.
+        ``keys_s``: times that must be nodes, the first and the last of the grid among them, ascending. ``jumps_s``:
+        those among them at which something jumps.
         """
         inside = jumps_s[(jumps_s > keys_s[0]) & (jumps_s < keys_s[-1])]
         edges = np.concatenate([keys_s[:1], inside, keys_s[-1:]])
@@ -98,17 +94,8 @@ class ExactGrid:
 def jump_times(jumps_s: FloatArray, delay_s: FloatArray, stop_s: float) -> FloatArray:
     """Return the times at which a jump of an input arrives anywhere, ascending.
 
-    Parameters
-    ----------
-    jumps_s
-        Times at which an input jumps or turns a corner [s].
-    delay_s
-        Delays [s]; one after the other in any order.
-
-    Raises
-    ------
-    ExactStepsError
-        If there are more than can be followed.
+    ``jumps_s``: times at which an input jumps or turns a corner [s]. ``delay_s``: delays [s]; one after the other in
+    any order. Raises ExactStepsError if there are more than can be followed.
     """
     arrivals = [jumps_s]
     for _ in range(PASSAGES):

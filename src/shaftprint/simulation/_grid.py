@@ -37,12 +37,8 @@ def stencils(delay_s: FloatArray, step_s: float, *, varies: bool = False) -> Ste
     A cubic goes through the two nodes on either side of the place (Lagrange); where the delay is shorter than three
     steps, through the last four nodes that are known.
 
-    Parameters
-    ----------
-    delay_s
-        Delays [s], shape (delays,), at least 0; complex where a derivative is taken by a complex step.
-    varies
-        Whether one of them is only what it is at rest.
+    ``delay_s``: delays [s], shape (delays,), at least 0; complex where a derivative is taken by a complex step.
+    ``varies``: whether one of them is only what it is at rest.
     """
     position = np.array([0.5, 1.0])[None, :] - delay_s[:, None] / step_s
     first = np.minimum(np.floor(position.real).astype(np.int64) - 1, 1 - NODES)
@@ -85,12 +81,7 @@ class Shift:
     def value(self, y: FloatArray, before: FloatArray) -> FloatArray:
         """Return the output at the samples, shape (samples, ...).
 
-        Parameters
-        ----------
-        y
-            Values at all nodes, shape (nodes, ...).
-        before
-            What it was before the first, shape (...).
+        ``y``: values at all nodes, shape (nodes, ...). ``before``: what it was before the first, shape (...).
         """
         return self._sum(y, before, 0)
 

@@ -59,20 +59,10 @@ class March:
     ) -> Self:
         """Choose the step and find what stays the same during the run.
 
-        Parameters
-        ----------
-        inputs
-            Inputs at the start, shape (inputs,).
-        interval_s
-            Time between two samples [s].
-        initial
-            States at the start, shape (states,); steady running if not given.
-
-        Raises
-        ------
-        StructureError
-            If a delay is negative, the states do not fit, there is no steady running, a time constant is too short,
-            or a computer's period is no whole number of steps.
+        ``inputs``: inputs at the start, shape (inputs,). ``interval_s``: time between two samples [s]. ``initial``:
+        states at the start, shape (states,); steady running if not given. Raises StructureError if a delay is negative,
+        the states do not fit, there is no steady running, a time constant is too short, or a computer's period is no
+        whole number of steps.
         """
         _, delay_s, shift_s, period_s = built.constants(values, interval_s)
         if np.any(delay_s.real < 0.0):
@@ -100,10 +90,7 @@ class March:
     def run(self, inputs: FloatArray, wanted: tuple[str, ...]) -> tuple[FloatArray, FloatArray]:
         """Return the outputs, shape (samples, outputs), and their derivatives, shape (samples, outputs, wanted).
 
-        Parameters
-        ----------
-        inputs
-            Inputs at the samples, shape (samples, inputs).
+        ``inputs``: inputs at the samples, shape (samples, inputs).
         """
         moved = self.built.shifts_depend_on(wanted) or bool(np.any(self.shift_s != 0.0))
         every = 1 if moved else self.parts
@@ -212,18 +199,10 @@ def starting(built: Built, values: FloatArray, inputs: FloatArray, initial: Floa
 def steps_between(name: str, interval_s: float, longest_step_s: float, followed_s: float, periods_s: FloatArray) -> int:
     """Return how many steps go between two samples.
 
-    Parameters
-    ----------
-    longest_step_s, followed_s
-        Upper bound of the step [s]: as asked for, and that which small signals can follow; for the latter the steps
-        are halved, so that a fit seldom meets a change of the step.
-    periods_s
-        Periods of computers [s]; 0 for every step.
-
-    Raises
-    ------
-    StructureError
-        If that takes more than ``MOST_PARTS`` times as many steps as asked for.
+    ``longest_step_s``, ``followed_s``: upper bound of the step [s]: as asked for, and that which small signals can
+    follow; for the latter the steps are halved, so that a fit seldom meets a change of the step. ``periods_s``: periods
+    of computers [s]; 0 for every step. Raises StructureError if that takes more than ``MOST_PARTS`` times as many steps
+    as asked for.
     """
     least = parts = int(np.ceil(interval_s / longest_step_s - 1e-9))
     while interval_s / parts > followed_s:

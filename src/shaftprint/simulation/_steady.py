@@ -78,19 +78,9 @@ class SteadyEquations:
         Newton's method from rest at the working point; where states have no steady value of their own, the smallest
         change is taken.
 
-        Parameters
-        ----------
-        values
-            Parameter values, shape (parameters,).
-        inputs
-            Shape (inputs,).
-        states
-            States to keep, shape (states,); only the pasts are found then, as if they had always been so.
-
-        Raises
-        ------
-        StructureError
-            If there is no steady running.
+        ``values``: parameter values, shape (parameters,). ``inputs``: shape (inputs,). ``states``: states to keep,
+        shape (states,); only the pasts are found then, as if they had always been so. Raises StructureError if there is
+        no steady running.
         """
         at, rows = np.zeros(len(self._unknown)), slice(None)
         kept_states = np.zeros(len(self.program.states)) if states is None else states
@@ -112,12 +102,7 @@ class SteadyEquations:
     def slopes(self, steady: Steady, values: FloatArray, inputs: FloatArray, parameter: int, *, held: bool) -> Steady:
         """Return the derivatives of steady running to a parameter.
 
-        Parameters
-        ----------
-        parameter
-            Place of the parameter.
-        held
-            Whether the states were given.
+        ``parameter``: place of the parameter. ``held``: whether the states were given.
         """
         count = len(self._formulas)
         if parameter not in self._moved:
@@ -191,10 +176,7 @@ class SteadyEquations:
         follows motion, as dry friction does, must not move by more either. Where a delay is shorter than the step, late
         signals are extrapolated, which loops bear up to about ``MOST_EXTRAPOLATED`` only.
 
-        Parameters
-        ----------
-        delay_s
-            Delays [s], shape (pasts,).
+        ``delay_s``: delays [s], shape (pasts,).
         """
         arguments = (values, inputs, steady.states, steady.pasts, steady.samples)
         count, still, states = len(self._unknown), len(self._still), len(self.program.states)

@@ -13,12 +13,8 @@ def statements(
 ) -> tuple[list[str], list[str]]:
     """Return assignments and the names or numbers that hold the formulas.
 
-    Parameters
-    ----------
-    leaves
-        What to write for a leaf by its kind, with ``{}`` for its place, such as ``{"state": "x{}"}``.
-    prefix
-        First letters of the names of intermediate values.
+    ``leaves``: what to write for a leaf by its kind, with ``{}`` for its place, such as ``{"state": "x{}"}``.
+    ``prefix``: first letters of the names of intermediate values.
     """
     lines: list[str] = []
     by_text: dict[str, str] = {}

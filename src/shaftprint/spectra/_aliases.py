@@ -12,14 +12,8 @@ def alias_remarks(
 ) -> list[str]:
     """Return what set point, speed and torque cannot show of a line; nothing where each of them can.
 
-    Parameters
-    ----------
-    frequency_hz
-        Frequency of the line [Hz].
-    signals
-        The prepared recording, whose shaft torque may come in messages.
-    sensor, moved
-        The speed and what was moved.
+    ``frequency_hz``: frequency of the line [Hz]. ``signals``: the prepared recording, whose shaft torque may come in
+    messages. ``sensor``, ``moved``: the speed and what was moved.
     """
     by_limit = {
         f"half the pulse rate of {sensor.name}": sensor,

@@ -20,20 +20,9 @@ def converted(
 ) -> FrequencyResponse:
     """Return a response computed from another.
 
-    Parameters
-    ----------
-    response
-        The response that was measured.
-    values
-        The response that follows from it, shape (outputs, inputs, lines).
-    jacobian
-        Its complex derivatives to the elements of the first, shape (lines, outputs inputs, elements of the first).
-    inputs, outputs
-        Names of its inputs and outputs.
-
-    Returns
-    -------
-    The response with the covariance carried through to first order; everything else is as before.
+    ``response``: the response that was measured. ``values``: the response that follows from it, shape (outputs, inputs,
+    lines). ``jacobian``: its complex derivatives to the elements of the first, shape (lines, outputs inputs, elements
+    of the first). ``inputs``, ``outputs``: names of its inputs and outputs.
     """
     derivative = real_jacobian(jacobian)
     lines = len(response.lines)
@@ -55,16 +44,7 @@ def converted(
 def without_lines(response: FrequencyResponse, lost: Mapping[int, str]) -> FrequencyResponse:
     """Mark lines as not used.
 
-    Parameters
-    ----------
-    response
-        The response.
-    lost
-        Why a line is not used, by its place.
-
-    Returns
-    -------
-    The response; a remark that a line has already is kept before the new one.
+    ``lost``: why a line is not used, by its place.
     """
     used, remarks = response.used.copy(), dict(response.remarks)
     for index, remark in lost.items():

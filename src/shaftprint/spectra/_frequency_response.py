@@ -134,12 +134,9 @@ class FrequencyResponse(Shown, Labelled):
     def __post_init__(self) -> None:
         """Check shapes and make all arrays read-only.
 
-        Raises
-        ------
-        ResponseError
-            If names are missing or double, a shape does not fit, a frequency is not positive and ascending, a value is
-            not finite, a number of degrees of freedom is not positive, or a covariance is not symmetric and positive
-            definite.
+        Raises ResponseError if names are missing or double, a shape does not fit, a frequency is not positive and
+        ascending, a value is not finite, a number of degrees of freedom is not positive, or a covariance is not
+        symmetric and positive definite.
         """
         for kind in ("inputs", "outputs", "lines"):
             object.__setattr__(self, kind, _distinct(kind, getattr(self, kind)))

@@ -29,14 +29,7 @@ def measured(response: FrequencyResponse) -> BoolArray:
     A line may show speed and torque and be too fast for the percent torque on the CAN bus. The value that the response
     holds there says nothing; its standard deviation is `NOT_MEASURED_STD`.
 
-    Parameters
-    ----------
-    response
-        A response of one input.
-
-    Returns
-    -------
-    True where the response was measured, shape (outputs, lines).
+    ``response``: a response of one input.
     """
     variance = np.diagonal(response.covariance, axis1=1, axis2=2)[:, : len(response.outputs)]
     is_measured: BoolArray = variance.T < 0.5 * NOT_MEASURED_STD**2
@@ -46,12 +39,7 @@ def measured(response: FrequencyResponse) -> BoolArray:
 def outputs_of(signals: "Signals", channels: Sequence[str]) -> tuple[str, ...]:
     """Return the outputs of a response: speed and torque, then what came seldom, on the grid or on its own clock.
 
-    Parameters
-    ----------
-    signals
-        The prepared recording.
-    channels
-        Names of the channels on the grid that were measured.
+    ``signals``: the prepared recording. ``channels``: names of the channels on the grid that were measured.
     """
     side = [name for name in channels if signals.channels[name].is_side]
     return ("n", "M_s", *side, *signals.messages)
@@ -67,16 +55,8 @@ def response_of_lines(
 ) -> FrequencyResponse:
     """Return the response from what was moved to speed, torque and the other channels.
 
-    Parameters
-    ----------
-    signals
-        The prepared recording.
-    measurements
-        One entry a line.
-    excitation, sensor
-        Signals of the input and of the speed.
-    load
-        Propeller load of each window over that at the working point, shape (lines,).
+    ``signals``: the prepared recording. ``measurements``: one entry a line. ``excitation``, ``sensor``: signals of the
+    input and of the speed. ``load``: propeller load of each window over that at the working point, shape (lines,).
     """
     outputs = outputs_of(signals, measurements[0].channels)
     response = np.empty((len(outputs), 1, len(measurements)), dtype=np.complex128)

@@ -20,18 +20,8 @@ def with_measured_inputs(
     and, through ``H_2``, that of ``x``: with the covariance ``C`` of ``[x, y] / u`` it is ``J C J^H``,
     ``J = [-H_2, 1]``.
 
-    Parameters
-    ----------
-    response
-        Response from ``u`` to ``x`` and ``y``.
-    outputs, measured
-        Names of ``y`` and ``x``, both outputs of the response.
-    gains
-        ``H_2``, shape (outputs, measured, lines).
-
-    Returns
-    -------
-    The response from ``u`` to ``y`` with the covariance of the residual.
+    ``response``: response from ``u`` to ``x`` and ``y``. ``outputs``, ``measured``: names of ``y`` and ``x``, both
+    outputs of the response. ``gains``: ``H_2``, shape (outputs, measured, lines).
     """
     both = response.of_outputs(*measured, *outputs)
     lines = len(both.lines)

@@ -35,10 +35,7 @@ _PITCH = "theta"
 def shift_reasons(response: "FrequencyResponse") -> tuple[Reason, ...]:
     """Return a reason where the torque comes later, or earlier, than load and inertia let expect.
 
-    Parameters
-    ----------
-    response
-        Response from the set point to speed ``n`` and torque ``M_s``.
+    ``response``: response from the set point to speed ``n`` and torque ``M_s``.
     """
     used = response.used
     if np.count_nonzero(used) < _FEWEST_LINES:

@@ -37,14 +37,8 @@ def speed_ratios(
 ) -> tuple[SpeedRatio, ...]:
     """Return the ratio for every other pick-up whose pulses tell the angle; an instrument may smooth, who knows how.
 
-    Parameters
-    ----------
-    lines
-        What was measured, the same channels at each.
-    first
-        Sensor of the response.
-    sensors
-        Those of the recording; what the lines do not show, or is the first itself, is not held against it.
+    ``lines``: what was measured, the same channels at each. ``first``: sensor of the response. ``sensors``: those of
+    the recording; what the lines do not show, or is the first itself, is not held against it.
     """
     shown = set(lines[0].channels) if lines else set()
     others = [one for one in sensors if one.name != first.name and one.name in shown]

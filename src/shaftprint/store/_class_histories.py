@@ -14,21 +14,9 @@ def class_histories(
 ) -> tuple[LineHistory, ...]:
     """Return every line of the ships of a class that has a test, by name of the ship and line.
 
-    Parameters
-    ----------
-    store
-        The store.
-    class_name
-        What the ships have in common, as their fingerprints state it.
-    line
-        Which of their lines; all when not given.
-    newest
-        As for ``line_history``.
-
-    Raises
-    ------
-    StoreError
-        If there is no such class, or none of its ships has such a line.
+    ``class_name``: what the ships have in common, as their fingerprints state it. ``line``: which of their lines; all
+    when not given. ``newest``: as for ``line_history``. Raises StoreError if there is no such class, or none of its
+    ships has such a line.
     """
     tested = [summary.line for summary in newest_of_lines(store) if summary.tests]
     known = sorted({one.ship.class_name for one in tested if one.ship.class_name is not None})

@@ -35,10 +35,7 @@ def deflated(document: bytes) -> bytes:
 def inflated(kept: object, *, named: str) -> bytes:
     """Return a document from what is kept of it; what would be longer than a document may be is not inflated.
 
-    Raises
-    ------
-    StoreError
-        If it is damaged.
+    Raises StoreError if it is damaged.
     """
     if not isinstance(kept, bytes):
         raise StoreError(f"{named}: expected a compressed document, found none; the store is damaged.")

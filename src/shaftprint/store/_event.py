@@ -90,22 +90,8 @@ def withdraw_event(
 ) -> tuple[tuple[Event, bool], ...]:
     """Let what was noted of lines of a ship count no more; it stays in the record, with the reason.
 
-    Parameters
-    ----------
-    store, ship, kind, at, lines
-        As for ``record_event``.
-    why
-        The reason.
-
-    Returns
-    -------
-    events
-        The event of each line, and whether it counted until now.
-
-    Raises
-    ------
-    StoreError
-        If there is no such event, or no reason.
+    ``store``, ``ship``, ``kind``, ``at``, ``lines``: as for ``record_event``. ``why``: the reason. Returns the event of
+    each line, and whether it counted until now. Raises StoreError if there is no such event, or no reason.
     """
     _expect_kind(kind)
     expect_short(why, "reason for which it is withdrawn", named=kind, longest=LONGEST_TEXT)

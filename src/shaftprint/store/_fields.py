@@ -9,12 +9,7 @@ from shaftprint.store._text import expect_short
 def short_text(text: object, what: str, *, longest: int | None = None) -> str:
     """Return a text that every database keeps; one with a length of its own may be empty.
 
-    Raises
-    ------
-    TypeError
-        If it is none.
-    StoreError
-        If it cannot be kept.
+    Raises TypeError if it is none; StoreError if it cannot be kept.
     """
     if not isinstance(text, str):
         raise TypeError(what)
@@ -28,10 +23,7 @@ def short_text(text: object, what: str, *, longest: int | None = None) -> str:
 def moment_of(text: object) -> datetime:
     """Return an instant in UTC.
 
-    Raises
-    ------
-    TypeError, ValueError, StoreError
-        If it is none.
+    Raises TypeError, ValueError, StoreError if it is none.
     """
     if not isinstance(text, str):
         raise TypeError("time")

@@ -17,17 +17,8 @@ _MOST_NAMED = 12
 def ship_called(reader: "Reader", name: str | Ship) -> "ShipRow":
     """Return the ship of a name or an IMO number.
 
-    Parameters
-    ----------
-    reader
-        A connection that reads.
-    name
-        What a user calls it; or the ship itself, found by its number, and by its name among those without one only.
-
-    Raises
-    ------
-    StoreError
-        If there is none, or several ships have the name.
+    ``reader``: a connection that reads. ``name``: what a user calls it; or the ship itself, found by its number, and by
+    its name among those without one only. Raises StoreError if there is none, or several ships have the name.
     """
     if isinstance(name, Ship):
         return _same_ship(reader, name)
@@ -66,10 +57,7 @@ def _same_ship(reader: "Reader", ship: Ship) -> "ShipRow":
 def lines_called(reader: "Reader", ship: "ShipRow", names: Sequence[str]) -> dict[int, Line]:
     """Return lines of a ship by their number in the database; all where none is named.
 
-    Raises
-    ------
-    StoreError
-        If it has no line of a name.
+    Raises StoreError if it has no line of a name.
     """
     lines = reader.lines([ship])
     there = [line.position for line in lines.values()]

@@ -20,19 +20,8 @@ _SETTLED_S: Final = 2.0
 def file_hashes(store: Store, paths: Sequence[Path], *, now: datetime) -> tuple[str, ...]:
     """Return the SHA-256 of files; one of the same path, length, time and inode as before is not read again.
 
-    Parameters
-    ----------
-    store
-        The store that remembers them.
-    paths
-        The files.
-    now
-        The present time, with its zone.
-
-    Raises
-    ------
-    RecordingError
-        If a file cannot be read.
+    ``store``: the store that remembers them. ``paths``: the files. ``now``: the present time, with its zone. Raises
+    RecordingError if a file cannot be read.
     """
     with store.database.reading() as connection:
         known = {one.path: one for one in store.database.hashes(connection).of([str(path) for path in paths])}

@@ -37,12 +37,8 @@ def job_content(job: Job) -> dict[str, Any]:
 def job_of_content(content: Mapping[str, Any]) -> Job:
     """Return the job of a record; its number is that of the store into which it is put.
 
-    Raises
-    ------
-    StoreError
-        If it is in no state that a job of an export may have.
-    KeyError, TypeError, ValueError
-        If a field is missing or of another kind.
+    Raises StoreError if it is in no state that a job of an export may have; KeyError, TypeError, ValueError if a field
+    is missing or of another kind.
     """
     state, args, tries, result = content["state"], _args(content["args"]), content["tries"], content["result"]
     if type(tries) is not int:

@@ -43,22 +43,10 @@ class LineHistory:
 def line_history(store: Store, ship: str | Ship, *, line: str | None = None, newest: int | None = None) -> LineHistory:
     """Return the fingerprints of one line in the order of time, with the times that the store knows of them.
 
-    Parameters
-    ----------
-    store
-        The store.
-    ship
-        Name or IMO number of the ship, or the ship itself.
-    line
-        Which of its lines; a ship with one line needs none.
-    newest
-        How many tests that can be judged are wanted, the newest ones, with all that tells what was done before them:
-        other documents are not read. All when not given.
-
-    Raises
-    ------
-    StoreError
-        If there is no such ship or line, it has no test, or it is not said which of several lines.
+    ``ship``: name or IMO number of the ship, or the ship itself. ``line``: which of its lines; a ship with one line
+    needs none. ``newest``: how many tests that can be judged are wanted, the newest ones, with all that tells what was
+    done before them: other documents are not read. All when not given. Raises StoreError if there is no such ship or
+    line, it has no test, or it is not said which of several lines.
     """
     tested, kept, stated = _records(store, ship, line)
     events = tuple(

@@ -28,10 +28,7 @@ def line_of(record: dict[str, Any]) -> bytes:
 def record_of_line(line: bytes, *, named: str) -> dict[str, Any]:
     """Return the record of a line.
 
-    Raises
-    ------
-    StoreError
-        If it is none.
+    Raises StoreError if it is none.
     """
     try:
         record = json.loads(line)

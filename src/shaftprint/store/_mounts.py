@@ -29,12 +29,8 @@ _OCTAL = re.compile(r"\\([0-7]{3})")
 def network_file_system(path: Path, *, mounts: str | None = None) -> str | None:
     """Return what kind of network file system a path lies on; None for a disk of this computer.
 
-    Parameters
-    ----------
-    path
-        A file, which need not be there.
-    mounts
-        Table of mounts as Linux gives it in ``/proc/self/mountinfo``; None for that of this computer, where it has one.
+    ``path``: a file, which need not be there. ``mounts``: table of mounts as Linux gives it in
+    ``/proc/self/mountinfo``; None for that of this computer, where it has one.
     """
     for text in (str(path), str(path.resolve())):
         if re.match(r"[\\/]{2}(?![?.][\\/])[^\\/]", text) or re.match(r"[\\/]{2}\?[\\/]UNC[\\/]", text, re.IGNORECASE):

@@ -50,12 +50,7 @@ class LineRecords:
 def lines_now(store: Store, *, number: str | None = None) -> tuple[LineNow, ...]:
     """Return every line of a store as it stands, by IMO number and name of the ship.
 
-    Parameters
-    ----------
-    store
-        The store.
-    number
-        Name of a number that is wanted of its newest test; None for none.
+    ``number``: name of a number that is wanted of its newest test; None for none.
     """
     part = part_with_database()
     with store.database.reading() as connection:
@@ -90,16 +85,8 @@ def store_state(store: Store) -> str:
 def line_records(store: Store, *, position: str, imo_number: int | None = None, ship_id: int = 0) -> LineRecords | None:
     """Return all that is kept of one line; None where there is no such line.
 
-    Parameters
-    ----------
-    store
-        The store.
-    position
-        Which line of the ship.
-    imo_number
-        IMO number of the ship; None for a ship without one.
-    ship_id
-        Number of that ship in this database.
+    ``position``: which line of the ship. ``imo_number``: IMO number of the ship; None for a ship without one.
+    ``ship_id``: number of that ship in this database.
     """
     part = part_with_database()
     with store.database.reading() as connection:
@@ -134,10 +121,7 @@ def namesakes(store: Store, name: str, *, imo_number: int | None = None) -> tupl
 def give_imo_number(store: Store, ship: Ship, imo_number: int) -> Ship:
     """Give a ship without an IMO number its number, and return it with that.
 
-    Raises
-    ------
-    StoreError
-        If there is no such ship, or another one has that number.
+    Raises StoreError if there is no such ship, or another one has that number.
     """
     numbered = replace(ship, imo_number=imo_number)
     with store.database.writing() as connection:

@@ -62,25 +62,10 @@ def record_of(
 ) -> Record:
     """Return the record of a document.
 
-    Parameters
-    ----------
-    document
-        Content of a fingerprint's file.
-    stated
-        What was stated beside it.
-    zone
-        Zone of times that have no offset; None where none was stated.
-    named
-        What the document is called in an error.
-    now
-        The present time, by which times are judged; by the clock of this computer where it is not given.
-
-    Raises
-    ------
-    StoreError
-        If ship, line or time of the test are missing, or a text cannot be kept.
-    FingerprintError
-        If the document is no fingerprint.
+    ``document``: content of a fingerprint's file. ``stated``: what was stated beside it. ``zone``: zone of times that
+    have no offset; None where none was stated. ``named``: what the document is called in an error. ``now``: the present
+    time, by which times are judged; by the clock of this computer where it is not given. Raises StoreError if ship,
+    line or time of the test are missing, or a text cannot be kept; FingerprintError if the document is no fingerprint.
     """
     expect_length(document, named=named)
     fingerprint = parse_fingerprint(document, named=named)
@@ -128,10 +113,7 @@ def _hash(source: SourceFile, named: str) -> str:
 def numbers_of(fingerprint: Fingerprint, *, named: str) -> tuple[StoredNumber, ...]:
     """Return the numbers of a fingerprint as they are kept, each name of a kind once.
 
-    Raises
-    ------
-    StoreError
-        If a name or unit cannot be kept, or a kind of numbers has a name twice.
+    Raises StoreError if a name or unit cannot be kept, or a kind of numbers has a name twice.
     """
     trusted = frozenset(fingerprint.verdict.trusted)
     found: dict[tuple[str, str, str], StoredNumber] = {}

@@ -22,12 +22,8 @@ def sisters_of(
 ) -> tuple[tuple[Sister, ...], tuple[str, ...]]:
     """Return the lines that have a test that can be judged as sisters, and the names of those that have none.
 
-    Parameters
-    ----------
-    lines
-        Lines of one class; they are called by their ship, and by their position too where there are several.
-    newest
-        Tests that stand for a ship, ``choices.NEWEST_TESTS`` by default.
+    ``lines``: lines of one class; they are called by their ship, and by their position too where there are several.
+    ``newest``: tests that stand for a ship, ``choices.NEWEST_TESTS`` by default.
     """
     several = len({one.line.position for one in lines}) > 1
     sisters, left_out = [], []

@@ -49,10 +49,7 @@ def time_of_test(
 ) -> datetime:
     """Return when a test was made: as its document says, else as stated; nothing is guessed.
 
-    Raises
-    ------
-    StoreError
-        If neither says an instant, they differ, or nothing can have been tested then.
+    Raises StoreError if neither says an instant, they differ, or nothing can have been tested then.
     """
     return possible_time(_time_of_test(conditions, stated, zone, named=named), now=now, named=named)
 
@@ -60,10 +57,7 @@ def time_of_test(
 def possible_time(moment: datetime, *, now: datetime | None, named: str) -> datetime:
     """Return a time that is kept.
 
-    Raises
-    ------
-    StoreError
-        If nothing can have been recorded or done then.
+    Raises StoreError if nothing can have been recorded or done then.
     """
     try:
         return possible(moment, now=now)
@@ -106,10 +100,7 @@ def _instant(shown: datetime, zone: tzinfo | None, *, named: str) -> datetime:
 def ship_of(conditions: Conditions, stated: Stated, *, named: str) -> ShipIdentity:
     """Return ship and line of a fingerprint: as its document says, what it leaves open as stated.
 
-    Raises
-    ------
-    StoreError
-        If neither says it, or they differ.
+    Raises StoreError if neither says it, or they differ.
     """
     if stated.imo_number is not None and not is_imo_number(stated.imo_number):
         raise StoreError(

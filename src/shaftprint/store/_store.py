@@ -108,22 +108,8 @@ def open_store(url: str, *, busy_s: float = 30.0) -> Store:
 def upgrade_store(url: str, *, busy_s: float = 30.0) -> tuple[str, str]:
     """Bring a store of an earlier version of the program up to date, wholly or not at all.
 
-    Parameters
-    ----------
-    url
-        Path of its file, or URL of its database.
-    busy_s
-        How long another writer is waited for [s].
-
-    Returns
-    -------
-    before, after
-        Its schema before and now.
-
-    Raises
-    ------
-    StoreError
-        If there is none, or it is of a later version.
+    ``url``: path of its file, or URL of its database. ``busy_s``: how long another writer is waited for [s]. Returns
+    its schema before and now. Raises StoreError if there is none, or it is of a later version.
     """
     with _connected(url, create=False, busy_s=busy_s) as store:
         before, after = part_with_database().upgrade(store.database)

@@ -14,10 +14,7 @@ LONGEST_SHOWN = 40
 def expect_short(text: str | None, what: str, *, named: str, longest: int = LONGEST_NAME) -> None:
     """Refuse a text that not every database keeps.
 
-    Raises
-    ------
-    StoreError
-        If it is empty, is too long, or holds a NUL or half of a letter.
+    Raises StoreError if it is empty, is too long, or holds a NUL or half of a letter.
     """
     if text is None:
         return

@@ -59,12 +59,8 @@ def assumed_noise(vessel: Vessel | None = None, campaign: Campaign | None = None
     log where the vessel file has one: of its cycle, and of the noise of a value of the tug's. Where a pitch is moved
     at the quay, or a combinator moves it, it is that of the simulated research vessel, with the feedback of the pitch.
 
-    Parameters
-    ----------
-    vessel
-        The installation; the Stan Tug at the quay where it is not given.
-    campaign
-        What is asked of it, for what moves beside the speed.
+    ``vessel``: the installation; the Stan Tug at the quay where it is not given. ``campaign``: what is asked of it, for
+    what moves beside the speed.
     """
     whose = "" if vessel is None else f" for {vessel.name}"
     beside = {} if vessel is None or campaign is None else _beside(vessel, campaign)
@@ -86,14 +82,8 @@ def noise_of_unknown_ship(vessel: Vessel, structure: Structure, values: Mapping[
     What disturbs the torques of the simulated ship goes through the loop of the line that is assumed, and has the
     middle of the densities that ships of the kind have; how far they are from it says ``NOISE_SPREAD``.
 
-    Parameters
-    ----------
-    vessel
-        The installation.
-    structure
-        The structure that the test is to find.
-    values
-        What is assumed of the ship, by parameter.
+    ``vessel``: the installation. ``structure``: the structure that the test is to find. ``values``: what is assumed of
+    the ship, by parameter.
     """
     assumed = assumed_noise(vessel)
     names = {name: role for name, role in structure.roles.items() if role in STAN_TUG_LINE}
@@ -122,13 +112,8 @@ def continued_below(
     What is usual has there the level at which it meets the slowest recorded lines, output by output: the speed is held
     by its governor and the torque wanders, so that neither stays as it was at that line.
 
-    Parameters
-    ----------
-    recorded
-        Noise of a recording, by engine speed.
-    usual
-        Noise of a ship of the kind, such as ``noise_of_unknown_ship`` states, by the same speed; where it has not the
-        same outputs nothing is continued.
+    ``recorded``: noise of a recording, by engine speed. ``usual``: noise of a ship of the kind, such as
+    ``noise_of_unknown_ship`` states, by the same speed; where it has not the same outputs nothing is continued.
     """
     return {
         speed: _continued(levels, noise_at(usual, speed))

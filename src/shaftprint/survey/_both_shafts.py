@@ -95,10 +95,7 @@ def load_trials_of_both(
 def _expect_channels_of_their_own(port: Vessel, starboard: Vessel) -> None:
     """Refuse two vessel files of one line.
 
-    Raises
-    ------
-    SettingsError
-        If both name a channel.
+    Raises SettingsError if both name a channel.
     """
     of_port, of_starboard = (
         {vessel.sensors.set_point.channel, vessel.sensors.shaft_torque.channel}

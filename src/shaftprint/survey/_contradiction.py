@@ -19,12 +19,7 @@ def contradiction(sines: Identification, joint: Identification) -> str:
     Annals of Mathematical Statistics 9, 1938). The steps may move the sines along what these do not know, and nowhere
     else.
 
-    Parameters
-    ----------
-    sines
-        Fit to the sines alone.
-    joint
-        Fit to sines and records together, of the same line with limits.
+    ``sines``: fit to the sines alone. ``joint``: fit to sines and records together, of the same line with limits.
     """
     of_joint = {estimate.name: estimate.value for estimate in joint.parameters}
     moved = np.array([of_joint.get(estimate.name, estimate.value) for estimate in sines.parameters])

@@ -116,18 +116,9 @@ def elastic_offer(
 
     Of two that do it is that of the lower chi-square, and the other is named where it does nearly as well.
 
-    Parameters
-    ----------
-    rigid
-        The fit of the rigid line.
-    elastic
-        From ``elastic_structures``.
-    measurement, trial
-        What was measured and tested.
-    settings
-        Gives how an elastic line is fitted.
-    rng
-        For the starts; its state stays as it is.
+    ``rigid``: the fit of the rigid line. ``elastic``: from ``elastic_structures``. ``measurement``, ``trial``: what was
+    measured and tested. ``settings``: gives how an elastic line is fitted. ``rng``: for the starts; its state stays as
+    it is.
     """
     tried = (_offered(rigid, one, measurement, settings(one), copy.deepcopy(rng)) for one in elastic)
     fits = sorted((fit for fit in tried if fit is not None), key=lambda fit: fit.chi_square)

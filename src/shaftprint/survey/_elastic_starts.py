@@ -40,14 +40,8 @@ def beyond_lines(elastic: Structure) -> float:
 def with_elastic_starts(settings: Settings, elastic: Structure, rigid: Identification) -> Settings:
     """Return settings with starts at the optima of the rigid line for modes up to beyond the lines, and those before.
 
-    Parameters
-    ----------
-    settings
-        How the elastic line is fitted; its priors give the start of what the rigid line does not have.
-    elastic
-        The elastic line.
-    rigid
-        The fit of the rigid one.
+    ``settings``: how the elastic line is fitted; its priors give the start of what the rigid line does not have.
+    ``elastic``: the elastic line. ``rigid``: the fit of the rigid one.
     """
     modes_hz = np.geomspace(_LOWEST_HZ, beyond_lines(elastic) * highest_hz(rigid), _MODES)
     optima = [dict(zip(rigid.objective.names, one.values.tolist(), strict=True)) for one in rigid.clusters[:_OPTIMA]]

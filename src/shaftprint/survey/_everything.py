@@ -45,21 +45,10 @@ def with_everything(survey: Survey, *, rng: np.random.Generator, progress: Progr
     Where steps and sweeps contradict the sines, or a limit is named whose level is not trusted, the line is that of the
     sines, as ``with_limits`` gives it, and the survey's remarks say so.
 
-    Parameters
-    ----------
-    rng
-        For the runs with noise that show where a chirp jumps.
-
-    Raises
-    ------
-    SignalError
-        If the recording does not hold the tests of the campaign, or the campaign has legs only.
-    IdentificationError
-        If the campaign has neither staircase nor chirp, or no start reached a stable model.
-    FingerprintError
-        If the first structure is another than GAUGE-CLOSED.
-    SettingsError
-        If a motor drives the line.
+    ``rng``: for the runs with noise that show where a chirp jumps. Raises SignalError if the recording does not hold
+    the tests of the campaign, or the campaign has legs only; IdentificationError if the campaign has neither staircase
+    nor chirp, or no start reached a stable model; FingerprintError if the first structure is another than GAUGE-CLOSED;
+    SettingsError if a motor drives the line.
     """
     expect_engine(survey.vessel)
     expect_limitable(survey.fingerprint)
@@ -94,12 +83,8 @@ def of_joint_fit(fingerprint: Fingerprint, sines: Identification, joint: Identif
 
     What the working point adds to the covariance, by which all data are divided, is the same for both fits.
 
-    Parameters
-    ----------
-    fingerprint
-        That of the sines.
-    sines, joint
-        The fit that it is of, and the one that takes all of the test.
+    ``fingerprint``: that of the sines. ``sines``, ``joint``: the fit that it is of, and the one that takes all of the
+    test.
     """
     names = [quantity.name for quantity in fingerprint.parameters]
     of_sines = _of(sines, names)

@@ -158,12 +158,8 @@ def comparisons_of(
 ) -> tuple[StructureComparison, ...]:
     """Return a comparison for every group of two or more fits of the same channels, in the order of the fits.
 
-    Parameters
-    ----------
-    fits
-        Fits to responses of one recording, weighed alike.
-    rng
-        For the draws; each group begins with its state.
+    ``fits``: fits to responses of one recording, weighed alike. ``rng``: for the draws; each group begins with its
+    state.
     """
     groups: dict[tuple[tuple[tuple[str, str], ...], ...], list[Identification]] = {}
     for one in fits:

@@ -8,14 +8,8 @@ from shaftprint.vessel._vessel import Vessel
 def known_propeller(vessel: Vessel, *, shaft_speed_rev_s: float, ship_speed_m_s: float) -> KnownPropeller | None:
     """Return curves and working point of a ship's propellers; None without a hull, or a series that is known.
 
-    Parameters
-    ----------
-    vessel
-        The installation.
-    shaft_speed_rev_s
-        Mean speed of the propeller shafts [rev/s].
-    ship_speed_m_s
-        Mean speed through the water [m/s].
+    ``vessel``: the installation. ``shaft_speed_rev_s``: mean speed of the propeller shafts [rev/s]. ``ship_speed_m_s``:
+    mean speed through the water [m/s].
     """
     curve, hull = open_water_curve(vessel.propeller), vessel.hull
     if curve is None or hull is None:

@@ -83,14 +83,8 @@ def structure_at(
     What is a physical value over the torque and times the speed goes with ``n_0 / M_0`` (thesis eqs 2.14-2.25), with
     both as they were measured: the load of a propeller is not the same from leg to leg.
 
-    Parameters
-    ----------
-    structure
-        A structure whose parameters have roles.
-    point, main
-        The other working point, and that of the parameters.
-    rack_share
-        Fuel rack of the one over that of the other, where the structure gives it.
+    ``structure``: a structure whose parameters have roles. ``point``, ``main``: the other working point, and that of
+    the parameters. ``rack_share``: fuel rack of the one over that of the other, where the structure gives it.
     """
     torque_share = point.shaft_torque_nm / main.shaft_torque_nm
     return at_working_point(
@@ -107,14 +101,8 @@ def leg_pairs(
 ) -> list[tuple[Structure, "FrequencyResponse"]]:
     """Return what a joint fit of legs takes, its parameters normalised at a stated working point.
 
-    Parameters
-    ----------
-    structure
-        The structure.
-    legs
-        What was measured.
-    engine_speed_rpm, shaft_torque_nm
-        The working point at which the parameters are normalised, such as that of a plan.
+    ``legs``: what was measured. ``engine_speed_rpm``, ``shaft_torque_nm``: the working point at which the parameters
+    are normalised, such as that of a plan.
     """
     speed_rev_s = rev_s_from_rpm(engine_speed_rpm)
     return [

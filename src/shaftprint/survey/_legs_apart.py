@@ -76,12 +76,7 @@ def apart_reasons(joint: Identification, alone: Sequence[LegAlone]) -> tuple[Rea
 
     Where no leg fits alone it is not the difference of the speeds that speaks against the fit: nothing is returned.
 
-    Parameters
-    ----------
-    joint
-        The fit to all legs.
-    alone
-        From `legs_alone`.
+    ``joint``: the fit to all legs. ``alone``: from `legs_alone`.
     """
     explained = [one.name for one in alone if (one.fit.p_value or 0.0) >= Requirements().lowest_p_value]
     if not explained:

@@ -24,12 +24,8 @@ def hints_of(
 
     The lines of a leg have no harmonics of their own, so that what it reaches is held against the vessel file.
 
-    Parameters
-    ----------
-    failed_steps
-        Steps that a model does not predict; None where no model was held against them.
-    named
-        The limits that a search for them has found already, in words.
+    ``failed_steps``: steps that a model does not predict; None where no model was held against them. ``named``: the
+    limits that a search for them has found already, in words.
     """
     if not measurement.legs:
         return limit_hints(measurement.spectra.harmonics, failed_steps, named=named)

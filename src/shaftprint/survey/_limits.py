@@ -38,14 +38,8 @@ def with_levels_beside(
 ) -> Survey:
     """Return a survey whose fingerprint has a line with the limits beside it.
 
-    Parameters
-    ----------
-    limits
-        Which limits act; the line gets those whose level is trusted.
-    line_fit
-        The fingerprint whose governor and inertias the line has; the levels are fitted beside them.
-    found_by
-        Which fit that is.
+    ``limits``: which limits act; the line gets those whose level is trusted. ``line_fit``: the fingerprint whose
+    governor and inertias the line has; the levels are fitted beside them. ``found_by``: which fit that is.
     """
     progress.tell("Putting the limits into the line", "")
     levels = levels_beside(

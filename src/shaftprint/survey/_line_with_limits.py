@@ -36,23 +36,10 @@ def line_with_limits(
 ) -> LineWithLimits:
     """Return the model of a line with the limits that were found beside it.
 
-    Parameters
-    ----------
-    fingerprint
-        The linear fit.
-    levels
-        Limits of the same test, beside the governor of the fingerprint.
-    vessel, working_point
-        Full-load curve, and the speed about which it is taken.
-    found_by
-        Which fit the fingerprint's parameters are of.
-    numbers, not_seen
-        What ``limits`` states in the units of the ship.
-
-    Raises
-    ------
-    FingerprintError
-        If the fingerprint is of another structure than the closed loop that limits can be put into.
+    ``fingerprint``: the linear fit. ``levels``: limits of the same test, beside the governor of the fingerprint.
+    ``vessel``, ``working_point``: full-load curve, and the speed about which it is taken. ``found_by``: which fit the
+    fingerprint's parameters are of. ``numbers``, ``not_seen``: what ``limits`` states in the units of the ship. Raises
+    FingerprintError if the fingerprint is of another structure than the closed loop that limits can be put into.
     """
     chosen = levels.structure_limits
     curve = vessel.machine.full_load_shape(working_point.engine_speed_rev_s)
@@ -83,10 +70,7 @@ def line_with_limits(
 def expect_limitable(fingerprint: Fingerprint) -> None:
     """Refuse a fingerprint of a structure into which no limits can be put.
 
-    Raises
-    ------
-    FingerprintError
-        If it has other parameters than GAUGE-CLOSED.
+    Raises FingerprintError if it has other parameters than GAUGE-CLOSED.
     """
     stated = {*(quantity.name for quantity in fingerprint.parameters), *fingerprint.held}
     expected = {p.name for p in limited().parameters}

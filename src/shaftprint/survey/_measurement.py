@@ -134,13 +134,9 @@ def measure(
 def responses_of(response: FrequencyResponse, *, set_point_latency_s: float = 0.0) -> tuple[FrequencyResponse, ...]:
     """Return a measured response and its open-loop forms: with a logged fuel rack also those to and from the rack.
 
-    Parameters
-    ----------
-    response
-        Response from ``n_set``.
-    set_point_latency_s
-        Time after which the governor has the set point, as far as it is known [s]. The error of the governor alone is
-        formed with it; that of ``M_s / e`` is the measured one, since GAUGE-OPEN has the latency as a parameter.
+    ``response``: response from ``n_set``. ``set_point_latency_s``: time after which the governor has the set point, as
+    far as it is known [s]. The error of the governor alone is formed with it; that of ``M_s / e`` is the measured one,
+    since GAUGE-OPEN has the latency as a parameter.
     """
     responses = (response, *open_loop(response))
     if "X" not in response.outputs:
@@ -152,17 +148,8 @@ def responses_of(response: FrequencyResponse, *, set_point_latency_s: float = 0.
 def of_legs(measurement: Measurement, names: Sequence[str]) -> Measurement:
     """Return a measurement with some of its legs alone; the first of them is the working point then.
 
-    Parameters
-    ----------
-    measurement
-        Of a campaign with legs.
-    names
-        Which to keep; all when none is given.
-
-    Raises
-    ------
-    StructureError
-        If the recording holds no leg of a name.
+    ``measurement``: of a campaign with legs. ``names``: which to keep; all when none is given. Raises StructureError if
+    the recording holds no leg of a name.
     """
     if not names:
         return measurement
@@ -194,10 +181,7 @@ def pairs_of(structure: Structure, measurement: Measurement) -> tuple[tuple[Stru
     An input that can be moved and stood still in this test has no response; the structure keeps its parameters. Legs at
     other working points follow, each with the structure at its own.
 
-    Raises
-    ------
-    StructureError
-        If the recording does not give the response that a structure describes.
+    Raises StructureError if the recording does not give the response that a structure describes.
     """
     responses = measurement.responses
     _expect_share_of_one_point(structure, measurement)
@@ -260,10 +244,7 @@ def response_of(structure: Structure, responses: Sequence[FrequencyResponse]) ->
 
     Further inputs of a structure may have been measured as outputs of the response, such as the speed of GOVERNOR.
 
-    Raises
-    ------
-    StructureError
-        If there is none.
+    Raises StructureError if there is none.
     """
     for response in responses:
         alike = structure.inputs == response.inputs and set(structure.outputs) <= set(response.outputs)

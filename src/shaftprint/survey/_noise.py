@@ -17,12 +17,7 @@ if TYPE_CHECKING:
 def noise_at_speeds(measurement: "Measurement", campaign: "Campaign") -> dict[float, NoiseLevels]:
     """Return the noise levels by engine speed [rpm], over the working point of each speed.
 
-    Parameters
-    ----------
-    measurement
-        What a recording gives.
-    campaign
-        The campaign that was sailed.
+    ``measurement``: what a recording gives. ``campaign``: the campaign that was sailed.
     """
     signals = measurement.signals
     if not measurement.legs:
@@ -49,10 +44,7 @@ def noise_of_further(measurement: "Measurement", campaign: "Campaign") -> dict[s
 
     They are those of the working point; one volt is that of the input.
 
-    Parameters
-    ----------
-    measurement, campaign
-        As of ``noise_at_speeds``.
+    ``measurement``, ``campaign``: as of ``noise_at_speeds``.
     """
     signals = measurement.signals
     turns = signals.working_point.engine_speed_rev_s

@@ -59,17 +59,9 @@ def _closed_loop(vessel: Vessel | None, campaign: Campaign | None) -> str:
 def expect_one_speed(campaign: Campaign, vessel: Vessel, legs: Sequence[str] = ()) -> None:
     """Refuse a test at several speeds where its numbers belong to one.
 
-    Parameters
-    ----------
-    campaign, vessel
-        What is asked of the ship, and the installation.
-    legs
-        Names of the legs that are used; all when not given.
-
-    Raises
-    ------
-    StructureError
-        If legs of several levels are used on a ship underway or with a combinator.
+    ``campaign``, ``vessel``: what is asked of the ship, and the installation. ``legs``: names of the legs that are
+    used; all when not given. Raises StructureError if legs of several levels are used on a ship underway or with a
+    combinator.
     """
     levels = {leg.level_v for leg in campaign.legs if not legs or leg.name in legs}
     if vessel.why_one_speed and len(levels) > 1:
@@ -101,12 +93,7 @@ def of_vessel(structure: Structure, vessel: Vessel) -> Structure:
 def at_speeds(structure: Structure, speeds: Iterable[float]) -> Structure:
     """Return a structure as a test at these speeds is fitted: at several the line of the set point may bend.
 
-    Parameters
-    ----------
-    structure
-        The structure.
-    speeds
-        Mean speeds of the test, or their shares of one of them.
+    ``speeds``: mean speeds of the test, or their shares of one of them.
     """
     lowest, highest = min(every := tuple(speeds)), max(every)
     return with_bend(structure) if highest > _SAME_SPEED * lowest else structure

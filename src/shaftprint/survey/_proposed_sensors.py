@@ -116,10 +116,7 @@ class Seen:
 def proposed_sensors(seen: Sequence[Seen]) -> list[str]:
     """Return lines for the vessel file: what can be told is filled in, the rest is left for the user.
 
-    Parameters
-    ----------
-    seen
-        The channels of a recording.
+    ``seen``: the channels of a recording.
     """
     rate = max((item.channel.rate_hz for item in seen), default=0.0)
     empty = [item.channel.name for item in seen if item.is_empty]

@@ -33,26 +33,10 @@ def ship_numbers(
 ) -> tuple[Estimate, ...]:
     """Return what a test underway says of the ship; nothing where it was at the quay or its propeller is not known.
 
-    Parameters
-    ----------
-    fit
-        Fit of a free-sailing structure to responses of shaft and log.
-    signals, vessel
-        What it was made from.
-    rng
-        For the starts of the search.
-
-    Returns
-    -------
-    quantities
-        ``w``, ``t``, ``R`` [N] and the exponent of the resistance, beside what the vessel file states of them.
-
-    Raises
-    ------
-    StructureError
-        If the propeller does not pull at the speeds that were measured.
-    IdentificationError
-        If the responses cannot be fitted.
+    ``fit``: fit of a free-sailing structure to responses of shaft and log. ``signals``, ``vessel``: what it was made
+    from. ``rng``: for the starts of the search. Returns ``w``, ``t``, ``R`` [N] and the exponent of the resistance,
+    beside what the vessel file states of them. Raises StructureError if the propeller does not pull at the speeds that
+    were measured; IdentificationError if the responses cannot be fitted.
     """
     log, hull = signals.channels.get("v_s"), vessel.hull
     if log is None or hull is None or not sails_free(fit.structure):

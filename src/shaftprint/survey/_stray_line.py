@@ -28,12 +28,7 @@ Fits: TypeAlias = tuple[Identification, ...]
 def fits_beside_a_stray_line(fit: Callable[[Measurement], Fits], measurement: Measurement) -> tuple[Fits, Measurement]:
     """Return the fits to a measurement with what they are of: without its stray line, where they explain the rest.
 
-    Parameters
-    ----------
-    fit
-        Fits structures to a measurement; by the first of them a line is stray.
-    measurement
-        What was measured.
+    ``fit``: fits structures to a measurement; by the first of them a line is stray. ``measurement``: what was measured.
     """
     fits = fit(measurement)
     stray = stray_line(fits[0])

@@ -359,10 +359,7 @@ def _of_fits(
 def judged(survey: Survey, *, rng: np.random.Generator, progress: Progress = SILENT) -> Survey:
     """Return a survey with its structures compared and its model held against records that it has not seen.
 
-    Parameters
-    ----------
-    rng
-        For the starts of the fits without a line, and for the parameter sets that bands are drawn from.
+    ``rng``: for the starts of the fits without a line, and for the parameter sets that bands are drawn from.
     """
     beside_rng = copy.deepcopy(rng)
     validated = (

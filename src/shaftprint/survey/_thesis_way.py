@@ -40,16 +40,8 @@ def thesis_way(
 ) -> ThesisMode:
     """Return a recording treated step by step as in the thesis, and besides its pick-up taken into the model.
 
-    Parameters
-    ----------
-    measurement
-        Of the recording, by ``measure`` in the mode of the thesis.
-    trial
-        What was tested.
-    rng
-        For the starts of the searches.
-    progress
-        Is told of each step.
+    ``measurement``: of the recording, by ``measure`` in the mode of the thesis. ``trial``: what was tested. ``rng``:
+    for the starts of the searches. ``progress``: is told of each step.
     """
     latency = trial.vessel.sensors.shaft_torque.latency_s
     structures = [*(structure(name) for name in OF_THE_THESIS), structure(WITH_PICK_UP).held_at(t_gauge=latency)]

@@ -29,13 +29,8 @@ def twist_reasons(ratios: "tuple[SpeedRatio, ...]", vessel: "Vessel") -> tuple[R
 
     A speed of the shaft belongs to the torque beside it, twist or not.
 
-    Parameters
-    ----------
-    ratios
-        Further speeds over the one that is identified; several of one sensor, as of legs, are lines of one comparison,
-        for a coupling is the same at every speed.
-    vessel
-        Says which sensor is on which shaft.
+    ``ratios``: further speeds over the one that is identified; several of one sensor, as of legs, are lines of one
+    comparison, for a coupling is the same at every speed. ``vessel``: says which sensor is on which shaft.
     """
     first, *others = vessel.sensors.speed
     channels = {one.name: one.channel for one in others if one.shaft == "propeller"}

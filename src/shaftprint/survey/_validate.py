@@ -108,12 +108,8 @@ def _with_limits(
 ) -> Validation:
     """Return the line with its limits held against a recording; against its own, by fits that did not use it.
 
-    Raises
-    ------
-    FingerprintError
-        If the working points of both differ by more than 2 %, or the fingerprint has no limits.
-    ValidationError
-        If no stretch can be judged.
+    Raises FingerprintError if the working points of both differ by more than 2 %, or the fingerprint has no limits;
+    ValidationError if no stretch can be judged.
     """
     signals, line = measurement.signals, limits_of(fingerprint)
     _expect_working_point(fingerprint, signals)
@@ -127,11 +123,8 @@ def _with_limits(
 def fingerprint_model(fingerprint: Fingerprint, structure: Structure, signals: Signals) -> Model:
     """Return the model of a fingerprint; the lines that it was identified from count where it is of this recording.
 
-    Raises
-    ------
-    FingerprintError
-        If the structure has other parameters than the fingerprint, or the working points of both differ by more than
-        2 %.
+    Raises FingerprintError if the structure has other parameters than the fingerprint, or the working points of both
+    differ by more than 2 %.
     """
     model = identified_model(fingerprint, structure)
     _expect_working_point(fingerprint, signals)

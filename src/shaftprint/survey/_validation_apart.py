@@ -71,23 +71,11 @@ def validated_apart(
 ) -> "Validation":
     """Hold the line with its limits against records of the recording that it was found in.
 
-    Parameters
-    ----------
-    fingerprint
-        The linear fit and the line with limits.
-    signals, trial
-        The recording that both are from, and what was asked.
-    rng
-        Source of the parameter sets that bands of step numbers are drawn from.
-    records
-        Names of chirps and staircases; by default all staircases and the chirp with the widest sweep.
-
-    Raises
-    ------
-    ValidationError
-        If there is no record, one is not in the campaign, or no noise can be measured.
-    FingerprintError
-        If there are no limits, or they cannot be put into the structure of the fingerprint.
+    ``fingerprint``: the linear fit and the line with limits. ``signals``, ``trial``: the recording that both are from,
+    and what was asked. ``rng``: source of the parameter sets that bands of step numbers are drawn from. ``records``:
+    names of chirps and staircases; by default all staircases and the chirp with the widest sweep. Raises
+    ValidationError if there is no record, one is not in the campaign, or no noise can be measured; FingerprintError if
+    there are no limits, or they cannot be put into the structure of the fingerprint.
     """
     task = _Task.of(fingerprint, signals, trial, rng)
     names = default_records(trial.campaign, fingerprint.conditions.lines_used) if records is None else records
@@ -198,10 +186,7 @@ class _Task:
 def limits_of(fingerprint: Fingerprint) -> LineWithLimits:
     """Return the line with limits of a fingerprint.
 
-    Raises
-    ------
-    FingerprintError
-        If limits were not looked for.
+    Raises FingerprintError if limits were not looked for.
     """
     if fingerprint.with_limits is None:
         raise FingerprintError(

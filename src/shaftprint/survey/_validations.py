@@ -36,14 +36,8 @@ def validations_of(
 
     A record that cannot be used is no reason to give up a fingerprint: the remark says why.
 
-    Parameters
-    ----------
-    identification
-        The fit.
-    measurement, trial
-        What it was made from.
-    rng
-        For the parameter sets that bands are drawn from.
+    ``identification``: the fit. ``measurement``, ``trial``: what it was made from. ``rng``: for the parameter sets that
+    bands are drawn from.
     """
     structure, campaign = identification.structure, trial.campaign
     if structure.inputs != INPUTS or set(structure.outputs) != OUTPUTS:

@@ -77,10 +77,7 @@ class _Lines:
 def wash_on(side: "Survey", other: "Survey") -> Wash | None:
     """Return what the wash of the other side does to one; None where its structure tells no propeller torque.
 
-    Parameters
-    ----------
-    side, other
-        Surveys of two lines of one recording.
+    ``side``, ``other``: Surveys of two lines of one recording.
     """
     mean, std = side.vessel.wash
     found = list(_lines_of(side, other))
@@ -166,10 +163,7 @@ def _pooled(periods: ComplexArray) -> FloatArray:
 def wash_sentences(washes: "Mapping[str, Wash]") -> tuple[str, ...]:
     """Return in sentences what the wash of each propeller does to the other.
 
-    Parameters
-    ----------
-    washes
-        By the side that feels it.
+    ``washes``: by the side that feels it.
     """
     return tuple(
         f"The wash of the other propeller takes {stated(PERCENT * wash.share, PERCENT * wash.std, '%')} of the torque "

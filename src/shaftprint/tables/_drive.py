@@ -89,10 +89,7 @@ def drive_assumed_table(fingerprint: "DriveFingerprint") -> Table:
 def drive_difference_table(first: str, other: str, differences: "Sequence[DriveDifference]") -> Table:
     """Return numbers of two fingerprints of a drive beside each other.
 
-    Parameters
-    ----------
-    first, other
-        What the fingerprints are called.
+    ``first``, ``other``: what the fingerprints are called.
     """
     rows = []
     for one in differences:

@@ -63,16 +63,8 @@ def quantity_table(
 ) -> Table:
     """Return quantities with intervals, beside the truth and the values of the vessel file where there are such.
 
-    Parameters
-    ----------
-    title
-        What the table shows.
-    quantities
-        Its rows.
-    truth
-        True values by name.
-    note
-        What a reader must know with it.
+    ``title``: what the table shows. ``quantities``: its rows. ``truth``: true values by name. ``note``: what a reader
+    must know with it.
     """
     has_truth = any(quantity.name in truth for quantity in quantities)
     has_expected = any(quantity.expected is not None for quantity in quantities)
@@ -92,10 +84,7 @@ def quantity_table(
 def value_text(quantity: "Estimate", factor: float = 1.0) -> str:
     """Return value and standard deviation; the value alone where only its interval tells how well it is known.
 
-    Parameters
-    ----------
-    factor
-        What the number is multiplied by for its unit.
+    ``factor``: what the number is multiplied by for its unit.
     """
     std = quantity.stated_std
     if std is None:
@@ -145,10 +134,7 @@ def _truth_cells(quantity: "Estimate", truth: Mapping[str, float], factor: float
 def expected_text(quantity: "Estimate", factor: float = 1.0) -> str:
     """Return the value of the vessel file with its standard deviation, where there are such.
 
-    Parameters
-    ----------
-    factor
-        What the number is multiplied by for its unit.
+    ``factor``: what the number is multiplied by for its unit.
     """
     if quantity.expected is None:
         return "–"

@@ -25,12 +25,7 @@ def leg_table(legs: Sequence["LegMeasurement"]) -> Table:
 def leg_test_table(tests: Sequence["LegTest"], *, p_value: float | None) -> Table:
     """Return how well one model explains each leg.
 
-    Parameters
-    ----------
-    tests
-        The legs with their shares of the test of fit.
-    p_value
-        That of the fit to all of them.
+    ``tests``: the legs with their shares of the test of fit. ``p_value``: that of the fit to all of them.
     """
     return Table(
         title="One model for all legs",

@@ -13,12 +13,8 @@ if TYPE_CHECKING:
 def limit_use_table(uses: Sequence["LimitUse"], *, note: str) -> Table:
     """Return for each limit the instant that comes nearest to it, or leaves it furthest.
 
-    Parameters
-    ----------
-    uses
-        From ``limit_uses``: for each limit the worst excitation comes first.
-    note
-        What the numbers are, such as a prediction without noise.
+    ``uses``: from ``limit_uses``: for each limit the worst excitation comes first. ``note``: what the numbers are, such
+    as a prediction without noise.
     """
     worst = {use.limit: use for use in reversed(uses)}
     rows = tuple(

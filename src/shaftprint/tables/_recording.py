@@ -24,12 +24,7 @@ PULSES = 0.8
 def level_table(recording: "Recording", levels: "Mapping[str, Levels]") -> Table:
     """Return lowest, mean and highest value of every raw channel, and what share of its time it spends at the ends.
 
-    Parameters
-    ----------
-    recording
-        Gives names and units.
-    levels
-        What each channel reaches, by its name.
+    ``recording``: gives names and units. ``levels``: what each channel reaches, by its name.
     """
     rows: list[tuple[str, ...]] = []
     for name, reached in levels.items():

@@ -13,10 +13,7 @@ from shaftprint.arrays import FloatArray
 def shortened(rows: FloatArray, columns: FloatArray) -> FloatArray:
     """Return whitened rows, shape (rows, length), as they count beside assumed numbers.
 
-    Parameters
-    ----------
-    columns
-        What one standard deviation of each assumed number changes, whitened, shape (assumed, length).
+    ``columns``: what one standard deviation of each assumed number changes, whitened, shape (assumed, length).
     """
     _, size, turned = np.linalg.svd(columns, full_matrices=False)
     share = 1.0 - 1.0 / np.sqrt(1.0 + size**2)

@@ -72,12 +72,8 @@ class LineBands:
 def bands_of(source: ComplexArray, outputs: ComplexArray) -> LineBands:
     """Cut lines into bands and fit each by itself.
 
-    Parameters
-    ----------
-    source
-        Transform of the input at consecutive lines, shape (lines,), at least ``NARROWEST``.
-    outputs
-        Transforms of the outputs, shape (outputs, lines).
+    ``source``: transform of the input at consecutive lines, shape (lines,), at least ``NARROWEST``. ``outputs``:
+    transforms of the outputs, shape (outputs, lines).
     """
     places, there = _cut(source.size)
     half = 0.5 * (there.sum(axis=1) - 1)

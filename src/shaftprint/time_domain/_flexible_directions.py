@@ -42,10 +42,7 @@ def through_poles(record: Record, noise: NoiseModel) -> FloatArray:
 def small_and_large(record: Record, simulated: FloatArray) -> FloatArray:
     """Return what large motions may do other than small ones, odd in the motion, shape (directions, samples, outputs).
 
-    Parameters
-    ----------
-    simulated
-        Outputs of the structure, shape (samples, outputs).
+    ``simulated``: outputs of the structure, shape (samples, outputs).
     """
     motion, size = _centred(simulated), simulated.std(axis=0)
     scaled = motion / np.where(size > 0.0, size, 1.0)

@@ -231,14 +231,9 @@ class FlexibleModel:
     def _sizes(self, directions: FloatArray, turn: FloatArray, shares: FloatArray, fitted: FloatArray) -> FloatArray:
         """Return the size of a difference over that of the motion, without what noise gives on average, (outputs,).
 
-        Parameters
-        ----------
-        directions, fitted
-            What it is made of, and what it is taken beside, shape (rows, samples, outputs).
-        turn
-            Weights of the directions that noise gives, as independent vectors, shape (directions, rank).
-        shares
-            Weights that the difference has, shape (directions,).
+        ``directions``, ``fitted``: what it is made of, and what it is taken beside, shape (rows, samples, outputs).
+        ``turn``: weights of the directions that noise gives, as independent vectors, shape (directions, rank).
+        ``shares``: weights that the difference has, shape (directions,).
         """
         used = self.record.used
         basis = orthonormal(_flat(fitted[:, used]))

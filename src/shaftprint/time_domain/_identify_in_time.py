@@ -64,10 +64,7 @@ class TimeSettings:
     def __post_init__(self) -> None:
         """Check the numbers.
 
-        Raises
-        ------
-        IdentificationError
-            If one is out of range.
+        Raises IdentificationError if one is out of range.
         """
         degree = 0 if self.drift_degree is None else self.drift_degree
         if degree < -1 or self.rounds < 0 or not (self.longest_memory_s >= 0.0 and self.anew_after_s >= 0.0):
@@ -128,19 +125,9 @@ def with_noise_at(
 ) -> OutputError:
     """Return a term with the noise that is left at some parameters.
 
-    Parameters
-    ----------
-    values
-        All parameters of the structure, shape (parameters,).
-    longest_memory_s
-        Longest memory that is tried [s].
-    assumed
-        Held parameters that are assumed, with their standard deviations.
-
-    Raises
-    ------
-    IdentificationError
-        If the simulation runs away there, or nothing is left.
+    ``values``: all parameters of the structure, shape (parameters,). ``longest_memory_s``: longest memory that is tried
+    [s]. ``assumed``: held parameters that are assumed, with their standard deviations. Raises IdentificationError if
+    the simulation runs away there, or nothing is left.
     """
     noise = noise_of(term.residuals(values), term.record)
     order = round(longest_memory_s * term.record.rate_hz)
@@ -196,10 +183,7 @@ def identify_in_time(
 def _expect_known_slope(parts: Sequence[Part]) -> None:
     """Refuse records whose load may move where nothing else tells of the load's slope.
 
-    Raises
-    ------
-    IdentificationError
-        If it is free in such a record and in no other data.
+    Raises IdentificationError if it is free in such a record and in no other data.
     """
     slopes = [next((p.name for p in _structure(part).free if p.role == ShipRole.LOAD_SLOPE), "") for part in parts]
     with_slope = [part for part, slope in zip(parts, slopes, strict=True) if slope]

@@ -61,17 +61,10 @@ def best_states(
 ) -> tuple[FloatArray, FloatArray] | None:
     """Return the states that explain a record best, and their effects; None where the simulation runs away.
 
-    Parameters
-    ----------
-    simulated
-        From states, shape (states,), to outputs, shape (1, samples, outputs); None where the simulation runs away.
-    whitened
-        From rows of outputs, shape (rows, samples, outputs), to whitened ones without offset and drift, shape (rows,
-        length).
-    data
-        Measured outputs, whitened and without offset and drift, shape (length,).
-    first
-        States to begin with, shape (states,).
+    ``simulated``: from states, shape (states,), to outputs, shape (1, samples, outputs); None where the simulation runs
+    away. ``whitened``: from rows of outputs, shape (rows, samples, outputs), to whitened ones without offset and drift,
+    shape (rows, length). ``data``: measured outputs, whitened and without offset and drift, shape (length,). ``first``:
+    states to begin with, shape (states,).
     """
     runs = effects_of(simulated, first)
     if runs is None:
@@ -187,18 +180,10 @@ def state_estimates(
 ) -> tuple[Estimate, ...]:
     """Return the states with their standard deviations; infinite where the record does not tell of one.
 
-    Parameters
-    ----------
-    start
-        The states.
-    effects
-        Their whitened effects, shape (states, length).
-    drifts
-        Orthonormal basis of whitened offsets and drifts, shape (rank, length).
-    slopes, covariance
-        Whitened derivatives to the free parameters, shape (free, length), and the covariance of these, shape (free,
-        free); the parameters are taken to be known where they are not given. One of infinite variance leaves the states
-        that depend on it unknown.
+    ``start``: the states. ``effects``: their whitened effects, shape (states, length). ``drifts``: orthonormal basis of
+    whitened offsets and drifts, shape (rank, length). ``slopes``, ``covariance``: whitened derivatives to the free
+    parameters, shape (free, length), and the covariance of these, shape (free, free); the parameters are taken to be
+    known where they are not given. One of infinite variance leaves the states that depend on it unknown.
     """
     spread = spread_of(left_of(effects, drifts), slopes=slopes, covariance=covariance)
     variance = np.diag(spread.covariance).copy()

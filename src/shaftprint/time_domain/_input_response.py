@@ -24,12 +24,7 @@ BY_CHANCE = 1.5
 def delayed_inputs(record: Record, *, most: int = MOST_LAGS, longest_s: float = MEMORY_S) -> FloatArray:
     """Return the inputs at every lag, shape (inputs * lags, samples); before its beginning an input was constant.
 
-    Parameters
-    ----------
-    most
-        Most lags, no more than usual, evenly spread.
-    longest_s
-        The longest of them [s].
+    ``most``: most lags, no more than usual, evenly spread. ``longest_s``: the longest of them [s].
     """
     lags = np.unique(np.rint(np.linspace(0, longest_s * record.rate_hz, min(most, MOST_LAGS))).astype(int))
     rows = []
@@ -65,12 +60,7 @@ def filled(residuals: FloatArray, unexplained: FloatArray, basis: FloatArray) ->
     structure would be refused. What the residuals have there stays where it is no more than noise; where it is more,
     signs at random stand for it, which have no colour of their own.
 
-    Parameters
-    ----------
-    residuals, unexplained
-        Shape (samples,).
-    basis
-        Orthonormal directions, shape (directions, samples).
+    ``residuals``, ``unexplained``: shape (samples,). ``basis``: orthonormal directions, shape (directions, samples).
     """
     level = float(unexplained @ unexplained) / max(residuals.size - len(basis), 1)
     explained = residuals - unexplained

@@ -83,12 +83,7 @@ class NoiseModel:
 def white_noise(residuals: FloatArray, stretches: Sequence[slice]) -> NoiseModel:
     """Return noise without memory that is as strong as the residuals, outputs independent of each other.
 
-    Parameters
-    ----------
-    residuals
-        Shape (samples, outputs).
-    stretches
-        Where they count.
+    ``residuals``: shape (samples, outputs). ``stretches``: where they count.
     """
     kept = np.concatenate([residuals[stretch] for stretch in stretches])
     outputs = residuals.shape[1]
@@ -106,19 +101,8 @@ def estimate_noise(residuals: FloatArray, stretches: Sequence[slice], *, max_ord
     chosen one is estimated by least squares, which does not flatten sharp peaks; where that gives no stable noise the
     solution of Yule and Walker, always stable, stays.
 
-    Parameters
-    ----------
-    residuals
-        Shape (samples, outputs).
-    stretches
-        Where they count.
-    max_order
-        Highest order to try.
-
-    Raises
-    ------
-    IdentificationError
-        If an output has no noise at all, or outputs are the same.
+    ``residuals``: shape (samples, outputs). ``stretches``: where they count. ``max_order``: highest order to try.
+    Raises IdentificationError if an output has no noise at all, or outputs are the same.
     """
     kept = [residuals[stretch] for stretch in stretches]
     count = sum(part.shape[0] for part in kept)

@@ -32,14 +32,8 @@ def _in_steps(values: FloatArray) -> bool:
 def drift_columns(record: Record, outputs: int, degree: int, *, anew_after_s: float) -> FloatArray:
     """Return polynomials in time for each output, shape (columns, samples, outputs).
 
-    Parameters
-    ----------
-    outputs
-        Number of outputs.
-    degree
-        Highest power of time: 0 for offsets, 1 for drifts, -1 for none.
-    anew_after_s
-        A longer gap [s] begins a polynomial of its own.
+    ``outputs``: number of outputs. ``degree``: highest power of time: 0 for offsets, 1 for drifts, -1 for none.
+    ``anew_after_s``: a longer gap [s] begins a polynomial of its own.
     """
     pieces: list[list[int]] = []
     for stretch in record.stretches:

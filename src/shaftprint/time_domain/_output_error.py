@@ -253,10 +253,7 @@ class OutputError(WhitenedTerm):
     def _evaluated(self, values: FloatArray, wanted: Sequence[str] = ()) -> tuple[InitialStates | None, FloatArray]:
         """Return initial states and the simulation from them with its derivatives, for the data of the record.
 
-        Raises
-        ------
-        IdentificationError
-            If the simulation runs away.
+        Raises IdentificationError if the simulation runs away.
         """
         run = self._run(values, self.measured, wanted)
         if run is None:

@@ -59,11 +59,8 @@ class Record(Shown):
     def __post_init__(self) -> None:
         """Check that all channels belong together.
 
-        Raises
-        ------
-        SignalError
-            If the rate is no positive number, a channel is missing, has another length or holds values that are not
-            finite, or no sample is used.
+        Raises SignalError if the rate is no positive number, a channel is missing, has another length or holds values
+        that are not finite, or no sample is used.
         """
         if not (np.isfinite(self.rate_hz) and self.rate_hz > 0.0):
             raise SignalError(f"record {self.name}: expected a positive sample rate in Hz, found {self.rate_hz}.")

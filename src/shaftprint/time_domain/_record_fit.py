@@ -78,12 +78,8 @@ def record_fit(
 ) -> RecordFit:
     """Return how well a record is explained.
 
-    Parameters
-    ----------
-    model
-        Outputs with offset, drift and initial states, shape (samples, outputs).
-    whitened
-        Residuals of the used samples after the noise's filter, shape (used samples, outputs).
+    ``model``: outputs with offset, drift and initial states, shape (samples, outputs). ``whitened``: residuals of the
+    used samples after the noise's filter, shape (used samples, outputs).
     """
     used = record.used
     columns = {name: column for column, name in enumerate(structure.outputs)}

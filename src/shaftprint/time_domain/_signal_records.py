@@ -182,10 +182,7 @@ def _repaired(signals: Signals, sensor: SpeedSignal, time_s: FloatArray, every: 
 def _lost(signals: Signals, name: str, time_s: FloatArray, every: int) -> BoolArray:
     """Return which samples a gap of the signals reaches through the filter.
 
-    Raises
-    ------
-    SignalError
-        If the set point has a gap: what drove the ship is not known.
+    Raises SignalError if the set point has a gap: what drove the ship is not known.
     """
     reach_s = Decimator(every=every).half / signals.rate_hz
     begin, end = float(time_s[0]) - reach_s, float(time_s[-1]) + reach_s
@@ -206,14 +203,8 @@ def load_of(n: FloatArray, torque: FloatArray, used: BoolArray, rate_hz: float) 
     A record that ends faster than it began has accelerated the propeller: that torque is no load. Its size, the inertia
     time behind the gauge, is taken from the record.
 
-    Parameters
-    ----------
-    n, torque
-        Deviations of speed and torque [-], shape (samples,).
-    used
-        Which samples count, shape (samples,).
-    rate_hz
-        Samples a second [Hz].
+    ``n``, ``torque``: deviations of speed and torque [-], shape (samples,). ``used``: which samples count, shape
+    (samples,). ``rate_hz``: samples a second [Hz].
     """
     if not used.any():
         return 1.0

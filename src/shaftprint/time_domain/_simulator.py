@@ -35,14 +35,9 @@ class Simulator(Protocol):
     ) -> Trace:
         """Return the outputs at every sample of the drive, and their derivatives.
 
-        Parameters
-        ----------
-        values
-            Values of the structure's parameters, shape (parameters,).
-        wanted
-            Names of the parameters whose derivatives are wanted.
-        initial
-            States at the first sample of the drive, shape (states,); steady running if not given.
+        ``values``: values of the structure's parameters, shape (parameters,). ``wanted``: names of the parameters whose
+        derivatives are wanted. ``initial``: states at the first sample of the drive, shape (states,); steady running if
+        not given.
         """
 
     def rest(self, structure: Structure, values: FloatArray, record: Record) -> FloatArray:

@@ -48,10 +48,7 @@ class Spectrum:
     def response(self, input_name: str, *, most: int | None = None) -> FrequencyResponse:
         """Return the response in the middle of the bands, without leakage.
 
-        Parameters
-        ----------
-        most
-            Number of bands to keep, denser at low frequency, where a search needs them; all if not given.
+        ``most``: number of bands to keep, denser at low frequency, where a search needs them; all if not given.
         """
         bands = self.bands
         if most is not None and most < bands.middle.size:

@@ -127,12 +127,8 @@ def compare_inertia(
 ) -> tuple[InertiaComparison, ...]:
     """Return pairs of a calculated and an identified number of the same name.
 
-    Parameters
-    ----------
-    identified
-        Value and standard deviation by name, such as ``tau_dn``.
-    assumed
-        Names of numbers that were priors of the test.
+    ``identified``: value and standard deviation by name, such as ``tau_dn``. ``assumed``: names of numbers that were
+    priors of the test.
     """
     rows = ((item, identified[item.name]) for item in (*expected.times, *expected.sums) if item.name in identified)
     return tuple(

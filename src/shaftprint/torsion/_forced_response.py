@@ -32,10 +32,7 @@ class LineResponse:
     def speed_of(self, mass: str) -> ComplexArray:
         """Return the speed of a mass [rad/s], shape (frequencies,).
 
-        Raises
-        ------
-        StructureError
-            If there is no such mass.
+        Raises StructureError if there is no such mass.
         """
         return frozen_complex(self.speed_rad_s[self.line.place(mass)])
 
@@ -46,17 +43,9 @@ def forced_response(line: TorsionalLine, frequency_hz: ArrayLike, torque_nm: Map
     ``(-omega^2 J + j omega (D^T c D + d) + D^T k (1 + j psi / (2 pi)) D) theta = T``: the loss of the links is in the
     complex stiffness itself, exact at every frequency.
 
-    Parameters
-    ----------
-    frequency_hz
-        Frequencies [Hz] above 0, shape (frequencies,).
-    torque_nm
-        Complex amplitude [N m] by the name of a mass: one number, or one for each frequency.
-
-    Raises
-    ------
-    StructureError
-        If a mass is not there, or a frequency is not above 0.
+    ``frequency_hz``: frequencies [Hz] above 0, shape (frequencies,). ``torque_nm``: complex amplitude [N m] by the name
+    of a mass: one number, or one for each frequency. Raises StructureError if a mass is not there, or a frequency is
+    not above 0.
     """
     frequency = np.atleast_1d(np.asarray(frequency_hz, dtype=np.float64))
     if not np.all(frequency > 0.0):

@@ -66,10 +66,7 @@ class TorsionalLine(Shown):
     def __post_init__(self) -> None:
         """Make the arrays read-only and check that the parts belong together.
 
-        Raises
-        ------
-        StructureError
-            If they do not.
+        Raises StructureError if they do not.
         """
         count = len(self.bodies)
         for name in ("inertia_kg_m2", "load_nm_s_rad", "inertia_std_kg_m2"):

@@ -29,10 +29,7 @@ class StateSpace:
 def state_space(line: TorsionalLine, damping_nm_s_rad: FloatArray) -> StateSpace:
     """Return the equations of motion of a line.
 
-    Parameters
-    ----------
-    damping_nm_s_rad
-        Viscous damping of each link [N m s/rad], shape (links,).
+    ``damping_nm_s_rad``: viscous damping of each link [N m s/rad], shape (links,).
     """
     incidence, stiffness = line.incidence, line.stiffness_nm_rad
     elastic = stiffness > 0.0

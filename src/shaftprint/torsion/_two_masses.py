@@ -63,15 +63,8 @@ def two_masses(line: TorsionalLine, *, driven: Sequence[str]) -> TwoMasses:
     ``k = omega_1^2 J_e J_p / (J_e + J_p)`` and, to first order in the damping,
     ``2 zeta omega_1 = c (1 / J_e + 1 / J_p) + d J_e / (J_p (J_e + J_p))``.
 
-    Parameters
-    ----------
-    driven
-        Masses on which the engine torque acts, an equal share on each; the speed of the first is the engine speed.
-
-    Raises
-    ------
-    StructureError
-        If a mass is not there.
+    ``driven``: masses on which the engine torque acts, an equal share on each; the speed of the first is the engine
+    speed. Raises StructureError if a mass is not there.
     """
     behind = line.is_downstream
     engine = float(np.sum(line.inertia_kg_m2 * (1.0 - behind)))

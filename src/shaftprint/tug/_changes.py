@@ -70,12 +70,7 @@ def sea_water_kg_m3(temperature_c: float) -> float:
 def on_another_day(tug: Tug, vessel: Vessel, rng: np.random.Generator) -> Tug:
     """Return a ship on another day: other waves, another zero of the gauge, the helm not quite where it was.
 
-    Parameters
-    ----------
-    tug, vessel
-        The ship.
-    rng
-        Draws the day.
+    ``tug``, ``vessel``: the ship. ``rng``: draws the day.
     """
     noise = Noise()
     tug = with_load(tug, 1.0 + rng.normal(0.0, LOAD_REPEATABILITY), vessel)

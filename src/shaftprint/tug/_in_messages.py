@@ -19,21 +19,10 @@ def in_messages(
 ) -> Tug:
     """Return the same tug on a bus.
 
-    Parameters
-    ----------
-    tug, vessel
-        The truth, and what the vessel file says of the sensors.
-    rates_hz
-        Messages a second of those of `MESSAGES` that come over the bus [Hz].
-    jitter
-        Standard deviation of the time of a message about its cycle, over the cycle.
-    lost
-        Share of the messages that the logger misses.
-
-    Raises
-    ------
-    SettingsError
-        If the vessel file has no sensor that could send so, or a rate is not positive.
+    ``tug``, ``vessel``: the truth, and what the vessel file says of the sensors. ``rates_hz``: messages a second of
+    those of `MESSAGES` that come over the bus [Hz]. ``jitter``: standard deviation of the time of a message about its
+    cycle, over the cycle. ``lost``: share of the messages that the logger misses. Raises SettingsError if the vessel
+    file has no sensor that could send so, or a rate is not positive.
     """
     sensors = vessel.sensors
     changes: dict[str, Any] = {"message_jitter": jitter, "messages_lost": lost}

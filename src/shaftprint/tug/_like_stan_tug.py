@@ -76,14 +76,7 @@ def with_lever_of(tug: Tug, vessel: Vessel, campaign: "Campaign") -> Tug:
 
     At the offset of the campaign it asks for ``offset_rpm``, or for the working speed of the vessel file.
 
-    Parameters
-    ----------
-    tug
-        The simulated ship.
-    vessel
-        Its vessel file.
-    campaign
-        What is put out.
+    ``tug``: the simulated ship. ``vessel``: its vessel file. ``campaign``: what is put out.
     """
     slope = campaign.slope_rpm_per_v
     if slope is None:

@@ -44,10 +44,7 @@ class PitchActuation:
 def pitch_torque(actuation: PitchActuation, vessel: Vessel) -> tuple[float, ...]:
     """Return the torque of the propeller over that of the working point: coefficients of the deviation of ``P/D``.
 
-    Raises
-    ------
-    SettingsError
-        If the truth is not physical, or the vessel file names no series where the truth has no curve.
+    Raises SettingsError if the truth is not physical, or the vessel file names no series where the truth has no curve.
     """
     _check(actuation)
     powers = torque_over_pitch(vessel) if actuation.torque_powers is None else actuation.torque_powers

@@ -39,10 +39,7 @@ _IN_NOZZLE = ("ka4", "nozzle", "19a")
 def torque_over_pitch(vessel: Vessel) -> tuple[float, ...]:
     """Return ``K_Q`` at zero advance of the series that a vessel file names: coefficients of powers of ``P/D``.
 
-    Raises
-    ------
-    SettingsError
-        If it names no series, or an open propeller without its area ratio.
+    Raises SettingsError if it names no series, or an open propeller without its area ratio.
     """
     propeller = vessel.propeller
     name = (propeller.series or "").lower()
@@ -65,14 +62,8 @@ def torque_over_pitch(vessel: Vessel) -> tuple[float, ...]:
 def steepened(powers: tuple[float, ...], pitch_ratio: float, factor: float) -> tuple[float, ...]:
     """Return a curve whose change from its value at one pitch is a factor as large: another propeller than the series.
 
-    Parameters
-    ----------
-    powers
-        Coefficients of the powers of ``P/D``.
-    pitch_ratio
-        Pitch at which it stays.
-    factor
-        How much steeper it is.
+    ``powers``: coefficients of the powers of ``P/D``. ``pitch_ratio``: pitch at which it stays. ``factor``: how much
+    steeper it is.
     """
     stays = (1.0 - factor) * math.fsum(c * pitch_ratio**k for k, c in enumerate(powers))
     return (factor * powers[0] + stays, *(factor * c for c in powers[1:]))

@@ -31,25 +31,12 @@ def sail_as(
 ) -> Truth:
     """Sail a campaign as ``sail`` does and write its recording as another logger does.
 
-    Parameters
-    ----------
-    vessel, campaign, tug, seed, overwrite, progress
-        As for ``sail``.
-    path
-        Recording to write; its ending is one of ``recording.WRITTEN_ENDINGS``. The truth goes to ``NAME.truth.json``
-        beside it.
-    format
-        One of ``recording.WRITTEN_FORMATS`` where the ending stands for several.
-    told
-        Is told what the format loses, and what was written beside, a sentence each.
-
-    Raises
-    ------
-    SettingsError
-        If the truth is not physical.
-    RecordingError
-        If the ending is of no format, a file exists and may not be replaced, the format cannot hold channels with
-        clocks of their own, or a file cannot be written.
+    ``vessel``, ``campaign``, ``tug``, ``seed``, ``overwrite``, ``progress``: as for ``sail``. ``path``: recording to
+    write; its ending is one of ``recording.WRITTEN_ENDINGS``. The truth goes to ``NAME.truth.json`` beside it.
+    ``format``: one of ``recording.WRITTEN_FORMATS`` where the ending stands for several. ``told``: is told what the
+    format loses, and what was written beside, a sentence each. Raises SettingsError if the truth is not physical;
+    RecordingError if the ending is of no format, a file exists and may not be replaced, the format cannot hold channels
+    with clocks of their own, or a file cannot be written.
     """
     path = Path(path)
     expect_known_ending(path, format=format)

@@ -52,32 +52,13 @@ def sail_both(
 
     The same seed gives the same bytes.
 
-    Parameters
-    ----------
-    vessels
-        The installation of each line, port first; their channels have different names.
-    campaign
-        What is asked of both.
-    path
-        Recording to write, in the native container; the truth goes to ``NAME.truth.json`` beside it. Both are written
-        whole or not at all.
-    tugs
-        The truth of each line, port first.
-    water
-        What both propellers share; as ``SharedWater`` has it when not given.
-    seed
-        Seed of all randomness.
-    overwrite
-        Whether existing files may be replaced.
-    progress
-        Called with the share of the campaign that is done, 0 to 1.
-
-    Raises
-    ------
-    SettingsError
-        If the truth is not physical, or both lines name one channel or other sample rates.
-    RecordingError
-        If a file exists and may not be replaced, or cannot be written.
+    ``vessels``: the installation of each line, port first; their channels have different names. ``campaign``: what is
+    asked of both. ``path``: recording to write, in the native container; the truth goes to ``NAME.truth.json`` beside
+    it. Both are written whole or not at all. ``tugs``: the truth of each line, port first. ``water``: what both
+    propellers share; as ``SharedWater`` has it when not given. ``seed``: seed of all randomness. ``overwrite``: whether
+    existing files may be replaced. ``progress``: called with the share of the campaign that is done, 0 to 1. Raises
+    SettingsError if the truth is not physical, or both lines name one channel or other sample rates; RecordingError if
+    a file exists and may not be replaced, or cannot be written.
     """
     water = SharedWater() if water is None else water
     crews = tuple(

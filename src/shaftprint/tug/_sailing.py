@@ -106,10 +106,7 @@ AT_THE_QUAY = Way(
 def way_of(sailing: Sailing, vessel: Vessel) -> Way:
     """Convert the truth of a free-sailing ship to physical constants.
 
-    Raises
-    ------
-    SettingsError
-        If the vessel file has no hull or the truth is not physical.
+    Raises SettingsError if the vessel file has no hull or the truth is not physical.
     """
     hull = _hull(vessel)
     _check(sailing)
@@ -136,10 +133,7 @@ def way_of(sailing: Sailing, vessel: Vessel) -> Way:
 def with_propeller_of(sailing: Sailing, vessel: Vessel) -> Sailing:
     """Return a free-sailing ship with the curves of the vessel's propeller.
 
-    Raises
-    ------
-    SettingsError
-        If it is none of those whose curves are known here.
+    Raises SettingsError if it is none of those whose curves are known here.
     """
     propeller = vessel.propeller
     known = {CURVES_SERIES: CURVES_PITCH_RATIO, OPEN_SERIES: OPEN_PITCH_RATIO}

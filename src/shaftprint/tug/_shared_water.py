@@ -28,10 +28,7 @@ class SharedWater:
     def __post_init__(self) -> None:
         """Refuse a wash that drives a propeller, comes before its cause, or a share of the sea that is none.
 
-        Raises
-        ------
-        SettingsError
-            If the truth is not physical.
+        Raises SettingsError if the truth is not physical.
         """
         for name, highest in (("port_share", 0.5), ("starboard_share", 0.5), ("sea_share", 1.0)):
             value = getattr(self, name)

@@ -80,22 +80,10 @@ def simulated_fleet(
 ) -> SimulatedFleet:
     """Return sister ships that differ within the tolerances of building.
 
-    Parameters
-    ----------
-    vessel
-        The installation that all of them were built as.
-    names
-        A name of each ship.
-    launched
-        When they were new, with time zone.
-    rng
-        Draws how they differ.
-    tolerances
-        By how much; the usual ones when not given.
-    wear
-        How all of them wear; not at all when not given.
-    like
-        The ship that they are all meant to be; the reference truth when not given.
+    ``vessel``: the installation that all of them were built as. ``names``: a name of each ship. ``launched``: when they
+    were new, with time zone. ``rng``: draws how they differ. ``tolerances``: by how much; the usual ones when not
+    given. ``wear``: how all of them wear; not at all when not given. ``like``: the ship that they are all meant to be;
+    the reference truth when not given.
     """
     tolerances = tolerances or Tolerances()
     like = like or Tug.stan_tug_1205()
@@ -115,14 +103,8 @@ def simulated_fleet(
 def as_built(tug: Tug, vessel: Vessel, tolerances: Tolerances, rng: np.random.Generator) -> Tug:
     """Return one ship of a class within the tolerances of building.
 
-    Parameters
-    ----------
-    tug, vessel
-        The ship that is meant, and its installation.
-    tolerances
-        By how much ships differ.
-    rng
-        Draws this one.
+    ``tug``, ``vessel``: the ship that is meant, and its installation. ``tolerances``: by how much ships differ.
+    ``rng``: draws this one.
     """
     tug = with_injection(tug, _factor(tolerances.injection, rng))
     tug = with_gains(
@@ -177,27 +159,10 @@ def sail_test(
     The day is drawn: water and draught, wandering inflow, load, zero of the gauge. The density of the water is
     measured, the draught is not.
 
-    Parameters
-    ----------
-    fleet
-        The fleet.
-    name
-        Which of its ships.
-    moment
-        When, with time zone.
-    campaign
-        What is asked of it.
-    recording
-        File to write, in the native container; its truth goes beside it.
-    rng
-        Draws the day and the noise.
-
-    Raises
-    ------
-    SettingsError
-        If there is no such ship, or it was not yet there.
-    RecordingError
-        If the file exists, or cannot be written.
+    ``name``: which of its ships. ``moment``: when, with time zone. ``campaign``: what is asked of it. ``recording``:
+    file to write, in the native container; its truth goes beside it. ``rng``: draws the day and the noise. Raises
+    SettingsError if there is no such ship, or it was not yet there; RecordingError if the file exists, or cannot be
+    written.
     """
     ship = next((one for one in fleet.ships if one.name == name), None)
     if ship is None:
@@ -218,14 +183,8 @@ def sail_test(
 def zero_taken(vessel: Vessel, tug: Tug, rng: np.random.Generator) -> Vessel:
     """Return the installation with the zero of the gauge taken that day, as well as its file says it can be taken.
 
-    Parameters
-    ----------
-    vessel
-        The installation as its file states it.
-    tug
-        The ship on that day.
-    rng
-        Draws the error of the zero.
+    ``vessel``: the installation as its file states it. ``tug``: the ship on that day. ``rng``: draws the error of the
+    zero.
     """
     gauge = vessel.sensors.shaft_torque
     # what the channel shows without torque, in the sign of the vessel file: it is subtracted

@@ -69,19 +69,8 @@ def ship_at(ship: SimulatedShip, moment: datetime, vessel: Vessel) -> Tug:
 
     Losses and growth are exponential: each year's is a share of what is left.
 
-    Parameters
-    ----------
-    ship
-        The ship.
-    moment
-        When, with time zone.
-    vessel
-        The installation that it was built as.
-
-    Raises
-    ------
-    SettingsError
-        If the ship was not yet there.
+    ``moment``: when, with time zone. ``vessel``: the installation that it was built as. Raises SettingsError if the
+    ship was not yet there.
     """
     _expect_there(ship, moment)
     done = [work for work in ship.works if work.at <= moment]
@@ -97,14 +86,7 @@ def ship_at(ship: SimulatedShip, moment: datetime, vessel: Vessel) -> Tug:
 def vessel_at(ship: SimulatedShip, moment: datetime, vessel: Vessel) -> Vessel:
     """Return the installation as it is at one time: what its torque gauge shows follows the ship's own scale.
 
-    Parameters
-    ----------
-    ship
-        The ship.
-    moment
-        When, with time zone.
-    vessel
-        The installation as its file states it.
+    ``moment``: when, with time zone. ``vessel``: the installation as its file states it.
     """
     _expect_there(ship, moment)
     scale = ship.gauge_scale

@@ -68,10 +68,7 @@ class ForeignModel:
     ) -> tuple[FloatArray, FloatArray]:
         """Return deviations of speed and torque from the working point, and no derivatives; see ``Predict``.
 
-        Raises
-        ------
-        ValidationError
-            If the FMU is not there, cannot be run, or takes too long.
+        Raises ValidationError if the FMU is not there, cannot be run, or takes too long.
         """
         point = self.working_point
         speed_rev_s = (1.0 + set_point) * point.engine_speed_rev_s

@@ -9,12 +9,7 @@ from shaftprint.validation._validation import ExcerptComparison
 def headline_of(comparisons: Sequence[ExcerptComparison], *, linear: bool) -> str:
     """Return up to which step the model holds, and what acts beyond it; where no step fails, whether it holds at all.
 
-    Parameters
-    ----------
-    comparisons
-        Every excerpt.
-    linear
-        Whether the model was taken through time without limits.
+    ``comparisons``: every excerpt. ``linear``: whether the model was taken through time without limits.
     """
     judged = [c for c in comparisons if not c.excerpt.in_sample]
     if not judged:

@@ -38,19 +38,8 @@ class Model(Shown):
 def model_of(structure: Structure, values: Mapping[str, float] | None = None, *, name: str | None = None) -> Model:
     """Return a model with stated values and nothing about how well they are known, such as one of the thesis' sets.
 
-    Parameters
-    ----------
-    structure
-        The structure.
-    values
-        Values by name; those not named take their default.
-    name
-        What it is called; the structure's name by default.
-
-    Raises
-    ------
-    StructureError
-        If a name is not a parameter of the structure.
+    ``values``: values by name; those not named take their default. ``name``: what it is called; the structure's name by
+    default. Raises StructureError if a name is not a parameter of the structure.
     """
     free = len(structure.free)
     return Model(
@@ -64,12 +53,8 @@ def model_of(structure: Structure, values: Mapping[str, float] | None = None, *,
 def identified_model(identification: Identification, *, used: Collection[str] = ()) -> Model:
     """Return the model that an identification found, the first of a joint fit.
 
-    Parameters
-    ----------
-    identification
-        The fit; the lines and records that it was fitted to count as used.
-    used
-        Names of further tests that it was made with, which it does not know of.
+    ``identification``: the fit; the lines and records that it was fitted to count as used. ``used``: names of further
+    tests that it was made with, which it does not know of.
     """
     structure = identification.structure
     names = [estimate.name for estimate in identification.parameters]

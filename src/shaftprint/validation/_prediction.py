@@ -121,12 +121,8 @@ def simulated_prediction(
 
     The set point is straight between its samples.
 
-    Raises
-    ------
-    ValidationError
-        If the structure has another input or lacks an output.
-    StructureError
-        If it cannot be simulated.
+    Raises ValidationError if the structure has another input or lacks an output; StructureError if it cannot be
+    simulated.
     """
     _places(structure)
     time = np.arange(set_point.size) / rate_hz
@@ -140,12 +136,7 @@ def simulated_prediction(
 def add_quadratic_torque(outputs: FloatArray, slopes: FloatArray) -> None:
     """Add the rest of the propeller's quadratic law to the torque of a linear prediction, in place.
 
-    Parameters
-    ----------
-    outputs
-        Speed and torque [-], shape (2, samples).
-    slopes
-        Their derivatives, shape (wanted, 2, samples).
+    ``outputs``: speed and torque [-], shape (2, samples). ``slopes``: their derivatives, shape (wanted, 2, samples).
     """
     speed, torque = outputs
     torque += speed**2

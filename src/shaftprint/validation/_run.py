@@ -44,10 +44,7 @@ class Data:
     def of(cls, signals: Signals, campaign: Campaign, settings: ValidationSettings) -> "Data":
         """Return the data of a recording.
 
-        Raises
-        ------
-        ValidationError
-            If no noise can be measured.
+        Raises ValidationError if no noise can be measured.
         """
         highest_hz = settings.highest_hz
         raw_noise, noise = (
@@ -182,10 +179,7 @@ def run_model(
 ) -> Run:
     """Return what a model makes of the record that some excerpts are cut from.
 
-    Raises
-    ------
-    ValidationError
-        If the structure is not from ``n_set`` to ``n`` and ``M_s``.
+    Raises ValidationError if the structure is not from ``n_set`` to ``n`` and ``M_s``.
     """
     begin, end = min(e.start_s for e in excerpts), max(e.stop_s for e in excerpts)
     there = data.places(begin - settings.lead_s, end + _BEHIND_S)

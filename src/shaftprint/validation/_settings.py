@@ -39,10 +39,7 @@ class ValidationSettings:
     def __post_init__(self) -> None:
         """Check the settings.
 
-        Raises
-        ------
-        ValidationError
-            If a number is not positive, a coverage is no share, or the band edges do not ascend.
+        Raises ValidationError if a number is not positive, a coverage is no share, or the band edges do not ascend.
         """
         for field in fields(self):
             value = getattr(self, field.name)

@@ -54,22 +54,10 @@ def compare_steps(
 ) -> tuple[StepNumber, ...]:
     """Return the numbers of one step of one output.
 
-    Parameters
-    ----------
-    smooth
-        Data and model through the low-pass.
-    time_s
-        Time after the step [s], shape (samples,).
-    covariance
-        Covariance of the free parameters, shape (free, free).
-    settled_share
-        Share of the height within which a step has settled.
-    coverage
-        Coverage at which both agree.
-    draws
-        Parameter sets drawn for the band.
-    rng
-        Source of the draws.
+    ``smooth``: data and model through the low-pass. ``time_s``: time after the step [s], shape (samples,).
+    ``covariance``: covariance of the free parameters, shape (free, free). ``settled_share``: share of the height within
+    which a step has settled. ``coverage``: coverage at which both agree. ``draws``: parameter sets drawn for the band.
+    ``rng``: source of the draws.
     """
     measured = step_numbers(smooth.measured[None], time_s, settled_share=settled_share)[:, 0]
     plain = step_numbers(smooth.model[None], time_s, settled_share=settled_share)[:, 0]

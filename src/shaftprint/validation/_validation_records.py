@@ -71,10 +71,8 @@ def excerpts_of(
 ) -> tuple[Excerpt, ...]:
     """Return all excerpts of the named records in the order of the names.
 
-    Raises
-    ------
-    ValidationError
-        If a name is no chirp or staircase, there is none, or the model was identified from one and that is not allowed.
+    Raises ValidationError if a name is no chirp or staircase, there is none, or the model was identified from one and
+    that is not allowed.
     """
     tests: tuple[Chirp | Staircase, ...] = (*campaign.chirps, *campaign.staircases)
     there = {test.name: test for test in tests}
@@ -110,10 +108,7 @@ def whole_excerpts(
     A gap counts also shortly before an excerpt, where the model did not know the set point, and shortly behind it,
     where the low-pass and the search for a delay look.
 
-    Raises
-    ------
-    ValidationError
-        If none is left.
+    Raises ValidationError if none is left.
     """
     complete, lost = [], []
     gaps = Coverage(gaps=coverage.gaps)

@@ -82,12 +82,7 @@ def _share(std: float | None, value: float, usual: float) -> float:
 def wrong_links(links: Sequence[ShaftLink], rows: Sequence[InertiaRow]) -> list[str]:
     """Return what is wrong with the links of an inertia table; nothing for a tree that joins all rows.
 
-    Parameters
-    ----------
-    links
-        The connections; none at all is no mistake.
-    rows
-        The inertia table.
+    ``links``: the connections; none at all is no mistake. ``rows``: the inertia table.
     """
     if not links:
         return []

@@ -29,14 +29,8 @@ class Order:
 def orders_of(machine: "Machine", gearbox: "Gearbox", propeller: "Propeller") -> tuple[Order, ...]:
     """Return the orders of a shaft line in the torque of its propeller shaft, lowest first.
 
-    Parameters
-    ----------
-    machine
-        Says what its own torque repeats, such as the firing of cylinders.
-    gearbox
-        Says by how much the propeller shaft is slower.
-    propeller
-        Says the number of blades.
+    ``machine``: says what its own torque repeats, such as the firing of cylinders. ``gearbox``: says by how much the
+    propeller shaft is slower. ``propeller``: says the number of blades.
     """
     of_shaft = {1: "shaft order 1", propeller.blades: "blade rate", 2 * propeller.blades: "twice the blade rate"}
     orders = [

@@ -104,16 +104,9 @@ def wrong_pitch(
 ) -> list[str]:
     """Return what is wrong with a controllable pitch beside the rest of a vessel file, one sentence each.
 
-    Parameters
-    ----------
-    pitch
-        The table; None where the pitch is fixed.
-    sensors, point
-        Sensors and working point of the file.
-    pitch_ratio
-        Pitch over diameter of the propeller at the working point.
-    has_motor
-        Whether a motor drives the line.
+    ``pitch``: the table; None where the pitch is fixed. ``sensors``, ``point``: sensors and working point of the file.
+    ``pitch_ratio``: pitch over diameter of the propeller at the working point. ``has_motor``: whether a motor drives
+    the line.
     """
     if pitch is None:
         none = "expected [pitch] beside sensors.pitch, the sensor of a pitch, found none."

@@ -98,12 +98,8 @@ class SetPointSensor(Settings):
     def straightened(self, volts: FloatArray, *, about_v: float) -> FloatArray:
         """Return volts that ask for speeds on a straight line, which touches the table at one voltage.
 
-        Parameters
-        ----------
-        volts
-            Set point [V], of any shape.
-        about_v
-            Voltage at which nothing changes, neither value nor slope [V].
+        ``volts``: set point [V], of any shape. ``about_v``: voltage at which nothing changes, neither value nor slope
+        [V].
         """
         if self.table_rpm is None:
             return volts
@@ -130,12 +126,7 @@ class SetPointSensor(Settings):
     def unit_that_fits(self, reading: float, speed_rpm: float) -> str | None:
         """Return the unit that a reading looks like; None if it can be one in the unit that is stated.
 
-        Parameters
-        ----------
-        reading
-            What the channel shows, in its unit.
-        speed_rpm
-            Engine speed of the working point [rpm].
+        ``reading``: what the channel shows, in its unit. ``speed_rpm``: engine speed of the working point [rpm].
         """
         reach = _REACH | {"rpm": (speed_rpm / _AROUND_SPEED, speed_rpm * _AROUND_SPEED)}
         fitting = [unit for unit, (lowest, highest) in reach.items() if lowest <= reading <= highest]

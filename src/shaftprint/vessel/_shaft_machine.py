@@ -67,14 +67,8 @@ def wrong_shaft_machine(
 ) -> list[str]:
     """Return what is wrong with a machine on the gearbox beside the rest of a vessel file, one sentence each.
 
-    Parameters
-    ----------
-    machine
-        The table; None where there is none.
-    engine, gearbox, point
-        What it works with, and where.
-    is_shown
-        Whether there is a channel of its torque.
+    ``machine``: the table; None where there is none. ``engine``, ``gearbox``, ``point``: what it works with, and where.
+    ``is_shown``: whether there is a channel of its torque.
     """
     if machine is None:
         return ["expected [shaft_machine] beside sensors.machine_torque, found none."] if is_shown else []

@@ -176,12 +176,8 @@ class ShaftTorqueSensor(Settings):
 
         Telemetries give full scale as 10 V, 100 %, or 20 mA from 4 or from 12 mA on.
 
-        Parameters
-        ----------
-        torque_nm
-            The torque that was found [N m], as the gauge counts it.
-        expected_nm
-            The one that was expected [N m], below 0 of a shaft that turns astern.
+        ``torque_nm``: the torque that was found [N m], as the gauge counts it. ``expected_nm``: the one that was
+        expected [N m], below 0 of a shaft that turns astern.
         """
         reading = (torque_nm + self.zero_nm) / self.scale_nm_per_unit + self.live_zero
         full_nm = self.full_scale_nm

@@ -34,10 +34,7 @@ class Wheel:
     def parse(cls, text: str) -> Self:
         """Return the wheel that a text names.
 
-        Raises
-        ------
-        ValueError
-            If it names none; the message says what was expected.
+        Raises ValueError if it names none; the message says what was expected.
         """
         match = _TEXT.fullmatch(text.strip())
         if match is None:
@@ -65,10 +62,7 @@ class Wheel:
     def least_rate_hz(self, turns_hz: float) -> float:
         """Return the lowest sample rate at which teeth are seen [Hz], a round number.
 
-        Parameters
-        ----------
-        turns_hz
-            Turns of the wheel a second [Hz].
+        ``turns_hz``: turns of the wheel a second [Hz].
         """
         least_hz = SAMPLES_A_TOOTH * self.closest * turns_hz
         step = 10.0 ** (math.floor(math.log10(least_hz)) + 1 - _DIGITS)

@@ -105,10 +105,7 @@ class Asked:
     async def form(self) -> dict[str, str]:
         """Return the fields of a form, or of an object of JSON.
 
-        Raises
-        ------
-        HTTPException
-            If it is larger than a form, or none.
+        Raises HTTPException if it is larger than a form, or none.
         """
         body = await body_of(self.request, most=LARGEST_FORM)
         try:
@@ -130,10 +127,7 @@ class Asked:
     def check_token(self, token: str) -> None:
         """Refuse a token that is not of this browser.
 
-        Raises
-        ------
-        HTTPException
-            If it is another one.
+        Raises HTTPException if it is another one.
         """
         if not self.session.has(token):
             raise HTTPException(403, "The form is of an earlier visit, or of another page; load the page again.")
@@ -153,10 +147,7 @@ class Asked:
 async def body_of(request: Request, *, most: int) -> bytes:
     """Return the body of a request.
 
-    Raises
-    ------
-    HTTPException
-        If it is longer than it may be.
+    Raises HTTPException if it is longer than it may be.
     """
     parts, length = [], 0
     async for part in request.stream():

@@ -107,10 +107,7 @@ class Kept:
     def at(cls, path: Path) -> Self:
         """Return the file, made where it is not there.
 
-        Raises
-        ------
-        ServerError
-            If it cannot be used.
+        Raises ServerError if it cannot be used.
         """
         try:
             # sessions that were ended stand in it; what lies beside it is as private as it is

@@ -19,10 +19,7 @@ class Lines:
     def now(self, number: str | None = None) -> tuple[LineNow, ...]:
         """Return every line with its newest test.
 
-        Parameters
-        ----------
-        number
-            Name of a number that is wanted of that test, of few that are ever asked for; None for none.
+        ``number``: name of a number that is wanted of that test, of few that are ever asked for; None for none.
         """
         # before the lines: what comes in between is seen the next time
         state = store_state(self.store)

@@ -36,10 +36,7 @@ class FormWithFile:
     async def read_fields(self) -> None:
         """Read all fields before the file.
 
-        Raises
-        ------
-        HTTPException
-            If it is no such form, or has no file.
+        Raises HTTPException if it is no such form, or has no file.
         """
         # the first boundary has no line before it
         self._kept = b"\r\n"
@@ -61,10 +58,7 @@ class FormWithFile:
     async def file(self) -> AsyncIterator[bytes]:
         """Give the file in pieces.
 
-        Raises
-        ------
-        HTTPException
-            If it is cut off.
+        Raises HTTPException if it is cut off.
         """
         while True:
             found = self._kept.find(self.boundary)
@@ -101,17 +95,8 @@ class FormWithFile:
 def form_with_file(content_type: str, pieces: AsyncIterator[bytes]) -> FormWithFile:
     """Return a form with a file, to be read.
 
-    Parameters
-    ----------
-    content_type
-        Head of the request that names the boundary.
-    pieces
-        What comes in.
-
-    Raises
-    ------
-    HTTPException
-        If it is no such form.
+    ``content_type``: head of the request that names the boundary. ``pieces``: what comes in. Raises HTTPException if it
+    is no such form.
     """
     found = _BOUNDARY.match(content_type)
     if found is None:

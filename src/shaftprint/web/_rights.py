@@ -12,12 +12,8 @@ from shaftprint.web.access._users import Users
 def forbidden_by(kept: Kept, users: Users | None) -> Callable[[Job], str | None]:
     """Return what says why a job must not be done, or None.
 
-    Parameters
-    ----------
-    kept
-        The server's own file, which says who asked for which job.
-    users
-        Who may sign in; None where nobody has to.
+    ``kept``: the server's own file, which says who asked for which job. ``users``: who may sign in; None where nobody
+    has to.
     """
 
     def forbidden(job: Job) -> str | None:

@@ -64,12 +64,8 @@ class Service:
     def begun(cls, serving: Serving, *, now: Callable[[], datetime] = utc_now) -> Self:
         """Return what a server has that is set up.
 
-        Raises
-        ------
-        ServerError
-            If the users, a folder or the server's own folder cannot be used.
-        StoreError
-            If the store cannot be used.
+        Raises ServerError if the users, a folder or the server's own folder cannot be used; StoreError if the store
+        cannot be used.
         """
         _expect_there(serving)
         users = None

@@ -68,12 +68,7 @@ def answer_of(asked: Asked, said: Shown | Moved | Response) -> Response:
 def page_of(asked: Asked | None, said: Shown) -> str:
     """Return a page as HTML.
 
-    Parameters
-    ----------
-    asked
-        The request; None where nobody signed in.
-    said
-        What it says.
+    ``asked``: the request; None where nobody signed in. ``said``: what it says.
     """
     person = None if asked is None else asked.person
     return (

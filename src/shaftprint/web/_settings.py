@@ -74,10 +74,7 @@ class Serving:
     def __post_init__(self) -> None:
         """Refuse what would let strangers in.
 
-        Raises
-        ------
-        ServerError
-            If other computers reach it and nobody has to sign in.
+        Raises ServerError if other computers reach it and nobody has to sign in.
         """
         if self.users is None and not self.listen.is_local:
             raise ServerError(

@@ -41,16 +41,9 @@ def standing_of(
 ) -> Standing:
     """Return how a line stands.
 
-    Parameters
-    ----------
-    line
-        The line with its newest test.
-    found
-        What was found of it, with the state of its records then; None where it was not judged yet.
-    now
-        The present time.
-    overdue_days
-        After so many days without a test it is overdue.
+    ``line``: the line with its newest test. ``found``: what was found of it, with the state of its records then; None
+    where it was not judged yet. ``now``: the present time. ``overdue_days``: after so many days without a test it is
+    overdue.
     """
     overdue = line.tested_at is not None and now - line.tested_at > timedelta(days=overdue_days)
     kind, word, look, note = _said(line, found)

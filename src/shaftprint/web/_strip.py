@@ -56,16 +56,8 @@ def strip(
 ) -> dict[str, Any]:
     """Return the places of a strip chart: points with intervals over time, upright lines where work was done.
 
-    Parameters
-    ----------
-    points
-        ``at`` in ISO, ``value``, ``low``, ``high``, and whether it is ``trusted``.
-    axis
-        Time.
-    events
-        ``at`` and ``number`` of each.
-    zero
-        Whether zero is on the axis.
+    ``points``: ``at`` in ISO, ``value``, ``low``, ``high``, and whether it is ``trusted``. ``axis``: time. ``events``:
+    ``at`` and ``number`` of each. ``zero``: whether zero is on the axis.
     """
     known = [one for one in points if _is_number(one["value"])]
     ends = [float(one[name]) for one in known for name in ("value", "low", "high") if _is_number(one[name])]

@@ -41,10 +41,7 @@ class Taken:
 def checked_name(name: str) -> str:
     """Return the name of a file as it is kept.
 
-    Raises
-    ------
-    HTTPException
-        If it is no name of a recording or a settings file.
+    Raises HTTPException if it is no name of a recording or a settings file.
     """
     plain = plain_name(name.replace("\\", "/").rpartition("/")[2]).lstrip(".-")
     if not plain or len(plain) > _LONGEST_NAME or not plain.isprintable():
@@ -63,23 +60,9 @@ def checked_name(name: str) -> str:
 async def take(parts: AsyncIterator[bytes], folder: Path, name: str, *, most: int, length: int | None) -> Taken:
     """Write a file as it comes; nothing is left where it does not come to its end.
 
-    Parameters
-    ----------
-    parts
-        Its bytes.
-    folder
-        Folder of all uploads.
-    name
-        Its name, checked.
-    most
-        How many bytes it may have.
-    length
-        How many bytes are announced; None where nobody says.
-
-    Raises
-    ------
-    HTTPException
-        If it is too large, is cut off, or has no room.
+    ``parts``: its bytes. ``folder``: folder of all uploads. ``name``: its name, checked. ``most``: how many bytes it
+    may have. ``length``: how many bytes are announced; None where nobody says. Raises HTTPException if it is too large,
+    is cut off, or has no room.
     """
     if name.lower().endswith(SETTINGS):
         most = min(most, MOST_SETTINGS)
@@ -130,10 +113,7 @@ def _put(file: object, digest: object, piece: bytes) -> None:
 def expect_room(folder: Path, *, most: int, length: int | None) -> None:
     """Refuse a file that is announced as too large, or has no room.
 
-    Raises
-    ------
-    HTTPException
-        If it is so.
+    Raises HTTPException if it is so.
     """
     if length is not None and length > most:
         raise HTTPException(413, f"Expected at most {most} bytes, found {length}.")

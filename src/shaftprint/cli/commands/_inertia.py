@@ -40,10 +40,7 @@ SUFFIXES = (".svg", ".png", ".pdf")
 def picture(context: click.Context, parameter: click.Parameter, path: Path | None) -> Path | None:
     """Return the path of a picture as it was given.
 
-    Raises
-    ------
-    click.BadParameter
-        If its ending names no kind of picture.
+    Raises click.BadParameter if its ending names no kind of picture.
     """
     if path is not None and path.suffix not in SUFFIXES:
         raise click.BadParameter(f"expected a name that ends in {', '.join(SUFFIXES)}, found {path.name}.")

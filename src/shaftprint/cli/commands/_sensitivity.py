@@ -36,10 +36,7 @@ ALL_OF_THE_THESIS = "THESIS"
 def ascending(context: click.Context, parameter: click.Parameter, span: tuple[float, float]) -> tuple[float, float]:
     """Return the span of frequencies as it was given.
 
-    Raises
-    ------
-    click.BadParameter
-        If it is not ascending.
+    Raises click.BadParameter if it is not ascending.
     """
     if not 0.0 < span[0] < span[1] < math.inf:
         raise click.BadParameter(f"expected ascending frequencies above 0 rad/s, found {span[0]:g} and {span[1]:g}.")
@@ -115,10 +112,7 @@ def _of_structure(name: TypedName, span: tuple[float, float]) -> Drawings:
 def _measured(recording: Path | None, vessel: str | None, campaign: str | None) -> dict[str, FrequencyResponse]:
     """Return the open-loop responses of a recording as ``Family.data`` names them; none without a recording.
 
-    Raises
-    ------
-    click.UsageError
-        If recording, vessel and campaign are not stated together.
+    Raises click.UsageError if recording, vessel and campaign are not stated together.
     """
     stated = {"--recording": recording, "--vessel": vessel, "--campaign": campaign}
     missing = [option for option, value in stated.items() if value is None]

@@ -61,10 +61,7 @@ def span_of_time(
 ) -> tuple[float, float] | None:
     """Return the stretch of time as it was given.
 
-    Raises
-    ------
-    click.BadParameter
-        If it is not ascending.
+    Raises click.BadParameter if it is not ascending.
     """
     if span is not None and not -np.inf < span[0] < span[1] < np.inf:
         raise click.BadParameter(f"expected begin and end in this order, found {span[0]:g} and {span[1]:g}.")

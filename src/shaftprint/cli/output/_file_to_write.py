@@ -8,10 +8,7 @@ import click
 def expect_no_input(output: Path, *inputs: Path | None) -> None:
     """Check that a file to write is none of those that are read: no ``--force`` means the loss of an input.
 
-    Raises
-    ------
-    click.ClickException
-        If it is one of them, by whatever name.
+    Raises click.ClickException if it is one of them, by whatever name.
     """
     for source in inputs:
         if source is not None and output.exists() and source.exists() and output.samefile(source):
@@ -24,10 +21,7 @@ def expect_no_input(output: Path, *inputs: Path | None) -> None:
 def expect_free(output: Path, *, force: bool) -> None:
     """Check that a file can be written where it belongs.
 
-    Raises
-    ------
-    click.ClickException
-        If it is a folder, its folder does not exist, or it exists and is not to be replaced.
+    Raises click.ClickException if it is a folder, its folder does not exist, or it exists and is not to be replaced.
     """
     if output.is_dir():
         raise click.ClickException(f"{output}: expected a file to write, found a folder; add a file name.")

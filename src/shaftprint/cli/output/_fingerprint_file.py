@@ -29,10 +29,7 @@ def fingerprint_file(place: Path) -> Path:
 def fingerprint_at(place: Path) -> Fingerprint:
     """Return the fingerprint of a file, or of the folder with it.
 
-    Raises
-    ------
-    FingerprintError
-        If there is none, or the page in the folder shows another one.
+    Raises FingerprintError if there is none, or the page in the folder shows another one.
     """
     if not place.is_dir():
         return read_fingerprint(place)

@@ -20,12 +20,7 @@ _TOGETHER = "\u00a0"
 def table_lines(table: Table, width: int) -> list[str]:
     """Return the lines of a table without its title and note.
 
-    Parameters
-    ----------
-    table
-        The table.
-    width
-        Letters that a line may have; a name or number that is longer has a longer line.
+    ``width``: letters that a line may have; a name or number that is longer has a longer line.
     """
     columns = [_Cells(table, place) for place in range(len(table.columns))]
     blocks = _dealt(columns, width)

@@ -29,21 +29,10 @@ def output_folder(path: Path, *, of: str, force: bool) -> Iterator[Path]:
     others and of other commands, which may be what this one reads, are left alone. When the block raises, ``path``
     stays as it was.
 
-    Parameters
-    ----------
-    path
-        Where the results belong.
-    of
-        Name of the command.
-    force
-        Whether results may be put between files that are not of this command.
-
-    Raises
-    ------
-    click.ClickException
-        If ``path`` is a file, or a folder with files that are not of this command and ``force`` is false.
-    PublicationError
-        If another command writes there, or the results cannot be put in place.
+    ``path``: where the results belong. ``of``: name of the command. ``force``: whether results may be put between files
+    that are not of this command. Raises click.ClickException if ``path`` is a file, or a folder with files that are not
+    of this command and ``force`` is false; PublicationError if another command writes there, or the results cannot be
+    put in place.
     """
     if not path.resolve().name:
         raise click.ClickException(f"{path}: expected a folder below the root of the disk; add a name.")

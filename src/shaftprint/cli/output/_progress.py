@@ -34,12 +34,7 @@ class Steps:
     def begin(self, text: str, total: float | None = None) -> None:
         """End the running step and begin the next.
 
-        Parameters
-        ----------
-        text
-            What is being done.
-        total
-            Amount of work, in any unit; None where it is not known.
+        ``text``: what is being done. ``total``: amount of work, in any unit; None where it is not known.
         """
         self.end()
         if self.in_words:
@@ -52,12 +47,7 @@ class Steps:
     def tell(self, step: str, detail: str) -> None:
         """Say what is being done of a step whose amount of work is not known; another step is begun.
 
-        Parameters
-        ----------
-        step
-            The step.
-        detail
-            What of it is being done; empty where there is nothing to say.
+        ``detail``: what of it is being done; empty where there is nothing to say.
         """
         if step != self.told:
             self.begin(step)

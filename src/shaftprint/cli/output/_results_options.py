@@ -36,10 +36,7 @@ class Results:
 def results_options(what: str) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
     """Return what adds ``--output``, ``--force`` and ``--no-progress``, taken as one ``results``.
 
-    Parameters
-    ----------
-    what
-        What ``--output`` is.
+    ``what``: what ``--output`` is.
     """
     output = click.option("-o", "--output", required=True, type=click.Path(path_type=Path), help=what)
     return gathered_options(Results, (output, force_option, no_progress_option), name="results")

@@ -23,10 +23,7 @@ _MOST_NAMED = 5
 def write_plan(test: PlannedTest, path: str | Path) -> None:
     """Write a planned test as JSON, whole or not at all; an existing file is replaced.
 
-    Raises
-    ------
-    DesignError
-        If the file cannot be written.
+    Raises DesignError if the file cannot be written.
     """
     content = (record_of(test).model_dump_json(indent=1) + "\n").encode()
     write_bytes(Path(path), content, noun="plan", error=DesignError)

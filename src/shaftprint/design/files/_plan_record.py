@@ -198,15 +198,8 @@ class PlanRecord(Record):
     def planned_test(self, structure: "Structure") -> PlannedTest:
         """Return the planned test; what is predicted is computed again from its legs.
 
-        Parameters
-        ----------
-        structure
-            The structure of its name, free where the plan has it free.
-
-        Raises
-        ------
-        ShaftprintError
-            If the numbers of the file do not make a plan.
+        ``structure``: the structure of its name, free where the plan has it free. Raises ShaftprintError if the numbers
+        of the file do not make a plan.
         """
         sailed = tuple(one.sailed() for one in self.sailed)
         return PlannedTest(

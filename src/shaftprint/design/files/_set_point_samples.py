@@ -39,17 +39,8 @@ def set_point_samples(test: "PlannedTest", *, rate_hz: float = SET_POINT_RATE_HZ
     A held sample is late by half of its length on average (Franklin, Powell, Workman, Digital Control of Dynamic
     Systems, section 5.1); each is therefore the set point in the middle of the time for which it stands.
 
-    Parameters
-    ----------
-    test
-        What is sailed.
-    rate_hz
-        Samples a second [Hz].
-
-    Raises
-    ------
-    DesignError
-        If the rate is too low for the fastest line, or gives more samples than a file holds.
+    ``test``: what is sailed. ``rate_hz``: samples a second [Hz]. Raises DesignError if the rate is too low for the
+    fastest line, or gives more samples than a file holds.
     """
     fastest = max(float(leg.frequency_hz[-1]) for leg in test.plan.legs)
     campaign = test.campaign

@@ -57,10 +57,7 @@ class GaugeRange(Shown):
     def __post_init__(self) -> None:
         """Check the numbers.
 
-        Raises
-        ------
-        DesignError
-            If the range does not hold zero, or a factor is not positive.
+        Raises DesignError if the range does not hold zero, or a factor is not positive.
         """
         if not self.lowest_nm < 0.0 < self.highest_nm:
             raise DesignError(

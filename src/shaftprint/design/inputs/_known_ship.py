@@ -34,16 +34,10 @@ def ship_before_test(
 ) -> AssumedShip:
     """Return the ship as it is assumed before any test.
 
-    Parameters
-    ----------
-    structure
-        The structure that the test is to find.
-    priors
-        What is known beforehand, by parameter: where it is known better than ships usually are, with its deviation.
-    values
-        Assumed values by name; means of priors, or the structure's own, where not given. Gains of the governor that
-        nobody states are lowered until they are a usual distance from hunting: the governor of a light line is not set
-        as that of a heavy one.
+    ``structure``: the structure that the test is to find. ``priors``: what is known beforehand, by parameter: where it
+    is known better than ships usually are, with its deviation. ``values``: assumed values by name; means of priors, or
+    the structure's own, where not given. Gains of the governor that nobody states are lowered until they are a usual
+    distance from hunting: the governor of a light line is not set as that of a heavy one.
     """
     bounds = {p.name: (p.lower, p.upper) for p in structure.free}
     means = {name: float(np.clip(prior.mean, *bounds[name])) for name, prior in priors.items() if name in bounds}
@@ -72,17 +66,8 @@ def _usual_gains(ship: AssumedShip, stated: Mapping[str, float]) -> dict[str, fl
 def ship_of_fingerprint(fingerprint: "Fingerprint", structure: "Structure") -> AssumedShip:
     """Return the ship as a first test has found it, with its covariance; of what it did not find, the usual spread.
 
-    Parameters
-    ----------
-    fingerprint
-        What the first test found.
-    structure
-        The structure that it names.
-
-    Raises
-    ------
-    FingerprintError
-        If the fingerprint is one of another structure.
+    ``fingerprint``: what the first test found. ``structure``: the structure that it names. Raises FingerprintError if
+    the fingerprint is one of another structure.
     """
     model = identified_model(fingerprint, structure)
     values = dict(zip(model.structure.names, model.values.tolist(), strict=True))
@@ -109,16 +94,9 @@ def possible_ship(
     a third has its interval about its middle. What was a prior of the fit is not counted twice. A number that is more
     than three standard deviations from the usual is as it was found: that ship is another.
 
-    Parameters
-    ----------
-    found
-        The ship of the fingerprint.
-    fingerprint
-        What the first test found.
-    usual
-        What is assumed before any test, of the same parameters; where it has no deviation it says nothing.
-    engine_speed_rpm, shaft_torque_nm
-        The working point at which the usual numbers are normalised.
+    ``found``: the ship of the fingerprint. ``fingerprint``: what the first test found. ``usual``: what is assumed
+    before any test, of the same parameters; where it has no deviation it says nothing. ``engine_speed_rpm``,
+    ``shaft_torque_nm``: the working point at which the usual numbers are normalised.
     """
     conditions, names, roles = fingerprint.conditions, found.structure.names, found.structure.roles
     share = (conditions.engine_speed.value / engine_speed_rpm) / (conditions.shaft_torque.value / shaft_torque_nm)

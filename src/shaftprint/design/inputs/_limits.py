@@ -77,10 +77,7 @@ class Limits(Shown):
     def __post_init__(self) -> None:
         """Check that the numbers leave room.
 
-        Raises
-        ------
-        DesignError
-            If one is not positive, or two contradict each other.
+        Raises DesignError if one is not positive, or two contradict each other.
         """
         wrong = [*_not_positive(self), *_not_ascending(self)]
         if wrong:

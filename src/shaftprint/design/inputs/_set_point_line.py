@@ -24,10 +24,7 @@ class SetPointLine(Shown):
     def __post_init__(self) -> None:
         """Check that a voltage asks for a speed.
 
-        Raises
-        ------
-        DesignError
-            If the slope is zero, or a number is not finite.
+        Raises DesignError if the slope is zero, or a number is not finite.
         """
         if self.slope_rpm_per_v == 0.0 or not all(map(math.isfinite, (self.slope_rpm_per_v, self.offset_v))):
             raise DesignError(
@@ -43,10 +40,7 @@ class SetPointLine(Shown):
 def line_of_fingerprint(fingerprint: "Fingerprint") -> SetPointLine:
     """Return the line of the set point that a first test has measured.
 
-    Raises
-    ------
-    FingerprintError
-        If the fingerprint does not have it.
+    Raises FingerprintError if the fingerprint does not have it.
     """
     slope = fingerprint.quantity("set-point slope").value
     intercept = fingerprint.quantity("set-point intercept").value

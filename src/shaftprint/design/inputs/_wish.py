@@ -40,10 +40,7 @@ class Wish(Shown):
     def __post_init__(self) -> None:
         """Check that the wishes can be meant.
 
-        Raises
-        ------
-        DesignError
-            If a standard deviation is not positive, or a number is wished for twice.
+        Raises DesignError if a standard deviation is not positive, or a number is wished for twice.
         """
         stated = [*self.relative.items(), *self.absolute.items(), ("floor", self.floor)]
         wrong = [f"{name} = {std:g}" for name, std in stated if not std > 0.0]

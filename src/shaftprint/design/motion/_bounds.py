@@ -19,19 +19,9 @@ _OVERSHOOT = 1.3
 def bounds_of_leg(limits: Limits, speed_share: float, noise: FloatArray) -> tuple[Bound, ...]:
     """Return the bounds about a working point in bollard pull, where torque goes with the square of the speed.
 
-    Parameters
-    ----------
-    limits
-        What ship and engine allow.
-    speed_share
-        Mean speed of the leg over that of the first working point.
-    noise
-        Covariance of the noise of ``SIGNALS``, shape (signals, signals).
-
-    Raises
-    ------
-    DesignError
-        If nothing is left of a limit.
+    ``limits``: what ship and engine allow. ``speed_share``: mean speed of the leg over that of the first working point.
+    ``noise``: covariance of the noise of ``SIGNALS``, shape (signals, signals). Raises DesignError if nothing is left
+    of a limit.
     """
     speed_rpm = speed_share * limits.engine_speed_rpm
     torque_nm = speed_share**2 * limits.brake_torque_nm

@@ -24,17 +24,9 @@ def gauge_bounds(limits: Limits, speed_share: float, *, crest: float = 1.0) -> t
     is at least ``n^2``, which the square of the speed adds to the linear torque. A margin for the noise is in the
     ripple.
 
-    Parameters
-    ----------
-    speed_share
-        Mean speed of the leg over that of the first working point.
-    crest
-        How many times the ripple is kept free at a crest.
-
-    Raises
-    ------
-    DesignError
-        If the mean torque of the leg leaves no room for what one sample in 10,000 has on top.
+    ``speed_share``: mean speed of the leg over that of the first working point. ``crest``: how many times the ripple is
+    kept free at a crest. Raises DesignError if the mean torque of the leg leaves no room for what one sample in 10,000
+    has on top.
     """
     gauge = limits.gauge
     if gauge is None:
@@ -61,12 +53,8 @@ def gauge_bounds(limits: Limits, speed_share: float, *, crest: float = 1.0) -> t
 def share_cut_off(limits: Limits, speed_share: float, signals: FloatArray) -> float:
     """Return which share of a leg's samples is expected beyond what the gauge shows; zero where no gauge is stated.
 
-    Parameters
-    ----------
-    speed_share
-        Mean speed of the leg over that of the first working point.
-    signals
-        Deviations of ``SIGNALS`` over one period, shape (signals, samples).
+    ``speed_share``: mean speed of the leg over that of the first working point. ``signals``: deviations of ``SIGNALS``
+    over one period, shape (signals, samples).
     """
     gauge = limits.gauge
     if gauge is None or gauge.ripple == 0.0:

@@ -26,10 +26,7 @@ _GOVERNOR = structure_of("GOVERNOR")
 def expect_motion(structure: Structure) -> None:
     """Check that a structure shows what limits are stated of.
 
-    Raises
-    ------
-    DesignError
-        If it has several inputs, or not both speed and shaft torque as outputs.
+    Raises DesignError if it has several inputs, or not both speed and shaft torque as outputs.
     """
     if len(structure.inputs) != 1 or not {_SPEED, _TORQUE} <= set(structure.outputs):
         raise DesignError(
@@ -44,14 +41,8 @@ def motion(structure: Structure, table: FloatArray, omega_rad_s: FloatArray) -> 
 
     Sensors are ideal as long as the structure's own parameters of them are held at zero, as they are by default.
 
-    Parameters
-    ----------
-    structure
-        The structure as it is normalised at the working point of the leg.
-    table
-        Parameter values, shape (rows, parameters).
-    omega_rad_s
-        Angular frequencies of the lines [rad/s], shape (lines,).
+    ``structure``: the structure as it is normalised at the working point of the leg. ``table``: parameter values, shape
+    (rows, parameters). ``omega_rad_s``: angular frequencies of the lines [rad/s], shape (lines,).
     """
     s = np.asarray(1j * omega_rad_s, dtype=np.complex128)
     outputs = [output for output, _ in structure.channels]

@@ -42,10 +42,7 @@ class Leg(Shown):
     def __post_init__(self) -> None:
         """Check the lines and make the amplitudes read-only.
 
-        Raises
-        ------
-        DesignError
-            If the harmonics are not positive and ascending, or have not as many amplitudes.
+        Raises DesignError if the harmonics are not positive and ascending, or have not as many amplitudes.
         """
         harmonics = self.harmonics
         ascending = all(0 < earlier < later for earlier, later in pairwise((*harmonics, np.inf)))

@@ -199,12 +199,8 @@ def predicted_accuracy(
 def peaks_of(leg: Leg, extremes: FloatArray, uses: Mapping[str, float], start_use: float, limits: Limits) -> Peaks:
     """Return the peaks of a leg in the units of the ship.
 
-    Parameters
-    ----------
-    extremes
-        Lowest and highest deviation of each of ``SIGNALS``, shape (signals, 2).
-    uses
-        Largest use of each limit.
+    ``extremes``: lowest and highest deviation of each of ``SIGNALS``, shape (signals, 2). ``uses``: largest use of each
+    limit.
     """
     speed, torque = leg.level_rpm, leg.speed_share**2 * limits.brake_torque_nm
     low, high = extremes.T.tolist()

@@ -59,10 +59,7 @@ class Timetable(Shown):
     def periods(self, within_s: float, levels_rpm: Sequence[float]) -> tuple[int, float]:
         """Return the number of periods of every leg and their length [s].
 
-        Raises
-        ------
-        DesignError
-            If the time is too short for a few periods.
+        Raises DesignError if the time is too short for a few periods.
         """
         window_s = (within_s - self.overhead_s(levels_rpm)) / len(levels_rpm)
         count = max(FEWEST_PERIODS, round(window_s / self.period_s))

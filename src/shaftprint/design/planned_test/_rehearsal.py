@@ -54,10 +54,8 @@ class Rehearsal(Shown):
     def __post_init__(self) -> None:
         """Check that the tables go together.
 
-        Raises
-        ------
-        DesignError
-            If a row has more or fewer numbers than there are names, or a table more rows than there are sailings.
+        Raises DesignError if a row has more or fewer numbers than there are names, or a table more rows than there are
+        sailings.
         """
         numbers, sailings = len(self.names), len(self.limited)
         shapes = [np.shape(table) for table in (self.errors, self.stated, self.planned)]

@@ -37,18 +37,10 @@ def with_band(
     What a test tells depends on the ship that it is sailed on; at the numbers that a weak first test has found, or that
     are usual, it may be half or twice as much as on most ships that are possible.
 
-    Parameters
-    ----------
-    plan
-        The plan, whose noise is the middle of what is possible.
-    noise_spread
-        Standard deviation of the logarithm of the noise's amplitude; 0 where it was measured well.
-    rng
-        Draws the possible ships.
-    noise_is_assumed
-        Whether the noise was recorded nowhere: what disturbs the torques then goes through the loop of each ship.
-    possible
-        The ships on which it may be sailed; those of the plan where not given.
+    ``plan``: the plan, whose noise is the middle of what is possible. ``noise_spread``: standard deviation of the
+    logarithm of the noise's amplitude; 0 where it was measured well. ``rng``: draws the possible ships.
+    ``noise_is_assumed``: whether the noise was recorded nowhere: what disturbs the torques then goes through the loop
+    of each ship. ``possible``: the ships on which it may be sailed; those of the plan where not given.
     """
     drawn = _ships(possible or plan.ship, rng)
     if len(drawn) == 1 and noise_spread == 0.0:
@@ -142,12 +134,8 @@ def _estimate(
 ) -> dict[str, float] | None:
     """Return what a test might find, at which its fit states deviations; None where it may find anything.
 
-    Parameters
-    ----------
-    assumed, ship
-        The ship of the plan, and the values of a possible one, shape (parameters,).
-    free, covariance
-        Names of the free parameters, and their covariance, shape (free, free).
+    ``assumed``, ``ship``: the ship of the plan, and the values of a possible one, shape (parameters,). ``free``,
+    ``covariance``: names of the free parameters, and their covariance, shape (free, free).
     """
     if not np.isfinite(covariance).all():
         return None

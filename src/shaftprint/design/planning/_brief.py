@@ -78,10 +78,7 @@ class Brief:
     ) -> "Brief":
         """Return what follows from the wishes of the user; see ``design_campaign``.
 
-        Raises
-        ------
-        DesignError
-            If there is no speed, no room below a limit or too little time.
+        Raises DesignError if there is no speed, no room below a limit or too little time.
         """
         expect_motion(ship.structure)
         if not speeds or not all(share > 0.0 for share in speeds):

@@ -118,10 +118,7 @@ def _best_of_starts(
 ) -> tuple[Plan, list[ComplexArray]]:
     """Return the best plan of some starts, random ones where there are none, and the amplitudes that it was made of.
 
-    Parameters
-    ----------
-    table
-        Possible ships, the assumed one first, shape (rows, parameters).
+    ``table``: possible ships, the assumed one first, shape (rows, parameters).
     """
     possibilities, criterion = _wanted(brief, table[: effort.accuracy_draws])
     problem = Problem(

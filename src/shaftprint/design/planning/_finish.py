@@ -23,14 +23,8 @@ FINE = 4
 def plan_of_lines(brief: Brief, amplitudes: Sequence[ComplexArray], table: FloatArray) -> Plan:
     """Return the plan of given amplitudes, each leg scaled until its limits hold for as many ships as they must.
 
-    Parameters
-    ----------
-    brief
-        Legs without their amplitudes, and what binds them.
-    amplitudes
-        Complex amplitudes of each leg, of any size.
-    table
-        Possible ships, the assumed one first, shape (rows, parameters).
+    ``brief``: legs without their amplitudes, and what binds them. ``amplitudes``: complex amplitudes of each leg, of
+    any size. ``table``: possible ships, the assumed one first, shape (rows, parameters).
     """
     strong = [strong_lines(lines, leg) for lines, leg in zip(brief.harmonics, amplitudes, strict=True)]
     uses = [brief.uses(number, table, harmonics, FINE) for number, (harmonics, _) in enumerate(strong)]
@@ -78,14 +72,8 @@ def _of_any_phase(brief: Brief, number: int, harmonics: tuple[int, ...], amplitu
 def _scaled(brief: Brief, number: int, leg: Leg, start_use: float, uses: Uses, table: FloatArray) -> tuple[Leg, Peaks]:
     """Return a leg as strong as its limits let it be for some ships, and what it asks of them.
 
-    Parameters
-    ----------
-    start_use
-        Largest use of its limits while it settles.
-    uses
-        Uses of the bounds by the ships that are allowed for.
-    table
-        Their parameters, shape (rows, parameters).
+    ``start_use``: largest use of its limits while it settles. ``uses``: uses of the bounds by the ships that are
+    allowed for. ``table``: their parameters, shape (rows, parameters).
     """
     strengths = uses.strengths(leg.amplitudes, brief.bounds[number], brief.limits.share_over)
     strength = float(strengths.min())

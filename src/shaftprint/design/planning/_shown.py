@@ -22,12 +22,7 @@ _SAMPLES = 16
 def is_shown(plan: Plan, table: FloatArray) -> bool:
     """Return whether at most 3 in 10,000 samples of a test are expected beyond full scale, and 1 in 1000 for others.
 
-    Parameters
-    ----------
-    plan
-        The plan.
-    table
-        Possible ships, the assumed one first, shape (rows, parameters).
+    ``table``: possible ships, the assumed one first, shape (rows, parameters).
     """
     cut_off = np.zeros(len(table))
     for number, leg in enumerate(plan.legs):

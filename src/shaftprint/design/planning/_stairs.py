@@ -21,12 +21,8 @@ _MOST_SHIPS = 60
 def stairs_of(brief: Brief, table: FloatArray) -> tuple[float, ...]:
     """Return the levels of the staircase about the level of the first leg [rpm]; none where the plan has none.
 
-    Parameters
-    ----------
-    brief
-        Timetable, and what binds the first leg.
-    table
-        Possible ships for which limits are held, shape (rows, parameters).
+    ``brief``: timetable, and what binds the first leg. ``table``: possible ships for which limits are held, shape
+    (rows, parameters).
     """
     shape, dwell_s = brief.timetable.stairs, brief.timetable.dwell_s
     if not shape:

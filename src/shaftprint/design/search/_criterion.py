@@ -22,13 +22,8 @@ class Criterion(ABC):
     def value_and_weight(self, inverse: FloatArray, slopes: FloatArray) -> tuple[float, FloatArray]:
         """Return the criterion and ``B``.
 
-        Parameters
-        ----------
-        inverse
-            Covariance of the free parameters, shape (free, free).
-        slopes
-            Derivatives of the wanted numbers, over their targets or values, to the free parameters, shape (free,
-            numbers).
+        ``inverse``: covariance of the free parameters, shape (free, free). ``slopes``: derivatives of the wanted
+        numbers, over their targets or values, to the free parameters, shape (free, numbers).
         """
 
 

@@ -43,17 +43,9 @@ def random_start(problem: Problem, rng: np.random.Generator) -> FloatArray:
 def search(problem: Problem, start: FloatArray, effort: Effort, *, share_held: float) -> tuple[float, FloatArray]:
     """Return the criterion and the unknowns after all stages from one start.
 
-    Parameters
-    ----------
-    problem
-        What is made small, with the uses of all possible ships.
-    start
-        Unknowns of the start.
-    effort
-        Stages and steps.
-    share_held
-        Share of the possible ships for which all legs keep their limits. Each stage holds those among them whose
-        peaks were highest at the end of the stage before.
+    ``problem``: what is made small, with the uses of all possible ships. ``start``: unknowns of the start. ``effort``:
+    stages and steps. ``share_held``: share of the possible ships for which all legs keep their limits. Each stage holds
+    those among them whose peaks were highest at the end of the stage before.
     """
     unknowns, value = start, np.inf
     for power in effort.powers:

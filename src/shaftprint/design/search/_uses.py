@@ -41,16 +41,8 @@ class Uses:
     def of(cls, responses: ComplexArray, bounds: tuple[Bound, ...], harmonics: tuple[int, ...], fold: int = 1) -> Self:
         """Return the uses of every bound by every possible ship, rows bound by bound.
 
-        Parameters
-        ----------
-        responses
-            Responses of ``SIGNALS`` to the set point, shape (possible lines, signals, lines).
-        bounds
-            The bounds.
-        harmonics
-            Harmonics of the lines.
-        fold
-            How many times more samples than usual are taken.
+        ``responses``: responses of ``SIGNALS`` to the set point, shape (possible lines, signals, lines). ``harmonics``:
+        harmonics of the lines. ``fold``: how many times more samples than usual are taken.
         """
         weights = np.array([bound.weights / bound.free for bound in bounds])
         transfer = np.einsum("bs,dsk->bdk", weights, responses).reshape(-1, len(harmonics))
@@ -73,14 +65,8 @@ class Uses:
         With the noise on top, normal and of any colour, every possible ship is beyond the bound for a share of the time
         at most; without it, never.
 
-        Parameters
-        ----------
-        amplitudes
-            Complex amplitudes of the lines.
-        bounds
-            The bounds that the rows are of.
-        share_over
-            Share of the time.
+        ``amplitudes``: complex amplitudes of the lines. ``bounds``: the bounds that the rows are of. ``share_over``:
+        share of the time.
         """
         every = self.in_time(amplitudes).reshape(len(bounds), self.draws, self.samples)
         largest = every.max(axis=2)

@@ -52,16 +52,9 @@ def period_information(
 ) -> PeriodInformation:
     """Return what a period of each leg of a plan tells.
 
-    Parameters
-    ----------
-    plan
-        The plan; its earlier tests and priors count.
-    noise
-        Noise at each leg.
-    values
-        Values at which it is predicted, by name.
-    costs
-        By what factor the covariance of each line counts larger because it is estimated from few samples, of each leg.
+    ``plan``: the plan; its earlier tests and priors count. ``noise``: noise at each leg. ``values``: values at which it
+    is predicted, by name. ``costs``: by what factor the covariance of each line counts larger because it is estimated
+    from few samples, of each leg.
     """
     lines = [
         _enlarged(
@@ -90,12 +83,8 @@ def missing_periods(information: PeriodInformation, *, fewest: int) -> tuple[int
     One period after the other goes to the leg where it does most for the worst of the wishes. A leg that is sailed
     again is sailed for a few periods, so that its noise can be told from its response.
 
-    Parameters
-    ----------
-    information
-        What a further period of each leg tells, beside all that is known.
-    fewest
-        Fewest periods of a leg that is sailed again.
+    ``information``: what a further period of each leg tells, beside all that is known. ``fewest``: fewest periods of a
+    leg that is sailed again.
     """
     more = [0] * len(information.of_period)
     for _ in range(MOST_PERIODS):

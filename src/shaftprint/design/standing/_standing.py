@@ -122,25 +122,10 @@ def standing_of(
 ) -> Standing:
     """Return how far a planned test has come.
 
-    Parameters
-    ----------
-    test
-        What was planned.
-    fit
-        The joint fit of all that was recorded, normalised at the working point of the plan.
-    sailed
-        Legs of this recording, by their names in the campaign of the plan.
-    recorded
-        Whole periods of each of them, by name.
-    now
-        When it is done, with time zone.
-    seed
-        Of the possible ships whose peaks are looked at.
-
-    Raises
-    ------
-    DesignError
-        If nothing of the plan was recorded, or the fit is of another structure.
+    ``test``: what was planned. ``fit``: the joint fit of all that was recorded, normalised at the working point of the
+    plan. ``sailed``: legs of this recording, by their names in the campaign of the plan. ``recorded``: whole periods of
+    each of them, by name. ``now``: when it is done, with time zone. ``seed``: of the possible ships whose peaks are
+    looked at. Raises DesignError if nothing of the plan was recorded, or the fit is of another structure.
     """
     plan, names = test.plan, tuple(f"M{number}" for number in range(1, len(test.plan.legs) + 1))
     counts = tuple(recorded.get(name, 0) for name in names)

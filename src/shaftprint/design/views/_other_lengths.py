@@ -28,12 +28,7 @@ _SHARES = (0.25, 0.35, 0.5, 0.7, 1.0, 1.4, 2.0, 2.8, 4.0)
 def length_curve(plan: Plan, shares: Sequence[float] = _SHARES) -> LengthCurve:
     """Return what the lines of a plan would tell in other numbers of periods, at least four of each leg.
 
-    Parameters
-    ----------
-    plan
-        The plan.
-    shares
-        Numbers of periods over those of the plan, ascending.
+    ``shares``: numbers of periods over those of the plan, ascending.
     """
     counts = sorted({tuple(max(FEWEST_PERIODS, round(share * leg.periods)) for leg in plan.legs) for share in shares})
     names = plan.wish.names or numbers_of_line(plan.ship.structure)

@@ -75,12 +75,8 @@ class DelayModel:
 def delay_model(model: ExportedModel) -> DelayModel:
     """Return a model for small signals about its working point, with every delay exact.
 
-    Raises
-    ------
-    StructureError
-        If a block has no equations in time.
-    ExportError
-        If the equations need how fast an input changes, or are not finite.
+    Raises StructureError if a block has no equations in time; ExportError if the equations need how fast an input
+    changes, or are not finite.
     """
     pairs = zip(model.structure.parameters, model.values, strict=True)
     gone = frozenset(p.name for p, value in pairs if p.held and value == 0.0)

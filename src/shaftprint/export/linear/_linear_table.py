@@ -39,10 +39,7 @@ class LinearTable:
 
         With the columns ``v`` of these signals and ``v = V v + R r``, ``v = (1 - V)^-1 R r``.
 
-        Raises
-        ------
-        ExportError
-            If an algebraic loop has no solution.
+        Raises ExportError if an algebraic loop has no solution.
         """
         down, along = [self.rows.index(label) for label in labels], [self.columns.index(label) for label in labels]
         others = [i for i in range(len(self.rows)) if i not in down]
@@ -66,14 +63,8 @@ class LinearTable:
         ``h = (a - a(t - T)) / T`` with ``da/dt = v``: ``(1 - exp(-s T)) / (s T)``, what a hold does without the images
         of its sampling.
 
-        Parameters
-        ----------
-        sample
-            Label of the held value.
-        period_s
-            Its period ``T`` [s].
-        state, past
-            Places of the new state ``a`` and of the new late signal.
+        ``sample``: label of the held value. ``period_s``: its period ``T`` [s]. ``state``, ``past``: places of the new
+        state ``a`` and of the new late signal.
         """
         along = self.columns.index(sample)
         effect = self.matrix[:, along : along + 1] / period_s
@@ -98,10 +89,7 @@ class LinearTable:
 def linear_table(program: Program, leaves: Leaves) -> LinearTable:
     """Return the slopes of equations.
 
-    Parameters
-    ----------
-    leaves
-        Values of all leaves where the slopes are wanted, parameters included.
+    ``leaves``: values of all leaves where the slopes are wanted, parameters included.
     """
     rows = {("state", i): rate for i, rate in enumerate(program.rates)}
     rows |= {("past", i): late.signal for i, late in enumerate(program.pasts)}

@@ -14,10 +14,7 @@ def without_past_rates(program: Program) -> Program:
     Of ``w = z(t - d)`` with a constant delay the change is ``w' = z'(t - d)``, and ``z'`` is a formula of states, of
     how fast they change and of other late signals.
 
-    Raises
-    ------
-    ExportError
-        If the change of an input is asked for, a second change, or that of a delay that varies.
+    Raises ExportError if the change of an input is asked for, a second change, or that of a delay that varies.
     """
     maker = _Maker(program)
     rates = tuple(maker.replaced(rate) for rate in program.rates)

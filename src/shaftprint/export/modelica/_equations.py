@@ -57,19 +57,9 @@ class Names:
 def modelica_equations(model: ExportedModel, names: Names, parameters: dict[str, str]) -> ModelicaEquations:
     """Return the equations between the deviations of inputs and outputs.
 
-    Parameters
-    ----------
-    names
-        Names that are taken; those of all variables inside are added.
-    parameters
-        Name of each parameter of the structure.
-
-    Raises
-    ------
-    ExportError
-        If the equations need how fast an input changes.
-    StructureError
-        If a block has no equations in time.
+    ``names``: names that are taken; those of all variables inside are added. ``parameters``: name of each parameter of
+    the structure. Raises ExportError if the equations need how fast an input changes; StructureError if a block has no
+    equations in time.
     """
     ready = fmu_program(model.structure, model.values)
     writer = _Writer(model, without_past_rates(ready.program), names, parameters)

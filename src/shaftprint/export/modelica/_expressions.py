@@ -35,10 +35,7 @@ def modelica_name(text: str) -> str:
 def modelica_number(value: float) -> str:
     """Return a number of Modelica, exact to the last bit, in brackets where it is negative.
 
-    Raises
-    ------
-    ExportError
-        If it is infinite or not a number: such a value must never become a limit.
+    Raises ExportError if it is infinite or not a number: such a value must never become a limit.
     """
     if not math.isfinite(value):
         raise ExportError(f"export: expected finite numbers in the equations, found {value}; give the limit a value.")

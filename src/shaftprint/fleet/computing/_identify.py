@@ -45,22 +45,9 @@ def survey_of_job(
 ) -> Survey:
     """Return the survey of the recording of a job, not judged yet.
 
-    Parameters
-    ----------
-    arguments
-        What is identified.
-    tell
-        Is told each step.
-    now
-        When the fingerprint is made.
-    rng
-        For the starts of the search; of the seed of the job where it is not given.
-
-    Raises
-    ------
-    ShaftprintError
-        If a file cannot be used, the recording does not give what the structure describes, or a file is not the one
-        that was asked for.
+    ``arguments``: what is identified. ``tell``: is told each step. ``now``: when the fingerprint is made. ``rng``: for
+    the starts of the search; of the seed of the job where it is not given. Raises ShaftprintError if a file cannot be
+    used, the recording does not give what the structure describes, or a file is not the one that was asked for.
     """
     survey = run(
         arguments.recording,

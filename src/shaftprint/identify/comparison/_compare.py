@@ -73,17 +73,9 @@ def compare_jointly(
 ) -> StructureComparison:
     """Fit several structures to the same responses at several working points and say which one wins, and why.
 
-    Parameters
-    ----------
-    pairs
-        For each structure its form at each working point, the first of which it is named by, with the response there.
-    rng, settings, folds, draws
-        As in ``compare_structures``.
-
-    Raises
-    ------
-    IdentificationError
-        As ``compare_structures``.
+    ``pairs``: for each structure its form at each working point, the first of which it is named by, with the response
+    there. ``rng``, ``settings``, ``folds``, ``draws``: as in ``compare_structures``. Raises IdentificationError as
+    ``compare_structures``.
     """
     return compare_fits(*_fitted(pairs, settings, rng, None), rng=rng, folds=folds, draws=draws)
 
@@ -158,17 +150,8 @@ def compare_fits(
 def expect_comparable(structures: Sequence[Structure], *, least: int = 2) -> None:
     """Check that structures can be compared by likelihood.
 
-    Parameters
-    ----------
-    structures
-        The structures.
-    least
-        Least number of them.
-
-    Raises
-    ------
-    IdentificationError
-        If they differ in input or outputs or share a name, or there are too few.
+    ``least``: least number of them. Raises IdentificationError if they differ in input or outputs or share a name, or
+    there are too few.
     """
     if len(structures) < least:
         raise IdentificationError(f"comparison: expected {least} or more structures, found {len(structures)}.")

@@ -38,19 +38,9 @@ class HoldOut:
 def hold_out(identification: Identification, *, folds: int, rng: np.random.Generator) -> HoldOut:
     """Return how well the structure predicts each part of the lines from the others.
 
-    Parameters
-    ----------
-    identification
-        The fit to all lines; its settings are used for those without a part of them.
-    folds
-        Number of parts; as many as there are lines where it is larger.
-    rng
-        Source of the start values.
-
-    Raises
-    ------
-    IdentificationError
-        If there are fewer than two folds, or the structure cannot be fitted without one of them.
+    ``identification``: the fit to all lines; its settings are used for those without a part of them. ``folds``: number
+    of parts; as many as there are lines where it is larger. ``rng``: source of the start values. Raises
+    IdentificationError if there are fewer than two folds, or the structure cannot be fitted without one of them.
     """
     if folds < 2:
         raise IdentificationError(f"folds: expected 2 or more, found {folds}.")
@@ -73,10 +63,7 @@ def _of_fold(
 ) -> tuple[float, float]:
     """Return the squared error of some lines, and the part of it that the fit's uncertainty is expected to add.
 
-    Parameters
-    ----------
-    held_out
-        Which lines of each response are left out.
+    ``held_out``: which lines of each response are left out.
     """
     parts = list(zip(identification.experiments, held_out, strict=True))
     kept = [(one.structure, replace(one.response, used=one.fitted & ~out)) for one, out in parts]

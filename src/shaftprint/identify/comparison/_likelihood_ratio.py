@@ -61,16 +61,8 @@ def likelihood_ratio(
 ) -> LikelihoodRatio:
     """Return the test of a structure against a larger one that holds it.
 
-    Parameters
-    ----------
-    small, large
-        Fits to the same data.
-    nested
-        How the larger holds the smaller.
-    rng
-        Source of the draws.
-    draws
-        Number of tests to draw where no law is at hand; the smallest p-value is ``1 / (draws + 1)``.
+    ``small``, ``large``: fits to the same data. ``nested``: how the larger holds the smaller. ``rng``: source of the
+    draws. ``draws``: number of tests to draw where no law is at hand; the smallest p-value is ``1 / (draws + 1)``.
     """
     fall = _deviance(small, np.array(small.cost)) - _deviance(large, np.array(large.cost))
     statistic = float(np.maximum(fall, 0.0))

@@ -65,12 +65,7 @@ class Nesting:
 def nesting(small: Identification, large: Identification, *, rng: np.random.Generator) -> Nesting | None:
     """Return how one fitted structure holds another; None where it does not.
 
-    Parameters
-    ----------
-    small, large
-        Fits to the same data.
-    rng
-        Source of the start values.
+    ``small``, ``large``: fits to the same data. ``rng``: source of the start values.
     """
     if len(small.parameters) >= len(large.parameters):
         return None
@@ -103,14 +98,8 @@ def no_worse(
 
     Only what is known beforehand of its further parameters can make it cost more then.
 
-    Parameters
-    ----------
-    small, large
-        Fits to the same data.
-    nested
-        How the larger holds the smaller.
-    rng
-        Source of start values, of which none is drawn.
+    ``small``, ``large``: fits to the same data. ``nested``: how the larger holds the smaller. ``rng``: source of start
+    values, of which none is drawn.
     """
     if large.cost <= small.cost * (1.0 + ROUNDING):
         return large
@@ -128,10 +117,7 @@ def no_worse(
 def _responses_of(identification: Identification, values: FloatArray) -> list[FrequencyResponse]:
     """Return the responses of the data with the model's in their place and the fitted lines used, all else the same.
 
-    Parameters
-    ----------
-    values
-        All parameters of the fit, shape (parameters,).
+    ``values``: all parameters of the fit, shape (parameters,).
     """
     responses = []
     for experiment in identification.objective.experiments:

@@ -16,12 +16,8 @@ from shaftprint.identify.likelihood._objective import Objective
 def estimate_covariance(objective: Objective, theta: FloatArray, *, expected: bool = False) -> FloatArray:
     """Return the covariance of the free parameters, shape (free, free); infinite variances where nothing is known.
 
-    Parameters
-    ----------
-    theta
-        Free parameters at the optimum, shape (free,).
-    expected
-        Whether to average over the noise instead of taking the data as they are: for a test that is planned.
+    ``theta``: free parameters at the optimum, shape (free,). ``expected``: whether to average over the noise instead of
+    taking the data as they are: for a test that is planned.
     """
     covariance, information = known_covariance(objective, theta, expected=expected)
     lost = information.lost
@@ -34,14 +30,8 @@ def variance_along(objective: Objective, theta: FloatArray, slopes: FloatArray, 
 
     It is finite for a product such as ``v K_p`` although neither factor is known alone.
 
-    Parameters
-    ----------
-    theta
-        Free parameters at the optimum, shape (free,).
-    slopes
-        Derivatives of the function to the free parameters, shape (free,).
-    expected
-        See ``estimate_covariance``.
+    ``theta``: free parameters at the optimum, shape (free,). ``slopes``: derivatives of the function to the free
+    parameters, shape (free,). ``expected``: see ``estimate_covariance``.
     """
     return known_variance(slopes, *known_covariance(objective, theta, expected=expected))
 

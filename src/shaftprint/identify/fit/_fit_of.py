@@ -20,16 +20,9 @@ def fit_of(
 ) -> Identification:
     """Return the fit of one structure to one response, or to several at their working points.
 
-    Parameters
-    ----------
-    pairs
-        The structure at each working point with its response.
-    rng
-        Source of the start values.
-    settings
-        How to search and weigh.
-    lines
-        Names of the lines of a single response to fit; those that responses mark as used by default.
+    ``pairs``: the structure at each working point with its response. ``rng``: source of the start values. ``settings``:
+    how to search and weigh. ``lines``: names of the lines of a single response to fit; those that responses mark as
+    used by default.
     """
     if len(pairs) == 1:
         return identify(*pairs[0], rng=rng, settings=settings, lines=lines)

@@ -54,10 +54,7 @@ class FitTest:
 def tested_fit(objective: Objective, values: FloatArray, tests: Sequence[TermTest]) -> FitTest:
     """Return the test of fit at the given parameters.
 
-    Parameters
-    ----------
-    tests
-        What each term adds there.
+    ``tests``: what each term adds there.
     """
     theta = values[list(objective.free)]
     index = objective.prior_rows[:, 0].astype(int)

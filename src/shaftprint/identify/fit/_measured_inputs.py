@@ -31,10 +31,7 @@ SPEED = "n"
 def has_measured_inputs(structure: Structure, response: FrequencyResponse) -> bool:
     """Return whether a response has a structure's first input, and all others among its outputs.
 
-    Parameters
-    ----------
-    structure, response
-        What is to be fitted, and to what.
+    ``structure``, ``response``: what is to be fitted, and to what.
     """
     # what is neither is refused, in words, where it is fitted
     if not (isinstance(structure, Structure) and isinstance(response, FrequencyResponse)):
@@ -48,12 +45,8 @@ def along_the_test(
 ) -> tuple[Structure, FrequencyResponse]:
     """Return a structure of the first input alone, with what was measured of the others in it, and its data.
 
-    Parameters
-    ----------
-    structure, response
-        What is to be fitted, and to what, for which ``has_measured_inputs`` holds.
-    values
-        Parameters at which the noise of the measured inputs is carried through, shape (parameters,).
+    ``structure``, ``response``: what is to be fitted, and to what, for which ``has_measured_inputs`` holds. ``values``:
+    parameters at which the noise of the measured inputs is carried through, shape (parameters,).
     """
     first, *others = structure.inputs
     moved = {name: Tabulated(response.omega_rad_s, _true(response, name)) for name in others}

@@ -18,10 +18,8 @@ from shaftprint.identify.fit._pseudo_inverse import PseudoInverse
 def part_tests(identification: Identification) -> Sequence[FitTest]:
     """Return the test of every part of a fit, in the order of its parts.
 
-    Parameters
-    ----------
-    identification
-        A joint fit of parameters that several responses share; of a fit to one response it is that of the fit.
+    ``identification``: a joint fit of parameters that several responses share; of a fit to one response it is that of
+    the fit.
     """
     objective, values = identification.objective, identification.values
     theta = values[list(objective.free)]

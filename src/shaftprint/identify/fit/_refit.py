@@ -92,12 +92,7 @@ def refit(
 def refit_redrawn(identification: Identification, redrawn: Redrawn, theta: FloatArray) -> Refits:
     """Fit the identified structures to other data of any kind.
 
-    Parameters
-    ----------
-    redrawn
-        The data.
-    theta
-        Start values of the free parameters, shape (repeats, free).
+    ``redrawn``: the data. ``theta``: start values of the free parameters, shape (repeats, free).
     """
     objective = identification.objective
     limit = identification.settings.max_iterations

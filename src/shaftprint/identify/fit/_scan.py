@@ -140,17 +140,9 @@ def scan_response(
 ) -> Scan:
     """Return the lowest cost along a parameter of a structure, before any fit.
 
-    Parameters
-    ----------
-    structure, response, settings, lines
-        The problem, as in ``identify``.
-    parameter, grid, starts
-        As in ``scan``.
-
-    Raises
-    ------
-    IdentificationError
-        If structure and response do not fit together, the parameter is not free or a value lies outside its bounds.
+    ``structure``, ``response``, ``settings``, ``lines``: the problem, as in ``identify``. ``parameter``, ``grid``,
+    ``starts``: as in ``scan``. Raises IdentificationError if structure and response do not fit together, the parameter
+    is not free or a value lies outside its bounds.
     """
     once = replace(settings or Settings(), starts=1, draw=_Middle(), stability="ignored")
     # nothing is drawn: the only start is the middle of the box

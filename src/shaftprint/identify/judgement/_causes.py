@@ -43,10 +43,7 @@ class Cause:
 def causes_of(experiment: Experiment, values: FloatArray) -> tuple[Cause, ...]:
     """Return what the structure of one experiment may lack, the best founded first.
 
-    Parameters
-    ----------
-    values
-        All parameters of the objective, shape (parameters,).
+    ``values``: all parameters of the objective, shape (parameters,).
     """
     structure, s = experiment.structure, experiment.s
     model = structure.response(experiment.structure_values(values), s, factors=experiment.factors)

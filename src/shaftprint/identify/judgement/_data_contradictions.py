@@ -74,12 +74,7 @@ def _failures(evidence: Evidence) -> Iterator[tuple[FittedTerm, TermCheck]]:
 def fails(check: TermCheck, needs: Requirements, *, among: int, by_size: bool = True) -> bool:
     """Return whether a difference is no chance, and large: by its size, or beside the noise along its directions.
 
-    Parameters
-    ----------
-    among
-        Number of the checks of which this is one.
-    by_size
-        Whether its size alone may decide.
+    ``among``: number of the checks of which this is one. ``by_size``: whether its size alone may decide.
     """
     p_value = check.p_value * among
     large = by_size and check.share > max(needs.largest_contradiction, needs.visible_share * check.noise)

@@ -21,10 +21,7 @@ def good_channels(
 ) -> BoolArray:
     """Return which channels of which fitted lines are known well enough to say something, shape (channels, lines).
 
-    Parameters
-    ----------
-    signal_to_noise
-        Local signal-to-noise ratios of the recording; the lines are found by name.
+    ``signal_to_noise``: local signal-to-noise ratios of the recording; the lines are found by name.
     """
     good = _relative_std(experiment.noise_covariance, experiment.measured) <= requirements.largest_line_std
     if signal_to_noise is None:
@@ -38,14 +35,8 @@ def good_lines(
 ) -> BoolArray:
     """Return which lines of a response a fit would call good, before anything is fitted, shape (lines,).
 
-    Parameters
-    ----------
-    response
-        A response to one input.
-    signal_to_noise
-        Local signal-to-noise ratios of its recording.
-    requirements
-        What a good line is.
+    ``response``: a response to one input. ``signal_to_noise``: local signal-to-noise ratios of its recording.
+    ``requirements``: what a good line is.
     """
     asked = requirements or Requirements()
     size, freedom = response.covariance.shape[1], response.degrees_of_freedom
@@ -99,10 +90,7 @@ def gap_at_crossing(
 ) -> tuple[float, float] | None:
     """Return the frequencies [rad/s] between which no good line shows a crossing of the loop gain; None where none are.
 
-    Parameters
-    ----------
-    good
-        Which fitted lines of the first response are good, shape (lines,).
+    ``good``: which fitted lines of the first response are good, shape (lines,).
     """
     omega = identification.objective.experiments[0].s.imag[good]
     for crossing in crossings_rad_s(identification):

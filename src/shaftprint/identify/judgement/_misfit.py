@@ -22,10 +22,7 @@ def explained(identification: Identification, *, rejected: float = REJECTED) -> 
     Weighted by the covariance, the whole must not be rejected, nor any single line against the worst of as many lines.
     Without weights, no output may miss more than twice what noise alone would: that is coarse.
 
-    Parameters
-    ----------
-    rejected
-        Probability below which a fit or line is rejected.
+    ``rejected``: probability below which a fit or line is rejected.
     """
     if not identification.is_likelihood:
         return all(

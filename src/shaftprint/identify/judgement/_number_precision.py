@@ -22,14 +22,8 @@ def doubts_of(
 ) -> dict[str, str]:
     """Return, by name, why numbers are not known well enough to be used; nothing of those that are.
 
-    Parameters
-    ----------
-    numbers
-        Parameters, combinations and what else was made of them.
-    profile
-        Profile likelihood of the fit; its intervals are then asked instead of the standard deviations.
-    requirements
-        What a number must satisfy.
+    ``numbers``: parameters, combinations and what else was made of them. ``profile``: profile likelihood of the fit;
+    its intervals are then asked instead of the standard deviations. ``requirements``: what a number must satisfy.
     """
     limits = requirements or Requirements()
     intervals = {} if profile is None else profile.intervals

@@ -50,10 +50,7 @@ class Requirements:
     def __post_init__(self) -> None:
         """Check the limits.
 
-        Raises
-        ------
-        IdentificationError
-            If one of them, but that in dB, is not positive.
+        Raises IdentificationError if one of them, but that in dB, is not positive.
         """
         for field in fields(self):
             value = getattr(self, field.name)

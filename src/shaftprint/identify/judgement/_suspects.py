@@ -66,10 +66,7 @@ def suspects_of(identification: Identification, *, rejected: float = REJECTED) -
 
     What a cause does to records in time is not known: for a fit to any there are no hints.
 
-    Parameters
-    ----------
-    rejected
-        Probability below which the fit is rejected.
+    ``rejected``: probability below which the fit is rejected.
     """
     if explained(identification, rejected=rejected) or identification.objective.others:
         return ()

@@ -23,10 +23,7 @@ def build_experiment(
 ) -> Experiment:
     """Return the part of the likelihood that one response gives, in an objective of its own.
 
-    Raises
-    ------
-    IdentificationError
-        If input or outputs differ or a line is not in the response.
+    Raises IdentificationError if input or outputs differ or a line is not in the response.
     """
     reduced = _of_structure(structure, response)
     fitted = _fitted_lines(reduced, lines)

@@ -49,18 +49,10 @@ def build_joint_objective(
 ) -> Objective:
     """Return the fit problem of several structures, each with its data; parameters of one name are one.
 
-    Parameters
-    ----------
-    parts
-        Pairs of a structure and its response, or terms of other data.
-    lines
-        Names of the lines to fit in every response; those that it marks as used by default.
-
-    Raises
-    ------
-    IdentificationError
-        If input or outputs differ, two structures describe a parameter differently, a prior names no free parameter,
-        no parameter is free, or there are fewer data than free parameters.
+    ``parts``: pairs of a structure and its response, or terms of other data. ``lines``: names of the lines to fit in
+    every response; those that it marks as used by default. Raises IdentificationError if input or outputs differ, two
+    structures describe a parameter differently, a prior names no free parameter, no parameter is free, or there are
+    fewer data than free parameters.
     """
     if not parts:
         raise IdentificationError("joint fit: expected at least one pair of structure and response, found none.")

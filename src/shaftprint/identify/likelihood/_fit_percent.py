@@ -22,12 +22,8 @@ def fit_ceiling(measured: ComplexArray, variance: FloatArray) -> float:
     The average over many tests is a little higher: by a tenth of what is missing to 100 where one line carries nearly
     all noise. It is nan for one line.
 
-    Parameters
-    ----------
-    measured
-        Response of one output, shape (lines,).
-    variance
-        Sum of the variances of real and imaginary part, shape (lines,).
+    ``measured``: response of one output, shape (lines,). ``variance``: sum of the variances of real and imaginary part,
+    shape (lines,).
     """
     return _percent(float(np.sqrt(variance.sum())), measured)
 

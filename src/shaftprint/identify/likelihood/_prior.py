@@ -28,10 +28,7 @@ class Prior:
     def __post_init__(self) -> None:
         """Check the standard deviation and its parts.
 
-        Raises
-        ------
-        IdentificationError
-            If it is not positive, or the parts do not add up to it.
+        Raises IdentificationError if it is not positive, or the parts do not add up to it.
         """
         if not self.std > 0.0:
             raise IdentificationError(

@@ -56,10 +56,7 @@ class Tails:
     def shaped(self, table: FloatArray) -> FloatArray:
         """Return residuals whose half square sum is the cost, and their derivatives, from the weighted ones.
 
-        Parameters
-        ----------
-        table
-            Weighted residuals and below them their derivatives, shape (starts, 1 + free, size, lines).
+        ``table``: weighted residuals and below them their derivatives, shape (starts, 1 + free, size, lines).
         """
         residuals = table[:, 0]
         squares = np.einsum("smf,smf->sf", residuals, residuals)
@@ -107,12 +104,8 @@ class Tails:
 def estimated_tails(degrees_of_freedom: FloatArray, size: int) -> Tails:
     """Return the tails of lines whose covariance was estimated.
 
-    Parameters
-    ----------
-    degrees_of_freedom
-        Real degrees of freedom behind each covariance, infinite for a known one, shape (lines,).
-    size
-        Number of real data of a line.
+    ``degrees_of_freedom``: real degrees of freedom behind each covariance, infinite for a known one, shape (lines,).
+    ``size``: number of real data of a line.
     """
     excess = excess_freedom(degrees_of_freedom, size)
     bend = 1.0 / excess
@@ -122,12 +115,7 @@ def estimated_tails(degrees_of_freedom: FloatArray, size: int) -> Tails:
 def student_tails(degrees_of_freedom: FloatArray, size: int, shape: float) -> Tails:
     """Return the tails of lines of which some may be bad: never lighter than ``estimated_tails``.
 
-    Parameters
-    ----------
-    degrees_of_freedom, size
-        As in ``estimated_tails``.
-    shape
-        Degrees of freedom of the t density.
+    ``degrees_of_freedom``, ``size``: as in ``estimated_tails``. ``shape``: degrees of freedom of the t density.
     """
     excess = excess_freedom(degrees_of_freedom, size)
     # The t density of an estimated covariance has excess + 2 degrees of freedom and (excess + 2) / excess of its scale.

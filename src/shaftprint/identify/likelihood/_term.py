@@ -131,12 +131,8 @@ class Term(ABC):
 
         Rows may be any rotation of the residuals. A model that cannot be evaluated has a large finite residual.
 
-        Parameters
-        ----------
-        theta
-            Free parameters of this term, shape (starts, free).
-        repeats
-            Other data for each start, from ``redrawn``.
+        ``theta``: free parameters of this term, shape (starts, free). ``repeats``: other data for each start, from
+        ``redrawn``.
         """
 
     @abstractmethod
@@ -164,38 +160,22 @@ class Term(ABC):
     def assessed(self, values: FloatArray, number: int) -> tuple[FittedTerm, TermTest]:
         """Return how well the data are explained.
 
-        Parameters
-        ----------
-        values
-            All parameters of the objective, shape (parameters,).
-        number
-            Number of the term in the objective.
+        ``values``: all parameters of the objective, shape (parameters,). ``number``: number of the term in the
+        objective.
         """
 
     @abstractmethod
     def redrawn(self, values: FloatArray, count: int, rng: np.random.Generator) -> Repeats:
         """Return what repeats of the test would give, were the parameters true.
 
-        Parameters
-        ----------
-        values
-            All parameters of the objective, shape (parameters,).
-        count
-            Number of repeats.
-
-        Raises
-        ------
-        IdentificationError
-            If the data cannot be drawn anew.
+        ``values``: all parameters of the objective, shape (parameters,). ``count``: number of repeats. Raises
+        IdentificationError if the data cannot be drawn anew.
         """
 
     def placed(self, names: Sequence[str], free: Sequence[str]) -> Self:
         """Return the term as part of an objective.
 
-        Parameters
-        ----------
-        names, free
-            Names of all parameters and of the free parameters of the objective.
+        ``names``, ``free``: names of all parameters and of the free parameters of the objective.
         """
         return replace(
             self,

@@ -13,16 +13,9 @@ from shaftprint.identify.likelihood._term import TermTest
 def tested_lines(whitened: FloatArray, freedom: FloatArray, names: Sequence[str], number: int) -> TermTest:
     """Return what the lines of a response add to the test of fit.
 
-    Parameters
-    ----------
-    whitened
-        Residuals of each line over the covariance that it has as a weight, shape (lines, size).
-    freedom
-        Real degrees of freedom behind that covariance, infinite for a known one, shape (lines,).
-    names
-        Names of the lines.
-    number
-        Number of the experiment.
+    ``whitened``: residuals of each line over the covariance that it has as a weight, shape (lines, size). ``freedom``:
+    real degrees of freedom behind that covariance, infinite for a known one, shape (lines,). ``names``: names of the
+    lines. ``number``: number of the experiment.
     """
     size = whitened.shape[1]
     squares = np.sum(whitened**2, axis=1)

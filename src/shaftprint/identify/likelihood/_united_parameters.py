@@ -14,10 +14,7 @@ OF_PICK_UP = (ShipRole.PICK_UP_AVERAGE, ShipRole.PICK_UP_HOLD, ShipRole.PICK_UP_
 def united_parameters(structures: Sequence[Structure]) -> tuple[Parameter, ...]:
     """Return the independent parameters of all structures, each once, those of the first structure first.
 
-    Raises
-    ------
-    IdentificationError
-        If two structures describe a parameter differently.
+    Raises IdentificationError if two structures describe a parameter differently.
     """
     united: dict[str, tuple[Parameter, Structure]] = {}
     for structure in structures:

@@ -26,10 +26,7 @@ class Weighting(ABC):
     def expect_outputs(self, outputs: Sequence[str]) -> None:
         """Check that what it says of outputs can be applied.
 
-        Parameters
-        ----------
-        outputs
-            Names of the outputs of all responses of a fit.
+        ``outputs``: names of the outputs of all responses of a fit.
         """
 
     @abstractmethod
@@ -40,12 +37,8 @@ class Weighting(ABC):
     def tails(self, degrees_of_freedom: FloatArray, size: int) -> Tails:
         """Return how much lines far from the model count.
 
-        Parameters
-        ----------
-        degrees_of_freedom
-            Real degrees of freedom behind the covariance of each line, infinite for a known one, shape (lines,).
-        size
-            Number of real data of a line.
+        ``degrees_of_freedom``: real degrees of freedom behind the covariance of each line, infinite for a known one,
+        shape (lines,). ``size``: number of real data of a line.
         """
 
 
@@ -133,10 +126,7 @@ class StudentT(ByCovariance):
     def __post_init__(self) -> None:
         """Check the degrees of freedom.
 
-        Raises
-        ------
-        IdentificationError
-            If they are not positive.
+        Raises IdentificationError if they are not positive.
         """
         if not self.degrees_of_freedom > 0.0:
             raise IdentificationError(

@@ -66,10 +66,7 @@ class Accuracy(Shown):
     def estimate(self, name: str) -> Estimate:
         """Return one parameter or combination.
 
-        Raises
-        ------
-        IdentificationError
-            If there is none of that name.
+        Raises IdentificationError if there is none of that name.
         """
         estimates = {estimate.name: estimate for estimate in self.numbers}
         if name not in estimates:
@@ -179,17 +176,9 @@ def predict_joint_accuracy(
 ) -> Accuracy:
     """Return how well several tests together would find the parameters; parameters of one name are one parameter.
 
-    Parameters
-    ----------
-    pairs
-        Each structure with its lines; for another working point it is ``Structure.scaled``.
-    values, priors, combinations
-        See ``predict_accuracy``.
-
-    Raises
-    ------
-    IdentificationError
-        As ``predict_accuracy``, or if two structures describe a parameter differently.
+    ``pairs``: each structure with its lines; for another working point it is ``Structure.scaled``. ``values``,
+    ``priors``, ``combinations``: see ``predict_accuracy``. Raises IdentificationError as ``predict_accuracy``, or if
+    two structures describe a parameter differently.
     """
     return _predicted(pairs, values or {}, priors or {}, combinations, None)
 

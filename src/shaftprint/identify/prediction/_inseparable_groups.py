@@ -56,16 +56,8 @@ def inseparable_groups(
 ) -> tuple[Group, ...]:
     """Return the groups of parameters that a test cannot separate, the worst first.
 
-    Parameters
-    ----------
-    objective
-        The structures.
-    parameters, covariance
-        Free parameters and their covariance, shape (free, free).
-    named
-        Combinations with a name of their own.
-    estimate
-        Gives a combination its standard deviation.
+    ``objective``: the structures. ``parameters``, ``covariance``: free parameters and their covariance, shape (free,
+    free). ``named``: combinations with a name of their own. ``estimate``: gives a combination its standard deviation.
     """
     std = np.sqrt(np.diag(covariance))
     with np.errstate(invalid="ignore"):

@@ -47,19 +47,9 @@ def line_information(
 ) -> LineInformation:
     """Return what each line of several tests tells of the parameters; see ``predict_joint_accuracy``.
 
-    Parameters
-    ----------
-    pairs
-        Each structure with its lines; for another working point it is ``at_working_point`` of it.
-    values
-        Assumed parameter values by name; the structure's own where not given.
-    priors
-        Priors of free parameters by name.
-
-    Raises
-    ------
-    IdentificationError
-        As ``predict_joint_accuracy``.
+    ``pairs``: each structure with its lines; for another working point it is ``at_working_point`` of it. ``values``:
+    assumed parameter values by name; the structure's own where not given. ``priors``: priors of free parameters by
+    name. Raises IdentificationError as ``predict_joint_accuracy``.
     """
     objective = planned_objective(pairs, priors or {})
     theta = assumed_values(objective, values or {})[list(objective.free)]

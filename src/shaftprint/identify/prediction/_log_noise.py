@@ -23,21 +23,9 @@ def with_log(levels: NoiseLevels, *, cycle_s: float, highest_hz: float, ship_spe
 
     White noise of single values spreads over fewer frequencies where values are fewer, and is less of a higher speed.
 
-    Parameters
-    ----------
-    levels
-        Levels with the log among the outputs.
-    cycle_s
-        Time from one value of the log to the next [s].
-    highest_hz
-        Frequency above which the log shows no line [Hz].
-    ship_speed_m_s
-        Mean speed of the ship [m/s].
-
-    Raises
-    ------
-    IdentificationError
-        If the levels have no log, or a number is not positive.
+    ``levels``: levels with the log among the outputs. ``cycle_s``: time from one value of the log to the next [s].
+    ``highest_hz``: frequency above which the log shows no line [Hz]. ``ship_speed_m_s``: mean speed of the ship [m/s].
+    Raises IdentificationError if the levels have no log, or a number is not positive.
     """
     if SHIP_SPEED not in levels.outputs or not min(cycle_s, highest_hz, ship_speed_m_s) > 0.0:
         raise IdentificationError(

@@ -41,10 +41,8 @@ class NoiseLevels:
     def __post_init__(self) -> None:
         """Check the shapes and make the arrays read-only.
 
-        Raises
-        ------
-        IdentificationError
-            If a shape does not fit, frequencies are not positive and ascending, or a density is not positive definite.
+        Raises IdentificationError if a shape does not fit, frequencies are not positive and ascending, or a density is
+        not positive definite.
         """
         frequency = frozen_float(self.frequency_hz)
         count, size = frequency.size, len(self.outputs)
@@ -114,24 +112,12 @@ def noise_levels(
 ) -> NoiseLevels:
     """Return the noise levels behind a measured response: its covariance times length and squared amplitude of lines.
 
-    Parameters
-    ----------
-    response
-        What was measured, from one input, at the lines of the campaign that it marks as used.
-    campaign
-        The campaign that was sailed.
-    set_point_per_v
-        Change of the set point over the working-point speed for one volt [1/V].
-    orders_hz
-        Where orders of the shaft line stand at the working point [Hz].
-    as_weights
-        Whether to keep the factor by which a covariance of few samples is enlarged: for lines that are estimated from
-        as few samples again, where what is planned does not count that cost, as it does for legs.
-
-    Raises
-    ------
-    IdentificationError
-        If the response has several inputs or no used line, or a line is not in the campaign.
+    ``response``: what was measured, from one input, at the lines of the campaign that it marks as used. ``campaign``:
+    the campaign that was sailed. ``set_point_per_v``: change of the set point over the working-point speed for one volt
+    [1/V]. ``orders_hz``: where orders of the shaft line stand at the working point [Hz]. ``as_weights``: whether to
+    keep the factor by which a covariance of few samples is enlarged: for lines that are estimated from as few samples
+    again, where what is planned does not count that cost, as it does for legs. Raises IdentificationError if the
+    response has several inputs or no used line, or a line is not in the campaign.
     """
     if len(response.inputs) != 1 or not response.used.any():
         raise IdentificationError(
@@ -187,12 +173,8 @@ def tabulated_noise(
 ) -> NoiseLevels:
     """Return the noise levels of a table whose rows are a frequency [Hz], densities [1/Hz] and coherences.
 
-    Parameters
-    ----------
-    rows
-        One for each frequency; the coherences are those of every pair of outputs.
-    set_point_per_v, orders_hz, outputs
-        As of ``stated_noise``.
+    ``rows``: one for each frequency; the coherences are those of every pair of outputs. ``set_point_per_v``,
+    ``orders_hz``, ``outputs``: as of ``stated_noise``.
     """
     table = np.array(rows, dtype=np.complex128)
     first = 1 + len(outputs)
@@ -217,26 +199,12 @@ def stated_noise(
 ) -> NoiseLevels:
     """Return the noise levels of speed, torque and further outputs from a table.
 
-    Parameters
-    ----------
-    frequency_hz
-        Frequencies [Hz], shape (frequencies,).
-    densities
-        Densities of the outputs [1/Hz], shape (frequencies, outputs).
-    coherences
-        Complex coherence of every pair of outputs, below 1 in magnitude: of the first with each later one, then of the
-        second, shape (frequencies, pairs), or (frequencies,) where there is one pair.
-    set_point_per_v
-        Change of the set point over the working-point speed for one volt [1/V].
-    orders_hz
-        Where orders of the shaft line stand at the working point [Hz].
-    outputs
-        Names of the outputs.
-
-    Raises
-    ------
-    IdentificationError
-        If the table makes no sense.
+    ``frequency_hz``: frequencies [Hz], shape (frequencies,). ``densities``: densities of the outputs [1/Hz], shape
+    (frequencies, outputs). ``coherences``: complex coherence of every pair of outputs, below 1 in magnitude: of the
+    first with each later one, then of the second, shape (frequencies, pairs), or (frequencies,) where there is one
+    pair. ``set_point_per_v``: change of the set point over the working-point speed for one volt [1/V]. ``orders_hz``:
+    where orders of the shaft line stand at the working point [Hz]. ``outputs``: names of the outputs. Raises
+    IdentificationError if the table makes no sense.
     """
     deviation = np.sqrt(np.asarray(densities, dtype=np.float64))
     shape = np.tile(np.eye(len(outputs), dtype=np.complex128), (len(frequency_hz), 1, 1))

@@ -60,10 +60,7 @@ class NullSpace:
 def null_space(structure: Structure, outputs: Sequence[str], rng: np.random.Generator) -> NullSpace:
     """Return what cannot be found of a structure's free parameters from some of its outputs.
 
-    Raises
-    ------
-    StructureError
-        If no parameter is free, or the response is finite nowhere.
+    Raises StructureError if no parameter is free, or the response is finite nowhere.
     """
     if not structure.free:
         raise StructureError(f"structure {structure.name} has no free parameter: free one with free_between().")
@@ -83,10 +80,7 @@ def null_space(structure: Structure, outputs: Sequence[str], rng: np.random.Gene
 def null_directions(structure: Structure, outputs: Sequence[str], values: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return the scale of each free parameter and the lost directions at one point, in that scale, as columns.
 
-    Raises
-    ------
-    StructureError
-        If the response is finite nowhere.
+    Raises StructureError if the response is finite nowhere.
     """
     rows = _relative_sensitivity(structure, outputs, values)
     scale = np.array([p.upper - p.lower for p in structure.free])

@@ -31,14 +31,8 @@ _LEAST_APART = 1e-4
 def order_cost(frequency_hz: float, duration_s: float, noise: "NoiseLevels") -> float:
     """Return by what share orders enlarge the variance of the torque of a line; 0 where none is beside it.
 
-    Parameters
-    ----------
-    frequency_hz
-        Frequency of the line [Hz].
-    duration_s
-        Its length [s].
-    noise
-        Knows the orders and the noise of the speed.
+    ``frequency_hz``: frequency of the line [Hz]. ``duration_s``: its length [s]. ``noise``: knows the orders and the
+    noise of the speed.
     """
     near = [one for one in noise.orders_hz if abs(frequency_hz - one) * duration_s < _FARTHEST_BINS]
     if not near or "n" not in noise.outputs:
@@ -50,16 +44,8 @@ def order_cost(frequency_hz: float, duration_s: float, noise: "NoiseLevels") -> 
 def common_share(order_hz: float, beside_hz: float, duration_s: float, noise: "NoiseLevels") -> float:
     """Return the share ``rho^2`` of an order's power that a line beside it has in common with it.
 
-    Parameters
-    ----------
-    order_hz
-        Frequency of the order at the mean speed [Hz].
-    beside_hz
-        How far the line is from it [Hz].
-    duration_s
-        Length of the line [s].
-    noise
-        Knows the noise of the speed.
+    ``order_hz``: frequency of the order at the mean speed [Hz]. ``beside_hz``: how far the line is from it [Hz].
+    ``duration_s``: length of the line [s]. ``noise``: knows the noise of the speed.
     """
     time = np.linspace(0.0, duration_s, _TIMES)
     apart = (1.0 - time / duration_s) * np.cos(2.0 * np.pi * beside_hz * time)

@@ -52,17 +52,10 @@ def planned_legs(
 
     An order of the shaft costs a leg next to nothing: while the speed swings it has little in common with any line.
 
-    Parameters
-    ----------
-    campaign
-        The plan.
-    noise
-        Noise of the outputs over the values of each working point: the same at all speeds, or by the share of the
-        speed of the working point at which the parameters are normalised.
-    rises
-        Whether more volts ask for more speed.
-    first_share
-        Speed of the leg nearest to the offset over that of the working point at which the parameters are normalised.
+    ``campaign``: the plan. ``noise``: noise of the outputs over the values of each working point: the same at all
+    speeds, or by the share of the speed of the working point at which the parameters are normalised. ``rises``: whether
+    more volts ask for more speed. ``first_share``: speed of the leg nearest to the offset over that of the working
+    point at which the parameters are normalised.
     """
     legs = sorted(campaign.legs, key=lambda leg: abs(leg.level_v - campaign.offset_v))
     sign = 1.0 if rises else -1.0
@@ -72,14 +65,8 @@ def planned_legs(
 def planned_beside(multisine: "Leg", noise: NoiseLevels, *, excitation: str) -> FrequencyResponse:
     """Return the lines that a multisine of another input beside a leg would give; the values are zero.
 
-    Parameters
-    ----------
-    multisine
-        What moves that input.
-    noise
-        Noise of the outputs under it; one volt is that of the input.
-    excitation
-        Symbol of the input.
+    ``multisine``: what moves that input. ``noise``: noise of the outputs under it; one volt is that of the input.
+    ``excitation``: symbol of the input.
     """
     amplitudes = [noise.set_point_per_v * amplitude_v for amplitude_v in multisine.lines.values()]
     return _lines(multisine, noise, amplitudes, excitation)

@@ -37,10 +37,7 @@ def planned_objective(
 def assumed_values(objective: Objective, values: Mapping[str, float]) -> FloatArray:
     """Return the values of all parameters, shape (parameters,): those given by name, else the structure's own.
 
-    Raises
-    ------
-    IdentificationError
-        If a name is no parameter, or a value is outside its bounds.
+    Raises IdentificationError if a name is no parameter, or a value is outside its bounds.
     """
     unknown = [name for name in values if name not in objective.names]
     if unknown:

@@ -39,23 +39,10 @@ def predict_intervals(
     Unlike the standard deviations of ``predict_accuracy`` they are right where the response is not linear in the
     parameters, and end at bounds: they are the profile intervals of the exact response with the planned covariance.
 
-    Parameters
-    ----------
-    structure
-        The structure.
-    response
-        Lines with their covariance; its values do not matter.
-    values
-        Assumed parameter values by name; the structure's own where not given.
-    priors
-        Priors of free parameters by name.
-
-    Raises
-    ------
-    StructureError
-        If a value names no parameter of the structure.
-    IdentificationError
-        If structure and response do not fit together, or a prior names no free parameter.
+    ``response``: lines with their covariance; its values do not matter. ``values``: assumed parameter values by name;
+    the structure's own where not given. ``priors``: priors of free parameters by name. Raises StructureError if a value
+    names no parameter of the structure; IdentificationError if structure and response do not fit together, or a prior
+    names no free parameter.
     """
     lines = _of_structure(structure, response)
     fit = identify(
@@ -75,19 +62,9 @@ def predict_joint_intervals(
 ) -> dict[str, Interval]:
     """Return the intervals that several tests of the same parameters would give together, by name.
 
-    Parameters
-    ----------
-    pairs
-        Each structure with its lines; for another working point it is ``at_working_point``.
-    values, priors
-        See ``predict_intervals``.
-
-    Raises
-    ------
-    StructureError
-        If a value names no parameter of the structures.
-    IdentificationError
-        As ``predict_intervals``, or if two structures describe a parameter differently.
+    ``pairs``: each structure with its lines; for another working point it is ``at_working_point``. ``values``,
+    ``priors``: see ``predict_intervals``. Raises StructureError if a value names no parameter of the structures;
+    IdentificationError as ``predict_intervals``, or if two structures describe a parameter differently.
     """
     exact = [(one, expected_response(_of_structure(one, response), one, values)) for one, response in pairs]
     settings = _settings(pairs[0][0], values, priors)

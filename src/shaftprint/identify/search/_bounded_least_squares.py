@@ -21,14 +21,8 @@ ROUNDING = 1e-12
 def bounded_least_squares(columns: FloatArray, aim: FloatArray, lower: FloatArray, upper: FloatArray) -> FloatArray:
     """Return the best unknowns of every problem, shape (problems, unknowns).
 
-    Parameters
-    ----------
-    columns
-        ``X``, shape (problems, unknowns, rows).
-    aim
-        ``y``, shape (problems, rows).
-    lower, upper
-        Bounds, shape (unknowns,).
+    ``columns``: ``X``, shape (problems, unknowns, rows). ``aim``: ``y``, shape (problems, rows). ``lower``, ``upper``:
+    bounds, shape (unknowns,).
     """
     scale = np.linalg.norm(columns, axis=2)
     scale[scale == 0.0] = 1.0

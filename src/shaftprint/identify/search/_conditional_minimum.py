@@ -52,14 +52,8 @@ class Conditional:
     def lowest(self, at: FloatArray, optima: FloatArray, *, starts: int) -> tuple[FloatArray, FloatArray]:
         """Return the best free parameters of every value, shape (values, free), and their cost, shape (values,).
 
-        Parameters
-        ----------
-        at
-            Values of the held parameter, shape (values,).
-        optima
-            Free parameters from which each value is tried too, shape (known, free).
-        starts
-            Number of starts besides.
+        ``at``: values of the held parameter, shape (values,). ``optima``: free parameters from which each value is
+        tried too, shape (known, free). ``starts``: number of starts besides.
         """
         lower, upper = self.objective.lower, self.objective.upper
         if not self.searched:
@@ -70,22 +64,15 @@ class Conditional:
     def between(self, at: FloatArray, left: FloatArray, right: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return the best free parameters of values between others whose optima are known, and their cost.
 
-        Parameters
-        ----------
-        at
-            Values of the held parameter, shape (values,).
-        left, right
-            Free parameters of the optima on both sides of each value, shape (values, free).
+        ``at``: values of the held parameter, shape (values,). ``left``, ``right``: free parameters of the optima on
+        both sides of each value, shape (values, free).
         """
         return self._best_of(at, np.stack([left, right], axis=1)) if self.searched else self._solved_at(at)
 
     def carried(self, theta: FloatArray, cost: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return the optima after each value has tried those of its neighbours, as long as that helps.
 
-        Parameters
-        ----------
-        theta, cost
-            Best free parameters and cost of ascending values of the held parameter; they are changed.
+        ``theta``, ``cost``: best free parameters and cost of ascending values of the held parameter; they are changed.
         """
         if not self.searched:
             return theta, cost

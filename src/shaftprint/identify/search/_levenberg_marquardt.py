@@ -75,24 +75,12 @@ def descend(
 ) -> Descent:
     """Minimise half the sum of squared residuals from every start.
 
-    Parameters
-    ----------
-    residuals
-        Gives residuals, shape (starts, rows), and Jacobian, shape (starts, free, rows), for parameters of shape
-        (starts, free).
-    start
-        Start values, shape (starts, free).
-    lower, upper
-        Bounds, shape (free,).
-    tolerance
-        A start has converged when a step is expected to lower its cost by less than this share of it.
-    max_iterations
-        Limit of steps for each start.
-    leader_tolerance
-        The same for the start of lowest cost, which polishes its optimum while others are still on their way.
-    allowed
-        Tells where parameters, shape (rows, free), may be, shape (rows,); everywhere within the bounds when not given.
-        The starts must be there.
+    ``residuals``: gives residuals, shape (starts, rows), and Jacobian, shape (starts, free, rows), for parameters of
+    shape (starts, free). ``start``: start values, shape (starts, free). ``lower``, ``upper``: bounds, shape (free,).
+    ``tolerance``: a start has converged when a step is expected to lower its cost by less than this share of it.
+    ``max_iterations``: limit of steps for each start. ``leader_tolerance``: the same for the start of lowest cost,
+    which polishes its optimum while others are still on their way. ``allowed``: tells where parameters, shape (rows,
+    free), may be, shape (rows,); everywhere within the bounds when not given. The starts must be there.
     """
     theta = np.clip(start, lower, upper)
     starts = np.arange(theta.shape[0])

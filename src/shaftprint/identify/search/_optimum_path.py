@@ -21,12 +21,7 @@ def highest_between(objective: Objective, one: FloatArray, others: FloatArray) -
     At each station between them the share of the way is held and everything across it is at its best, so that a curved
     valley is followed.
 
-    Parameters
-    ----------
-    objective
-        The problem.
-    one, others
-        Free parameters, shape (free,) and (others, free).
+    ``objective``: the problem. ``one``, ``others``: free parameters, shape (free,) and (others, free).
     """
     width = objective.upper - objective.lower
     way = (others - one) / width

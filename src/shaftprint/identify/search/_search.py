@@ -34,17 +34,8 @@ SIMULATED_REDRAWS = 10
 def search(objective: Objective, settings: Settings, rng: np.random.Generator) -> Descent:
     """Return where each start of a search ended.
 
-    Parameters
-    ----------
-    settings
-        How to search.
-    rng
-        Source of the start values.
-
-    Raises
-    ------
-    IdentificationError
-        If stability is asked for during the search and no stable start is found.
+    ``settings``: how to search. ``rng``: source of the start values. Raises IdentificationError if stability is asked
+    for during the search and no stable start is found.
     """
     allowed = stable_models(objective) if settings.stability == "during" else None
     start = _starts(objective, settings, rng, allowed)
@@ -58,10 +49,7 @@ def search(objective: Objective, settings: Settings, rng: np.random.Generator) -
 def polish(objective: Objective, theta: FloatArray, settings: Settings) -> Descent:
     """Return an optimum to the last digit; from a stable model a stable one, where that is asked for in the search.
 
-    Parameters
-    ----------
-    theta
-        Free parameters near it, shape (free,).
+    ``theta``: free parameters near it, shape (free,).
     """
     allowed = stable_models(objective) if settings.stability == "during" else None
     return descend(

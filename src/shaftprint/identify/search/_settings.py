@@ -36,10 +36,8 @@ class Settings:
     def __post_init__(self) -> None:
         """Check counts and kinds.
 
-        Raises
-        ------
-        IdentificationError
-            If starts, iterations or tolerance are not positive, the stability rule is unknown, or a prior is none.
+        Raises IdentificationError if starts, iterations or tolerance are not positive, the stability rule is unknown,
+        or a prior is none.
         """
         for name, prior in (*self.priors.items(), *self.regularisation.items()):
             if not isinstance(prior, Prior):

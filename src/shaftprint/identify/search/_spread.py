@@ -11,12 +11,7 @@ def spread(count: int, lower: FloatArray, upper: FloatArray) -> FloatArray:
     Coordinate ``j`` of point ``n`` is the fraction of ``1/2 + n g^-(j+1)`` with ``g^(d+1) = g + 1``, the generalisation
     of the golden ratio to ``d`` dimensions (Roberts, The unreasonable effectiveness of quasirandom sequences, 2018).
 
-    Parameters
-    ----------
-    count
-        Number of points.
-    lower, upper
-        Bounds, shape (sizes,).
+    ``count``: number of points. ``lower``, ``upper``: bounds, shape (sizes,).
     """
     size = lower.size
     ratio = 2.0

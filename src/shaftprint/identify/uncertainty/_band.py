@@ -77,21 +77,10 @@ def response_band(
 ) -> ResponseBand:
     """Return the band around the fitted frequency response.
 
-    Parameters
-    ----------
-    frequency_hz
-        Frequencies [Hz], ascending, shape (frequencies,).
-    coverage
-        Share of tests whose band shall hold the true value, between 0 and 1.
-    experiment
-        Number of the experiment of a joint fit, from 0.
-    repeats
-        A bootstrap of the identification: the band is taken from its repeats, and follows the curvature of the model.
-
-    Raises
-    ------
-    IdentificationError
-        If there is no experiment of that number.
+    ``frequency_hz``: frequencies [Hz], ascending, shape (frequencies,). ``coverage``: share of tests whose band shall
+    hold the true value, between 0 and 1. ``experiment``: number of the experiment of a joint fit, from 0. ``repeats``:
+    a bootstrap of the identification: the band is taken from its repeats, and follows the curvature of the model.
+    Raises IdentificationError if there is no experiment of that number.
     """
     spread = spread_of(identification, experiment)
     if repeats is None:
@@ -115,15 +104,9 @@ def model_band(
 ) -> ResponseBand:
     """Return the band around the response of a structure from the covariance of its free parameters.
 
-    Parameters
-    ----------
-    values
-        All parameters, shape (parameters,).
-    covariance
-        Covariance of the free parameters, shape (free, free); a parameter of infinite variance takes the band with it
-        wherever it has an influence.
-    frequency_hz, coverage
-        As for ``response_band``.
+    ``values``: all parameters, shape (parameters,). ``covariance``: covariance of the free parameters, shape (free,
+    free); a parameter of infinite variance takes the band with it wherever it has an influence. ``frequency_hz``,
+    ``coverage``: as for ``response_band``.
     """
     return _first_order(ParameterSpread.of_covariance(structure, values, covariance), frequency_hz, coverage)
 
@@ -138,17 +121,8 @@ def step_band(
 ) -> StepBand:
     """Return the band around the response of the fitted linear model to a step of 1 at an input.
 
-    Parameters
-    ----------
-    time_s
-        Time after the step [s], shape (times,).
-    coverage, experiment, repeats
-        As for ``response_band``.
-
-    Raises
-    ------
-    IdentificationError
-        If there is no experiment of that number.
+    ``time_s``: time after the step [s], shape (times,). ``coverage``, ``experiment``, ``repeats``: as for
+    ``response_band``. Raises IdentificationError if there is no experiment of that number.
     """
     spread = spread_of(identification, experiment)
     time = np.atleast_1d(np.asarray(time_s, dtype=np.float64))

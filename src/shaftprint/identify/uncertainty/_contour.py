@@ -68,18 +68,10 @@ def furthest(
     the data allow. The ends of the other rows are such sets too: a row whose number lies further at one of them climbs
     again from there, until there is none.
 
-    Parameters
-    ----------
-    numbers
-        The number of each row.
-    start
-        Free parameters of the estimate, shape (free,).
-    side
-        -1 for the smallest, 1 for the largest value, shape (rows,).
-    distance
-        Root of twice the rise of the cost that is allowed: standard deviations of a normal estimate, shape (rows,).
-    optima
-        Free parameters of other optima of the search, shape (optima, free); those that cost too much are passed over.
+    ``numbers``: the number of each row. ``start``: free parameters of the estimate, shape (free,). ``side``: -1 for the
+    smallest, 1 for the largest value, shape (rows,). ``distance``: root of twice the rise of the cost that is allowed:
+    standard deviations of a normal estimate, shape (rows,). ``optima``: free parameters of other optima of the search,
+    shape (optima, free); those that cost too much are passed over.
     """
     lowest = float(_parabola(numbers.objective, start[None, :])[0][0])
     climb = _Climb(numbers=numbers, start=start, side=side, distance=distance, limit=lowest + 0.5 * distance**2)

@@ -42,23 +42,10 @@ def joint_covariance(
 ) -> JointCovariance:
     """Return the covariance of parameters, combinations and further numbers, to first order.
 
-    Parameters
-    ----------
-    identification
-        The fit.
-    names
-        Which numbers; those that the data do not fix are left out.
-    numbers
-        Further numbers that follow from the parameters, as ``budget`` takes them.
-    direct, shifts
-        As ``budget`` takes them.
-    of_the_test
-        Sources, beside noise and shifts, whose error is another one in every test.
-
-    Raises
-    ------
-    IdentificationError
-        If there is no number of a name.
+    ``identification``: the fit. ``names``: which numbers; those that the data do not fix are left out. ``numbers``:
+    further numbers that follow from the parameters, as ``budget`` takes them. ``direct``, ``shifts``: as ``budget``
+    takes them. ``of_the_test``: sources, beside noise and shifts, whose error is another one in every test. Raises
+    IdentificationError if there is no number of a name.
     """
     objective = identification.objective
     combinations = (*objective.combinations, *numbers)

@@ -50,10 +50,8 @@ class Numbers:
     def slopes(self, theta: FloatArray, curvature: FloatArray) -> FloatArray:
         """Return the derivatives of each row's number to the free parameters, shape (rows, free).
 
-        Parameters
-        ----------
-        curvature
-            Second derivative of the cost to each free parameter, shape (rows, free); it sets the numerical steps.
+        ``curvature``: second derivative of the cost to each free parameter, shape (rows, free); it sets the numerical
+        steps.
         """
         free = theta.shape[1]
         parameter = np.flatnonzero(self.of_row < free)

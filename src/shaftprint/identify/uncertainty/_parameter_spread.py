@@ -50,10 +50,7 @@ class ParameterSpread:
 def spread_of(identification: Identification, experiment: int = 0) -> ParameterSpread:
     """Return the spread of the parameters of one experiment's structure.
 
-    Raises
-    ------
-    IdentificationError
-        If there is no experiment of that number.
+    Raises IdentificationError if there is no experiment of that number.
     """
     objective = identification.objective
     if not 0 <= experiment < len(objective.terms):

@@ -145,10 +145,7 @@ def profile(identification: Identification, numbers: Sequence[Combination] = ())
 def expect_likelihood(identification: Identification) -> None:
     """Refuse a fit whose cost is no likelihood.
 
-    Raises
-    ------
-    IdentificationError
-        If it was not weighted by the covariance.
+    Raises IdentificationError if it was not weighted by the covariance.
     """
     if not identification.is_likelihood:
         raise IdentificationError(

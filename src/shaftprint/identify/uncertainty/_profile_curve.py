@@ -47,17 +47,10 @@ def profile_curve(identification: Identification, number: str | Combination, *, 
 
     The points lie evenly in the root of the rise: of a parabola they are evenly spaced values.
 
-    Parameters
-    ----------
-    number
-        Name of a free parameter or of a combination of the structures, or a number that follows from the parameters.
-    points
-        Number of points, odd, three or more; the middle one is the estimate.
-
-    Raises
-    ------
-    IdentificationError
-        If the fit was not weighted by the covariance, the number is not known or infinite, or the points are few.
+    ``number``: name of a free parameter or of a combination of the structures, or a number that follows from the
+    parameters. ``points``: number of points, odd, three or more; the middle one is the estimate. Raises
+    IdentificationError if the fit was not weighted by the covariance, the number is not known or infinite, or the
+    points are few.
     """
     expect_likelihood(identification)
     if points < FEWEST or points % 2 == 0:

@@ -41,12 +41,8 @@ class Propagation:
     def variances(self, slopes: FloatArray, direct: Mapping[str, float] = NO_DIRECT) -> dict[str, float]:
         """Return the variance of a number by source; empty where the data do not fix the number.
 
-        Parameters
-        ----------
-        slopes
-            Derivatives of the number to the free parameters, shape (free,).
-        direct
-            Change of the number for one standard deviation of a source, with sign, beside that through the parameters.
+        ``slopes``: derivatives of the number to the free parameters, shape (free,). ``direct``: change of the number
+        for one standard deviation of a source, with sign, beside that through the parameters.
         """
         if not np.all(np.isfinite(slopes)) or not self.information.knows(slopes):
             return {}
@@ -60,11 +56,8 @@ class Propagation:
 def propagation(identification: Identification, shifts: Mapping[str, Mapping[str, float]] = NO_SHIFTS) -> Propagation:
     """Return how noise, priors and further sources move the estimates of an identification.
 
-    Parameters
-    ----------
-    shifts
-        By the name of a further source and of a parameter: change of the parameter, with sign, for one standard
-        deviation.
+    ``shifts``: by the name of a further source and of a parameter: change of the parameter, with sign, for one standard
+    deviation.
     """
     objective = identification.objective
     theta = identification.values[list(objective.free)]
@@ -87,10 +80,7 @@ def propagation(identification: Identification, shifts: Mapping[str, Mapping[str
 def _noise_parts(term: Term, rows: FloatArray) -> dict[str, FloatArray]:
     """Return the part of the covariance that the noise of a term gives, by output where that can be told.
 
-    Parameters
-    ----------
-    rows
-        ``A^-1 J`` of the term, shape (free, rows).
+    ``rows``: ``A^-1 J`` of the term, shape (free, rows).
     """
     if isinstance(term, Experiment):
         return _of_outputs(term, rows)
@@ -101,10 +91,7 @@ def _noise_parts(term: Term, rows: FloatArray) -> dict[str, FloatArray]:
 def _of_outputs(experiment: Experiment, rows: FloatArray) -> dict[str, FloatArray]:
     """Return the part of the covariance that the noise of each output gives, and each cause that moves all of them.
 
-    Parameters
-    ----------
-    rows
-        ``A^-1 J`` of the experiment, shape (free, size * lines): components of [Re, Im] slowest.
+    ``rows``: ``A^-1 J`` of the experiment, shape (free, size * lines): components of [Re, Im] slowest.
     """
     lines, size = experiment.data.shape
     by_line = rows.reshape(-1, size, lines).transpose(2, 0, 1) @ experiment.weights

@@ -109,12 +109,8 @@ class GovernorTest:
     def held(self, cycle_s: float, late_s: FloatArray) -> "GovernorTest":
         """Return the test as if the set point were held between messages.
 
-        Parameters
-        ----------
-        cycle_s
-            Time between two messages [s]: what does not jump is the mean over it, at its middle.
-        late_s
-            By how much each jump comes later than it was recorded [s], shape (jumps,).
+        ``cycle_s``: time between two messages [s]: what does not jump is the mean over it, at its middle. ``late_s``:
+        by how much each jump comes later than it was recorded [s], shape (jumps,).
         """
         sums = np.concatenate([[0.0], np.cumsum(self.without_jumps)]) * self.step_s
         edges = np.append(self.time_s, self.time_s[-1] + self.step_s) - 0.5 * self.step_s
@@ -179,10 +175,7 @@ class GovernorTest:
 def governor_test(signals: Signals, campaign: Campaign, vessel: Vessel) -> GovernorTest:
     """Cut the tests out of prepared signals.
 
-    Raises
-    ------
-    SignalError
-        If the signals do not hold the tests of the campaign.
+    Raises SignalError if the signals do not hold the tests of the campaign.
     """
     tests = campaign.excitations
     if campaign.legs and not (campaign.sines or campaign.staircases or campaign.chirps):
@@ -238,10 +231,7 @@ def governor_test(signals: Signals, campaign: Campaign, vessel: Vessel) -> Gover
 def sum_of_jumps(time_s: FloatArray, jumps: Sequence[Jump], late_s: FloatArray) -> FloatArray:
     """Return the sum of all jumps of a set point that have passed [-], on any grid, shape (samples,).
 
-    Parameters
-    ----------
-    late_s
-        By how much each comes later than it was recorded [s], shape (jumps,).
+    ``late_s``: by how much each comes later than it was recorded [s], shape (jumps,).
     """
     passed = np.zeros(time_s.size)
     for jump, late in zip(jumps, late_s.tolist(), strict=True):

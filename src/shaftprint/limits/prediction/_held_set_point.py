@@ -85,18 +85,9 @@ def messages_of(
 ) -> Messages | None:
     """Return the delays of the jumps, to first order from those of a test, and the cycles that explain them.
 
-    Parameters
-    ----------
-    term, values
-        Likelihood and parameters of a governor, on the record of the test.
-    test
-        The test, with the jumps as late as they were thought to be.
-    information
-        One over the prior deviation of each free parameter, shape (free,).
-
-    Returns
-    -------
-    None where too few jumps are seen, or the simulation runs away.
+    ``term``, ``values``: likelihood and parameters of a governor, on the record of the test. ``test``: the test, with
+    the jumps as late as they were thought to be. ``information``: one over the prior deviation of each free parameter,
+    shape (free,).
     """
     rows, now = term.rows(values), term.innovations(values)
     if rows is None or now is None:
@@ -125,12 +116,8 @@ def messages_of(
 def explained(late_s: FloatArray, std_s: FloatArray, mean_std_s: float) -> Messages:
     """Return which cycles explain delays of jumps.
 
-    Parameters
-    ----------
-    late_s, std_s
-        Delays behind the sines and their deviations [s]; those of an infinite one do not count, shape (jumps,).
-    mean_std_s
-        Deviation that all have in common [s].
+    ``late_s``, ``std_s``: delays behind the sines and their deviations [s]; those of an infinite one do not count,
+    shape (jumps,). ``mean_std_s``: deviation that all have in common [s].
     """
     seen = np.isfinite(std_s)
     late, std = late_s[seen], std_s[seen]

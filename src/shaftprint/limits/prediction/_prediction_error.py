@@ -85,14 +85,8 @@ class PredictionError(WhitenedTerm):
     ) -> "PredictionError":
         """Return the likelihood in which some parameters are free, from values of all on.
 
-        Parameters
-        ----------
-        whole
-            The structure with all limits.
-        values
-            Value of every parameter; those that are not free stay, also beyond their bounds.
-        free
-            Names of the free ones.
+        ``whole``: the structure with all limits. ``values``: value of every parameter; those that are not free stay,
+        also beyond their bounds. ``free``: names of the free ones.
         """
         bounds = {p.name: (p.lower, p.upper) for p in whole.parameters}
         fixed = {name: float(np.clip(values[name], *bounds[name])) for name in whole.names if name not in free}
@@ -135,10 +129,7 @@ class PredictionError(WhitenedTerm):
     def with_scale_at(self, values: FloatArray) -> "PredictionError":
         """Return the term with the innovations of some parameters as its unit.
 
-        Raises
-        ------
-        IdentificationError
-            If the simulation runs away there.
+        Raises IdentificationError if the simulation runs away there.
         """
         at_values = self.innovations(values)
         if at_values is None:

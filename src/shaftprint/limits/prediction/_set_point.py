@@ -36,12 +36,8 @@ def rate_limited(time_s: FloatArray, value: FloatArray, rate_per_s: float) -> Fl
     It moves towards the polyline at the rate until it meets it, and from there with it or, where the polyline is
     faster, again at the rate.
 
-    Parameters
-    ----------
-    time_s, value
-        Corners, the times in order [s]; two of one time are a jump, shape (corners,).
-    rate_per_s
-        Fastest change, in the unit of the values a second.
+    ``time_s``, ``value``: corners, the times in order [s]; two of one time are a jump, shape (corners,).
+    ``rate_per_s``: fastest change, in the unit of the values a second.
     """
     limited = np.empty(value.size)
     _follow(np.diff(time_s), np.asarray(value, dtype=np.float64), float(rate_per_s), limited)

@@ -40,10 +40,7 @@ def rebuilt(node: Formula, parts: tuple[Formula, ...]) -> Formula:
 def replaced(roots: Iterable[Formula], by: Replacement) -> list[Formula]:
     """Return formulas in which some parts stand for others; what replaces is not walked again.
 
-    Parameters
-    ----------
-    by
-        What to put in the place of a part, or None to keep it.
+    ``by``: what to put in the place of a part, or None to keep it.
     """
     roots = list(roots)
     replacements: dict[int, Formula] = {}
@@ -81,10 +78,7 @@ def derivatives(roots: Iterable[Formula], to: Formula) -> list[Formula]:
 def swept(roots: Iterable[Formula], of_leaf: Replacement) -> list[Formula]:
     """Return the derivatives of formulas along a direction.
 
-    Parameters
-    ----------
-    of_leaf
-        Derivative of a leaf; None where it is zero.
+    ``of_leaf``: derivative of a leaf; None where it is zero.
     """
     roots = list(roots)
     slopes_by_node: dict[int, Formula] = {}

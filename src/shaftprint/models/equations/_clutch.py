@@ -17,17 +17,9 @@ from shaftprint.models.equations._formula import Formula, Number, as_formula, cl
 def slipping_clutch(flow: Flow, slip: Formula, capacity: Number, *, stiffness: Number, damping: Number) -> Formula:
     """Return the torque that a clutch transmits, positive with the slip.
 
-    Parameters
-    ----------
-    slip
-        Speed of what drives less that of what is driven.
-    capacity
-        Torque at which the plates slip; 0 where they are apart.
-    stiffness
-        Torque over the angle between both sides while they hold, in units of the capacity over those of the slip times
-        seconds.
-    damping
-        Torque over the slip while they hold, above 0.
+    ``slip``: speed of what drives less that of what is driven. ``capacity``: torque at which the plates slip; 0 where
+    they are apart. ``stiffness``: torque over the angle between both sides while they hold, in units of the capacity
+    over those of the slip times seconds. ``damping``: torque over the slip while they hold, above 0.
     """
     wound = flow.state("clutch")
     spring = as_formula(stiffness) * wound

@@ -30,10 +30,7 @@ _FUNCTIONS = {
 def evaluate(formulas: Sequence[Formula], leaves: Leaves) -> list[Array]:
     """Return the values of formulas.
 
-    Parameters
-    ----------
-    leaves
-        Values of leaves by kind and place, such as ``("state", 0)``, of shapes that broadcast; real or complex.
+    ``leaves``: values of leaves by kind and place, such as ``("state", 0)``, of shapes that broadcast; real or complex.
     """
     values: dict[int, Array] = {}
     with np.errstate(all="ignore"):

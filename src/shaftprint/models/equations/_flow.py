@@ -75,10 +75,7 @@ class Flow:
     def parameter(self, name: str) -> Formula:
         """Return a parameter.
 
-        Raises
-        ------
-        StructureError
-            If there is none of that name.
+        Raises StructureError if there is none of that name.
         """
         if name not in self.parameters:
             raise StructureError(
@@ -90,10 +87,7 @@ class Flow:
     def input(self, name: str) -> Formula:
         """Return an input of the whole structure.
 
-        Raises
-        ------
-        StructureError
-            If it has no input of that name.
+        Raises StructureError if it has no input of that name.
         """
         if name not in self.inputs:
             raise StructureError(f"expected an input {name}, found {', '.join(self.inputs) or 'none'}.")
@@ -143,12 +137,8 @@ class Flow:
     def sampled(self, value: Formula | Callable[[Formula], Formula], period: Number) -> Formula:
         """Return a value that is taken every period and held until the next.
 
-        Parameters
-        ----------
-        value
-            The value, or a function of the last one that was taken.
-        period
-            The period [s]; 0 for every step of the simulation.
+        ``value``: the value, or a function of the last one that was taken. ``period``: the period [s]; 0 for every step
+        of the simulation.
         """
         leaf = Formula("sample", name="sample", place=len(self.samples))
         # its place is taken before the value asks for further ones
@@ -175,10 +165,7 @@ class Flow:
     def close(self, signal: Formula, value: Formula, where: str) -> Formula:
         """Say what an unknown signal is, solving for it in an algebraic loop.
 
-        Raises
-        ------
-        StructureError
-            If the algebraic loop is not linear.
+        Raises StructureError if the algebraic loop is not linear.
         """
         value = self._without_closed(value)
         if depends(value, signal):

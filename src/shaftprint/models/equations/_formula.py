@@ -84,10 +84,7 @@ class Formula:
     def __bool__(self) -> bool:
         """Refuse: a formula is neither true nor false.
 
-        Raises
-        ------
-        StructureError
-            Always.
+        Raises StructureError always.
         """
         raise StructureError(
             "equations: a formula was compared or used in an 'if'; use minimum, maximum, clip or choose instead."
@@ -147,10 +144,7 @@ def number(value: float) -> Formula:
 def as_formula(value: Number) -> Formula:
     """Return a number or a formula as a formula.
 
-    Raises
-    ------
-    StructureError
-        If it is neither.
+    Raises StructureError if it is neither.
     """
     formula = _formula(value)
     if formula is None:
@@ -195,10 +189,7 @@ def multiply(left: Formula, right: Formula) -> Formula:
 def divide(left: Formula, right: Formula) -> Formula:
     """Return a quotient.
 
-    Raises
-    ------
-    StructureError
-        If the denominator is the number zero.
+    Raises StructureError if the denominator is the number zero.
     """
     if right.equals(0.0):
         raise StructureError("equations: division by a formula that is zero; hold its parameters at other values.")

@@ -19,17 +19,9 @@ def deadband(error: Formula, half_width: Number) -> Formula:
 def raised(signal: Formula, exponent: float, *, keeps_sign: bool = False) -> Formula:
     """Return a power of a signal, such as the torque of a propeller or the force of a spring that hardens.
 
-    Parameters
-    ----------
-    exponent
-        1 or more: below, the slope at zero has no end.
-    keeps_sign
-        Whether what is negative stays so: ``sign(u) abs(u)^n``.
-
-    Raises
-    ------
-    StructureError
-        If the exponent is below 1, or no whole number where the sign is not kept.
+    ``exponent``: 1 or more: below, the slope at zero has no end. ``keeps_sign``: whether what is negative stays so:
+    ``sign(u) abs(u)^n``. Raises StructureError if the exponent is below 1, or no whole number where the sign is not
+    kept.
     """
     whole = float(exponent).is_integer()
     if exponent < 1.0 or not (whole or keeps_sign):

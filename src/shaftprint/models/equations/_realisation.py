@@ -42,17 +42,8 @@ def realised(flow: Flow, signal: Formula, ratio: Ratio, name: str) -> Formula:
     is integrated once, twice, ... into ``y = x_1 + b_0 u`` (Kailath, Linear Systems, 1980, section 2.1). Where the
     numerator is of higher order, the changes of the signal are formed from the equations, not from its values.
 
-    Parameters
-    ----------
-    ratio
-        Numerator and denominator, highest power first.
-    name
-        What to call the states.
-
-    Raises
-    ------
-    StructureError
-        If the denominator is zero.
+    ``ratio``: numerator and denominator, highest power first. ``name``: what to call the states. Raises StructureError
+    if the denominator is zero.
     """
     top, bottom = coefficients(ratio[0]), coefficients(ratio[1])
     if bottom[0].equals(0.0):

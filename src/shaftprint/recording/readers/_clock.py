@@ -75,10 +75,7 @@ class SampleClock:
 def kept_clocks(find: Callable[[_Key], SampleClock]) -> Callable[[_Key], SampleClock]:
     """Return what finds the clock that channels share once for all of them, or once why there is none.
 
-    Parameters
-    ----------
-    find
-        Gives the clock of a group of channels, or raises a ``RecordingError``.
+    ``find``: gives the clock of a group of channels, or raises a ``RecordingError``.
     """
     clocks: dict[_Key, SampleClock | RecordingError] = {}
 
@@ -136,15 +133,8 @@ def clock_of_times(path: Path, name: str, count: int, read: Times) -> SampleCloc
     within half a step of a clock, the clock is returned with the times beside it; where they do not, the times with
     the period of their sender, the mean of the steps that are near the median.
 
-    Parameters
-    ----------
-    path, name, count, read
-        As for `uniform_clock`.
-
-    Raises
-    ------
-    RecordingError
-        If the times are neither those of a clock nor those of messages: they go back, or have no usual step.
+    ``path``, ``name``, ``count``, ``read``: as for `uniform_clock`. Raises RecordingError if the times are neither
+    those of a clock nor those of messages: they go back, or have no usual step.
     """
     try:
         clock, off_s = _uniform_clock(path, name, count, read)
@@ -195,20 +185,9 @@ def uniform_clock(path: Path, name: str, count: int, read: Times) -> SampleClock
     The rate is the number of steps over the whole time, rounded to nine digits because printed times are
     rounded too.
 
-    Parameters
-    ----------
-    path, name
-        File and column, for messages.
-    count
-        Number of times.
-    read
-        Gives the times [start, stop) [s].
-
-    Raises
-    ------
-    RecordingError
-        If there are fewer than two times, or steps are not the others' at more places than a logger loses data at;
-        the message names the row.
+    ``path``, ``name``: file and column, for messages. ``count``: number of times. ``read``: gives the times [start,
+    stop) [s]. Raises RecordingError if there are fewer than two times, or steps are not the others' at more places than
+    a logger loses data at; the message names the row.
     """
     clock, _ = _uniform_clock(path, name, count, read)
     return clock
@@ -251,10 +230,7 @@ def _uniform_clock(path: Path, name: str, count: int, read: Times) -> tuple[Samp
 def _holes(path: Path, name: str, count: int, read: Times, step: float) -> tuple[Hole, ...]:
     """Return the places where a step is not the others'.
 
-    Raises
-    ------
-    RecordingError
-        If there are too many of them, a time is not a number, or more is missing than there is.
+    Raises RecordingError if there are too many of them, a time is not a number, or more is missing than there is.
     """
     rows, jumps = _odd_steps(count, read, step)
     if rows.size == 0:

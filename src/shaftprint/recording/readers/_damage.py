@@ -16,22 +16,8 @@ _LARGEST_RATIO = 1100
 def told_as_damage(path: Path, what: str) -> Iterator[io.StringIO]:
     """Turn whatever a library raises on damaged bytes into one sentence, and keep what it prints from every output.
 
-    Parameters
-    ----------
-    path
-        The file.
-    what
-        The format, in words.
-
-    Yields
-    ------
-    io.StringIO
-        What the library said.
-
-    Raises
-    ------
-    RecordingError
-        If the block raises any error.
+    ``path``: the file. ``what``: the format, in words. Yields what the library said. Raises RecordingError if the block
+    raises any error.
     """
     try:
         with quiet() as said:
@@ -55,10 +41,7 @@ def expect_plausible(
 ) -> None:
     """Refuse a channel that promises more samples than its bytes can hold, packed however well.
 
-    Raises
-    ------
-    RecordingError
-        If it does.
+    Raises RecordingError if it does.
     """
     ratio = _LARGEST_RATIO if is_packed else 1
     if samples < 0 or samples * sample_bytes > ratio * max(stored_bytes, 1):

@@ -26,16 +26,8 @@ _ENDS = 4.0
 def pulses_at(name: str, edge_s: FloatArray, *, first_level: int, start_s: float, stop_s: float) -> Channel:
     """Return a channel of pulses between 0 and 1 V with flanks at some edges.
 
-    Parameters
-    ----------
-    name
-        Name of the channel.
-    edge_s
-        When the level changes [s], shape (edges,), ascending.
-    first_level
-        Level before the first edge, 0 or 1.
-    start_s, stop_s
-        From when to when the channel was watched [s].
+    ``name``: name of the channel. ``edge_s``: when the level changes [s], shape (edges,), ascending. ``first_level``:
+    level before the first edge, 0 or 1. ``start_s``, ``stop_s``: from when to when the channel was watched [s].
     """
     rate_hz = _rate_hz(edge_s)
     if edge_s.size:

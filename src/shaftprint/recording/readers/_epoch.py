@@ -25,14 +25,9 @@ def from_second_zero(
 ) -> tuple[dict[str, Channel], datetime | None]:
     """Return channels with times from the first of them on, where they count seconds since 1970, and that date.
 
-    Parameters
-    ----------
-    channels
-        Channels as the file has them; those that begin within three years of their zero are left as they are.
-    has_zone
-        Whether 1970 is that of UTC; else it is that of the place, and the date has no offset.
-    reference_s
-        Date of the zero of those that are left as they are, in seconds since 1970.
+    ``channels``: channels as the file has them; those that begin within three years of their zero are left as they are.
+    ``has_zone``: whether 1970 is that of UTC; else it is that of the place, and the date has no offset.
+    ``reference_s``: date of the zero of those that are left as they are, in seconds since 1970.
     """
     starts = [channel.start_s for channel in channels.values() if channel.start_s > LATER_THAN_ANY_TEST_S]
     zero = datetime(1970, 1, 1, tzinfo=UTC if has_zone else None)
@@ -79,12 +74,8 @@ def from_its_zero(
 
     That of a file which was converted from another is when that was done: all samples then lie before it.
 
-    Parameters
-    ----------
-    channels
-        Channels as the file has them; what begins at its date, or somewhat before it, is left as it is.
-    began
-        The date of second zero.
+    ``channels``: channels as the file has them; what begins at its date, or somewhat before it, is left as it is.
+    ``began``: the date of second zero.
     """
     starts = [channel.start_s for channel in channels.values()]
     first, last = min(starts), max(channel.start_s + channel.duration_s for channel in channels.values())

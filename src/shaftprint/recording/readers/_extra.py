@@ -12,19 +12,8 @@ from shaftprint.recording.readers._library_output import quiet, take_over_loggin
 def library(path: Path, package: str, what: str) -> Any:
     """Import the library that knows a format.
 
-    Parameters
-    ----------
-    path
-        The file that needs it.
-    package
-        Name of its module.
-    what
-        The format, in words.
-
-    Raises
-    ------
-    RecordingError
-        If it is not installed, or does not run on this computer.
+    ``path``: the file that needs it. ``package``: name of its module. ``what``: the format, in words. Raises
+    RecordingError if it is not installed, or does not run on this computer.
     """
     try:
         with quiet():
@@ -40,10 +29,7 @@ def library(path: Path, package: str, what: str) -> Any:
 def expect_library(path: Path, package: str, what: str) -> None:
     """Refuse a file whose library is not installed, without loading it.
 
-    Raises
-    ------
-    RecordingError
-        If it is not.
+    Raises RecordingError if it is not.
     """
     if importlib.util.find_spec(package) is None:
         raise _absent(path, package, what)

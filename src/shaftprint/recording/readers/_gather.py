@@ -42,19 +42,8 @@ class Gathered:
     def recording(self, kind: str, release: Callable[[], None], began: datetime | None = None) -> Recording:
         """Return the recording of these channels.
 
-        Parameters
-        ----------
-        kind
-            Name of the file format.
-        release
-            What closing it does.
-        began
-            Date of second zero.
-
-        Raises
-        ------
-        RecordingError
-            If there is no channel that can be used.
+        ``kind``: name of the file format. ``release``: what closing it does. ``began``: date of second zero. Raises
+        RecordingError if there is no channel that can be used.
         """
         return self._recording(self.expect_some(), kind, release, began)
 
@@ -87,10 +76,7 @@ class Gathered:
     def expect_some(self) -> Mapping[str, Channel]:
         """Return the channels.
 
-        Raises
-        ------
-        RecordingError
-            If there is none; the message says why those that there are were left out.
+        Raises RecordingError if there is none; the message says why those that there are were left out.
         """
         if self.channels:
             return self.channels
@@ -106,12 +92,7 @@ class Gathered:
 def reasons_in_words(left_out: Mapping[str, str], *, most: int) -> str:
     """Return why the first things were left out, in one line; empty where nothing was.
 
-    Parameters
-    ----------
-    left_out
-        Why, a sentence each, by name.
-    most
-        How many are listed.
+    ``left_out``: why, a sentence each, by name. ``most``: how many are listed.
     """
     return "; ".join(f"{name}: {reason.rstrip('.')}" for name, reason in list(left_out.items())[:most])
 
@@ -119,10 +100,7 @@ def reasons_in_words(left_out: Mapping[str, str], *, most: int) -> str:
 def unique_names(named: "list[tuple[str, str]]") -> list[str]:
     """Return one name a channel: its own where that is the only one, else that of its group in front.
 
-    Parameters
-    ----------
-    named
-        Group and name of every channel.
+    ``named``: group and name of every channel.
     """
     plain = [printable(name.replace("/", "|")) or "unnamed" for _, name in named]
     return told_apart(
@@ -140,12 +118,7 @@ def _in_brackets(name: str, number: int) -> str:
 def told_apart(names: Sequence[str], *, numbered: Callable[[str, int], str] = _in_brackets) -> list[str]:
     """Return names of which each stands once; those that come again get a number.
 
-    Parameters
-    ----------
-    names
-        The names; empty ones stay so.
-    numbered
-        Returns a name with a number.
+    ``names``: the names; empty ones stay so. ``numbered``: returns a name with a number.
     """
     unique: list[str] = []
     for name in names:

@@ -12,10 +12,7 @@ from shaftprint.errors import RecordingError
 def expect_hints(path: Path, hints: Mapping[str, object], accepted: Mapping[str, type | tuple[type, ...]]) -> None:
     """Refuse hints that a reader does not know or that are of the wrong type.
 
-    Raises
-    ------
-    RecordingError
-        If a hint is unknown or of the wrong type.
+    Raises RecordingError if a hint is unknown or of the wrong type.
     """
     for name, value in hints.items():
         if name not in accepted:
@@ -29,10 +26,7 @@ def rate_hint(
 ) -> float | None:
     """Return the hint ``sample_rate_hz`` [Hz], if given; besides it only ``others`` are accepted.
 
-    Raises
-    ------
-    RecordingError
-        If it is not a positive number, or a hint is given that is not known.
+    Raises RecordingError if it is not a positive number, or a hint is given that is not known.
     """
     expect_hints(path, hints, {**others, "sample_rate_hz": (int, float)})
     if "sample_rate_hz" not in hints:

@@ -19,13 +19,7 @@ class _Routed:
     """A standard stream that takes the words of a thread within `quiet` away, and passes those of others on."""
 
     def __init__(self, stream: TextIO) -> None:
-        """Stand before a stream.
-
-        Parameters
-        ----------
-        stream
-            The stream.
-        """
+        """Stand before a stream."""
         self.stream = stream
 
     def write(self, text: str) -> int:
@@ -69,10 +63,7 @@ _undo: contextlib.ExitStack = contextlib.ExitStack()
 def quiet() -> Iterator[io.StringIO]:
     """Keep what libraries print, log and warn of away from every output; other threads go on printing.
 
-    Yields
-    ------
-    io.StringIO
-        What they said, letters of a file as they are: what a user must know of it is the reader's to tell.
+    Yields what they said, letters of a file as they are: what a user must know of it is the reader's to tell.
     """
     outer = _said()
     said = _OF_THREAD.said = io.StringIO()

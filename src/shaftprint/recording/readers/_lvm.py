@@ -63,10 +63,7 @@ def read(path: Path, **hints: object) -> Recording:
     Hints: ``sample_rate_hz``, where neither times nor a step are in the file. Comments and special blocks are left out.
     Segments follow each other by their times: what is missing between them becomes values that are not numbers.
 
-    Raises
-    ------
-    RecordingError
-        If a head or a row cannot be used.
+    Raises RecordingError if a head or a row cannot be used.
     """
     rate_hz = rate_hint(path, hints)
     try:

@@ -56,10 +56,7 @@ def read(path: Path, **hints: object) -> Recording:
     Samples that the file marks as invalid become values that are not numbers. Hints: ``sample_rate_hz`` for groups
     without times; ``dbc``, the DBC file that says what the raw messages of a CAN bus hold.
 
-    Raises
-    ------
-    RecordingError
-        If the file is damaged or no channel can be used.
+    Raises RecordingError if the file is damaged or no channel can be used.
     """
     rate = rate_hint(path, hints, {"dbc": (str, Path)})
     database = database_of(hints)
@@ -178,10 +175,7 @@ def _gather(
 def _frames(path: Path, file: Any, records: MdfRecords, database: Database) -> Decoded | None:
     """Return what the frames of a CAN bus hold; None where there are none.
 
-    Raises
-    ------
-    RecordingError
-        If there is a DBC file and it knows none of them, or there are none.
+    Raises RecordingError if there is a DBC file and it knows none of them, or there are none.
     """
     has_frames = any(holds_frames(group) and int(group.channel_group.cycles_nr) for group in file.groups)
     if not has_frames and not database.name:

@@ -20,11 +20,8 @@ class MdfRecords:
     def __init__(self, file: Any) -> None:
         """Take over nothing: whoever opened the file closes it.
 
-        Parameters
-        ----------
-        file
-            The library's open file, which must have been opened from a file object: from a path it reads the whole
-            channel for every piece of it.
+        ``file``: the library's open file, which must have been opened from a file object: from a path it reads the
+        whole channel for every piece of it.
         """
         self._file = file
         self._kept: dict[tuple[int, int, int], list[Any]] = {}
@@ -32,14 +29,8 @@ class MdfRecords:
     def samples(self, group: int, index: int, start: int, stop: int, *, raw: bool) -> tuple[NDArray[Any], Any]:
         """Return the samples [start, stop) of a channel, and which of them are invalid or None.
 
-        Parameters
-        ----------
-        group, index
-            The channel.
-        start, stop
-            Which samples.
-        raw
-            Whether the channel's conversion is left out.
+        ``group``, ``index``: the channel. ``start``, ``stop``: which samples. ``raw``: whether the channel's conversion
+        is left out.
         """
         if stop == start:
             # the library takes no count for all of them
@@ -78,19 +69,8 @@ class MdfRecords:
 def expect_in_record(path: Path, name: str, described: Any, channel: Any) -> None:
     """Refuse a channel that does not lie within its records: the library's C code would write beyond its memory.
 
-    Parameters
-    ----------
-    path, name
-        File and channel, for messages.
-    described
-        The library's channel group.
-    channel
-        The library's channel.
-
-    Raises
-    ------
-    RecordingError
-        If it begins or ends outside.
+    ``path``, ``name``: file and channel, for messages. ``described``: the library's channel group. ``channel``: the
+    library's channel. Raises RecordingError if it begins or ends outside.
     """
     if hasattr(channel, "start_offset"):
         # MDF 3, block CN: bits from the beginning of the record, and bytes to be added

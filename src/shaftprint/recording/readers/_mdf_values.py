@@ -36,10 +36,7 @@ def is_worked_out_here(conversion: Any, *, is_v4: bool) -> bool:
 def by_formula(conversion: Any, counts: NDArray[Any]) -> FloatArray:
     """Return the values of counts by the formula of a conversion.
 
-    Raises
-    ------
-    RecordingError
-        If it cannot be worked out.
+    Raises RecordingError if it cannot be worked out.
     """
     numexpr = importlib.import_module("numexpr")
     text = str(conversion.formula).strip(" \t\r\n\0")
@@ -74,17 +71,8 @@ def numbers_of(conversion: Any, counts: NDArray[Any]) -> FloatArray:
 
     A table of texts alone is a list of states, of which the counts are the numbers; "not available" is none of them.
 
-    Parameters
-    ----------
-    conversion
-        The library's conversion, or None.
-    counts
-        What the file holds, without conversion.
-
-    Raises
-    ------
-    RecordingError
-        If it turns texts into something, or bits into texts.
+    ``conversion``: the library's conversion, or None. ``counts``: what the file holds, without conversion. Raises
+    RecordingError if it turns texts into something, or bits into texts.
     """
     values = np.empty(len(counts))
     kind = -1 if conversion is None else int(conversion.conversion_type)

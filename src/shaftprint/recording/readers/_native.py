@@ -50,10 +50,7 @@ def has_mark(path: Path) -> bool:
 def read(path: Path, **hints: object) -> Recording:
     """Open a native container; blocks are read and unpacked as channels are asked for them.
 
-    Raises
-    ------
-    RecordingError
-        If the file is damaged, of a later version, or lacks an attribute.
+    Raises RecordingError if the file is damaged, of a later version, or lacks an attribute.
     """
     expect_hints(path, hints, {})
     content = hashed(path)
@@ -167,10 +164,7 @@ def _source(path: Path, name: str, dataset: Any) -> Callable[[int, int], NDArray
 def _times(path: Path, name: str, dataset: Any, group: Any) -> Times | None:
     """Return what gives the times of a channel that has its own; they never go back.
 
-    Raises
-    ------
-    RecordingError
-        If they are missing, or not one for each sample.
+    Raises RecordingError if they are missing, or not one for each sample.
     """
     stated = dataset.attrs.get(TIMES)
     if stated is None:

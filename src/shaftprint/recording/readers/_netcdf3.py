@@ -33,10 +33,7 @@ def read(path: Path, **hints: object) -> Recording:
 
     Hints: ``sample_rate_hz`` where the file has no clock; ``time_unit`` of times without a unit.
 
-    Raises
-    ------
-    RecordingError
-        If the file is damaged or no channel can be used.
+    Raises RecordingError if the file is damaged or no channel can be used.
     """
     rate, unit = rate_hint(path, hints, {"time_unit": str}), expect_time_unit(path, hints.get("time_unit"))
     with told_as_damage(path, NAME):

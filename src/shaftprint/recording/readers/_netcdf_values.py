@@ -41,10 +41,7 @@ class CountRule:
     def of(cls, attributes: Mapping[str, Any], dtype: np.dtype[Any], *, unwritten: float | None = None) -> Self:
         """Return the rule of a variable by its attributes; ``unwritten`` is no value where no attribute says another.
 
-        Raises
-        ------
-        ValueError
-            If an attribute holds no number.
+        Raises ValueError if an attribute holds no number.
         """
         numbers = {name: np.asarray(attributes[name]).ravel() for name in _NUMBERS if name in attributes}
         scale, offset = (float(numbers[key][0]) if key in numbers else usual for key, usual in _PACKED)

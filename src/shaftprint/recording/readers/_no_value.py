@@ -16,12 +16,8 @@ _ERROR = re.compile(
 def codes_without_value(texts: Iterable[tuple[float, str]], *, is_list: bool) -> frozenset[float]:
     """Return the codes of a table of texts that stand for no value.
 
-    Parameters
-    ----------
-    texts
-        Codes and what they are called.
-    is_list
-        Whether every code has its text, as those of a switch: "error" is then one of its states.
+    ``texts``: codes and what they are called. ``is_list``: whether every code has its text, as those of a switch:
+    "error" is then one of its states.
     """
     return frozenset(
         code for code, text in texts if _NOT_AVAILABLE.search(text) or (not is_list and _ERROR.search(text))

@@ -14,12 +14,7 @@ class Opened:
     def __init__(self, path: Path, close: Callable[[], object]) -> None:
         """Take over an open file.
 
-        Parameters
-        ----------
-        path
-            The file, for messages.
-        close
-            What releases it.
+        ``path``: the file, for messages. ``close``: what releases it.
         """
         self._path = path
         self._close = close
@@ -30,10 +25,7 @@ class Opened:
     def reading(self, name: str) -> Iterator[None]:
         """Let one thread at a time read: signals are prepared in several, and a file has one place to read from.
 
-        Raises
-        ------
-        RecordingError
-            If the file has been closed.
+        Raises RecordingError if the file has been closed.
         """
         with self._turn:
             self.expect_open(name)
@@ -42,10 +34,7 @@ class Opened:
     def expect_open(self, name: str) -> None:
         """Refuse to read a channel of a file that has been closed.
 
-        Raises
-        ------
-        RecordingError
-            If it has been.
+        Raises RecordingError if it has been.
         """
         if not self._is_open:
             raise RecordingError(f"{self._path}, channel {name}: the recording has been closed already.")

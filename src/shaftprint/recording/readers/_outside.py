@@ -18,17 +18,8 @@ GROUP = "shaftprint.readers"
 def read_outside(path: Path, **hints: object) -> Recording | None:
     """Return the recording of the first outside reader that knows a file; None where none does.
 
-    Parameters
-    ----------
-    path
-        The file.
-    hints
-        What the file does not say; passed on where there are any.
-
-    Raises
-    ------
-    RecordingError
-        If a reader cannot be loaded, or fails in another way than with this error.
+    ``path``: the file. ``hints``: what the file does not say; passed on where there are any. Raises RecordingError if a
+    reader cannot be loaded, or fails in another way than with this error.
     """
     for name, function in _functions():
         try:

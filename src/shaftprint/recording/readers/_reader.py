@@ -21,16 +21,7 @@ class Reader(Protocol):
     def read(self, path: Path, **hints: object) -> Recording:
         """Open a file of this format, read only.
 
-        Parameters
-        ----------
-        path
-            A file that exists and is not empty.
-        hints
-            What the file does not say; each reader names those that it knows.
-
-        Raises
-        ------
-        RecordingError
-            If the file cannot be read or does not say enough.
+        ``path``: a file that exists and is not empty. ``hints``: what the file does not say; each reader names those
+        that it knows. Raises RecordingError if the file cannot be read or does not say enough.
         """
         ...

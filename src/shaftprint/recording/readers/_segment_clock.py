@@ -23,21 +23,9 @@ def clock_of_segments(
 ) -> SampleClock:
     """Return the clock of all segments; its rate is the printed one where the times agree with that.
 
-    Parameters
-    ----------
-    path, name
-        File and channel, for messages.
-    pieces
-        Times of each segment [s].
-    rate_hz
-        The rate that the heads print [Hz], where they do.
-    remarks
-        Gets a sentence on what is missing between segments.
-
-    Raises
-    ------
-    RecordingError
-        If the times are those of no clock and no sender.
+    ``path``, ``name``: file and channel, for messages. ``pieces``: times of each segment [s]. ``rate_hz``: the rate
+    that the heads print [Hz], where they do. ``remarks``: gets a sentence on what is missing between segments. Raises
+    RecordingError if the times are those of no clock and no sender.
     """
     seconds = np.concatenate(pieces)
     decimal_s = _DECIMALS * (printed_step(seconds[:_JUDGED]) or _FINEST_S)

@@ -135,10 +135,7 @@ def is_capital(name: str) -> bool:
 def expect_time_unit(path: Path, unit: object) -> str:
     """Return the hint ``time_unit``, empty where it is not given.
 
-    Raises
-    ------
-    RecordingError
-        If it is no unit of time.
+    Raises RecordingError if it is no unit of time.
     """
     text = "" if unit is None else str(unit)
     if text and seconds_in(text) is None:
@@ -149,21 +146,10 @@ def expect_time_unit(path: Path, unit: object) -> str:
 def time_scale(path: Path, name: str, count: int, read: Times, *, unit: str = "", asked: str = "") -> TimeScale:
     """Return what the numbers of a column of times mean.
 
-    Parameters
-    ----------
-    path, name
-        File and column, for messages.
-    count, read
-        How many numbers there are, and what gives those of the rows [start, stop).
-    unit
-        Unit that the file gives, such as ``ms`` or ``seconds since 2026-03-05 09:00``; empty where it gives none.
-    asked
-        Unit that the caller gives, which holds before the file's.
-
-    Raises
-    ------
-    RecordingError
-        If the unit is none of time, or there is none and the numbers may be in several.
+    ``path``, ``name``: file and column, for messages. ``count``, ``read``: how many numbers there are, and what gives
+    those of the rows [start, stop). ``unit``: unit that the file gives, such as ``ms`` or ``seconds since 2026-03-05
+    09:00``; empty where it gives none. ``asked``: unit that the caller gives, which holds before the file's. Raises
+    RecordingError if the unit is none of time, or there is none and the numbers may be in several.
     """
     where = f"{path}, {name}"
     numbers = np.asarray(read(0, min(count, _FIRST)), dtype=np.float64)

@@ -55,10 +55,7 @@ def read(path: Path, **hints: object) -> Recording:
 
     Hints: ``sample_rate_hz``, in place of that which follows from the printed step.
 
-    Raises
-    ------
-    RecordingError
-        If the file is damaged, or holds no functions of time.
+    Raises RecordingError if the file is damaged, or holds no functions of time.
     """
     rate_hz = rate_hint(path, hints)
     pyuff = library(path, "pyuff", "universal")
@@ -84,10 +81,7 @@ def _is_cut(path: Path) -> bool:
 
     Binary data sets of another size than their heads say are refused: their numbers would be read in the wrong width.
 
-    Raises
-    ------
-    RecordingError
-        If there is one.
+    Raises RecordingError if there is one.
     """
     content = path.read_bytes()
     is_cut = not content.rstrip().endswith(_MARK)

@@ -61,25 +61,9 @@ def gather_vectors(
 ) -> Gathered:
     """Make a channel of every vector that is no time, each on its own clock, that of its group or the whole file.
 
-    Parameters
-    ----------
-    path
-        The file, for messages.
-    vectors
-        What it holds.
-    scalars
-        Numbers by group and name.
-    rate_hz
-        Sample rate that the caller knows [Hz].
-    time_unit
-        Unit of the times that the caller knows.
-    left_out
-        Why other variables cannot be used.
-
-    Raises
-    ------
-    RecordingError
-        If a group has two times or two rates that disagree.
+    ``path``: the file, for messages. ``vectors``: what it holds. ``scalars``: numbers by group and name. ``rate_hz``:
+    sample rate that the caller knows [Hz]. ``time_unit``: unit of the times that the caller knows. ``left_out``: why
+    other variables cannot be used. Raises RecordingError if a group has two times or two rates that disagree.
     """
     gathered = Gathered(path=path, left_out=dict(left_out or {}))
     axes = {vector.axis for vector in vectors if vector.axis}

@@ -25,15 +25,8 @@ _HALF_NANOSECOND = 5e-10
 def write_bus_log(path: Path, sent: Sequence[Sent], *, began: datetime | None, overwrite: bool) -> tuple[str, ...]:
     """Write messages in the order of their times as BLF, ASC or candump, by the ending, and the DBC file beside it.
 
-    Returns
-    -------
-    remarks
-        What the log does not hold, a sentence each.
-
-    Raises
-    ------
-    RecordingError
-        If python-can or canmatrix is not installed, or a file cannot be written.
+    Returns what the log does not hold, a sentence each. Raises RecordingError if python-can or canmatrix is not
+    installed, or a file cannot be written.
     """
     can, canmatrix = library(path, "can", _KIND), library(path, "canmatrix", "DBC")
     first_s = first_time_s(sent)

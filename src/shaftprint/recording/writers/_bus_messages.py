@@ -133,14 +133,7 @@ def own_signal(channel: Channel, name: str, *, start: int) -> Signal:
     Counts of 16 bits stay what they are. Other values get the step that senders use, or the smallest power of two with
     which all of them have a count.
 
-    Parameters
-    ----------
-    channel
-        The channel.
-    name
-        Its name in the message.
-    start
-        First bit.
+    ``name``: its name in the message. ``start``: first bit.
     """
     is_counts = channel.holds_counts
     lowest_count, highest_count = (_INT16.min, _INT16.max) if is_counts else (0, _LAST_VALUE)

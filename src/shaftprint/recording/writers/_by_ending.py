@@ -61,10 +61,7 @@ _FORMATS = (
 def expect_known_ending(path: Path, *, format: str | None = None) -> None:
     """Refuse a file whose ending names no format that can be written, or another than the one that is asked for.
 
-    Raises
-    ------
-    RecordingError
-        If it does; the message lists the endings.
+    Raises RecordingError if it does; the message lists the endings.
     """
     _format_of(path, format)
 

@@ -44,23 +44,9 @@ def own_message(
 ) -> Sent:
     """Return a message of the maker's own that holds some channels of one clock.
 
-    Parameters
-    ----------
-    path
-        The file, for messages.
-    channels, names
-        The channels and what they are called in the message.
-    number
-        Number of the message.
-    begin
-        First byte that holds a channel.
-    sender
-        Address of the sender.
-
-    Raises
-    ------
-    RecordingError
-        If there are more messages than such groups.
+    ``path``: the file, for messages. ``channels``, ``names``: the channels and what they are called in the message.
+    ``number``: number of the message. ``begin``: first byte that holds a channel. ``sender``: address of the sender.
+    Raises RecordingError if there are more messages than such groups.
     """
     if OWN_GROUP + number > _LAST_GROUP:
         raise RecordingError(

@@ -15,10 +15,7 @@ _TAKEN = ("sample_rate_hz", "start_s", "time", "t", "fs")
 def expect_matlab_names(path: Path, names: Iterable[str]) -> None:
     """Refuse names that MATLAB or the reader would not take as those of channels.
 
-    Raises
-    ------
-    RecordingError
-        If a name cannot be a MATLAB variable or means the clock.
+    Raises RecordingError if a name cannot be a MATLAB variable or means the clock.
     """
     for name in names:
         if not _NAME.fullmatch(name) or name in _TAKEN:

@@ -22,21 +22,9 @@ def write_mdf4(
 ) -> None:
     """Write channels, each on its own clock, as MDF 4.10; channels on one clock share a group.
 
-    Parameters
-    ----------
-    path
-        The file to write, whole or not at all.
-    channels
-        Channels of any recording; counts are written as counts with their scale.
-    began
-        Date of second 0, where it is known.
-    overwrite
-        Whether a file of that name may be replaced.
-
-    Raises
-    ------
-    RecordingError
-        If asammdf is not installed or the file cannot be written.
+    ``path``: the file to write, whole or not at all. ``channels``: channels of any recording; counts are written as
+    counts with their scale. ``began``: date of second 0, where it is known. ``overwrite``: whether a file of that name
+    may be replaced. Raises RecordingError if asammdf is not installed or the file cannot be written.
     """
     path = Path(path)
     asammdf = library(path, "asammdf", "MDF")

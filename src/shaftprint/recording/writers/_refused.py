@@ -12,10 +12,7 @@ from shaftprint.files import reason
 def told_as_refused(path: Path) -> Iterator[None]:
     """Turn what the system raises while a file is written into one sentence.
 
-    Raises
-    ------
-    RecordingError
-        If the block raises an error of the system.
+    Raises RecordingError if the block raises an error of the system.
     """
     try:
         yield

@@ -13,10 +13,7 @@ _LOOKED_THROUGH = 4096
 def expect_channels(path: Path, channels: Sequence[Channel]) -> None:
     """Check that there is a channel.
 
-    Raises
-    ------
-    RecordingError
-        If there is none.
+    Raises RecordingError if there is none.
     """
     if not channels:
         raise RecordingError(f"{path}: expected at least one channel to write, found none.")
@@ -25,10 +22,7 @@ def expect_channels(path: Path, channels: Sequence[Channel]) -> None:
 def on_one_clock(path: Path, channels: Iterable[Channel]) -> tuple[Channel, ...]:
     """Return the channels if all have the same rate, start and number of samples.
 
-    Raises
-    ------
-    RecordingError
-        If there is no channel or their clocks differ.
+    Raises RecordingError if there is no channel or their clocks differ.
     """
     shared = tuple(channels)
     expect_channels(path, shared)
@@ -58,12 +52,7 @@ def by_clock(channels: Iterable[Channel]) -> list[list[Channel]]:
 def in_parts(channels: Sequence[Channel], length_s: float) -> Iterator[list[Channel]]:
     """Yield the channels in parts of so many seconds; those that have begun late or ended are empty there.
 
-    Parameters
-    ----------
-    channels
-        Channels of any recording.
-    length_s
-        Length of each part [s].
+    ``channels``: channels of any recording. ``length_s``: length of each part [s].
     """
     stops = [0] * len(channels)
     while any(stop < one.count for one, stop in zip(channels, stops, strict=True)):
@@ -91,17 +80,8 @@ def _stop_of(channel: Channel, first: int, end_s: float) -> int:
 def expect_no_messages(path: Path, channel: Channel, *, on: str) -> None:
     """Check that a channel lies on a clock, as in a format that keeps no time of each sample.
 
-    Parameters
-    ----------
-    path, channel
-        The file to write, and what into.
-    on
-        On what the format has its channels, in words.
-
-    Raises
-    ------
-    RecordingError
-        If it holds messages at times of their own.
+    ``path``, ``channel``: the file to write, and what into. ``on``: on what the format has its channels, in words.
+    Raises RecordingError if it holds messages at times of their own.
     """
     if channel.is_uneven:
         raise RecordingError(

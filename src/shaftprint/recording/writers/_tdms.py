@@ -24,21 +24,10 @@ def write_tdms(
 ) -> None:
     """Write channels, each on its own clock, as TDMS.
 
-    Parameters
-    ----------
-    path
-        The file to write, whole or not at all.
-    channels
-        Channels of any recording; counts are written as counts with their scale.
-    began
-        Date of second 0 with its offset from UTC, where it is known.
-    overwrite
-        Whether a file of that name may be replaced.
-
-    Raises
-    ------
-    RecordingError
-        If npTDMS is not installed or the file cannot be written.
+    ``path``: the file to write, whole or not at all. ``channels``: channels of any recording; counts are written as
+    counts with their scale. ``began``: date of second 0 with its offset from UTC, where it is known. ``overwrite``:
+    whether a file of that name may be replaced. Raises RecordingError if npTDMS is not installed or the file cannot be
+    written.
     """
     path = Path(path)
     nptdms = library(path, "nptdms", "TDMS")

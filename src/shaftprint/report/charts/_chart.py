@@ -65,10 +65,7 @@ class Chart:
     def __post_init__(self) -> None:
         """Refuse a chart without a panel, and rows that the panels do not fill.
 
-        Raises
-        ------
-        ValueError
-            If there is no panel, or no column.
+        Raises ValueError if there is no panel, or no column.
         """
         if not self.panels or self.columns < 1:
             raise ValueError(f"chart: expected panels in columns, found {len(self.panels)} in {self.columns}.")

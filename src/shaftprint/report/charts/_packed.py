@@ -53,10 +53,7 @@ def line_data(x: FloatArray, y: FloatArray) -> Json:
 def plain_json(content: object) -> object:
     """Return content that JSON has: numbers of NumPy as Python's, none that is not finite, tuples as lists.
 
-    Raises
-    ------
-    TypeError
-        If there is anything else.
+    Raises TypeError if there is anything else.
     """
     match content:
         case np.generic():

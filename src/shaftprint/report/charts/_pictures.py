@@ -15,12 +15,8 @@ DRAWING = "shaftprint.report.charts._matplotlib"
 def draw(chart: Chart, *, size_cm: tuple[float, float] | None = None) -> "Figure":
     """Return a chart as a figure of matplotlib, which belongs to nobody else.
 
-    Parameters
-    ----------
-    chart
-        What is drawn.
-    size_cm
-        Width and height [cm]; as wide as a text and as high as on a page where they are not given.
+    ``chart``: what is drawn. ``size_cm``: width and height [cm]; as wide as a text and as high as on a page where they
+    are not given.
     """
     figure: Figure = importlib.import_module(DRAWING).drawn(chart, size_cm)
     return figure

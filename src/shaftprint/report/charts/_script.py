@@ -17,10 +17,7 @@ _SHEET = re.compile(rb'document\.getElementById\("([0-9a-f]{64})"\)')
 def plotly_script() -> bytes:
     """Return plotly's script as it lies in the installed package; the package itself, slow to import, is not imported.
 
-    Raises
-    ------
-    ReportError
-        If the package is not installed or does not hold the script.
+    Raises ReportError if the package is not installed or does not hold the script.
     """
     spec = find_spec(PACKAGE)
     places = [] if spec is None else list(spec.submodule_search_locations or ())

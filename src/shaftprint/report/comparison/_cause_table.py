@@ -14,12 +14,7 @@ MOST_ODDS = 1000.0
 def cause_table(name: str, finding: "Finding") -> Table:
     """Return every cause with its size, score and odds: of each change that was seen, else of what comes nearest.
 
-    Parameters
-    ----------
-    name
-        Name of the later test.
-    finding
-        What was found.
+    ``name``: name of the later test. ``finding``: what was found.
     """
     changes = finding.changes or (() if finding.nearest is None else (finding.nearest,))
     rows = [_cells(change, one, at) for change in changes for at, one in enumerate(change.candidates)]

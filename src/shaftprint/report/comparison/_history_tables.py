@@ -19,12 +19,7 @@ NOT_THERE = "–"
 def course_table(finding: "WatchFinding", history: "History") -> Table:
     """Return the best course of each cause, of each change that was seen, else of what comes nearest.
 
-    Parameters
-    ----------
-    finding
-        What was found.
-    history
-        The tests in which it was found.
+    ``finding``: what was found. ``history``: the tests in which it was found.
     """
     drifts = finding.drifts or (() if finding.nearest is None else (finding.nearest,))
     days = [f"{test.at:%Y-%m-%d}" for test in history.tests]
@@ -60,12 +55,8 @@ def _size(one: "DatedCause") -> str:
 def history_table(history: "History", sizes: "Mapping[str, Sequence[SizedCause | None]]") -> Table:
     """Return every test with the size of the causes that vary most, and what was done to the ship, in order of time.
 
-    Parameters
-    ----------
-    history
-        The tests, and what was done to the ship.
-    sizes
-        Size of each cause against the first test, by the name of the cause, in the order of the tests.
+    ``history``: the tests, and what was done to the ship. ``sizes``: size of each cause against the first test, by the
+    name of the cause, in the order of the tests.
     """
     largest = {name: max((abs(one.score) for one in column if one), default=0.0) for name, column in sizes.items()}
     chosen = sorted(largest, key=lambda name: -largest[name])[:MOST_CAUSES]

@@ -15,10 +15,7 @@ NOT_THERE = "–"
 def sister_table(finding: "ClassFinding") -> Table:
     """Return every ship of a class with what is most likely other in it, the clearest first.
 
-    Parameters
-    ----------
-    finding
-        What was found.
+    ``finding``: what was found.
     """
     rows = []
     for ship in sorted(finding.ships, key=lambda one: one.change.p_value):
@@ -54,10 +51,7 @@ def sister_table(finding: "ClassFinding") -> Table:
 def cause_spread_table(finding: "ClassFinding") -> Table:
     """Return how much sister ships differ along each cause.
 
-    Parameters
-    ----------
-    finding
-        What was found.
+    ``finding``: what was found.
     """
     rows = []
     for spread in finding.causes:
@@ -75,10 +69,7 @@ def cause_spread_table(finding: "ClassFinding") -> Table:
 def number_spread_table(finding: "ClassFinding") -> Table:
     """Return the mean of each number, how much sisters differ in it, and who is outside.
 
-    Parameters
-    ----------
-    finding
-        What was found.
+    ``finding``: what was found.
     """
     return Table(
         title="Numbers of the class",

@@ -22,12 +22,7 @@ MOVING = ": normalised numbers, which move with the working point"
 def difference_table(first: str, other: str, found: "Sequence[Difference]") -> Table:
     """Return every number that two fingerprints share with its difference, interval and significance.
 
-    Parameters
-    ----------
-    first, other
-        Names of the two.
-    found
-        Their differences.
+    ``first``, ``other``: names of the two. ``found``: their differences.
     """
     rows = tuple(
         (

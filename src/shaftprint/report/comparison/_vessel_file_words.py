@@ -21,10 +21,7 @@ NOT_STATED = "not stated"
 def vessel_file_sentences(first: "Fingerprint", other: "Fingerprint") -> tuple[str, ...]:
     """Return in sentences where the vessel files of two tests differ, and which errors the tests have in common.
 
-    Parameters
-    ----------
-    first, other
-        Two fingerprints.
+    ``first``, ``other``: two fingerprints.
     """
     shared = shared_errors(first, other)
     sentences = [_files(shared.changes)]
@@ -60,10 +57,7 @@ def _files(changes: "Sequence[FieldChange] | None") -> str:
 def vessel_file_table(fingerprints: "Mapping[str, Fingerprint]") -> Table:
     """Return all fields in which the vessel files of some fingerprints are not all the same; no row where none is.
 
-    Parameters
-    ----------
-    fingerprints
-        Fingerprints by name; those of an earlier version, which do not hold the fields, are left out.
+    ``fingerprints``: fingerprints by name; those of an earlier version, which do not hold the fields, are left out.
     """
     fields_of = {name: f.vessel_fields for name, f in fingerprints.items() if f.vessel_fields}
     fields = dict.fromkeys(field for stated in fields_of.values() for field in stated)

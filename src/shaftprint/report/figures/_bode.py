@@ -115,14 +115,8 @@ def columns_chart(
 ) -> Chart:
     """Return Bode diagrams side by side, under one legend.
 
-    Parameters
-    ----------
-    columns
-        What is drawn, from the left.
-    aliasing_limit_hz
-        Half the pulse rate of the speed sensor [Hz].
-    below
-        A further panel below each column, or none.
+    ``columns``: what is drawn, from the left. ``aliasing_limit_hz``: half the pulse rate of the speed sensor [Hz].
+    ``below``: a further panel below each column, or none.
     """
     pairs = [_panels(column, aliasing_limit_hz, is_first=number == 0) for number, column in enumerate(columns)]
     rows = [*zip(*pairs, strict=True), tuple(below)]

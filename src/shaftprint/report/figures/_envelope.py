@@ -42,12 +42,8 @@ def envelope(time_s: FloatArray, values: FloatArray, *, stretches: int = STRETCH
 def extremes(values: FloatArray, *, stretches: int = STRETCHES) -> NDArray[np.intp]:
     """Return which samples are the smallest and the largest of each stretch, shape (at most 2 * stretches,).
 
-    Parameters
-    ----------
-    values
-        Samples in the order of time, shape (samples,).
-    stretches
-        Number of stretches; of a signal of at most twice as many samples all are returned.
+    ``values``: samples in the order of time, shape (samples,). ``stretches``: number of stretches; of a signal of at
+    most twice as many samples all are returned.
     """
     if values.size <= 2 * stretches:
         return np.arange(values.size)

@@ -68,12 +68,7 @@ def step_chart(
 def measured_step(signals: "Signals", duration_s: float) -> "dict[str, tuple[FloatArray, FloatArray]]":
     """Return time [s] and response of speed and torque after the smallest step, over the height of the step.
 
-    Parameters
-    ----------
-    signals
-        The prepared recording.
-    duration_s
-        Time after the step [s].
+    ``signals``: the prepared recording. ``duration_s``: time after the step [s].
     """
     heights = [abs(_height(signals, step)) for step in signals.step_delays]
     if not heights or not min(heights) > 0.0:

@@ -38,18 +38,8 @@ def write_pdf(
 ) -> None:
     """Write a report's first pages as PDF of A4.
 
-    Parameters
-    ----------
-    path
-        The file.
-    title, subtitle
-        Heading.
-    cover
-        The first page.
-    sections
-        What follows; those that are folded are left out.
-    ending
-        Last line.
+    ``path``: the file. ``title``, ``subtitle``: heading. ``cover``: the first page. ``sections``: what follows; those
+    that are folded are left out. ``ending``: last line.
     """
     looks = make_looks()
     story: list[Any] = [looks.paragraph(title, "title"), looks.paragraph(subtitle, "text")]

@@ -34,21 +34,9 @@ if TYPE_CHECKING:
 def render_plan(directory: str | Path, test: "PlannedTest", *, overwrite: bool = False) -> Path:
     """Write the page of a planned test, ``index.html`` with its charts; return its path.
 
-    Parameters
-    ----------
-    directory
-        Where the page goes; made if it does not exist. Other files there are left alone.
-    test
-        The planned test.
-    overwrite
-        Whether an earlier page there may be replaced.
-
-    Raises
-    ------
-    FileExistsError
-        If there is a page already and ``overwrite`` is false.
-    ReportError
-        If plotly is not installed.
+    ``directory``: where the page goes; made if it does not exist. Other files there are left alone. ``test``: the
+    planned test. ``overwrite``: whether an earlier page there may be replaced. Raises FileExistsError if there is a
+    page already and ``overwrite`` is false; ReportError if plotly is not installed.
     """
     page = Page(
         title=f"Planned test of {test.vessel}",

@@ -27,14 +27,8 @@ def comparison_cover(
 ) -> Cover:
     """Return the first screen of a comparison.
 
-    Parameters
-    ----------
-    fingerprints
-        Fingerprints by name, the first of them the one that others are compared with.
-    found
-        Differences from it, by the name of the other.
-    findings
-        The same judged along causes.
+    ``fingerprints``: fingerprints by name, the first of them the one that others are compared with. ``found``:
+    differences from it, by the name of the other. ``findings``: the same judged along causes.
     """
     (_, first), *others = fingerprints.items()
     cards = [_usable(fingerprints), _alike(first, dict(others))]
@@ -73,12 +67,7 @@ def _alike(first: "Fingerprint", others: "Mapping[str, Fingerprint]") -> Card:
 def not_alike(first: "Fingerprint", name: str, other: "Fingerprint") -> list[str]:
     """Return in sentences what makes two tests unlike, so that numbers may differ without a change of the ship.
 
-    Parameters
-    ----------
-    first, other
-        Two fingerprints.
-    name
-        Name of the second.
+    ``first``, ``other``: two fingerprints. ``name``: name of the second.
     """
     sentences = []
     for quantity, before in (
@@ -112,10 +101,7 @@ def _changed(name: str, differences: "Sequence[Difference]", finding: Finding) -
 def change_in_words(found: "Sequence[Difference]") -> str:
     """Return in a sentence whether numbers that stand for the ship have changed, each judged by itself, and which.
 
-    Parameters
-    ----------
-    found
-        Differences of two fingerprints.
+    ``found``: differences of two fingerprints.
     """
     of_the_ship = [one for one in found if not one.normalised]
     differing = [one for one in of_the_ship if one.outcome == "differs"]

@@ -70,12 +70,7 @@ class Cover:
 def overall(cards: Sequence[Card], *, usable: bool) -> tuple[State, str]:
     """Return the state of the whole and the headline that says it.
 
-    Parameters
-    ----------
-    cards
-        Questions with answers.
-    usable
-        Whether the numbers may be used at all.
+    ``cards``: questions with answers. ``usable``: whether the numbers may be used at all.
     """
     if not usable:
         return "bad", "The test cannot be used: its numbers are not trustworthy"

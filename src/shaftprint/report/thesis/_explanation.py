@@ -140,22 +140,10 @@ def explain_thesis(
 ) -> Explanation:
     """Return where the thesis' numbers come from on one recording.
 
-    Parameters
-    ----------
-    thesis
-        The recording treated the thesis' way, with OL1 to OL5, GAUGE-CORE for the step that models the pick-up, and
-        OL2 to OL5 with the set point off.
-    fits
-        Weighted fits to shaftprint's responses by name: GAUGE-CLOSED, OL1 to OL5.
-    response
-        Shaftprint's response from ``n_set``.
-    vessel
-        What was tested.
-
-    Raises
-    ------
-    IdentificationError
-        If a fit is missing.
+    ``thesis``: the recording treated the thesis' way, with OL1 to OL5, GAUGE-CORE for the step that models the pick-up,
+    and OL2 to OL5 with the set point off. ``fits``: weighted fits to shaftprint's responses by name: GAUGE-CLOSED, OL1
+    to OL5. ``response``: shaftprint's response from ``n_set``. ``vessel``: what was tested. Raises IdentificationError
+    if a fit is missing.
     """
     missing = _missing(thesis, fits)
     if missing:

@@ -72,12 +72,8 @@ class IntegralGain:
 def integral_gain(thesis: "ThesisMode", gauge: "Identification") -> IntegralGain:
     """Return the integral gains of the thesis' way beside what the gauge-aware structure lets expect of them.
 
-    Parameters
-    ----------
-    thesis
-        The recording treated the thesis' way, with OL2 to OL5, each also with the set point off.
-    gauge
-        Weighted fit of GAUGE-CLOSED to shaftprint's response.
+    ``thesis``: the recording treated the thesis' way, with OL2 to OL5, each also with the set point off. ``gauge``:
+    weighted fit of GAUGE-CLOSED to shaftprint's response.
     """
     parameters, gain = gauge.by_role, gauge.of_role(ShipRole.INTEGRAL_GAIN)
     load, late = parameters[ShipRole.LOAD_SLOPE], parameters[ShipRole.SET_POINT_LATENCY]

@@ -72,26 +72,11 @@ def conditioned(
 ) -> Reading:
     """Return a channel on the grid, in its own unit, with what was replaced and what is missing.
 
-    Parameters
-    ----------
-    channel
-        What to read.
-    limits
-        What counts as a fault.
-    grid
-        Instants, in samples of the channel.
-    mode
-        ``"shaftprint"``: straight lines over faults, low-pass filter; ``"thesis"``: mean of the
-        neighbours, previous neighbour.
-    block_samples
-        Samples that are read at a time; the result does not depend on it.
-    advance
-        Is told the number of samples after each block.
-
-    Raises
-    ------
-    SignalError
-        If the grid is finer than the samples.
+    ``channel``: what to read. ``limits``: what counts as a fault. ``grid``: instants, in samples of the channel.
+    ``mode``: ``"shaftprint"``: straight lines over faults, low-pass filter; ``"thesis"``: mean of the neighbours,
+    previous neighbour. ``block_samples``: samples that are read at a time; the result does not depend on it.
+    ``advance``: is told the number of samples after each block. Raises SignalError if the grid is finer than the
+    samples.
     """
     thesis = mode == "thesis"
     repairs: list[Repair] = []

@@ -55,10 +55,7 @@ class CutOff:
     def level(self, hold_samples: int) -> float | None:
         """Return the value at which crests are cut off; None where they are not.
 
-        Parameters
-        ----------
-        hold_samples
-            Smallest number of equal samples in a row that is a hold; 0 where holds are not looked for.
+        ``hold_samples``: smallest number of equal samples in a row that is a hold; 0 where holds are not looked for.
         """
         if self._levels.size <= _BESIDE:
             return None

@@ -56,13 +56,8 @@ def reach_samples(step: float) -> int:
 def low_pass_taps(step: float, phases: int) -> FloatArray:
     """Return the taps of the filter, shape (phases, taps); each row adds up to 1.
 
-    Parameters
-    ----------
-    step
-        Incoming samples for one outgoing.
-    phases
-        Row ``k`` gives the value ``k / phases`` of a sample after the sample in the middle,
-        which is column ``(taps - 1) // 2``.
+    ``step``: incoming samples for one outgoing. ``phases``: row ``k`` gives the value ``k / phases`` of a sample after
+    the sample in the middle, which is column ``(taps - 1) // 2``.
     """
     half = reach_samples(step)
     beta = 0.1102 * (_ATTENUATION_DB - 8.7)
@@ -79,20 +74,9 @@ def low_pass_taps(step: float, phases: int) -> FloatArray:
 def decimated(samples: Iterable[FloatArray], grid: SampleGrid, *, channel: str) -> FloatArray:
     """Return the low-passed signal at the instants of the grid, shape (grid.count,).
 
-    Parameters
-    ----------
-    samples
-        Consecutive blocks; the result is the same, bit for bit, for any cut into blocks. Beyond both
-        ends the first and last values go on.
-    grid
-        Instants, in samples since the first.
-    channel
-        Name of the channel, for messages.
-
-    Raises
-    ------
-    SignalError
-        If the grid is finer than the samples.
+    ``samples``: consecutive blocks; the result is the same, bit for bit, for any cut into blocks. Beyond both ends the
+    first and last values go on. ``grid``: instants, in samples since the first. ``channel``: name of the channel, for
+    messages. Raises SignalError if the grid is finer than the samples.
     """
     if grid.step < 1.0:
         raise SignalError(

@@ -73,14 +73,8 @@ class FaultLimits:
 def fault_limits(channel: "Channel", *, holds: bool, lowest: float = -np.inf, highest: float = np.inf) -> FaultLimits:
     """Return limits that fit the noise of a channel, found from stretches all over it.
 
-    Parameters
-    ----------
-    channel
-        The channel.
-    holds
-        Whether to look for holds; it is done only where the channel has noise that never stands still.
-    lowest, highest
-        Rails [counts].
+    ``holds``: whether to look for holds; it is done only where the channel has noise that never stands still.
+    ``lowest``, ``highest``: rails [counts].
     """
     distances, step, longest = [], np.inf, []
     for counts in spots(channel):

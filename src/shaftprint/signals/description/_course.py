@@ -76,12 +76,7 @@ class Course:
 def course_of(values_v: FloatArray, *, rate_hz: float, start_s: float) -> Course:
     """Return a set point with its noise, and the level to which it returns.
 
-    Parameters
-    ----------
-    values_v
-        Set point on the grid [V], shape (samples,).
-    rate_hz, start_s
-        The grid.
+    ``values_v``: set point on the grid [V], shape (samples,). ``rate_hz``, ``start_s``: the grid.
     """
     window = max(round(FLAT_S * rate_hz), 4)
     blocks = values_v[: values_v.size // window * window].reshape(-1, window)

@@ -50,21 +50,9 @@ def described(
 ) -> Description:
     """Return the campaign that a recorded set point shows.
 
-    Parameters
-    ----------
-    set_point_v
-        Set point on a grid [V], shape (samples,).
-    rate_hz, start_s
-        The grid.
-    name
-        Name of the campaign.
-    sample_rate_hz
-        Rate of the logger [Hz].
-
-    Raises
-    ------
-    SignalError
-        If the set point does not move, or shows no excitation that a campaign file can describe.
+    ``set_point_v``: set point on a grid [V], shape (samples,). ``rate_hz``, ``start_s``: the grid. ``name``: name of
+    the campaign. ``sample_rate_hz``: rate of the logger [Hz]. Raises SignalError if the set point does not move, or
+    shows no excitation that a campaign file can describe.
     """
     course = course_of(np.asarray(set_point_v), rate_hz=rate_hz, start_s=start_s)
     if course.range_v <= _MOTIONLESS * course.noise_v:

@@ -14,12 +14,7 @@ _LONGEST_START = 0.5
 def stairs_from(course: Course, first: int, stop: int) -> Stairs | None:
     """Return the levels from a sample on, as long as the set point only stands and jumps; None without a jump.
 
-    Parameters
-    ----------
-    course
-        The set point.
-    first, stop
-        Sample to begin with, and the one that is not looked at any more.
+    ``course``: the set point. ``first``, ``stop``: sample to begin with, and the one that is not looked at any more.
     """
     shortest = max(round(_SHORTEST_S * course.rate_hz), 3)
     across = max(round(_LONGEST_JUMP_S * course.rate_hz), 2)

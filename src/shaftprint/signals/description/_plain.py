@@ -21,14 +21,8 @@ def plainest_fit(
 ) -> dict[str, float]:
     """Return numbers with as few digits as leave a sum of squares what it is, one after the other.
 
-    Parameters
-    ----------
-    values
-        The numbers of the best fit by name, in the order in which they are rounded.
-    cost
-        Sum of squares that they leave.
-    samples
-        Number of independent samples of that sum.
+    ``values``: the numbers of the best fit by name, in the order in which they are rounded. ``cost``: sum of squares
+    that they leave. ``samples``: number of independent samples of that sum.
     """
     best = dict(values)
     least = cost(best)

@@ -29,14 +29,8 @@ def found_tests(
 ) -> tuple[FoundTest, ...]:
     """Return every test as the set point shows it, in the order of the campaign.
 
-    Parameters
-    ----------
-    set_point_v
-        Set point on a grid [V], shape (samples,).
-    campaign
-        What was asked for.
-    rate_hz, start_s
-        The grid.
+    ``set_point_v``: set point on a grid [V], shape (samples,). ``campaign``: what was asked for. ``rate_hz``,
+    ``start_s``: the grid.
     """
     grid = SetPointGrid(set_point_v=set_point_v, rate_hz=rate_hz, start_s=start_s)
     tests = _found_at(grid, campaign, 0.0)
@@ -59,14 +53,8 @@ def _found_at(
 ) -> tuple[FoundTest, ...]:
     """Return every test where it would be with a shift of all, give or take some seconds.
 
-    Parameters
-    ----------
-    grid, campaign
-        The set point, and what was asked for.
-    shift_s
-        The shift [s].
-    known
-        The tests as they were found before.
+    ``grid``, ``campaign``: the set point, and what was asked for. ``shift_s``: the shift [s]. ``known``: the tests as
+    they were found before.
     """
     tests = campaign.excitations
     results = []

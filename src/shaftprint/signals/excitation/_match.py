@@ -45,19 +45,8 @@ def measured_windows(campaign: Campaign) -> tuple[tuple[str, float, float], ...]
 def left_out(campaign: Campaign, coverage: Coverage, *, name: str) -> tuple[str, ...]:
     """Return what a recording does not hold of a campaign: one sentence for its ends and one for each gap.
 
-    Parameters
-    ----------
-    campaign
-        What was asked of the ship.
-    coverage
-        What the recording covers.
-    name
-        The recording, for messages.
-
-    Raises
-    ------
-    SignalError
-        If it holds nothing whole.
+    ``campaign``: what was asked of the ship. ``coverage``: what the recording covers. ``name``: the recording, for
+    messages. Raises SignalError if it holds nothing whole.
     """
     windows = measured_windows(campaign)
     begin_s = min([*(window[1] for window in windows), *(leg.settled_s for leg in campaign.legs)])
@@ -110,10 +99,7 @@ def expect_campaign(
 
     Only tests that the recording holds whole are judged. Where all are shifted alike, one finding says by how much.
 
-    Raises
-    ------
-    SignalError
-        If the set point never moves, or if it does not follow any of the slow tests.
+    Raises SignalError if the set point never moves, or if it does not follow any of the slow tests.
     """
     stop_s = start_s + set_point_v.size / rate_hz
     inside = [item for item in campaign.excitations if item.start_s < stop_s and item.stop_s > start_s]
@@ -162,10 +148,7 @@ def expect_campaign(
 def _expect_unit(set_point_v: FloatArray, levels_v: Sequence[float], campaign: Campaign, channel: str) -> None:
     """Check that the set point is not one of a thousand times or a tenth of the volts, as in another unit.
 
-    Raises
-    ------
-    SignalError
-        If its middle and its movement are those of the campaign but for one power of ten.
+    Raises SignalError if its middle and its movement are those of the campaign but for one power of ten.
     """
     middle_v, moves_v = campaign.offset_v, max(levels_v) - min(levels_v)
     found_v = float(np.median(set_point_v))

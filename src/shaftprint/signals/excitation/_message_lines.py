@@ -46,18 +46,7 @@ class _Window:
 def joined_about_lines(sent: SentValues, campaign: Campaign, clock: "Clock") -> "tuple[SentValues, FloatArray] | None":
     """Return messages at the times of their values, and joined on the grid with the lines of a campaign as they are.
 
-    Parameters
-    ----------
-    sent
-        The messages.
-    campaign
-        Its sines and legs are the lines.
-    clock
-        The grid.
-
-    Returns
-    -------
-    None where the spline through the messages is as good.
+    ``sent``: the messages. ``campaign``: its sines and legs are the lines. ``clock``: the grid.
     """
     windows = list(_windows(campaign, sent))
     if not windows:

@@ -46,18 +46,9 @@ def take_out_steps(
 ) -> None:
     """Take out of a set point, in place, what the steps of its messages make of sines and of levels between them.
 
-    Parameters
-    ----------
-    set_point_v
-        The set point on the grid [V], shape (samples,).
-    time_s, shown_v
-        Time [s], ascending, and value [V] of its messages, shape (messages,).
-    campaign
-        What was asked.
-    step_v
-        Step of the values [V].
-    rate_hz, start_s
-        The grid.
+    ``set_point_v``: the set point on the grid [V], shape (samples,). ``time_s``, ``shown_v``: time [s], ascending, and
+    value [V] of its messages, shape (messages,). ``campaign``: what was asked. ``step_v``: step of the values [V].
+    ``rate_hz``, ``start_s``: the grid.
     """
     error_v = np.zeros(time_s.size)
     middles, lengths = [], []
@@ -101,14 +92,9 @@ def _error_of_levels(
 def steps_of_sine(time_s: FloatArray, shown: FloatArray, frequency_hz: float) -> FloatArray:
     """Return what rounding adds to each value of a sine; zeros where the values follow none.
 
-    Parameters
-    ----------
-    time_s
-        Times of the values [s], shape (values,).
-    shown
-        The values in steps, all of them whole numbers apart, shape (values,).
-    frequency_hz
-        Frequency of the sine [Hz]; where its clock differs, it may turn by some hundredths of a period.
+    ``time_s``: times of the values [s], shape (values,). ``shown``: the values in steps, all of them whole numbers
+    apart, shape (values,). ``frequency_hz``: frequency of the sine [Hz]; where its clock differs, it may turn by some
+    hundredths of a period.
     """
     design = _design(time_s, frequency_hz)
     inverse = np.linalg.pinv(design)
@@ -131,12 +117,7 @@ def steps_of_sine(time_s: FloatArray, shown: FloatArray, frequency_hz: float) ->
 def rounding_error(values: FloatArray, noise: float = 0.0) -> FloatArray:
     """Return by how much rounding to whole numbers changes values on average, of any shape.
 
-    Parameters
-    ----------
-    values
-        In steps.
-    noise
-        Standard deviation of the noise that they have beside [steps].
+    ``values``: in steps. ``noise``: standard deviation of the noise that they have beside [steps].
     """
     if noise < _LEAST_NOISE:
         return np.asarray(np.rint(values) - values)

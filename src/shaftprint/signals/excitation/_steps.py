@@ -28,23 +28,10 @@ def find_step_delays(
 ) -> tuple[tuple[StepDelay, ...], tuple[str, ...]]:
     """Return the delay of each step inside the staircases, and which steps were not found.
 
-    Parameters
-    ----------
-    set_point_rev_s, speed_rev_s
-        Set point and speed [rev/s] on the grid, shape (samples,).
-    campaign
-        Says where the staircases are.
-    rate_hz, start_s
-        The grid.
-    coverage
-        Says where the gaps are; steps that they touch are passed over.
-
-    Returns
-    -------
-    delays
-        In order of time.
-    findings
-        One sentence for each step that could not be found.
+    ``set_point_rev_s``, ``speed_rev_s``: set point and speed [rev/s] on the grid, shape (samples,). ``campaign``: says
+    where the staircases are. ``rate_hz``, ``start_s``: the grid. ``coverage``: says where the gaps are; steps that they
+    touch are passed over. ``delays``: in order of time. ``findings``: one sentence for each step that could not be
+    found.
     """
     delays, findings = [], []
     for staircase in campaign.staircases:

@@ -41,10 +41,7 @@ def angle_range(channel: "Channel", sensor: SpeedSensor) -> float | None:
 
     Where the vessel file does not say, an angle that stays within one turn begins again after it.
 
-    Raises
-    ------
-    SignalError
-        If the recording shows another range, which is named, or a single angle.
+    Raises SignalError if the recording shows another range, which is named, or a single angle.
     """
     return _range_of(_parts(channel), channel, sensor)
 
@@ -70,17 +67,9 @@ def _range_of(parts: Sequence[FloatArray], channel: "Channel", sensor: SpeedSens
 def range_of_small_steps(channel: "Channel", sensor: SpeedSensor, turns_hz: float) -> float | None:
     """Return `angle_range` of an angle that turns by clearly less than half of it from sample to sample.
 
-    Parameters
-    ----------
-    channel, sensor
-        The angle and what the vessel file says about it.
-    turns_hz
-        Turns of the shaft a second that the vessel file expects [Hz].
-
-    Raises
-    ------
-    SignalError
-        If it turns further there or in the recording, with the rate that would do in the message, or as `angle_range`.
+    ``channel``, ``sensor``: the angle and what the vessel file says about it. ``turns_hz``: turns of the shaft a second
+    that the vessel file expects [Hz]. Raises SignalError if it turns further there or in the recording, with the rate
+    that would do in the message, or as `angle_range`.
     """
     parts = _parts(channel)
     whole = _range_of(parts, channel, sensor)

@@ -28,25 +28,10 @@ def compare_speeds(
 ) -> tuple[str, ...]:
     """Compare the mean of every speed with that of the first, where both have one.
 
-    Parameters
-    ----------
-    speeds
-        The speed channels, in the order of the vessel file.
-    vessel
-        Says which shaft carries which.
-    rate_hz, start_s
-        Their grid.
-
-    Returns
-    -------
-    findings
-        One sentence for each speed that is off by more than 0.1 %.
-
-    Raises
-    ------
-    SignalError
-        If one is off by more than 1 %: all the time, as with a wrong gear ratio or number of strips in the vessel file,
-        or more at one time than at another, as with a clutch that slips or a pick-up that loses pulses.
+    ``speeds``: the speed channels, in the order of the vessel file. ``vessel``: says which shaft carries which.
+    ``rate_hz``, ``start_s``: their grid. Returns one sentence for each speed that is off by more than 0.1 %. Raises
+    SignalError if one is off by more than 1 %: all the time, as with a wrong gear ratio or number of strips in the
+    vessel file, or more at one time than at another, as with a clutch that slips or a pick-up that loses pulses.
     """
     shafts = {sensor.name: sensor.shaft for sensor in vessel.sensors.speed}
     first = speeds[0]

@@ -42,11 +42,8 @@ _SLOWEST, _FASTEST, _FAR = 0.7, 1.3, 1.5
 def read_encoder(source: Source[SpeedSensor], clock: "Clock") -> SpeedReading:
     """Return the engine-side speed of an encoder on the grid.
 
-    Raises
-    ------
-    SignalError
-        If the angle stands still, begins again elsewhere than the vessel file says, or turns too far from sample to
-        sample, or its counts are fewer than the samples of the grid.
+    Raises SignalError if the angle stands still, begins again elsewhere than the vessel file says, or turns too far
+    from sample to sample, or its counts are fewer than the samples of the grid.
     """
     channel, sensor = source.channel, source.sensor
     ratio = source.vessel.gearbox.engine_over(sensor.shaft)
@@ -88,10 +85,7 @@ def speed_channel(channel: "Channel", sensor: SpeedSensor) -> "Channel":
 
     Sample 0, before the first angle, repeats sample 1.
 
-    Raises
-    ------
-    SignalError
-        If the angle begins again elsewhere than the vessel file says.
+    Raises SignalError if the angle begins again elsewhere than the vessel file says.
     """
     return _turning(channel, sensor, angle_range(channel, sensor))
 
@@ -127,10 +121,7 @@ def _turned(counts: Counts, whole: float | None) -> FloatArray:
 def judge_encoder(source: Source[SpeedSensor], reading: Reading) -> tuple[str, ...]:
     """Return a finding where the speed is far from that of the working point, as with wrong counts of a turn.
 
-    Raises
-    ------
-    SignalError
-        If no engine of the vessel file runs at such a speed.
+    Raises SignalError if no engine of the vessel file runs at such a speed.
     """
     sensor, vessel = source.sensor, source.vessel
     found_rpm, expected_rpm = rpm_from_rev_s(float(np.median(reading.values))), vessel.working_point.engine_speed_rpm
@@ -159,10 +150,7 @@ def judge_encoder(source: Source[SpeedSensor], reading: Reading) -> tuple[str, .
 def _values_hz(channel: "Channel", sensor: SpeedSensor, clock: "Clock", turns_hz: float) -> float:
     """Return how often a second the angle is really known [Hz].
 
-    Raises
-    ------
-    SignalError
-        If counts come more seldom than the samples of the grid, whose steps would be taken for speed.
+    Raises SignalError if counts come more seldom than the samples of the grid, whose steps would be taken for speed.
     """
     if sensor.unit != "counts":
         return channel.rate_hz
@@ -186,10 +174,7 @@ def _sharpen(speed: FloatArray, *, step: float) -> None:
 def _splined(channel: "Channel", sensor: SpeedSensor, whole: float | None, clock: "Clock", latency_s: float) -> Reading:
     """Return the speed of a channel that is slower than the grid, or of messages: the slope of a spline of its angles.
 
-    Raises
-    ------
-    SignalError
-        If there are too few angles.
+    Raises SignalError if there are too few angles.
     """
     angles = _angles if channel.stamps is None else _message_angles
     reading = angles(channel, sensor, whole)
@@ -239,10 +224,7 @@ def _message_angles(channel: "Channel", sensor: SpeedSensor, whole: float | None
 def _usual(speed: FloatArray, clock: "Clock", channel: str) -> tuple[float, float]:
     """Return how fast the shaft usually turns [rev/s], and the sign with which it mostly does.
 
-    Raises
-    ------
-    SignalError
-        If it stands still.
+    Raises SignalError if it stands still.
     """
     means = _means(speed, clock)
     usual = float(np.quantile(np.abs(means), _USUAL))

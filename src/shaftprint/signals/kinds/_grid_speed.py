@@ -20,14 +20,8 @@ def speed_on_grid(
     Read at single instants, the spline of many teeth would show the errors of few edges, and fold what is faster than
     the grid.
 
-    Parameters
-    ----------
-    time_s, angle_rev
-        When pulses begin [s] and the angle of the shaft then [rev], shape (pulses,).
-    start_s, rate_hz, count
-        The grid.
-    channel
-        Name of the channel, for messages.
+    ``time_s``, ``angle_rev``: when pulses begin [s] and the angle of the shaft then [rev], shape (pulses,).
+    ``start_s``, ``rate_hz``, ``count``: the grid. ``channel``: name of the channel, for messages.
     """
     pulse_rate_hz = (time_s.size - 1) / float(time_s[-1] - time_s[0])
     if pulse_rate_hz <= _FAST_SHARE * rate_hz:

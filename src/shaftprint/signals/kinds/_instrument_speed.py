@@ -37,21 +37,10 @@ def read_instrument(
 ) -> SpeedReading:
     """Return the engine-side speed of an instrument on the grid.
 
-    Parameters
-    ----------
-    channel, sensor
-        The channel and what the vessel file says about it.
-    clock
-        The grid.
-    engine_over_shaft
-        Speed of the engine over that of the sensor's shaft.
-    astern
-        Whether the shaft turns astern: instruments show that as a speed below zero, or do not tell.
-
-    Raises
-    ------
-    SignalError
-        If the channel holds no numbers, or a speed below zero throughout.
+    ``channel``, ``sensor``: the channel and what the vessel file says about it. ``clock``: the grid.
+    ``engine_over_shaft``: speed of the engine over that of the sensor's shaft. ``astern``: whether the shaft turns
+    astern: instruments show that as a speed below zero, or do not tell. Raises SignalError if the channel holds no
+    numbers, or a speed below zero throughout.
     """
     latency_s = clock.latency_s(sensor.latency_s)
     if not comes_in_messages(channel, clock):

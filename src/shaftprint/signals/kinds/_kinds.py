@@ -42,17 +42,9 @@ def find_sources(
 ) -> "tuple[tuple[Source[Any], ...], tuple[str, ...]]":
     """Return the channels that the vessel file names, and why others are missing.
 
-    Parameters
-    ----------
-    recording, vessel
-        Where to look, and what is expected.
-    partly
-        Whether a speed alone will do, as in a trial of a pick-up; else every channel has to be there.
-
-    Raises
-    ------
-    SignalError
-        If one is missing, empty or in another unit.
+    ``recording``, ``vessel``: where to look, and what is expected. ``partly``: whether a speed alone will do, as in a
+    trial of a pick-up; else every channel has to be there. Raises SignalError if one is missing, empty or in another
+    unit.
     """
     # what every ship answers with is missed first
     kinds = sorted(KINDS.values(), key=lambda kind: kind.role is not ChannelRole.RESPONSE)

@@ -37,14 +37,8 @@ def read_messages(
 ) -> MessageReading:
     """Return the messages of a channel that hold a value, with the holes between them.
 
-    Parameters
-    ----------
-    channel
-        A channel with ``stamps``.
-    lowest, highest
-        Smallest and largest value [unit]: what is beyond says that there is none.
-    wrong
-        Which messages do not count beside those, shape (messages,).
+    ``channel``: a channel with ``stamps``. ``lowest``, ``highest``: smallest and largest value [unit]: what is beyond
+    says that there is none. ``wrong``: which messages do not count beside those, shape (messages,).
     """
     time_s, values = stamped_values(channel, count=channel.count)
     # written so that what is not a number counts as missing

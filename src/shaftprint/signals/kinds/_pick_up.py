@@ -145,27 +145,12 @@ def read_pick_up(
 ) -> PulseReading:
     """Return the engine-side speed of one pick-up on the grid.
 
-    Parameters
-    ----------
-    channel, sensor
-        The pulse channel and what the vessel file says about it.
-    engine_over_shaft
-        Speed of the engine over that of the sensor's shaft.
-    mode
-        ``"thesis"``: pulse periods between whole samples, strip angles left in.
-    start_s, rate_hz, count
-        The grid.
-    block_samples
-        Samples that are read at a time; the result does not depend on it.
-    advance
-        Is told the number of samples after each block.
-    turns_hz
-        Turns of its shaft a second that are expected, for messages.
-
-    Raises
-    ------
-    SignalError
-        If there are no pulses, too few or too many faults, or the rate is too low for them.
+    ``channel``, ``sensor``: the pulse channel and what the vessel file says about it. ``engine_over_shaft``: speed of
+    the engine over that of the sensor's shaft. ``mode``: ``"thesis"``: pulse periods between whole samples, strip
+    angles left in. ``start_s``, ``rate_hz``, ``count``: the grid. ``block_samples``: samples that are read at a time;
+    the result does not depend on it. ``advance``: is told the number of samples after each block. ``turns_hz``: turns
+    of its shaft a second that are expected, for messages. Raises SignalError if there are no pulses, too few or too
+    many faults, or the rate is too low for them.
     """
     wheel = sensor.toothed
     levels: PulseLevels | None = None
@@ -214,10 +199,7 @@ def read_pick_up(
 def numbered_strips(edges: FloatArray, sensor: SpeedSensor) -> tuple[PulseTrain, StripAngles | None]:
     """Return the numbered pulses of a channel and, with several strips, the angles between them.
 
-    Raises
-    ------
-    SignalError
-        If there are too few pulses, too many faults, or they come from another wheel.
+    Raises SignalError if there are too few pulses, too many faults, or they come from another wheel.
     """
     teeth, wheel = sensor.pulses_per_revolution, sensor.toothed
     if wheel.missing or wheel.extra:

@@ -90,10 +90,7 @@ class Pitch(ChannelKind[PitchSensor]):
 def _mean_ahead(channel: str, pitch_ratio: FloatArray, steady: SteadyState) -> float:
     """Return the mean pitch in the stretches at the working point.
 
-    Raises
-    ------
-    SignalError
-        If it is none ahead.
+    Raises SignalError if it is none ahead.
     """
     mean = float(np.concatenate(steady_parts(pitch_ratio, steady.clock, steady.stretches)).mean())
     if not mean > 0.0:

@@ -77,19 +77,9 @@ class Rack(ChannelKind[RackSensor]):
 def read_rack(channel: "Channel", sensor: RackSensor, *, block_samples: int) -> Reading:
     """Return the fuel rack [fraction], one value a message or a part of one, with what was repaired and is missing.
 
-    Parameters
-    ----------
-    channel
-        Percent torque, one sample a message or held on the clock of the logger.
-    sensor
-        What the vessel file says of it.
-    block_samples
-        Samples that are read at a time; the result does not depend on it.
-
-    Raises
-    ------
-    SignalError
-        If the rate is not that of the messages, no torque is ever available, or the channel never moves.
+    ``channel``: percent torque, one sample a message or held on the clock of the logger. ``sensor``: what the vessel
+    file says of it. ``block_samples``: samples that are read at a time; the result does not depend on it. Raises
+    SignalError if the rate is not that of the messages, no torque is ever available, or the channel never moves.
     """
     group = _samples_together(channel, sensor)
     if channel.is_uneven or (channel.stamps is not None and not _is_held(channel, sensor)):
@@ -141,29 +131,12 @@ def rack_signal(
 ) -> MessageSignal:
     """Return the fuel rack with its clock, its sampling and its working point.
 
-    Parameters
-    ----------
-    fraction
-        Fuel rack as `read_rack` gives it, shape (values,).
-    channel, sensor
-        Where it comes from.
-    stretches
-        Where the line stands still at the working point.
-    latency_s
-        Time by which the channel is taken to be late [s].
-    gaps
-        Where no torque was available.
-    time_s
-        Time of each value, where those are messages at times of their own [s], shape (values,).
-    load
-        Torque of the working point over that of the stretches; the rack follows it.
-    share
-        Rack over ``fraction`` at some times [s], where it hangs on the speed beside the value.
-
-    Raises
-    ------
-    SignalError
-        If the channel does not cover any of the stretches, or the rack is not positive there.
+    ``fraction``: fuel rack as `read_rack` gives it, shape (values,). ``channel``, ``sensor``: where it comes from.
+    ``stretches``: where the line stands still at the working point. ``latency_s``: time by which the channel is taken
+    to be late [s]. ``gaps``: where no torque was available. ``time_s``: time of each value, where those are messages at
+    times of their own [s], shape (values,). ``load``: torque of the working point over that of the stretches; the rack
+    follows it. ``share``: rack over ``fraction`` at some times [s], where it hangs on the speed beside the value.
+    Raises SignalError if the channel does not cover any of the stretches, or the rack is not positive there.
     """
     held = _is_held(channel, sensor)
     group = _samples_together(channel, sensor) if time_s is None else 1

@@ -31,10 +31,8 @@ def fastest_turns_hz(channel: "Channel", train: "PulseTrain", wheel: "Wheel") ->
 def expect_samples(channel: "Channel", wheel: "Wheel", turns_hz: float) -> None:
     """Check that a channel is sampled often enough for a wheel at a speed; a list of edges always is.
 
-    Raises
-    ------
-    SignalError
-        If there are fewer than four samples from tooth to tooth; the rate that would do is in the message.
+    Raises SignalError if there are fewer than four samples from tooth to tooth; the rate that would do is in the
+    message.
     """
     teeth_hz = wheel.closest * turns_hz
     if channel.is_of_edges or channel.rate_hz >= SAMPLES_A_TOOTH * teeth_hz:
@@ -50,14 +48,8 @@ def expect_samples(channel: "Channel", wheel: "Wheel", turns_hz: float) -> None:
 def too_slow_for_pulses(channel: "Channel", sensor: "SpeedSensor", turns_hz: float, duty: float | None) -> str:
     """Return that a channel whose pulses cannot be used is sampled too seldom for them; empty where it is not.
 
-    Parameters
-    ----------
-    channel, sensor
-        The channel and what the vessel file says about it.
-    turns_hz
-        Turns of its shaft a second at the working point.
-    duty
-        Share of the time in a pulse, where levels were found.
+    ``channel``, ``sensor``: the channel and what the vessel file says about it. ``turns_hz``: turns of its shaft a
+    second at the working point. ``duty``: share of the time in a pulse, where levels were found.
     """
     closest_hz = sensor.toothed.closest * turns_hz
     are_teeth = sensor.pulses_per_revolution >= _TEETH

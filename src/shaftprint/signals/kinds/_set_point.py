@@ -75,19 +75,9 @@ class SetPoint(ChannelKind[SetPointSensor]):
 def read_set_point(channel: "Channel", sensor: SetPointSensor, clock: "Clock", *, speed_rpm: float) -> Reading:
     """Return the set point of the speed on the grid, in volts of the campaign [V].
 
-    Parameters
-    ----------
-    channel, sensor
-        The channel, and what the vessel file says of it.
-    clock
-        The grid.
-    speed_rpm
-        Engine speed of the working point [rpm].
-
-    Raises
-    ------
-    SignalError
-        If the values cannot be in the unit that is stated; the message names one that would fit.
+    ``channel``, ``sensor``: the channel, and what the vessel file says of it. ``clock``: the grid. ``speed_rpm``:
+    engine speed of the working point [rpm]. Raises SignalError if the values cannot be in the unit that is stated; the
+    message names one that would fit.
     """
     middle = middle_of(channel)
     unit = sensor.unit_that_fits(middle, speed_rpm)

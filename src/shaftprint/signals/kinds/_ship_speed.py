@@ -58,21 +58,9 @@ class ShipSpeed(ChannelKind[ShipSpeedSensor]):
 def read_ship_speed(channel: "Channel", sensor: ShipSpeedSensor, clock: "Clock", *, latency_s: float) -> Reading:
     """Return the speed of the ship [m/s] on the common grid, with what is missing.
 
-    Parameters
-    ----------
-    channel
-        The log, one sample a value or held on the clock of the logger.
-    sensor
-        What the vessel file says of it.
-    clock
-        The grid.
-    latency_s
-        Time by which the channel is taken to be late [s].
-
-    Raises
-    ------
-    SignalError
-        If the channel is slower than the vessel file says, or does not cover the test.
+    ``channel``: the log, one sample a value or held on the clock of the logger. ``sensor``: what the vessel file says
+    of it. ``clock``: the grid. ``latency_s``: time by which the channel is taken to be late [s]. Raises SignalError if
+    the channel is slower than the vessel file says, or does not cover the test.
     """
     # the period of a sender is known from its messages only
     if channel.rate_hz * sensor.cycle_s < 1.0 - (_SAME_SENDER if channel.is_uneven else 1e-6):
@@ -121,14 +109,8 @@ def ship_speed_signal(
 ) -> ChannelSignal | None:
     """Return the speed of the ship with its working point; nothing where the ship had no way on.
 
-    Parameters
-    ----------
-    speed_m_s
-        What `read_ship_speed` gives.
-    channel, sensor, clock
-        Where it comes from.
-    stretches
-        Where the line stands still at the working point.
+    ``speed_m_s``: what `read_ship_speed` gives. ``channel``, ``sensor``, ``clock``: where it comes from. ``stretches``:
+    where the line stands still at the working point.
     """
     block = max(round(clock.rate_hz), 1)
     parts = steady_parts(speed_m_s, clock, stretches)

@@ -29,21 +29,9 @@ def comes_in_messages(channel: "Channel", clock: "Clock") -> bool:
 def splined(messages: MessageReading, channel: "Channel", clock: "Clock", latency_s: float) -> MessageReading:
     """Return messages with their values on the grid, in the unit of the channel, and what their holes cost there.
 
-    Parameters
-    ----------
-    messages
-        What was read; times are those of the messages, also in what is returned.
-    channel
-        Where they come from.
-    clock
-        The grid.
-    latency_s
-        Time by which they are late [s].
-
-    Raises
-    ------
-    SignalError
-        If there are fewer than four.
+    ``messages``: what was read; times are those of the messages, also in what is returned. ``channel``: where they come
+    from. ``clock``: the grid. ``latency_s``: time by which they are late [s]. Raises SignalError if there are fewer
+    than four.
     """
     time_s, values = messages.for_spline(latency_s=latency_s)
     if time_s.size < _FEWEST_MESSAGES:
@@ -58,12 +46,7 @@ def splined(messages: MessageReading, channel: "Channel", clock: "Clock", latenc
 def unknown_age(channel: "Channel", *, field: str) -> str:
     """Return what is assumed of messages whose age the vessel file does not limit.
 
-    Parameters
-    ----------
-    channel
-        Where they come from.
-    field
-        Where the vessel file would.
+    ``channel``: where they come from. ``field``: where the vessel file would.
     """
     period_ms = MILLI / channel.rate_hz
     return (

@@ -98,11 +98,8 @@ def torque_limits(channel: "Channel", sensor: ShaftTorqueSensor) -> FaultLimits:
 def expect_unit(channel: "Channel", vessel: "Vessel") -> None:
     """Check by stretches all over the recording that the torque is not one of another unit than the vessel file states.
 
-    Raises
-    ------
-    SignalError
-        If it is a small part or a multiple of what is expected, and would be as expected in another unit; the message
-        names it.
+    Raises SignalError if it is a small part or a multiple of what is expected, and would be as expected in another
+    unit; the message names it.
     """
     sensor, expected = vessel.sensors.shaft_torque, vessel.working_point.shaft_torque_nm
     torque = float(sensor.torque_nm(middle_of(channel)))
@@ -118,10 +115,7 @@ def expect_unit(channel: "Channel", vessel: "Vessel") -> None:
 def judge_saturation(channel: "Channel", repairs: Sequence[Repair]) -> tuple[str, ...]:
     """Return a finding where crests of the torque are cut off at full scale.
 
-    Raises
-    ------
-    SignalError
-        If more than a thousandth of the samples are.
+    Raises SignalError if more than a thousandth of the samples are.
     """
     saturated = [repair for repair in repairs if repair.kind == "saturated"]
     if not saturated:
@@ -148,10 +142,7 @@ def expect_moving_torque(
 ) -> None:
     """Check that the torque moves during every slow excitation.
 
-    Raises
-    ------
-    SignalError
-        If the gauge stands still; the message says from when on.
+    Raises SignalError if the gauge stands still; the message says from when on.
     """
     for excitation in campaign.excitations:
         if isinstance(excitation, Sine) and excitation.frequency_hz > _SLOW_HZ:
@@ -174,10 +165,7 @@ def expect_moving_torque(
 def expect_one_sign(torque_nm: FloatArray, sensor: ShaftTorqueSensor, *, rate_hz: float, start_s: float) -> None:
     """Check that the torque does not turn its sign for a part of the recording: a shaft that turns on does not do so.
 
-    Raises
-    ------
-    SignalError
-        If it does; the message says when.
+    Raises SignalError if it does; the message says when.
     """
     length = max(round(rate_hz), 1)
     seconds = torque_nm[: torque_nm.size - torque_nm.size % length].reshape(-1, length).mean(axis=1)

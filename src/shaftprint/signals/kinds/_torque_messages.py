@@ -30,21 +30,8 @@ def torque_messages(
 ) -> MessageReading:
     """Return the torque of messages, or of samples slower than the grid, on the grid [unit of the channel].
 
-    Parameters
-    ----------
-    source
-        The channel.
-    limits
-        What counts as a fault of it.
-    clock
-        The grid.
-    latency_s
-        Time by which the values are late [s].
-
-    Raises
-    ------
-    SignalError
-        If there are too few.
+    ``source``: the channel. ``limits``: what counts as a fault of it. ``clock``: the grid. ``latency_s``: time by which
+    the values are late [s]. Raises SignalError if there are too few.
     """
     channel = source.channel
     wrong, repairs = _faults(channel, limits, clock)

@@ -85,31 +85,12 @@ def calibrate_through_wander(
 
     Where the set point stands at one level only, its slope is that with which the speed follows the slow sines.
 
-    Parameters
-    ----------
-    stretches
-        Where set point and speed stand still.
-    campaign
-        Says where the sines are.
-    about_v
-        The working voltage [V].
-    set_point_v, speed_rev_s
-        Set point and speed on the grid, shape (samples,).
-    rate_hz, start_s
-        The grid.
-    channel
-        Name of the set-point channel, for messages.
-    bend_std
-        Standard deviation of the share by which the line may be steeper at twice the speed.
-    step_v
-        Step of the set point's values [V]: a level is somewhere within one.
-    coverage
-        Says where the gaps are.
-
-    Raises
-    ------
-    SignalError
-        If there are fewer than two levels, and fewer than three slow sines.
+    ``stretches``: where set point and speed stand still. ``campaign``: says where the sines are. ``about_v``: the
+    working voltage [V]. ``set_point_v``, ``speed_rev_s``: set point and speed on the grid, shape (samples,).
+    ``rate_hz``, ``start_s``: the grid. ``channel``: name of the set-point channel, for messages. ``bend_std``: standard
+    deviation of the share by which the line may be steeper at twice the speed. ``step_v``: step of the set point's
+    values [V]: a level is somewhere within one. ``coverage``: says where the gaps are. Raises SignalError if there are
+    fewer than two levels, and fewer than three slow sines.
     """
     level_v, level_rev_s, level_std = _levels(stretches)
     by_sines = None
@@ -164,16 +145,9 @@ def _bent_line(
 ) -> tuple[FloatArray, FloatArray]:
     """Return speed and slope of the line at the working voltage and its bend, shape (3,), and their covariance.
 
-    Parameters
-    ----------
-    speed, about_v
-        Mean speed [rev/s] of each window, and its voltage from the working voltage [V], shape (windows,).
-    begins, ends
-        When the windows begin and end [s].
-    levels
-        Number of steady levels.
-    bend_std
-        Standard deviation of the bend about none, before the test.
+    ``speed``, ``about_v``: mean speed [rev/s] of each window, and its voltage from the working voltage [V], shape
+    (windows,). ``begins``, ``ends``: when the windows begin and end [s]. ``levels``: number of steady levels.
+    ``bend_std``: standard deviation of the bend about none, before the test.
     """
     line = np.column_stack([np.ones(speed.size), about_v])
     (middle, slope), *_ = np.linalg.lstsq(line, speed, rcond=None)

@@ -69,14 +69,7 @@ class FastGains:
     def of_courses(self, courses: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return what the pieces say of the size ``a`` of a change of the gain, whatever the common terms are.
 
-        Parameters
-        ----------
-        courses
-            Mean of each course in each piece, shape (pieces, courses).
-
-        Returns
-        -------
-        ``b`` and ``p`` of the log-likelihood ``a b - a^2 p / 2``, each of shape (courses,).
+        ``courses``: mean of each course in each piece, shape (pieces, courses).
         """
         own, common = self.told[:, -1, :], self.told[:, :-1, :].sum(axis=0)
         of_terms, against_terms = courses.T @ own[:, :-2], self.told[:, :-1, -2].T @ courses
@@ -106,16 +99,9 @@ def fast_gains(
 ) -> FastGains:
     """Return the gain of the gauge in each piece.
 
-    Parameters
-    ----------
-    set_point, speed, torque
-        Signals on the grid, in any unit, shape (samples,).
-    rate_hz, start_s
-        The grid.
-    border_s
-        Where one piece ends and the next begins [s], ascending, shape (pieces + 1,).
-    whole
-        Which pieces hold no gap, shape (pieces,).
+    ``set_point``, ``speed``, ``torque``: signals on the grid, in any unit, shape (samples,). ``rate_hz``, ``start_s``:
+    the grid. ``border_s``: where one piece ends and the next begins [s], ascending, shape (pieces + 1,). ``whole``:
+    which pieces hold no gap, shape (pieces,).
     """
     step = max(round(rate_hz / _RATE_HZ), 1)
     rate = rate_hz / step

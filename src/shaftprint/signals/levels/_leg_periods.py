@@ -40,12 +40,7 @@ class LegPeriods:
     def cut(self, values: "FloatArray", *, rate_hz: float, start_s: float) -> "FloatArray":
         """Return the samples of a signal on the grid in these periods, to the nearest sample.
 
-        Parameters
-        ----------
-        values
-            The signal, shape (samples,).
-        rate_hz, start_s
-            The grid.
+        ``values``: the signal, shape (samples,). ``rate_hz``, ``start_s``: the grid.
         """
         first = max(0, round((self.start_s - start_s) * rate_hz))
         return values[first : first + round(self.periods * self.period_s * rate_hz)]
@@ -56,12 +51,7 @@ def leg_periods(leg: "Leg", coverage: "Coverage") -> LegPeriods | None:
 
     It need not begin where a period of the set point does: every stretch as long as a period holds a whole one.
 
-    Parameters
-    ----------
-    leg
-        A leg of the campaign.
-    coverage
-        What the recording covers.
+    ``leg``: a leg of the campaign. ``coverage``: what the recording covers.
     """
     # a recording that begins or ends with the leg may do so a sample beside it
     begin_s = leg.settled_s if leg.settled_s > coverage.start_s - coverage.step_s else coverage.start_s
@@ -78,16 +68,7 @@ def leg_periods(leg: "Leg", coverage: "Coverage") -> LegPeriods | None:
 def between_lines(values: "FloatArray", periods: int) -> "ComplexArray":
     """Return the Fourier coefficients of what differs from period to period, below the first line.
 
-    Parameters
-    ----------
-    values
-        Samples of whole periods, shape (samples,).
-    periods
-        Their number ``P``.
-
-    Returns
-    -------
-    Coefficients ``1..P-1``, mean of ``x exp(-2 pi j k m / N)``, shape (P - 1,).
+    ``values``: samples of whole periods, shape (samples,). ``periods``: their number ``P``.
     """
     turns = np.arange(values.size) / values.size
     return np.array([np.mean(values * np.exp(-2j * np.pi * k * turns)) for k in range(1, periods)])

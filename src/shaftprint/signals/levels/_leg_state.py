@@ -61,15 +61,7 @@ class LegSamples:
 def leg_state(samples: LegSamples) -> LegState:
     """Return the working point of a leg.
 
-    Parameters
-    ----------
-    samples
-        Its whole periods.
-
-    Raises
-    ------
-    SignalError
-        If the shaft stands still or turns back.
+    ``samples``: its whole periods. Raises SignalError if the shaft stands still or turns back.
     """
     periods = samples.periods
     if not samples.speed_rev_s.min() > 0.0:
@@ -128,17 +120,8 @@ def stretch_of(state: LegState) -> SteadyStretch:
 def calibration_of_legs(legs: Sequence[LegSamples], states: Sequence[LegState], *, channel: str) -> SetPointCalibration:
     """Return the line from volts to speed: through the levels of the legs, or of one level by its slow lines.
 
-    Parameters
-    ----------
-    legs, states
-        Samples and working point of each leg.
-    channel
-        Name of the set-point channel, for messages.
-
-    Raises
-    ------
-    SignalError
-        If the speed does not follow the set point.
+    ``legs``, ``states``: samples and working point of each leg. ``channel``: name of the set-point channel, for
+    messages. Raises SignalError if the speed does not follow the set point.
     """
     volts = np.array([state.working_point.set_point_v for state in states])
     speed = np.array([state.working_point.engine_speed_rev_s for state in states])

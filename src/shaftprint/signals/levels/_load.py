@@ -38,21 +38,9 @@ def torque_of_mean_load(
 ) -> tuple[float, float]:
     """Return the shaft torque at a speed under the mean load [N m], and its standard deviation.
 
-    Parameters
-    ----------
-    speed_rev_s, torque_nm
-        Engine speed and shaft torque on the grid, shape (samples,).
-    about_rev_s
-        Engine speed of the working point [rev/s].
-    rate_hz, start_s
-        The grid.
-    coverage
-        Says where the gaps are.
-
-    Raises
-    ------
-    SignalError
-        If the speed is hardly ever near the working point.
+    ``speed_rev_s``, ``torque_nm``: engine speed and shaft torque on the grid, shape (samples,). ``about_rev_s``: engine
+    speed of the working point [rev/s]. ``rate_hz``, ``start_s``: the grid. ``coverage``: says where the gaps are.
+    Raises SignalError if the speed is hardly ever near the working point.
     """
     speed = speed_rev_s / about_rev_s
     longest = max(BLOCKS_S[0], speed.size / rate_hz / MOST_BLOCKS)

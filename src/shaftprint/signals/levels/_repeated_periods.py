@@ -21,14 +21,8 @@ def repeated_periods(periods: LegPeriods, set_point: "FloatArray", *, rate_hz: f
     more period is left for the ship to settle. Where no period is like its neighbour, all stay: that is no generator
     which stopped.
 
-    Parameters
-    ----------
-    periods
-        Whole periods of a leg that the recording holds.
-    set_point
-        The set point on the grid, shape (samples,).
-    rate_hz, start_s
-        The grid.
+    ``periods``: whole periods of a leg that the recording holds. ``set_point``: the set point on the grid, shape
+    (samples,). ``rate_hz``, ``start_s``: the grid.
     """
     alike = np.flatnonzero(_alike(periods, set_point, rate_hz=rate_hz, start_s=start_s))
     if not alike.size:

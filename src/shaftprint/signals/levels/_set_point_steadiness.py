@@ -108,18 +108,9 @@ def expect_steady_set_point(
 ) -> tuple[Reason, ...]:
     """Return a reason where the amplitude of the set point changes within the tests.
 
-    Parameters
-    ----------
-    campaign
-        What was asked of the ship; its sines and legs are used.
-    set_point_v
-        The set point on the grid [V], shape (samples,).
-    rate_hz, start_s
-        The grid.
-    channel
-        Name of its channel.
-    coverage
-        What the recording covers; stretches in a gap are left out.
+    ``campaign``: what was asked of the ship; its sines and legs are used. ``set_point_v``: the set point on the grid
+    [V], shape (samples,). ``rate_hz``, ``start_s``: the grid. ``channel``: name of its channel. ``coverage``: what the
+    recording covers; stretches in a gap are left out.
     """
     change = change_of(amplitudes_of(campaign, set_point_v, rate_hz=rate_hz, start_s=start_s, coverage=coverage))
     if change is None:
@@ -146,10 +137,7 @@ def amplitudes_of(
 ) -> Amplitudes:
     """Return the amplitude of every line of a campaign, stretch by stretch.
 
-    Parameters
-    ----------
-    campaign, set_point_v, rate_hz, start_s, coverage
-        As of ``expect_steady_set_point``.
+    ``campaign``, ``set_point_v``, ``rate_hz``, ``start_s``, ``coverage``: as of ``expect_steady_set_point``.
     """
     cut = _Cut(
         values=set_point_v,
@@ -237,10 +225,7 @@ class _Cut:
 def change_of(amplitudes: Amplitudes) -> AmplitudeChange | None:
     """Return the change of the amplitude that explains its stretches best; None where there is none.
 
-    Parameters
-    ----------
-    amplitudes
-        Of every stretch.
+    ``amplitudes``: of every stretch.
     """
     begin_s, end_s = amplitudes.start_s, amplitudes.stop_s
     scatter = _scatter(amplitudes)
@@ -297,14 +282,8 @@ def _scatter(amplitudes: Amplitudes) -> FloatArray:
 def _compared(amplitudes: Amplitudes, scatter: FloatArray, before: int, after: int) -> tuple[float, float]:
     """Return twice the gain in log-likelihood, and the size of a change of the logarithm.
 
-    Parameters
-    ----------
-    amplitudes
-        Of every stretch.
-    scatter
-        How far the stretches of each test scatter, shape (tests,).
-    before, after
-        How many stretches are before the change, and the first one after it.
+    ``amplitudes``: of every stretch. ``scatter``: how far the stretches of each test scatter, shape (tests,).
+    ``before``, ``after``: how many stretches are before the change, and the first one after it.
     """
     count = amplitudes.log_ratio.size
     kept = np.r_[0:before, after:count]

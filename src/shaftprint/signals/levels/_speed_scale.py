@@ -98,14 +98,8 @@ def scale_evidence(
 ) -> tuple[ScaleEvidence, ...]:
     """Return what a mean speed and a mean torque say of their scales.
 
-    Parameters
-    ----------
-    point
-        Mean speed and torque, and the set point at which they were.
-    vessel
-        Says which torque belongs to which speed.
-    campaign
-        Says which speed was asked for; None where nobody says what was done in the recording.
+    ``point``: mean speed and torque, and the set point at which they were. ``vessel``: says which torque belongs to
+    which speed. ``campaign``: says which speed was asked for; None where nobody says what was done in the recording.
     """
     found_rpm = rpm_from_rev_s(point.engine_speed_rev_s)
     load_std = _LOAD if vessel.pitch is None else _LOAD_OF_PITCH
@@ -126,14 +120,8 @@ def evidence_between(
 ) -> tuple[ScaleEvidence, ...]:
     """Return what mean speed and torque of one leg say of their scales, those of another leg being right.
 
-    Parameters
-    ----------
-    point, beside
-        Of the one leg, and of the other.
-    vessel
-        Says whether a pitch changes the load.
-    campaign
-        Says which speeds were asked for.
+    ``point``, ``beside``: of the one leg, and of the other. ``vessel``: says whether a pitch changes the load.
+    ``campaign``: says which speeds were asked for.
     """
     (asked_rpm, asked_std), (beside_rpm, _) = (asked_speed(one, vessel, campaign) for one in (point, beside))
     speed = math.log(point.engine_speed_rev_s / beside.engine_speed_rev_s)
@@ -173,14 +161,8 @@ def scale_doubt(
 ) -> ScaleDoubt | None:
     """Return the factor of speed or torque that explains what is far from the files; None where none has to.
 
-    Parameters
-    ----------
-    evidence
-        From `scale_evidence`, and the inertia behind the gauge where a fit gives it.
-    vessel
-        The vessel file.
-    levels_rpm
-        Mean engine speeds that were governed [rpm].
+    ``evidence``: from `scale_evidence`, and the inertia behind the gauge where a fit gives it. ``vessel``: the vessel
+    file. ``levels_rpm``: mean engine speeds that were governed [rpm].
     """
     levels = tuple(levels_rpm)
 

@@ -121,18 +121,10 @@ def expect_steady_gauge(
 ) -> tuple[Reason, ...]:
     """Return a reason where the gain of the torque gauge, its zero or the load changes within the tests.
 
-    Parameters
-    ----------
-    campaign
-        What was asked of the ship, in sines, legs or anything else; its first test begins what is looked at.
-    set_point, speed_rev_s, torque_nm
-        Signals on the grid, shape (samples,); the set point in any unit.
-    rate_hz, start_s
-        The grid.
-    channel
-        Name of the torque channel.
-    coverage
-        What the recording covers; pieces in a gap are left out.
+    ``campaign``: what was asked of the ship, in sines, legs or anything else; its first test begins what is looked at.
+    ``set_point``, ``speed_rev_s``, ``torque_nm``: signals on the grid, shape (samples,); the set point in any unit.
+    ``rate_hz``, ``start_s``: the grid. ``channel``: name of the torque channel. ``coverage``: what the recording
+    covers; pieces in a gap are left out.
     """
     tests = campaign.excitations
     if not tests:
@@ -164,16 +156,8 @@ def change_within(
 ) -> Change | None:
     """Return the change that explains the torque best; None where there is none.
 
-    Parameters
-    ----------
-    set_point, speed_rev_s, torque_nm
-        Signals on the grid, shape (samples,).
-    within_s
-        Begin and end of what is looked at [s].
-    rate_hz, start_s
-        The grid.
-    coverage
-        What the recording covers.
+    ``set_point``, ``speed_rev_s``, ``torque_nm``: signals on the grid, shape (samples,). ``within_s``: begin and end of
+    what is looked at [s]. ``rate_hz``, ``start_s``: the grid. ``coverage``: what the recording covers.
     """
     begin_s, end_s = within_s
     count = min(int((end_s - begin_s) / _PIECE_S), _MOST_PIECES) // _PIECES_A_LOAD * _PIECES_A_LOAD
@@ -229,16 +213,9 @@ def loads_of(
 ) -> Loads:
     """Return the load in windows.
 
-    Parameters
-    ----------
-    begin_s, end_s
-        When they begin and end [s], shape (windows,).
-    speed_rev_s, torque_nm
-        Signals on the grid, shape (samples,).
-    inertia_s
-        Inertia behind the gauge, a time, at the mean speed and torque: what accelerates it is no load.
-    rate_hz, start_s
-        The grid.
+    ``begin_s``, ``end_s``: when they begin and end [s], shape (windows,). ``speed_rev_s``, ``torque_nm``: signals on
+    the grid, shape (samples,). ``inertia_s``: inertia behind the gauge, a time, at the mean speed and torque: what
+    accelerates it is no load. ``rate_hz``, ``start_s``: the grid.
     """
     first, stop = (np.round((of - start_s) * rate_hz).astype(int) for of in (begin_s, end_s))
     speed, torque = speed_rev_s / speed_rev_s.mean(), torque_nm / torque_nm.mean()

@@ -62,16 +62,8 @@ def steady_stretches(
     The crest of a slow sine stands nearly still too; therefore sines, legs and chirps of the campaign
     are left out.
 
-    Parameters
-    ----------
-    set_point_v, speed_rev_s, torque_nm
-        Signals on the grid, shape (samples,).
-    campaign
-        Says where the sines, legs and chirps are.
-    rate_hz, start_s
-        The grid.
-    coverage
-        Says where the gaps are.
+    ``set_point_v``, ``speed_rev_s``, ``torque_nm``: signals on the grid, shape (samples,). ``campaign``: says where the
+    sines, legs and chirps are. ``rate_hz``, ``start_s``: the grid. ``coverage``: says where the gaps are.
     """
     length = round(_BLOCK_S * rate_hz)
     means = [_block_means(values, length) for values in (set_point_v, speed_rev_s, torque_nm)]

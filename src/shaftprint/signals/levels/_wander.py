@@ -45,20 +45,10 @@ class Line:
 def fit_through_wander(values: FloatArray, columns: FloatArray, start_s: FloatArray, stop_s: FloatArray) -> Line:
     """Fit ``values = columns @ coefficients`` by generalised least squares.
 
-    Parameters
-    ----------
-    values
-        Mean over each window, shape (windows,).
-    columns
-        What each coefficient is multiplied by in each window, shape (windows, columns), the first of them not zero; a
-        column of zeros has the coefficient 0 with the standard deviation 0.
-    start_s, stop_s
-        When the windows begin and end [s], shape (windows,).
-
-    Raises
-    ------
-    SignalError
-        If there are fewer than three windows more than columns that are not zero.
+    ``values``: mean over each window, shape (windows,). ``columns``: what each coefficient is multiplied by in each
+    window, shape (windows, columns), the first of them not zero; a column of zeros has the coefficient 0 with the
+    standard deviation 0. ``start_s``, ``stop_s``: when the windows begin and end [s], shape (windows,). Raises
+    SignalError if there are fewer than three windows more than columns that are not zero.
     """
     size = np.abs(columns).max(axis=0, initial=0.0)
     nonzero = np.flatnonzero(size > _NOTHING * size[0])
@@ -91,10 +81,7 @@ def _given_disturbance(
 ) -> tuple[FloatArray, FloatArray, float]:
     """Return coefficients, their covariance and the logarithm of the likelihood for a shape of the disturbance.
 
-    Parameters
-    ----------
-    lower
-        Cholesky factor of the covariance of the windows up to its size.
+    ``lower``: cholesky factor of the covariance of the windows up to its size.
     """
     solved = np.linalg.solve(lower, np.column_stack([design, values]))
     white, level = solved[:, -1], solved[:, :-1]

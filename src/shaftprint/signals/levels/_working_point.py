@@ -41,19 +41,9 @@ def stretches_at_working_point(
 
     Where there is no quiet stretch between tests, levels of staircases at the working voltage serve.
 
-    Parameters
-    ----------
-    stretches
-        Where set point, speed and torque stand still.
-    campaign
-        Says which voltage is the working voltage and when tests are made.
-    channel
-        Name of the set-point channel, for messages.
-
-    Raises
-    ------
-    SignalError
-        If nothing stands still within 0.25 V of the working voltage.
+    ``stretches``: where set point, speed and torque stand still. ``campaign``: says which voltage is the working
+    voltage and when tests are made. ``channel``: name of the set-point channel, for messages. Raises SignalError if
+    nothing stands still within 0.25 V of the working voltage.
     """
     near = [stretch for stretch in stretches if abs(stretch.set_point_v - campaign.offset_v) < _NEAR_V]
     if not near:
@@ -126,18 +116,9 @@ def working_point_of_test(
 ) -> WorkingPoint:
     """Return the working point under the mean load of the whole recording.
 
-    Parameters
-    ----------
-    speed_rev_s, torque_nm
-        Engine speed and shaft torque on the grid, shape (samples,).
-    at_v
-        The working voltage [V].
-    at
-        Speed of the set-point line there, with its standard deviation [rev/s].
-    rate_hz, start_s
-        The grid.
-    coverage
-        Says where the gaps are.
+    ``speed_rev_s``, ``torque_nm``: engine speed and shaft torque on the grid, shape (samples,). ``at_v``: the working
+    voltage [V]. ``at``: speed of the set-point line there, with its standard deviation [rev/s]. ``rate_hz``,
+    ``start_s``: the grid. ``coverage``: says where the gaps are.
     """
     speed, speed_std = at
     torque, torque_std = torque_of_mean_load(
@@ -157,10 +138,8 @@ def working_point_of_test(
 def expect_plausible(point: WorkingPoint, vessel: "Vessel") -> tuple[str, ...]:
     """Return what is strange about a working point beside the one that the vessel file expects.
 
-    Raises
-    ------
-    SignalError
-        If the torque does not drive the propeller the way it is said to turn: nothing can be taken relative to it.
+    Raises SignalError if the torque does not drive the propeller the way it is said to turn: nothing can be taken
+    relative to it.
     """
     sensor, expected = vessel.sensors.shaft_torque, vessel.working_point.shaft_torque_nm
     torque = vessel.working_point.turning * point.shaft_torque_nm
@@ -237,12 +216,8 @@ def _between_tests(stretch: "SteadyStretch", campaign: "Campaign") -> bool:
 def mean_of_stretches(values: list[float], deviations: list[float], weight: FloatArray) -> tuple[float, float]:
     """Return the weighted mean of stretches and its standard deviation.
 
-    Parameters
-    ----------
-    values, deviations
-        Mean of each stretch and its standard deviation.
-    weight
-        Weight of each stretch, shape (stretches,).
+    ``values``, ``deviations``: mean of each stretch and its standard deviation. ``weight``: weight of each stretch,
+    shape (stretches,).
     """
     share = weight / weight.sum()
     means = np.array(values)

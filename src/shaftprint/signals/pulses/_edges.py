@@ -44,20 +44,10 @@ class PulseLevels:
 def pulse_levels(channel: "Channel", *, edge: str = "rising", uneven_share: float = 0.0) -> PulseLevels:
     """Return the levels of a pulse channel, found from stretches all over the recording.
 
-    Parameters
-    ----------
-    channel
-        A channel of pulses.
-    edge
-        ``"rising"`` or ``"falling"``: which edge marks the angle of the strip.
-    uneven_share
-        Share of the intervals between pulses that are longer or shorter than the others: beside a wheel's gaps.
-
-    Raises
-    ------
-    SignalError
-        If there are neither two levels that stand clear of the noise nor even swings: the channel is dead or
-        saturated.
+    ``channel``: a channel of pulses. ``edge``: ``"rising"`` or ``"falling"``: which edge marks the angle of the strip.
+    ``uneven_share``: share of the intervals between pulses that are longer or shorter than the others: beside a wheel's
+    gaps. Raises SignalError if there are neither two levels that stand clear of the noise nor even swings: the channel
+    is dead or saturated.
     """
     stretches = spots(channel)
     counts = np.concatenate(stretches).astype(np.float64)
@@ -83,12 +73,8 @@ def find_edges(samples: Iterable[Counts], levels: PulseLevels) -> FloatArray:
     An edge lies where the straight line between two samples crosses the middle of the levels. It
     counts once the channel has come from below 30 % to above 70 % of the way.
 
-    Parameters
-    ----------
-    samples
-        Consecutive blocks of raw counts, nan where there are none; the result is the same for any cut into blocks.
-    levels
-        From ``pulse_levels``.
+    ``samples``: consecutive blocks of raw counts, nan where there are none; the result is the same for any cut into
+    blocks. ``levels``: from ``pulse_levels``.
     """
     sign = 1.0 if levels.high > levels.low else -1.0
     low, high = sign * levels.low, sign * levels.high

@@ -33,10 +33,7 @@ _PERCENT = 100.0
 def expect_whole_crests(channel: "Channel") -> tuple[Reason, ...]:
     """Return a reason where a channel with noise sticks at its highest or lowest value.
 
-    Parameters
-    ----------
-    channel
-        The channel; stretches all over it are looked at.
+    ``channel``: the channel; stretches all over it are looked at.
     """
     stretches = spots(channel)
     flat_ends = [one for one in _flat_ends(np.concatenate(stretches)) if one[2] > _LEAST_SHARE]

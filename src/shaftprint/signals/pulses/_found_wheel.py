@@ -17,12 +17,8 @@ _MOST_PULSES, _LARGEST_SHARE = 40_000, 0.34
 def recurring_wheel(place: IntArray, spaces: IntArray) -> Wheel | None:
     """Return the wheel whose gaps or further teeth come back with every turn; nothing where there are none.
 
-    Parameters
-    ----------
-    place
-        Number of the place of each pulse, shape (pulses,), ascending.
-    spaces
-        Numbers of the places behind which there is a pulse too many, shape (doubled,).
+    ``place``: number of the place of each pulse, shape (pulses,), ascending. ``spaces``: numbers of the places behind
+    which there is a pulse too many, shape (doubled,).
     """
     place = place[:_MOST_PULSES]
     count = int(place[-1]) + 1

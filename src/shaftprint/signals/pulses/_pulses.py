@@ -103,18 +103,9 @@ class Pitches:
 def number_pulses(position: FloatArray, *, channel: str) -> PulseTrain:
     """Return the pulses without the doubled ones, numbered as if none were missing.
 
-    Parameters
-    ----------
-    position
-        Where the edges are [samples], shape (edges,), ascending.
-    channel
-        Name of the channel, for messages.
-
-    Raises
-    ------
-    SignalError
-        If there are fewer than 20 pulses, more than one in twenty is faulty, or those that are missing or too many
-        come back with every turn, as on a wheel with gaps or further teeth.
+    ``position``: where the edges are [samples], shape (edges,), ascending. ``channel``: name of the channel, for
+    messages. Raises SignalError if there are fewer than 20 pulses, more than one in twenty is faulty, or those that are
+    missing or too many come back with every turn, as on a wheel with gaps or further teeth.
     """
     pitches = count_pitches(position, channel=channel)
     wheel = recurring_wheel(pitches.place, spaces=pitches.space)
@@ -140,19 +131,9 @@ def number_pulses(position: FloatArray, *, channel: str) -> PulseTrain:
 def count_pitches(position: FloatArray, *, channel: str, spacings: Sequence[int] = (1,)) -> Pitches:
     """Return the pulses without the doubled ones, with the distance from each to the next.
 
-    Parameters
-    ----------
-    position
-        Where the edges are [samples], shape (edges,), ascending.
-    channel
-        Name of the channel, for messages.
-    spacings
-        Distances between teeth that a wheel has, in pitches.
-
-    Raises
-    ------
-    SignalError
-        If there are fewer than 20 pulses.
+    ``position``: where the edges are [samples], shape (edges,), ascending. ``channel``: name of the channel, for
+    messages. ``spacings``: distances between teeth that a wheel has, in pitches. Raises SignalError if there are fewer
+    than 20 pulses.
     """
     if position.size < _FEWEST_PULSES:
         raise SignalError(
@@ -179,10 +160,7 @@ def doubled_pulses(position: FloatArray) -> list[PulseFault]:
 def expect_few_faults(faults: Sequence[PulseFault], pulses: int, *, channel: str) -> None:
     """Check that most pulses are sound.
 
-    Raises
-    ------
-    SignalError
-        If more than one in twenty is faulty.
+    Raises SignalError if more than one in twenty is faulty.
     """
     if len(faults) > _LARGEST_SHARE * pulses:
         raise SignalError(

@@ -72,12 +72,8 @@ def steady_turns(train: "PulseTrain", strips: int) -> bool:
 def revolutions(train: "PulseTrain", angles: FloatArray) -> FloatArray:
     """Return the angle of the shaft at each pulse since pulse number 0 [rev], shape (pulses,).
 
-    Parameters
-    ----------
-    train
-        Numbered pulses.
-    angles
-        Angle from each strip or tooth of the turn to the next [rev], shape (strips,); they sum to 1.
+    ``train``: numbered pulses. ``angles``: angle from each strip or tooth of the turn to the next [rev], shape
+    (strips,); they sum to 1.
     """
     strips = angles.size
     places = np.concatenate([[0.0], np.cumsum(angles[:-1])])
@@ -92,12 +88,7 @@ def renumbered(train: "PulseTrain", strips: int) -> tuple[IntArray, tuple[float,
     tells the number exactly, up to whole revolutions. Strips that are even within what jitter leaves open of a stretch
     tell nothing, and the guess stays.
 
-    Returns
-    -------
-    number
-        Shape (pulses,).
-    position
-        Where a gap was recounted [samples].
+    ``number``: shape (pulses,). ``position``: where a gap was recounted [samples].
     """
     number = train.number.copy()
     share, steady = _interval_shares(train, strips)
@@ -127,18 +118,8 @@ def renumbered(train: "PulseTrain", strips: int) -> tuple[IntArray, tuple[float,
 def unplaced_stretches(train: "PulseTrain", strips: int, gaps: IntArray) -> list[tuple[float, float]]:
     """Return the stretches behind gaps that are too short to show at which strip they begin.
 
-    Parameters
-    ----------
-    train
-        Numbered pulses.
-    strips
-        Pulses a revolution.
-    gaps
-        Numbers of the intervals over which the count is a guess, shape (gaps,), ascending.
-
-    Returns
-    -------
-    First and last pulse of each [samples].
+    ``train``: numbered pulses. ``strips``: pulses a revolution. ``gaps``: numbers of the intervals over which the count
+    is a guess, shape (gaps,), ascending.
     """
     share, steady = _interval_shares(train, strips)
     borders = np.flatnonzero(np.diff(train.number) > 1)

@@ -132,12 +132,8 @@ def _another_wheel(pitches: Pitches, wheel: Wheel, channel: str) -> SignalError:
 def _placed(pitches: Pitches, marks: BoolArray, pattern: BoolArray) -> tuple[IntArray, tuple[LostCount, ...]]:
     """Return by how many places each pulse is moved so that the marks stand where the pattern has them.
 
-    Returns
-    -------
-    shift
-        Shape (pulses,), never descending.
-    lost
-        Where the count breaks off, or the marks are in another order.
+    ``shift``: shape (pulses,), never descending. ``lost``: where the count breaks off, or the marks are in another
+    order.
     """
     turn = pitches.place // pattern.size
     runs = _runs(_shifts_of_turns(marks, pattern))

@@ -40,14 +40,8 @@ class LegFinding:
 def check_leg(measured: LegLines, *, expected: "FloatArray", moved: "ExcitationSignal") -> LegFinding:
     """Compare the set point of every line with the campaign.
 
-    Parameters
-    ----------
-    measured
-        The lines.
-    expected
-        Amplitude that the campaign asks for at each line, over the working point, shape (lines,).
-    moved
-        The signal that was moved, for messages.
+    ``measured``: the lines. ``expected``: amplitude that the campaign asks for at each line, over the working point,
+    shape (lines,). ``moved``: the signal that was moved, for messages.
     """
     silent, remarks, unusable = {}, {}, set()
     for line, asked in zip(measured.lines, expected.tolist(), strict=True):

@@ -90,25 +90,12 @@ def measure_leg(
 ) -> LegLines:
     """Measure every line of a leg in all channels.
 
-    Parameters
-    ----------
-    window
-        Its whole periods.
-    harmonics
-        Its lines, ascending and below half of the rate.
-    excitation
-        Name of the channel that is moved.
-    speed
-        Name of the speed whose square is in the torque.
-    of_speed, beside
-        Harmonics at which the set point of the speed is moved, those of the leg where none are given, and those at
-        which something else is.
-    orders
-        Orders of the shaft line, which are taken out of the torque.
-    references
-        Value of each channel at the working point, for the angle of the shaft.
-    messages
-        Channels on clocks of their own, about the working point of the leg.
+    ``window``: its whole periods. ``harmonics``: its lines, ascending and below half of the rate. ``excitation``: name
+    of the channel that is moved. ``speed``: name of the speed whose square is in the torque. ``of_speed``, ``beside``:
+    harmonics at which the set point of the speed is moved, those of the leg where none are given, and those at which
+    something else is. ``orders``: orders of the shaft line, which are taken out of the torque. ``references``: value of
+    each channel at the working point, for the angle of the shaft. ``messages``: channels on clocks of their own, about
+    the working point of the leg.
     """
     linear, found = _linear_window(
         window, (of_speed or harmonics, beside), orders, references, excitation=excitation, speed=speed
@@ -140,12 +127,7 @@ def leg_freedom(harmonics: Sequence[int], periods: int) -> FloatArray:
 
     A speed that swings far leaves fewer: bins are then related.
 
-    Parameters
-    ----------
-    harmonics
-        Its lines.
-    periods
-        Whole periods of its window.
+    ``harmonics``: its lines. ``periods``: whole periods of its window.
     """
     every = np.arange((max(harmonics) + 1) * periods + _NOISE_BINS)
     beside = every[every % periods != 0]

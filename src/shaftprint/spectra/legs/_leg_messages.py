@@ -78,18 +78,8 @@ class LegMessages:
 def measure_leg_messages(signal: "MessageSignal", window: "LegWindow", harmonics: Sequence[int]) -> LegMessages | None:
     """Measure all lines of a leg in a channel on a clock of its own.
 
-    Parameters
-    ----------
-    signal
-        The signal about the working point of the leg.
-    window
-        Whole periods of the leg.
-    harmonics
-        Its lines, ascending.
-
-    Returns
-    -------
-    What the messages tell; nothing where they are too few, or show none of the lines.
+    ``signal``: the signal about the working point of the leg. ``window``: whole periods of the leg. ``harmonics``: its
+    lines, ascending.
     """
     state = window.state
     shown = tuple(one for one in harmonics if one / state.period_s <= signal.highest_hz)

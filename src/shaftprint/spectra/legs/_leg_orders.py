@@ -56,22 +56,10 @@ def without_leg_orders(
 ) -> tuple[LegWindow, LegOrders | None]:
     """Take the orders that the grid shows out of the torque of a leg.
 
-    Parameters
-    ----------
-    window
-        Its whole periods, the torque without the square of the speed and all channels without drift.
-    orders
-        Orders of the shaft line.
-    speeds_rev_s
-        Engine speed of each pick-up [rev/s], with its drift, shape (periods, samples a period).
-    load
-        Propeller load over that at the working point, shape (periods, samples a period).
-    excitation
-        Name of the channel that is moved.
-
-    Returns
-    -------
-    The window with what was taken out; the same window and None where the grid shows no order.
+    ``window``: its whole periods, the torque without the square of the speed and all channels without drift.
+    ``orders``: orders of the shaft line. ``speeds_rev_s``: engine speed of each pick-up [rev/s], with its drift, shape
+    (periods, samples a period). ``load``: propeller load over that at the working point, shape (periods, samples a
+    period). ``excitation``: name of the channel that is moved.
     """
     state = window.state
     rate_hz = window.values.shape[2] / state.period_s

@@ -68,20 +68,9 @@ def cut_leg(
 ) -> LegWindow:
     """Cut a leg out of whole channels, with the period that the set point really has.
 
-    Parameters
-    ----------
-    channels
-        Channels on one grid by name, each of shape (samples,).
-    references
-        Value of each at the working point of the leg.
-    state
-        Which part of the recording, with the period of the campaign.
-    harmonics
-        Lines of the leg.
-    excitation
-        Name of the channel that is moved.
-    rate_hz, start_s
-        The grid.
+    ``channels``: channels on one grid by name, each of shape (samples,). ``references``: value of each at the working
+    point of the leg. ``state``: which part of the recording, with the period of the campaign. ``harmonics``: lines of
+    the leg. ``excitation``: name of the channel that is moved. ``rate_hz``, ``start_s``: the grid.
     """
     moved = _cut({excitation: channels[excitation]}, references, state, rate_hz=rate_hz, start_s=start_s)
     ratio = _clock_ratio(moved.by_period()[0][:, list(harmonics)], harmonics)
@@ -99,12 +88,7 @@ def _clock_ratio(amplitude: ComplexArray, harmonics: Sequence[int]) -> float:
     A line of harmonic ``k`` turns by ``-2 pi k`` of that share from one period to the next. Weighted by the power of
     the lines, which is what their phases are known by.
 
-    Parameters
-    ----------
-    amplitude
-        Complex amplitudes of the set point, shape (periods, lines).
-    harmonics
-        The lines.
+    ``amplitude``: complex amplitudes of the set point, shape (periods, lines). ``harmonics``: the lines.
     """
     turn = np.unwrap(np.angle(amplitude * amplitude.mean(axis=0).conj()), axis=0)
     centred = np.arange(len(turn)) - 0.5 * (len(turn) - 1)

@@ -29,16 +29,9 @@ def linear_torque(
 ) -> FloatArray:
     """Return the torque without the square of the speed and what a wander of the load makes of the lines.
 
-    Parameters
-    ----------
-    speed, torque
-        Over the working point, shape (periods, samples a period).
-    lines
-        Harmonics of the period at which the set point of the speed has lines, ascending, shape (lines,).
-    period_s
-        Length of a period [s].
-    beside
-        Harmonics at which something else is moved, such as the pitch, which changes the load on purpose.
+    ``speed``, ``torque``: over the working point, shape (periods, samples a period). ``lines``: harmonics of the period
+    at which the set point of the speed has lines, ascending, shape (lines,). ``period_s``: length of a period [s].
+    ``beside``: harmonics at which something else is moved, such as the pitch, which changes the load on purpose.
     """
     square = speed**2
     wander = load_wander(speed, torque, lines, period_s, beside=beside)

@@ -43,12 +43,8 @@ def clock_reasons(
 ) -> tuple[Reason, ...]:
     """Return a reason for each clock that the frequencies of the sines contradict.
 
-    Parameters
-    ----------
-    cuts, lines
-        Samples and measurement of every line; those with few periods are passed over.
-    channels
-        Name of each channel, by what a reader calls it; the first is what was excited.
+    ``cuts``, ``lines``: samples and measurement of every line; those with few periods are passed over. ``channels``:
+    name of each channel, by what a reader calls it; the first is what was excited.
     """
     long_enough = {line.window.line: line for line in lines if line.window.periods >= _FEWEST_PERIODS}
     if len(long_enough) < _FEWEST_LINES:
@@ -70,13 +66,8 @@ def clock_reasons(
 def channel_clock_reasons(offset: FloatArray, std: FloatArray, *, channels: Sequence[str]) -> tuple[Reason, ...]:
     """Return a reason for each channel whose lines all run beside those of what was excited.
 
-    Parameters
-    ----------
-    offset, std
-        By which share each line runs beside, and its standard deviation, shape (lines, channels); not a number where
-        noise may hide it.
-    channels
-        What a reader calls each channel.
+    ``offset``, ``std``: by which share each line runs beside, and its standard deviation, shape (lines, channels); not
+    a number where noise may hide it. ``channels``: what a reader calls each channel.
     """
     means = [_weighted(*one) for one in zip(offset.T, std.T, strict=True)]
     return tuple(
@@ -92,12 +83,7 @@ def offsets_of_lines(lines: "Sequence[LineMeasurement]", names: Sequence[str]) -
     The clock of a channel turns its lines from one period to the next, the fast ones ever more: how many whole turns is
     what the slower ones say.
 
-    Parameters
-    ----------
-    lines
-        All lines of the leg, ascending, in each of its periods.
-    names
-        The channels.
+    ``lines``: all lines of the leg, ascending, in each of its periods. ``names``: the channels.
     """
     offset, std = np.full((2, len(lines), len(names)), np.nan)
     if lines[0].stretches.shape[1] < _FEWEST_STRETCHES:
@@ -200,18 +186,7 @@ def sine_frequency_hz(values: FloatArray, rate_hz: float, near_hz: float) -> flo
 
     Highest point of the Hann-windowed transform, by parabolas through its logarithm with ever smaller steps.
 
-    Parameters
-    ----------
-    values
-        The record, shape (samples,).
-    rate_hz
-        Its sample rate [Hz].
-    near_hz
-        Expected frequency [Hz].
-
-    Returns
-    -------
-    The frequency [Hz]; not a number where the record has no maximum there.
+    ``values``: the record, shape (samples,). ``rate_hz``: its sample rate [Hz]. ``near_hz``: expected frequency [Hz].
     """
     block = max(int(rate_hz / (_SAMPLES_A_PERIOD * near_hz)), 1)
     count = values.size // block

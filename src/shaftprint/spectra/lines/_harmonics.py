@@ -46,16 +46,7 @@ class Harmonics:
 def collect_harmonics(measurements: Sequence["LineMeasurement"], *, speed: str, torque: str = "M_s") -> Harmonics:
     """Collect the harmonics of one speed channel and the torque.
 
-    Parameters
-    ----------
-    measurements
-        One entry a line.
-    speed, torque
-        Names of the two channels.
-
-    Returns
-    -------
-    The harmonics of all lines.
+    ``measurements``: one entry a line. ``speed``, ``torque``: names of the two channels.
     """
     chosen = [(line, line.places(speed, torque)) for line in measurements]
     amplitude = np.stack([np.abs(line.harmonic[:, places]).T for line, places in chosen])

@@ -60,14 +60,8 @@ def band_of_lines(
 ) -> InputBand | None:
     """Return what the sizes of the lines of what was moved say; None of messages that the governor obeys.
 
-    Parameters
-    ----------
-    lines
-        One entry a line.
-    expected
-        Amplitude that the campaign asks for at each line, over the working point, shape (lines,).
-    moved
-        The signal that was moved.
+    ``lines``: one entry a line. ``expected``: amplitude that the campaign asks for at each line, over the working
+    point, shape (lines,). ``moved``: the signal that was moved.
     """
     if moved.is_obeyed:
         return None
@@ -98,14 +92,9 @@ def input_band(
 ) -> InputBand | None:
     """Return what amplitudes say of a filter or hold; None where there are too few lines.
 
-    Parameters
-    ----------
-    frequency_hz
-        Frequency of each line [Hz], shape (lines,).
-    share, share_std
-        Amplitude over that of the campaign file, and its relative standard deviation by noise, shape (lines,).
-    answers
-        What other channels show in phase with it, over it, by their symbols, each of shape (lines,).
+    ``frequency_hz``: frequency of each line [Hz], shape (lines,). ``share``, ``share_std``: amplitude over that of the
+    campaign file, and its relative standard deviation by noise, shape (lines,). ``answers``: what other channels show
+    in phase with it, over it, by their symbols, each of shape (lines,).
     """
     kept = share > _UNEXCITED_SHARE
     if np.count_nonzero(kept) < _FEWEST_LINES:
@@ -148,12 +137,7 @@ def _beside(seen: FloatArray, weight: FloatArray, answers: Mapping[str, FloatArr
 def band_reasons(band: InputBand | None, *, channel: str, symbol: str) -> tuple[Reason, ...]:
     """Return a reason where the channel of what was moved is behind a filter or hold, or shows another one too.
 
-    Parameters
-    ----------
-    band
-        What the sizes of its sines say.
-    channel, symbol
-        Name of the channel, and what it shows.
+    ``band``: what the sizes of its sines say. ``channel``, ``symbol``: name of the channel, and what it shows.
     """
     if band is not None and band.beside:
         return (

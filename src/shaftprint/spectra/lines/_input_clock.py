@@ -29,14 +29,7 @@ def drift_of_input(
 ) -> float | None:
     """Return the time that the sines lose a second against the campaign file [-]; None where they do not tell.
 
-    Parameters
-    ----------
-    lines
-        One entry a line.
-    sines
-        The sines of the campaign.
-    moved
-        The signal that was moved.
+    ``lines``: one entry a line. ``sines``: the sines of the campaign. ``moved``: the signal that was moved.
     """
     asked = {sine.name: sine for sine in sines}
     order = sorted(lines, key=lambda line: line.window.frequency_hz)
@@ -53,14 +46,9 @@ def drift_of_phases(
 ) -> float | None:
     """Return the drift [-] of sines that are late by so many radians; None where they do not tell.
 
-    Parameters
-    ----------
-    omega_rad_s
-        Angular frequency of each line, ascending [rad/s], shape (lines,).
-    turn_rad, std_rad
-        Phase by which it is late, to whole turns, and its standard deviation by noise [rad], shape (lines,).
-    middle_s
-        Middle of its window [s], shape (lines,).
+    ``omega_rad_s``: angular frequency of each line, ascending [rad/s], shape (lines,). ``turn_rad``, ``std_rad``: phase
+    by which it is late, to whole turns, and its standard deviation by noise [rad], shape (lines,). ``middle_s``: middle
+    of its window [s], shape (lines,).
     """
     if omega_rad_s.size < _FEWEST_LINES:
         return None

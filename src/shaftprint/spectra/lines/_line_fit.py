@@ -62,14 +62,7 @@ class SineMethod(ABC):
     def fit(self, samples: WindowSamples) -> LineFit:
         """Measure the sine of the window's frequency in all channels.
 
-        Parameters
-        ----------
-        samples
-            All channels inside one window, in any units.
-
-        Returns
-        -------
-        Amplitudes in the units of the channels, with the residual.
+        ``samples``: all channels inside one window, in any units.
         """
 
 
@@ -78,20 +71,8 @@ def cut_window(
 ) -> WindowSamples | None:
     """Cut the samples of a window out of whole channels.
 
-    Parameters
-    ----------
-    window
-        The window.
-    values
-        Channels on one grid by name, each of shape (samples,).
-    rate_hz
-        Sample rate of the grid [Hz].
-    start_s
-        Time of the first sample [s].
-
-    Returns
-    -------
-    The samples with ``start <= t < stop``, or None where the channels do not cover the window.
+    ``values``: channels on one grid by name, each of shape (samples,). ``rate_hz``: sample rate of the grid [Hz].
+    ``start_s``: time of the first sample [s].
     """
     inside = window_slice(window, min(channel.size for channel in values.values()), rate_hz=rate_hz, start_s=start_s)
     if inside is None:
@@ -111,16 +92,8 @@ def cut_window_at(
 ) -> WindowSamples:
     """Cut the samples of a window out of a channel whose values have times of their own.
 
-    Parameters
-    ----------
-    window
-        The window; the channel covers it.
-    name
-        Name of the channel.
-    values, time_s
-        Its values and their times [s], ascending, each of shape (samples,).
-    rate_hz
-        How many values come in a second, as a rule [Hz].
+    ``window``: the window; the channel covers it. ``name``: name of the channel. ``values``, ``time_s``: its values and
+    their times [s], ascending, each of shape (samples,). ``rate_hz``: how many values come in a second, as a rule [Hz].
     """
     first, stop = np.searchsorted(time_s, [window.start_s, window.stop_s])
     return WindowSamples(
@@ -135,14 +108,7 @@ def cut_window_at(
 def window_slice(window: "Window", count: int, *, rate_hz: float, start_s: float) -> slice | None:
     """Return which of so many samples are in a window, ``start <= t < stop``, or None where some of them are not there.
 
-    Parameters
-    ----------
-    window
-        The window.
-    count
-        Number of samples.
-    rate_hz, start_s
-        Their rate [Hz] and the time of the first [s].
+    ``count``: number of samples. ``rate_hz``, ``start_s``: their rate [Hz] and the time of the first [s].
     """
     first = int(np.ceil((window.start_s - start_s) * rate_hz - _EDGE_SAMPLES))
     last = int(np.ceil((window.stop_s - start_s) * rate_hz - _EDGE_SAMPLES))

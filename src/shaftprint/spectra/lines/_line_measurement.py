@@ -105,26 +105,11 @@ def measure_line(
 ) -> LineMeasurement:
     """Measure one line in all channels.
 
-    Parameters
-    ----------
-    samples
-        Channels of the window, normalised.
-    method
-        The way to measure the sine.
-    excitation
-        Name of the channel that is moved.
-    speed
-        Name of a speed, with which the torque ``M_s`` goes.
-    from_engine
-        Whether the line is moved from the engine's side, so that the ratio of both is that of load and inertia.
-    messages
-        Channels on clocks of their own inside the window, by name.
-    orders
-        What orders that were taken out of the torque cost the line.
-
-    Returns
-    -------
-    Amplitudes, their noise, harmonics and variances.
+    ``samples``: channels of the window, normalised. ``method``: the way to measure the sine. ``excitation``: name of
+    the channel that is moved. ``speed``: name of a speed, with which the torque ``M_s`` goes. ``from_engine``: whether
+    the line is moved from the engine's side, so that the ratio of both is that of load and inertia. ``messages``:
+    channels on clocks of their own inside the window, by name. ``orders``: what orders that were taken out of the
+    torque cost the line.
     """
     window = samples.window
     fit = method.fit(samples)
@@ -197,16 +182,7 @@ def strongest_frequency_hz(values: FloatArray, rate_hz: float) -> float:
     Highest bin of the Hann-windowed transform, placed between bins by a parabola through the logarithm of the
     magnitude at the bin and beside it; good to a few hundredths of a bin.
 
-    Parameters
-    ----------
-    values
-        The record, shape (samples,).
-    rate_hz
-        Its sample rate [Hz].
-
-    Returns
-    -------
-    The frequency [Hz]; not a number where no sine holds a third of the variance.
+    ``values``: the record, shape (samples,). ``rate_hz``: its sample rate [Hz].
     """
     deviation = values - values.mean()
     # a Hann window has mean 1/2, so that a sine of amplitude a on a bin gives a / 2

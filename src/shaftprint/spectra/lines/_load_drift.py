@@ -35,16 +35,8 @@ class LoadDrift:
 def load_drift(measurements: Sequence["LineMeasurement"], *, speed: str, torque: str = "M_s") -> LoadDrift:
     """Find the relative propeller load of each window.
 
-    Parameters
-    ----------
-    measurements
-        One entry a line, normalised with the working point.
-    speed, torque
-        Names of the two channels.
-
-    Returns
-    -------
-    The drift.
+    ``measurements``: one entry a line, normalised with the working point. ``speed``, ``torque``: names of the two
+    channels.
     """
     square = np.array(
         [line.of(line.mean, speed) ** 2 + 0.5 * np.abs(line.of(line.amplitude, speed)) ** 2 for line in measurements]

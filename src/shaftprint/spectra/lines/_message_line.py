@@ -125,22 +125,9 @@ def measure_messages(
 ) -> MessageLine | None:
     """Measure one line in the messages, with their noise and that of the other channels.
 
-    Parameters
-    ----------
-    messages
-        The messages inside the window.
-    samples
-        The other channels inside the window.
-    method
-        The way to measure the sine.
-    spectrum
-        Fourier amplitudes of the residual of the other channels, shape (channels, bins).
-    relation
-        How the torque among them goes with the speed.
-
-    Returns
-    -------
-    Amplitude and noise; nothing where the line cannot be measured.
+    ``messages``: the messages inside the window. ``samples``: the other channels inside the window. ``method``: the way
+    to measure the sine. ``spectrum``: Fourier amplitudes of the residual of the other channels, shape (channels, bins).
+    ``relation``: how the torque among them goes with the speed.
     """
     if messages.samples is None:
         return None

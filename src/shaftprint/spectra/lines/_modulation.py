@@ -24,20 +24,9 @@ def without_modulation(
     Bin ``k`` of the torque is seen at ``i + k`` and, conjugated, at ``i - k``, with one complex factor a channel, found
     by least squares; what the factor takes of the noise by chance is given back on average.
 
-    Parameters
-    ----------
-    spectrum
-        Fourier amplitudes of the residual, shape (channels, bins).
-    torque
-        The torque in the window, shape (samples,).
-    relation
-        How the torque goes with the speed: it stays, where the factors of both take noise by chance.
-    periods
-        Number of periods in the window.
-
-    Returns
-    -------
-    Spectrum without modulation; unchanged where few slow bins are free of the neighbours.
+    ``spectrum``: Fourier amplitudes of the residual, shape (channels, bins). ``torque``: the torque in the window,
+    shape (samples,). ``relation``: how the torque goes with the speed: it stays, where the factors of both take noise
+    by chance. ``periods``: number of periods in the window.
     """
     reach = min(_REACH_BINS, (periods - 1) // 2)
     if reach < _LEAST_REACH_BINS or periods + reach >= spectrum.shape[1]:

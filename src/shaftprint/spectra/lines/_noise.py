@@ -64,12 +64,7 @@ class LineNoise:
     def with_torque_variance(self, torque: int, variance: float) -> "LineNoise":
         """Return the covariance with something more on one channel, unrelated to the others.
 
-        Parameters
-        ----------
-        torque
-            Place of the channel.
-        variance
-            Variance ``E|a|^2`` that is added.
+        ``torque``: place of the channel. ``variance``: variance ``E|a|^2`` that is added.
         """
         covariance = self.covariance.copy()
         covariance[torque, torque] += variance
@@ -78,14 +73,8 @@ class LineNoise:
     def with_share_of(self, speed: int, torque: int, share: complex) -> "LineNoise":
         """Return the covariance where a share of one channel was added to another, noise and all.
 
-        Parameters
-        ----------
-        speed
-            Place of the channel of which a share is added.
-        torque
-            Place of the channel to which it is added.
-        share
-            How much of it.
+        ``speed``: place of the channel of which a share is added. ``torque``: place of the channel to which it is
+        added. ``share``: how much of it.
         """
         mixing = np.eye(len(self.covariance), dtype=np.complex128)
         mixing[torque, speed] = share
@@ -109,10 +98,7 @@ class Neighbours:
     def square_sum(self, share: FloatArray) -> float:
         """Return ``sum(share^2)`` of unrelated bins, ``share^T R share`` of related ones.
 
-        Parameters
-        ----------
-        share
-            How much the power in each bin counts, shape (bins,).
+        ``share``: how much the power in each bin counts, shape (bins,).
         """
         return float(share @ share if self.related is None else share @ self.related @ share)
 
@@ -131,10 +117,7 @@ class ShaftRelation:
     def turn(self, distance: FloatArray) -> ComplexArray:
         """Return by how much the ratio differs beside the line.
 
-        Parameters
-        ----------
-        distance
-            Frequency over that of the line, minus 1, shape (bins,).
+        ``distance``: frequency over that of the line, minus 1, shape (bins,).
         """
         turned: ComplexArray = (1j * self.ratio.imag * distance).astype(np.complex128)
         return turned
@@ -157,22 +140,10 @@ def line_noise(
 ) -> LineNoise:
     """Estimate the covariance of the noise under a line or under one of its harmonics.
 
-    Parameters
-    ----------
-    spectrum
-        Fourier amplitudes of the residual, shape (channels, bins).
-    periods
-        Number of periods in the window.
-    order
-        1 for the line itself, 2 and 3 for its harmonics.
-    relation
-        How the torque goes with the speed; taken as unrelated when not given.
-    taken
-        Share of the noise of the torque in each bin that the orders of the shaft have taken with them, shape (bins,).
-
-    Returns
-    -------
-    The covariance with the number of complex samples behind it.
+    ``spectrum``: Fourier amplitudes of the residual, shape (channels, bins). ``periods``: number of periods in the
+    window. ``order``: 1 for the line itself, 2 and 3 for its harmonics. ``relation``: how the torque goes with the
+    speed; taken as unrelated when not given. ``taken``: share of the noise of the torque in each bin that the orders of
+    the shaft have taken with them, shape (bins,).
     """
     neighbours = _neighbours(spectrum.shape[1], periods, order)
     # what the drift in the fit takes from the neighbours, it adds to the uncertainty of the line
@@ -192,23 +163,11 @@ def noise_from_neighbours(
 ) -> LineNoise:
     """Estimate the covariance of the noise under a line from amplitudes beside it.
 
-    Parameters
-    ----------
-    values
-        Fourier amplitudes where there is noise alone, shape (channels, bins).
-    neighbours
-        Where they stand, with their weights.
-    relation
-        How the torque goes with the speed at the line; taken as unrelated when not given.
-    kept
-        Share of the power of each bin that is left in the amplitudes, shape (bins,).
-    taken
-        Share of the noise of the torque in each bin that the orders of the shaft have taken with them, shape (bins,):
-        what is left is enlarged, and the number of samples is smaller by that much.
-
-    Returns
-    -------
-    The covariance with the number of complex samples behind it.
+    ``values``: Fourier amplitudes where there is noise alone, shape (channels, bins). ``neighbours``: where they stand,
+    with their weights. ``relation``: how the torque goes with the speed at the line; taken as unrelated when not given.
+    ``kept``: share of the power of each bin that is left in the amplitudes, shape (bins,). ``taken``: share of the
+    noise of the torque in each bin that the orders of the shaft have taken with them, shape (bins,): what is left is
+    enlarged, and the number of samples is smaller by that much.
     """
     chosen = values
     samples = equivalent_samples(neighbours)
@@ -253,12 +212,8 @@ def levelled(values: ComplexArray, neighbours: Neighbours) -> ComplexArray:
 
     Their mean power is that at the line: what the slope, which is fitted to them, takes of it is given back.
 
-    Parameters
-    ----------
-    values
-        Fourier amplitudes where there is noise alone, shape (channels, bins).
-    neighbours
-        Where they stand, with their weights.
+    ``values``: Fourier amplitudes where there is noise alone, shape (channels, bins). ``neighbours``: where they stand,
+    with their weights.
     """
     slope = _local_slope(np.abs(values) ** 2, neighbours)
     growth = np.exp(0.5 * slope[:, np.newaxis] * neighbours.log_ratio)
@@ -295,16 +250,7 @@ def _kept_by_drift(place: FloatArray) -> FloatArray:
 def _local_slope(power: FloatArray, neighbours: Neighbours) -> FloatArray:
     """Find the exponent ``a`` of ``S ~ f^-a`` of each channel: Newton steps on a convex profile likelihood.
 
-    Parameters
-    ----------
-    power
-        Squared magnitudes at the bins, shape (channels, bins).
-    neighbours
-        The bins.
-
-    Returns
-    -------
-    The exponents, shape (channels,); without contrast between the bins about 1.
+    ``power``: squared magnitudes at the bins, shape (channels, bins). ``neighbours``: the bins.
     """
     weight, log_ratio = neighbours.weight, neighbours.log_ratio
     prior_std = _slope_std(neighbours)

@@ -42,16 +42,8 @@ class SetPointFinding:
 def check_frequency_unit(measurements: Sequence["LineMeasurement"]) -> None:
     """Refuse a campaign whose frequencies are not those of the recording.
 
-    Parameters
-    ----------
-    measurements
-        One entry a line.
-
-    Raises
-    ------
-    ResponseError
-        If the set point moves at ``1 / (2 pi)`` of the stated frequency in more than half of the windows, or at
-        none of the stated frequencies.
+    ``measurements``: one entry a line. Raises ResponseError if the set point moves at ``1 / (2 pi)`` of the stated
+    frequency in more than half of the windows, or at none of the stated frequencies.
     """
     ratio = np.array([line.excitation_frequency_hz / line.window.frequency_hz for line in measurements])
     angular = np.abs(ratio / _HZ_PER_RAD_S - 1.0) < 0.05
@@ -81,22 +73,9 @@ def check_set_point(
 ) -> SetPointFinding:
     """Compare the set point of one line with the campaign and with its neighbours.
 
-    Parameters
-    ----------
-    line
-        The line.
-    expected
-        Amplitude that the campaign asks for, over the working point.
-    local_db
-        Local signal-to-noise ratio of the set point of all lines [dB], shape (lines,).
-    place
-        Place of this line among them.
-    moved
-        The signal that was moved, for messages.
-
-    Returns
-    -------
-    Remarks, and whether the line can be used.
+    ``expected``: amplitude that the campaign asks for, over the working point. ``local_db``: local signal-to-noise
+    ratio of the set point of all lines [dB], shape (lines,). ``place``: place of this line among them. ``moved``: the
+    signal that was moved, for messages.
     """
     amplitude = line.excited
     if line.excitation_frequency_hz != line.window.frequency_hz:
@@ -129,10 +108,7 @@ def check_set_point(
 def shape_reasons(lines: Sequence["LineMeasurement"]) -> tuple[Reason, ...]:
     """Return a reason where the recorded set point is no sine: it was cut off, or another one was asked for.
 
-    Parameters
-    ----------
-    lines
-        One entry a line.
+    ``lines``: one entry a line.
     """
     bent = [line for line in lines if _harmonic_share(line) > _HARMONIC_LIMIT]
     if not bent:
@@ -175,12 +151,7 @@ def _moves(line: "LineMeasurement", expected: float) -> bool:
 def amplitude_remark(found: float, expected: float, moved: "ExcitationSignal") -> str:
     """Say what amplitude the set point has.
 
-    Parameters
-    ----------
-    found, expected
-        Amplitudes over the working point.
-    moved
-        The signal that was moved.
+    ``found``, ``expected``: amplitudes over the working point. ``moved``: the signal that was moved.
     """
     unit, size = moved.shown_unit, moved.shown_reference
     return (

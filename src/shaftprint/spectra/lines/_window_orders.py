@@ -29,20 +29,9 @@ def without_orders(
 ) -> tuple[WindowSamples, LineOrders | None]:
     """Take the orders that reach a line out of the torque of its window.
 
-    Parameters
-    ----------
-    samples
-        Channels of the window, over the working point.
-    orders
-        Orders of the shaft line.
-    references
-        Value of each channel at the working point; speeds in rev/s.
-    speed
-        Name of the speed with whose square the load goes.
-
-    Returns
-    -------
-    The window, and what the orders cost the line; the same window and None where no order reaches it.
+    ``samples``: channels of the window, over the working point. ``orders``: orders of the shaft line. ``references``:
+    value of each channel at the working point; speeds in rev/s. ``speed``: name of the speed with whose square the load
+    goes.
     """
     speeds = _speeds(samples, orders, references)
     every = order_bands(orders, speeds, rate_hz=samples.rate_hz)
@@ -78,10 +67,7 @@ def without_orders(
 def left_in_remark(samples: WindowSamples, orders: "Sequence[TrackedOrder]", references: Mapping[str, float]) -> str:
     """Return a remark where a line stands on an order that was left in; empty where it stands on none.
 
-    Parameters
-    ----------
-    samples, orders, references
-        As those of `without_orders`.
+    ``samples``, ``orders``, ``references``: as those of `without_orders`.
     """
     speeds = _speeds(samples, orders, references)
     frequency, bin_hz = samples.window.frequency_hz, 1.0 / samples.window.duration_s

@@ -37,22 +37,12 @@ def with_measured_gears(
 ) -> tuple[OrderBand, ...]:
     """Return the bands with their orders as the torque shows them, where the angle comes through the gears.
 
-    Parameters
-    ----------
-    bands
-        Orders that are wanted; those of a shaft with a pick-up stay, and all where none stands out.
-    speeds_rev_s
-        Engine speed of every pick-up by its name [rev/s], each of shape (samples,).
-    load
-        Propeller load over that at the working point, shape (samples,).
-    torque
-        Fourier amplitudes of the torque, shape (bins,).
-    chosen
-        Bins of the bands without test lines, shape (bins,).
-    rate_hz
-        Rate of the samples [Hz].
-    transform
-        Gives the Fourier amplitudes of waves, (waves, samples) to (waves, bins), as those of the torque were made.
+    ``bands``: orders that are wanted; those of a shaft with a pick-up stay, and all where none stands out.
+    ``speeds_rev_s``: engine speed of every pick-up by its name [rev/s], each of shape (samples,). ``load``: propeller
+    load over that at the working point, shape (samples,). ``torque``: Fourier amplitudes of the torque, shape (bins,).
+    ``chosen``: bins of the bands without test lines, shape (bins,). ``rate_hz``: rate of the samples [Hz].
+    ``transform``: gives the Fourier amplitudes of waves, (waves, samples) to (waves, bins), as those of the torque were
+    made.
     """
     if not any(band.order.through_gears for band in bands):
         return tuple(bands)

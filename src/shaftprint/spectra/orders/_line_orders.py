@@ -24,10 +24,7 @@ class LineOrders:
     def remark(self, total: float) -> str:
         """Return by how much they make the torque of the line less known; empty where that is little.
 
-        Parameters
-        ----------
-        total
-            Variance of the torque at the line, with what they add.
+        ``total``: variance of the torque at the line, with what they add.
         """
         enlarged = float(np.sqrt(total / max(total - self.variance, np.finfo(np.float64).tiny)))
         if enlarged < _WORTH_A_REMARK:

@@ -39,10 +39,7 @@ class OrderFit:
     def variance_at(self, waves: ComplexArray) -> float:
         """Return the variance ``E|a|^2`` of what was taken off at a line.
 
-        Parameters
-        ----------
-        waves
-            Complex amplitudes that the waves of the orders have at the line, shape (waves,).
+        ``waves``: complex amplitudes that the waves of the orders have at the line, shape (waves,).
         """
         return float((waves @ self.covariance @ waves.conj()).real)
 
@@ -50,14 +47,9 @@ class OrderFit:
 def fit_orders(torque: ComplexArray, waves: ComplexArray, chosen: BoolArray) -> OrderFit:
     """Find the orders in the Fourier amplitudes of the torque.
 
-    Parameters
-    ----------
-    torque
-        Fourier amplitudes of the torque, over the working point, without the test lines, shape (bins,).
-    waves
-        Those of the waves of the orders, shape (waves, bins).
-    chosen
-        Bins to use: bands of the orders without test lines, shape (bins,).
+    ``torque``: Fourier amplitudes of the torque, over the working point, without the test lines, shape (bins,).
+    ``waves``: those of the waves of the orders, shape (waves, bins). ``chosen``: bins to use: bands of the orders
+    without test lines, shape (bins,).
     """
     places = np.flatnonzero(chosen)
     values, columns = torque[places], waves[:, places]

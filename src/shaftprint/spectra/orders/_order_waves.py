@@ -49,14 +49,8 @@ def order_bands(
 ) -> tuple[OrderBand, ...]:
     """Return where the orders stand in a window that the grid shows, lowest first.
 
-    Parameters
-    ----------
-    orders
-        Those of the vessel.
-    speeds_rev_s
-        Engine speed of every pick-up in the window by its name [rev/s], each of shape (samples,).
-    rate_hz
-        Rate of the grid [Hz].
+    ``orders``: those of the vessel. ``speeds_rev_s``: engine speed of every pick-up in the window by its name [rev/s],
+    each of shape (samples,). ``rate_hz``: rate of the grid [Hz].
     """
     limits = {name: (float(speed.min()), float(speed.max())) for name, speed in speeds_rev_s.items()}
     bands = [
@@ -75,16 +69,9 @@ def order_waves(
 ) -> FloatArray:
     """Return cosine and sine of each order over time, as large as the load, shape (2 orders, samples).
 
-    Parameters
-    ----------
-    bands
-        Orders that are wanted.
-    speeds_rev_s
-        Engine speed of every pick-up by its name [rev/s], each of shape (samples,).
-    load
-        Propeller load over that at the working point, shape (samples,).
-    rate_hz
-        Rate of the samples [Hz].
+    ``bands``: orders that are wanted. ``speeds_rev_s``: engine speed of every pick-up by its name [rev/s], each of
+    shape (samples,). ``load``: propeller load over that at the working point, shape (samples,). ``rate_hz``: rate of
+    the samples [Hz].
     """
     waves = np.empty((2 * len(bands), load.size))
     for place, band in enumerate(bands):
@@ -97,12 +84,7 @@ def order_waves(
 def turns_of(speed_rev_s: FloatArray, rate_hz: float) -> FloatArray:
     """Return the turns of a shaft since the first sample [rev], shape of its speed [rev/s].
 
-    Parameters
-    ----------
-    speed_rev_s
-        Speed, shape (samples,).
-    rate_hz
-        Rate of the samples [Hz].
+    ``speed_rev_s``: speed, shape (samples,). ``rate_hz``: rate of the samples [Hz].
     """
     # trapezoids: their errors cancel from pulse to pulse
     turns: FloatArray = (np.cumsum(speed_rev_s) - 0.5 * (speed_rev_s + speed_rev_s[0])) / rate_hz
@@ -115,18 +97,8 @@ def with_speed(waves: FloatArray, bands: Sequence[OrderBand], speeds_rev_s: Mapp
     An order whose size and phase change with the speed is the sum of both: one whose torque comes late, since the
     angle is then that of a moment before; one near a torsional mode; one that does not go with the load alone.
 
-    Parameters
-    ----------
-    waves
-        Cosine and sine of each order, shape (2 orders, samples).
-    bands
-        The orders.
-    speeds_rev_s
-        Engine speed of every pick-up by its name [rev/s], each of shape (samples,).
-
-    Returns
-    -------
-    Waves, shape (4 orders, samples).
+    ``waves``: cosine and sine of each order, shape (2 orders, samples). ``bands``: the orders. ``speeds_rev_s``: engine
+    speed of every pick-up by its name [rev/s], each of shape (samples,).
     """
     swing = {name: speed / speed.mean() - 1.0 for name, speed in speeds_rev_s.items()}
     of_waves = np.repeat([swing[band.order.speed] for band in bands], 2, axis=0)

@@ -60,10 +60,8 @@ class Arbitrary(Excitation):
     def __post_init__(self) -> None:
         """Check the numbers.
 
-        Raises
-        ------
-        ResponseError
-            If the number of lines is not positive, the lines are not positive and ascending, or the order is negative.
+        Raises ResponseError if the number of lines is not positive, the lines are not positive and ascending, or the
+        order is negative.
         """
         if not (np.isfinite(self.lines_per_decade) and self.lines_per_decade > 0.0):
             raise ResponseError(f"lines_per_decade = {self.lines_per_decade}: expected a positive number.")

@@ -35,21 +35,7 @@ class Excitation(ABC):
     def estimate(self, records: "Records", *, drift: bool, band_hz: tuple[float, float]) -> LineEstimates:
         """Return responses at lines.
 
-        Parameters
-        ----------
-        records
-            The time series.
-        drift
-            Whether to take a straight line out of every channel.
-        band_hz
-            Lowest and highest frequency of lines [Hz].
-
-        Returns
-        -------
-        Responses with their noise.
-
-        Raises
-        ------
-        ResponseError
-            If the records are too short for it, or no line is excited.
+        ``records``: the time series. ``drift``: whether to take a straight line out of every channel. ``band_hz``:
+        lowest and highest frequency of lines [Hz]. Raises ResponseError if the records are too short for it, or no line
+        is excited.
         """

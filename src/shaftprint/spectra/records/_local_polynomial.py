@@ -86,18 +86,8 @@ class Bands:
     def fit(self, low_hz: float, high_hz: float, *, at_hz: float | None = None, more: int = 0) -> BandFit:
         """Fit a band from ``low_hz`` up to, but without, ``high_hz``.
 
-        Parameters
-        ----------
-        low_hz, high_hz
-            Borders of the band [Hz].
-        at_hz
-            Where the response is wanted [Hz]; in the middle when not given.
-        more
-            Number of orders more that are tried after the fit, see ``BandFit.finer``.
-
-        Returns
-        -------
-        The fit.
+        ``low_hz``, ``high_hz``: borders of the band [Hz]. ``at_hz``: where the response is wanted [Hz]; in the middle
+        when not given. ``more``: number of orders more that are tried after the fit, see ``BandFit.finer``.
         """
         bins = self.in_band(low_hz, high_hz)
         middle = 0.5 * (low_hz + high_hz) if at_hz is None else at_hz
@@ -176,16 +166,7 @@ def is_smooth(bands: Bands, low_hz: float, high_hz: float) -> bool:
     Compares Wilks' statistic of the two fits with its mean and standard deviation under noise alone, in Bartlett's
     approximation for complex values.
 
-    Parameters
-    ----------
-    bands
-        The records.
-    low_hz, high_hz
-        Borders of the band [Hz].
-
-    Returns
-    -------
-    True where the statistic is at most three standard deviations above its mean.
+    ``bands``: the records. ``low_hz``, ``high_hz``: borders of the band [Hz].
     """
     fit = bands.fit(low_hz, high_hz, more=_TRIED)
     records = len(bands.in_band(low_hz, high_hz))
@@ -203,16 +184,7 @@ def misfit(bands: Bands, low_hz: float, high_hz: float) -> ComplexArray:
     A band that cannot be split cannot be tested either: it has too few bins. Where a band around it, twice as wide, is
     not smooth, the difference to a fit of that one with two orders more stands for what the narrow band misses.
 
-    Parameters
-    ----------
-    bands
-        The records.
-    low_hz, high_hz
-        Borders of the band [Hz].
-
-    Returns
-    -------
-    The difference, 0 where the wide band is smooth or has too few bins, shape (outputs, inputs).
+    ``bands``: the records. ``low_hz``, ``high_hz``: borders of the band [Hz].
     """
     width = high_hz - low_hz
     low = max(low_hz - 0.5 * width, 0.5 * min(transform.resolution_hz for transform in bands.transforms))

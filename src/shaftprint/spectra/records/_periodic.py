@@ -63,10 +63,7 @@ class Periodic(Excitation):
     def __post_init__(self) -> None:
         """Check the numbers.
 
-        Raises
-        ------
-        ResponseError
-            If the period is not positive, or the number of settling periods is negative or not whole.
+        Raises ResponseError if the period is not positive, or the number of settling periods is negative or not whole.
         """
         if not (np.isfinite(self.period_s) and self.period_s > 0.0):
             raise ResponseError(f"period_s = {self.period_s}: expected a positive, finite time in seconds.")

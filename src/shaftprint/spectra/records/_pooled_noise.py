@@ -19,20 +19,9 @@ def pooled_noise(
     The samples nearest to a line are averaged as a matrix; where they reach far in terms of octaves, each channel is
     brought to the line first by the slope ``S ~ f^-a`` found among them.
 
-    Parameters
-    ----------
-    samples
-        Independent complex samples of the noise, shape (channels, samples).
-    frequency_hz
-        Frequency of each sample [Hz], ascending, shape (samples,).
-    lines_hz
-        Frequency of each line [Hz], shape (lines,).
-    fewest
-        Number of samples to take; never less than 12, nor than three a channel, where there are so many.
-
-    Returns
-    -------
-    ``E[e e^H]``, shape (lines, channels, channels), and the number of complex samples, shape (lines,).
+    ``samples``: independent complex samples of the noise, shape (channels, samples). ``frequency_hz``: frequency of
+    each sample [Hz], ascending, shape (samples,). ``lines_hz``: frequency of each line [Hz], shape (lines,).
+    ``fewest``: number of samples to take; never less than 12, nor than three a channel, where there are so many.
     """
     channels, total = samples.shape
     count = min(max(fewest, _FEWEST_SAMPLES, _SAMPLES_A_CHANNEL * channels), total)

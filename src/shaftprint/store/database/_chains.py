@@ -86,19 +86,8 @@ class Chains:
     def add(self, link: Link, line_id: int, *, trial_id: int) -> tuple[Link | None, Link | None]:
         """Put a new fingerprint into the chain of its recording.
 
-        Parameters
-        ----------
-        link
-            The fingerprint.
-        line_id
-            Number of its line.
-        trial_id
-            Number of its test, if that is not there yet.
-
-        Returns
-        -------
-        before, after
-            Its neighbours; None where it has none.
+        ``link``: the fingerprint. ``line_id``: number of its line. ``trial_id``: number of its test, if that is not
+        there yet. Returns its neighbours; None where it has none.
         """
         record = link.record
         if record is None:

@@ -155,10 +155,7 @@ def _reading(location: Location, path: Path) -> str:
     Its log cannot be made either, so that SQLite is told that the file does not change. Where a log lies beside it,
     somebody else writes, or the file was copied from a store in use: then SQLite must read that too.
 
-    Raises
-    ------
-    StoreError
-        If it has records that are in a log that cannot be read here.
+    Raises StoreError if it has records that are in a log that cannot be read here.
     """
     beside = [path.with_name(f"{path.name}-{end}") for end in ("wal", "shm")]
     if not beside[0].exists() or not beside[0].stat().st_size:

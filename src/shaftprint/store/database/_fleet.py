@@ -42,21 +42,10 @@ class Fleet:
 
         A ship that had no IMO number gets it when it is first stated.
 
-        Parameters
-        ----------
-        ship
-            The ship.
-        named
-            What states it, for errors.
-        exactly
-            Whether a name counts among ships without an IMO number only, and gives none a number: who may write to a
-            ship that has a name has no right to another one of that name.
-
-        Raises
-        ------
-        StoreError
-            If several ships have the name and no IMO number says which; or exactly that ship is not there, and another
-            one is called so.
+        ``named``: what states it, for errors. ``exactly``: whether a name counts among ships without an IMO number
+        only, and gives none a number: who may write to a ship that has a name has no right to another one of that name.
+        Raises StoreError if several ships have the name and no IMO number says which; or exactly that ship is not
+        there, and another one is called so.
         """
         if ship.imo_number is not None:
             same = self._with_number(ship.imo_number)

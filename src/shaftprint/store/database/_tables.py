@@ -39,10 +39,7 @@ class Utc(sa.types.TypeDecorator[datetime]):
     def process_result_value(self, value: Any, dialect: sa.Dialect) -> datetime | None:
         """Return an instant from what is kept.
 
-        Raises
-        ------
-        StoreError
-            If it is none.
+        Raises StoreError if it is none.
         """
         if value is None or (isinstance(value, datetime) and value.tzinfo is not None):
             return value

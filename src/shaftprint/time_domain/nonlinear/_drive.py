@@ -37,10 +37,7 @@ LEAST_JUMP = 1e-3
 def with_exact_jumps(record: Record, campaign: Campaign, *, rate_hz: float = DRIVE_RATE_HZ) -> Record:
     """Return a record whose drive jumps where the campaign's staircases do, on a grid of about a rate.
 
-    Parameters
-    ----------
-    rate_hz
-        Samples of the drive a second [Hz]: a whole multiple of the record's rate is taken, the nearest.
+    ``rate_hz``: samples of the drive a second [Hz]: a whole multiple of the record's rate is taken, the nearest.
     """
     every = max(round(rate_hz / record.rate_hz), 1)
     first_s = record.start_s - record.margin / record.drive_rate_hz
@@ -83,10 +80,7 @@ class Jump:
 def jumps_in(time_s: FloatArray, drive: FloatArray, campaign: Campaign) -> tuple[Jump, ...]:
     """Return the jumps of a set point that the staircases of a campaign make.
 
-    Parameters
-    ----------
-    time_s, drive
-        Times [s] and the set point, shape (samples,).
+    ``time_s``, ``drive``: times [s] and the set point, shape (samples,).
     """
     near = (_jump_near(time_s, drive, near_s) for near_s in _jumps(campaign, float(time_s[0]), float(time_s[-1])))
     return tuple(jump for jump in near if jump is not None)

@@ -48,10 +48,7 @@ class JumpStretch:
 def without_jumps(term: OutputError, values: FloatArray, rng: np.random.Generator) -> OutputError:
     """Return a term that does not use the stretches in which noise decides what its model does.
 
-    Parameters
-    ----------
-    values
-        All parameters of the structure, shape (parameters,).
+    ``values``: all parameters of the structure, shape (parameters,).
     """
     record = term.record
     base = on_record(term.simulator, term.structure, values, record, ())

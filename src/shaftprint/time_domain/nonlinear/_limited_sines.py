@@ -26,12 +26,7 @@ TOUCHED = 2e-3
 def limited_sines(structure: Structure, values: Mapping[str, float], records: Sequence[Record]) -> tuple[str, ...]:
     """Return the names of the records whose simulation the limits of a structure change.
 
-    Parameters
-    ----------
-    values
-        Values of its free parameters by name.
-    records
-        Sines, each with its settled samples in use.
+    ``values``: values of its free parameters by name. ``records``: sines, each with its settled samples in use.
     """
     names = []
     for record in records:

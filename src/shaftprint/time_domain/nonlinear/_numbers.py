@@ -19,12 +19,8 @@ def limit_numbers(fit: Identification, working_point: WorkingPoint, vessel: Vess
     wrong by ``(m_max - 1) e``, ``M_s0 m_max`` by ``M_s0 e``, and ``r_x`` by ``r_x e``. A torque gauge that shows too
     much by a share shifts levels in N m by it, and nothing else.
 
-    Parameters
-    ----------
-    fit
-        A fit of a limited structure.
-    working_point, vessel
-        What the data were divided by, gear and full-load curve.
+    ``fit``: a fit of a limited structure. ``working_point``, ``vessel``: what the data were divided by, gear and
+    full-load curve.
     """
     estimates = {estimate.name: estimate for estimate in fit.parameters}
     return tuple(number for name in estimates for number in _numbers(estimates[name], working_point, vessel))

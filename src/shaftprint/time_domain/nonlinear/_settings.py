@@ -46,10 +46,7 @@ class NonlinearSettings:
     def __post_init__(self) -> None:
         """Check the numbers.
 
-        Raises
-        ------
-        IdentificationError
-            If one is not positive.
+        Raises IdentificationError if one is not positive.
         """
         counts = (self.starts, self.better, self.kept, self.rounds, self.first_iterations, self.max_iterations)
         rates = (self.coarse_rate_hz, self.coarse_drive_hz, self.rate_hz, self.drive_hz)

@@ -38,30 +38,11 @@ def voyage_of_both(
 ) -> Iterator[tuple[Stretch, Stretch]]:
     """Step both lines from the equilibrium of their set points, in chunks of steps.
 
-    Parameters
-    ----------
-    tugs, vessels, campaigns
-        The truth, the installation and what is asked, port first.
-    water
-        What both propellers share.
-    step_s
-        Length of a step [s].
-    steps
-        Number of steps.
-    chunk
-        Largest number of steps in one stretch; the values do not depend on it.
-    sea, disturbances
-        Streams of what disturbs both propellers, and each line alone.
-
-    Yields
-    ------
-    stretches
-        The next chunk of port and starboard.
-
-    Raises
-    ------
-    SettingsError
-        If the truth is not physical, a line sails free, or the wash needs less than two steps.
+    ``tugs``, ``vessels``, ``campaigns``: the truth, the installation and what is asked, port first. ``water``: what
+    both propellers share. ``step_s``: length of a step [s]. ``steps``: number of steps. ``chunk``: largest number of
+    steps in one stretch; the values do not depend on it. ``sea``, ``disturbances``: streams of what disturbs both
+    propellers, and each line alone. Yields the next chunk of port and starboard. Raises SettingsError if the truth is
+    not physical, a line sails free, or the wash needs less than two steps.
     """
     _expect_at_the_quay(tugs, vessels)
     late = round(water.wash_delay_s / step_s)
@@ -108,16 +89,8 @@ def sea_and_own(
 ) -> tuple[Disturbance, tuple[Disturbance, ...]]:
     """Return the streams of the sea that both propellers feel, of the size of port's, and of what disturbs each line.
 
-    Parameters
-    ----------
-    noises
-        Sizes of the disturbances, port first.
-    water
-        Says how much of them both share.
-    step_s
-        Length of a step [s].
-    rngs
-        Random numbers of the sea, of port and of starboard.
+    ``noises``: sizes of the disturbances, port first. ``water``: says how much of them both share. ``step_s``: length
+    of a step [s]. ``rngs``: random numbers of the sea, of port and of starboard.
     """
     common = math.sqrt(water.sea_share)
     own = math.sqrt(1.0 - water.sea_share)

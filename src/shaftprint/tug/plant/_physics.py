@@ -108,10 +108,7 @@ def build_plant(tug: Tug, vessel: Vessel) -> Plant:
 def _machine_nm(tug: Tug, vessel: Vessel, torque_nm: float) -> float:
     """Return the torque of the electric machine on the gearbox at the propeller shaft [N m]; 0 where there is none.
 
-    Raises
-    ------
-    SettingsError
-        If vessel and truth do not both have one, or the engine has nothing left to give.
+    Raises SettingsError if vessel and truth do not both have one, or the engine has nothing left to give.
     """
     machine = tug.shaft_machine
     if (machine is None) != (vessel.shaft_machine is None):
@@ -236,10 +233,7 @@ def shaft_time_constant_s(inertia_kg_m2: float, tug: Tug, vessel: Vessel) -> flo
 def _check_coupling(coupling: Coupling, upstream_kg_m2: float) -> None:
     """Refuse a coupling that holds nothing, gives energy, or drives more than there is ahead of the gauge.
 
-    Raises
-    ------
-    SettingsError
-        If it is such a one.
+    Raises SettingsError if it is such a one.
     """
     if not coupling.stiffness_nm_rad > 0.0:
         raise SettingsError(
@@ -260,10 +254,7 @@ def _check_coupling(coupling: Coupling, upstream_kg_m2: float) -> None:
 def _check_motor(tug: Tug) -> None:
     """Refuse what an engine has and a motor whose torque is controlled has not.
 
-    Raises
-    ------
-    SettingsError
-        If the truth has it.
+    Raises SettingsError if the truth has it.
     """
     without = {"g": 0.0, "v": 1.0, "unboosted_torque_share": 1.0, "rack_rate_limit_per_s": None}
     for name, value in without.items():

@@ -124,12 +124,8 @@ class PitchActuator:
         Underway the curves of the propeller hold the pitch themselves, and a pitch that stands changes nothing: the
         other cause is returned as it is.
 
-        Parameters
-        ----------
-        blades
-            Deviation of ``P/D`` at nodes and middles, shape (2 steps + 1,).
-        other
-            Deviation that disturbances make, over the torque, shape (steps + 1,).
+        ``blades``: deviation of ``P/D`` at nodes and middles, shape (2 steps + 1,). ``other``: deviation that
+        disturbances make, over the torque, shape (steps + 1,).
         """
         if not self._moves or self._torque is None:
             return other
@@ -149,10 +145,7 @@ def asked_pitch(
     By its own set point where the campaign moves it, by the lever of the speed where there is a combinator; None where
     nothing moves the pitch.
 
-    Raises
-    ------
-    SettingsError
-        If the campaign moves a pitch that the vessel has no set point of.
+    Raises SettingsError if the campaign moves a pitch that the vessel has no set point of.
     """
     combinator = vessel.combinator
     if combinator is not None:

@@ -70,30 +70,11 @@ def voyage(
 ) -> Iterator[Stretch]:
     """Step the line from the equilibrium of the set point at ``start_s``, in chunks of steps.
 
-    Parameters
-    ----------
-    tug, vessel, campaign
-        The truth, the installation and what is asked of it.
-    step_s
-        Length of a step [s].
-    steps
-        Number of steps.
-    chunk
-        Largest number of steps in one stretch; the values do not depend on it.
-    start_s
-        Time of the first step [s].
-    disturbance
-        Stream of the process disturbances, made for the same step.
-
-    Yields
-    ------
-    stretch
-        The next chunk.
-
-    Raises
-    ------
-    SettingsError
-        If the truth is not physical, or the delay in the loop is shorter than three steps and not zero.
+    ``tug``, ``vessel``, ``campaign``: the truth, the installation and what is asked of it. ``step_s``: length of a step
+    [s]. ``steps``: number of steps. ``chunk``: largest number of steps in one stretch; the values do not depend on it.
+    ``start_s``: time of the first step [s]. ``disturbance``: stream of the process disturbances, made for the same
+    step. Yields the next chunk. Raises SettingsError if the truth is not physical, or the delay in the loop is shorter
+    than three steps and not zero.
     """
     line = ready_line(tug, vessel, campaign, step_s=step_s, start_s=start_s)
     for done, acts in forced(disturbance, line, steps=steps, chunk=chunk):
@@ -142,10 +123,8 @@ class ReadyLine(NamedTuple):
 def ready_line(tug: Tug, vessel: Vessel, campaign: Campaign, *, step_s: float, start_s: float) -> ReadyLine:
     """Return a line in the equilibrium of its set point at a time [s].
 
-    Raises
-    ------
-    SettingsError
-        If the truth is not physical, or the delay in the loop is shorter than three steps and not zero.
+    Raises SettingsError if the truth is not physical, or the delay in the loop is shorter than three steps and not
+    zero.
     """
     plant = build_plant(tug, vessel)
     demand = Demand(tug, vessel, campaign, start_s=start_s, step_s=step_s)

@@ -27,10 +27,7 @@ class Bus:
     def of(cls, tug: Tug) -> "Bus":
         """Return the bus of a simulated ship.
 
-        Raises
-        ------
-        SettingsError
-            If messages would overtake each other, or none would be left.
+        Raises SettingsError if messages would overtake each other, or none would be left.
         """
         if not 0.0 <= tug.message_jitter < _MOST_JITTER:
             raise SettingsError(
@@ -63,14 +60,7 @@ class MessageTimes:
     def before(self, stop_s: float) -> tuple[FloatArray, FloatArray]:
         """Return the messages that come before a time and were not returned yet.
 
-        Parameters
-        ----------
-        stop_s
-            The time [s].
-
-        Returns
-        -------
-        When they came and when their values were taken [s], each of shape (messages,).
+        ``stop_s``: the time [s].
         """
         most = max(int((stop_s - self.start_s) / self.cycle_s) + 2 - self._sent, 0)
         cycle = np.arange(self._sent, self._sent + most)
@@ -108,12 +98,7 @@ class MessageStream:
     def next(self, values: FloatArray, *, first: float) -> tuple[FloatArray, FloatArray]:
         """Return what the messages of the next samples carry, and their times [s], each of shape (messages,).
 
-        Parameters
-        ----------
-        values
-            The quantity, sample by sample, shape (samples,).
-        first
-            What it was before the start.
+        ``values``: the quantity, sample by sample, shape (samples,). ``first``: what it was before the start.
         """
         # all that a later message can ask for: its latency, its own cycle either way and the sample before
         kept = int(np.ceil((self._latency_s + 2.0 * self.times.cycle_s) * self._rate_hz)) + 2

@@ -13,10 +13,7 @@ class Late:
     def __init__(self, samples: float) -> None:
         """Begin before the first stretch.
 
-        Parameters
-        ----------
-        samples
-            By how many samples the signal is late, not negative.
+        ``samples``: by how many samples the signal is late, not negative.
         """
         self._late = samples
         self._kept = math.ceil(samples) + 1
@@ -25,12 +22,8 @@ class Late:
     def next(self, values: FloatArray, *, before: float = 0.0) -> FloatArray:
         """Return the next stretch as it comes late, shape (samples,).
 
-        Parameters
-        ----------
-        values
-            The signal itself, shape (samples,).
-        before
-            By how much it rose from sample to sample before the first stretch, steadily.
+        ``values``: the signal itself, shape (samples,). ``before``: by how much it rose from sample to sample before
+        the first stretch, steadily.
         """
         if self._tail is None:
             self._tail = values[0] + before * np.arange(-self._kept, 0)

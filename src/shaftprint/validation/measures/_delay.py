@@ -53,23 +53,11 @@ def remaining_delay(
 ) -> RemainingDelay:
     """Return the delay of the data behind the model.
 
-    Parameters
-    ----------
-    output
-        Name of the output.
-    measured
-        Data, shape (samples,).
-    model, slopes
-        Model and its derivatives, with ``margin`` samples more at either end, shapes (samples + 2 margin,) and (free,
-        samples + 2 margin).
-    covariance
-        Covariance of the free parameters, shape (free, free).
-    autocovariance
-        Autocovariance of the noise from lag 0 on, shape (lags,).
-    rate_hz
-        Sample rate [Hz].
-    margin
-        Samples by which the model goes beyond the data at either end: the longest delay that is looked for.
+    ``output``: name of the output. ``measured``: data, shape (samples,). ``model``, ``slopes``: model and its
+    derivatives, with ``margin`` samples more at either end, shapes (samples + 2 margin,) and (free, samples + 2
+    margin). ``covariance``: covariance of the free parameters, shape (free, free). ``autocovariance``: autocovariance
+    of the noise from lag 0 on, shape (lags,). ``rate_hz``: sample rate [Hz]. ``margin``: samples by which the model
+    goes beyond the data at either end: the longest delay that is looked for.
     """
     unknown = RemainingDelay(output=output, delay_s=np.nan, noise_std_s=np.nan, model_std_s=np.nan)
     if margin < 1:
@@ -104,16 +92,8 @@ def remaining_delay(
 def _columns(pieces: FloatArray, position: float, samples: int, rate_hz: float) -> FloatArray:
     """Return 1, a cubic spline and its slope from a position on, which need not be a whole sample.
 
-    Parameters
-    ----------
-    pieces
-        Coefficients between the samples of the spline, the cubic ones first, shape (4, pieces).
-    position
-        Where the first value is taken [samples].
-    samples
-        How many values are taken.
-    rate_hz
-        Sample rate [Hz].
+    ``pieces``: coefficients between the samples of the spline, the cubic ones first, shape (4, pieces). ``position``:
+    where the first value is taken [samples]. ``samples``: how many values are taken. ``rate_hz``: sample rate [Hz].
     """
     # at a whole sample the end of the piece before it, so that the last sample has a piece
     first = max(int(np.ceil(position)) - 1, 0)

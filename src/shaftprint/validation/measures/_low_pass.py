@@ -20,14 +20,9 @@ def low_pass(values: FloatArray, rate_hz: float, highest_hz: float, *, out: Floa
 
     The ends are continued by their last value, so that half a filter's length from either end counts less.
 
-    Parameters
-    ----------
-    values
-        Signals along the last axis, shape (..., samples).
-    rate_hz, highest_hz
-        Sample rate and frequency at which half of the amplitude is left [Hz].
-    out
-        Where the result goes; ``values`` itself may be given.
+    ``values``: signals along the last axis, shape (..., samples). ``rate_hz``, ``highest_hz``: sample rate and
+    frequency at which half of the amplitude is left [Hz]. ``out``: where the result goes; ``values`` itself may be
+    given.
     """
     if highest_hz >= rate_hz / 2.0:
         return values

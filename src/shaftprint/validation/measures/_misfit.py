@@ -108,16 +108,9 @@ def misfit_of(
 ) -> Misfit:
     """Return how well one output of a model explains one excerpt.
 
-    Parameters
-    ----------
-    raw, smooth
-        Data and model of all frequencies, and through the low-pass.
-    covariance
-        Covariance of the free parameters, shape (free, free).
-    largest_error
-        Share of the motion that the model may miss.
-    coverage
-        Coverage of the interval of the error.
+    ``raw``, ``smooth``: data and model of all frequencies, and through the low-pass. ``covariance``: covariance of the
+    free parameters, shape (free, free). ``largest_error``: share of the motion that the model may miss. ``coverage``:
+    coverage of the interval of the error.
     """
     residual, slopes = smooth.reach.of(smooth.measured - smooth.model), smooth.reach.of(smooth.slopes)
     samples = residual.size

@@ -91,12 +91,8 @@ class QuietNoise:
     def like(self, samples: int, load: float) -> NoisePieces:
         """Return pieces of noise as in an excerpt.
 
-        Parameters
-        ----------
-        samples
-            Length of the excerpt; where no stretch is that long, pieces of the length of the longest are returned.
-        load
-            Load of the propeller during most of the excerpt over that at the working point.
+        ``samples``: length of the excerpt; where no stretch is that long, pieces of the length of the longest are
+        returned. ``load``: load of the propeller during most of the excerpt over that at the working point.
         """
         longest = max(stretch.shape[1] for stretch in self.stretches)
         length = min(samples, longest)
@@ -140,21 +136,10 @@ def quiet_noise(
 ) -> QuietNoise:
     """Return the noise in the quiet stretches of a recording.
 
-    Parameters
-    ----------
-    outputs
-        Gives the deviations of speed and torque from the working point in some samples, shape (2, samples).
-    campaign
-        Says where the set point stands still.
-    signals
-        The recording, with its grid and where its gaps are.
-    rest_s
-        Time after a change of the set point from which on a stretch is quiet [s].
-
-    Raises
-    ------
-    ValidationError
-        If nothing stands still for 5 s.
+    ``outputs``: gives the deviations of speed and torque from the working point in some samples, shape (2, samples).
+    ``campaign``: says where the set point stands still. ``signals``: the recording, with its grid and where its gaps
+    are. ``rest_s``: time after a change of the set point from which on a stretch is quiet [s]. Raises ValidationError
+    if nothing stands still for 5 s.
     """
     cut, loads, means = [], [], []
     rate_hz, start_s, samples = signals.rate_hz, signals.start_s, signals.shaft_torque_nm.size

@@ -38,14 +38,8 @@ class Reach(Protocol):
     def trace_of_square(self, pieces: FloatArray, autocovariance: FloatArray, samples: int) -> float:
         """Return the trace of the square of the covariance that noise has in it, for a stretch of some samples.
 
-        Parameters
-        ----------
-        pieces
-            Pieces of the noise, shape (pieces, samples of a piece), projected.
-        autocovariance
-            Autocovariance of the noise before that, from lag 0 on, shape (lags,).
-        samples
-            Samples of the stretch.
+        ``pieces``: pieces of the noise, shape (pieces, samples of a piece), projected. ``autocovariance``:
+        autocovariance of the noise before that, from lag 0 on, shape (lags,). ``samples``: samples of the stretch.
         """
         ...
 
@@ -130,16 +124,9 @@ class Swept:
 def while_settling(model: FloatArray, time_s: FloatArray, *, settled_share: float, highest_hz: float) -> Reach:
     """Return where a model can err in its response to one step.
 
-    Parameters
-    ----------
-    model
-        Its response, shape (samples,).
-    time_s
-        Time after the step [s], shape (samples,), negative before it.
-    settled_share
-        Share of the height within which a response has settled.
-    highest_hz
-        Cut-off of the low-pass that data and model went through [Hz].
+    ``model``: its response, shape (samples,). ``time_s``: time after the step [s], shape (samples,), negative before
+    it. ``settled_share``: share of the height within which a response has settled. ``highest_hz``: cut-off of the
+    low-pass that data and model went through [Hz].
     """
     place = list(STEP_NUMBERS).index("settling time")
     settling_s = float(step_numbers(model[None], time_s, settled_share=settled_share)[place, 0])

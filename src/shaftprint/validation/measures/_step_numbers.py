@@ -31,14 +31,8 @@ def step_numbers(values: FloatArray, time_s: FloatArray, *, settled_share: float
     A number that an excerpt does not show, such as the settling time of a response that does not settle in it, is not a
     number.
 
-    Parameters
-    ----------
-    values
-        Responses, shape (responses, samples).
-    time_s
-        Time after the step [s], shape (samples,), negative before it.
-    settled_share
-        Share of the height within which a response has settled.
+    ``values``: responses, shape (responses, samples). ``time_s``: time after the step [s], shape (samples,), negative
+    before it. ``settled_share``: share of the height within which a response has settled.
     """
     blocks = -(-values.size // _SAMPLES_AT_ONCE)
     parts = np.array_split(values, min(blocks, len(values)))

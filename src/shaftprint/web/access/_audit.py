@@ -47,16 +47,8 @@ class Audit:
     def note(self, deed: str, *, person: str, address: str, now: datetime, **about: Any) -> None:
         """Write down a deed.
 
-        Parameters
-        ----------
-        deed
-            What was done, such as ``signed in``.
-        person, address
-            Who did it, and from where.
-        now
-            When.
-        about
-            What it is about: ship, line, file, job.
+        ``deed``: what was done, such as ``signed in``. ``person``, ``address``: who did it, and from where. ``now``:
+        when. ``about``: what it is about: ship, line, file, job.
         """
         with self._lock:
             _put(self.path, _entry(deed, person, address, now, about), aside=MOST_ASIDE, sync=True)

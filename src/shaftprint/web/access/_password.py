@@ -36,12 +36,7 @@ def is_hash(text: str) -> bool:
 def is_right(password: str, known: str | None) -> bool:
     """Return whether a password is that of a hash; of nobody's hash it is not, after the same time.
 
-    Parameters
-    ----------
-    password
-        What was typed.
-    known
-        Hash of the password; None where nobody of that name is known.
+    ``password``: what was typed. ``known``: hash of the password; None where nobody of that name is known.
     """
     with _ONE:
         try:

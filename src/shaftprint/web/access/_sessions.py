@@ -70,12 +70,7 @@ class Sessions:
     def begin(self, person: Person | None = None, *, known: Person | None = None) -> tuple[Session, str]:
         """Return a new session and its cookie.
 
-        Parameters
-        ----------
-        person
-            Who signs in; None for nobody.
-        known
-            Who signed in from this browser before.
+        ``person``: who signs in; None for nobody. ``known``: who signed in from this browser before.
         """
         number = secrets.token_urlsafe(16)
         if person is None and self.users is None:

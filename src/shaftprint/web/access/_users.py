@@ -44,10 +44,7 @@ class Users:
 def read_users(path: Path) -> dict[str, Person]:
     """Return the users of a file by their names.
 
-    Raises
-    ------
-    ServerError
-        If it cannot be read, or a field is not as expected.
+    Raises ServerError if it cannot be read, or a field is not as expected.
     """
     try:
         content = path.read_bytes()[: _MOST_BYTES + 1]

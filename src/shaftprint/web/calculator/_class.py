@@ -17,10 +17,7 @@ from shaftprint.web.calculator._tables import table_contents
 def judged_class(lines: list[tuple[dict[str, Any], str]]) -> dict[str, Any]:
     """Return which lines are not as the others are, for JSON.
 
-    Parameters
-    ----------
-    lines
-        Ship, by what tells it from all others, and position of each line that may be seen.
+    ``lines``: ship, by what tells it from all others, and position of each line that may be seen.
     """
     with open_store(os.environ["SHAFTPRINT_STORE"]) as store:
         known = tuple(line_history(store, Ship(**ship), line=position, newest=NEWEST_TESTS) for ship, position in lines)

@@ -37,17 +37,8 @@ class Calculator:
     async def ask(self, question: dict[str, Any], *, longest_s: float) -> dict[str, Any]:
         """Return the answer to a question.
 
-        Parameters
-        ----------
-        question
-            What to do, and of what.
-        longest_s
-            How long it may take [s].
-
-        Raises
-        ------
-        ServerError
-            If it takes longer, the process dies, or what was asked is refused; the sentence says why.
+        ``question``: what to do, and of what. ``longest_s``: how long it may take [s]. Raises ServerError if it takes
+        longer, the process dies, or what was asked is refused; the sentence says why.
         """
         async with self._lock:
             process = await self._running()

@@ -19,12 +19,7 @@ from shaftprint.web.calculator._tables import table_content, table_contents
 def compared(first: str, other: str, names: list[str]) -> dict[str, Any]:
     """Return what differs between two fingerprints, for JSON.
 
-    Parameters
-    ----------
-    first, other
-        Their SHA-256, the earlier one first.
-    names
-        What they are called.
+    ``first``, ``other``: their SHA-256, the earlier one first. ``names``: what they are called.
     """
     with open_store(os.environ["SHAFTPRINT_STORE"]) as store:
         one, two = (

@@ -14,10 +14,7 @@ from shaftprint.web.calculator._tables import table_content
 def inspected(path: str) -> dict[str, Any]:
     """Return what is in a recording, for JSON.
 
-    Parameters
-    ----------
-    path
-        The recording, in any format that is read.
+    ``path``: the recording, in any format that is read.
     """
     with read_recording(Path(path)) as opened:
         channels = opened.channels.values()

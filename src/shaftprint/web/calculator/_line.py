@@ -31,12 +31,8 @@ MOST_TESTS: Final = 40
 def judged_line(ship: dict[str, Any], line: str) -> dict[str, Any]:
     """Return what a history says, for JSON.
 
-    Parameters
-    ----------
-    ship
-        What tells the ship from all others: its IMO number, or its name where it has none.
-    line
-        Which of its lines.
+    ``ship``: what tells the ship from all others: its IMO number, or its name where it has none. ``line``: which of its
+    lines.
     """
     with open_store(os.environ["SHAFTPRINT_STORE"]) as store:
         known = line_history(store, Ship(**ship), line=line)

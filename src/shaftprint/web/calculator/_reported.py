@@ -15,12 +15,7 @@ from shaftprint.survey._survey import judged
 def reported(arguments: dict[str, Any], folder: str) -> dict[str, Any]:
     """Write the report of a test into a folder.
 
-    Parameters
-    ----------
-    arguments
-        Those of its job.
-    folder
-        Where the report goes.
+    ``arguments``: those of its job. ``folder``: where the report goes.
     """
     job = arguments_of(arguments, named="report")
     rng = np.random.default_rng(job.seed)

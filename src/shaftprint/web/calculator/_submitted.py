@@ -24,23 +24,10 @@ def submitted(
 ) -> dict[str, Any]:
     """Put a recording into the ledger, and return its job.
 
-    Parameters
-    ----------
-    recording
-        Path of the recording.
-    vessel, campaign
-        Paths, or names of files that come with the program.
-    structure
-        Name of a structure that comes with the program; that of vessel and campaign where there is none.
-    ship, imo, line
-        Which line it is of.
-    facts
-        When, where and in what water it was tested.
-
-    Raises
-    ------
-    ServerError
-        If the vessel file speaks of another ship or line: its fingerprint would be kept there.
+    ``recording``: path of the recording. ``vessel``, ``campaign``: paths, or names of files that come with the program.
+    ``structure``: name of a structure that comes with the program; that of vessel and campaign where there is none.
+    ``ship``, ``imo``, ``line``: which line it is of. ``facts``: when, where and in what water it was tested. Raises
+    ServerError if the vessel file speaks of another ship or line: its fingerprint would be kept there.
     """
     stated = _stated(vessel, ship, imo, line)
     # a path begins a file, a name one of those that come with the program

@@ -55,12 +55,7 @@ async def _judged(asked: Asked, lines: Sequence[LineNow]) -> dict[str, Any]:
 def _lines_of(asked: Asked) -> tuple[LineNow, ...]:
     """Return the lines of a class that this person sees, each with a number of its newest test.
 
-    Raises
-    ------
-    HTTPException
-        If it is another number.
-    NotThere
-        If there are none.
+    Raises HTTPException if it is another number; NotThere if there are none.
     """
     name, number = asked.named("name"), asked.query("number", NUMBERS[0])
     if number not in NUMBERS:

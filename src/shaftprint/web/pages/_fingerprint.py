@@ -10,10 +10,7 @@ _HASH = 64
 def fingerprint_of(asked: Asked, sha256: str) -> StoredFingerprint:
     """Return a fingerprint, if somebody sees its ship.
 
-    Raises
-    ------
-    NotThere
-        If there is none, or it was not given to him.
+    Raises NotThere if there is none, or it was not given to him.
     """
     is_hash = len(sha256) == _HASH and all(letter in "0123456789abcdef" for letter in sha256)
     found = stored_fingerprint(asked.service.store, sha256) if is_hash else None

@@ -31,10 +31,7 @@ def place_of(asked: Asked, number: str, inside: str) -> Place:
 
     Folders hold files of any ship, so that only who sees all ships may look into them.
 
-    Raises
-    ------
-    NotThere
-        If there is none, it is not below the folder, or somebody may not look into it.
+    Raises NotThere if there is none, it is not below the folder, or somebody may not look into it.
     """
     roots = asked.service.serving.folders
     if (

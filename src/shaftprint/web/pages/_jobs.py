@@ -249,10 +249,7 @@ def _settings(asked: Asked, chosen: str, shipped: tuple[str, ...]) -> str:
 def _facts(fields: dict[str, str], now: datetime) -> dict[str, Any]:
     """Return what a form says of a test.
 
-    Raises
-    ------
-    HTTPException
-        If a number is none, or nothing can have been tested then.
+    Raises HTTPException if a number is none, or nothing can have been tested then.
     """
     facts: dict[str, Any] = {"tested_at": moment_of(fields.get("tested_at", ""), now=now)}
     facts |= {name: fields[name].strip() for name in ("place", "time_zone") if fields.get(name, "").strip()}

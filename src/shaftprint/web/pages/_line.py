@@ -28,10 +28,7 @@ async def line(asked: Asked) -> Shown:
 def records_of(asked: Asked) -> LineRecords:
     """Return what is kept of the line of an address, if somebody sees it.
 
-    Raises
-    ------
-    NotThere
-        If there is no such line, or it was not given to him.
+    Raises NotThere if there is no such line, or it was not given to him.
     """
     found = records_called(asked, asked.named("ship"), asked.named("line"))
     if found is None:
@@ -260,10 +257,7 @@ async def withdraw(asked: Asked) -> Moved:
 def _moment(text: str, zone: str) -> datetime:
     """Return the instant of a form's date.
 
-    Raises
-    ------
-    HTTPException
-        If it is none, or has neither an offset nor a zone.
+    Raises HTTPException if it is none, or has neither an offset nor a zone.
     """
     try:
         shown = datetime.fromisoformat(text)

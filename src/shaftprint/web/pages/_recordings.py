@@ -119,12 +119,7 @@ async def put_recording(asked: Asked) -> Moved:
 def line_of(asked: Asked, fields: dict[str, str]) -> Line:
     """Return the line that a file is of: one that is there, or a new one of a ship that somebody sees.
 
-    Raises
-    ------
-    HTTPException
-        If it is not said which.
-    NotThere
-        If the ship was not given to him.
+    Raises HTTPException if it is not said which; NotThere if the ship was not given to him.
     """
     chosen = fields.get("line", "").strip()
     if chosen and "/" in chosen:
@@ -150,12 +145,7 @@ def line_of(asked: Asked, fields: dict[str, str]) -> Line:
 def _ship_stated(asked: Asked, name: str, number: int | None) -> Ship:
     """Return the ship that was typed: one that somebody sees, or a new one; a name leads to none that he does not see.
 
-    Raises
-    ------
-    HTTPException
-        If several ships that he sees have the name.
-    NotThere
-        If the ship was not given to him.
+    Raises HTTPException if several ships that he sees have the name; NotThere if the ship was not given to him.
     """
     alike = namesakes(asked.service.store, name) if number is None else ()
     seen = [one for one in alike if asked.person.sees(one)]
@@ -171,12 +161,7 @@ def _ship_stated(asked: Asked, name: str, number: int | None) -> Ship:
 def expect_own(asked: Asked, ship: Ship) -> None:
     """Refuse a ship that the store would not tell from another one of its name.
 
-    Raises
-    ------
-    HTTPException
-        If it is so, and somebody sees the other one too.
-    NotThere
-        If he does not.
+    Raises HTTPException if it is so, and somebody sees the other one too; NotThere if he does not.
     """
     alike = namesakes(asked.service.store, ship.name, imo_number=ship.imo_number)
     if any(one.imo_number == ship.imo_number for one in alike):
@@ -227,10 +212,7 @@ async def _taken(asked: Asked, pieces: AsyncIterator[bytes], name: str, line: Li
 def upload_called(asked: Asked, number: str) -> Upload:
     """Return an upload, if somebody sees its ship.
 
-    Raises
-    ------
-    NotThere
-        If there is none, or it was not given to him.
+    Raises NotThere if there is none, or it was not given to him.
     """
     found = asked.service.kept.upload(number) if is_number(number) else None
     if found is None or not asked.person.sees(_ship_of(found)):
@@ -303,10 +285,7 @@ async def look(asked: Asked) -> Moved | Response:
 def moment_of(text: str, *, now: datetime) -> str | None:
     """Return a time of a form as a job takes it; None where none was typed.
 
-    Raises
-    ------
-    HTTPException
-        If it is none, or nothing can have been tested then.
+    Raises HTTPException if it is none, or nothing can have been tested then.
     """
     if not text.strip():
         return None

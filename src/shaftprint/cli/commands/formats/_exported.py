@@ -80,12 +80,8 @@ def model_to_export(
 ) -> ExportedModel:
     """Return the model of a fingerprint file, or of the folder with it; what speaks against it is said.
 
-    Raises
-    ------
-    FingerprintError
-        If there is none, it names no shipped structure, or it has a parameter that the structure lacks.
-    StructureError
-        If there is no such structure or parameter, or a value is missing.
+    Raises FingerprintError if there is none, it names no shipped structure, or it has a parameter that the structure
+    lacks; StructureError if there is no such structure or parameter, or a value is missing.
     """
     drive_file = click.get_current_context().meta.get(DRIVE)
     if drive_file is not None or is_drive_place(fingerprint):
@@ -142,10 +138,8 @@ def file_to_write(
 ) -> Path:
     """Return the file to write: the given one, or one in this folder that is named after vessel and structure.
 
-    Raises
-    ------
-    click.ClickException
-        If it is a folder or an input, its folder does not exist, or it exists and is not to be replaced.
+    Raises click.ClickException if it is a folder or an input, its folder does not exist, or it exists and is not to be
+    replaced.
     """
     path = output or Path(plain_name(f"{model.title}-{model.structure.name}{suffix}"))
     expect_no_input(path, *(None if source is None else fingerprint_file(source) for source in inputs))

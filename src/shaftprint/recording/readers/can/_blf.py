@@ -39,17 +39,7 @@ _FIRST_RUN, _SHORT_RUN, _SINGLES = 64, 8, 256
 def open_blf(path: Path, file: BinaryIO) -> FrameLog:
     """Return the frames of a BLF file.
 
-    Parameters
-    ----------
-    path
-        The file, for messages.
-    file
-        It, at its beginning.
-
-    Raises
-    ------
-    RecordingError
-        If its header is damaged.
+    ``path``: the file, for messages. ``file``: it, at its beginning. Raises RecordingError if its header is damaged.
     """
     header = file.read(_FILE_HEADER.size)
     if len(header) < _FILE_HEADER.size:

@@ -37,19 +37,8 @@ class Decoded:
 def decoded(path: Path, log: FrameLog, database: Database) -> Decoded:
     """Take a log apart, which is gone through once.
 
-    Parameters
-    ----------
-    path
-        The file.
-    log
-        Its frames.
-    database
-        What they hold.
-
-    Raises
-    ------
-    RecordingError
-        If the log is longer unpacked than such a file can be.
+    ``path``: the file. ``log``: its frames. ``database``: what they hold. Raises RecordingError if the log is longer
+    unpacked than such a file can be.
     """
     spool = Spool(path, [])
     try:

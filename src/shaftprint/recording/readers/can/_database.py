@@ -65,10 +65,7 @@ def known_messages() -> Database:
 def read_database(path: Path) -> Database:
     """Read a DBC or ARXML file.
 
-    Raises
-    ------
-    RecordingError
-        If it is missing, no such file, or empty.
+    Raises RecordingError if it is missing, no such file, or empty.
     """
     kind = "ARXML" if path.suffix.lower() == ".arxml" else "DBC"
     kind_in_words = "an ARXML" if kind == "ARXML" else "a DBC"

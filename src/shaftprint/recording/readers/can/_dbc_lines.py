@@ -21,12 +21,7 @@ def whole_messages(name: str, content: bytes) -> tuple[bytes, dict[str, str]]:
 
     The library would give their signals to the message before them. Lines keep their numbers.
 
-    Parameters
-    ----------
-    name
-        Name of the file.
-    content
-        What it holds.
+    ``name``: name of the file. ``content``: what it holds.
     """
     left_out: dict[str, str] = {}
     lines = content.splitlines()
@@ -63,14 +58,8 @@ def lost_lines(
 
     What is said of a message or signal that is missing is no loss of its own.
 
-    Parameters
-    ----------
-    name, content
-        The file.
-    numbers
-        Which lines, counted from 1.
-    signals
-        Identifier, as the file has it, and name of the signals that were read.
+    ``name``, ``content``: the file. ``numbers``: which lines, counted from 1. ``signals``: identifier, as the file has
+    it, and name of the signals that were read.
     """
     lines = content.splitlines()
     lost: dict[str, str] = {}

@@ -37,14 +37,8 @@ class FastPackets:
     ) -> tuple[FloatArray, NDArray[np.int64], NDArray[np.uint8]]:
         """Return the packets that a block of frames makes whole: times of their first frames, lengths, bytes.
 
-        Parameters
-        ----------
-        origin
-            Bus, message and sender.
-        time_s
-            When the frames came [s].
-        content
-            Their bytes, shape (frames, 8).
+        ``origin``: bus, message and sender. ``time_s``: when the frames came [s]. ``content``: their bytes, shape
+        (frames, 8).
         """
         times, packets = [], []
         for now, row in zip(time_s.tolist(), content[:, :8], strict=True):

@@ -39,10 +39,7 @@ def read(path: Path, **hints: object) -> Recording:
     Hints: ``dbc``, the DBC or ARXML file that says what the frames hold; without it the messages of engines, gearboxes
     and rudders by SAE J1939 and NMEA 2000 are read.
 
-    Raises
-    ------
-    RecordingError
-        If the file is damaged or holds no message that is known.
+    Raises RecordingError if the file is damaged or holds no message that is known.
     """
     expect_hints(path, hints, {"dbc": (str, Path)})
     database = database_of(hints)
@@ -63,10 +60,7 @@ def read(path: Path, **hints: object) -> Recording:
 def database_of(hints: Mapping[str, object]) -> Database:
     """Return what the hint ``dbc`` names, or the messages that need no file.
 
-    Raises
-    ------
-    RecordingError
-        If that file cannot be read.
+    Raises RecordingError if that file cannot be read.
     """
     return known_messages() if hints.get("dbc") is None else read_database(Path(str(hints["dbc"])))
 
@@ -74,10 +68,7 @@ def database_of(hints: Mapping[str, object]) -> Database:
 def expect_known(path: Path, taken: Decoded, database: Database) -> None:
     """Refuse a log of which no message is known.
 
-    Raises
-    ------
-    RecordingError
-        If there is none.
+    Raises RecordingError if there is none.
     """
     if taken.named:
         return

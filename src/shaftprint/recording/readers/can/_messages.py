@@ -124,12 +124,7 @@ class Message:
 def counts_of(bit_field: BitField, content: NDArray[np.uint8]) -> NDArray[np.uint64]:
     """Return the bits of a signal or multiplexer as counts without sign, shape (messages,).
 
-    Parameters
-    ----------
-    bit_field
-        Where it stands.
-    content
-        Bytes, shape (messages, bytes), at least up to its last byte.
+    ``bit_field``: where it stands. ``content``: bytes, shape (messages, bytes), at least up to its last byte.
     """
     first, bits = bit_field.first_bit, bit_field.bits
     whole = [content[:, byte].astype(np.uint64) for byte in range(first // 8, bit_field.last_byte + 1)]

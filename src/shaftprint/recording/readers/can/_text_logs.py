@@ -66,21 +66,8 @@ def kind_of(path: Path, begin: str) -> str:
 def open_text_log(path: Path, kind: str, file: TextIO, library: Any) -> FrameLog:
     """Return the frames of a text log.
 
-    Parameters
-    ----------
-    path
-        The file, for messages.
-    kind
-        What `kind_of` said.
-    file
-        It, at its beginning.
-    library
-        The package python-can.
-
-    Raises
-    ------
-    RecordingError
-        If its times cannot be told, or nothing in it can be read.
+    ``path``: the file, for messages. ``kind``: what `kind_of` said. ``file``: it, at its beginning. ``library``: the
+    package python-can. Raises RecordingError if its times cannot be told, or nothing in it can be read.
     """
     log = FrameLog(blocks=iter(()), kind=kind)
     lines = {"ASC": _AscLines, "candump": _CandumpLines}.get(kind, _Lines)(path, file)

@@ -84,10 +84,7 @@ class Validity:
     def reasons(self, numbers: NDArray[Any]) -> Iterable[tuple[str, NDArray[np.bool_]]]:
         """Yield why counts are no values and which they are; a count may have several reasons.
 
-        Parameters
-        ----------
-        numbers
-            Counts with their sign, shape (messages,).
+        ``numbers``: counts with their sign, shape (messages,).
         """
         signal = self.signal
         for text, codes in self._texts.items():
@@ -131,10 +128,7 @@ class Tally:
     def __init__(self, validity: Validity) -> None:
         """Begin with nothing.
 
-        Parameters
-        ----------
-        validity
-            The rule so far.
+        ``validity``: the rule so far.
         """
         self._validity = validity
         self._last = (1 << validity.signal.bits - (1 if validity.signal.is_signed else 0)) - 1

@@ -76,10 +76,7 @@ def read(path: Path, **hints: object) -> Recording:
     leaves them open; ``encoding`` if it is not UTF-8.
     Empty fields become values that are not numbers. A list of edges becomes pulses.
 
-    Raises
-    ------
-    RecordingError
-        If header, a row or the clock cannot be used.
+    Raises RecordingError if header, a row or the clock cannot be used.
     """
     if (first_bytes(path) or b"").startswith(_FRAMES):
         raise RecordingError(

@@ -54,10 +54,7 @@ def has_offset(text: str) -> bool:
 def dates(path: Path, texts: Sequence[str]) -> "np.ndarray[tuple[int], np.dtype[np.datetime64]]":
     """Return dates as microseconds: in UTC where they have an offset from it, else as they are written.
 
-    Raises
-    ------
-    RecordingError
-        If a text is no date, or one has an offset and others have none.
+    Raises RecordingError if a text is no date, or one has an offset and others have none.
     """
     iso_texts, offsets = [], []
     for text in texts:

@@ -43,12 +43,8 @@ def day_times_s(texts: Sequence[str]) -> FloatArray:
 def over_midnight(seconds: FloatArray, before_s: float | None) -> FloatArray:
     """Return times of day that go on where they begin again at midnight.
 
-    Parameters
-    ----------
-    seconds
-        Seconds since midnight, shape (times,).
-    before_s
-        The time before the first of them as this function gave it; None where there is none.
+    ``seconds``: seconds since midnight, shape (times,). ``before_s``: the time before the first of them as this
+    function gave it; None where there is none.
     """
     first = seconds[0] if before_s is None and seconds.size else before_s
     back = np.diff(seconds, prepend=np.mod(first, _DAY_S) if first is not None and seconds.size else 0.0)

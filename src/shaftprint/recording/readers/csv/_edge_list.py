@@ -31,21 +31,8 @@ def edge_channels(
     Columns of a list hold two levels, and the times are not those of a clock, or something changes with every row. A
     column of times alone holds those of rising edges.
 
-    Parameters
-    ----------
-    path, header
-        The file and its titles.
-    spool
-        Its columns.
-    count
-        Number of rows.
-    read
-        Gives their times [s], where the file has any.
-
-    Raises
-    ------
-    RecordingError
-        If times are missing or descend.
+    ``path``, ``header``: the file and its titles. ``spool``: its columns. ``count``: number of rows. ``read``: gives
+    their times [s], where the file has any. Raises RecordingError if times are missing or descend.
     """
     if header.time_column is None or read is None:
         return None

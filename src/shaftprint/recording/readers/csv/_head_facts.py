@@ -49,12 +49,7 @@ class HeadFacts:
 def head_facts(lines: Sequence[str], delimiter: str) -> HeadFacts:
     """Return what some lines say of the clock; rows of the form key and value, or titles with a value below each.
 
-    Parameters
-    ----------
-    lines
-        The lines above the rows of numbers, the titles among them.
-    delimiter
-        What stands between fields.
+    ``lines``: the lines above the rows of numbers, the titles among them. ``delimiter``: what stands between fields.
     """
     rate_hz, start_s, source = None, 0.0, ""
     for key, unit, value in _pairs(lines, delimiter):

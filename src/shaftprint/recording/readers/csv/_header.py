@@ -110,24 +110,11 @@ def read_header(
 
     Lines before the titles are passed over, but for what they say of the clock.
 
-    Parameters
-    ----------
-    path
-        The file, for messages.
-    lines
-        Its first lines.
-    delimiter, decimal
-        What the caller knows; found in the lines if absent.
-    columns
-        Titles that the caller gives in place of the file's, separated by commas, or other names for some of them, as in
-        ``Datum/Uhrzeit=time``.
-    has_rate
-        Whether the caller knows the sample rate, so that a column of times may be absent.
-
-    Raises
-    ------
-    RecordingError
-        If there are no titles or no times, or delimiter or decimal sign could be read in two ways.
+    ``path``: the file, for messages. ``lines``: its first lines. ``delimiter``, ``decimal``: what the caller knows;
+    found in the lines if absent. ``columns``: titles that the caller gives in place of the file's, separated by commas,
+    or other names for some of them, as in ``Datum/Uhrzeit=time``. ``has_rate``: whether the caller knows the sample
+    rate, so that a column of times may be absent. Raises RecordingError if there are no titles or no times, or
+    delimiter or decimal sign could be read in two ways.
     """
     asked = [] if columns is None else [title.strip() for title in columns.split(",")]
     renamed = bool(asked) and all("=" in title for title in asked)
@@ -185,10 +172,7 @@ def read_header(
 def _expect_table(path: Path, lines: Sequence[str], delimiter: str | None, width: int) -> Table:
     """Return the table of a file.
 
-    Raises
-    ------
-    RecordingError
-        If there is none, or not one of the number of columns that the caller names.
+    Raises RecordingError if there is none, or not one of the number of columns that the caller names.
     """
     table = find_table(lines, delimiter=delimiter, width=width)
     if table is None and width:
@@ -206,10 +190,7 @@ def _expect_table(path: Path, lines: Sequence[str], delimiter: str | None, width
 def _lone(path: Path, lines: Sequence[str], delimiter: str | None, width: int) -> Table:
     """Return the table of a column of times alone, or of titles without a row.
 
-    Raises
-    ------
-    RecordingError
-        If the file is neither.
+    Raises RecordingError if the file is neither.
     """
     table = find_table(lines, width=1, delimiter=delimiter or ";")
     if table is not None and table.first > 0 and is_time_title(_plain_title(lines[table.first - 1])):
@@ -257,10 +238,7 @@ def _expect_titles(path: Path, lines: Sequence[str], table: Table, titles: Seque
 def _renamed(path: Path, titles: Sequence[str], asked: Sequence[str]) -> list[str]:
     """Return titles with those that the caller calls otherwise.
 
-    Raises
-    ------
-    RecordingError
-        If the file has no such title.
+    Raises RecordingError if the file has no such title.
     """
     new = list(titles)
     for pair in asked:

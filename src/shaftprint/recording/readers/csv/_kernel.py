@@ -64,22 +64,12 @@ def _scaled(digits, power):  # type: ignore[no-untyped-def]
 def rows_of(text, delimiter, decimal, width, least, targets, numbers, texts, odd):  # type: ignore[no-untyped-def]
     """Read rows; return how many there are and how many fields are left to Python, or -1 where a row is none.
 
-    Parameters
-    ----------
-    text
-        Whole lines, shape (bytes,).
-    delimiter, decimal
-        Letters between columns and in numbers; a space as delimiter for white space of any length.
-    width, least
-        Number of fields of a row, and how many it has at least.
-    targets
-        Which row of ``numbers`` takes each column, or one of the marks above, shape (width,).
-    numbers
-        Filled with the numbers, shape (columns, most rows).
-    texts
-        Filled with begin and end of fields that stay text, in their order, shape (most fields, 2).
-    odd
-        Filled with column, row, begin and end of what is neither a number nor empty, shape (most, 4).
+    ``text``: whole lines, shape (bytes,). ``delimiter``, ``decimal``: letters between columns and in numbers; a space
+    as delimiter for white space of any length. ``width``, ``least``: number of fields of a row, and how many it has at
+    least. ``targets``: which row of ``numbers`` takes each column, or one of the marks above, shape (width,).
+    ``numbers``: filled with the numbers, shape (columns, most rows). ``texts``: filled with begin and end of fields
+    that stay text, in their order, shape (most fields, 2). ``odd``: filled with column, row, begin and end of what is
+    neither a number nor empty, shape (most, 4).
     """
     size, at, row, kept, strange = text.size, 0, 0, 0, 0
     spaced = delimiter == _SPACE

@@ -60,21 +60,9 @@ class Unpacked:
 def unpack(path: Path, file: IO[bytes], header: Header, spool: Spool) -> Unpacked:
     """Put every row into the columns of a spool.
 
-    Parameters
-    ----------
-    path
-        The file, for messages.
-    file
-        Its text from the beginning on, in UTF-8 or another encoding that writes numbers as ASCII does.
-    header
-        How it is to be read.
-    spool
-        Takes the columns, in the order of those of the header.
-
-    Raises
-    ------
-    RecordingError
-        If rows cannot be read, or no column of numbers is left.
+    ``path``: the file, for messages. ``file``: its text from the beginning on, in UTF-8 or another encoding that writes
+    numbers as ASCII does. ``header``: how it is to be read. ``spool``: takes the columns, in the order of those of the
+    header. Raises RecordingError if rows cannot be read, or no column of numbers is left.
     """
     for _ in range(header.lines):
         file.readline(LONGEST_LINE)
@@ -274,10 +262,7 @@ class _Unpacking:
     def _note_wrong(self, wrong: Sequence[tuple[int, list[str]]], rows: int, *, is_end: bool) -> None:
         """Count rows that are none.
 
-        Raises
-        ------
-        RecordingError
-            If they are too many, or nothing else says when the others were taken.
+        Raises RecordingError if they are too many, or nothing else says when the others were taken.
         """
         if not wrong:
             return
@@ -290,10 +275,7 @@ class _Unpacking:
     def _close(self) -> None:
         """Say what was left out.
 
-        Raises
-        ------
-        RecordingError
-            If no column of numbers is left.
+        Raises RecordingError if no column of numbers is left.
         """
         header, done = self.header, self.done
         if self.damaged:

@@ -44,10 +44,7 @@ class Stamps:
     def seconds(self, columns: Mapping[int, FloatArray | Sequence[str]]) -> FloatArray:
         """Return the seconds of rows since the first of the file.
 
-        Raises
-        ------
-        RecordingError
-            If a stamp is no date or no time of day.
+        Raises RecordingError if a stamp is no date or no time of day.
         """
         header = self._header
         parts = (columns[place] for place in header.stamp_texts)

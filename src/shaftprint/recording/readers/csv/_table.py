@@ -34,14 +34,8 @@ def find_table(lines: Sequence[str], *, delimiter: str | None = None, width: int
     A table is rows below each other of the same number of fields, of which those of a column are of one kind: numbers,
     dates or words, each with gaps. At least one column is of numbers.
 
-    Parameters
-    ----------
-    lines
-        First lines of the file.
-    delimiter
-        What stands between columns, where the caller knows it.
-    width
-        How many columns there are, where the caller knows it; two or more else.
+    ``lines``: first lines of the file. ``delimiter``: what stands between columns, where the caller knows it.
+    ``width``: how many columns there are, where the caller knows it; two or more else.
     """
     best: tuple[float, Table] | None = None
     for candidate in (delimiter,) if delimiter else DELIMITERS:

@@ -39,10 +39,7 @@ class TimeColumns:
 def expect_no_words_as_times(path: Path, table: Table, names: Sequence[str]) -> None:
     """Refuse a column of times whose fields are none.
 
-    Raises
-    ------
-    RecordingError
-        If there is one.
+    Raises RecordingError if there is one.
     """
     for place, name in enumerate(names):
         if table.kinds[place] == TEXT and is_time_title(name):

@@ -16,14 +16,7 @@ LONGEST = 80
 def wrong_rows(path: Path, rows: Sequence[tuple[int, Sequence[str]]], header: Header) -> RecordingError:
     """Return the error that tells the first mistakes of some rows, each with its line and column.
 
-    Parameters
-    ----------
-    path
-        The file.
-    rows
-        Number and fields of each line.
-    header
-        What stands in which column.
+    ``path``: the file. ``rows``: number and fields of each line. ``header``: what stands in which column.
     """
     mistakes = [sentence for line, fields in rows for sentence in _mistakes(line, fields, header)]
     if len(mistakes) == 1:

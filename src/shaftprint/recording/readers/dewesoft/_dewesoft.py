@@ -37,10 +37,7 @@ def is_mine(path: Path) -> bool:
 def read(path: Path, **hints: object) -> Recording:
     """Unpack a Dewesoft file into temporary files, one a channel; they are deleted when it is closed.
 
-    Raises
-    ------
-    RecordingError
-        If the library is absent or refuses the file, or no channel can be used.
+    Raises RecordingError if the library is absent or refuses the file, or no channel can be used.
     """
     expect_hints(path, hints, {})
     expect_library(path, "dwdatareader", NAME)

@@ -17,12 +17,7 @@ _BLOCK = 262_144
 def unpack(source: Path, folder: Path) -> None:
     """Write one file of float64 values a channel, its times where they are not those of a clock, and an index.
 
-    Parameters
-    ----------
-    source
-        The Dewesoft file.
-    folder
-        An empty folder.
+    ``source``: the Dewesoft file. ``folder``: an empty folder.
     """
     library = importlib.import_module("dwdatareader")
     with library.DWFile(str(source)) as file:

@@ -35,19 +35,9 @@ def is_hdf5(path: Path) -> bool:
 def open_hdf5(path: Path, what: str, *, is_whole: bool = False) -> Any:
     """Open an HDF5 file, read only; one that may be damaged is first opened in a separate process.
 
-    Parameters
-    ----------
-    path
-        The file.
-    what
-        The format, in words.
-    is_whole
-        Whether its bytes are known to be those that were written.
-
-    Raises
-    ------
-    RecordingError
-        If HDF5's library refuses the file, hangs or crashes on it, or the file leads to others.
+    ``path``: the file. ``what``: the format, in words. ``is_whole``: whether its bytes are known to be those that were
+    written. Raises RecordingError if HDF5's library refuses the file, hangs or crashes on it, or the file leads to
+    others.
     """
     if not is_whole:
         _expect_an_end(path, what)
@@ -76,10 +66,7 @@ def expect_storage(path: Path, name: str, dataset: Any) -> None:
 
     Refused is one that has its samples in other files, too, as it may have been reached by a reference and no link.
 
-    Raises
-    ------
-    RecordingError
-        If it does.
+    Raises RecordingError if it does.
     """
     outside = stored_outside(dataset.id)
     _expect_nothing_outside(path, f"{name} is {outside}" if outside else "")

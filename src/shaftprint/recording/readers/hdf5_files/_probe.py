@@ -28,10 +28,7 @@ _LARGEST_BLOCK = 1 << 28
 def look(path: str) -> None:
     """Read attributes, axes, places of blocks and some samples of every object; errors are for the reader to tell.
 
-    Parameters
-    ----------
-    path
-        The HDF5 file.
+    ``path``: the HDF5 file.
     """
     _watch()
     outside = runpy.run_path(str(Path(__file__).with_name("_references.py")))

@@ -16,12 +16,7 @@ def outside_of(file: Any, *, watch: Callable[[], None] = lambda: None) -> str:
 
     Soft links need no look of their own: they lead to another file through one of the links that are found here only.
 
-    Parameters
-    ----------
-    file
-        The open file, or a group of it.
-    watch
-        Is called before each object.
+    ``file``: the open file, or a group of it. ``watch``: is called before each object.
     """
     groups, visited = [("", file.id)], set[int]()
     while groups:
@@ -49,10 +44,7 @@ def outside_of(file: Any, *, watch: Callable[[], None] = lambda: None) -> str:
 def stored_outside(dataset: Any) -> str:
     """Return in words which other files hold the samples of a data set; empty where it holds them itself.
 
-    Parameters
-    ----------
-    dataset
-        The data set, in the terms of HDF5's library.
+    ``dataset``: the data set, in the terms of HDF5's library.
     """
     stored = dataset.get_create_plist()
     if stored.get_layout() == h5py.h5d.VIRTUAL:

@@ -19,14 +19,7 @@ _NUMBERS = "fiub"
 def keep_objects(path: Path, kinds: Mapping[str, str], variables: MatVariables) -> None:
     """Add the objects of a file to its variables, or why they cannot be read.
 
-    Parameters
-    ----------
-    path
-        The file.
-    kinds
-        Class of each object by the name of its variable.
-    variables
-        What the file holds.
+    ``path``: the file. ``kinds``: class of each object by the name of its variable. ``variables``: what the file holds.
     """
     read = [name for name, kind in kinds.items() if kind in _READ and "/" not in name]
     opened: Mapping[str, Any] = {}

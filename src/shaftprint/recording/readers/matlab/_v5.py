@@ -56,10 +56,7 @@ def read(path: Path, **hints: object) -> Recording:
     Hints: ``sample_rate_hz`` where the file has no clock; ``time_unit`` of times without a unit; ``columns``, what the
     columns of a table are.
 
-    Raises
-    ------
-    RecordingError
-        If the file is damaged, or has no channels or no clock.
+    Raises RecordingError if the file is damaged, or has no channels or no clock.
     """
     rate = rate_hint(path, hints, {"columns": str, "time_unit": str})
     unit = expect_time_unit(path, hints.get("time_unit"))

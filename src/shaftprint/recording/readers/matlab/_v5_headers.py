@@ -47,12 +47,7 @@ class MatHeader:
 def headers_of(path: Path) -> Iterator[MatHeader]:
     """Return the header of every variable in the order of the file; those without a name are MATLAB's own.
 
-    Raises
-    ------
-    ValueError
-        If the file is damaged.
-    zlib.error, struct.error
-        If a packed variable or a tag is.
+    Raises ValueError if the file is damaged; zlib.error, struct.error if a packed variable or a tag is.
     """
     with path.open("rb") as file:
         order = "<" if file.read(_FIRST_VARIABLE).endswith(b"IM") else ">"

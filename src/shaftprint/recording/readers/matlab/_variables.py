@@ -34,14 +34,8 @@ class MatVariables:
     def add_table(self, name: str, shape: Sequence[int], columns: Callable[[int], Source]) -> None:
         """Add the columns of an array of two dimensions as vectors, or why it is none that the titles fit.
 
-        Parameters
-        ----------
-        name
-            Its name with the structures that it is in, which are the group of its columns.
-        shape
-            Rows and columns.
-        columns
-            Gives the source of a column.
+        ``name``: its name with the structures that it is in, which are the group of its columns. ``shape``: rows and
+        columns. ``columns``: gives the source of a column.
         """
         if len(shape) != 2 or shape[1] != len(self.titles):
             self.left_out[name] = matrix_reason(name.rpartition("/")[2], shape)
@@ -69,12 +63,7 @@ def titles_of(hints: Mapping[str, object]) -> tuple[str, ...]:
 def object_reason(name: str, kind: str) -> str:
     """Return why an object is not read, and what to do in MATLAB.
 
-    Parameters
-    ----------
-    name
-        Name of the variable.
-    kind
-        Its class, where the file says it, else ``object``.
+    ``name``: name of the variable. ``kind``: its class, where the file says it, else ``object``.
     """
     reason = f"expected numbers, found a MATLAB {kind}, which only MATLAB can open"
     match kind:
@@ -130,21 +119,8 @@ def gather_variables(path: Path, variables: MatVariables, *, rate_hz: float | No
     The clock of a structure or of the whole file is a vector ``time`` or ``t`` [s], or a scalar ``sample_rate_hz`` or
     ``fs`` [Hz] with an optional scalar ``start_s``. A char variable ``<channel>_unit`` gives the unit.
 
-    Parameters
-    ----------
-    path
-        The file, for messages.
-    variables
-        What it holds.
-    rate_hz
-        Sample rate that the caller knows [Hz].
-    time_unit
-        Unit of the times that the caller knows.
-
-    Raises
-    ------
-    RecordingError
-        If two clocks of one group disagree.
+    ``path``: the file, for messages. ``variables``: what it holds. ``rate_hz``: sample rate that the caller knows [Hz].
+    ``time_unit``: unit of the times that the caller knows. Raises RecordingError if two clocks of one group disagree.
     """
     named = [
         replace(vector, attributes={**vector.attributes, **_unit(vector, variables.texts)})

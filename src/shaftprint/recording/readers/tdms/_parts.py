@@ -99,12 +99,7 @@ def parts_of(nptdms: Any, raw: Any) -> tuple[dict[str, list[Part]], dict[str, st
     A segment holds as many rounds of samples as its length allows. Where it states none of one channel and several
     rounds of the others, the others may have been given what was of the one.
 
-    Parameters
-    ----------
-    nptdms
-        The library.
-    raw
-        The open file; it is read from its beginning.
+    ``nptdms``: the library. ``raw``: the open file; it is read from its beginning.
     """
     raw.seek(0)
     reader = nptdms.reader.TdmsReader(raw)
@@ -148,10 +143,7 @@ def _is_of_interest(key: str) -> bool:
 def expect_one_scale(path: Path, name: str, parts: list[Part]) -> None:
     """Refuse a channel whose unit or scale changes within the file.
 
-    Raises
-    ------
-    RecordingError
-        If it does; the message says where.
+    Raises RecordingError if it does; the message says where.
     """
     for before, part in pairwise(parts):
         keys = [key for key in {**before.properties, **part.properties} if key not in _CLOCK]
@@ -167,10 +159,7 @@ def expect_one_scale(path: Path, name: str, parts: list[Part]) -> None:
 def increment_s(path: Path, name: str, parts: list[Part]) -> float | None:
     """Return the time from one sample to the next [s]; None where the file gives none.
 
-    Raises
-    ------
-    RecordingError
-        If it changes within the file; the message says where.
+    Raises RecordingError if it changes within the file; the message says where.
     """
     first = parts[0].increment_s if parts else None
     other = next((part for part in parts if part.increment_s != first), None)
@@ -186,16 +175,9 @@ def increment_s(path: Path, name: str, parts: list[Part]) -> float | None:
 def holes_between(parts: list[Part], step_s: float, count: int, interleaved: int = 1) -> tuple[tuple[Hole, ...], str]:
     """Return where samples are missing between parts, or their clock jumps, and a remark, empty where there is none.
 
-    Parameters
-    ----------
-    parts
-        The parts of a channel.
-    step_s
-        Time from one sample to the next [s].
-    count
-        How many samples it has; more than so many are not filled in.
-    interleaved
-        How many signals it holds sample by sample; steps and holes are those of rows.
+    ``parts``: the parts of a channel. ``step_s``: time from one sample to the next [s]. ``count``: how many samples it
+    has; more than so many are not filled in. ``interleaved``: how many signals it holds sample by sample; steps and
+    holes are those of rows.
     """
     jumps = []
     for before, part in pairwise(parts):
@@ -227,19 +209,8 @@ def holes_between(parts: list[Part], step_s: float, count: int, interleaved: int
 def expect_known_scale(path: Path, name: str, channel: Any, *properties: Mapping[str, Any]) -> None:
     """Refuse a channel whose scale the library does not know, and would leave out.
 
-    Parameters
-    ----------
-    path, name
-        For messages.
-    channel
-        The channel.
-    properties
-        Properties of the channel, its group and the file: the first that state a scale hold.
-
-    Raises
-    ------
-    RecordingError
-        If it is so, or if the channel holds raw counts of DAQmx without a scale.
+    ``path``, ``name``: for messages. ``properties``: properties of the channel, its group and the file: the first that
+    state a scale hold. Raises RecordingError if it is so, or if the channel holds raw counts of DAQmx without a scale.
     """
     stated = next((one for one in properties if one.get("NI_Number_Of_Scales")), {})
     kinds = [str(value) for key, value in stated.items() if key.endswith("_Scale_Type")]

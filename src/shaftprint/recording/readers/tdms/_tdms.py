@@ -54,10 +54,7 @@ def read(path: Path, **hints: object) -> Recording:
     many signals each channel holds sample by sample, as LabVIEW writes an array of two dimensions: they become channels
     of their own, on the clock of rows.
 
-    Raises
-    ------
-    RecordingError
-        If the file is damaged or no channel can be used.
+    Raises RecordingError if the file is damaged or no channel can be used.
     """
     rate = rate_hint(path, hints, {"interleaved": int, "time_unit": str})
     time_unit = expect_time_unit(path, hints.get("time_unit"))

@@ -27,16 +27,8 @@ def cover_of(
 ) -> Cover:
     """Return the first page of a report.
 
-    Parameters
-    ----------
-    fingerprint
-        What was found.
-    validations
-        The fingerprint's model held against records that it has not seen; only the first counts.
-    vessel
-        What was tested, for the sketch.
-    previous
-        Fingerprint of an earlier test.
+    ``fingerprint``: what was found. ``validations``: the fingerprint's model held against records that it has not seen;
+    only the first counts. ``vessel``: what was tested, for the sketch. ``previous``: fingerprint of an earlier test.
     """
     change = [] if previous is None else [change_answer(previous, fingerprint)]
     cards = [
