@@ -61,8 +61,10 @@ VERBS = {
     "fleet retry": "store.retry",
     "fleet report": "store.job",
     "work": "fleet.work",
+    "service scan": "service.scan",
+    "service fit": "service.fit_service",
 }
-GROUPS = ("export", "store", "fleet")
+GROUPS = ("export", "store", "fleet", "service")
 SHIP = "pt-may-underway"
 
 
