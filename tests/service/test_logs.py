@@ -3,11 +3,12 @@
 import numpy as np
 import pytest
 
-from shaftprint.errors import ServiceError
+from shaftprint.errors import ServiceError, SettingsError
 from shaftprint.recording import Channel, write_recording
 from shaftprint.service._log import blocks
 from shaftprint.service._scan import scan
 from shaftprint.service._states import STATES, state_of_seconds
+from shaftprint.tug import sail_service
 from shaftprint.vessel import load_vessel
 
 
@@ -102,3 +103,9 @@ def test_shipped_tug_in_service_is_the_same_tug(vessel):
     same = {"name": other.name, "sensors": other.sensors, "logger": other.logger}
     assert vessel.model_copy(update=same) == other
     assert vessel.sensors.set_point.volts(1183.8) == pytest.approx(-5.0, abs=1e-6)
+
+
+def test_a_ship_whose_sensors_no_service_log_shows_is_told_of_one_that_has_them(tmp_path):
+    with pytest.raises(SettingsError, match=r"expected a speed in rpm.* stan-tug-1205-service has such sensors"):
+        sail_service(load_vessel("stan-tug-1205"), tmp_path / "logs", hours=1.0, seed=1)
+    assert not (tmp_path / "logs").exists()

@@ -65,8 +65,8 @@ class Scan(Shown):
     @property
     def headline(self) -> str:
         """What the logger saw, and what it would tell, in one sentence."""
-        hours = sum(self.seconds.values()) / 3600.0
-        saw = f"Your logger saw {len(self.used)} useful moves of the lever in {hours:.3g} hours"
+        hours = f"{sum(self.seconds.values()) / 3600.0:.3g}"
+        saw = f"Your logger saw {len(self.used)} useful moves of the lever in {hours} hour{'' if hours == '1' else 's'}"
         if self.refused:
             return f"{saw}, but nothing may be fitted to them: {self.refused}"
         if not self.accuracy:

@@ -93,7 +93,10 @@ def sail_service(
     rate_hz = logged_hz * max(_OVER, np.ceil(_LEAST_HZ / logged_hz))
     fast = vessel.model_copy(update={"logger": vessel.logger.model_copy(update={"sample_rate_hz": rate_hz})})
     tug = like_stan_tug_1205(vessel) if tug is None else tug
-    tug = in_messages(tug, vessel, rates_hz=dict.fromkeys(("torque", "speed", "set-point"), logged_hz))
+    try:
+        tug = in_messages(tug, vessel, rates_hz=dict.fromkeys(("torque", "speed", "set-point"), logged_hz))
+    except SettingsError as error:
+        raise SettingsError(f"{error} Service is logged so; stan-tug-1205-service has such sensors.") from None
     course = lever_course(habits or Habits.drawn(draws), tug, vessel, hours=hours, rng=draws)
     try:
         folder.mkdir(parents=True, exist_ok=True)

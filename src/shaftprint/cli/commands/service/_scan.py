@@ -69,7 +69,8 @@ def command(
     answer(found.headline)
     give("scan", _as_given(found))
     print_tables(_tables(found))
-    print_findings("Could not be read", found.left_out)
+    if found.left_out:
+        print_findings("Could not be read", found.left_out)
     if output is not None and found.line is not None:
         found.write(output)
         say(f"{output}: {len(found.segments)} segments, {len(found.used)} of them used.")
