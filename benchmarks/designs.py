@@ -21,8 +21,9 @@ from shaftprint.design.plan._timetable import Timetable
 from shaftprint.design.planning._brief import Brief
 from shaftprint.design.planning._design import best_plan
 from shaftprint.design.planning._finish import plan_of_lines
-from shaftprint.identify import STAN_TUG_NOISE, Prior, planned_lines, planned_response, predict_accuracy
+from shaftprint.identify import Prior, planned_lines, planned_response, predict_accuracy
 from shaftprint.identify.prediction._accuracy import Accuracy
+from shaftprint.survey import STAN_TUG_NOISE
 from shaftprint.vessel import load_vessel
 
 # The simulated tug, normalised at its working point (docs/accuracy.md).

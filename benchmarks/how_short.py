@@ -18,8 +18,9 @@ from shaftprint.arrays import FloatArray
 from shaftprint.campaign import load_campaign
 from shaftprint.design import assumed_ship, design_campaign, limits_from_vessel, no_worse_than
 from shaftprint.errors import DesignError
-from shaftprint.identify import STAN_TUG_NOISE, STAN_TUG_NOISE_AT_SPEEDS, Prior, planned_response, predict_accuracy
+from shaftprint.identify import Prior, planned_response, predict_accuracy
 from shaftprint.identify.prediction._accuracy import Accuracy
+from shaftprint.survey import STAN_TUG_NOISE, STAN_TUG_NOISE_AT_SPEEDS
 
 FIGURE = Path(__file__).parent.parent / "docs" / "images" / "how-short.svg"
 MINUTES = (3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 12.0, 16.0, 20.0, 30.0)

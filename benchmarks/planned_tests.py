@@ -39,8 +39,8 @@ from shaftprint.design import (
     no_worse_than,
 )
 from shaftprint.errors import ShaftprintError
-from shaftprint.identify import STAN_TUG_NOISE, STAN_TUG_NOISE_AT_SPEEDS, Prior, planned_response, predict_accuracy
-from shaftprint.survey import load_trial
+from shaftprint.identify import Prior, planned_response, predict_accuracy
+from shaftprint.survey import STAN_TUG_NOISE, STAN_TUG_NOISE_AT_SPEEDS, load_trial
 from shaftprint.tug import Tug
 from shaftprint.vessel import load_vessel
 

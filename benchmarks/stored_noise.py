@@ -1,4 +1,4 @@
-"""Noise of the simulated Stan Tug at four speeds: the table of ``identify/prediction/_stan_tug_noise_at_speeds.py``.
+"""Noise of the simulated Stan Tug at four speeds: the table of ``survey/shipped_noise/stan-tug-1205-at-speeds.toml``.
 
 Every seed sails legs that swing by half of the shipped two-speed campaign, at 0.70, 0.85, 1.00 and 1.15 of the working
 speed. What is left between the lines, after the wander of the load and the orders of the shaft are taken out as in
@@ -19,11 +19,11 @@ sys.path.insert(0, str(ROOT))
 
 from shaftprint.arrays import ComplexArray, FloatArray
 from shaftprint.campaign import Campaign, Multisine, load_campaign
-from shaftprint.identify import STAN_TUG_NOISE
 from shaftprint.recording import read_recording
 from shaftprint.signals import Signals, prepare_signals
 from shaftprint.spectra.legs._leg_lines import measure_leg
 from shaftprint.spectra.legs._leg_window import cut_leg
+from shaftprint.survey import STAN_TUG_NOISE
 from shaftprint.tug import sail
 from shaftprint.vessel import load_vessel
 
@@ -113,14 +113,14 @@ def main() -> None:
             for place, share in enumerate(SHARES):
                 total[place] += densities(signals, plan, place, centre * share) / chosen.seeds
     for place in np.argsort(SHARES):
-        print(f"    {SHARES[place]:.2f}: (")
+        print(f"[[levels]]\nspeed_share = {SHARES[place]:.2f}\nrows = [")
         for row, hertz in enumerate(centre * SHARES[place]):
             mixing = np.array([[1.0, 0.0], [LOAD_SLOPE + 2j * np.pi * hertz * INERTIA_S / SHARES[place], 1.0]])
             s = mixing @ total[place, row] @ mixing.conj().T
             n, m = s[0, 0].real, s[1, 1].real
             c = s[0, 1] / np.sqrt(n * m)
-            print(f"        ({hertz:.4g}, {n:.3g}, {m:.3g}, {c.real:.4f} {'+-'[int(c.imag < 0)]} {abs(c.imag):.4f}j),")
-        print("    ),")
+            print(f"    [{hertz:.4g}, {n:.3g}, {m:.3g}, {c.real:.4f}, {c.imag:.4f}],")
+        print("]\n")
 
 
 if __name__ == "__main__":

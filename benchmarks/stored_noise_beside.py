@@ -1,4 +1,4 @@
-"""Noise of a log underway and of a controllable pitch: tables of ``identify/prediction`` with a third output.
+"""Noise of a log underway and of a controllable pitch: tables of ``survey/shipped_noise``, with a third output.
 
 Every seed sails a leg, or a leg of the speed beside one of the pitch, with weak lines on a dense grid; what
 ``identify`` takes as the noise of a line is averaged over the seeds. Slow lines underway, where a leg has the wander of
@@ -123,8 +123,8 @@ def rows(levels: NoiseLevels, kept: FloatArray) -> list[str]:
         parts = [f"{size[i] ** 2:.3g}" for i in range(size.size)]
         for i, j in combinations(range(size.size), 2):
             one = density[row, i, j] / (size[i] * size[j])
-            parts.append(f"{one.real:.4f} {'+-'[int(one.imag < 0)]} {abs(one.imag):.4f}j")
-        lines.append(f"    ({levels.frequency_hz[row]:.4g}, {', '.join(parts)}),")
+            parts.append(f"{one.real:.4f}, {one.imag:.4f}")
+        lines.append(f"    [{levels.frequency_hz[row]:.4g}, {', '.join(parts)}],")
     return lines
 
 

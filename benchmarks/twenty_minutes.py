@@ -30,17 +30,10 @@ from shaftprint.campaign import Campaign, load_campaign
 from shaftprint.design import Plan, assumed_ship, campaign_of, design_campaign, limits_from_vessel, no_worse_than
 from shaftprint.distributions import NORMAL_95
 from shaftprint.errors import ShaftprintError
-from shaftprint.identify import (
-    STAN_TUG_NOISE,
-    STAN_TUG_NOISE_AT_SPEEDS,
-    Settings,
-    planned_response,
-    predict_accuracy,
-    priors_from_vessel,
-)
+from shaftprint.identify import Settings, planned_response, predict_accuracy, priors_from_vessel
 from shaftprint.identify.prediction._accuracy import Accuracy
 from shaftprint.signals import Signals
-from shaftprint.survey import fit, load_trial, measure, priors_of
+from shaftprint.survey import STAN_TUG_NOISE, STAN_TUG_NOISE_AT_SPEEDS, fit, load_trial, measure, priors_of
 from shaftprint.survey._fits import stated_working_point
 from shaftprint.tug import Truth, sail
 

@@ -18,7 +18,6 @@ from shaftprint.arrays import FloatArray
 from shaftprint.campaign import load_campaign
 from shaftprint.catalogue import structure
 from shaftprint.identify import (
-    STAN_TUG_NOISE,
     Draw,
     Identification,
     NoiseLevels,
@@ -38,6 +37,7 @@ from shaftprint.models import Structure
 from shaftprint.recording import read_recording
 from shaftprint.signals import prepare_signals
 from shaftprint.spectra import FrequencyResponse, estimate_response
+from shaftprint.survey import STAN_TUG_NOISE
 from shaftprint.tug import sail
 from shaftprint.vessel import load_vessel
 

@@ -20,7 +20,6 @@ from shaftprint.campaign import load_campaign
 from shaftprint.catalogue import structure
 from shaftprint.errors import ShaftprintError
 from shaftprint.identify import (
-    STAN_TUG_NOISE,
     Identification,
     Settings,
     expected_response,
@@ -32,6 +31,7 @@ from shaftprint.identify import (
 from shaftprint.recording import read_recording
 from shaftprint.signals import Signals, prepare_signals
 from shaftprint.spectra import FrequencyResponse, estimate_response, estimate_spectra
+from shaftprint.survey import STAN_TUG_NOISE
 from shaftprint.tug import Noise, Tug, sail
 from shaftprint.vessel import SpeedSensor, Vessel, load_vessel
 from shaftprint.vessel._sensors import Logger

@@ -26,7 +26,7 @@ louder = short.model_copy(
 
 predicted = {}
 for test, campaign in (("thesis", thesis), ("short", short), ("short, 1.5 times as loud", louder)):
-    plan = sp.identify.planned_response(campaign, sp.identify.STAN_TUG_NOISE)
+    plan = sp.identify.planned_response(campaign, sp.survey.STAN_TUG_NOISE)
     for beforehand, priors in (("", flat_engine), (" and the calculation", flat_engine | calculation)):
         predicted[test + beforehand] = sp.identify.predict_accuracy(line, plan, values=values, priors=priors)
 

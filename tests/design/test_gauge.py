@@ -14,10 +14,11 @@ from shaftprint.design.motion._motion import SIGNALS, motion, motion_noise
 from shaftprint.design.operation._limit_use import stated_limits
 from shaftprint.design.operation._operation import Operation
 from shaftprint.errors import DesignError, SignalError
-from shaftprint.identify import STAN_TUG_NOISE, NoiseLevels
+from shaftprint.identify import NoiseLevels
 from shaftprint.models import at_working_point
 from shaftprint.recording import read_recording
 from shaftprint.signals import prepare_signals
+from shaftprint.survey import STAN_TUG_NOISE
 from shaftprint.tug import Noise, Tug, sail
 from shaftprint.vessel import load_vessel
 

@@ -8,9 +8,10 @@ import pytest
 from shaftprint.catalogue import structure
 from shaftprint.design import Wish, assumed_ship, design_campaign
 from shaftprint.errors import DesignError
-from shaftprint.identify import STAN_TUG_NOISE, Prior, planned_lines
+from shaftprint.identify import Prior, planned_lines
 from shaftprint.identify.prediction._accuracy import predict_joint_accuracy
 from shaftprint.simulation import simulate
+from shaftprint.survey import STAN_TUG_NOISE
 
 SPEEDS = (1.15, 0.70)
 

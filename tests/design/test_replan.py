@@ -8,15 +8,8 @@ import pytest
 from shaftprint.catalogue import structure
 from shaftprint.design import replan, ship_of_fit
 from shaftprint.errors import DesignError
-from shaftprint.identify import (
-    STAN_TUG_NOISE,
-    Draw,
-    Settings,
-    expected_response,
-    identify,
-    identify_jointly,
-    planned_lines,
-)
+from shaftprint.identify import Draw, Settings, expected_response, identify, identify_jointly, planned_lines
+from shaftprint.survey import STAN_TUG_NOISE
 
 pytestmark = pytest.mark.slow
 

@@ -25,7 +25,7 @@ from shaftprint.design.plan._plan import predicted_accuracy
 from shaftprint.design.plan._timetable import STAIRS, Timetable
 from shaftprint.design.planning._band import _estimated_variance, with_band
 from shaftprint.design.search._uses import Uses
-from shaftprint.identify import STAN_TUG_NOISE
+from shaftprint.survey import STAN_TUG_NOISE
 from shaftprint.vessel import load_vessel
 
 SHARE = 3e-4

@@ -7,7 +7,8 @@ import pytest
 
 from shaftprint.design import Wish, design_campaign, no_worse_than, plan_sentences, remedies, shortest
 from shaftprint.errors import DesignError
-from shaftprint.identify import STAN_TUG_NOISE, Prior
+from shaftprint.identify import Prior
+from shaftprint.survey import STAN_TUG_NOISE
 
 
 def designer(tug, limits, quick, wish, **changed):

@@ -22,8 +22,8 @@ from shaftprint.design import (
     write_plan_files,
 )
 from shaftprint.fingerprint import read_fingerprint, write_fingerprint
-from shaftprint.identify import STAN_TUG_NOISE
 from shaftprint.recording import cut, read_recording, write_csv, write_recording
+from shaftprint.survey import STAN_TUG_NOISE
 from shaftprint.tug import sail
 from shaftprint.vessel import load_vessel
 

@@ -9,9 +9,9 @@ from tests.measured_truth import as_measured
 from shaftprint.campaign import load_campaign
 from shaftprint.catalogue import structure
 from shaftprint.errors import StructureError
-from shaftprint.identify import STAN_TUG_NOISE, Settings
+from shaftprint.identify import Settings
 from shaftprint.recording import cut, read_recording, write_recording
-from shaftprint.survey import fit, leg_tests, legs_alone, load_trial, measure, priors_of, run
+from shaftprint.survey import STAN_TUG_NOISE, fit, leg_tests, legs_alone, load_trial, measure, priors_of, run
 from shaftprint.survey._fits import comparisons_of
 from shaftprint.survey._legs_apart import apart_reasons
 from shaftprint.survey._limit_hints import hints_of

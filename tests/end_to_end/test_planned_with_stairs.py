@@ -6,13 +6,11 @@ import numpy as np
 import pytest
 
 from shaftprint.catalogue import structure
-from shaftprint.design import Effort, SetPointLine, Wish, assumed_ship, limits_from_vessel
+from shaftprint.design import Effort, SetPointLine, Wish, assumed_ship, limits_from_vessel, plan_test
 from shaftprint.design.inputs._knowledge import Knowledge
-from shaftprint.design.planning._from_knowledge import plan_test
-from shaftprint.identify import STAN_TUG_NOISE_AT_SPEEDS
-from shaftprint.identify.prediction._stan_tug_noise_at_speeds import STAN_TUG_LINE
 from shaftprint.limits import Kind, identify_limits
-from shaftprint.survey import run
+from shaftprint.survey import STAN_TUG_NOISE_AT_SPEEDS, run
+from shaftprint.survey._shipped_noise import STAN_TUG_LINE
 from shaftprint.tug import Tug, sail
 from shaftprint.vessel import load_vessel
 

@@ -9,7 +9,6 @@ from shaftprint.campaign import load_campaign
 from shaftprint.catalogue import structure
 from shaftprint.errors import IdentificationError
 from shaftprint.identify import (
-    STAN_TUG_NOISE,
     Prior,
     Settings,
     expected_response,
@@ -22,6 +21,7 @@ from shaftprint.identify import (
 from shaftprint.identify.prediction._accuracy import predict_joint_accuracy, predict_joint_deviations
 from shaftprint.identify.prediction._predicted_intervals import predict_intervals
 from shaftprint.models import Combination, Delay, Parameter, SecondOrderLag, Structure
+from shaftprint.survey import STAN_TUG_NOISE
 
 TRUTH = {
     "K_p": 5.7, "K_i": 4.27, "t_d": 0.0703, "omega_n": 10.3, "zeta": 0.47, "tau_dn": 0.32, "tau_up": 1.016,

@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 from shaftprint.catalogue import structure
-from shaftprint.identify import STAN_TUG_NOISE, Prior, planned_lines
+from shaftprint.identify import Prior, planned_lines
 from shaftprint.identify.prediction._accuracy import predict_joint_accuracy
 from shaftprint.identify.prediction._line_information import line_information
+from shaftprint.survey import STAN_TUG_NOISE
 
 FREQUENCY = np.geomspace(0.02, 3.0, 14)
 

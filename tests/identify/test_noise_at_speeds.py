@@ -6,9 +6,10 @@ import pytest
 from shaftprint.campaign import load_campaign
 from shaftprint.catalogue import structure
 from shaftprint.errors import IdentificationError
-from shaftprint.identify import STAN_TUG_NOISE_AT_SPEEDS, NoiseLevels, noise_at
+from shaftprint.identify import NoiseLevels, noise_at
 from shaftprint.identify.prediction._accuracy import predict_joint_accuracy
 from shaftprint.identify.prediction._planned_legs import planned_legs
+from shaftprint.survey import STAN_TUG_NOISE_AT_SPEEDS
 
 
 def levels(density, *, last_hz=4.0, coherence=0.5, set_point_per_v=0.2, outputs=("n", "M_s")):

@@ -6,17 +6,11 @@ import pytest
 from shaftprint.campaign import Campaign, Multisine, Sine, load_campaign
 from shaftprint.catalogue import structure
 from shaftprint.errors import IdentificationError
-from shaftprint.identify import (
-    STAN_TUG_NOISE,
-    NoiseLevels,
-    expected_response,
-    identify,
-    planned_lines,
-    planned_response,
-)
+from shaftprint.identify import NoiseLevels, expected_response, identify, planned_lines, planned_response
 from shaftprint.identify.prediction._noise_levels import noise_levels
 from shaftprint.identify.prediction._planned_legs import planned_legs
 from shaftprint.spectra import FrequencyResponse
+from shaftprint.survey import STAN_TUG_NOISE
 
 TRUTH = {"K_p": 5.7, "K_i": 4.27, "t_d": 0.0703, "omega_n": 10.3, "zeta": 0.47, "tau_dn": 0.32, "tau_up": 1.016}
 

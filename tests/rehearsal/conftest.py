@@ -8,7 +8,7 @@ import pytest
 
 from shaftprint.catalogue import structure
 from shaftprint.design import Effort, PlannedTest, SetPointLine, Wish, assumed_ship, design_campaign, limits_from_vessel
-from shaftprint.identify import STAN_TUG_NOISE
+from shaftprint.survey import STAN_TUG_NOISE
 from shaftprint.vessel import load_vessel
 
 # Not the tug that is shipped: every number is another.

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from shaftprint.campaign import Campaign, Sine, Staircase
-from shaftprint.identify import STAN_TUG_NOISE, planned_response
+from shaftprint.identify import planned_response
 from shaftprint.recording import read_recording
 from shaftprint.signals import prepare_signals
 from shaftprint.signals._orders import TrackedOrder, tracked_orders
@@ -14,6 +14,7 @@ from shaftprint.spectra import estimate_spectra
 from shaftprint.spectra.orders._gears import with_measured_gears
 from shaftprint.spectra.orders._order_fit import fit_orders
 from shaftprint.spectra.orders._order_waves import order_bands, turns_of
+from shaftprint.survey import STAN_TUG_NOISE
 from shaftprint.tug import Tug, linearised_response, sail
 from shaftprint.vessel import Vessel, load_vessel
 

@@ -15,8 +15,6 @@ from .prediction._identifiability import identifiability
 from .prediction._noise_at_speeds import noise_at
 from .prediction._noise_levels import NoiseLevels
 from .prediction._planned_response import expected_response, planned_lines, planned_response
-from .prediction._stan_tug_noise import STAN_TUG_NOISE
-from .prediction._stan_tug_noise_at_speeds import STAN_TUG_NOISE_AT_SPEEDS
 from .search._settings import Settings
 from .search._starts import Draw, GivenStarts, Uniform
 from .uncertainty._bootstrap import bootstrap
@@ -24,8 +22,6 @@ from .uncertainty._budget import Budget, BudgetRow, budget
 from .uncertainty._profile import profile, profile_intervals
 
 __all__ = [
-    "STAN_TUG_NOISE",
-    "STAN_TUG_NOISE_AT_SPEEDS",
     "Budget",
     "BudgetRow",
     "Draw",

@@ -7,6 +7,7 @@ from ._legs_apart import legs_alone
 from ._limits import with_limits
 from ._measurement import Measurement, measure
 from ._of_vessel import default_structure, of_vessel
+from ._shipped_noise import STAN_TUG_NOISE, STAN_TUG_NOISE_AT_SPEEDS
 from ._survey import Survey, run, survey_of
 from ._thesis_mode import ThesisMode
 from ._thesis_way import GAUGE
@@ -15,6 +16,8 @@ from ._validate import validate_fingerprint
 
 __all__ = [
     "GAUGE",
+    "STAN_TUG_NOISE",
+    "STAN_TUG_NOISE_AT_SPEEDS",
     "FitOptions",
     "Measurement",
     "Survey",

@@ -7,21 +7,24 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from shaftprint.campaign._campaign import Campaign
+from shaftprint.design.inputs._noise_of_line import noise_of_line
 from shaftprint.distributions import NORMAL_95
-from shaftprint.identify.prediction._combinator_noise import COMBINATOR_NOISE
-from shaftprint.identify.prediction._log_noise import with_log
 from shaftprint.identify.prediction._noise_at_speeds import noise_at
 from shaftprint.identify.prediction._noise_levels import NoiseLevels
-from shaftprint.identify.prediction._noise_of_line import noise_of_line
-from shaftprint.identify.prediction._pitch_noise import PITCH_NOISE
-from shaftprint.identify.prediction._research_vessel_noise import RESEARCH_VESSEL_NOISE
-from shaftprint.identify.prediction._stan_tug_noise import STAN_TUG_NOISE
-from shaftprint.identify.prediction._stan_tug_noise_at_speeds import STAN_TUG_LINE, STAN_TUG_NOISE_AT_SPEEDS
-from shaftprint.identify.prediction._stan_tug_noise_underway import STAN_TUG_NOISE_UNDERWAY
 from shaftprint.models._structure import Structure
 from shaftprint.models._working_point import at_working_point
 from shaftprint.signals._channel_signals import HIGHEST_SHARE_OF_RATE
 from shaftprint.signals._moved_beside import moved_beside
+from shaftprint.survey._log_noise import with_log
+from shaftprint.survey._shipped_noise import (
+    COMBINATOR_NOISE,
+    PITCH_NOISE,
+    RESEARCH_VESSEL_NOISE,
+    STAN_TUG_LINE,
+    STAN_TUG_NOISE,
+    STAN_TUG_NOISE_AT_SPEEDS,
+    STAN_TUG_NOISE_UNDERWAY,
+)
 from shaftprint.vessel._vessel import Vessel
 
 # What ships of the same kind have of the density of the simulated ship's noise, 19 of 20 of them.

@@ -164,30 +164,6 @@ def _tested_lines(campaign: "Campaign") -> dict[str, tuple[float, float]]:
     return sines | of_legs
 
 
-def tabulated_noise(
-    rows: "Sequence[tuple[complex, ...]]",
-    *,
-    set_point_per_v: float,
-    orders_hz: Sequence[float] = (),
-    outputs: Sequence[str] = ("n", "M_s"),
-) -> NoiseLevels:
-    """Return the noise levels of a table whose rows are a frequency [Hz], densities [1/Hz] and coherences.
-
-    ``rows``: one for each frequency; the coherences are those of every pair of outputs. ``set_point_per_v``,
-    ``orders_hz``, ``outputs``: as of ``stated_noise``.
-    """
-    table = np.array(rows, dtype=np.complex128)
-    first = 1 + len(outputs)
-    return stated_noise(
-        frequency_hz=table[:, 0].real.tolist(),
-        densities=table[:, 1:first].real.tolist(),
-        coherences=table[:, first:].tolist(),
-        set_point_per_v=set_point_per_v,
-        orders_hz=orders_hz,
-        outputs=outputs,
-    )
-
-
 def stated_noise(
     frequency_hz: Sequence[float],
     densities: Sequence[Sequence[float]],

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from shaftprint.errors import IdentificationError
-from shaftprint.identify.prediction._log_noise import with_log
 from shaftprint.identify.prediction._noise_levels import stated_noise
-from shaftprint.identify.prediction._stan_tug_noise_underway import STAN_TUG_NOISE_UNDERWAY
 from shaftprint.spectra._line_responses import NOT_MEASURED_STD
+from shaftprint.survey._log_noise import with_log
+from shaftprint.survey._shipped_noise import STAN_TUG_NOISE_UNDERWAY
 
 
 def shown(levels, hertz):

@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 
 from shaftprint.catalogue import structure
-from shaftprint.identify import STAN_TUG_NOISE_AT_SPEEDS, NoiseLevels
-from shaftprint.identify.prediction._noise_of_line import noise_of_line
-from shaftprint.identify.prediction._stan_tug_noise_at_speeds import STAN_TUG_LINE
+from shaftprint.design.inputs._noise_of_line import noise_of_line
+from shaftprint.identify import NoiseLevels
+from shaftprint.survey import STAN_TUG_NOISE_AT_SPEEDS
+from shaftprint.survey._shipped_noise import STAN_TUG_LINE
 from shaftprint.tug import Tug, normalised_truth
 from shaftprint.vessel import load_vessel
 
