@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.errors import PropellerError
 from shaftprint.notebook._shown import Shown
-from shaftprint.propeller._b4_70_coefficients import B4_70
+from shaftprint.propeller._coefficients import coefficients
 
 # The speed of the blades is taken at this share of the radius.
 _AT_RADIUS = 0.7
@@ -150,12 +150,12 @@ def four_quadrants(*, blades: int, area_ratio: float) -> FourQuadrantCurve:
             f"four quadrants: expected the Wageningen B4-70, four blades with an area ratio of {_AREA_RATIO:g}, found "
             f"{blades} blades with {area_ratio:g}; coefficients of no other propeller are known here."
         )
-    multiples = max(len(rows) for rows in B4_70.values())
-    table = np.zeros((len(B4_70), multiples, 4))
-    for place, rows in enumerate(B4_70.values()):
-        table[place, : len(rows)] = rows
+    sets = coefficients("b4-70-in-four-quadrants")["sets"]
+    table = np.zeros((len(sets), max(len(one["rows"]) for one in sets), 4))
+    for place, one in enumerate(sets):
+        table[place, : len(one["rows"])] = one["rows"]
     return FourQuadrantCurve(
         name="Wageningen B4-70",
-        pitch_ratios=np.array(list(B4_70)),
+        pitch_ratios=np.array([one["pitch_ratio"] for one in sets]),
         coefficients=table / np.array([100.0, 100.0, -1000.0, -1000.0]),
     )

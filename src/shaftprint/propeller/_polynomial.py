@@ -1,5 +1,6 @@
 """A polynomial in advance ratio and pitch ratio, with its slopes."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -51,7 +52,7 @@ class Polynomial:
         return np.asarray((coefficient * terms).sum(axis=-1))
 
 
-def polynomial(terms: tuple[tuple[int, int, float], ...]) -> Polynomial:
+def polynomial(terms: Sequence[Sequence[float]]) -> Polynomial:
     """Return the polynomial of terms (power of ``P/D``, power of ``J``, coefficient)."""
     table = np.array(terms)
     return Polynomial(coefficient=table[:, 2], pitch_power=table[:, 0], advance_power=table[:, 1])
