@@ -1,5 +1,7 @@
 """Logs in a row: what follows on each other, what is refused, and what the ship was doing."""
 
+import dataclasses
+
 import numpy as np
 import pytest
 
@@ -7,6 +9,8 @@ from shaftprint.errors import ServiceError, SettingsError
 from shaftprint.recording import Channel, write_recording
 from shaftprint.service._log import blocks
 from shaftprint.service._scan import scan
+from shaftprint.service._segment import LeverLine, Segment
+from shaftprint.service._segment_file import read_segments, write_segments
 from shaftprint.service._states import STATES, state_of_seconds
 from shaftprint.tug import sail_service
 from shaftprint.vessel import load_vessel
@@ -109,3 +113,63 @@ def test_a_ship_whose_sensors_no_service_log_shows_is_told_of_one_that_has_them(
     with pytest.raises(SettingsError, match=r"expected a speed in rpm.* stan-tug-1205-service has such sensors"):
         sail_service(load_vessel("stan-tug-1205"), tmp_path / "logs", hours=1.0, seed=1)
     assert not (tmp_path / "logs").exists()
+
+
+@pytest.fixture
+def written(tmp_path, vessel):
+    """A table of one segment, with its channels beside it."""
+    segment = Segment(
+        log="log-01.nc",
+        state="ahead",
+        reason="",
+        every=1,
+        start_s=0.0,
+        move_s=2.0,
+        move_end_s=3.0,
+        rate_hz=100.0,
+        lever_v=np.zeros(10),
+        speed_rev_s=np.ones(10),
+        torque_nm=np.ones(10),
+    )
+    line = LeverLine(**{one.name: 1.0 for one in dataclasses.fields(LeverLine)})
+    write_segments(tmp_path / "segments.csv", [segment], line, [{"used": "yes", "reason": ""}], {})
+    return tmp_path / "segments.csv"
+
+
+def test_segments_come_back(written):
+    (segment,), _, facts = read_segments(written)
+    assert (segment.log, segment.move_s, segment.lever_v.size, facts) == ("log-01.nc", 2.0, 10, {})
+
+
+@pytest.mark.parametrize("kept", [0, 10, 100, 0.5, 0.9, -1])
+def test_channels_that_are_cut_are_damaged_in_a_sentence(written, kept):
+    beside = written.with_suffix(".npz")
+    content = beside.read_bytes()
+    beside.write_bytes(content[: int(kept * len(content)) if isinstance(kept, float) else kept])
+    with pytest.raises(ServiceError, match=r"segments\.npz: expected the channels .*, found a damaged file; scan"):
+        read_segments(written)
+
+
+def test_a_changed_byte_of_the_channels_is_told_or_changes_nothing_else(written):
+    beside = written.with_suffix(".npz")
+    content, said = beside.read_bytes(), []
+    for place in range(0, len(content), 37):
+        beside.write_bytes(content[:place] + bytes([content[place] ^ 0x55]) + content[place + 1 :])
+        try:
+            read_segments(written)
+        except ServiceError as error:
+            said.append(str(error))
+    assert len(said) > 20
+    assert all("segments.npz: expected" in one for one in said)
+
+
+def test_channels_that_are_not_there_are_missing(written):
+    written.with_suffix(".npz").unlink()
+    with pytest.raises(ServiceError, match="found none: No such file or directory; scan the logs again"):
+        read_segments(written)
+
+
+def test_channels_larger_than_any_log_are_not_unpacked(written, monkeypatch):
+    monkeypatch.setattr("shaftprint.service._segment_file._LARGEST", 100)
+    with pytest.raises(ServiceError, match="expected at most 0 MiB of channels, found 0 MiB; scan fewer logs"):
+        read_segments(written)

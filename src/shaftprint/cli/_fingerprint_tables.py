@@ -66,7 +66,8 @@ def _print_conditions(fingerprint: Fingerprint) -> None:
         value = stated(quantity.value, quantity.std, quantity.unit)
         say(f"{quantity.meaning}: {quantity.name} = {value}", indent="  ")
     say(f"speed sensor {conditions.speed_channel}; signals prepared in {conditions.mode} mode", indent="  ")
-    say(f"lines used: {_lines_in_words(conditions.lines_used)}", indent="  ")
+    if conditions.lines_used:
+        say(f"lines used: {_lines_in_words(conditions.lines_used)}", indent="  ")
     if conditions.lines_left_out:
         say(f"lines left out: {', '.join(conditions.lines_left_out)}", indent="  ")
     for source in fingerprint.sources:

@@ -3,6 +3,8 @@
 import csv
 import io
 import json
+import zipfile
+import zlib
 from collections.abc import Sequence
 from dataclasses import asdict, replace
 from pathlib import Path
@@ -12,7 +14,7 @@ import numpy as np
 from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.errors import ServiceError
 from shaftprint.escape import csv_cell
-from shaftprint.files import write_bytes
+from shaftprint.files import reason, write_bytes
 from shaftprint.service._segment import LeverLine, Segment
 
 SCHEMA = 1
@@ -20,6 +22,10 @@ SCHEMA = 1
 USED, REASON = "used", "reason"
 # Fields of a segment that the table does not tell, kept with its channels.
 _NUMBERS = ("start_s", "move_s", "move_end_s", "rate_hz", "every")
+# A month of a lively crew at 100 Hz, unpacked [bytes].
+_LARGEST = 2**31
+# What a file that was cut or changed raises while it is unpacked.
+_DAMAGE = (zipfile.BadZipFile, zlib.error, ValueError, EOFError, MemoryError, RecursionError)
 
 
 def channel_file(path: Path) -> Path:
@@ -65,10 +71,13 @@ def read_segments(path: str | Path) -> tuple[tuple[Segment, ...], LeverLine, dic
     path = Path(path)
     try:
         rows = list(csv.DictReader(io.StringIO(path.read_text(encoding="utf-8"))))
-    except (OSError, UnicodeDecodeError, csv.Error) as error:
+    except OSError as error:
+        raise ServiceError(f"{path}: expected a table of segments, found none: {reason(error)}.") from None
+    except (UnicodeDecodeError, csv.Error) as error:
         raise ServiceError(f"{path}: expected a table of segments of shaftprint service scan, found {error}.") from None
     beside = channel_file(path)
     try:
+        _expect_possible_size(beside)
         with np.load(beside, allow_pickle=False) as content:
             meta = json.loads(bytes(content["meta"]).decode())
             if meta["schema"] != SCHEMA:
@@ -77,17 +86,31 @@ def read_segments(path: str | Path) -> tuple[tuple[Segment, ...], LeverLine, dic
                 )
             segments = [_segment(content, number, fields) for number, fields in enumerate(meta["segments"])]
             line, facts = LeverLine(**meta["line"]), dict(meta["facts"])
-    except (OSError, ValueError, KeyError, TypeError, EOFError) as error:
-        raise ServiceError(
-            f"{beside}: expected the channels of the segments, which service scan writes beside {path.name}, "
-            f"found {type(error).__name__}; scan the logs again."
-        ) from None
+    except OSError as error:
+        raise ServiceError(f"{_expected(beside, path)}, found none: {reason(error)}; scan the logs again.") from None
+    except (*_DAMAGE, KeyError, TypeError, AttributeError):
+        raise ServiceError(f"{_expected(beside, path)}, found a damaged file; scan the logs again.") from None
     if len(rows) != len(segments):
         raise ServiceError(
             f"{path}: expected a line for each of {len(segments)} segments, found {len(rows)}; take a segment out with "
             f'"no" in the column {USED}, and leave its line.'
         )
     return tuple(_as_marked(one, row, path) for one, row in zip(segments, rows, strict=True)), line, facts
+
+
+def _expected(beside: Path, path: Path) -> str:
+    return f"{beside}: expected the channels of the segments, which service scan writes beside {path.name}"
+
+
+def _expect_possible_size(beside: Path) -> None:
+    """Refuse what would not fit into memory before anything is unpacked."""
+    with zipfile.ZipFile(beside) as archive:
+        size = sum(one.file_size for one in archive.infolist())
+    if size > _LARGEST:
+        raise ServiceError(
+            f"{beside}: expected at most {_LARGEST // 2**20} MiB of channels, found {size // 2**20} MiB; scan fewer "
+            "logs at once."
+        )
 
 
 def _segment(content: "np.lib.npyio.NpzFile", number: int, fields: dict[str, object]) -> Segment:
