@@ -14,6 +14,7 @@ import numpy as np
 
 import shaftprint
 from shaftprint.arrays import FloatArray
+from shaftprint.catalogue._gauge import GAUGE_K_I, GAUGE_K_P, K_Q, TAU_DN, TAU_UP, G
 from shaftprint.catalogue._roles import ShipRole
 from shaftprint.catalogue._shipped import shipped_structure
 from shaftprint.errors import ServiceError
@@ -50,7 +51,7 @@ ORDINARY_SERVICE = "ordinary service"
 """What stands in a fingerprint in place of the name of a test."""
 STRUCTURE = "GAUGE-CLOSED"
 # Numbers that go with the torque over the speed of the working point.
-_OVER_TORQUE = ("K_p", "K_i", "tau_dn", "tau_up", "g")
+_OVER_TORQUE = (GAUGE_K_P.name, GAUGE_K_I.name, TAU_DN.name, TAU_UP.name, G.name)
 # A number is known well enough to this share of it; a set-point scale or a slope near nothing to this much.
 _WELL_ENOUGH, _WELL_ENOUGH_NEAR_NOTHING = 0.15, 0.1
 ASSUMPTIONS = (
@@ -85,7 +86,7 @@ def fingerprint_of_service(
     scale = np.array([1.0 / load[0] if name in _OVER_TORQUE else 1.0 for name in FREE])
     theta, covariance = fit.theta * scale, fit.covariance * np.outer(scale, scale)
     of_prior = {PRIOR_OF + name: change * scale for name, change in fit.of_prior.items()}
-    held = {p.name: p.value for p in structure.parameters if p.name not in FREE} | {"k_q": 2.0}
+    held = {p.name: p.value for p in structure.parameters if p.name not in FREE} | {K_Q.name: 2.0}
     torque_nm = load[0] * model.shaft_torque_nm
     parameters = _parameters(structure, theta, covariance)
     combinations = combination_numbers(structure, theta, held)

@@ -18,6 +18,7 @@ from types import MappingProxyType
 import numpy as np
 
 from shaftprint.arrays import FloatArray, frozen_float
+from shaftprint.catalogue._gauge import GAUGE_K_I, GAUGE_K_P, GAUGE_OMEGA_N, GAUGE_ZETA, T_D, T_SP, TAU_DN, TAU_UP
 from shaftprint.errors import ServiceError
 from shaftprint.service._model import FREE, ServiceModel
 from shaftprint.service._score import Score, noise_of, scores, simulated
@@ -35,9 +36,9 @@ _MOST_STEPS, _LAST, _SHORT, _NOISE_ANEW, _MOST_NOISES = 12, 0.3, 1.5, 1.5, 4
 _ROUGH = 3.0
 # Times that a step is halved before the fit ends.
 _HALVINGS = 6
-FLOOR: Mapping[str, float] = MappingProxyType({"K_p": 0.003, "K_i": 0.003, "tau_dn": 0.002})
+FLOOR: Mapping[str, float] = MappingProxyType({GAUGE_K_P.name: 0.003, GAUGE_K_I.name: 0.003, TAU_DN.name: 0.002})
 """Share of each number below which its standard deviation does not fall, however long the service."""
-FLOOR_S: Mapping[str, float] = MappingProxyType({"t_d": 1e-3, "t_sp": 1e-3})
+FLOOR_S: Mapping[str, float] = MappingProxyType({T_D.name: 1e-3, T_SP.name: 1e-3})
 """The same for delays [s]."""
 
 
@@ -192,7 +193,15 @@ def _misfit(each: Sequence[Score], sums: Sums, model: ServiceModel, theta: Float
 
 def _within(theta: FloatArray) -> FloatArray:
     """Return parameters that can be: what cannot be below zero is not."""
-    least = {"K_p": 0.05, "K_i": 0.05, "omega_n": 1.0, "zeta": 0.05, "t_d": 0.0, "tau_dn": 0.01, "tau_up": 0.01}
+    least = {
+        GAUGE_K_P.name: 0.05,
+        GAUGE_K_I.name: 0.05,
+        GAUGE_OMEGA_N.name: 1.0,
+        GAUGE_ZETA.name: 0.05,
+        T_D.name: 0.0,
+        TAU_DN.name: 0.01,
+        TAU_UP.name: 0.01,
+    }
     return np.maximum(theta, [least.get(name, -np.inf) for name in FREE])
 
 

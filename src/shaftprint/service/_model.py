@@ -7,7 +7,21 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shaftprint.arrays import FloatArray
-from shaftprint.catalogue._limited import limited
+from shaftprint.catalogue._gauge import (
+    C_SET,
+    GAUGE_K_I,
+    GAUGE_K_P,
+    GAUGE_OMEGA_N,
+    GAUGE_ZETA,
+    K_Q,
+    T_D,
+    T_GAUGE,
+    T_SP,
+    TAU_DN,
+    TAU_UP,
+    G,
+)
+from shaftprint.catalogue._limited import M_MAX, M_MIN, T_AW, limited
 from shaftprint.catalogue._roles import ShipRole
 from shaftprint.errors import ServiceError
 from shaftprint.identify.likelihood._known import stated_by_vessel
@@ -19,9 +33,11 @@ if TYPE_CHECKING:
     from shaftprint.fingerprint._fingerprint import Fingerprint
     from shaftprint.vessel._vessel import Vessel
 
-FREE = ("K_p", "K_i", "omega_n", "zeta", "t_d", "t_sp", "tau_dn", "tau_up", "g", "c_set", "t_gauge")
+FREE = tuple(
+    one.name for one in (GAUGE_K_P, GAUGE_K_I, GAUGE_OMEGA_N, GAUGE_ZETA, T_D, T_SP, TAU_DN, TAU_UP, G, C_SET, T_GAUGE)
+)
 """Parameters that service is asked for."""
-BESIDE = ("k_q", "m_max", "m_min", "T_aw")
+BESIDE = (K_Q.name, M_MAX.name, M_MIN.name, T_AW.name)
 """Parameters that each segment has for itself: its load, and the limits where it meets one."""
 _SPEED_SLOPE_STD, _SCALE_STD, _INERTIA_STD = 0.3, 0.005, 0.03
 
@@ -62,9 +78,9 @@ class ServiceModel:
         limits, which are counted from there.
         """
         own = {**self.values, **dict(zip(FREE, theta.tolist(), strict=True))}
-        own["k_q"] = 2.0 * load
-        own["m_max"] = max(self.values["m_max"] - (load - 1.0), 0.1)
-        own["m_min"] = self.values["m_min"] - (load - 1.0)
+        own[K_Q.name] = 2.0 * load
+        own[M_MAX.name] = max(self.values[M_MAX.name] - (load - 1.0), 0.1)
+        own[M_MIN.name] = self.values[M_MIN.name] - (load - 1.0)
         return np.array([own[name] for name in self.structure.names])
 
 
@@ -80,15 +96,19 @@ def service_model(vessel: "Vessel", fingerprint: "Fingerprint | None" = None) ->
     structure = limited("torque", curve=vessel.machine.full_load_shape(speed))
     point = Normalisation(engine_speed_rev_s=speed, gear_ratio=vessel.gearbox.ratio, shaft_torque_nm=torque)
     values = {parameter.name: parameter.value for parameter in structure.parameters}
-    prior_std = {"g": _SPEED_SLOPE_STD, "c_set": _SCALE_STD, "t_gauge": vessel.sensors.shaft_torque.latency_std}
+    prior_std = {
+        G.name: _SPEED_SLOPE_STD,
+        C_SET.name: _SCALE_STD,
+        T_GAUGE.name: vessel.sensors.shaft_torque.latency_std,
+    }
     stated = stated_by_vessel(ShipRole.INERTIA_UPSTREAM, vessel)
     if stated is not None:
-        values["tau_up"] = point.inertia_time_s(stated[0])
+        values[TAU_UP.name] = point.inertia_time_s(stated[0])
         share = np.hypot(stated[1] / stated[0], vessel.sensors.shaft_torque.scale_std)
-        prior_std["tau_up"] = float(values["tau_up"] * share)
+        prior_std[TAU_UP.name] = float(values[TAU_UP.name] * share)
     downstream = stated_by_vessel(ShipRole.INERTIA_DOWNSTREAM, vessel)
     if downstream is not None:
-        values["tau_dn"] = point.inertia_time_s(downstream[0])
+        values[TAU_DN.name] = point.inertia_time_s(downstream[0])
     known = {name: values[name] for name in prior_std}
     values |= _limits(vessel, speed, torque)
     if fingerprint is not None:
@@ -130,8 +150,8 @@ def _limits(vessel: "Vessel", speed_rev_s: float, torque_nm: float) -> dict[str,
     rpm = speed_rev_s * SECONDS_PER_MINUTE
     highest = float(np.interp(rpm, *vessel.machine.full_load)) / brake
     motoring = vessel.motoring
-    lowest = {} if motoring is None else {"m_min": -float(np.interp(rpm, *motoring)) / brake}
-    return {"m_max": highest, **lowest}
+    lowest = {} if motoring is None else {M_MIN.name: -float(np.interp(rpm, *motoring)) / brake}
+    return {M_MAX.name: highest, **lowest}
 
 
 def _of_fingerprint(fingerprint: "Fingerprint", point: Normalisation, usual: Mapping[str, float]) -> dict[str, float]:
@@ -143,7 +163,7 @@ def _of_fingerprint(fingerprint: "Fingerprint", point: Normalisation, usual: Map
     torque = tested.shaft_torque.value / point.shaft_torque_nm
     speed = tested.engine_speed.value / SECONDS_PER_MINUTE / point.engine_speed_rev_s
     own = {quantity.name: quantity.value for quantity in fingerprint.parameters} | fingerprint.held
-    missing = [name for name in ("K_p", "K_i", "t_d", "tau_dn") if name not in own]
+    missing = [name for name in (GAUGE_K_P.name, GAUGE_K_I.name, T_D.name, TAU_DN.name) if name not in own]
     if missing:
         raise ServiceError(
             f"fingerprint of {tested.vessel}: expected one of a gauge-aware structure such as GAUGE-CLOSED, found "
@@ -151,6 +171,6 @@ def _of_fingerprint(fingerprint: "Fingerprint", point: Normalisation, usual: Map
         )
     # gains and inertia times go with the torque over the speed of the point at which they are normalised
     factor = torque / speed
-    scaled = dict.fromkeys(("K_p", "K_i", "tau_dn", "tau_up"), factor) | {"g": factor}
+    scaled = dict.fromkeys((GAUGE_K_P.name, GAUGE_K_I.name, TAU_DN.name, TAU_UP.name), factor) | {G.name: factor}
     values = {name: own[name] * scaled.get(name, 1.0) for name in FREE if name in own}
-    return {name: value for name, value in values.items() if name in usual and name not in ("c_set",)}
+    return {name: value for name, value in values.items() if name in usual and name not in (C_SET.name,)}

@@ -10,6 +10,7 @@ import numpy as np
 
 from shaftprint.arguments import refusing_none
 from shaftprint.arrays import FloatArray
+from shaftprint.catalogue._gauge import GAUGE_K_I, GAUGE_K_P, GAUGE_OMEGA_N, T_D, T_SP, TAU_DN
 from shaftprint.errors import ServiceError
 from shaftprint.notebook._shown import Shown
 from shaftprint.notebook._summary import Summary, shortened
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
     from shaftprint.fingerprint._fingerprint import Fingerprint
     from shaftprint.vessel._vessel import Vessel
 
-TOLD = ("K_p", "K_i", "t_d", "t_sp", "tau_dn", "omega_n")
+TOLD = (GAUGE_K_P.name, GAUGE_K_I.name, T_D.name, T_SP.name, TAU_DN.name, GAUGE_OMEGA_N.name)
 """Numbers of which the table says what each segment tells."""
 _TOO_LOUD = 3.0
 _PERCENT = 100.0
@@ -71,13 +72,13 @@ class Scan(Shown):
             return f"{saw}, but nothing may be fitted to them: {self.refused}"
         if not self.accuracy:
             return f"{saw}; {FEWEST_SEGMENTS} and more are needed: give more logs."
-        known = {
-            name: f"{_PERCENT * self.accuracy[name] / abs(self.values[name]):.2g} %"
-            for name in ("K_p", "delay", "tau_dn")
-        }
+        gain, delay, inertia = (
+            f"{_PERCENT * self.accuracy[name] / abs(self.values[name]):.2g} %"
+            for name in (GAUGE_K_P.name, "delay", TAU_DN.name)
+        )
         return (
-            f"{saw}; with them K_p would be known to {known['K_p']}, the delay to {known['delay']} and the inertia "
-            f"behind the gauge to {known['tau_dn']}."
+            f"{saw}; with them K_p would be known to {gain}, the delay to {delay} and the inertia "
+            f"behind the gauge to {inertia}."
         )
 
     def summary(self) -> Summary:
@@ -180,7 +181,7 @@ def _judged(
                 line,
                 speed_rev_s=model.engine_speed_rev_s,
                 torque_nm=model.shaft_torque_nm,
-                tau_dn=model.values["tau_dn"],
+                tau_dn=model.values[TAU_DN.name],
             )
             for one in usable
         ]
@@ -205,11 +206,11 @@ def _accuracy(each: Sequence[Score], model: ServiceModel) -> tuple[dict[str, flo
     if len(each) < FEWEST_SEGMENTS:
         return {}, {}
     covariance = np.linalg.inv(sums_of(each, model, model.theta).information)
-    delays = np.array([float(name in ("t_d", "t_sp")) for name in FREE])
+    delays = np.array([float(name in (T_D.name, T_SP.name)) for name in FREE])
     accuracy = {name: float(np.sqrt(covariance[k, k])) for k, name in enumerate(FREE)}
     accuracy["delay"] = float(np.sqrt(delays @ covariance @ delays))
     values = dict(zip(FREE, model.theta.tolist(), strict=True))
-    return accuracy, values | {"delay": values["t_d"] + values["t_sp"]}
+    return accuracy, values | {"delay": values[T_D.name] + values[T_SP.name]}
 
 
 def _load(gathered: Gathered) -> tuple[float, float]:

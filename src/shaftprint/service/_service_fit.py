@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from shaftprint.arguments import refusing_none
 from shaftprint.arrays import FloatArray
+from shaftprint.catalogue._gauge import T_SP, TAU_DN
 from shaftprint.errors import ServiceError
 from shaftprint.notebook._shown import Shown
 from shaftprint.notebook._summary import Summary
@@ -106,13 +107,16 @@ def fit_service(
         )
     records = [
         one.record(
-            line, speed_rev_s=model.engine_speed_rev_s, torque_nm=model.shaft_torque_nm, tau_dn=model.values["tau_dn"]
+            line,
+            speed_rev_s=model.engine_speed_rev_s,
+            torque_nm=model.shaft_torque_nm,
+            tau_dn=model.values[TAU_DN.name],
         )
         for one in used
     ]
     fit = fit_segments(records, model)
-    latency = float(fit.theta[FREE.index("t_sp")])
-    if not EARLIEST_T_SP_S - 3.0 * _std(fit, "t_sp") <= latency <= LATEST_T_SP_S:
+    latency = float(fit.theta[FREE.index(T_SP.name)])
+    if not EARLIEST_T_SP_S - 3.0 * _std(fit, T_SP.name) <= latency <= LATEST_T_SP_S:
         raise ServiceError(
             f"{table}: expected a speed that follows the lever within {LATEST_T_SP_S:g} s, found a latency of "
             f"{1e3 * latency:.0f} ms: lever, speed and torque do not share one clock; log all three with one logger or "

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shaftprint.arrays import FloatArray
+from shaftprint.catalogue._gauge import GAUGE_K_P
 from shaftprint.catalogue._roles import ROLES, ShipRole
 from shaftprint.fingerprint._joint_numbers import JointNumbers
 from shaftprint.fingerprint._margin_numbers import margin_numbers
@@ -86,7 +87,7 @@ def combination_numbers(structure: Structure, theta: FloatArray, held: Mapping[s
     sets = _sloped({name: np.asarray(value) for name, value in held.items()}, theta)
     numbers = []
     for one in structure.combinations:
-        value, slope = _value_and_slope(np.broadcast_to(one.of(sets), sets["K_p"].shape), theta)
+        value, slope = _value_and_slope(np.broadcast_to(one.of(sets), sets[GAUGE_K_P.name].shape), theta)
         numbers.append(
             ShipNumber(
                 name=one.name, unit=one.unit, value=value, slope=slope, meaning=one.meaning, role=one.role, direct={}
