@@ -38,10 +38,10 @@ from shaftprint.design.plan._leg import Leg
 from shaftprint.design.planning._from_knowledge import plan_test
 from shaftprint.errors import ShaftprintError
 from shaftprint.fingerprint import Fingerprint
-from shaftprint.identify import STAN_TUG_NOISE_AT_SPEEDS as STORED
 from shaftprint.identify import Settings, noise_at, planned_lines, priors_from_vessel
 from shaftprint.identify.prediction._accuracy import predict_joint_accuracy
 from shaftprint.models import Structure, at_working_point
+from shaftprint.survey import STAN_TUG_NOISE_AT_SPEEDS as STORED
 from shaftprint.survey import Measurement, Survey, Trial, priors_of, run
 from shaftprint.survey._fits import stated_working_point
 from shaftprint.survey._of_vessel import at_speeds

@@ -4,8 +4,8 @@ import math
 
 import pytest
 
-from shaftprint.card import Card, disagreements
-from shaftprint.card._card import Gauge, Pulses
+from shaftprint.card import disagreements
+from shaftprint.card._card import Card, Gauge, Pulses
 from shaftprint.card._vessel_text import vessel_text
 from shaftprint.card._write import write_vessel
 from shaftprint.errors import SettingsError

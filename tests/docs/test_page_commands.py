@@ -41,8 +41,8 @@ BEGINS = {
     "plan": ("plan_test",),
     "sail": ("sail_as", "sail_both_lines", "sail_service"),
     "service": ("scan", "fit_service"),
-    "sensitivity": ("sensitivity_chart",),
-    "simulate": ("predicted",),
+    "sensitivity": ("save_chart",),
+    "simulate": ("simulated_ship",),
 }
 
 

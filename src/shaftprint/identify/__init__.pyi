@@ -13,7 +13,7 @@ from .likelihood._weighting import MaximumLikelihood, StudentT, Unweighted
 from .prediction._accuracy import predict_accuracy
 from .prediction._identifiability import identifiability
 from .prediction._noise_at_speeds import noise_at
-from .prediction._noise_levels import NoiseLevels
+from .prediction._noise_levels import NoiseLevels, noise_levels
 from .prediction._planned_response import expected_response, planned_lines, planned_response
 from .search._settings import Settings
 from .search._starts import Draw, GivenStarts, Uniform
@@ -48,6 +48,7 @@ __all__ = [
     "identify",
     "identify_jointly",
     "noise_at",
+    "noise_levels",
     "planned_lines",
     "planned_response",
     "predict_accuracy",

@@ -33,7 +33,7 @@ TEMPLATES = (TEMPLATE, CHART_TEMPLATE, "sketch.svg.j2")
 CHART_STYLE = "charts.css"
 SCRIPTS = ("report.js", "layout.js", "charts.js")
 # Loaded when a PDF is asked for: it needs a library that not everybody has.
-PAPER = "shaftprint.report.paper"
+PAPER = "shaftprint.report.paper._write_pdf"
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

@@ -5,7 +5,7 @@ from ._linearise import linearised_response
 from ._noise import Noise
 from ._sail import sail
 from ._sailing import Sailing
-from ._simulated_fleet import Tolerances
+from ._simulated_fleet import SimulatedFleet, Tolerances
 from ._truth import Truth, normalised_truth, read_truth, truth_path
 from ._tug import Tug
 from .plant._physics import build_plant
@@ -18,6 +18,7 @@ __all__ = [
     "Habits",
     "Noise",
     "Sailing",
+    "SimulatedFleet",
     "Tolerances",
     "Truth",
     "Tug",

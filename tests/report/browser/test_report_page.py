@@ -9,13 +9,26 @@ import numpy as np
 import pytest
 
 from shaftprint.report import _render as render_module
-from shaftprint.report import render_report, sections
+from shaftprint.report import render_report
+from shaftprint.report.sections._measurement import time_section
+from shaftprint.report.sections._quality import quality_section
+from shaftprint.report.sections._results import fit_section, stability_section, summary_section
+from shaftprint.report.sections._uncertainty import uncertainty_section
+from shaftprint.report.sections._validation import validation_section
 from shaftprint.validation import ValidationSettings, validate
 
 pytestmark = pytest.mark.slow
 
 
-SECTIONS = ("fit", "summary", "stability", "validation", "quality", "uncertainty", "time")
+SECTIONS = (
+    fit_section,
+    summary_section,
+    stability_section,
+    validation_section,
+    quality_section,
+    uncertainty_section,
+    time_section,
+)
 FOLDED = ("time",)
 PLOTS = (
     "fit",
@@ -35,10 +48,9 @@ def report(browser, tmp_path_factory, survey, identification, signals, campaign)
     settings = ValidationSettings(rest_s=6.0, zoom_after_s=8.0)
     rng = np.random.default_rng(1)
     validation = validate(identification, signals, campaign, rng=rng, records=("St1",), settings=settings)
-    made = [getattr(sections, f"{name}_section") for name in SECTIONS]
 
     def chosen(inputs):
-        groups = [make(inputs) for make in made]
+        groups = [make(inputs) for make in SECTIONS]
         listed = [section for group in groups for section in (group if isinstance(group, list) else [group])]
         return [replace(section, folded=section.key in FOLDED) for section in listed]
 

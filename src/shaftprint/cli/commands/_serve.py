@@ -1,15 +1,21 @@
 """``shaftprint serve``: pages of the store for browsers and programs."""
 
-import importlib
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 import click
 
 from shaftprint.cli._store_options import store_option
 from shaftprint.cli._terminal import answer, echo, say
 from shaftprint.errors import ServerError
+from shaftprint.late import late
+
+with late():
+    from shaftprint.web._server import serve
+    from shaftprint.web._settings import Serving, listen_at
+    from shaftprint.web.access import _password, _users
+    from shaftprint.web.access._person import Person
 
 _NEEDED: Final = ("starlette", "uvicorn", "argon2", "itsdangerous", "sqlalchemy")
 _STATE: Final = "shaftprint-server"
@@ -74,16 +80,16 @@ def command(
 
     Without other options for this computer alone. Every page has a twin for programs below /api/v1.
     """
-    web = _web()
+    _expect_packages()
     if add_user is not None:
-        _add(web, users, add_user, role, ships)
+        _add(users, add_user, role, ships)
         return
     if (certificate is None) != (key is None):
         raise click.UsageError("--certificate and --key belong together: state both, or neither.")
-    serving = web.Serving(
+    serving = Serving(
         store=url,
         state=state,
-        listen=web.listen_at(listen),
+        listen=listen_at(listen),
         users=users,
         folders=folders,
         hosts=hosts,
@@ -95,7 +101,7 @@ def command(
     )
     if not serving.listen.is_local and not serving.is_secure:
         say("Passwords and pages go over the network as they are: state --certificate and --key, or --behind-tls.\n")
-    web.serve(serving, begun=_begun)
+    serve(serving, begun=_begun)
 
 
 def _begun(address: str) -> None:
@@ -103,22 +109,19 @@ def _begun(address: str) -> None:
     echo("Ctrl-C ends it; jobs that are open go on when it is begun again.")
 
 
-def _web() -> Any:
-    """Return the room of pages, loaded here: no other command needs it."""
+def _expect_packages() -> None:
     missing = [name for name in _NEEDED if find_spec(name) is None]
     if missing:
         raise ServerError(f'serve: expected the package {missing[0]}, found none; pip install "shaftprint[web]".')
-    return importlib.import_module("shaftprint.web")
 
 
-def _add(web: Any, users: Path | None, name: str, role: str, ships: tuple[str, ...]) -> None:
+def _add(users: Path | None, name: str, role: str, ships: tuple[str, ...]) -> None:
     if users is None or not ships:
         raise click.UsageError("--add-user needs --users FILE and --ship, which may be all.")
     password = click.prompt("Password", hide_input=True, confirmation_prompt=True)
-    if not web.SHORTEST <= len(password) <= web.LONGEST:
-        raise click.UsageError(
-            f"expected a password of {web.SHORTEST} to {web.LONGEST} letters, found {len(password)}."
-        )
-    person = web.Person(name=name, role=web.ROLES[role], ships=ships, password=web.hashed(password))
-    web.with_user(users, person)
+    shortest, longest = _password.SHORTEST, _password.LONGEST
+    if not shortest <= len(password) <= longest:
+        raise click.UsageError(f"expected a password of {shortest} to {longest} letters, found {len(password)}.")
+    person = Person(name=name, role=_users.ROLES[role], ships=ships, password=_password.hashed(password))
+    _users.with_user(users, person)
     answer(f"{name} is in {users} as {role}, ships: {', '.join(ships)}.")

@@ -30,6 +30,7 @@ VESSELS: Final = (
     "stan-tug-1205",
     "stan-tug-1205-astern",
     "stan-tug-1205-ecu",
+    "stan-tug-1205-service",
     "stan-tug-1205-starboard",
     "stan-tug-1205-underway",
 )
