@@ -42,7 +42,7 @@ BEGINS = {
     "sail": ("sail_as", "sail_both_lines", "sail_service"),
     "service": ("scan", "fit_service"),
     "sensitivity": ("save_chart",),
-    "simulate": ("simulated_ship",),
+    "simulate": ("simulated_ship", "crash_stop"),
 }
 
 
