@@ -51,7 +51,7 @@ class Leg(Settings):
         """Return the set point.
 
         ``time_s``: times since the start of the recording [s], any shape; the leg is continued periodically beyond its
-        ends.
+        ends. Returns set point [V], the level included, shape of ``time_s``.
         """
 
     @property

@@ -12,21 +12,9 @@ MOST_TRIES = 1000
 def posterior_deviations(model: ExportedModel, samples: int, rng: np.random.Generator) -> FloatArray:
     """Return what samples of the parameters differ by from the estimate, the estimate first: zeros.
 
-    Parameters
-    ----------
-    samples
-        How many.
-    rng
-        Where they are drawn from: a normal distribution, cut off at the bounds of the parameters.
-
-    Returns
-    -------
-        Shape (1 + samples, parameters).
-
-    Raises
-    ------
-    ExportError
-        If the covariance is not known, or hardly a sample keeps to the bounds.
+    ``samples``: how many. ``rng``: where they are drawn from: a normal distribution, cut off at the bounds of the
+    parameters. Returns shape (1 + samples, parameters). Raises ExportError if the covariance is not known, or hardly a
+    sample keeps to the bounds.
     """
     deviations = np.zeros((1 + samples, len(model.structure.parameters)))
     if not samples:

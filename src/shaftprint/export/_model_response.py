@@ -70,16 +70,8 @@ class ModelResponse:
 def channel_covariance(covariance: FloatArray, outputs: int) -> FloatArray:
     """Return the covariance of the real and imaginary part of each channel of a response.
 
-    Parameters
-    ----------
-    covariance
-        Covariance of [Re, Im] of all channels, shape (frequencies, 2 channels, 2 channels).
-    outputs
-        Number of outputs, which are slower than the inputs.
-
-    Returns
-    -------
-        Shape (outputs, inputs, frequencies, 2, 2).
+    ``covariance``: covariance of [Re, Im] of all channels, shape (frequencies, 2 channels, 2 channels). ``outputs``:
+    number of outputs, which are slower than the inputs. Returns shape (outputs, inputs, frequencies, 2, 2).
     """
     count, channels = covariance.shape[0], covariance.shape[1] // 2
     parts = covariance.reshape(count, 2, channels, 2, channels)

@@ -138,7 +138,10 @@ class Search:
         return self._pushed(here, delay_moves(here))
 
     def run(self) -> tuple[Fitted, list[Scanned]]:
-        """Let limits join the governor until chance explains what the next one would gain."""
+        """Let limits join the governor until chance explains what the next one would gain.
+
+        Returns the governor with its limits, and the levels of those that did not join, tried at the end.
+        """
         here = linear = self.linear()
         engines_tried = False
         for _ in range(MOST_ROUNDS):

@@ -159,15 +159,8 @@ def free_responses(structure: Structure) -> tuple[Structure, tuple[int, ...]]:
     Every channel has its own, with sizes of their own: more than the states of a minimal realisation, but their span
     holds all that the structure can show without input.
 
-    Parameters
-    ----------
-    structure
-        Structure with one input; parameters, ties and factors are kept.
-
-    Returns
-    -------
-        The structure of free responses, with the parameters in the same order, and the place of the channel that each
-        of its outputs belongs to.
+    ``structure``: structure with one input; parameters, ties and factors are kept. Returns the structure of free
+    responses, with the parameters in the same order, and the place of the channel that each of its outputs belongs to.
     """
     finder = _Finder(
         values={name: float(value) for name, value in structure.named(structure.vector({})).items()},

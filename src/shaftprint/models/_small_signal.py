@@ -55,22 +55,10 @@ class SmallSignal:
     ) -> tuple[ComplexArray, list[ComplexArray]]:
         """Return the response from an input to an output and its derivatives.
 
-        Parameters
-        ----------
-        s
-            Laplace variable [rad/s], shape (frequencies,).
-        values
-            Each parameter, shape (..., 1) or (..., frequencies).
-        wanted
-            Places of the parameters whose derivatives are wanted.
-        at
-            Inputs, states and pasts of another steady running than rest; derivatives are those with it kept.
-        source
-            Place of the input.
-
-        Returns
-        -------
-            Response, shape (..., frequencies), and derivatives, one of the same shape for each wanted parameter.
+        ``s``: laplace variable [rad/s], shape (frequencies,). ``values``: each parameter, shape (..., 1) or (...,
+        frequencies). ``wanted``: places of the parameters whose derivatives are wanted. ``at``: inputs, states and
+        pasts of another steady running than rest; derivatives are those with it kept. ``source``: place of the input.
+        Returns response, shape (..., frequencies), and derivatives, one of the same shape for each wanted parameter.
         """
         leaves = self._leaves(values, at or {})
         shape = np.broadcast_shapes(s.shape, *(np.shape(value) for value in values))

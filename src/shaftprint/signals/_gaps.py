@@ -81,7 +81,7 @@ class Coverage:
         """Say why a window cannot be used; nothing where it can.
 
         ``start_s``, ``stop_s``: the window [s]. ``channel``: the only channel whose gaps count; by default those of all
-        count.
+        count. Returns the reason, to follow a colon and without a full stop; empty where the window is whole.
         """
         if start_s < self.start_s - self.step_s or stop_s > self.stop_s + self.step_s:
             return f"the recording lasts from {self.start_s:.1f} to {self.stop_s:.1f} s"

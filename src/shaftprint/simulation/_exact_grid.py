@@ -68,9 +68,7 @@ class ExactGrid:
         All of one stretch, none later than the node of the step. At a jump the start of a step takes what is after it,
         its end what was before.
 
-        Returns
-        -------
-            Node, counted from the first of ``with_past``, shape (steps, delays, 3).
+        Returns node, counted from the first of ``with_past``, shape (steps, delays, 3).
         """
         step, times = self.step_s, self.with_past(delay_s)
         stretch = np.concatenate([np.full(PRE, -1), self.stretch])

@@ -31,18 +31,10 @@ class Linearisation(Shown):
     def response(self, s: ArrayLike, *, normalised: bool = False) -> ComplexArray:
         """Return the response of every output to the first input.
 
-        Parameters
-        ----------
-        s
-            Laplace variable [rad/s], shape (frequencies,).
-        normalised
-            Whether to refer input and outputs, which are deviations over the values of the working point, to their
-            values in this steady running instead: ``tau``, ``K_p`` and ``K_i`` are then those of the new working point
-            (thesis eqs 2.14-2.25).
-
-        Returns
-        -------
-            Shape (outputs, frequencies).
+        ``s``: laplace variable [rad/s], shape (frequencies,). ``normalised``: whether to refer input and outputs, which
+        are deviations over the values of the working point, to their values in this steady running instead: ``tau``,
+        ``K_p`` and ``K_i`` are then those of the new working point (thesis eqs 2.14-2.25). Returns shape (outputs,
+        frequencies).
         """
         laplace = np.atleast_1d(np.asarray(s, dtype=np.complex128))
         columns = [np.asarray([value]) for value in self.values]

@@ -22,7 +22,8 @@ def converted(
 
     ``response``: the response that was measured. ``values``: the response that follows from it, shape (outputs, inputs,
     lines). ``jacobian``: its complex derivatives to the elements of the first, shape (lines, outputs inputs, elements
-    of the first). ``inputs``, ``outputs``: names of its inputs and outputs.
+    of the first). ``inputs``, ``outputs``: names of its inputs and outputs. Returns the response with the covariance
+    carried through to first order; everything else is as before.
     """
     derivative = real_jacobian(jacobian)
     lines = len(response.lines)
@@ -44,7 +45,8 @@ def converted(
 def without_lines(response: FrequencyResponse, lost: Mapping[int, str]) -> FrequencyResponse:
     """Mark lines as not used.
 
-    ``lost``: why a line is not used, by its place.
+    ``lost``: why a line is not used, by its place. Returns the response; a remark that a line has already is kept
+    before the new one.
     """
     used, remarks = response.used.copy(), dict(response.remarks)
     for index, remark in lost.items():

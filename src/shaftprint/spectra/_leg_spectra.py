@@ -50,9 +50,9 @@ def estimate_legs(signals: "Signals", campaign: "Campaign") -> dict[str, Spectra
     Set point and speed are divided by the mean speed ``n_0`` of the leg, the torque by ``M_0`` (see ``LegState``). The
     load of each line is 1 by definition. A leg that was cut off gives a result of its whole periods.
 
-    ``signals``: the prepared recording. ``campaign``: what was asked of the ship; only its legs are used. Raises
-    ResponseError if a channel holds values that are not numbers or does not move, or the set point of a leg stands
-    still.
+    ``signals``: the prepared recording. ``campaign``: what was asked of the ship; only its legs are used. Returns
+    response, signal-to-noise ratios and remarks of each leg by its name, in order of time. Raises ResponseError if a
+    channel holds values that are not numbers or does not move, or the set point of a leg stands still.
     """
     return {name: by_input[SPEED] for name, by_input in estimate_inputs_of_legs(signals, campaign).items()}
 

@@ -29,7 +29,7 @@ def measured(response: FrequencyResponse) -> BoolArray:
     A line may show speed and torque and be too fast for the percent torque on the CAN bus. The value that the response
     holds there says nothing; its standard deviation is `NOT_MEASURED_STD`.
 
-    ``response``: a response of one input.
+    ``response``: a response of one input. Returns True where the response was measured, shape (outputs, lines).
     """
     variance = np.diagonal(response.covariance, axis1=1, axis2=2)[:, : len(response.outputs)]
     is_measured: BoolArray = variance.T < 0.5 * NOT_MEASURED_STD**2

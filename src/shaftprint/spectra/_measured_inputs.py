@@ -21,7 +21,8 @@ def with_measured_inputs(
     ``J = [-H_2, 1]``.
 
     ``response``: response from ``u`` to ``x`` and ``y``. ``outputs``, ``measured``: names of ``y`` and ``x``, both
-    outputs of the response. ``gains``: ``H_2``, shape (outputs, measured, lines).
+    outputs of the response. ``gains``: ``H_2``, shape (outputs, measured, lines). Returns the response from ``u`` to
+    ``y`` with the covariance of the residual.
     """
     both = response.of_outputs(*measured, *outputs)
     lines = len(both.lines)

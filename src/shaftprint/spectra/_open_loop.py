@@ -67,22 +67,11 @@ def governor_and_engine(
 
     ``X / e = G_X / (D - G_n)``,  ``M_s / X = G_M / G_X``.
 
-    Parameters
-    ----------
-    response
-        Response from ``n_set`` to ``n``, ``M_s`` and ``X``.
-    set_point_latency_s
-        Time from the set point to the governor's demand [s], outside the loop.
-
-    Returns
-    -------
-    Responses ``e -> X`` and ``X -> M_s``. Lines whose ``e`` is less than three standard deviations from 0 are marked as
-    not used in the first of them, lines at which ``X`` is less than three from 0 or was not measured in both.
-
-    Raises
-    ------
-    ResponseError
-        If the response is not from ``n_set`` to ``n``, ``M_s`` and ``X``, or ``e`` or ``X`` is exactly 0 at a line.
+    ``response``: response from ``n_set`` to ``n``, ``M_s`` and ``X``. ``set_point_latency_s``: time from the set point
+    to the governor's demand [s], outside the loop. Returns responses ``e -> X`` and ``X -> M_s``. Lines whose ``e`` is
+    less than three standard deviations from 0 are marked as not used in the first of them, lines at which ``X`` is less
+    than three from 0 or was not measured in both. Raises ResponseError if the response is not from ``n_set`` to ``n``,
+    ``M_s`` and ``X``, or ``e`` or ``X`` is exactly 0 at a line.
     """
     outputs = _expected(response, "n", "M_s", "X")
     error = np.exp(-1j * response.omega_rad_s * set_point_latency_s) - outputs["n"]

@@ -28,18 +28,9 @@ def torque_ripple(recording: "Recording", signals: "Signals", trial: "Trial") ->
     The load goes with the square of the momentary speed. The signals do not show it: they are smoother than the samples
     which the full scale of the telemetry cuts off.
 
-    Parameters
-    ----------
-    recording
-        The raw recording, open.
-    signals
-        What was prepared of it.
-    trial
-        Vessel with the sensor, and campaign with the excitations.
-
-    Returns
-    -------
-        The ripple, or None where nothing of it is to be seen: gaps, or too few samples a second.
+    ``recording``: the raw recording, open. ``signals``: what was prepared of it. ``trial``: vessel with the sensor, and
+    campaign with the excitations. Returns the ripple, or None where nothing of it is to be seen: gaps, or too few
+    samples a second.
     """
     channel = recording.channel(trial.vessel.sensors.shaft_torque.channel)
     pieces = [

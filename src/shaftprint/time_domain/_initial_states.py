@@ -117,18 +117,9 @@ def effects_of(
 ) -> tuple[FloatArray, FloatArray] | None:
     """Return the outputs from some states, and what one unit of each state adds; None where a simulation runs away.
 
-    Parameters
-    ----------
-    simulated
-        From states, shape (states,), to outputs, shape (1, samples, outputs); None where the simulation runs away.
-    states
-        The states, shape (states,).
-    run
-        Their outputs, where they are known, shape (samples, outputs).
-
-    Returns
-    -------
-        Outputs of shape (samples, outputs), and effects of shape (states, samples, outputs).
+    ``simulated``: from states, shape (states,), to outputs, shape (1, samples, outputs); None where the simulation runs
+    away. ``states``: the states, shape (states,). ``run``: their outputs, where they are known, shape (samples,
+    outputs). Returns outputs of shape (samples, outputs), and effects of shape (states, samples, outputs).
     """
     steps = STATE_CHANGE * np.eye(states.size)
     moved = [simulated(states) if run is None else run[None], *(simulated(states + step) for step in steps)]

@@ -38,16 +38,8 @@ class Whitening:
     def whitened(self, values: FloatArray, stretches: Sequence[slice]) -> FloatArray:
         """Return the filtered stretches one after the other.
 
-        Parameters
-        ----------
-        values
-            Shape (rows, samples, outputs).
-        stretches
-            Where they count, in order of time.
-
-        Returns
-        -------
-            Shape (rows, counted samples, outputs).
+        ``values``: shape (rows, samples, outputs). ``stretches``: where they count, in order of time. Returns shape
+        (rows, counted samples, outputs).
         """
         order, outputs = self.noise.order, self.noise.outputs
         whitened = []

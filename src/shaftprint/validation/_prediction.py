@@ -57,27 +57,11 @@ def linear_prediction(
 ) -> tuple[FloatArray, FloatArray]:
     """Return speed and torque of a linear structure for a set point, and their derivatives.
 
-    Parameters
-    ----------
-    structure
-        Structure with the input ``n_set`` and the outputs ``n`` and ``M_s``.
-    values
-        All its parameters, shape (parameters,).
-    set_point
-        Deviation of the set point from the working point [-], shape (samples,).
-    rate_hz
-        Sample rate [Hz].
-    wanted
-        Parameters whose derivatives are wanted.
-
-    Returns
-    -------
-        Deviations of ``n`` and ``M_s`` [-], shape (2, samples), and derivatives, shape (wanted, 2, samples).
-
-    Raises
-    ------
-    ValidationError
-        If the structure has another input or lacks an output.
+    ``structure``: structure with the input ``n_set`` and the outputs ``n`` and ``M_s``. ``values``: all its parameters,
+    shape (parameters,). ``set_point``: deviation of the set point from the working point [-], shape (samples,).
+    ``rate_hz``: sample rate [Hz]. ``wanted``: parameters whose derivatives are wanted. Returns deviations of ``n`` and
+    ``M_s`` [-], shape (2, samples), and derivatives, shape (wanted, 2, samples). Raises ValidationError if the
+    structure has another input or lacks an output.
     """
     places = _places(structure)
     first = float(set_point[0])

@@ -83,23 +83,9 @@ class AssumedShip(Shown):
 
         A ship whose loop is unstable is not tested.
 
-        Parameters
-        ----------
-        count
-            Number of ships.
-        rng
-            Draws them.
-        gain_margin
-            How many times as large the gains of the governor may be, at least, before the line hunts.
-
-        Returns
-        -------
-            Parameter values, shape (rows, parameters); one row where nothing is uncertain.
-
-        Raises
-        ------
-        DesignError
-            If hardly any loop is stable, or the assumed one is not.
+        ``count``: number of ships. ``rng``: draws them. ``gain_margin``: how many times as large the gains of the
+        governor may be, at least, before the line hunts. Returns parameter values, shape (rows, parameters); one row
+        where nothing is uncertain. Raises DesignError if hardly any loop is stable, or the assumed one is not.
         """
         if not stable_rows(self.structure, self.values[None, :]).all():
             raise DesignError(

@@ -160,17 +160,9 @@ def usual_speeds(limits: Limits, *, working_point_rpm: float | None = None) -> t
     A second speed separates what one alone cannot. Where full load, gauge or highest speed lower the first, the second
     is lower by as much. Where there is no room for two it is the working point alone.
 
-    Parameters
-    ----------
-    limits
-        What ship and engine allow.
-    working_point_rpm
-        Engine speed of the working point that is meant [rpm], where the limits are stated about another one, such as
-        that of a first test at a higher speed; theirs where not given.
-
-    Returns
-    -------
-        Shares of ``limits.engine_speed_rpm``.
+    ``limits``: what ship and engine allow. ``working_point_rpm``: engine speed of the working point that is meant
+    [rpm], where the limits are stated about another one, such as that of a first test at a higher speed; theirs where
+    not given. Returns shares of ``limits.engine_speed_rpm``.
     """
     point_rpm = limits.engine_speed_rpm if working_point_rpm is None else working_point_rpm
     to_stated = point_rpm / limits.engine_speed_rpm

@@ -27,18 +27,10 @@ def noise_of_line(
     engine and inertia give. What disturbs both, ``d``, follows from the noise of one line and makes that of the other.
     Noise of the gauge alone disturbs both sides alike and stays as it is.
 
-    Parameters
-    ----------
-    levels
-        Noise of speed and torque about the structure's working point.
-    structure
-        The closed loop, as it is normalised there.
-    measured_at, values
-        Parameters of the line whose noise it is, and of the other, by name; the structure's own where not given.
-
-    Returns
-    -------
-        The noise of the other line; the same where the structure is no closed loop of speed and torque.
+    ``levels``: noise of speed and torque about the structure's working point. ``structure``: the closed loop, as it is
+    normalised there. ``measured_at``, ``values``: parameters of the line whose noise it is, and of the other, by name;
+    the structure's own where not given. Returns the noise of the other line; the same where the structure is no closed
+    loop of speed and torque.
     """
     known = all(structure.named_as(role) is not None for role in _NEEDED)
     if not known or set(levels.outputs) != {_SPEED, _TORQUE} or len(structure.inputs) != 1:

@@ -31,20 +31,9 @@ def gentle_start(leg: Leg, structure: Structure, values: FloatArray, bounds: tup
     after which there is none late enough is not taken. A leg of slow lines may have no other: its first period is then
     left to settle.
 
-    Parameters
-    ----------
-    leg
-        The leg, beginning at any phase.
-    structure
-        The structure as it is normalised at the leg.
-    values
-        Assumed values of its parameters, shape (parameters,).
-    bounds
-        Bounds of the leg.
-
-    Returns
-    -------
-        The leg, and the largest use of its bounds from the start to the window.
+    ``leg``: the leg, beginning at any phase. ``structure``: the structure as it is normalised at the leg. ``values``:
+    assumed values of its parameters, shape (parameters,). ``bounds``: bounds of the leg. Returns the leg, and the
+    largest use of its bounds from the start to the window.
     """
     crossings_s = _crossings(leg)
     settling_s = _settling(crossings_s, leg)

@@ -86,9 +86,7 @@ class Uses:
 
         ``P = (sum_rows mean_t u_+^p)^(1/p)``: near the largest use for a large ``p``, and smooth.
 
-        Returns
-        -------
-            ``P``, and ``dP/dRe c + j dP/dIm c``, shape (lines,).
+        Returns ``P``, and ``dP/dRe c + j dP/dIm c``, shape (lines,).
         """
         use = self.in_time(amplitudes)
         highest = float(use.max())

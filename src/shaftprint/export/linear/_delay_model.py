@@ -50,14 +50,7 @@ class DelayModel:
     def response(self, s: ArrayLike) -> ComplexArray:
         """Return the response of every output to every input.
 
-        Parameters
-        ----------
-        s
-            Laplace variable [rad/s], shape (frequencies,).
-
-        Returns
-        -------
-            Shape (outputs, inputs, frequencies).
+        ``s``: laplace variable [rad/s], shape (frequencies,). Returns shape (outputs, inputs, frequencies).
         """
         laplace = np.atleast_1d(np.asarray(s, dtype=np.complex128))
         count, into, out = len(self.states), len(self.inputs), len(self.outputs)

@@ -186,14 +186,8 @@ class Experiment(Shown, Term):
 
         Lines that are not fitted stay as they are.
 
-        Parameters
-        ----------
-        values
-            All parameters of the objective, shape (parameters,).
-
-        Returns
-        -------
-            Shapes (repeats, channels, lines) and (repeats, lines, size, size).
+        ``values``: all parameters of the objective, shape (parameters,). Returns shapes (repeats, channels, lines) and
+        (repeats, lines, size, size).
         """
         lines, size = self.data.shape
         root = np.linalg.cholesky(self.noise_covariance)
@@ -223,14 +217,8 @@ class Experiment(Shown, Term):
 def elements_of(weights: FloatArray) -> tuple[tuple[int, int, FloatArray], ...]:
     """Return row, column and elements of ``-W`` where they are not all zero, the diagonal first.
 
-    Parameters
-    ----------
-    weights
-        Shape (lines, size, size), or (starts, lines, size, size).
-
-    Returns
-    -------
-        The elements of shape (lines,), or (starts, 1, lines).
+    ``weights``: shape (lines, size, size), or (starts, lines, size, size). Returns the elements of shape (lines,), or
+    (starts, 1, lines).
     """
     size = weights.shape[-1]
     pairs = [(i, i) for i in range(size)]

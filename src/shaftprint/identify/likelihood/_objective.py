@@ -139,17 +139,8 @@ class Objective(Shown):
     def residuals(self, theta: FloatArray, redrawn: Redrawn | None = None) -> tuple[FloatArray, FloatArray]:
         """Return weighted residuals and their derivatives for many parameter sets.
 
-        Parameters
-        ----------
-        theta
-            Free parameters, shape (starts, free).
-        redrawn
-            Other data for each start.
-
-        Returns
-        -------
-            Residuals, shape (starts, rows), and Jacobian, shape (starts, free, rows); rows term by term,
-            those of the priors last.
+        ``theta``: free parameters, shape (starts, free). ``redrawn``: other data for each start. Returns residuals,
+        shape (starts, rows), and Jacobian, shape (starts, free, rows); rows term by term, those of the priors last.
         """
         parts = [self._part(i, theta, redrawn) for i in range(len(self.terms))]
         if self.prior_rows.size:
@@ -160,16 +151,9 @@ class Objective(Shown):
     def sensitivity(self, theta: FloatArray, *, expected: bool) -> tuple[FloatArray, FloatArray]:
         """Return rows whose products are the information, and rows whose products are the variance of the slope.
 
-        Parameters
-        ----------
-        theta
-            Free parameters, shape (free,).
-        expected
-            Whether to average over the noise instead of taking the data as they are.
-
-        Returns
-        -------
-            See ``Term.sensitivity``, each of shape (free, rows); rows that only regularise have no noise.
+        ``theta``: free parameters, shape (free,). ``expected``: whether to average over the noise instead of taking the
+        data as they are. Returns see ``Term.sensitivity``, each of shape (free, rows); rows that only regularise have
+        no noise.
         """
         knowledge = self._prior_part(theta[None, :], self.prior_rows[:, 1])[0, 1:]
         parts = [self.sensitivity_to(term, theta, expected=expected) for term in self.terms]

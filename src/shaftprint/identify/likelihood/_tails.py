@@ -75,14 +75,7 @@ class Tails:
         A line so far off that its cost bends down has none along its residual. Where they are ``averaged`` only a bad
         line, farther off than normal noise brings it, has less than the average.
 
-        Parameters
-        ----------
-        table
-            As in ``shaped``.
-
-        Returns
-        -------
-            Shape (starts, free, size, lines).
+        ``table``: as in ``shaped``. Returns shape (starts, free, size, lines).
         """
         residuals, slopes = table[:, 0], table[:, 1:]
         squares = np.einsum("smf,smf->sf", residuals, residuals)

@@ -143,17 +143,9 @@ class Term(ABC):
     def sensitivity(self, theta: FloatArray, *, expected: bool) -> tuple[FloatArray, FloatArray]:
         """Return rows whose products are the information, and rows whose products are the variance of the slope.
 
-        Parameters
-        ----------
-        theta
-            Free parameters of this term, shape (free,).
-        expected
-            Whether to average over the noise instead of taking the data as they are.
-
-        Returns
-        -------
-            ``J`` and ``N``, each of shape (free, rows): ``J J^T`` is the second derivative of the cost, and ``N N^T``
-            the covariance of its slope, the same for a likelihood.
+        ``theta``: free parameters of this term, shape (free,). ``expected``: whether to average over the noise instead
+        of taking the data as they are. Returns ``J`` and ``N``, each of shape (free, rows): ``J J^T`` is the second
+        derivative of the cost, and ``N N^T`` the covariance of its slope, the same for a likelihood.
         """
 
     @abstractmethod

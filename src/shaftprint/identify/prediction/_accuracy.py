@@ -191,15 +191,8 @@ def predict_joint_deviations(
 ) -> tuple[dict[str, float], FloatArray]:
     """Return the deviations of ``predict_joint_accuracy`` and the covariance, without groups that it cannot separate.
 
-    Parameters
-    ----------
-    pairs, values, priors
-        See ``predict_joint_accuracy``.
-
-    Returns
-    -------
-        Standard deviations of parameters and combinations by name, and the covariance of the free parameters; infinite
-        where nothing is known.
+    ``pairs``, ``values``, ``priors``: see ``predict_joint_accuracy``. Returns standard deviations of parameters and
+    combinations by name, and the covariance of the free parameters; infinite where nothing is known.
     """
     objective = planned_objective(pairs, priors)
     theta = assumed_values(objective, values)[list(objective.free)]

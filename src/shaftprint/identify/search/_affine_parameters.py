@@ -22,16 +22,8 @@ SAME_SLOPE = 1e-7
 def affine_parameters(objective: Objective, held: int) -> tuple[int, ...]:
     """Return the largest set of free parameters in which the residuals are jointly affine while one is held.
 
-    Parameters
-    ----------
-    objective
-        The problem.
-    held
-        Place, among the free parameters, of the one that is held.
-
-    Returns
-    -------
-        Places among the free parameters, ascending; the first such set in the order of the parameters.
+    ``objective``: the problem. ``held``: place, among the free parameters, of the one that is held. Returns places
+    among the free parameters, ascending; the first such set in the order of the parameters.
     """
     bends = _bends(objective)
     alone = [i for i in range(bends.shape[0]) if i != held and not bends[i, i]]

@@ -41,16 +41,8 @@ def stable_models(objective: Objective) -> Allowed:
 def border_minimum(objective: Objective, descent: Descent, settings: Settings, allowed: Allowed) -> Descent:
     """Return the starts that were stopped at the border of stability at the lowest cost beside it.
 
-    Parameters
-    ----------
-    descent
-        Where the starts of a search ended, all of them stable models.
-    allowed
-        Tells which models are stable.
-
-    Returns
-    -------
-        The same, with an infinite cost where nothing was found.
+    ``descent``: where the starts of a search ended, all of them stable models. ``allowed``: tells which models are
+    stable. Returns the same, with an infinite cost where nothing was found.
     """
     theta, cost = descent.theta.copy(), np.full(descent.cost.size, np.inf)
     stopped = np.flatnonzero(descent.refused)

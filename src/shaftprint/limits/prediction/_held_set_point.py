@@ -87,7 +87,7 @@ def messages_of(
 
     ``term``, ``values``: likelihood and parameters of a governor, on the record of the test. ``test``: the test, with
     the jumps as late as they were thought to be. ``information``: one over the prior deviation of each free parameter,
-    shape (free,).
+    shape (free,). Returns None where too few jumps are seen, or the simulation runs away.
     """
     rows, now = term.rows(values), term.innovations(values)
     if rows is None or now is None:

@@ -24,16 +24,9 @@ _CHUNK = 1 << 18
 def envelope(time_s: FloatArray, values: FloatArray, *, stretches: int = STRETCHES) -> tuple[FloatArray, FloatArray]:
     """Return times and values of the smallest and the largest sample of each stretch.
 
-    Parameters
-    ----------
-    time_s, values
-        Samples in the order of time, shape (samples,).
-    stretches
-        Number of stretches; a signal of at most twice as many samples comes back as it is.
-
-    Returns
-    -------
-        Times and values, shape (at most 2 * stretches,), in the order of time.
+    ``time_s``, ``values``: samples in the order of time, shape (samples,). ``stretches``: number of stretches; a signal
+    of at most twice as many samples comes back as it is. Returns times and values, shape (at most 2 * stretches,), in
+    the order of time.
     """
     places = extremes(values, stretches=stretches)
     return time_s[places], values[places]
@@ -67,16 +60,8 @@ def worthwhile(time_s: FloatArray, highest_hz: float) -> slice:
 def channel_envelope(channel: "Channel", *, stretches: int = STRETCHES) -> tuple[FloatArray, FloatArray]:
     """Return times and values of the smallest and largest sample of each stretch of a raw channel, read in pieces.
 
-    Parameters
-    ----------
-    channel
-        Channel of a recording that is open.
-    stretches
-        Number of stretches over the whole channel, at least.
-
-    Returns
-    -------
-        Times [s] and values in the channel's unit, in the order of time.
+    ``channel``: channel of a recording that is open. ``stretches``: number of stretches over the whole channel, at
+    least. Returns times [s] and values in the channel's unit, in the order of time.
     """
     pieces = []
     for first in range(0, channel.count, _CHUNK):

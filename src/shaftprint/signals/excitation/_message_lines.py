@@ -46,7 +46,8 @@ class _Window:
 def joined_about_lines(sent: SentValues, campaign: Campaign, clock: "Clock") -> "tuple[SentValues, FloatArray] | None":
     """Return messages at the times of their values, and joined on the grid with the lines of a campaign as they are.
 
-    ``sent``: the messages. ``campaign``: its sines and legs are the lines. ``clock``: the grid.
+    ``sent``: the messages. ``campaign``: its sines and legs are the lines. ``clock``: the grid. Returns None where the
+    spline through the messages is as good.
     """
     windows = list(_windows(campaign, sent))
     if not windows:

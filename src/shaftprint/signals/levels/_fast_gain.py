@@ -69,7 +69,8 @@ class FastGains:
     def of_courses(self, courses: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return what the pieces say of the size ``a`` of a change of the gain, whatever the common terms are.
 
-        ``courses``: mean of each course in each piece, shape (pieces, courses).
+        ``courses``: mean of each course in each piece, shape (pieces, courses). Returns ``b`` and ``p`` of the
+        log-likelihood ``a b - a^2 p / 2``, each of shape (courses,).
         """
         own, common = self.told[:, -1, :], self.told[:, :-1, :].sum(axis=0)
         of_terms, against_terms = courses.T @ own[:, :-2], self.told[:, :-1, -2].T @ courses

@@ -68,7 +68,8 @@ def leg_periods(leg: "Leg", coverage: "Coverage") -> LegPeriods | None:
 def between_lines(values: "FloatArray", periods: int) -> "ComplexArray":
     """Return the Fourier coefficients of what differs from period to period, below the first line.
 
-    ``values``: samples of whole periods, shape (samples,). ``periods``: their number ``P``.
+    ``values``: samples of whole periods, shape (samples,). ``periods``: their number ``P``. Returns coefficients
+    ``1..P-1``, mean of ``x exp(-2 pi j k m / N)``, shape (P - 1,).
     """
     turns = np.arange(values.size) / values.size
     return np.array([np.mean(values * np.exp(-2j * np.pi * k * turns)) for k in range(1, periods)])

@@ -119,7 +119,7 @@ def unplaced_stretches(train: "PulseTrain", strips: int, gaps: IntArray) -> list
     """Return the stretches behind gaps that are too short to show at which strip they begin.
 
     ``train``: numbered pulses. ``strips``: pulses a revolution. ``gaps``: numbers of the intervals over which the count
-    is a guess, shape (gaps,), ascending.
+    is a guess, shape (gaps,), ascending. Returns first and last pulse of each [samples].
     """
     share, steady = _interval_shares(train, strips)
     borders = np.flatnonzero(np.diff(train.number) > 1)

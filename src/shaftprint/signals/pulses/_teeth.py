@@ -37,24 +37,11 @@ _DROPOUT = 3
 def number_teeth(position: FloatArray, wheel: Wheel, *, channel: str) -> PulseTrain:
     """Return the pulses of the teeth that are counted, numbered as if no pulse were missing.
 
-    Parameters
-    ----------
-    position
-        Where the edges are [samples], shape (edges,), ascending.
-    wheel
-        The wheel that the vessel file names, with gaps or further teeth.
-    channel
-        Name of the channel, for messages.
-
-    Returns
-    -------
-    The pulses: number ``k`` is tooth ``k % wheel.counted`` of the turn, which begins behind the largest gap, or with
-    the tooth before the first further one.
-
-    Raises
-    ------
-    SignalError
-        If there are too few pulses, too many faults, or the pulses are those of another wheel, which is named.
+    ``position``: where the edges are [samples], shape (edges,), ascending. ``wheel``: the wheel that the vessel file
+    names, with gaps or further teeth. ``channel``: name of the channel, for messages. Returns the pulses: number ``k``
+    is tooth ``k % wheel.counted`` of the turn, which begins behind the largest gap, or with the tooth before the first
+    further one. Raises SignalError if there are too few pulses, too many faults, or the pulses are those of another
+    wheel, which is named.
     """
     pitches = count_pitches(position, channel=channel, spacings=wheel.spacings)
     marks = _marks(pitches, wheel)

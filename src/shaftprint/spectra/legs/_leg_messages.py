@@ -79,7 +79,7 @@ def measure_leg_messages(signal: "MessageSignal", window: "LegWindow", harmonics
     """Measure all lines of a leg in a channel on a clock of its own.
 
     ``signal``: the signal about the working point of the leg. ``window``: whole periods of the leg. ``harmonics``: its
-    lines, ascending.
+    lines, ascending. Returns what the messages tell; nothing where they are too few, or show none of the lines.
     """
     state = window.state
     shown = tuple(one for one in harmonics if one / state.period_s <= signal.highest_hz)

@@ -59,7 +59,8 @@ def without_leg_orders(
     ``window``: its whole periods, the torque without the square of the speed and all channels without drift.
     ``orders``: orders of the shaft line. ``speeds_rev_s``: engine speed of each pick-up [rev/s], with its drift, shape
     (periods, samples a period). ``load``: propeller load over that at the working point, shape (periods, samples a
-    period). ``excitation``: name of the channel that is moved.
+    period). ``excitation``: name of the channel that is moved. Returns the window with what was taken out; the same
+    window and None where the grid shows no order.
     """
     state = window.state
     rate_hz = window.values.shape[2] / state.period_s

@@ -187,6 +187,7 @@ def sine_frequency_hz(values: FloatArray, rate_hz: float, near_hz: float) -> flo
     Highest point of the Hann-windowed transform, by parabolas through its logarithm with ever smaller steps.
 
     ``values``: the record, shape (samples,). ``rate_hz``: its sample rate [Hz]. ``near_hz``: expected frequency [Hz].
+    Returns the frequency [Hz]; not a number where the record has no maximum there.
     """
     block = max(int(rate_hz / (_SAMPLES_A_PERIOD * near_hz)), 1)
     count = values.size // block

@@ -21,24 +21,12 @@ def without_cross_term(
     ``Re(conj(a) b e^jx)``, so the torque's line is larger than that of the linear propeller by ``load conj(a) b``. At
     the peak of a closed loop that is 0.05 % of the line, as much as its noise.
 
-    Parameters
-    ----------
-    amplitude
-        Amplitudes over the working point, those of speed and torque among them, shape (channels,).
-    noise
-        Covariance ``E[a a^H]`` of their noise, shape (channels, channels).
-    harmonic
-        Complex amplitude ``b`` of the second harmonic of the speed; not a number where it was not fitted.
-    variance
-        Noise variance ``E|b|^2`` of the harmonic.
-    load
-        Propeller load of the window over that at the working point.
-    speed, torque
-        Places of the two among the channels.
-
-    Returns
-    -------
-        Amplitudes and noise covariance; unchanged where the harmonic was not fitted.
+    ``amplitude``: amplitudes over the working point, those of speed and torque among them, shape (channels,).
+    ``noise``: covariance ``E[a a^H]`` of their noise, shape (channels, channels). ``harmonic``: complex amplitude ``b``
+    of the second harmonic of the speed; not a number where it was not fitted. ``variance``: noise variance ``E|b|^2``
+    of the harmonic. ``load``: propeller load of the window over that at the working point. ``speed``, ``torque``:
+    places of the two among the channels. Returns amplitudes and noise covariance; unchanged where the harmonic was not
+    fitted.
     """
     if not np.isfinite(harmonic):
         return amplitude, noise

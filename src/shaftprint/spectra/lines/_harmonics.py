@@ -46,7 +46,8 @@ class Harmonics:
 def collect_harmonics(measurements: Sequence["LineMeasurement"], *, speed: str, torque: str = "M_s") -> Harmonics:
     """Collect the harmonics of one speed channel and the torque.
 
-    ``measurements``: one entry a line. ``speed``, ``torque``: names of the two channels.
+    ``measurements``: one entry a line. ``speed``, ``torque``: names of the two channels. Returns the harmonics of all
+    lines.
     """
     chosen = [(line, line.places(speed, torque)) for line in measurements]
     amplitude = np.stack([np.abs(line.harmonic[:, places]).T for line, places in chosen])

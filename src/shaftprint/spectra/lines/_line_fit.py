@@ -62,7 +62,8 @@ class SineMethod(ABC):
     def fit(self, samples: WindowSamples) -> LineFit:
         """Measure the sine of the window's frequency in all channels.
 
-        ``samples``: all channels inside one window, in any units.
+        ``samples``: all channels inside one window, in any units. Returns amplitudes in the units of the channels, with
+        the residual.
         """
 
 
@@ -72,7 +73,8 @@ def cut_window(
     """Cut the samples of a window out of whole channels.
 
     ``values``: channels on one grid by name, each of shape (samples,). ``rate_hz``: sample rate of the grid [Hz].
-    ``start_s``: time of the first sample [s].
+    ``start_s``: time of the first sample [s]. Returns the samples with ``start <= t < stop``, or None where the
+    channels do not cover the window.
     """
     inside = window_slice(window, min(channel.size for channel in values.values()), rate_hz=rate_hz, start_s=start_s)
     if inside is None:

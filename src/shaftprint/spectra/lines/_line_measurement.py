@@ -109,7 +109,7 @@ def measure_line(
     the channel that is moved. ``speed``: name of a speed, with which the torque ``M_s`` goes. ``from_engine``: whether
     the line is moved from the engine's side, so that the ratio of both is that of load and inertia. ``messages``:
     channels on clocks of their own inside the window, by name. ``orders``: what orders that were taken out of the
-    torque cost the line.
+    torque cost the line. Returns amplitudes, their noise, harmonics and variances.
     """
     window = samples.window
     fit = method.fit(samples)
@@ -182,7 +182,8 @@ def strongest_frequency_hz(values: FloatArray, rate_hz: float) -> float:
     Highest bin of the Hann-windowed transform, placed between bins by a parabola through the logarithm of the
     magnitude at the bin and beside it; good to a few hundredths of a bin.
 
-    ``values``: the record, shape (samples,). ``rate_hz``: its sample rate [Hz].
+    ``values``: the record, shape (samples,). ``rate_hz``: its sample rate [Hz]. Returns the frequency [Hz]; not a
+    number where no sine holds a third of the variance.
     """
     deviation = values - values.mean()
     # a Hann window has mean 1/2, so that a sine of amplitude a on a bin gives a / 2

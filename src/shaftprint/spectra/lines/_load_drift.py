@@ -36,7 +36,7 @@ def load_drift(measurements: Sequence["LineMeasurement"], *, speed: str, torque:
     """Find the relative propeller load of each window.
 
     ``measurements``: one entry a line, normalised with the working point. ``speed``, ``torque``: names of the two
-    channels.
+    channels. Returns the drift.
     """
     square = np.array(
         [line.of(line.mean, speed) ** 2 + 0.5 * np.abs(line.of(line.amplitude, speed)) ** 2 for line in measurements]

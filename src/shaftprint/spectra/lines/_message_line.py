@@ -67,17 +67,8 @@ class MessageLine:
 def cut_messages(signal: "MessageSignal", window: "Window") -> MessageWindow:
     """Cut a window out of a channel on a clock of its own.
 
-    Parameters
-    ----------
-    signal
-        The signal.
-    window
-        The window.
-
-    Returns
-    -------
-    The values of the window with what the channel does to them; no values above 0.45 of the rate of the messages, where
-    the channel does not cover the window and where it stands still.
+    Returns the values of the window with what the channel does to them; no values above 0.45 of the rate of the
+    messages, where the channel does not cover the window and where it stands still.
     """
     frequency = window.frequency_hz
     result = MessageWindow(
@@ -127,7 +118,8 @@ def measure_messages(
 
     ``messages``: the messages inside the window. ``samples``: the other channels inside the window. ``method``: the way
     to measure the sine. ``spectrum``: Fourier amplitudes of the residual of the other channels, shape (channels, bins).
-    ``relation``: how the torque among them goes with the speed.
+    ``relation``: how the torque among them goes with the speed. Returns amplitude and noise; nothing where the line
+    cannot be measured.
     """
     if messages.samples is None:
         return None

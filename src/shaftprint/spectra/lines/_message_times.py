@@ -10,15 +10,9 @@ from shaftprint.spectra.lines._line_fit import LineFit
 def times_of_values(fit: LineFit) -> FloatArray | None:
     """Return when the values of messages were taken, where that is not at their stamps.
 
-    Parameters
-    ----------
-    fit
-        The line, fitted at the times of the stamps, of one channel.
-
-    Returns
-    -------
-    Times since the start of the window [s], shape (messages,); None where the stamps are those of the values, the
-    sender keeps no cycle, or the line is too slow or too weak to tell.
+    ``fit``: the line, fitted at the times of the stamps, of one channel. Returns times since the start of the window
+    [s], shape (messages,); None where the stamps are those of the values, the sender keeps no cycle, or the line is too
+    slow or too weak to tell.
     """
     time_s = fit.samples.time_s
     omega_rad_s = 2.0 * np.pi * fit.samples.window.frequency_hz

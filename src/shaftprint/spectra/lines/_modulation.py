@@ -26,7 +26,8 @@ def without_modulation(
 
     ``spectrum``: Fourier amplitudes of the residual, shape (channels, bins). ``torque``: the torque in the window,
     shape (samples,). ``relation``: how the torque goes with the speed: it stays, where the factors of both take noise
-    by chance. ``periods``: number of periods in the window.
+    by chance. ``periods``: number of periods in the window. Returns spectrum without modulation; unchanged where few
+    slow bins are free of the neighbours.
     """
     reach = min(_REACH_BINS, (periods - 1) // 2)
     if reach < _LEAST_REACH_BINS or periods + reach >= spectrum.shape[1]:

@@ -143,7 +143,7 @@ def line_noise(
     ``spectrum``: Fourier amplitudes of the residual, shape (channels, bins). ``periods``: number of periods in the
     window. ``order``: 1 for the line itself, 2 and 3 for its harmonics. ``relation``: how the torque goes with the
     speed; taken as unrelated when not given. ``taken``: share of the noise of the torque in each bin that the orders of
-    the shaft have taken with them, shape (bins,).
+    the shaft have taken with them, shape (bins,). Returns the covariance with the number of complex samples behind it.
     """
     neighbours = _neighbours(spectrum.shape[1], periods, order)
     # what the drift in the fit takes from the neighbours, it adds to the uncertainty of the line
@@ -167,7 +167,8 @@ def noise_from_neighbours(
     with their weights. ``relation``: how the torque goes with the speed at the line; taken as unrelated when not given.
     ``kept``: share of the power of each bin that is left in the amplitudes, shape (bins,). ``taken``: share of the
     noise of the torque in each bin that the orders of the shaft have taken with them, shape (bins,): what is left is
-    enlarged, and the number of samples is smaller by that much.
+    enlarged, and the number of samples is smaller by that much. Returns the covariance with the number of complex
+    samples behind it.
     """
     chosen = values
     samples = equivalent_samples(neighbours)
@@ -250,7 +251,8 @@ def _kept_by_drift(place: FloatArray) -> FloatArray:
 def _local_slope(power: FloatArray, neighbours: Neighbours) -> FloatArray:
     """Find the exponent ``a`` of ``S ~ f^-a`` of each channel: Newton steps on a convex profile likelihood.
 
-    ``power``: squared magnitudes at the bins, shape (channels, bins). ``neighbours``: the bins.
+    ``power``: squared magnitudes at the bins, shape (channels, bins). ``neighbours``: the bins. Returns the exponents,
+    shape (channels,); without contrast between the bins about 1.
     """
     weight, log_ratio = neighbours.weight, neighbours.log_ratio
     prior_std = _slope_std(neighbours)

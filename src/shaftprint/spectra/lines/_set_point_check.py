@@ -75,7 +75,7 @@ def check_set_point(
 
     ``expected``: amplitude that the campaign asks for, over the working point. ``local_db``: local signal-to-noise
     ratio of the set point of all lines [dB], shape (lines,). ``place``: place of this line among them. ``moved``: the
-    signal that was moved, for messages.
+    signal that was moved, for messages. Returns remarks, and whether the line can be used.
     """
     amplitude = line.excited
     if line.excitation_frequency_hz != line.window.frequency_hz:

@@ -57,21 +57,10 @@ def line_variances(
 ) -> LineVariances:
     """Return the variances of one window.
 
-    Parameters
-    ----------
-    amplitude
-        Complex amplitude of the line, shape (channels,).
-    values
-        All samples of the window, shape (channels, samples).
-    spectrum
-        Fourier amplitudes of the residual, shape (channels, bins).
-    periods
-        Bin of the line.
-
-    Returns
-    -------
-    Variances of the line, of its neighbours and of everything. A line of fewer than 20 periods has fewer
-    neighbours below it; the mean is not one of them.
+    ``amplitude``: complex amplitude of the line, shape (channels,). ``values``: all samples of the window, shape
+    (channels, samples). ``spectrum``: Fourier amplitudes of the residual, shape (channels, bins). ``periods``: bin of
+    the line. Returns variances of the line, of its neighbours and of everything. A line of fewer than 20 periods has
+    fewer neighbours below it; the mean is not one of them.
     """
     lowest = max(1, periods - NEIGHBOUR_BINS)
     power = 0.5 * np.abs(spectrum[:, lowest : periods + NEIGHBOUR_BINS + 1]) ** 2

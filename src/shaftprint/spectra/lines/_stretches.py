@@ -16,15 +16,9 @@ def stretch_periods(periods: int) -> int:
 def stretch_amplitudes(fit: LineFit) -> ComplexArray:
     """Return the amplitude that the residual adds in each stretch of whole periods.
 
-    Parameters
-    ----------
-    fit
-        The fitted window of ``P`` periods.
-
-    Returns
-    -------
-    Complex amplitudes, shape (channels, stretches): one stretch a period below 12 periods, then 6 to 8 stretches
-    of equally many periods; the periods left over at the end are not used.
+    ``fit``: the fitted window of ``P`` periods. Returns complex amplitudes, shape (channels, stretches): one stretch a
+    period below 12 periods, then 6 to 8 stretches of equally many periods; the periods left over at the end are not
+    used.
     """
     window, time_s = fit.samples.window, fit.samples.time_s
     length = stretch_periods(window.periods)

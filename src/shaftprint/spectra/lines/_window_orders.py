@@ -31,7 +31,7 @@ def without_orders(
 
     ``samples``: channels of the window, over the working point. ``orders``: orders of the shaft line. ``references``:
     value of each channel at the working point; speeds in rev/s. ``speed``: name of the speed with whose square the load
-    goes.
+    goes. Returns the window, and what the orders cost the line; the same window and None where no order reaches it.
     """
     speeds = _speeds(samples, orders, references)
     every = order_bands(orders, speeds, rate_hz=samples.rate_hz)

@@ -98,7 +98,7 @@ def with_speed(waves: FloatArray, bands: Sequence[OrderBand], speeds_rev_s: Mapp
     angle is then that of a moment before; one near a torsional mode; one that does not go with the load alone.
 
     ``waves``: cosine and sine of each order, shape (2 orders, samples). ``bands``: the orders. ``speeds_rev_s``: engine
-    speed of every pick-up by its name [rev/s], each of shape (samples,).
+    speed of every pick-up by its name [rev/s], each of shape (samples,). Returns waves, shape (4 orders, samples).
     """
     swing = {name: speed / speed.mean() - 1.0 for name, speed in speeds_rev_s.items()}
     of_waves = np.repeat([swing[band.order.speed] for band in bands], 2, axis=0)

@@ -36,6 +36,6 @@ class Excitation(ABC):
         """Return responses at lines.
 
         ``records``: the time series. ``drift``: whether to take a straight line out of every channel. ``band_hz``:
-        lowest and highest frequency of lines [Hz]. Raises ResponseError if the records are too short for it, or no line
-        is excited.
+        lowest and highest frequency of lines [Hz]. Returns responses with their noise. Raises ResponseError if the
+        records are too short for it, or no line is excited.
         """

@@ -87,7 +87,8 @@ class Bands:
         """Fit a band from ``low_hz`` up to, but without, ``high_hz``.
 
         ``low_hz``, ``high_hz``: borders of the band [Hz]. ``at_hz``: where the response is wanted [Hz]; in the middle
-        when not given. ``more``: number of orders more that are tried after the fit, see ``BandFit.finer``.
+        when not given. ``more``: number of orders more that are tried after the fit, see ``BandFit.finer``. Returns the
+        fit.
         """
         bins = self.in_band(low_hz, high_hz)
         middle = 0.5 * (low_hz + high_hz) if at_hz is None else at_hz
@@ -166,7 +167,8 @@ def is_smooth(bands: Bands, low_hz: float, high_hz: float) -> bool:
     Compares Wilks' statistic of the two fits with its mean and standard deviation under noise alone, in Bartlett's
     approximation for complex values.
 
-    ``bands``: the records. ``low_hz``, ``high_hz``: borders of the band [Hz].
+    ``bands``: the records. ``low_hz``, ``high_hz``: borders of the band [Hz]. Returns True where the statistic is at
+    most three standard deviations above its mean.
     """
     fit = bands.fit(low_hz, high_hz, more=_TRIED)
     records = len(bands.in_band(low_hz, high_hz))
@@ -184,7 +186,8 @@ def misfit(bands: Bands, low_hz: float, high_hz: float) -> ComplexArray:
     A band that cannot be split cannot be tested either: it has too few bins. Where a band around it, twice as wide, is
     not smooth, the difference to a fit of that one with two orders more stands for what the narrow band misses.
 
-    ``bands``: the records. ``low_hz``, ``high_hz``: borders of the band [Hz].
+    ``bands``: the records. ``low_hz``, ``high_hz``: borders of the band [Hz]. Returns the difference, 0 where the wide
+    band is smooth or has too few bins, shape (outputs, inputs).
     """
     width = high_hz - low_hz
     low = max(low_hz - 0.5 * width, 0.5 * min(transform.resolution_hz for transform in bands.transforms))

@@ -22,6 +22,7 @@ def pooled_noise(
     ``samples``: independent complex samples of the noise, shape (channels, samples). ``frequency_hz``: frequency of
     each sample [Hz], ascending, shape (samples,). ``lines_hz``: frequency of each line [Hz], shape (lines,).
     ``fewest``: number of samples to take; never less than 12, nor than three a channel, where there are so many.
+    Returns ``E[e e^H]``, shape (lines, channels, channels), and the number of complex samples, shape (lines,).
     """
     channels, total = samples.shape
     count = min(max(fewest, _FEWEST_SAMPLES, _SAMPLES_A_CHANNEL * channels), total)

@@ -32,9 +32,9 @@ def read_records(
 ) -> Records:
     """Check arrays of one or more runs and stack them.
 
-    ``inputs``, ``outputs``: samples by channel name, of one run or of several. ``rate_hz``: sample rate [Hz]. Raises
-    ResponseError if the rate is not positive, names are missing, double or differ between runs, a channel is no row of
-    finite numbers, lengths of a run differ, or a channel does not move.
+    ``inputs``, ``outputs``: samples by channel name, of one run or of several. ``rate_hz``: sample rate [Hz]. Returns
+    the records. Raises ResponseError if the rate is not positive, names are missing, double or differ between runs, a
+    channel is no row of finite numbers, lengths of a run differ, or a channel does not move.
     """
     if not (np.isfinite(rate_hz) and rate_hz > 0.0):
         raise ResponseError(f"rate_hz = {rate_hz}: expected a positive, finite sample rate in Hz.")

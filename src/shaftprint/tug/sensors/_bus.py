@@ -60,7 +60,8 @@ class MessageTimes:
     def before(self, stop_s: float) -> tuple[FloatArray, FloatArray]:
         """Return the messages that come before a time and were not returned yet.
 
-        ``stop_s``: the time [s].
+        ``stop_s``: the time [s]. Returns when they came and when their values were taken [s], each of shape
+        (messages,).
         """
         most = max(int((stop_s - self.start_s) / self.cycle_s) + 2 - self._sent, 0)
         cycle = np.arange(self._sent, self._sent + most)
