@@ -93,12 +93,7 @@ def outcome(seed: int, hours: float) -> dict[str, Any]:
         day = fit_service(table, vessel, now=datetime.now(UTC))
         segments, line, _ = read_segments(table)
     true = np.array([truth.normalised.get(name, float(name == "c_set")) for name in FREE])
-    point = {
-        "speed_rev_s": model.engine_speed_rev_s,
-        "torque_nm": model.shaft_torque_nm,
-        "tau_dn": model.values["tau_dn"],
-    }
-    records = [one.record(line, **point) for one in segments if not one.reason]
+    records = model.records([one for one in segments if not one.reason], line)
     rng = np.random.default_rng((seed, 6))
     begin = time.process_time()
     fit = fit_segments(records, _at(model, true * np.exp(_OLD * rng.standard_normal(true.size) * _moved())))

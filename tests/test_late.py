@@ -14,7 +14,19 @@ from shaftprint.design.inputs._stated_limits import LIMITS
 
 SOURCE = Path(shaftprint.__file__).parent
 COMMANDS = [name for name in program.list_commands(None) if name not in {"export", "store", "fleet"}]
-HEAVY = {"numpy", "scipy", "pydantic", "matplotlib", "numba", "pandas", "h5py", "sqlalchemy", "jinja2", "plotly"}
+HEAVY = {
+    "numpy",
+    "scipy",
+    "pydantic",
+    "matplotlib",
+    "numba",
+    "pandas",
+    "h5py",
+    "sqlalchemy",
+    "jinja2",
+    "plotly",
+    "rich",
+}
 
 
 def files_with_late_imports():

@@ -155,7 +155,7 @@ def _engine_load(vessel: Vessel) -> Iterator[Disagreement]:
     point, machine = vessel.working_point, vessel.machine
     brake_nm = vessel.engine_share * point.driving_torque_nm / vessel.gearbox.shaft_over_brake
     power_kw = 2.0 * math.pi * rev_s_from_rpm(point.engine_speed_rpm) * brake_nm / 1000.0
-    highest_nm = float(np.interp(point.engine_speed_rpm, *machine.full_load))
+    highest_nm = machine.full_load_nm(point.engine_speed_rpm)
     if brake_nm > highest_nm:
         load, expected = brake_nm / highest_nm, f"at most {highest_nm:.4g} N m at the {machine.word}, its full load"
         found = f"{brake_nm:.4g} N m there"

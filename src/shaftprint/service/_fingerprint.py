@@ -4,7 +4,6 @@ Its working point has the speed of the vessel file and the mean load of the serv
 loop for small signals, GAUGE-CLOSED; what they rest on, and no log shows, is said in the verdict.
 """
 
-import hashlib
 from collections.abc import Sequence
 from datetime import datetime
 from pathlib import Path
@@ -13,20 +12,20 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 import shaftprint
-from shaftprint.arrays import FloatArray
 from shaftprint.catalogue._gauge import GAUGE_K_I, GAUGE_K_P, K_Q, TAU_DN, TAU_UP, G
 from shaftprint.catalogue._roles import ShipRole
 from shaftprint.catalogue._shipped import shipped_structure
+from shaftprint.choices import CLOSED_LOOPS
 from shaftprint.errors import ServiceError
 from shaftprint.fingerprint._conditions import Conditions, ShipIdentity
-from shaftprint.fingerprint._fingerprint import Fingerprint, Quality, SourceFile
+from shaftprint.fingerprint._fingerprint import Fingerprint, Quality
+from shaftprint.fingerprint._sources import source_of
 from shaftprint.fingerprint._vessel_fields import vessel_fields
 from shaftprint.identify.fit._estimate import Estimate
 from shaftprint.identify.judgement._verdict import Verdict
 from shaftprint.identify.likelihood._prior import PRIOR_OF, Prior
 from shaftprint.identify.uncertainty._budget import Budget
 from shaftprint.models._nyquist import is_stable
-from shaftprint.models._structure import Structure
 from shaftprint.service._fit import ServiceFit
 from shaftprint.service._model import FREE, ServiceModel
 from shaftprint.service._segment import LeverLine, Segment
@@ -49,7 +48,7 @@ if TYPE_CHECKING:
 
 ORDINARY_SERVICE = "ordinary service"
 """What stands in a fingerprint in place of the name of a test."""
-STRUCTURE = "GAUGE-CLOSED"
+STRUCTURE = CLOSED_LOOPS["engine"]
 # Numbers that go with the torque over the speed of the working point.
 _OVER_TORQUE = (GAUGE_K_P.name, GAUGE_K_I.name, TAU_DN.name, TAU_UP.name, G.name)
 # A number is known well enough to this share of it; a set-point scale or a slope near nothing to this much.
@@ -88,29 +87,26 @@ def fingerprint_of_service(
     of_prior = {PRIOR_OF + name: change * scale for name, change in fit.of_prior.items()}
     held = {p.name: p.value for p in structure.parameters if p.name not in FREE} | {K_Q.name: 2.0}
     torque_nm = load[0] * model.shaft_torque_nm
-    parameters = _parameters(structure, theta, covariance)
+    parameters = parameter_numbers(structure, theta)
     combinations = combination_numbers(structure, theta, held)
     physical = physical_numbers_of(structure, theta, model, vessel, torque_nm=torque_nm, load_std=load[1] / load[0])
     margins = margin_numbers_of(structure, theta, held)
-    numbers = [*parameter_numbers(structure, theta), *combinations, *physical, *margins]
+    numbers = [*parameters, *combinations, *physical, *margins]
     budget = Budget(
         sources=(SERVICE, *of_prior, GAUGE_SCALE, GAUGE_ZERO),
         rows=tuple(budget_row(one, covariance, of_prior) for one in numbers),
     )
-    quantities = {
-        kind: tuple(quantity_of(one, covariance) for one in group)
-        for kind, group in (("combinations", combinations), ("physical", physical), ("margins", margins))
-    }
+    groups = {"parameters": parameters, "combinations": combinations, "physical": physical, "margins": margins}
+    quantities = {kind: tuple(quantity_of(one, covariance) for one in group) for kind, group in groups.items()}
     stable = is_stable(structure, structure.vector(dict(zip(FREE, theta.tolist(), strict=True)) | held))
-    every = (*parameters, *quantities["combinations"], *quantities["physical"], *quantities["margins"])
+    every = [one for group in quantities.values() for one in group]
     seconds = sum(one.seconds for one in segments)
     return Fingerprint(
         shaftprint_version=shaftprint.__version__,
         created=now,
-        sources=(SourceFile(role="recording", name=table.name, sha256=_sha256(table)),),
+        sources=(source_of("recording", table),),
         conditions=_conditions(vessel, model, line, torque_nm=torque_nm, torque_std_nm=load[1] * model.shaft_torque_nm),
         structure=STRUCTURE,
-        parameters=parameters,
         held=held,
         priors={
             name: Prior(model.known[name] * factor, std * factor)
@@ -118,31 +114,14 @@ def fingerprint_of_service(
             for factor in (float(scale[FREE.index(name)]),)
         },
         covariance=tuple(tuple(row) for row in covariance.tolist()),
-        combinations=quantities["combinations"],
-        physical=quantities["physical"],
-        margins=quantities["margins"],
-        joint=joint_of(physical, parameter_numbers(structure, theta), covariance, of_prior),
+        **quantities,
+        joint=joint_of(physical, parameters, covariance, of_prior),
         budget=budget,
         vessel_fields=vessel_fields(vessel),
         calibration=(),
         quality=_quality(fit, segments),
         verdict=_verdict(every, used=len(segments), of=of, seconds=seconds, stable=stable),
         findings=_findings(fit, segments, of, line),
-    )
-
-
-def _parameters(structure: Structure, theta: FloatArray, covariance: FloatArray) -> tuple[Estimate, ...]:
-    about = {parameter.name: parameter for parameter in structure.parameters}
-    return tuple(
-        Estimate(
-            name=name,
-            unit=about[name].unit,
-            value=float(theta[k]),
-            std=float(np.sqrt(covariance[k, k])),
-            meaning=about[name].meaning,
-            role=about[name].role,
-        )
-        for k, name in enumerate(FREE)
     )
 
 
@@ -231,7 +210,3 @@ def _findings(fit: ServiceFit, segments: Sequence[Segment], of: int, line: Lever
         f"({line.stretches} stretches).",
         f"The fit took {fit.steps} steps; the last was {fit.last_step:.1g} standard deviations long.",
     )
-
-
-def _sha256(path: Path) -> str:
-    return hashlib.sha256(path.read_bytes()).hexdigest()

@@ -24,7 +24,6 @@ from shaftprint.service._model import FREE, ServiceModel
 from shaftprint.service._score import Score, noise_of, scores, simulated
 from shaftprint.time_domain._record import Record
 from shaftprint.time_domain._simulator import Simulator
-from shaftprint.time_domain._whitening import Whitening
 
 FEWEST_SEGMENTS = 8
 """Segments below which their scatter says nothing."""
@@ -50,14 +49,10 @@ class ServiceFit:
     """Values of the free parameters, in the order of ``FREE``, shape (free,)."""
     covariance: FloatArray
     """Their covariance, shape (free, free)."""
-    of_noise: FloatArray
-    """What the noise model alone says of it, shape (free, free)."""
     of_prior: Mapping[str, FloatArray]
     """Change of them for one standard deviation of what the vessel file knows, by the number, shape (free,)."""
     scores: tuple[Score, ...]
     """What each segment tells, at these values."""
-    whitening: Whitening
-    """The filter by which it was weighed."""
     steps: int
     """Steps that were taken."""
     last_step: float
@@ -153,10 +148,8 @@ def fit_segments(records: Sequence[Record], model: ServiceModel, *, simulator: S
     return ServiceFit(
         theta=frozen_float(theta),
         covariance=frozen_float(with_floor(clustered(each, sums, of_noise), theta)),
-        of_noise=frozen_float(of_noise),
         of_prior={name: frozen_float(of_noise[:, FREE.index(name)] / std) for name, std in model.prior_std.items()},
         scores=tuple(each),
-        whitening=whitening,
         steps=step_number,
         last_step=size,
     )

@@ -1,6 +1,6 @@
 """The model that service is compared with: the closed loop at large, with what is known of it beforehand."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -31,6 +31,8 @@ from shaftprint.units import SECONDS_PER_MINUTE
 
 if TYPE_CHECKING:
     from shaftprint.fingerprint._fingerprint import Fingerprint
+    from shaftprint.service._segment import LeverLine, Segment
+    from shaftprint.time_domain._record import Record
     from shaftprint.vessel._vessel import Vessel
 
 FREE = tuple(
@@ -82,6 +84,21 @@ class ServiceModel:
         own[M_MAX.name] = max(self.values[M_MAX.name] - (load - 1.0), 0.1)
         own[M_MIN.name] = self.values[M_MIN.name] - (load - 1.0)
         return np.array([own[name] for name in self.structure.names])
+
+    def records(self, segments: "Sequence[Segment]", line: "LeverLine") -> list["Record"]:
+        """Return segments as records of deviations from the working point.
+
+        ``segments``: usable ones. ``line``: what the lever asks for.
+        """
+        return [
+            one.record(
+                line,
+                speed_rev_s=self.engine_speed_rev_s,
+                torque_nm=self.shaft_torque_nm,
+                tau_dn=self.values[TAU_DN.name],
+            )
+            for one in segments
+        ]
 
 
 def service_model(vessel: "Vessel", fingerprint: "Fingerprint | None" = None) -> ServiceModel:
@@ -148,7 +165,7 @@ def _limits(vessel: "Vessel", speed_rev_s: float, torque_nm: float) -> dict[str,
     """Return the limits of the torque at the working point, over the brake torque there."""
     brake = torque_nm / vessel.gearbox.shaft_over_brake
     rpm = speed_rev_s * SECONDS_PER_MINUTE
-    highest = float(np.interp(rpm, *vessel.machine.full_load)) / brake
+    highest = vessel.machine.full_load_nm(rpm) / brake
     motoring = vessel.motoring
     lowest = {} if motoring is None else {M_MIN.name: -float(np.interp(rpm, *motoring)) / brake}
     return {M_MAX.name: highest, **lowest}

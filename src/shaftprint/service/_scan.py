@@ -147,13 +147,14 @@ def scan(
     segments, found, each = _judged(gathered, line, model)
     accuracy, values = _accuracy([score for score in each if score is not None], model)
     load, load_std = _load(gathered)
+    refused = " Also: ".join(one.refused for one in found if one.refused)
     return Scan(
         segments=segments,
         line=line,
         seconds=seconds,
         left_out=left_out,
         found=found,
-        refused=" Also: ".join(one.refused for one in found if one.refused),
+        refused=refused,
         accuracy=accuracy,
         values=values,
         rows=tuple(_row(one, score, line, model) for one, score in zip(segments, each, strict=True)),
@@ -163,7 +164,7 @@ def scan(
             "vessel": vessel.name,
             "seconds": seconds,
             "logs": [str(Path(log).name) for log in logs],
-            "refused": " Also: ".join(one.refused for one in found if one.refused),
+            "refused": refused,
         },
     )
 
@@ -176,16 +177,7 @@ def _judged(
     found = [lever_follows_load(gathered.still), way_on(usable)]
     each: dict[int, Score] = {}
     if usable:
-        records = [
-            one.record(
-                line,
-                speed_rev_s=model.engine_speed_rev_s,
-                torque_nm=model.shaft_torque_nm,
-                tau_dn=model.values[TAU_DN.name],
-            )
-            for one in usable
-        ]
-        runs = simulated(records, model, model.theta)
+        runs = simulated(model.records(usable, line), model, model.theta)
         if model.is_of_fingerprint:
             found.append(shift_of_lever(runs))
         each = dict(zip(map(id, usable), scores(runs, noise_of(runs)), strict=True))

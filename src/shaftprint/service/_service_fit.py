@@ -9,8 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from shaftprint.arguments import refusing_none
-from shaftprint.arrays import FloatArray
-from shaftprint.catalogue._gauge import T_SP, TAU_DN
+from shaftprint.catalogue._gauge import T_SP
 from shaftprint.errors import ServiceError
 from shaftprint.notebook._shown import Shown
 from shaftprint.notebook._summary import Summary
@@ -105,16 +104,7 @@ def fit_service(
             f"{table}: expected segments of {vessel.name}, found some of {facts.get('vessel')}; name the vessel file "
             "with which the logs were scanned."
         )
-    records = [
-        one.record(
-            line,
-            speed_rev_s=model.engine_speed_rev_s,
-            torque_nm=model.shaft_torque_nm,
-            tau_dn=model.values[TAU_DN.name],
-        )
-        for one in used
-    ]
-    fit = fit_segments(records, model)
+    fit = fit_segments(model.records(used, line), model)
     latency = float(fit.theta[FREE.index(T_SP.name)])
     if not EARLIEST_T_SP_S - 3.0 * _std(fit, T_SP.name) <= latency <= LATEST_T_SP_S:
         raise ServiceError(
@@ -138,5 +128,4 @@ def fit_service(
 
 
 def _std(fit: ServiceFit, name: str) -> float:
-    std: FloatArray = fit.std
-    return float(std[FREE.index(name)])
+    return float(fit.std[FREE.index(name)])

@@ -124,7 +124,7 @@ def _limits(vessel: Vessel) -> dict[str, StatedValue]:
     point, gearbox = vessel.working_point, vessel.gearbox
     assert vessel.motoring is not None  # noqa: S101 - it was expected
     brake_nm = point.shaft_torque_nm / gearbox.shaft_over_brake
-    highest = float(np.interp(point.engine_speed_rpm, *vessel.machine.full_load))
+    highest = vessel.machine.full_load_nm(point.engine_speed_rpm)
     drag = float(np.interp(point.engine_speed_rpm, *vessel.motoring))
     return {
         CrashStopSymbol.TORQUE_LIMIT: StatedValue(value=highest / brake_nm),

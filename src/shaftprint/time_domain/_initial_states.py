@@ -70,22 +70,27 @@ def best_states(
     if runs is None:
         return None
     states, (run, effects) = first, runs
+
+    def left_by(run: FloatArray) -> FloatArray:
+        return np.asarray(data - whitened(run[None])[0])
+
+    left = left_by(run)
     for step in range(STATE_STEPS):
         if 0 < step < NEAR:
             runs = effects_of(simulated, states, run)
             if runs is None:
                 return None
             effects = runs[1]
-        moves, left = whitened(effects).T, data - whitened(run[None])[0]
-        change, *_ = np.linalg.lstsq(moves, left, rcond=1e-9)
+        moves = whitened(effects).T
+        change: FloatArray = np.linalg.lstsq(moves, left, rcond=1e-9)[0].astype(np.float64)
         if np.linalg.norm(moves @ change) <= SMALL_STEP * np.linalg.norm(left):
             # what it leaves is projected out with the effects
             states = states + change
             break
-        nearer = _nearer(simulated, lambda run: data - whitened(run[None])[0], states=states, change=change, left=left)
+        nearer = _nearer(simulated, left_by, states=states, change=change, left=left)
         if nearer is None:
             break
-        states, run = nearer
+        states, run, left = nearer
     return states, effects
 
 
@@ -96,8 +101,8 @@ def _nearer(
     states: FloatArray,
     change: FloatArray,
     left: FloatArray,
-) -> tuple[FloatArray, FloatArray] | None:
-    """Return states that leave less of a record than before, and their outputs; None where no step does.
+) -> tuple[FloatArray, FloatArray, FloatArray] | None:
+    """Return states that leave less of a record than before, their outputs and what they leave; None if none does.
 
     A step that is right for small changes may be far too long where a limit acts, or the loop is hardly damped: it is
     halved until it helps.
@@ -107,7 +112,7 @@ def _nearer(
         if run is not None:
             still_left = left_by(run[0])
             if still_left @ still_left < left @ left:
-                return states + change, run[0]
+                return states + change, run[0], still_left
         change = 0.5 * change
     return None
 

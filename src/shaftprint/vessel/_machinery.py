@@ -63,6 +63,10 @@ class Machine(Settings):
         """Highest torque over speed, straight between the points and flat beyond them."""
         raise NotImplementedError
 
+    def full_load_nm(self, speed_rpm: float) -> float:
+        """Return the highest torque at a speed [N m]."""
+        return float(np.interp(speed_rpm, *self.full_load))
+
     def full_load_shape(self, speed_rev_s: float) -> tuple[tuple[float, float], ...]:
         """Return corners of ``full_load``: deviations from a speed [rev/s], and torque over that at this speed."""
         speed_rpm, torque_nm = self.full_load

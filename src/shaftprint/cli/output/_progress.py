@@ -1,16 +1,21 @@
 """Progress bars on the error output of a terminal."""
 
+from __future__ import annotations
+
 import contextlib
 import time
 from collections.abc import Iterator
 from dataclasses import dataclass
 
 import click
-from rich.console import Console
-from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedColumn
 
 from shaftprint.cli._terminal import echo, output
 from shaftprint.escape import printable
+from shaftprint.late import late
+
+with late():
+    from rich.console import Console
+    from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedColumn
 
 no_progress_option = click.option("--no-progress", is_flag=True, help="Show no progress bars.")
 """The option of every command that takes longer than a second."""
