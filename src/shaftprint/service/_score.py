@@ -16,6 +16,7 @@ from shaftprint.arrays import FloatArray
 from shaftprint.errors import ServiceError
 from shaftprint.service._model import BESIDE, FREE, ServiceModel
 from shaftprint.time_domain._noise_model import NoiseModel, estimate_noise
+from shaftprint.time_domain._nuisance import drift_columns, orthonormal, without
 from shaftprint.time_domain._record import Record
 from shaftprint.time_domain._simulator import ExactDelays, Simulator, on_record
 from shaftprint.time_domain._whitening import Whitening
@@ -95,19 +96,15 @@ def _simulated(record: Record, model: ServiceModel, theta: FloatArray, simulator
     residuals = measured - run[0]
     residuals[:, torque] -= load * ((1.0 + measured[:, n]) ** 2 - (1.0 + speed) ** 2)
     weight = 1.0 / (1.0 + _smooth(measured[:, n], record.rate_hz)) ** 2
-    position = np.linspace(-1.0, 1.0, record.samples)
     free = len(FREE)
-    met = [column for column in own[free:] if np.abs(column).max() > _MET]
-    columns = [np.zeros_like(measured) for _ in range(4)]
-    for output in range(2):
-        columns[2 * output][:, output] = 1.0
-        columns[2 * output + 1][:, output] = position
+    met = own[free:][np.abs(own[free:]).max(axis=(1, 2)) > _MET]
+    drifts = drift_columns(record, len(names), 1, anew_after_s=np.inf)
     return Simulated(
         record=record,
         weight=weight,
         residuals=residuals * weight[:, None],
         slopes=own[:free] * weight[:, None],
-        beside=np.stack([*columns, *met]) * weight[:, None],
+        beside=np.concatenate([drifts, met]) * weight[:, None],
         meets_limit=len(met) > 1,
     )
 
@@ -138,11 +135,8 @@ def noise_of(runs: Sequence[Simulated]) -> Whitening:
 
 def _left(rows: FloatArray, columns: FloatArray) -> FloatArray:
     """Return rows without what lies in columns, both of shape (..., samples, outputs)."""
-    flat, basis = rows.reshape(len(rows), -1), columns.reshape(len(columns), -1)
-    basis = basis / np.linalg.norm(basis, axis=1)[:, None]
-    orthogonal, triangle = np.linalg.qr(basis.T)
-    orthogonal = orthogonal[:, np.abs(np.diag(triangle)) > 1e-7]
-    return np.asarray(flat - (flat @ orthogonal) @ orthogonal.T).reshape(rows.shape)
+    basis = orthonormal(columns.reshape(len(columns), -1))
+    return without(rows.reshape(len(rows), -1), basis).reshape(rows.shape)
 
 
 def scores(runs: Sequence[Simulated], whitening: Whitening) -> list[Score]:

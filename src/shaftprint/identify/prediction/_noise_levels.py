@@ -112,12 +112,24 @@ def noise_levels(
 ) -> NoiseLevels:
     """Return the noise levels behind a measured response: its covariance times length and squared amplitude of lines.
 
-    ``response``: what was measured, from one input, at the lines of the campaign that it marks as used. ``campaign``:
-    the campaign that was sailed. ``set_point_per_v``: change of the set point over the working-point speed for one volt
-    [1/V]. ``orders_hz``: where orders of the shaft line stand at the working point [Hz]. ``as_weights``: whether to
-    keep the factor by which a covariance of few samples is enlarged: for lines that are estimated from as few samples
-    again, where what is planned does not count that cost, as it does for legs. Raises IdentificationError if the
-    response has several inputs or no used line, or a line is not in the campaign.
+    Parameters
+    ----------
+    response
+        What was measured, from one input, at the lines of the campaign that it marks as used.
+    campaign
+        The campaign that was sailed.
+    set_point_per_v
+        Change of the set point over the working-point speed for one volt [1/V].
+    orders_hz
+        Where orders of the shaft line stand at the working point [Hz].
+    as_weights
+        Whether to keep the factor by which a covariance of few samples is enlarged: for lines that are estimated from
+        as few samples again, where what is planned does not count that cost, as it does for legs.
+
+    Raises
+    ------
+    IdentificationError
+        If the response has several inputs or no used line, or a line is not in the campaign.
     """
     if len(response.inputs) != 1 or not response.used.any():
         raise IdentificationError(
