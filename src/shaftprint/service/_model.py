@@ -41,7 +41,7 @@ FREE = tuple(
 """Parameters that service is asked for."""
 BESIDE = (K_Q.name, M_MAX.name, M_MIN.name, T_AW.name)
 """Parameters that each segment has for itself: its load, and the limits where it meets one."""
-_SPEED_SLOPE_STD, _SCALE_STD, _INERTIA_STD = 0.3, 0.005, 0.03
+_SPEED_SLOPE_STD, _SCALE_STD = 0.3, 0.005
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

@@ -7,7 +7,7 @@ import click
 
 from shaftprint.cli._command_group import LazyGroup
 
-# The one-line help of every action; asking its file for it would import what it needs.
+# The one-line help of every action: a list of them imports none of their files.
 ACTIONS = {
     "run": "Identify the recordings of a folder or a list, and keep their fingerprints.",
     "status": "Show how many jobs wait, run, are done or were refused, and why.",

@@ -7,7 +7,7 @@ import click
 
 from shaftprint.cli._command_group import LazyGroup
 
-# The one-line help of every action; asking its file for it would import the fingerprint's room.
+# The one-line help of every action: a list of them imports none of their files.
 ACTIONS = {
     "scan": "Find the moves of the lever in logs, and say what they would tell.",
     "fit": "Identify the fingerprint from the moves that a scan has found.",

@@ -11,8 +11,6 @@ if TYPE_CHECKING:
     from shaftprint.design.planned_test._planned_test import PlannedTest
 
 PERCENT = 100.0
-# Error over the planned deviation, limited time and coverage within which a rehearsal speaks for a plan.
-_MOST_LIMITED = 5e-4
 
 
 def plan_cover(test: "PlannedTest") -> Cover:

@@ -8,7 +8,6 @@ from shaftprint.signals.description._pieces import Stairs
 # What stands for less is no level; what takes longer is no jump [s].
 _SHORTEST_S, _LONGEST_JUMP_S = 0.08, 0.06
 _JUMP_SHARE = 0.02
-_LONGEST_START = 0.5
 
 
 def stairs_from(course: Course, first: int, stop: int) -> Stairs | None:
