@@ -77,9 +77,11 @@ $(VENV)/bin/python:
 
 # One stamp a set of requirements; the project itself is installed so that changes to src/ take effect at once.
 # The lists are complete: pip resolves nothing, or a newer release of what a dependency asks for by an extra would stop it.
-# Python compiles what is used when it is used, which is a third of what is installed.
+# What runs the program is compiled at once, as pip does: shells with PYTHONDONTWRITEBYTECODE would compile it in every run.
+# For tests and pages Python compiles what is used when it is used, which is a third of what is installed.
 $(VENV)/run $(VENV)/web $(VENV)/test $(VENV)/lint $(VENV)/docs $(VENV)/benchmark: $(VENV)/%: requirements/%.txt pyproject.toml | $(VENV)/bin/python
 	@echo "Installing requirements/$*.txt into $(VENV) (a minute or two) ..."
-	@$(PIP) install --quiet --no-deps --no-compile --require-hashes --requirement requirements/$*.txt
+	@$(PIP) install --quiet --no-deps $(if $(filter run web,$*),,--no-compile) --require-hashes --requirement requirements/$*.txt
 	@$(PIP) install --quiet --no-deps --no-build-isolation --editable .
+	@$(BIN)/python -m compileall -q src
 	@touch $@
