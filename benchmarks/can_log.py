@@ -27,7 +27,7 @@ sys.path.insert(0, str(ROOT))
 from benchmarks import monte_carlo_short
 from benchmarks.message_log import Estimate, rows
 from benchmarks.monte_carlo_short import Row, drawn_noise, rows_of, summary
-from benchmarks.monte_carlo_tables import write_between_marks
+from benchmarks.result_tables import write_between_marks
 from shaftprint.campaign import load_campaign
 from shaftprint.catalogue import structure
 from shaftprint.errors import ShaftprintError

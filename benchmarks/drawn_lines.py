@@ -11,7 +11,7 @@ import numpy as np
 
 from benchmarks.kept_outcomes import kept
 from benchmarks.monte_carlo_recordings import Ship
-from benchmarks.monte_carlo_tables import write_between_marks
+from benchmarks.result_tables import write_between_marks
 from shaftprint.distributions import NORMAL_95
 from shaftprint.fingerprint import Fingerprint
 from shaftprint.identify import Estimate

@@ -25,7 +25,7 @@ from benchmarks.drawn_lines import REJECTED_P, covers, names_in, numbers_of, row
 from benchmarks.kept_outcomes import kept
 from benchmarks.limits import line_of
 from benchmarks.monte_carlo_recordings import Ship, drawn_gauge
-from benchmarks.monte_carlo_tables import write_between_marks
+from benchmarks.result_tables import write_between_marks
 from shaftprint.campaign import Campaign, Sine, load_campaign
 from shaftprint.catalogue import structure
 from shaftprint.errors import ShaftprintError

@@ -27,7 +27,7 @@ sys.path.insert(0, str(ROOT))
 from benchmarks.faulty_tests_tables import Refusal, generator_table, governor_table
 from benchmarks.leg_outcomes import NAME, Outcome, as_planned, outcome, true_values
 from benchmarks.legs import put_out
-from benchmarks.monte_carlo_tables import write_between_marks
+from benchmarks.result_tables import write_between_marks
 from shaftprint.campaign import Campaign, load_campaign
 from shaftprint.catalogue import structure
 from shaftprint.identify import Requirements, Settings

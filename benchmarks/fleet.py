@@ -30,7 +30,7 @@ ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT))
 
 from benchmarks.fleet_peers import cpu_ticks, peers
-from benchmarks.monte_carlo_tables import write_between_marks
+from benchmarks.result_tables import write_between_marks
 from benchmarks.store_documents import document
 from benchmarks.timing import print_table
 from shaftprint.campaign import load_campaign

@@ -13,7 +13,8 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.co_simulation import Slave
-from benchmarks.monte_carlo_tables import table, write_between_marks
+from benchmarks.monte_carlo_tables import table
+from benchmarks.result_tables import write_between_marks
 from shaftprint.catalogue import ShipRole
 from shaftprint.export import ExportedModel, exported_model, write_fmu
 from shaftprint.export._fmu_build import host_platform

@@ -23,7 +23,7 @@ ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT))
 
 from benchmarks import sailed_histories
-from benchmarks.monte_carlo_tables import write_between_marks
+from benchmarks.result_tables import write_between_marks
 from benchmarks.sailed_histories import FIRST, QUARTER, SOUND, TESTS
 from shaftprint.drift import Event, history_of, watch
 from shaftprint.drift._drift_finding import WatchFinding

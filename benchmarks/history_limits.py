@@ -24,7 +24,7 @@ ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT))
 
 from benchmarks.histories import DOCUMENT, SEED
-from benchmarks.monte_carlo_tables import write_between_marks
+from benchmarks.result_tables import write_between_marks
 from benchmarks.sailed_histories import SOUND, TESTS
 from shaftprint.choices import LOAD_REPEATABILITY
 from shaftprint.drift._along import whitened

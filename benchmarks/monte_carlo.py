@@ -26,6 +26,7 @@ from benchmarks.monte_carlo_outcome import Outcome, Result, together
 from benchmarks.monte_carlo_recordings import NAME, sailed
 from benchmarks.monte_carlo_responses import linearised, named_cases, simulate
 from benchmarks.monte_carlo_search import finds_global_optimum
+from benchmarks.result_tables import write_between_marks
 from shaftprint.identify import MaximumLikelihood, StudentT
 from shaftprint.identify.likelihood._weighting import Weighting
 
@@ -70,7 +71,7 @@ def main() -> None:
         text = "\n".join(_tables(Crew(pool, bars), options))
     print(text)
     if options.write:
-        tables.write_between_marks(DOCUMENT, text)
+        write_between_marks(DOCUMENT, text, tables.BEGIN, tables.END)
 
 
 def _options() -> argparse.Namespace:

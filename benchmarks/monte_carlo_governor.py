@@ -20,7 +20,7 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 
 from benchmarks.monte_carlo_short import DOCUMENT, Row, drawn_ship, identified, rows_of, summary, true_values
-from benchmarks.monte_carlo_tables import write_between_marks
+from benchmarks.result_tables import write_between_marks
 from shaftprint.survey import Trial, load_trial
 from shaftprint.tug import sail
 from shaftprint.vessel import Vessel

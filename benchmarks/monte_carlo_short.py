@@ -23,7 +23,8 @@ ROOT = Path(__file__).resolve().parent.parent
 # Run as a file, the folder of the benchmarks is on the path, not the one above.
 sys.path.insert(0, str(ROOT))
 
-from benchmarks.monte_carlo_tables import table, write_between_marks
+from benchmarks.monte_carlo_tables import table
+from benchmarks.result_tables import write_between_marks
 from shaftprint.catalogue import structure
 from shaftprint.distributions import NORMAL_95
 from shaftprint.errors import ShaftprintError

@@ -1,7 +1,6 @@
 """The tables of the Monte Carlo test, in Markdown."""
 
 from collections.abc import Callable, Sequence
-from pathlib import Path
 
 from benchmarks.monte_carlo_outcome import Number, Result
 
@@ -71,22 +70,6 @@ def of_recordings(title: str, result: Result) -> str:
     header = ["number", "coverage", "error / stated, rms", "mean error / rms", "open intervals"]
     note = f"p-values: KS test {result.uniform:.2g}, {100.0 * result.rejected:.1f} % below 0.05."
     return table(title, header, rows) + f"\n{note}\n"
-
-
-def write_between_marks(path: Path, text: str, begin_mark: str = BEGIN, end_mark: str = END) -> None:
-    """Replace what stands between the two marks of a document.
-
-    Raises
-    ------
-    ValueError
-        If the document does not have both marks.
-    """
-    whole = path.read_text(encoding="utf-8")
-    before, begin, rest = whole.partition(begin_mark)
-    _, end, after = rest.partition(end_mark)
-    if not begin or not end:
-        raise ValueError(f"{path}: expected the marks {begin_mark!r} and {end_mark!r}, found not both.")
-    path.write_text(f"{before}{begin_mark}\n{text}\n{end_mark}{after}", encoding="utf-8")
 
 
 def _range(numbers: Sequence[Number], of: Callable[[Number], float], pattern: str) -> str:

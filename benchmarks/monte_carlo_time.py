@@ -18,7 +18,7 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.monte_carlo_recordings import NAME, VESSEL, Ship, true_values
-from benchmarks.monte_carlo_tables import write_between_marks
+from benchmarks.result_tables import write_between_marks
 from benchmarks.validation import MOTORING_NM, STRONGER
 from shaftprint.arrays import FloatArray
 from shaftprint.campaign import load_campaign

@@ -24,7 +24,7 @@ ROOT = Path(__file__).resolve().parent.parent
 # Run as a file, the folder of the benchmarks is on the path, not the one above.
 sys.path.insert(0, str(ROOT))
 
-from benchmarks.monte_carlo_tables import write_between_marks
+from benchmarks.result_tables import write_between_marks
 from benchmarks.scouted_tests import (
     CLOSED,
     MAIN_S,

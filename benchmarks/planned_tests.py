@@ -25,8 +25,8 @@ sys.path.insert(0, str(ROOT))
 from benchmarks.leg_outcomes import NAME, Outcome, as_planned, outcome
 from benchmarks.monte_carlo_recordings import Ship
 from benchmarks.monte_carlo_short import between, drawn_noise
-from benchmarks.monte_carlo_tables import write_between_marks
 from benchmarks.planned_tests_tables import BARS_12, BARS_IDLE_600, case_table, summary
+from benchmarks.result_tables import write_between_marks
 from shaftprint.campaign import Campaign, load_campaign
 from shaftprint.catalogue import structure
 from shaftprint.design import (

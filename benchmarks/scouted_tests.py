@@ -24,9 +24,9 @@ sys.path.insert(0, str(ROOT))
 
 from benchmarks.leg_outcomes import as_planned, true_values
 from benchmarks.monte_carlo_short import LEAST_GAIN_MARGIN, gain_margin
-from benchmarks.monte_carlo_tables import write_between_marks
 from benchmarks.planned_tests import CLOSED as AT_ONE_SPEED
 from benchmarks.planned_tests import OFFSET_V, SLOPE_RPM_PER_V, VESSEL
+from benchmarks.result_tables import write_between_marks
 from benchmarks.sailed_limits import SailedLimits, sailed_limits
 from benchmarks.scouted_tests_tables import scouted_table
 from shaftprint.campaign import Campaign

@@ -29,8 +29,8 @@ from urllib.parse import quote, urlencode
 ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT))
 
-from benchmarks.monte_carlo_tables import write_between_marks
 from benchmarks.mutations import mutated
+from benchmarks.result_tables import read_between_marks, write_between_marks
 from benchmarks.served_fleet import Life, documents
 from benchmarks.store import fill, ships
 from benchmarks.timing import print_table
@@ -469,8 +469,8 @@ def _ends(server: Running, jobs: Sequence[int]) -> dict[int, str]:
 
 
 def with_pages(text: str, lines: list[str]) -> list[str]:
-    """Return the lines of the table of a document, those of pages replaced by others."""
-    old = text.partition(BEGIN)[2].partition(END)[0].strip().splitlines()
+    """Return the lines of a table, those of pages replaced by others."""
+    old = text.strip().splitlines()
     of_pages = [
         place for place, line in enumerate(old) if line.startswith(("| page: ", "| memory of the server after"))
     ]
@@ -520,7 +520,7 @@ def main() -> None:
     if options.write:
         lines = ["| what | asked | got |", "|---|---|---|", *(f"| {' | '.join(row)} |" for row in rows)]
         if options.only_pages:
-            lines = with_pages(DOCUMENT.read_text(encoding="utf-8"), lines[2:])
+            lines = with_pages(read_between_marks(DOCUMENT, BEGIN, END), lines[2:])
         write_between_marks(DOCUMENT, "\n".join(lines), BEGIN, END)
 
 

@@ -25,7 +25,7 @@ ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT))
 
 from benchmarks.kept_outcomes import kept
-from benchmarks.monte_carlo_tables import write_between_marks
+from benchmarks.result_tables import write_between_marks
 from shaftprint.distributions import NORMAL_95
 from shaftprint.service import fit_service, scan
 from shaftprint.service._fit import along, fit_segments

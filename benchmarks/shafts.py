@@ -26,7 +26,7 @@ from benchmarks.drawn_lines import covers, numbers_of
 from benchmarks.kept_outcomes import kept
 from benchmarks.leg_outcomes import true_values
 from benchmarks.monte_carlo_recordings import Ship, drawn_gauge
-from benchmarks.monte_carlo_tables import write_between_marks
+from benchmarks.result_tables import write_between_marks
 from shaftprint.campaign._both_shafts import SIDES, load_campaign_of_both
 from shaftprint.drift import differ
 from shaftprint.errors import ShaftprintError

@@ -29,8 +29,9 @@ ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT))
 
 from benchmarks.monte_carlo_short import drawn_ship
-from benchmarks.monte_carlo_tables import table, write_between_marks
+from benchmarks.monte_carlo_tables import table
 from benchmarks.planned_tests import CASES, OFFSET_V, SLOPE_RPM_PER_V, VESSEL, planned, ship_of
+from benchmarks.result_tables import write_between_marks
 from shaftprint.arrays import FloatArray
 from shaftprint.campaign import Campaign, load_campaign
 from shaftprint.design import campaign_of
@@ -195,7 +196,7 @@ def main() -> None:
     text = table("Changes within a test", header, rows)
     print(text)
     if options.write:
-        write_between_marks(DOCUMENT, text, BEGIN, END)
+        write_between_marks(DOCUMENT, text, BEGIN, END, beside=False)
 
 
 if __name__ == "__main__":

@@ -21,7 +21,7 @@ from urllib.parse import urlencode
 ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT))
 
-from benchmarks.monte_carlo_tables import write_between_marks
+from benchmarks.result_tables import write_between_marks
 from benchmarks.serve import DOCUMENT, Running, begun
 from benchmarks.store_documents import IMO_NUMBER, document
 from benchmarks.timing import print_table

@@ -23,9 +23,10 @@ sys.path.insert(0, str(ROOT))
 from benchmarks import leg_outcomes, monte_carlo_recordings
 from benchmarks.leg_outcomes import NAME, Outcome
 from benchmarks.monte_carlo_recordings import Ship, drawn_ship
-from benchmarks.monte_carlo_tables import table, write_between_marks
+from benchmarks.monte_carlo_tables import table
 from benchmarks.planned_tests import CLOSED, OFFSET_V, SLOPE_RPM_PER_V, TRUTH, VESSEL
 from benchmarks.planned_tests_tables import ABSOLUTE
+from benchmarks.result_tables import write_between_marks
 from shaftprint.campaign import Campaign, load_campaign
 from shaftprint.design import Plan, assumed_ship, campaign_of, design_campaign, limits_from_vessel, no_worse_than
 from shaftprint.distributions import NORMAL_95

@@ -20,7 +20,7 @@ import numpy as np
 
 from benchmarks.kept_outcomes import kept
 from benchmarks.monte_carlo_short import drawn_noise
-from benchmarks.monte_carlo_tables import write_between_marks
+from benchmarks.result_tables import write_between_marks
 from shaftprint.campaign import load_campaign
 from shaftprint.errors import ShaftprintError
 from shaftprint.fingerprint import Fingerprint

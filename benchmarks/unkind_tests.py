@@ -28,8 +28,8 @@ sys.path.insert(0, str(ROOT))
 from benchmarks import leg_outcomes, monte_carlo_recordings, monte_carlo_short
 from benchmarks.kept_outcomes import kept
 from benchmarks.monte_carlo_short import Row, Ship, between, drawn_ship, summary
-from benchmarks.monte_carlo_tables import write_between_marks
 from benchmarks.planned_tests import VESSEL as TUG
+from benchmarks.result_tables import write_between_marks
 from shaftprint.campaign import Campaign
 from shaftprint.catalogue import structure
 from shaftprint.errors import ShaftprintError

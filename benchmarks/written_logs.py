@@ -20,7 +20,7 @@ import numpy as np
 
 from benchmarks.can_log import ALL_MESSAGES, CYCLE_S, JITTER, LOST, TORQUE_CYCLE_S
 from benchmarks.kept_outcomes import kept
-from benchmarks.monte_carlo_tables import write_between_marks
+from benchmarks.result_tables import write_between_marks
 from shaftprint.campaign import load_campaign
 from shaftprint.errors import ShaftprintError
 from shaftprint.recording import read_recording, write_by_ending

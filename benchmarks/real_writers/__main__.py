@@ -9,9 +9,10 @@ from pathlib import Path
 from benchmarks.real_writers._damage import OUTCOMES, damage_table
 from benchmarks.real_writers._families import FAMILIES, written
 from benchmarks.real_writers._truth import Answer, Family, answer
+from benchmarks.result_tables import write_between_marks
 
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "formats.md"
-BEGIN, END = "<!-- real writers -->\n", "<!-- end of real writers -->\n"
+BEGIN, END = "<!-- real writers: begin -->", "<!-- real writers: end -->"
 HEAD = "| format | written by | files | as written | a part named | refused with a way out | wrong without a word |"
 DAMAGED = (
     "| format | damaged | refused | said | unharmed | raw numbers changed | protected, not told | traceback "
@@ -37,9 +38,7 @@ def main() -> None:
         print(damage)
         table = f"{table}\n\n{damage}"
     if chosen.docs:
-        page = PAGE.read_text(encoding="utf-8")
-        before, rest = page.split(BEGIN)
-        PAGE.write_text(f"{before}{BEGIN}{table}\n{END}{rest.split(END)[1]}", encoding="utf-8")
+        write_between_marks(PAGE, table, BEGIN, END)
 
 
 def _table(head: list[str], rows: list[str]) -> str:

@@ -7,6 +7,8 @@ import shutil
 from functools import cache
 from pathlib import Path
 
+from benchmarks.result_tables import whole_text
+
 from shaftprint.cli import shaftprint
 
 ROOT = Path(__file__).parents[2]
@@ -72,8 +74,7 @@ def shell_lines(page):
 @cache
 def inline_lines(page):
     """Return what a page names in its sentences and tables of programs and their arguments."""
-    # what once was need not run
-    text = "" if page == "docs/history.md" else FENCE.sub("", PAGES[page])
+    text = FENCE.sub("", whole_text(ROOT / page, PAGES[page]))
     spans = re.findall(r"`([^`\n]+)`", text)
     start = re.compile(rf"(?:[A-Z_]+=\S+ )?(?:[\w.]*[\\/])*(?:{'|'.join(PROGRAMS)}) \S")
     return [_words(span) for span in spans if start.match(span)]

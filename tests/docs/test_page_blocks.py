@@ -11,7 +11,9 @@ from xml.etree import ElementTree as ET
 
 import numpy as np
 import pytest
+from benchmarks.result_tables import read_between_marks, read_rows, shown_table, whole_text, write_between_marks
 from pages import PAGES, ROOT, blocks, python_of, shown
+from tests.wrong_recordings import __main__ as wrong_recordings
 
 from shaftprint.bench import equipped
 from shaftprint.campaign import Campaign, CampaignOfBoth, load_campaign
@@ -289,6 +291,62 @@ def test_parts_of_examples_that_a_page_includes_are_there(page):
             assert last in source[source.index(first) :]
 
 
+RESULTS = sorted((ROOT / "docs" / "results").glob("*.tsv"))
+# A cell that begins so would be a list, a quotation, a heading or code.
+OF_A_BLOCK = re.compile(r"[-*+] |[-*+]$|\d+[.)](?:\s|$)|>|#|```|~~~|\s")
+
+
+def test_every_table_of_results_is_shown_or_linked_by_a_page():
+    shown = {
+        ((ROOT / page).parent / name).resolve()
+        for page, text in PAGES.items()
+        for name in re.findall(r"(?:^:file: |\]\()([\w./-]+\.tsv)\b", text, flags=re.MULTILINE)
+    }
+    assert shown == set(RESULTS)
+
+
+@pytest.mark.parametrize("path", RESULTS, ids=lambda path: path.stem)
+def test_a_table_of_results_has_rows_of_one_length_whose_cells_are_lines(path):
+    head, *rows = read_rows(path)
+    assert rows
+    for row in (head, *rows):
+        assert len(row) == len(head), row
+        assert not [cell for cell in row if OF_A_BLOCK.match(cell) or "\n" in cell]
+
+
+@pytest.mark.parametrize(("page", "text"), of("{csv-table}"))
+def test_a_table_of_results_is_shown_as_it_is_written(page, text):
+    name = re.search(r"^:file: (.*)$", text, flags=re.MULTILINE)[1]
+    assert f"```{{csv-table}}\n{text}```" == shown_table(name), page
+
+
+def test_tables_of_a_benchmark_go_beside_their_page_and_come_back(tmp_path):
+    page, begin, end = tmp_path / "page.md", "<!-- table of benchmarks/x.py: begin -->", "<!-- x: end -->"
+    page.write_text(f"# Page\n\n{begin}\nold\n{end}\n\nmore\n", encoding="utf-8")
+    rows = "".join(f"| {i} | - |\n" for i in range(41))
+    text = f'### Short\n\n| a | b |\n|---|---|\n| 1, "2" | `3\t4` |\n\nSaid.\n\n| c | d |\n|---|---|\n{rows}'
+    write_between_marks(page, text, begin, end)
+    assert "| a |" not in page.read_text(encoding="utf-8")
+    assert "[All 41 rows](results/x-2.tsv)" in page.read_text(encoding="utf-8")
+    assert read_rows(tmp_path / "results" / "x-1.tsv") == [["a", "b"], ['1, "2"', "`3\t4`"]]
+    back = read_between_marks(page, begin, end)
+    assert back.strip() == text.replace("| - |", "| \u2013 |").strip()
+    assert page.read_text(encoding="utf-8").endswith(f"{end}\n\nmore\n")
+
+
+def test_the_page_on_wrong_recordings_has_every_case_and_counts_them():
+    folder = ROOT / "docs" / "results"
+    rows = {test: read_rows(folder / file)[1:] for test, file in wrong_recordings.FILES.items()}
+    cases = (wrong_recordings.CASES, wrong_recordings.CASES_OF_LEGS)
+    assert [[name for name, _, _ in found] for found in rows.values()] == [[case.name for case in of] for of in cases]
+    told = [outcome for found in rows.values() for _, outcome, _ in found]
+    assert set(told) == {"refused", "not trusted", "right"}
+    page = PAGES["docs/wrong-recordings.md"]
+    assert f"{len(told)} cases. Wrong and trusted: 0;" in page
+    counted = [[int(n) for n in line.split(" | ")[2:]] for line in re.findall(r"^\| (.+ speeds? \|.+) \|$", page, re.M)]
+    assert np.sum(counted, axis=0).tolist() == [len(told), *(told.count(one) for one in wrong_recordings.OUTCOMES)]
+
+
 TEN = re.findall(r"^\| (.+?) \| .+ \| \[.+\]\((.+)\) \|$", PAGES["docs/evidence.md"], flags=re.MULTILINE)
 
 
@@ -299,4 +357,5 @@ def test_there_are_ten_numbers():
 @pytest.mark.parametrize(("number", "page"), TEN)
 def test_a_number_of_the_ten_stands_on_the_page_that_it_names(number, page):
     plain = number.removesuffix(" s").removesuffix(" %")
-    assert re.search(rf"(?<![\d.]){re.escape(plain)}(?![\d])", PAGES[f"docs/{page}"]), number
+    told = whole_text(ROOT / "docs" / page, PAGES[f"docs/{page}"])
+    assert re.search(rf"(?<![\d.]){re.escape(plain)}(?![\d])", told), number

@@ -43,7 +43,7 @@ WITH_DEMO = {"docs/house.md"}
 CHECKED = dict.fromkeys(PYTHON, "test_pages.py")
 CHECKED |= dict.fromkeys(SHELL, "test_page_commands.py, test_page_programs.py and test_page_output.py")
 CHECKED |= dict.fromkeys(("toml", "json", "xml", "modelica", "matlab"), "test_page_blocks.py")
-CHECKED |= dict.fromkeys(("{toctree}", "{literalinclude}"), "test_page_blocks.py")
+CHECKED |= dict.fromkeys(("{toctree}", "{literalinclude}", "{csv-table}"), "test_page_blocks.py")
 
 
 @pytest.mark.parametrize("page", PAGES)

@@ -5,11 +5,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from benchmarks.result_tables import whole_text
 
 from shaftprint import report
 
 ROOT = Path(__file__).parents[2]
-PAGE = (ROOT / "docs" / "thesis.md").read_text(encoding="utf-8")
+PATH = ROOT / "docs" / "thesis.md"
+PAGE = whole_text(PATH, PATH.read_text(encoding="utf-8"))
 N_S0_REV_S, M_S0_NM = 1183.8 / 60.0 / 3.82, 1725.0
 
 

@@ -5,12 +5,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from benchmarks.result_tables import whole_text
 from benchmarks.thesis_measurements import BEGIN, END, inertias, limits, windows
 
 from shaftprint.campaign import load_campaign
 from shaftprint.vessel import load_vessel
 
-PAGE = (Path(__file__).parents[2] / "docs" / "thesis-tables.md").read_text(encoding="utf-8")
+PATH = Path(__file__).parents[2] / "docs" / "thesis-tables.md"
+PAGE = whole_text(PATH, PATH.read_text(encoding="utf-8"))
 
 
 def rows(table):

@@ -9,10 +9,11 @@ simulated noise draws a new case.
 import hashlib
 from dataclasses import dataclass
 from datetime import UTC, datetime
-from pathlib import Path
 
 import numpy as np
 import pytest
+from benchmarks import thesis_tables
+from benchmarks.result_tables import read_between_marks
 
 from shaftprint.campaign import load_campaign
 from shaftprint.catalogue import structure
@@ -238,9 +239,7 @@ def test_thesis_cannot_tell_its_governors_apart(thesis):
 
 def test_thesis_way_is_what_the_page_on_the_thesis_prints(thesis):
     """Tables 5.2 and 5.3, whole: the page was made from this recording, by this seed."""
-    page = (Path(__file__).parents[2] / "docs" / "thesis.md").read_text(encoding="utf-8")
-    _, _, table = page.partition("<!-- tables of benchmarks/thesis_tables.py: begin -->")
-    lines = table.splitlines()
+    lines = read_between_marks(thesis_tables.DOCUMENT, thesis_tables.BEGIN, thesis_tables.END).splitlines()
     for name in THESIS_STRUCTURES[1:]:
         first = next(i for i, line in enumerate(lines) if line.startswith(f"| {name} | printed |"))
         row = next(line for line in lines[first:] if line.startswith("|  | simulated, thesis' way |"))

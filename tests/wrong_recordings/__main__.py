@@ -8,69 +8,69 @@ answers are printed, of all cases or of those whose names contain one of the wor
 import argparse
 import re
 import sys
+from collections import Counter
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from functools import partial
 from pathlib import Path
 from typing import Any
 
 from benchmarks.kept_outcomes import kept
+from benchmarks.result_tables import FOLDER, write_between_marks, write_rows
 from tests.wrong_recordings.case import Case
-from tests.wrong_recordings.cases import CASES
+from tests.wrong_recordings.cases import CASES, KINDS
 from tests.wrong_recordings.judged import Answer, answer
-from tests.wrong_recordings.legs import CASES_OF_LEGS
+from tests.wrong_recordings.legs import CASES_OF_LEGS, KINDS_OF_LEGS
 from tests.wrong_recordings.trial import ONE_SPEED, TWO_SPEEDS, Sailed
 
-HEAD = """# Wrong recordings
-
-Two simulated tests, spoilt in {count} ways, and what comes of each:
-{tests}. An answer is right when the recording is
-refused and the sentence names the cause; when every wrong number is not trusted and the cause is among the first
-three reasons; when its numbers are right all the same; or, where no recording can show the fault, when the assumption
-stands beside the number. Wrong and trusted: {wrong}; not trusted, but without the cause: {unnamed}.
-
-Written by `python -m tests.wrong_recordings docs/wrong-recordings.md`; a test holds every row. The causes were written
-down, in `tests/wrong_recordings/`, before the answers were seen; one was widened since: of a channel that holds its
-values in one leg alone it may be said that it stands still for a share of the time.
-"""
-TABLE = """
-## {title}
-
-{remark}
-
-| what is wrong | answer | in its words |
-|---|---|---|
-"""
-REMARKS = {
-    ONE_SPEED: "Sines and steps about one working point, from a ship as the vessel file says.",
-    TWO_SPEEDS: "Two multisines with steps at the end, as `shaftprint plan` recommends from a ship's card. The lever "
-    "bends, has play and comes in steps of 12 bits, and the noise is not that of the ship for which it was planned.",
-}
+MARKS = "<!-- wrong recordings: begin -->", "<!-- wrong recordings: end -->"
+FILES = {ONE_SPEED: "wrong-recordings-one-speed.tsv", TWO_SPEEDS: "wrong-recordings-two-speeds.tsv"}
+HEAD = ("what is wrong", "answer", "in its words")
+OUTCOMES = {"refused": "refused", "not trusted": "not trusted", "right": "right all the same"}
 LONGEST = 220
 
 
-def row(case: Case, found: Answer) -> str:
-    """Return one row of the table."""
+def row(case: Case, found: Answer) -> tuple[str, str, str]:
+    """Return one row of the file of a test."""
     file = re.escape(case.test.file)
     words = re.sub(rf"/\S*/{file}", case.test.file, " ".join(found.words.split())).replace("|", "/")
     words = words if len(words) <= LONGEST else f"{words[:LONGEST].rsplit(' ', 1)[0]} ..."
-    return f"| {case.name} | {found.outcome} | {words or '-'} |"
+    return case.name, found.outcome, words
 
 
-def page(answers: list[tuple[Case, Answer]]) -> str:
-    """Return the page of all answers."""
+def kinds() -> dict[str, str]:
+    """Return the kind of each case by its name."""
+    both = (*KINDS_OF_LEGS.items(), *KINDS.items())
+    return {case.name: kind for kind, cases in both for case in cases}
 
-    def of(test: Sailed) -> list[str]:
-        return [row(case, told) for case, told in answers if case.test == test]
 
-    counts = " and ".join(f"{test.words} in {len(of(test))}" for test in REMARKS)
-    wrong, unnamed = (
-        sum(told.outcome.endswith(words) for _, told in answers) for words in ("WRONG", "cause not named")
+def summary(rows: Mapping[Sailed, Sequence[Sequence[str]]]) -> str:
+    """Return what the page says of the rows of both tests: how many of each kind have which answer."""
+    kind_of = kinds()
+    counts = {test: Counter((kind_of[name], outcome) for name, outcome, _ in found) for test, found in rows.items()}
+    lines = ["| kind | test | cases | " + " | ".join(OUTCOMES.values()) + " |", "|---|---|---|---|---|---|"]
+    for kind in KINDS:
+        for test, count in counts.items():
+            if whole := sum(n for (of, _), n in count.items() if of == kind):
+                speeds = "one speed" if test is ONE_SPEED else "two speeds"
+                cells = " | ".join(str(count[kind, outcome]) for outcome in OUTCOMES)
+                lines.append(f"| {kind} | {speeds} | {whole} | {cells} |")
+    told = [outcome for found in rows.values() for _, outcome, _ in found]
+    wrong, unnamed = (sum(one.endswith(words) for one in told) for words in ("WRONG", "cause not named"))
+    links = ", ".join(
+        f"[{len(found)} of the {test.words.split(' ', 1)[1]}](results/{FILES[test]})" for test, found in rows.items()
     )
-    text = HEAD.format(count=len(answers), tests=counts, wrong=wrong, unnamed=unnamed)
-    for test, remark in REMARKS.items():
-        title = test.words.split(" ", 1)[1]
-        text += TABLE.format(title=title[0].upper() + title[1:], remark=remark) + "\n".join(of(test)) + "\n"
-    return text
+    return (
+        f"{len(told)} cases. Wrong and trusted: {wrong}; not trusted, but without the cause: {unnamed}. "
+        f"Every case with its answer: {links}.\n\n" + "\n".join(lines)
+    )
+
+
+def write_page(path: Path, rows: Mapping[Sailed, Sequence[Sequence[str]]]) -> None:
+    """Write the rows of both tests beside the page, and what it says of them."""
+    for test, found in rows.items():
+        write_rows(path.parent / FOLDER / FILES[test], [HEAD, *found])
+    write_between_marks(path, summary(rows), *MARKS, beside=False)
 
 
 def _asked(case: Case) -> dict[str, Any]:
@@ -104,8 +104,9 @@ def main() -> int:
     bad = sum(not told.passes for _, told in answers)
     print(f"{len(answers)} cases, {bad} not as they must be")
     if target is not None:
-        target.write_text(page(answers), encoding="utf-8")
+        write_page(target, {test: [row(*one) for one in answers if one[0].test == test] for test in FILES})
     return 1 if bad else 0
 
 
-sys.exit(main())
+if __name__ == "__main__":
+    sys.exit(main())

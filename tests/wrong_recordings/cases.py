@@ -325,4 +325,14 @@ OTHERS = (
          ship={"demand_rate_limit_rpm_per_s": 120.0}),
 )  # fmt: skip
 
-CASES = (*GAUGE, *PICK_UPS, *SET_POINTS, *CLOCKS, *GAPS, *FILES, *SAMPLES, *OTHERS)
+KINDS = {
+    "torque gauge": GAUGE,
+    "pick-ups, speeds": PICK_UPS,
+    "set point, lever": SET_POINTS,
+    "clocks, rates": CLOCKS,
+    "missing stretches": GAPS,
+    "vessel and campaign files": FILES,
+    "held and filtered samples, clocks of a logger": SAMPLES,
+    "ship, governor, channels": OTHERS,
+}
+CASES = tuple(case for cases in KINDS.values() for case in cases)

@@ -277,7 +277,16 @@ SHIPS = (
     Case(name="rack whose rate is limited", cause="limit|rate|explain", ship={"rack_rate_limit_per_s": 0.5}),
 )  # fmt: skip
 
+KINDS_OF_LEGS = {
+    "torque gauge": GAUGE,
+    "pick-ups, speeds": SPEEDS,
+    "set point, lever": SET_POINTS,
+    "clocks, rates": CLOCKS,
+    "missing stretches": GAPS,
+    "vessel and campaign files": FILES,
+    "ship, governor, channels": SHIPS,
+}
 CASES_OF_LEGS = (
-    *(replace(case, test=TWO_SPEEDS) for case in (*GAUGE, *SPEEDS, *SET_POINTS, *CLOCKS, *GAPS, *FILES, *SHIPS)),
+    *(replace(case, test=TWO_SPEEDS) for cases in KINDS_OF_LEGS.values() for case in cases),
     *(replace(case, test=TWO_SPEEDS, fast=False) for case in CASES if case.both),
 )
