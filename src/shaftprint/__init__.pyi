@@ -24,6 +24,7 @@ from shaftprint import identify as identify
 from shaftprint import kernels as kernels
 from shaftprint import late as late
 from shaftprint import limits as limits
+from shaftprint import live as live
 from shaftprint import markup as markup
 from shaftprint import memory as memory
 from shaftprint import models as models

@@ -21,6 +21,8 @@
     ├── StoreError            a store of fingerprints that cannot be used, or a record that it refuses
     │   └── DatabaseError     a database that is busy, full, damaged or not reached: another time it may do
     ├── ServerError           a server that cannot be started, or a request that it refuses
+    ├── LiveError             a live test that cannot be armed, or whose counterpart refuses
+    │   └── SilentLinkError   a counterpart of which nothing comes any more
     ├── ExportError           a model that cannot be written for another program
     └── RequestError          arguments that do not go together, or of which one is missing
 
@@ -106,6 +108,14 @@ class DatabaseError(StoreError):
 
 class ExportError(ShaftprintError):
     """A model cannot be written for another program."""
+
+
+class LiveError(ShaftprintError):
+    """A live test cannot be armed, or its counterpart refuses what was asked of it."""
+
+
+class SilentLinkError(LiveError):
+    """Nothing comes from a counterpart any more; whoever waits longer waits for ever."""
 
 
 class RequestError(ShaftprintError):

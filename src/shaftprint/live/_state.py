@@ -1,0 +1,42 @@
+"""The states of a live test, and which may follow which."""
+
+from enum import StrEnum
+
+from shaftprint.errors import LiveError
+
+
+class State(StrEnum):
+    """What a live test does now; the value is the word on the pages."""
+
+    IDLE = "idle"
+    ARMED = "armed"
+    RAMP_IN = "ramp in"
+    SETTLE = "settle"
+    LEG = "leg"
+    RAMP_OUT = "ramp out"
+    HOLD = "hold"
+    ABORT = "abort"
+
+
+_MAY_FOLLOW = {
+    State.IDLE: {State.ARMED},
+    State.ARMED: {State.RAMP_IN, State.IDLE},
+    State.RAMP_IN: {State.SETTLE, State.LEG, State.HOLD},
+    State.SETTLE: {State.LEG, State.HOLD, State.RAMP_OUT},
+    State.LEG: {State.LEG, State.RAMP_IN, State.RAMP_OUT, State.HOLD},
+    State.RAMP_OUT: {State.IDLE, State.HOLD},
+    State.HOLD: {State.RAMP_IN, State.RAMP_OUT, State.IDLE},
+    State.ABORT: {State.IDLE},
+}
+"""Besides, an abort may follow everything."""
+
+
+def following(state: State, wanted: State) -> State:
+    """Return the state that is wanted, if it may follow; an abort may follow every state.
+
+    Raises LiveError if it may not.
+    """
+    if wanted is State.ABORT or wanted in _MAY_FOLLOW[state]:
+        return wanted
+    may = ", ".join(sorted(_MAY_FOLLOW[state]))
+    raise LiveError(f'live test: expected one of {may} or abort after "{state}", found "{wanted}".')
