@@ -35,7 +35,7 @@ test test-slow test-all: export OPENBLAS_NUM_THREADS ?= 1
 test: $(VENV)/test ## Run the tests that a change needs
 	$(PYTEST) -m "$(QUICK)"
 
-test-slow: $(VENV)/test ## Run them, the slow tests and most wrong recordings, with the coverage of the calculating rooms
+test-slow: $(VENV)/test ## Run them, the slow tests and one wrong recording in seven, with the coverage of the calculating rooms
 	$(PYTEST) -m "$(TRACED)" $(ROOMS:%=tests/%) $(ROOMS:%=--cov=shaftprint.%) --cov-report=
 	$(BIN)/python -m coverage report --skip-covered --fail-under 95
 	$(PYTEST) -m "not long and not ($(TRACED))"
