@@ -13,7 +13,7 @@ OFTEN = frozenset(case.name for case in CASES[::3])
 
 
 def marked(case: Case) -> object:
-    """Return a case that is not of every test run: two speeds, other ships, and two of three others are for a release."""
+    """Return a case that is not of every test run: two speeds, other ships, two of three others are for a release."""
     often = case.test == ONE_SPEED and not case.ship and case.name in OFTEN
     long = [] if often else [pytest.mark.long]
     return pytest.param(case, id=f"{case.test.file} {case.name}", marks=[pytest.mark.wrong_recordings, *long])
