@@ -19,7 +19,7 @@ from shaftprint.normalisation import Normalisation, inertia_time_s
 SOURCE = Path(shaftprint.__file__).parent
 LIMITS = ("torque", "rate", "deadband", "smoke", "ramp")
 # Tables of printed values, whose rows are what the thesis and the demo print, and Greek letters.
-PRINTED = {"report/thesis/_thesis_mode.py", "cli/_demo_summary.py"}
+PRINTED = {"report/thesis/_thesis_mode.py", "cli/_found.py"}
 LETTERS = {"zeta", "kappa", "sigma"}
 # The tug has names of its own truth, and shares nothing with what it tests.
 HOMES = {"catalogue", "tug"}

@@ -19,7 +19,7 @@ def test_one_recording_gives_a_fingerprint_of_each_side_and_how_they_differ(run:
     assert sailed.exit_code == 0, sailed.output
     truth = json.loads((tmp_path / "both.truth.json").read_text(encoding="utf-8"))
     assert truth["port"]["normalised"] == truth["starboard"]["normalised"]
-    found = run("identify", recording, *SIDES, "-o", result)
+    found = run("identify", recording, *SIDES, "-v", "-o", result)
     assert found.exit_code == 0, found.output
     document = run("identify", recording, *SIDES, "--no-report", "--json", "-o", tmp_path / "plain")
     given = json.loads(document.output)["result"]

@@ -150,6 +150,11 @@ def test_a_fingerprint_alone_is_written_without_page_and_takes_the_place_of_one_
     alone = run("identify", recording, *GIVEN, "--no-report", "-o", tmp_path / "out")
     assert alone.exit_code == 0, alone.stderr
     assert "Report:" not in alone.output
+    # the answer alone: tables are printed by -v and show
+    assert len(alone.output.splitlines()) <= 45
+    assert "What was found" in alone.output
+    assert "Uncertainty budget" not in alone.output
+    assert "Uncertainty budget" in run("show", tmp_path / "out").output
     shown = [path.name for path in (tmp_path / "out").iterdir() if not path.name.startswith(".")]
     assert shown == ["fingerprint.json"]
     fingerprint = read_fingerprint(tmp_path / "out" / "fingerprint.json")

@@ -66,7 +66,7 @@ def test_example_of_ones_own_structure(beside_demo, capsys):
 def test_example_of_ones_own_structure_on_the_command_line(run, beside_demo):
     own = f"{ROOT / 'examples' / 'own_structure.py'}:elastic_core"
     given = ("--vessel", "demo/vessel.toml", "--campaign", "demo/campaign.toml", "--no-progress")
-    result = run("identify", "demo/recording.nc", *given, "--structure", own, "-o", "elastic")
+    result = run("identify", "demo/recording.nc", *given, "--structure", own, "-v", "-o", "elastic")
     assert result.exit_code == 0, result.stderr
     assert "ELASTIC-CORE explains" in result.output
     assert "Identified parameters" in result.output

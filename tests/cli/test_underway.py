@@ -17,7 +17,7 @@ def test_half_an_hour_in_service(run, tmp_path):
     looked = run("inspect", recording, *TRIAL)
     assert looked.output.startswith("Good enough: 11 of 11 lines are good")
     assert "speed of the ship" in looked.output
-    found = run("identify", recording, *TRIAL, "--no-report", "-o", result)
+    found = run("identify", recording, *TRIAL, "--no-report", "-v", "-o", result)
     assert found.exit_code == 0, found.output
     assert "structure FREE-LOG" in found.output
     assert "wake fraction, with the propeller's curves known" in found.output

@@ -8,8 +8,9 @@ from pathlib import Path
 from typing import Any
 
 from shaftprint.cli._drive_options import expect_not_given, is_given
+from shaftprint.cli._found import drive_sentences
 from shaftprint.cli._results import print_paths
-from shaftprint.cli._terminal import print_findings, say
+from shaftprint.cli._terminal import details, print_findings, say
 from shaftprint.cli.output._fingerprint_file import FINGERPRINT
 from shaftprint.cli.output._json import give
 from shaftprint.cli.output._results_options import Results
@@ -57,7 +58,7 @@ def identify_on_the_bench(
             *structure_sources(chosen),
         )
         fingerprint = drive_fingerprint(fit, sources=sources, now=datetime.now(UTC))
-        print_drive(fingerprint)
+        print_drive(fingerprint, whole=False)
         write_drive_fingerprint(fingerprint, folder / FINGERPRINT)
         with results.progress() as steps:
             steps.begin("Writing the report", total=1.0)
@@ -65,13 +66,26 @@ def identify_on_the_bench(
     print_paths(results.output)
 
 
-def print_drive(fingerprint: DriveFingerprint) -> None:
-    """Print verdict, parameters, records and what was taken as known."""
+def print_drive(fingerprint: DriveFingerprint, *, whole: bool = True) -> None:
+    """Print verdict, parameters, records and what was taken as known.
+
+    ``whole``: whether all of it is the answer; otherwise it is the verdict and what was found, the rest are details.
+    """
     verdict = fingerprint.verdict
     print_findings(
         f"Verdict: {'trustworthy' if verdict.trustworthy else 'not trustworthy'}", verdict.sentences, is_answer=True
     )
     give("fingerprint", fingerprint)
+    if whole:
+        _print_rest(fingerprint)
+        return
+    if verdict.trustworthy:
+        print_findings("What was found", drive_sentences(fingerprint), is_answer=True)
+    with details():
+        _print_rest(fingerprint)
+
+
+def _print_rest(fingerprint: DriveFingerprint) -> None:
     say(f"{fingerprint.drive}; structure {fingerprint.structure}")
     tables = [quantity_table("Identified parameters", fingerprint.parameters)]
     if fingerprint.combinations:

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Mapping, Sequence
 
-from shaftprint.cli._terminal import print_findings, say
+from shaftprint.cli._found import found_sentences
+from shaftprint.cli._terminal import details, is_detailed, print_findings, say
 from shaftprint.cli.output._json import give
 from shaftprint.cli.output._tables import print_tables
 from shaftprint.digits import stated
@@ -28,18 +29,55 @@ with late():
     from shaftprint.tables._conditions import ship_text, tested_text, water_facts
 
 
-def print_fingerprint(
-    fingerprint: Fingerprint, *, truth: Mapping[str, float] | None = None, line: str | None = None
+ASSUMED = "Assumed:"
+"""How the sentences of a verdict begin that say what it rests on."""
+
+
+def print_fingerprint(fingerprint: Fingerprint) -> None:
+    """Print verdict, conditions, parameters, physical values, margins, budget, quality and findings."""
+    _print_verdict(fingerprint, fingerprint.verdict.sentences)
+    _print_rest(fingerprint, {})
+
+
+def print_found(
+    fingerprint: Fingerprint,
+    *,
+    truth: Mapping[str, float] | None = None,
+    line: str | None = None,
+    further: Sequence[str] = (),
 ) -> None:
-    """Print verdict, conditions, parameters, physical values, margins, budget, quality and findings.
+    """Print verdict and what was found; with ``--verbose`` all that ``print_fingerprint`` does.
 
     ``fingerprint``: what to print. ``truth``: true values by the names of parameters, combinations and physical values,
-    where they are known. ``line``: which line of a ship it is of, where there are several.
+    where they are known. ``line``: which line of a ship it is of, where there are several. ``further``: what else was
+    found, in sentences.
     """
     verdict, truth = fingerprint.verdict, truth or {}
-    title = f"Verdict: {'trustworthy' if verdict.trustworthy else 'not trustworthy'}"
-    print_findings(title if line is None else f"{line}. {title}", verdict.sentences, is_answer=True)
+    sentences = verdict.sentences
+    if not is_detailed():
+        sentences = tuple(one for one in sentences if not one.startswith(ASSUMED))
+        if verdict.assumptions:
+            # their count, and where they are told: they are the longest part of a verdict that is fine
+            where = "`shaftprint show` and the report have them"
+            sentences += (f"{ASSUMED} {_points(len(verdict.assumptions))} that no recording can show; {where}.",)
+    _print_verdict(fingerprint, sentences, line)
+    if verdict.trustworthy:
+        print_findings("What was found", [*found_sentences(fingerprint, truth), *further], is_answer=True)
+    with details():
+        _print_rest(fingerprint, truth)
+
+
+def _points(count: int) -> str:
+    return "one point" if count == 1 else f"{count} points"
+
+
+def _print_verdict(fingerprint: Fingerprint, sentences: Sequence[str], line: str | None = None) -> None:
+    title = f"Verdict: {'trustworthy' if fingerprint.verdict.trustworthy else 'not trustworthy'}"
+    print_findings(title if line is None else f"{line}. {title}", sentences, is_answer=True)
     give("fingerprint" if line is None else f"fingerprint of {line}", fingerprint)
+
+
+def _print_rest(fingerprint: Fingerprint, truth: Mapping[str, float]) -> None:
     _print_conditions(fingerprint)
     print_tables(
         [

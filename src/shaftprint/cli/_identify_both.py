@@ -7,10 +7,10 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from shaftprint.cli._fingerprint_tables import print_fingerprint
+from shaftprint.cli._fingerprint_tables import print_found
 from shaftprint.cli._report_options import ReportOptions
 from shaftprint.cli._results import Report
-from shaftprint.cli._terminal import answer, echo, say
+from shaftprint.cli._terminal import answer, details, echo, say
 from shaftprint.cli.output._fingerprint_file import FINGERPRINT, REPORT
 from shaftprint.cli.output._json import give
 from shaftprint.cli.output._results_options import Results
@@ -96,7 +96,7 @@ def _print(both: SurveyOfBoth) -> None:
     first, other = both.port.fingerprint, both.starboard.fingerprint
     finding, found = differ(first, other), differences(first, other)
     for side, survey in both.sides.items():
-        print_fingerprint(survey.fingerprint, line=side)
+        print_found(survey.fingerprint, line=side)
     doubtful = [side for side, survey in both.sides.items() if not survey.fingerprint.verdict.trustworthy]
     words = change_in_words(found) if finding.because else " ".join(finding_sentences(finding))
     if doubtful:
@@ -105,9 +105,10 @@ def _print(both: SurveyOfBoth) -> None:
     give("differences", found)
     give("causes", finding)
     give("wash", both.washes)
-    if not finding.because:
-        print_tables([cause_table("starboard", finding)])
-    _print_differences(found)
+    with details():
+        if not finding.because:
+            print_tables([cause_table("starboard", finding)])
+        _print_differences(found)
     for sentence in (*vessel_file_sentences(first, other)[1:], *wash_sentences(both.washes)):
         say(sentence)
 

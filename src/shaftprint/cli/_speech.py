@@ -37,7 +37,7 @@ def _options() -> list[click.Option]:
             is_flag=True,
             expose_value=False,
             callback=_verbose,
-            help="Name each step of long work with its time on the error output.",
+            help="Print details too, and name each step of long work with its time on the error output.",
         ),
         click.Option(
             ["-q", "--quiet"],

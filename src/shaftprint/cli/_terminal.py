@@ -1,7 +1,7 @@
 """The gate to the terminal: whatever a command prints goes through here, and no text out of a file moves the cursor.
 
 What is printed is an answer, sentences under a title, a table, or a line as it is. With ``--json`` the same become one
-document on the standard output; with ``--quiet`` only the answer is printed.
+document on the standard output; with ``--quiet`` only the answer is printed, and details only with ``--verbose``.
 """
 
 import json
@@ -9,7 +9,8 @@ import os
 import shutil
 import sys
 import textwrap
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
@@ -49,9 +50,16 @@ class Output:
     quiet: bool = False
     """Whether only the answer is printed, and no progress."""
     verbose: bool = False
-    """Whether each step of long work is named with its time, without a terminal too."""
+    """Whether details are printed, and each step of long work is named with its time, without a terminal too."""
+    in_details: bool = False
+    """Whether what is printed now is a detail, see ``details``."""
     document: Document | None = None
     """Where everything goes instead of the terminal; None without ``--json``."""
+
+    @property
+    def answers_only(self) -> bool:
+        """Whether only answers are printed now."""
+        return self.quiet or (self.in_details and not self.verbose)
 
 
 def output() -> Output:
@@ -61,6 +69,23 @@ def output() -> Output:
         return Output()
     chosen: Output = context.meta.setdefault(_KEY, Output())
     return chosen
+
+
+@contextmanager
+def details() -> Iterator[None]:
+    """Let what is printed inside, but for answers, be seen with ``--verbose`` and ``--json`` only."""
+    chosen = output()
+    before, chosen.in_details = chosen.in_details, True
+    try:
+        yield
+    finally:
+        chosen.in_details = before
+
+
+def is_detailed() -> bool:
+    """Return whether details are wanted."""
+    chosen = output()
+    return chosen.document is not None or (chosen.verbose and not chosen.quiet)
 
 
 def width(*, without_terminal: int) -> int:
@@ -96,7 +121,7 @@ def echo(line: object = "", *, err: bool = False) -> None:
         _put(text, err=True)
     elif chosen.document is not None:
         chosen.document.lines += [text.strip()] if text.strip() else []
-    elif not chosen.quiet:
+    elif not chosen.answers_only:
         _put(text)
 
 
@@ -105,7 +130,7 @@ def say(sentence: str, *, indent: str = "") -> None:
     chosen = output()
     if chosen.document is not None:
         chosen.document.lines.append(printable(sentence.strip()))
-    elif not chosen.quiet:
+    elif not chosen.answers_only:
         _put(_wrapped(sentence, indent, indent) + "\n" * (len(sentence) - len(sentence.rstrip("\n"))))
 
 
@@ -132,7 +157,7 @@ def print_findings(title: str, findings: Sequence[str], *, is_answer: bool = Fal
         else:
             chosen.document.findings.append({"title": printable(title), "sentences": sentences})
         return
-    if chosen.quiet and not is_answer:
+    if chosen.answers_only and not is_answer:
         return
     _put(_wrapped(title, "", ""))
     for finding in findings or ("None.",):

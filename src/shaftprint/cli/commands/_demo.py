@@ -10,13 +10,13 @@ from pathlib import Path
 
 import click
 
-from shaftprint.cli._demo_summary import print_summary
-from shaftprint.cli._fingerprint_tables import print_fingerprint
+from shaftprint.cli._fingerprint_tables import print_found
 from shaftprint.cli._fleet_answers import print_answers, print_commands
 from shaftprint.cli._fleet_demo import all_tested, fleet_of_the_demo, tests_of_the_demo
+from shaftprint.cli._found import thesis_sentences
 from shaftprint.cli._results import print_comparison, print_paths, write_results
 from shaftprint.cli._signal_tables import print_lines
-from shaftprint.cli._terminal import echo, say
+from shaftprint.cli._terminal import details, echo, say
 from shaftprint.cli.output._output_folder import force_option, output_folder
 from shaftprint.cli.output._progress import Steps, no_progress_option, progress
 from shaftprint.cli.output._tables import print_table
@@ -99,12 +99,10 @@ def _ship(output: Path, *, seed: int, short: bool, force: bool, no_progress: boo
         survey, thesis = results.survey, results.thesis
         true = fingerprint_truth(truth, survey.identification.structure, survey.signals)
         # the answer first: the report takes as long again
-        for remark in survey.remarks:
-            say(remark)
-        _print(survey, thesis, true)
-        for comparison in survey.comparisons:
-            print_comparison(comparison)
-        print_summary(survey.fingerprint, true, thesis.identifications["OL1"])
+        further = thesis_sentences(survey.fingerprint, thesis.identifications["OL1"])
+        print_found(survey.fingerprint, truth=true, further=further)
+        with details():
+            _print_details(survey, thesis)
         with progress(hidden=no_progress) as steps:
             write_results(
                 folder,
@@ -152,7 +150,9 @@ def _identify(recording: Path, trial: Trial, *, seed: int, steps: Steps) -> _Res
         return _Results(survey=survey, thesis=thesis, line_selection=selections.result())
 
 
-def _print(survey: Survey, thesis: ThesisMode, true: Mapping[str, float]) -> None:
+def _print_details(survey: Survey, thesis: ThesisMode) -> None:
+    for remark in survey.remarks:
+        say(remark)
     print_lines(survey.spectra)
     print_table(fits_table("Structures of the thesis, on the same signals, weighted by their noise", survey.fits[1:]))
     print_table(
@@ -160,7 +160,8 @@ def _print(survey: Survey, thesis: ThesisMode, true: Mapping[str, float]) -> Non
             "Structures of the thesis, signals and fits done the thesis' way", tuple(thesis.identifications.values())
         )
     )
-    print_fingerprint(survey.fingerprint, truth=true)
+    for comparison in survey.comparisons:
+        print_comparison(comparison)
 
 
 def _print_paths(output: Path) -> None:

@@ -8,7 +8,7 @@ import click
 
 from shaftprint.cli._drive_identify import identify_on_the_bench
 from shaftprint.cli._drive_options import drive_option, only_recording
-from shaftprint.cli._fingerprint_tables import print_fingerprint
+from shaftprint.cli._fingerprint_tables import print_found
 from shaftprint.cli._fit_options import fit_options
 from shaftprint.cli._identify_both import identify_both_lines
 from shaftprint.cli._limit_tables import print_limits, print_line
@@ -23,7 +23,7 @@ from shaftprint.cli._options import (
 )
 from shaftprint.cli._report_options import ReportOptions, report_options
 from shaftprint.cli._results import Report, print_comparison, print_paths
-from shaftprint.cli._terminal import print_findings, say
+from shaftprint.cli._terminal import details, print_findings, say
 from shaftprint.cli.output._fingerprint_file import FINGERPRINT
 from shaftprint.cli.output._progress import Steps
 from shaftprint.cli.output._results_options import Results, results_options
@@ -96,7 +96,8 @@ def command(
 ) -> None:
     """Identify the fingerprint from a recording.
 
-    Writes the fingerprint as JSON, the figures and a report into a folder, and prints the tables.
+    Writes the fingerprint as JSON and a report with figures and tables into a folder, and prints the verdict and what
+    was found; -v prints the tables too.
     --structure, --leg, --prior, --free and --hold may be repeated. With --drive, several recordings of
     one drive are fitted together. With --starboard both lines of a ship are identified from one
     recording and compared, each with results in a folder of its own.
@@ -146,7 +147,7 @@ def command(
                 progress=steps,
             )
         # the answer first: what follows takes as long again
-        print_fingerprint(survey.fingerprint)
+        print_found(survey.fingerprint)
         with results.progress() as steps:
             survey = _with_more(survey, more, rng=rng, steps=steps)
         _print_line(survey)
@@ -181,12 +182,13 @@ def _print_line(survey: Survey) -> None:
 
 
 def _print_judgement(survey: Survey) -> None:
-    """Print what speaks for a limit, what was not validated, and which structure the data want."""
-    for remark in survey.remarks:
-        say(remark)
-    if survey.leg_tests:
-        print_table(leg_test_table(survey.leg_tests, p_value=survey.identification.p_value))
-    print_findings("Limits", survey.limit_hints)
+    """Print which structure the data want where several were asked for; what is in the report too is a detail."""
+    with details():
+        for remark in survey.remarks:
+            say(remark)
+        if survey.leg_tests:
+            print_table(leg_test_table(survey.leg_tests, p_value=survey.identification.p_value))
+        print_findings("Limits", survey.limit_hints)
     if len(survey.fits) > 1:
         print_table(fits_table("All structures", survey.fits))
     for comparison in survey.comparisons:

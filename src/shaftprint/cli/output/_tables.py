@@ -24,7 +24,7 @@ def print_table(table: Table, *, noted: bool = True) -> None:
     if chosen.document is not None:
         chosen.document.tables.append(table_json(table))
         return
-    if chosen.quiet:
+    if chosen.answers_only:
         return
     print_lines_of_table(plain_letters(table.title), table_lines(table, width(without_terminal=WIDTH_OF_TABLES)))
     if noted and table.note:

@@ -1,30 +1,68 @@
-"""The last lines of the demo: what was found, in words, with the truth beside it."""
+"""What was found, in words: the numbers that an engineer wants to know, each with what else is known of it."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
-from shaftprint.cli._terminal import print_findings
 from shaftprint.digits import plain_letters, stated, stated_interval, to_digit_of
 from shaftprint.late import late
 
 with late():
     from shaftprint import distributions
     from shaftprint.catalogue._roles import ShipRole
+    from shaftprint.fingerprint._drive_fingerprint import DriveFingerprint
     from shaftprint.fingerprint._fingerprint import Fingerprint
     from shaftprint.identify.fit._estimate import Estimate
     from shaftprint.identify.fit._identification import Identification
 
+MOST_PARAMETERS = 12
+"""So many parameters are told where a structure has none of the numbers that have words of their own."""
 
-def print_summary(fingerprint: Fingerprint, truth: Mapping[str, float], core: Identification) -> None:
-    """Print what an engineer wants to know, each with its truth."""
+
+def found_sentences(fingerprint: Fingerprint, truth: Mapping[str, float]) -> list[str]:
+    """Return what was found, a sentence for each number: its truth where that is known, why it is not to be used.
+
+    A structure with none of the numbers that have words here is told by its parameters.
+    """
+    there = {one.name: one for kind in fingerprint.numbers.values() for one in kind}
+    doubts = fingerprint.verdict.not_trusted
     sentences = []
-    for name, words in SENTENCES.items():
-        quantity = fingerprint.quantity(name)
-        unit = "" if quantity.unit == "-" else f" {quantity.unit}"
-        true = plain_letters(to_digit_of(truth[name], _shown_std(quantity)))
-        sentences.append(f"{words}: {_value(quantity)}{_given(quantity, fingerprint)}; true value {true}{unit}.")
-    print_findings("What was found", [*sentences, *_of_the_thesis(fingerprint, core)], is_answer=True)
+    for name in [name for name in SENTENCES if name in there]:
+        quantity = there[name]
+        given = _given(quantity, fingerprint) or ("" if name in truth else _beside(quantity))
+        true = _true(quantity, truth[name]) if name in truth else ""
+        # what was known beforehand says by itself that the test did not find it
+        doubt = f"; not to be used: {doubts[name]}" if name in doubts and not _given(quantity, fingerprint) else ""
+        sentences.append(f"{SENTENCES[name]}: {_value(quantity)}{given}{true}{doubt}.")
+    return sentences or _of_parameters(fingerprint.parameters, doubts)
+
+
+def drive_sentences(fingerprint: DriveFingerprint) -> list[str]:
+    """Return the parameters of a drive, a sentence for each."""
+    return _of_parameters(fingerprint.parameters, fingerprint.verdict.not_trusted)
+
+
+def _of_parameters(parameters: Sequence[Estimate], doubts: Mapping[str, str]) -> list[str]:
+    sentences = []
+    for one in parameters[:MOST_PARAMETERS]:
+        doubt = f"; not to be used: {doubts[one.name]}" if one.name in doubts else ""
+        sentences.append(f"{one.name}{f', {one.meaning}' if one.meaning else ''}: {_value(one)}{doubt}.")
+    more = len(parameters) - MOST_PARAMETERS
+    return [*sentences, f"{more} parameters more, in the report."] if more > 0 else sentences
+
+
+def _true(quantity: Estimate, true: float) -> str:
+    unit = "" if quantity.unit == "-" else f" {quantity.unit}"
+    return f"; true value {plain_letters(to_digit_of(true, _shown_std(quantity)))}{unit}"
+
+
+def _beside(quantity: Estimate) -> str:
+    """Return what the vessel file says of it, where it is a physical value that the file has."""
+    if not quantity.expected:
+        return ""
+    if quantity.expected_std:
+        return f", in the vessel file {stated(quantity.expected, quantity.expected_std, quantity.unit)}"
+    return f", in the vessel file {plain_letters(to_digit_of(quantity.expected, _shown_std(quantity)))}"
 
 
 def _value(quantity: Estimate) -> str:
@@ -55,6 +93,7 @@ def _given(quantity: Estimate, fingerprint: Fingerprint) -> str:
 SENTENCES = {
     "I_dn": "Propeller, shaft and entrained water, the inertia behind the torque gauge",
     "I_up": "Engine, coupling and gearbox, the inertia before the torque gauge",
+    "K_Q": "Torque coefficient of the propeller",
     "k_q": "The propeller torque grows with this power of the speed; 2 says that gauge and inflow are in order",
     "t_d + t_sp": "Total delay from the set point to the fuel",
     "K_p / K_i": "The governor's reset time",
@@ -63,7 +102,7 @@ SENTENCES = {
 }
 
 
-def _of_the_thesis(fingerprint: Fingerprint, core: Identification) -> list[str]:
+def thesis_sentences(fingerprint: Fingerprint, core: Identification) -> list[str]:
     """Return what the thesis' way finds in the same recording, and why."""
     upstream = fingerprint.quantity("I_up")
     inertia_time, core_name = fingerprint.multiplied(upstream), core.structure.named_as(ShipRole.INERTIA)
