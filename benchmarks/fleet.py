@@ -39,7 +39,6 @@ from shaftprint.fleet import JobArguments, submit, work, work_on_dask
 from shaftprint.fleet._arguments import job_arguments
 from shaftprint.fleet.computing._identify import survey_of_job
 from shaftprint.store import (
-    Job,
     JobRequest,
     add_document,
     claim,
@@ -53,6 +52,7 @@ from shaftprint.store import (
     retry,
 )
 from shaftprint.store import document as kept_document
+from shaftprint.store._job import Job
 from shaftprint.tug import sail
 from shaftprint.vessel import load_vessel
 

@@ -25,7 +25,8 @@ sys.path.insert(0, str(ROOT))
 from benchmarks import sailed_histories
 from benchmarks.result_tables import write_between_marks
 from benchmarks.sailed_histories import FIRST, QUARTER, SOUND, TESTS
-from shaftprint.drift import Event, history_of, watch
+from shaftprint.drift import history_of, watch
+from shaftprint.drift._dated import Event
 from shaftprint.drift._drift_finding import WatchFinding
 from shaftprint.fingerprint import Fingerprint, read_fingerprint
 from shaftprint.identify import Estimate

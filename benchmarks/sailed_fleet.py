@@ -13,8 +13,7 @@ from shaftprint.fingerprint import Fingerprint, SourceFile
 from shaftprint.identify import Settings
 from shaftprint.survey import fit, load_trial, measure, priors_of
 from shaftprint.survey._survey import fingerprint_of
-from shaftprint.tug import SimulatedFleet
-from shaftprint.tug._simulated_fleet import sail_test
+from shaftprint.tug._simulated_fleet import SimulatedFleet, sail_test
 
 VESSEL, CAMPAIGN, STRUCTURE = "stan-tug-1205", "short", "GAUGE-CLOSED"
 

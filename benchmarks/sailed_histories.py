@@ -16,11 +16,11 @@ import numpy as np
 
 from benchmarks.sailed_fleet import VESSEL, tested
 from shaftprint.distributions import NORMAL_95
-from shaftprint.drift import Event, history_of, watch
+from shaftprint.drift import history_of, watch
+from shaftprint.drift._dated import Event
 from shaftprint.drift._drift_finding import DatedCause
 from shaftprint.fingerprint import Fingerprint, read_fingerprint, write_fingerprint
-from shaftprint.tug import SimulatedFleet
-from shaftprint.tug._simulated_fleet import simulated_fleet
+from shaftprint.tug._simulated_fleet import SimulatedFleet, simulated_fleet
 from shaftprint.tug._simulated_ship import ShipWork, Wear, with_works
 from shaftprint.vessel import load_vessel
 

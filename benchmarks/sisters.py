@@ -26,13 +26,14 @@ sys.path.insert(0, str(ROOT))
 
 from benchmarks.result_tables import write_between_marks
 from benchmarks.sailed_fleet import VESSEL, tested
-from shaftprint.drift import Sister, judge_sisters
+from shaftprint.drift import judge_sisters
 from shaftprint.drift._causes import CAUSES, Cause
+from shaftprint.drift._class_numbers import Sister
 from shaftprint.drift._dated import DatedTest
 from shaftprint.fingerprint import Fingerprint, read_fingerprint, write_fingerprint
 from shaftprint.identify import Estimate
-from shaftprint.tug import SimulatedFleet, Tolerances
-from shaftprint.tug._simulated_fleet import simulated_fleet
+from shaftprint.tug import Tolerances
+from shaftprint.tug._simulated_fleet import SimulatedFleet, simulated_fleet
 from shaftprint.tug._simulated_ship import ShipWork, with_works
 from shaftprint.vessel import load_vessel
 

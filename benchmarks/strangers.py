@@ -26,8 +26,9 @@ from benchmarks.serve import DOCUMENT, Running, begun
 from benchmarks.store_documents import IMO_NUMBER, document
 from benchmarks.timing import print_table
 from shaftprint.store import add_document, check, create_store, export_store, history, open_store
-from shaftprint.web import Person, hashed, with_user
-from shaftprint.web.access._person import Role
+from shaftprint.web import with_user
+from shaftprint.web.access._password import hashed
+from shaftprint.web.access._person import Person, Role
 
 BEGIN, END = ("<!-- table of benchmarks/strangers.py: begin -->", "<!-- table of benchmarks/strangers.py: end -->")
 NAME, PASSWORD = "anna", "a long password of anna"

@@ -69,7 +69,7 @@ def __getattr__(name: str) -> Any:
     if name.startswith("_"):
         # what copy, pickle, inspect and notebooks ask every object for
         raise AttributeError(message)
-    answers = importlib.import_module("shaftprint.notebook").closest_names(name)
+    answers = importlib.import_module("shaftprint.notebook._public_names").closest_names(name)
     if answers:
         raise AttributeError(f"{message}; is {' or '.join(answers)} meant?")
     raise AttributeError(f"{message}; its rooms are {', '.join(room for room in rooms if rooms[room])}.")

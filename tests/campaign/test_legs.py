@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
-from shaftprint.campaign import BinarySequence, Campaign, Multisine, setpoint
+from shaftprint.campaign import Campaign, Multisine, setpoint
+from shaftprint.campaign._binary_sequence import BinarySequence
 
 MULTISINE = {
     "name": "M1",

@@ -7,7 +7,8 @@ import pytest
 
 from shaftprint.campaign import load_campaign
 from shaftprint.catalogue import structure
-from shaftprint.design import GaugeRange, Wish, campaign_of, design_campaign, limit_uses, limits_from_vessel
+from shaftprint.design import Wish, campaign_of, design_campaign, limit_uses, limits_from_vessel
+from shaftprint.design.inputs._gauge_range import GaugeRange
 from shaftprint.design.motion._bounds import bounds_of_leg
 from shaftprint.design.motion._gauge import share_cut_off
 from shaftprint.design.motion._motion import SIGNALS, motion, motion_noise

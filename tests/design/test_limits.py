@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from shaftprint.catalogue import structure
-from shaftprint.design import GaugeRange, assumed_ship, limits_from_vessel
+from shaftprint.design import assumed_ship, limits_from_vessel
+from shaftprint.design.inputs._gauge_range import GaugeRange
 from shaftprint.design.inputs._known_ship import ship_before_test
 from shaftprint.design.inputs._limits import usual_speeds
 from shaftprint.errors import DesignError, SettingsError

@@ -9,19 +9,11 @@ import scipy.stats
 
 from shaftprint.campaign import setpoint
 from shaftprint.catalogue import structure
-from shaftprint.design import (
-    Wish,
-    assumed_ship,
-    campaign_of,
-    design_campaign,
-    expected_operation,
-    length_words,
-    plan_sentences,
-)
+from shaftprint.design import Wish, assumed_ship, campaign_of, design_campaign, expected_operation, plan_sentences
 from shaftprint.design.inputs._known_ship import possible_ship
 from shaftprint.design.motion._bound import Bound
 from shaftprint.design.motion._motion import SIGNALS
-from shaftprint.design.plan._plan import predicted_accuracy
+from shaftprint.design.plan._plan import length_words, predicted_accuracy
 from shaftprint.design.plan._timetable import STAIRS, Timetable
 from shaftprint.design.planning._band import _estimated_variance, with_band
 from shaftprint.design.search._uses import Uses

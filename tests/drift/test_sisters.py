@@ -8,9 +8,10 @@ from tests.drift.test_differ import PRIORS
 from tests.drift.test_watch import FIRST, I_ACTION, P_ACTION, QUARTER, doubted, made
 from tests.known_fits import TRUTH, fitted, taken
 
-from shaftprint.drift import Event, Sister, differ, history_of, judge_sisters, sister_of
+from shaftprint.drift import differ, history_of, judge_sisters
 from shaftprint.drift._causes import CAUSES
-from shaftprint.drift._dated import DatedTest
+from shaftprint.drift._class_numbers import Sister, sister_of
+from shaftprint.drift._dated import DatedTest, Event
 from shaftprint.drift._discoveries import discoveries
 from shaftprint.drift._sister_words import sister_sentences
 from shaftprint.fingerprint._vessel_fields import BEHIND

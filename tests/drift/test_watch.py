@@ -8,8 +8,9 @@ import pytest
 from tests.drift.test_differ import PRIORS
 from tests.known_fits import TRUTH, fitted, taken
 
-from shaftprint.drift import Event, differ, history_of, watch
+from shaftprint.drift import differ, history_of, watch
 from shaftprint.drift._causes import CAUSES
+from shaftprint.drift._dated import Event
 from shaftprint.drift._time_to_limit import time_to_limit
 from shaftprint.drift._words import limit_sentence, watch_sentences
 from shaftprint.errors import FingerprintError

@@ -11,9 +11,9 @@ from shaftprint.catalogue import structure
 from shaftprint.errors import StructureError
 from shaftprint.identify import Settings
 from shaftprint.recording import cut, read_recording, write_recording
-from shaftprint.survey import STAN_TUG_NOISE, fit, leg_tests, legs_alone, load_trial, measure, priors_of, run
+from shaftprint.survey import STAN_TUG_NOISE, fit, leg_tests, load_trial, measure, priors_of, run
 from shaftprint.survey._fits import comparisons_of
-from shaftprint.survey._legs_apart import apart_reasons
+from shaftprint.survey._legs_apart import apart_reasons, legs_alone
 from shaftprint.survey._limit_hints import hints_of
 from shaftprint.survey._measurement import of_legs
 from shaftprint.survey._survey import fingerprint_of

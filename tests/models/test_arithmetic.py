@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from shaftprint.errors import StructureError
-from shaftprint.models import Constant, Gain, Inverse, Parameter, RationalBlock, Structure, feedback, is_stable
+from shaftprint.models import Constant, Gain, Parameter, RationalBlock, Structure, feedback, is_stable
+from shaftprint.models._expression import Inverse
 from shaftprint.models._margins import poles
 
 S = 1j * np.array([0.05, 0.7, 3.0, 19.0])

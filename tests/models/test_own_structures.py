@@ -13,7 +13,6 @@ from shaftprint.models import (
     FunctionBlock,
     Gain,
     Integrator,
-    Inverse,
     Parameter,
     PIGovernor,
     RationalBlock,
@@ -24,6 +23,7 @@ from shaftprint.models import (
     is_stable,
     margins,
 )
+from shaftprint.models._expression import Inverse
 from shaftprint.models._nyquist import stable_rows, unstable_poles
 
 S = 1j * np.array([0.05, 0.7, 3.0, 19.0])

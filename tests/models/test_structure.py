@@ -18,7 +18,6 @@ from shaftprint.models import (
     FilteredDerivative,
     Gain,
     Integrator,
-    Inverse,
     Parameter,
     PIGovernor,
     SecondOrderLag,
@@ -30,6 +29,7 @@ from shaftprint.models import (
     is_stable,
     margins,
 )
+from shaftprint.models._expression import Inverse
 from shaftprint.models._margins import poles
 from shaftprint.models._nyquist import unstable_poles
 from shaftprint.spectra import FrequencyResponse

@@ -10,8 +10,8 @@ import pytest
 
 from shaftprint.clocks import ClockMap, joined
 from shaftprint.errors import ClockError, RecordingError
-from shaftprint.recording import RecordingWriter, cut, judge_messages, read_recording, write_csv, write_recording
-from shaftprint.recording._messages import messages_of
+from shaftprint.recording import RecordingWriter, cut, read_recording, write_csv, write_recording
+from shaftprint.recording._messages import judge_messages, messages_of
 from shaftprint.recording.readers._clock import clock_of_times
 from shaftprint.recording.writers._mdf4 import write_mdf4
 from shaftprint.recording.writers._tdms import write_tdms

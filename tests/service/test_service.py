@@ -15,7 +15,8 @@ from shaftprint.service._model import FREE, service_model
 from shaftprint.service._score import Score, simulated
 from shaftprint.service._segment_file import read_segments
 from shaftprint.service._vetting import shift_of_lever
-from shaftprint.tug import Habits, Tug, lever_course, sail_service
+from shaftprint.tug import Tug, sail_service
+from shaftprint.tug.service._habits import Habits, lever_course
 from shaftprint.vessel import load_vessel
 
 NOW = datetime(2026, 11, 28, 12, tzinfo=UTC)

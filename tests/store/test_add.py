@@ -7,7 +7,7 @@ import pytest
 from benchmarks.store_documents import IMO_NUMBER, document
 
 from shaftprint.errors import FingerprintError, StoreError
-from shaftprint.fingerprint import parse_fingerprint, write_fingerprint
+from shaftprint.fingerprint import read_fingerprint, write_fingerprint
 from shaftprint.store import add, history, newest
 from shaftprint.store import document as kept_document
 from shaftprint.store._nouns import Ship
@@ -27,7 +27,8 @@ def test_a_document_comes_back_byte_by_byte(store, tmp_path):
 
 
 def test_a_fingerprint_that_the_program_wrote_is_kept(store, tmp_path):
-    write_fingerprint(parse_fingerprint(document(ship=NOBODY), named="by hand"), tmp_path / "one.json")
+    (tmp_path / "by_hand.json").write_bytes(document(ship=NOBODY))
+    write_fingerprint(read_fingerprint(tmp_path / "by_hand.json"), tmp_path / "one.json")
     add(store, tmp_path / "one.json", now=NOW)
     (entry,) = history(store, "Meander").entries
     (number,) = (one for one in entry.numbers if one.name == "K_Q")

@@ -2,7 +2,7 @@ import subprocess
 import sys
 
 from shaftprint.drift._dated import EVENTS
-from shaftprint.store import KINDS
+from shaftprint.store._nouns import KINDS
 
 
 def test_the_store_keeps_what_drift_knows():

@@ -10,7 +10,6 @@ from benchmarks.store_documents import IMO_NUMBER, document
 
 from shaftprint.errors import RecordingError, StoreError
 from shaftprint.store import (
-    Job,
     JobRequest,
     check,
     claim,
@@ -29,6 +28,7 @@ from shaftprint.store import (
 from shaftprint.store import document as kept_document
 from shaftprint.store._document import document_sha256
 from shaftprint.store._hashes import file_hashes
+from shaftprint.store._job import Job
 from shaftprint.store._ledger import has_open_jobs
 from shaftprint.store._stated import Stated
 

@@ -7,7 +7,8 @@ from datetime import UTC, datetime, timedelta
 import pytest
 from benchmarks.store_documents import document
 
-from shaftprint.drift import history_of, sister_of
+from shaftprint.drift import history_of
+from shaftprint.drift._class_numbers import sister_of
 from shaftprint.store import add_document, record_event
 from shaftprint.store._line_history import line_history
 

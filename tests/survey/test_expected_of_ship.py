@@ -3,7 +3,7 @@
 import pytest
 
 from shaftprint.catalogue import structure
-from shaftprint.survey import expected_of_ship
+from shaftprint.survey._expected_of_ship import expected_of_ship
 from shaftprint.tug import like_stan_tug_1205, normalised_truth
 from shaftprint.vessel import load_vessel
 

@@ -11,10 +11,11 @@ from shaftprint.catalogue import limited
 from shaftprint.errors import IdentificationError
 from shaftprint.identify import Estimate, GivenStarts
 from shaftprint.signals import SetPointCalibration, Signals, WorkingPoint
-from shaftprint.time_domain import NonlinearSettings, record_from_arrays, structure_for, without_orders
+from shaftprint.time_domain import NonlinearSettings, record_from_arrays, structure_for
 from shaftprint.time_domain.nonlinear._drive import with_exact_jumps
 from shaftprint.time_domain.nonlinear._limited_sines import limited_sines
 from shaftprint.time_domain.nonlinear._numbers import limit_numbers
+from shaftprint.time_domain.nonlinear._orders import without_orders
 from shaftprint.time_domain.nonlinear._search import SomeDrawn
 from shaftprint.vessel import load_vessel
 

@@ -7,7 +7,8 @@ import pytest
 
 from shaftprint.card import disagreements
 from shaftprint.errors import SettingsError
-from shaftprint.vessel import Motor, load_vessel
+from shaftprint.vessel import load_vessel
+from shaftprint.vessel._machinery import Motor
 
 SHIPPED = files("shaftprint.vessel") / "shipped" / "e_ferry_ellen.toml"
 

@@ -13,11 +13,12 @@ from benchmarks.store_documents import document
 
 from shaftprint import __version__
 from shaftprint.store import JobRequest, add_document, create_store, enqueue, open_store, record_event
-from shaftprint.web import Listen, Person, Serving, hashed, with_user
+from shaftprint.web import Listen, Serving, with_user
 from shaftprint.web._kept import KeptJob, Upload
 from shaftprint.web._server import guarded
 from shaftprint.web._service import Service
-from shaftprint.web.access._person import Role
+from shaftprint.web.access._password import hashed
+from shaftprint.web.access._person import Person, Role
 
 NOW = datetime(2026, 11, 24, 12, tzinfo=UTC)
 PASSWORD = "twelve letters"  # noqa: S105

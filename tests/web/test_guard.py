@@ -10,12 +10,13 @@ from tests.web.client import form_of
 from tests.web.conftest import ADA, PASSWORD
 
 from shaftprint.errors import ServerError
-from shaftprint.web import Listen, Person, Serving, listen_at, with_user
+from shaftprint.web import Listen, Serving, with_user
 from shaftprint.web._door import Door
 from shaftprint.web._routes import routes_of
 from shaftprint.web._service import Service
+from shaftprint.web._settings import listen_at
 from shaftprint.web.access._audit import Audit
-from shaftprint.web.access._person import Role
+from shaftprint.web.access._person import Person, Role
 from shaftprint.web.access._throttle import network_of
 
 

@@ -27,12 +27,12 @@ from shaftprint.store import (
 )
 from shaftprint.store._nouns import Ship
 from shaftprint.store._overview import lines_now
-from shaftprint.web import Listen, Person, Serving, with_user
+from shaftprint.web import Listen, Serving, with_user
 from shaftprint.web._kept import KeptJob, Upload
 from shaftprint.web._rights import forbidden_by
 from shaftprint.web._routes import ADDRESSES, routes_of
 from shaftprint.web._service import Service
-from shaftprint.web.access._person import Role
+from shaftprint.web.access._person import Person, Role
 
 BOB, NEW, OTHER_BOB = 9319466, 9100023, 9100011
 SHIPS = {

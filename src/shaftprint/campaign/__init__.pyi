@@ -1,4 +1,3 @@
-from ._binary_sequence import BinarySequence
 from ._both_shafts import CampaignOfBoth
 from ._campaign import Campaign, load_campaign
 from ._excitations import Sine, Staircase
@@ -7,7 +6,6 @@ from ._setpoint import setpoint
 from ._trial_conditions import TrialConditions, load_trial_conditions
 
 __all__ = [
-    "BinarySequence",
     "Campaign",
     "CampaignOfBoth",
     "Multisine",

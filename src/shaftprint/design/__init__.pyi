@@ -1,7 +1,6 @@
 from .files._plan_folder import write_plan_files
 from .files._plan_json import read_plan
 from .inputs._assumed_ship import assumed_ship, ship_of_fit
-from .inputs._gauge_range import GaugeRange
 from .inputs._limits import Limits, limits_from_vessel
 from .inputs._set_point_line import SetPointLine
 from .inputs._stated_limits import StatedLimit
@@ -10,7 +9,7 @@ from .operation._expected import expected_operation
 from .operation._limit_use import limit_uses
 from .operation._recorded import recorded_operation
 from .plan._campaign import campaign_of
-from .plan._plan import Plan, length_words
+from .plan._plan import Plan
 from .planned_test._planned_test import PlannedTest
 from .planned_test._rehearsal import rehearse
 from .planned_test._remedies import remedies
@@ -23,7 +22,6 @@ from .search._search import Effort
 
 __all__ = [
     "Effort",
-    "GaugeRange",
     "Limits",
     "Plan",
     "PlannedTest",
@@ -34,7 +32,6 @@ __all__ = [
     "campaign_of",
     "design_campaign",
     "expected_operation",
-    "length_words",
     "limit_uses",
     "limits_from_vessel",
     "no_worse_than",

@@ -3,8 +3,7 @@ from ._conditions import ShipIdentity
 from ._drive_fingerprint import read_drive_fingerprint
 from ._fingerprint import Fingerprint, SourceFile
 from ._inertia import inertia_beside
-from ._json_file import parse_fingerprint, read_fingerprint, write_fingerprint
-from ._model import named_structure
+from ._json_file import read_fingerprint, write_fingerprint
 from ._physical import physical_quantities
 from ._take import take_fingerprint
 from ._vessel_fields import vessel_fields
@@ -15,8 +14,6 @@ __all__ = [
     "ShipIdentity",
     "SourceFile",
     "inertia_beside",
-    "named_structure",
-    "parse_fingerprint",
     "physical_quantities",
     "read_drive_fingerprint",
     "read_fingerprint",

@@ -1,5 +1,5 @@
 from ._arguments import JobArguments
-from ._dask import work_on_dask, work_until_empty
+from ._dask import work_on_dask
 from ._lists import COLUMNS, recordings_in, recordings_of_list
 from ._submit import submit
 from ._work import Worked, work
@@ -13,5 +13,4 @@ __all__ = [
     "submit",
     "work",
     "work_on_dask",
-    "work_until_empty",
 ]

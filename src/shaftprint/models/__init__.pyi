@@ -4,7 +4,7 @@ from ._check import check_structure
 from ._combination import Combination
 from ._delays import AveragingSensor, Delay, PadeDelay, ZeroOrderHold
 from ._diagram import Diagram
-from ._expression import Constant, Inverse, Sensitivity, feedback
+from ._expression import Constant, Sensitivity, feedback
 from ._margins import margins
 from ._nyquist import is_stable
 from ._own_blocks import FunctionBlock, RationalBlock
@@ -37,7 +37,6 @@ __all__ = [
     "Held",
     "Inertia",
     "Integrator",
-    "Inverse",
     "PIGovernor",
     "PadeDelay",
     "Parameter",

@@ -1,7 +1,1 @@
-from ._library import library
-from ._public_names import closest_names
-
-__all__ = [
-    "closest_names",
-    "library",
-]
+__all__: list[str] = []

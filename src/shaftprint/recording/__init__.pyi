@@ -1,8 +1,6 @@
 from ._channel import Channel, ClockJump
 from ._cut import cut
 from ._from_arrays import Samples, recording_from_arrays
-from ._level_watch import LevelWatch
-from ._messages import judge_messages
 from ._read import read_recording
 from ._recording import Recording
 from ._write import write_recording
@@ -14,12 +12,10 @@ from .writers._mat_v73 import write_mat_v73
 __all__ = [
     "Channel",
     "ClockJump",
-    "LevelWatch",
     "Recording",
     "RecordingWriter",
     "Samples",
     "cut",
-    "judge_messages",
     "read_recording",
     "recording_from_arrays",
     "write_by_ending",

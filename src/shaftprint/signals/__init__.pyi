@@ -1,4 +1,3 @@
-from ._channel_readings import ChannelReadings
 from ._channel_signals import ChannelSignal, ExcitationSignal, MessageSignal, SpeedSignal
 from ._content import Content, content_of
 from ._gaps import Gap
@@ -18,7 +17,6 @@ from .pulses._strips import find_strips
 __all__ = [
     "KINDS",
     "ChannelKind",
-    "ChannelReadings",
     "ChannelSignal",
     "Content",
     "ExcitationSignal",

@@ -1,6 +1,5 @@
 from ._closed_loop import plant_from_closed_loop
 from ._frequency_response import FrequencyResponse
-from ._leg_spectra import estimate_inputs_of_legs
 from ._open_loop import open_loop
 from ._plain_covariance import circular_covariance, coherence_covariance
 from ._spectra import Spectra, estimate_response, estimate_spectra
@@ -21,7 +20,6 @@ __all__ = [
     "Spectra",
     "circular_covariance",
     "coherence_covariance",
-    "estimate_inputs_of_legs",
     "estimate_response",
     "estimate_spectra",
     "open_loop",

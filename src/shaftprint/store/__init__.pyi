@@ -4,21 +4,18 @@ from ._event import record_event
 from ._export import export_store
 from ._history import document, history, newest
 from ._import import import_store
-from ._job import Job, JobRequest
+from ._job import JobRequest
 from ._ledger import claim, enqueue, finish, give_back, job, job_counts, jobs, refuse, renew, retry
-from ._nouns import KINDS, History, Line, Trial
+from ._nouns import History, Line
 from ._record import Record
 from ._store import Store, create_store, open_store
 
 __all__ = [
-    "KINDS",
     "History",
-    "Job",
     "JobRequest",
     "Line",
     "Record",
     "Store",
-    "Trial",
     "add",
     "add_document",
     "check",

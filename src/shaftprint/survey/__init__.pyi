@@ -1,9 +1,7 @@
 from ._both_shafts import load_trials_of_both, run_both
-from ._expected_of_ship import expected_of_ship
 from ._fit_options import FitOptions
 from ._fits import fit, priors_of
 from ._legs import leg_tests
-from ._legs_apart import legs_alone
 from ._limits import with_limits
 from ._measurement import Measurement, measure
 from ._of_vessel import default_structure, of_vessel
@@ -24,10 +22,8 @@ __all__ = [
     "ThesisMode",
     "Trial",
     "default_structure",
-    "expected_of_ship",
     "fit",
     "leg_tests",
-    "legs_alone",
     "load_trial",
     "load_trials_of_both",
     "measure",

@@ -6,7 +6,6 @@ from ._signal_records import records_of
 from ._spectrum import spectrum_of
 from ._spectrum_term import SpectrumTerm
 from .nonlinear._fit import identify_nonlinear
-from .nonlinear._orders import without_orders
 from .nonlinear._settings import NonlinearSettings
 from .nonlinear._structure import structure_for
 
@@ -25,5 +24,4 @@ __all__ = [
     "spectrum_of",
     "spectrum_term",
     "structure_for",
-    "without_orders",
 ]

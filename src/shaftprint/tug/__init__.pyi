@@ -5,27 +5,23 @@ from ._linearise import linearised_response
 from ._noise import Noise
 from ._sail import sail
 from ._sailing import Sailing
-from ._simulated_fleet import SimulatedFleet, Tolerances
+from ._simulated_fleet import Tolerances
 from ._truth import Truth, normalised_truth, read_truth, truth_path
 from ._tug import Tug
 from .plant._physics import build_plant
 from .plant._plant import derivatives, governor_rack
-from .service._habits import Habits, lever_course
 from .service._sail_service import sail_service
 
 __all__ = [
     "Coupling",
-    "Habits",
     "Noise",
     "Sailing",
-    "SimulatedFleet",
     "Tolerances",
     "Truth",
     "Tug",
     "build_plant",
     "derivatives",
     "governor_rack",
-    "lever_course",
     "like_stan_tug_1205",
     "linearised_response",
     "normalised_truth",

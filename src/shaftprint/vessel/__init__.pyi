@@ -1,6 +1,6 @@
 from ._inertia import InertiaRow
 from ._limits import OperatingLimits
-from ._machinery import Engine, Gearbox, Machine, Motor, RackMap
+from ._machinery import Engine, Gearbox, Machine, RackMap
 from ._sensors import RackSensor, ShipSpeedSensor, SpeedSensor
 from ._ship import is_imo_number
 from ._vessel import Vessel, load_vessel
@@ -10,7 +10,6 @@ __all__ = [
     "Gearbox",
     "InertiaRow",
     "Machine",
-    "Motor",
     "OperatingLimits",
     "RackMap",
     "RackSensor",
