@@ -1,0 +1,202 @@
+"""The program for a controller: a checker reads it, and read as Python it goes back to the lever by itself."""
+
+import ast
+import math
+import re
+from itertools import pairwise
+from pathlib import Path
+
+import pytest
+
+PROGRAM = Path(__file__).parents[2] / "examples" / "plc" / "shaftprint_test.st"
+CYCLE_S = 0.02
+LEVER_RPM = 800.0
+
+
+@pytest.mark.slow
+def test_a_checker_reads_the_program():
+    """Blark is a parser of IEC 61131-3; a program with a mistake is none to it."""
+    parse = pytest.importorskip("blark.parse", reason="blark reads structured text").parse_source_code
+    text = PROGRAM.read_text(encoding="utf-8")
+    assert parse(text).exception is None
+    assert parse(text.replace("END_CASE", "END_CASES", 1)).exception is not None
+
+
+# ---- the same text, word for word, as Python ----
+
+_WORDS = (
+    (r"\(\*.*?\*\)", ""),
+    (r"T#(\d+)MS", lambda m: f"{int(m[1]) / 1000}"),
+    (r"T#(\d+)S", r"\1.0"),
+    (r"<>", "!="),
+    (r"(?<![:<>!=])=(?!=)", "=="),
+    (r":=", "="),
+    (r"\bMOD\b", "%"),
+    (r"\b(AND|OR|NOT)\b", lambda m: m[1].lower()),
+    (r"\bTest(State|Reason)\.(\w+)", r'"\2"'),
+    (r"\b(INT_TO_DINT|DINT_TO_UDINT)\b", "int"),
+    (r"\b(INT_TO_REAL|TIME_TO_REAL)\b", "float"),
+    (r"\bABS\b", "abs"),
+    (r"\bCOS\b", "math.cos"),
+    (r"\bLIMIT\(", "limit("),
+    (r"silent\(IN = (.*), PT = (\w+)\)", r"silent(\1, \2)"),
+)
+
+
+def limit(low, value, high):
+    return max(low, min(value, high))
+
+
+class Timer:
+    """TON of IEC 61131-3, called once a cycle."""
+
+    def __init__(self):
+        self.elapsed, self.Q = 0.0, False
+
+    def __call__(self, is_on, wanted):
+        self.elapsed = self.elapsed + CYCLE_S if is_on else 0.0
+        self.Q = self.elapsed >= wanted - 1e-9
+
+
+def as_python(text):
+    for old, new in _WORDS:
+        text = re.sub(old, new, text, flags=re.DOTALL)
+    lines, depth = [], 0
+    for line in map(str.strip, text.splitlines()):
+        if line.startswith(("END_IF", "END_FOR", "END_CASE")):
+            depth -= 1
+        elif match := re.fullmatch(r"CASE (\w+) OF", line):
+            lines.append("    " * depth + f"of = {match[1]}")
+            depth += 1
+        elif match := re.fullmatch(r'("\w+"):', line):
+            depth = 1
+            lines.append(f"if of == {match[1]}:")
+        elif match := re.fullmatch(r"(IF|ELSIF) (.*) THEN", line):
+            depth -= match[1] == "ELSIF"
+            lines.append("    " * depth + f"{'if' if match[1] == 'IF' else 'elif'} {match[2]}:")
+            depth += 1
+        elif line == "ELSE":
+            lines.append("    " * (depth - 1) + "else:")
+        elif match := re.fullmatch(r"FOR (\w+) = (\w+) TO (\w+) DO", line):
+            lines.append("    " * depth + f"for {match[1]} in range({match[2]}, {match[3]} + 1):")
+            depth += 1
+        elif line:
+            lines.append("    " * depth + line.rstrip(";"))
+    return "\n".join(lines)
+
+
+class Controller:
+    """The program in its task of 20 ms."""
+
+    def __init__(self):
+        declared, _, body = PROGRAM.read_text(encoding="utf-8").rpartition("END_VAR")
+        self._code = compile(as_python(body.removesuffix("\nEND_FUNCTION_BLOCK\n")), str(PROGRAM), "exec")
+        constants = re.findall(r"(\w+) : (?:TIME|U?DINT|REAL) := ([^;]+);", declared)
+        self.memory = {name: ast.literal_eval(as_python(value)) for name, value in constants}
+        names = re.findall(r"^\t(\w+) : (?:BOOL|U?DINT|REAL|TIME);", declared, re.MULTILINE)
+        self.memory |= dict.fromkeys(names, 0) | {"state": "Idle", "reason": "None", "silent": Timer()}
+        self.memory |= dict.fromkeys(re.findall(r"(\w+) : BOOL := TRUE;", declared), True)
+        self.memory |= {"limit": limit, "math": math, "key": True, "lever_rpm": LEVER_RPM, "table": [0] * 30000}
+        self.beats = True
+        self.cycles = 0
+
+    def run(self, seconds, **inputs):
+        """Set inputs, go on, and return the deviations that went out."""
+        self.memory.update(inputs)
+        out = []
+        for _ in range(round(seconds / CYCLE_S)):
+            self.cycles += 1
+            if self.beats and self.cycles % 25 == 0:
+                self.memory["heartbeat"] += 1
+            exec(self._code, self.memory)  # noqa: S102 - the program of this repository
+            assert self.memory["set_point_rpm"] == self.memory["lever_rpm"] + self.memory["deviation_rpm"]
+            out.append(self.memory["deviation_rpm"])
+        return out
+
+    def load(self, table):
+        self.memory["table"][: len(table)] = table
+        total = 0
+        for value in table:
+            total = (total * 7 + value + 32768) % 1000003
+        self.memory.update(table_length=len(table), table_sum=total)
+
+    def play(self, table):
+        self.load(table)
+        self.run(0.1)
+        self.run(2.0, arm=True)
+        assert (self.memory["state"], self.memory["reason"]) == ("Armed", "None")
+        return self.run(1.0, play=True)
+
+
+SINE = [round(1000 * math.sin(2 * math.pi * 0.5 * k * CYCLE_S)) for k in range(3000)]
+
+
+def test_the_table_goes_out_value_by_value():
+    controller = Controller()
+    sent = controller.play(SINE)
+    sent += controller.run(58.98)
+    # the cycle that begins sends nothing yet
+    assert sent[1:] == pytest.approx([value / 100 for value in SINE[: len(sent) - 1]], abs=1e-9)
+    controller.run(2.2)
+    assert (controller.memory["state"], controller.memory["reason"]) == ("Idle", "Finished")
+
+
+def test_a_silent_program_is_answered_with_the_lever_within_a_second():
+    controller = Controller()
+    controller.play(SINE)
+    while controller.cycles % 25:
+        controller.run(CYCLE_S)
+    controller.beats = False
+    sent = controller.run(1.0)
+    assert max(map(abs, sent[:37])) > 5.0
+    assert sent[-1] == 0.0
+    assert controller.memory["reason"] == "Silent"
+    # and it does not begin again when the program is back
+    controller.beats = True
+    assert controller.run(3.0) == [0.0] * 150
+
+
+@pytest.mark.parametrize(
+    ("cause", "reason"),
+    [
+        ({"abort": True}, "Operator"),
+        ({"arm": False}, "Operator"),
+        ({"key": False}, "KeyOff"),
+        ({"lever_rpm": LEVER_RPM - 10.0}, "LeverMoved"),
+    ],
+)
+def test_an_abort_goes_down_half_a_cosine_of_two_seconds(cause, reason):
+    controller = Controller()
+    before = controller.play([1000] * 2000)[-1]
+    assert before == 10.0
+    sent = controller.run(2.1, **cause)
+    assert controller.memory["reason"] == reason
+    # the cycle that sees it still holds; 1 s later it is half way
+    assert sent[50] == pytest.approx(5.0, abs=1e-6)
+    assert sent[25] == pytest.approx(10.0 * (0.5 + 0.5 * math.cos(math.pi / 4)), abs=1e-6)
+    assert sent[100:] == [0.0] * 5
+    assert max(a - b for a, b in pairwise(sent)) < 10.0 * math.pi / 2 / 100 + 1e-9
+
+
+def test_a_table_torn_on_its_way_is_not_played():
+    controller = Controller()
+    controller.load(SINE)
+    controller.memory["table"][7] ^= 1
+    controller.run(0.1)
+    controller.run(2.0, arm=True)
+    assert controller.run(1.0, play=True) == [0.0] * 50
+    assert (controller.memory["state"], controller.memory["reason"]) == ("Idle", "TableInvalid")
+
+
+def test_size_and_slope_are_the_controllers():
+    controller = Controller()
+    sent = controller.play([9000] * 2000) + controller.run(1.0)
+    assert max(sent) == 40.0
+    assert max(b - a for a, b in pairwise(sent)) == 1.0
+
+
+def test_after_a_restart_nothing_begins_that_was_asked_for_before():
+    controller = Controller()
+    controller.load(SINE)
+    assert controller.run(5.0, arm=True, play=True) == [0.0] * 250
+    assert controller.memory["state"] == "Idle"
