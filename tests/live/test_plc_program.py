@@ -10,7 +10,7 @@ import pytest
 
 PROGRAM = Path(__file__).parents[2] / "examples" / "plc" / "shaftprint_test.st"
 CYCLE_S = 0.02
-LEVER_RPM = 800.0
+LEVER_V = 5.0
 
 
 @pytest.mark.slow
@@ -19,7 +19,7 @@ def test_a_checker_reads_the_program():
     parse = pytest.importorskip("blark.parse", reason="blark reads structured text").parse_source_code
     text = PROGRAM.read_text(encoding="utf-8")
     assert parse(text).exception is None
-    assert parse(text.replace("END_CASE", "END_CASES", 1)).exception is not None
+    assert parse(text.replace("END_IF", "END_IFS", 1)).exception is not None
 
 
 # ---- the same text, word for word, as Python ----
@@ -31,9 +31,10 @@ _WORDS = (
     (r"<>", "!="),
     (r"(?<![:<>!=])=(?!=)", "=="),
     (r":=", "="),
+    (r"\b(TRUE|FALSE)\b", lambda m: m[1].title()),
     (r"\bMOD\b", "%"),
     (r"\b(AND|OR|NOT)\b", lambda m: m[1].lower()),
-    (r"\bTest(State|Reason)\.(\w+)", r'"\2"'),
+    (r"\bTest(Mode|Reason)\.(\w+)", r'"\2"'),
     (r"\b(INT_TO_DINT|DINT_TO_UDINT)\b", "int"),
     (r"\b(INT_TO_REAL|TIME_TO_REAL)\b", "float"),
     (r"\bABS\b", "abs"),
@@ -63,14 +64,8 @@ def as_python(text):
         text = re.sub(old, new, text, flags=re.DOTALL)
     lines, depth = [], 0
     for line in map(str.strip, text.splitlines()):
-        if line.startswith(("END_IF", "END_FOR", "END_CASE")):
+        if line.startswith(("END_IF", "END_FOR")):
             depth -= 1
-        elif match := re.fullmatch(r"CASE (\w+) OF", line):
-            lines.append("    " * depth + f"of = {match[1]}")
-            depth += 1
-        elif match := re.fullmatch(r'("\w+"):', line):
-            depth = 1
-            lines.append(f"if of == {match[1]}:")
         elif match := re.fullmatch(r"(IF|ELSIF) (.*) THEN", line):
             depth -= match[1] == "ELSIF"
             lines.append("    " * depth + f"{'if' if match[1] == 'IF' else 'elif'} {match[2]}:")
@@ -94,109 +89,120 @@ class Controller:
         constants = re.findall(r"(\w+) : (?:TIME|U?DINT|REAL) := ([^;]+);", declared)
         self.memory = {name: ast.literal_eval(as_python(value)) for name, value in constants}
         names = re.findall(r"^\t(\w+) : (?:BOOL|U?DINT|REAL|TIME);", declared, re.MULTILINE)
-        self.memory |= dict.fromkeys(names, 0) | {"state": "Idle", "reason": "None", "silent": Timer()}
+        self.memory |= dict.fromkeys(names, 0) | {"mode": "Lever", "reason": "None", "silent": Timer()}
         self.memory |= dict.fromkeys(re.findall(r"(\w+) : BOOL := TRUE;", declared), True)
-        self.memory |= {"limit": limit, "math": math, "key": True, "lever_rpm": LEVER_RPM, "table": [0] * 30000}
+        self.memory |= {"limit": limit, "math": math, "key": True, "lever_v": LEVER_V, "set_point_v": LEVER_V}
+        self.memory |= {"table": [0] * 30000, "buffers": {}, "lengths": [0, 0]}
         self.beats = True
-        self.cycles = 0
 
     def run(self, seconds, **inputs):
-        """Set inputs, go on, and return the deviations that went out."""
+        """Set inputs, go on, and return the set points that went out."""
         self.memory.update(inputs)
         out = []
         for _ in range(round(seconds / CYCLE_S)):
-            self.cycles += 1
-            if self.beats and self.cycles % 25 == 0:
+            if self.beats and self.memory["cycle_count"] % 25 == 24:
                 self.memory["heartbeat"] += 1
             exec(self._code, self.memory)  # noqa: S102 - the program of this repository
-            assert self.memory["set_point_rpm"] == self.memory["lever_rpm"] + self.memory["deviation_rpm"]
-            out.append(self.memory["deviation_rpm"])
+            out.append(self.memory["set_point_v"])
         return out
+
+    @property
+    def state(self):
+        return self.memory["mode"], self.memory["reason"]
 
     def load(self, table):
         self.memory["table"][: len(table)] = table
         total = 0
         for value in table:
             total = (total * 7 + value + 32768) % 1000003
-        self.memory.update(table_length=len(table), table_sum=total)
+        self.run(0.04, load=False)
+        self.run(2.0, load=True, table_length=len(table), table_sum=total)
 
     def play(self, table):
-        self.load(table)
         self.run(0.1)
-        self.run(2.0, arm=True)
-        assert (self.memory["state"], self.memory["reason"]) == ("Armed", "None")
+        assert set(self.run(1.0, take=True)) == {LEVER_V}
+        assert self.state == ("Held", "None")
+        self.load(table)
         return self.run(1.0, play=True)
 
 
-SINE = [round(1000 * math.sin(2 * math.pi * 0.5 * k * CYCLE_S)) for k in range(3000)]
+SINE = [round(5000 + 400 * math.sin(2 * math.pi * 0.1 * k * CYCLE_S)) for k in range(3000)]
 
 
-def test_the_table_goes_out_value_by_value():
+def test_the_table_goes_out_value_by_value_and_its_last_is_held():
     controller = Controller()
-    sent = controller.play(SINE)
-    sent += controller.run(58.98)
-    # the cycle that begins sends nothing yet
-    assert sent[1:] == pytest.approx([value / 100 for value in SINE[: len(sent) - 1]], abs=1e-9)
-    controller.run(2.2)
-    assert (controller.memory["state"], controller.memory["reason"]) == ("Idle", "Finished")
+    sent = controller.play(SINE) + controller.run(61.0)
+    assert sent[:3000] == pytest.approx([value / 1000 for value in SINE], abs=1e-9)
+    assert set(sent[3000:]) == {sent[2999]}
+    assert controller.state == ("Held", "None")
+    # another takes its place, at the time that it is given
+    controller.run(0.1, play=False)
+    controller.load([5100] * 100)
+    begin = controller.memory["cycle_count"] + 26
+    sent = controller.run(2.0, play=True, start_cycle=begin)
+    assert set(sent[:25]) == {sent[0]}
+    assert sent[-1] == pytest.approx(5.1)
 
 
 def test_a_silent_program_is_answered_with_the_lever_within_a_second():
     controller = Controller()
-    controller.play(SINE)
-    while controller.cycles % 25:
+    controller.play([5400] * 3000)
+    while controller.memory["cycle_count"] % 25:
         controller.run(CYCLE_S)
     controller.beats = False
     sent = controller.run(1.0)
-    assert max(map(abs, sent[:37])) > 5.0
-    assert sent[-1] == 0.0
-    assert controller.memory["reason"] == "Silent"
+    assert sent[36] == 5.4
+    assert sent[-1] == LEVER_V
+    assert controller.state == ("Lever", "Silent")
     # and it does not begin again when the program is back
     controller.beats = True
-    assert controller.run(3.0) == [0.0] * 150
+    assert set(controller.run(3.0)) == {LEVER_V}
 
 
 @pytest.mark.parametrize(
     ("cause", "reason"),
     [
-        ({"abort": True}, "Operator"),
-        ({"arm": False}, "Operator"),
+        ({"abort": True}, "Aborted"),
+        ({"release": True}, "Released"),
         ({"key": False}, "KeyOff"),
-        ({"lever_rpm": LEVER_RPM - 10.0}, "LeverMoved"),
+        ({"lever_v": LEVER_V - 0.1}, "LeverMoved"),
     ],
 )
 def test_an_abort_goes_down_half_a_cosine_of_two_seconds(cause, reason):
     controller = Controller()
-    before = controller.play([1000] * 2000)[-1]
-    assert before == 10.0
+    assert controller.play([5400] * 2000)[-1] == 5.4
+    goal = cause.get("lever_v", LEVER_V)
     sent = controller.run(2.1, **cause)
-    assert controller.memory["reason"] == reason
+    assert controller.state == ("Lever", reason)
     # the cycle that sees it still holds; 1 s later it is half way
-    assert sent[50] == pytest.approx(5.0, abs=1e-6)
-    assert sent[25] == pytest.approx(10.0 * (0.5 + 0.5 * math.cos(math.pi / 4)), abs=1e-6)
-    assert sent[100:] == [0.0] * 5
-    assert max(a - b for a, b in pairwise(sent)) < 10.0 * math.pi / 2 / 100 + 1e-9
+    assert sent[0] == 5.4
+    assert sent[50] == pytest.approx(goal + (5.4 - goal) / 2, abs=1e-6)
+    assert sent[25] == pytest.approx(goal + (5.4 - goal) * (0.5 + 0.5 * math.cos(math.pi / 4)), abs=1e-6)
+    assert sent[100:] == [goal] * 5
+    assert max(a - b for a, b in pairwise(sent)) < (5.4 - goal) * math.pi / 2 / 100 + 1e-9
 
 
 def test_a_table_torn_on_its_way_is_not_played():
     controller = Controller()
-    controller.load(SINE)
-    controller.memory["table"][7] ^= 1
     controller.run(0.1)
-    controller.run(2.0, arm=True)
-    assert controller.run(1.0, play=True) == [0.0] * 50
-    assert (controller.memory["state"], controller.memory["reason"]) == ("Idle", "TableInvalid")
+    controller.run(1.0, take=True)
+    controller.load(SINE)
+    assert controller.memory["is_loaded"]
+    controller.run(0.1, load=False)
+    controller.memory["table"][7] ^= 1
+    controller.run(2.0, load=True)
+    assert set(controller.run(3.0, play=True)) == {LEVER_V}
+    assert controller.state == ("Lever", "TableInvalid")
 
 
-def test_size_and_slope_are_the_controllers():
+def test_distance_and_slope_are_the_controllers():
     controller = Controller()
     sent = controller.play([9000] * 2000) + controller.run(1.0)
-    assert max(sent) == 40.0
-    assert max(b - a for a, b in pairwise(sent)) == 1.0
+    assert max(sent) == pytest.approx(LEVER_V + 0.5)
+    assert max(b - a for a, b in pairwise(sent)) == pytest.approx(0.01)
 
 
 def test_after_a_restart_nothing_begins_that_was_asked_for_before():
     controller = Controller()
-    controller.load(SINE)
-    assert controller.run(5.0, arm=True, play=True) == [0.0] * 250
-    assert controller.memory["state"] == "Idle"
+    assert set(controller.run(5.0, take=True, play=True, load=True)) == {LEVER_V}
+    assert controller.state == ("Lever", "None")

@@ -17,7 +17,7 @@ from typing import Any, Final
 from shaftprint.errors import SettingsError
 from shaftprint.escape import printable
 from shaftprint.files import reason
-from shaftprint.live.links._library import library
+from shaftprint.live.counterparts._extra import library
 from shaftprint.local_ids import LocalId
 from shaftprint.units import plain_unit
 
@@ -164,9 +164,7 @@ def _channel_list(path: Path, package: Any) -> ChannelList:
     version = " ".join(
         word for word in (_text(header, "DataChannelListID", part) for part in ("ID", "Version")) if word
     )
-    return ChannelList(
-        ship=_text(header, "ShipID"), version=version or path.name, channels=channels, left_out=left_out
-    )
+    return ChannelList(ship=_text(header, "ShipID"), version=version or path.name, channels=channels, left_out=left_out)
 
 
 def _channels(rows: list[Any], left_out: dict[str, str]) -> Iterator[DataChannel]:
