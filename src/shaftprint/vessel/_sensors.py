@@ -9,8 +9,10 @@ from numpy.typing import ArrayLike
 from pydantic import Field, model_validator
 
 from shaftprint.arrays import FloatArray
+from shaftprint.local_ids import SPEED
 from shaftprint.settings import Name, NotNegativeNumber, Number, PositiveInteger, PositiveNumber, Settings
 from shaftprint.units import ANGLES_REV, M_S_PER_KNOT, REV_S_PER_UNIT
+from shaftprint.vessel._local_ids import ChannelName, wrong_local_ids
 from shaftprint.vessel._machine_torque import MachineTorqueSensor
 from shaftprint.vessel._machinery import Machine
 from shaftprint.vessel._pitch_sensors import PitchSensor, PitchSetPointSensor
@@ -351,6 +353,8 @@ class Sensors(Settings):
     """The pitch of a controllable-pitch propeller, where it was logged."""
     machine_torque: MachineTorqueSensor | None = None
     """The torque of an electric machine on the gearbox, where it was logged."""
+    local_ids: tuple[ChannelName, ...] = ()
+    """What channels are called by ISO 19848, where a data server on board has them."""
 
     @model_validator(mode="after")
     def _names_and_channels_differ(self) -> Self:
@@ -364,6 +368,10 @@ class Sensors(Settings):
             twice = sorted({value for value in values if values.count(value) > 1})
             if twice:
                 errors.append(f"expected every sensor to have its own {what}, found {', '.join(twice)} twice.")
+        meant: dict[str, str | None] = dict.fromkeys(channels)
+        meant |= {one.channel: SPEED for one in self.speed if not (one.gives_pulses or one.gives_angle)}
+        meant |= {self.shaft_torque.channel: "torque", self.set_point.channel: "set point"}
+        errors += wrong_local_ids(self.local_ids, meant)
         if errors:
             raise ValueError(" ".join(errors))
         return self

@@ -70,6 +70,6 @@ def address(url: str, ports: dict[str, int]) -> tuple[SplitResult, str, int]:
     if parts.password is not None or parts.username is not None:
         # not shown: addresses are seen in lists of processes and in logs
         raise LiveError("expected an address without user and password, which others could read there, found one with.")
-    if parts.scheme not in ports or not host:
+    if parts.scheme not in ports or not host or set(url) & set("?#"):
         raise LiveError(f"expected an address such as {next(iter(ports))}://host, found {printable(url)}.")
     return parts, host, port or ports[parts.scheme]

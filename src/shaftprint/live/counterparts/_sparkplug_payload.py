@@ -24,8 +24,16 @@ FLOAT_ARRAY: Final = 30
 """Types of values, as the specification numbers them."""
 _SIGNED_BITS: Final = {1: 8, 2: 16, 3: 32, INT64: 64}
 _ARRAYS: Final = {
-    **{22: "<i1", 23: "<i2", 24: "<i4", 25: "<i8", 26: "<u1", 27: "<u2", 28: "<u4", 29: "<u8"},
-    **{FLOAT_ARRAY: "<f4", 31: "<f8"},
+    22: "<i1",
+    23: "<i2",
+    24: "<i4",
+    25: "<i8",
+    26: "<u1",
+    27: "<u2",
+    28: "<u4",
+    29: "<u8",
+    FLOAT_ARRAY: "<f4",
+    31: "<f8",
 }
 _MOST_METRICS: Final = 10_000
 _VARINT, _FIXED_64, _BYTES, _FIXED_32 = 0, 1, 2, 5
@@ -34,8 +42,13 @@ _TIMESTAMP, _METRICS, _SEQ = 1, 2, 3
 _NAME, _ALIAS, _WHEN, _TYPE, _IS_NULL = 1, 2, 3, 4, 7
 _INT, _LONG, _FLOAT, _DOUBLE, _BOOLEAN, _STRING, _BYTES_VALUE = range(10, 17)
 _WIRES: Final = {
-    **{_INT: _VARINT, _LONG: _VARINT, _BOOLEAN: _VARINT, _FLOAT: _FIXED_32, _DOUBLE: _FIXED_64},
-    **{_STRING: _BYTES, _BYTES_VALUE: _BYTES},
+    _INT: _VARINT,
+    _LONG: _VARINT,
+    _BOOLEAN: _VARINT,
+    _FLOAT: _FIXED_32,
+    _DOUBLE: _FIXED_64,
+    _STRING: _BYTES,
+    _BYTES_VALUE: _BYTES,
 }
 
 

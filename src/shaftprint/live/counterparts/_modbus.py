@@ -1,0 +1,248 @@
+"""A counterpart behind Modbus/TCP: slow channels and a set point, by asking again and again.
+
+What Modbus loses silently: everything between two questions; the time of a value, which is when this computer asked;
+halves of values whose registers are read apart, so all are read in one question; and a device whose program stands
+still while its network card answers, so the device counts. The protocol knows no user and no encryption: writing needs
+somebody to have said that nobody else is on the network. A library that repeats what was not answered would write a set
+point several times: nothing is repeated here.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import time
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+
+from shaftprint.errors import LiveError, SilentLinkError
+from shaftprint.escape import printable
+from shaftprint.live._block import Block, DeviceStatus, LiveChannel
+from shaftprint.live._counterpart import SILENT_S, Abilities
+from shaftprint.live._play import Play
+from shaftprint.live.counterparts._access import Access, address
+from shaftprint.live.counterparts._dialect import MODES
+from shaftprint.live.counterparts._extra import library
+from shaftprint.live.counterparts._modbus_map import REGISTERS, ModbusMap
+from shaftprint.settings import read_settings
+
+PORTS: Final = {"modbus": 502}
+"""Usual port by the scheme of an address."""
+_TIMEOUT_S: Final = 0.4
+_ANSWER_S: Final = 0.8
+_WORDS: Final = {"take": 1, "write": 2, "abort": 3, "release": 4}
+_KEY_IS_OFF: Final = 16
+# of a device whose map has no registers for it
+_LISTENED_TO: Final = DeviceStatus(mode=MODES[0], heartbeat=0, set_point_v=float("nan"), is_enabled=False)
+
+
+class ModbusCounterpart:
+    """A device that is asked for its registers."""
+
+    def __init__(self, url: str, registers: str | Path | ModbusMap, access: Access | None = None) -> None:
+        """Take an address, ``modbus://host:502``, and the map of registers in.
+
+        Raises LiveError if the address is none, SettingsError if the map cannot be used.
+        """
+        _, self._host, self._port = address(url, PORTS)
+        self._map = registers if isinstance(registers, ModbusMap) else read_settings(registers, ModbusMap)
+        self._access = access or Access()
+        self.name = f"modbus://{self._host}:{self._port}"
+        self._client: Any = None
+        self._convert: Any = None
+        self._number = 0
+        self._counter = 0
+        self._next_s = 0.0
+        self._last_count: int | None = None
+        self._counted_s = 0.0
+        self._answer = (0, 0)
+        self._turn = asyncio.Lock()
+
+    @property
+    def abilities(self) -> Abilities:
+        """What it can do: follow a set point, where the map says how."""
+        is_able = self._map.device is not None
+        return Abilities(writes_set_point=is_able, reverts=is_able, ramps=is_able)
+
+    @property
+    def channels(self) -> tuple[LiveChannel, ...]:
+        """Its channels."""
+        return tuple(
+            LiveChannel(
+                name=one.name, unit=one.unit, rate_hz=1.0 / self._map.period_s, scale=one.scale, offset=one.offset
+            )
+            for one in self._map.channel
+        )
+
+    def clock(self) -> float:
+        """Return the present time, which stamps the values too [s]."""
+        return time.monotonic()
+
+    async def connect(self) -> None:
+        """Reach the device."""
+        client = library("pymodbus.client", "Modbus")
+        self._convert = library("pymodbus.client.mixin", "Modbus").ModbusClientMixin
+        self._client = client.AsyncModbusTcpClient(
+            self._host, port=self._port, timeout=_TIMEOUT_S, retries=0, reconnect_delay=0
+        )
+        try:
+            is_there = await asyncio.wait_for(self._client.connect(), SILENT_S)
+        except TimeoutError:
+            is_there = False
+        if not is_there:
+            raise SilentLinkError(f"{self.name}: expected a Modbus device within {SILENT_S:g} s, found none.")
+        self._counted_s = self._next_s = self.clock()
+
+    async def read(self, timeout_s: float) -> Block:
+        """Return what the next question brings."""
+        wait_s = self._next_s - self.clock()
+        if wait_s > timeout_s:
+            await asyncio.sleep(timeout_s)
+            raise SilentLinkError(
+                f"{self.name}: expected a block within {timeout_s:g} s, asked for every {self._map.period_s:g} s."
+            )
+        await asyncio.sleep(max(0.0, wait_s))
+        asked_s = self.clock()
+        # after a pause it does not hurry to make up for it
+        self._next_s = max(self._next_s + self._map.period_s, asked_s)
+        registers = await self._asked()
+        now_s = self.clock()
+        self._expect_running(registers, now_s)
+        self._counter += 1
+        samples = {
+            one.name: np.array([self._value(registers, one.address, one.kind)], dtype=np.float64)
+            for one in self._map.channel
+        }
+        return Block(
+            counter=self._counter,
+            source_s=(asked_s + now_s) / 2.0,
+            span_s=self._map.period_s,
+            samples=samples,
+            device=self._status(registers),
+            received_s=now_s,
+        )
+
+    async def beat(self, count: int) -> None:
+        """Write the heartbeat."""
+        await self._write(self._device().heartbeat, [count & 0xFFFF])
+
+    async def take(self) -> None:
+        """Take the set point over at the lever's value."""
+        await self._command("take")
+
+    async def write(self, volts: float) -> None:
+        """Write a set point [V of the campaign]."""
+        kind = self._convert.DATATYPE.FLOAT32
+        order = self._map.word_order
+        await self._write(self._device().set_point, self._convert.convert_to_registers(volts, kind, word_order=order))
+        await self._command("write")
+
+    async def play(self, play: Play) -> None:
+        """Refuse: no waveform goes through registers."""
+        raise LiveError(f"{self.name}: expected a counterpart that plays {play.name}, found Modbus, which cannot.")
+
+    async def abort(self, ramp_s: float) -> None:
+        """Go back to the lever on a cosine."""
+        await self._command("abort", round(1000.0 * ramp_s))
+
+    async def release(self) -> None:
+        """Give the set point back."""
+        await self._command("release")
+
+    async def close(self) -> None:
+        """Let go of the link."""
+        if self._client is not None:
+            self._client.close()
+            self._client = None
+
+    # ---- inside ----
+
+    def _device(self) -> Any:
+        self._access.expect_writer(self.name, is_encrypted=False)
+        if self._map.device is None:
+            raise LiveError(f"{self.name}: expected [device] in the map of registers to command it, found none.")
+        return self._map.device
+
+    async def _asked(self) -> list[int]:
+        registers: list[int] = (
+            await self._exchanged(
+                "read_holding_registers", self._map.first, count=self._map.count, device_id=self._map.unit
+            )
+        ).registers
+        if len(registers) != self._map.count:
+            raise SilentLinkError(f"{self.name}: expected {self._map.count} registers, found {len(registers)}.")
+        return registers
+
+    async def _write(self, first: int, values: list[int]) -> None:
+        await self._exchanged("write_registers", first, values, device_id=self._map.unit)
+
+    async def _exchanged(self, function: str, *arguments: Any, **options: Any) -> Any:
+        """Ask once, and never again for the same."""
+        if self._client is None or not self._client.connected:
+            raise SilentLinkError(f"{self.name}: expected a Modbus device, found the connection gone.")
+        exceptions = library("pymodbus.exceptions", "Modbus")
+        async with self._turn:
+            try:
+                answer = await asyncio.wait_for(getattr(self._client, function)(*arguments, **options), SILENT_S)
+            except (TimeoutError, exceptions.ModbusException) as error:
+                said = printable(str(error))[:200]
+                raise SilentLinkError(f"{self.name}: expected an answer within {_TIMEOUT_S:g} s ({said}).") from None
+        if answer.isError():
+            raise LiveError(
+                f"{self.name}: the device refuses registers {arguments[0]} and on (exception {answer.exception_code}); "
+                "compare its list with the map."
+            )
+        return answer
+
+    async def _command(self, word: str, ramp_ms: int = 0) -> None:
+        device = self._device()
+        self._number = self._number % 0xFFFF + 1
+        await self._write(device.command, [self._number, _WORDS[word], min(ramp_ms, 0xFFFF)])
+        until_s = self.clock() + _ANSWER_S
+        while self._answer[0] != self._number:
+            if self.clock() > until_s:
+                raise SilentLinkError(
+                    f'{self.name}: expected an answer to "{word}" within {_ANSWER_S:g} s, found none.'
+                )
+            self._status(await self._asked())
+            await asyncio.sleep(0.01)
+        if self._answer[1]:
+            raise LiveError(f'{self.name}: the counterpart refuses "{word}" for reason {self._answer[1]} of its list.')
+
+    def _expect_running(self, registers: list[int], now_s: float) -> None:
+        count = registers[self._map.counter - self._map.first]
+        if count != self._last_count:
+            self._last_count, self._counted_s = count, now_s
+        elif now_s - self._counted_s > max(0.5, 2.0 * self._map.period_s):
+            raise SilentLinkError(
+                f"{self.name}: expected a counter that goes on, found {count} for {now_s - self._counted_s:.1f} s: the "
+                "device answers, its program does not run."
+            )
+
+    def _status(self, registers: list[int]) -> DeviceStatus:
+        device = self._map.device
+        if device is None:
+            return _LISTENED_TO
+        heartbeat, mode, number, refused = (
+            registers[at - self._map.first]
+            for at in (device.heartbeat_seen, device.mode, device.answer, device.answer + 1)
+        )
+        self._answer = number, refused
+        if mode & ~_KEY_IS_OFF >= len(MODES):
+            raise LiveError(f"{self.name}: expected a mode from 0 to 3, found {mode}; compare the map of registers.")
+        return DeviceStatus(
+            mode=MODES[mode & ~_KEY_IS_OFF],
+            heartbeat=heartbeat,
+            set_point_v=self._value(registers, device.set_point_out, "float32"),
+            is_enabled=not mode & _KEY_IS_OFF,
+        )
+
+    def _value(self, registers: list[int], first: int, kind: str) -> float:
+        at = first - self._map.first
+        value = self._convert.convert_from_registers(
+            registers[at : at + REGISTERS[kind]],
+            getattr(self._convert.DATATYPE, kind.upper()),
+            word_order=self._map.word_order,
+        )
+        return float(value)
