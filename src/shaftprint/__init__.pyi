@@ -25,6 +25,7 @@ from shaftprint import kernels as kernels
 from shaftprint import late as late
 from shaftprint import limits as limits
 from shaftprint import live as live
+from shaftprint import local_ids as local_ids
 from shaftprint import markup as markup
 from shaftprint import memory as memory
 from shaftprint import models as models
