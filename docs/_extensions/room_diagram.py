@@ -61,14 +61,10 @@ def in_order() -> list[str]:
 
 
 def table() -> str:
-    """Return what each room is for and which others it imports; leaf modules of the lowest floor are left out there."""
-    leaves = set(floors()[-1])
-    order = [name for floor in floors() for name in floor]
-    lines = ["| room | what it is for | imports |", "|---|---|---|"]
-    for room in in_order():
-        names = [f"`{name}`" for name in order if name in imports()[room] - leaves]
-        lines.append(f"| `{room}` | {purpose(room)} | {', '.join(names) or '-'} |")
-    return "\n".join(lines)
+    """Return what each room is for."""
+    return "\n".join(
+        ["| room | what it is for |", "|---|---|", *(f"| `{room}` | {purpose(room)} |" for room in in_order())]
+    )
 
 
 def rooms_page() -> str:
