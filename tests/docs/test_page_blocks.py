@@ -347,14 +347,17 @@ def test_the_page_on_wrong_recordings_has_every_case_and_counts_them():
     assert np.sum(counted, axis=0).tolist() == [len(told), *(told.count(one) for one in wrong_recordings.OUTCOMES)]
 
 
-TEN = re.findall(r"^\| (.+?) \| .+ \| \[.+\]\((.+)\) \|$", PAGES["docs/evidence.md"], flags=re.MULTILINE)
+ROWS = re.compile(r"^\| (.+?) \| .+ \| \[.+\]\((.+)\) \|$", flags=re.MULTILINE)
+TEN = ROWS.findall(PAGES["docs/evidence.md"])
+OF_THE_README = [(number, page.removeprefix("docs/")) for number, page in ROWS.findall(PAGES["README.md"])]
 
 
 def test_there_are_ten_numbers():
     assert len(TEN) == 10
+    assert len(OF_THE_README) == 4
 
 
-@pytest.mark.parametrize(("number", "page"), TEN)
+@pytest.mark.parametrize(("number", "page"), [*TEN, *OF_THE_README])
 def test_a_number_of_the_ten_stands_on_the_page_that_it_names(number, page):
     plain = number.removesuffix(" s").removesuffix(" %")
     told = whole_text(ROOT / "docs" / page, PAGES[f"docs/{page}"])
