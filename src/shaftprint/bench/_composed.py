@@ -5,13 +5,13 @@ from dataclasses import replace
 from functools import reduce
 from typing import Any
 
+from shaftprint.bench._begun import parameters_of
 from shaftprint.bench._held_yielding import held_yielding, states_yielding, with_named_yielding
 from shaftprint.bench._parts import PARTS, Coefficients
 from shaftprint.drive._blocks import Block
 from shaftprint.drive._drive import Drive
 from shaftprint.errors import SettingsError
 from shaftprint.models._diagram import Diagram
-from shaftprint.models._parameter import Parameter
 from shaftprint.models._structure import Structure
 from shaftprint.models.equations._flow import Flow
 from shaftprint.models.equations._formula import Formula, number
@@ -30,7 +30,7 @@ def composed(drive: Drive) -> Structure:
     _expect_parameters(drive)
     blocks = [with_named_yielding(block) if states_yielding(block) else block for block in drive.blocks]
     parameters = (
-        *(Parameter(one.name, one.unit, one.lower, one.upper, one.value, one.meaning) for one in drive.parameters),
+        *parameters_of(drive),
         *(held_yielding(block) for block in drive.blocks if states_yielding(block)),
     )
 
@@ -123,7 +123,7 @@ def _expect_parameters(drive: Drive) -> None:
                     f"drive {drive.name}, block {block.output}, parameters: expected a number or one of "
                     f"[[parameters]], {listed}, found {value!r}.{meant(value, stated)}"
                 )
-    used = {name for block in drive.blocks for name in block.names}
+    used = {name for block in drive.blocks for name in block.names} | {one.value for one in drive.start}
     idle = [name for name in stated if name not in used]
     if idle:
         raise SettingsError(

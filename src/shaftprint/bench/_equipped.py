@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from types import MappingProxyType
 
+from shaftprint.bench._begun import begun
 from shaftprint.bench._composed import composed
 from shaftprint.catalogue._drives import DRIVES, SIGNAL_UNITS
 from shaftprint.catalogue._linear_drives import along_a_line, unit_along
@@ -54,7 +55,7 @@ def equipped(drive: Drive, *, own: Structure | None = None) -> EquippedDrive:
     StructureError
         If the blocks of the file make no structure, or a value does not fit its bounds.
     """
-    structure = _structure(drive, own)
+    structure = begun(drive, _structure(drive, own))
     units = SIGNAL_UNITS if structure.name in DRIVES else {}
     _expect_signals(drive, structure)
     structure = structure.of_outputs(*(one.name for one in drive.outputs))

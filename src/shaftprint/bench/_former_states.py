@@ -23,8 +23,10 @@ def start_by_names_of_today(drive: Drive, names: Sequence[str]) -> dict[str, flo
     start = {}
     for state in drive.start:
         name, output = today.get(state.name, (state.name, ""))
-        is_same = state.value == 0.0 or gains.get(output, 1.0) == 1.0
-        start[state.name if state.name in names or not is_same else name] = state.value
+        # what begins at a parameter begins at zero beside it
+        value = 0.0 if isinstance(state.value, str) else state.value
+        is_same = value == 0.0 or gains.get(output, 1.0) == 1.0
+        start[state.name if state.name in names or not is_same else name] = value
     return start
 
 

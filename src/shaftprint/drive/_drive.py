@@ -101,10 +101,16 @@ class Drive(Shown, Settings):
         ]
         if self.structure is not None and self.blocks:
             errors.append(f'expected structure or [[blocks]], found structure = "{self.structure}" and blocks.')
-        if self.parameters and not self.blocks:
+        begins = [one.value for one in self.start if isinstance(one.value, str)]
+        unused = [one.name for one in self.parameters if not self.blocks and one.name not in begins]
+        if unused:
             errors.append(
-                "expected [[parameters]] beside [[blocks]] only; of a structure write [[known]], [[searched]]."
+                "expected [[parameters]] beside [[blocks]], or named by [[start]]; of a structure write [[known]], "
+                "[[searched]]."
             )
+        unknown = [name for name in begins if name not in {one.name for one in self.parameters}]
+        if unknown:
+            errors.append(f"expected a number or one of [[parameters]] as value of [[start]], found {unknown[0]!r}.")
         if bool(self.start) != (self.fit.start == "known"):
             errors.append('expected [[start]] and fit.start = "known" together, found one of them alone.')
         errors += self._faults_of_responses() if self.responses else self._faults_of_channels()

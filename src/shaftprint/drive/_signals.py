@@ -91,8 +91,8 @@ class StartState(Settings):
 
     name: Name
     """What the equations call the state, such as ``theta``."""
-    value: Number
-    """Its value, in the units of the structure."""
+    value: Annotated[str | Number, Field(union_mode="left_to_right")]
+    """Its value, in the units of the structure, or the name of the parameter that it is."""
 
 
 class Stretch(Settings):

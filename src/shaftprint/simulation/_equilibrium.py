@@ -35,7 +35,7 @@ class Equilibrium(Shown):
         return cls(
             inputs=dict(inputs),
             states=frozen_float(steady.states),
-            state_names=_each_once(program.states),
+            state_names=each_once(program.states),
             outputs=dict(zip(program.outputs, (float(value) for value in steady.outputs), strict=True)),
         )
 
@@ -66,10 +66,10 @@ def state_names(structure: Structure, values: ArrayLike) -> tuple[str, ...]:
     ``values``: parameter values, shape (parameters,): a lag that is held at zero has no state.
     """
     vector = np.asarray(values, dtype=np.float64)
-    return _each_once(build(structure, held_zeros(structure, vector)).program.states)
+    return each_once(build(structure, held_zeros(structure, vector)).program.states)
 
 
-def _each_once(names: Sequence[str]) -> tuple[str, ...]:
+def each_once(names: Sequence[str]) -> tuple[str, ...]:
     """Return names with a number behind those that came before."""
     counts = [names[: index + 1].count(name) for index, name in enumerate(names)]
     return tuple(name if count == 1 else f"{name} {count}" for name, count in zip(names, counts, strict=True))
