@@ -180,7 +180,8 @@ def test_the_users_of_the_page_on_the_server_can_be_read(tmp_path):
 
 
 def test_the_drives_of_their_page_have_structures():
-    first, second, rows, responses = (tomllib.loads(text) for kind, text in blocks("docs/drives.md") if kind == "toml")
+    tables = (tomllib.loads(text) for kind, text in blocks("docs/drives.md") if kind == "toml")
+    first, second, rows, responses, estimated = tables
     loaded, fan, apart = (equipped(Drive.model_validate(one)) for one in (first, second, first | rows))
     assert (loaded.structure.name, loaded.priors["R"].std) == ("LOADED-MOTOR", 0.05)
     assert fan.structure.names == ("K", "T")
@@ -190,6 +191,8 @@ def test_the_drives_of_their_page_have_structures():
         "phase",
         "deviation",
     )
+    sines = equipped(Drive.model_validate(second | estimated)).drive.frequency_response
+    assert (sines.excitation, sines.highest_hz) == ("sine", 20.0)
     (row,) = apart.drive.per_record
     assert (row.label("brass_step"), row.label("steel_chirp, slow"), row.label("bare")) == ("brass", "steel", "bare")
 

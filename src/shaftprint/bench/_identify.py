@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from shaftprint.bench._equipped import EquippedDrive
+from shaftprint.bench._estimated import estimated_responses
 from shaftprint.bench._fit import STARTS, DriveFit, identify_drive
 from shaftprint.bench._records import read_records
 from shaftprint.bench._responses import RESPONSE_STARTS, identify_responses, read_responses
@@ -36,5 +37,9 @@ def identify_files(
         return identify_responses(one, responses, rng=rng, starts=starts or RESPONSE_STARTS)
     progress.begin("Reading the records")
     records = read_records(paths, one, **hints)
+    if one.drive.frequency_response is not None:
+        progress.begin("Estimating and fitting the responses")
+        files = estimated_responses(one, records)
+        return identify_responses(one, files, rng=rng, starts=starts or RESPONSE_STARTS)
     progress.begin("Fitting the records")
     return identify_drive(one, records, rng=rng, starts=starts or STARTS)

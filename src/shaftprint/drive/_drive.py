@@ -8,7 +8,7 @@ from pydantic import Field, model_validator
 
 from shaftprint.arguments import refusing_none
 from shaftprint.drive._blocks import Block, FreeParameter
-from shaftprint.drive._responses import ResponseColumns
+from shaftprint.drive._responses import EstimatedResponse, ResponseColumns
 from shaftprint.drive._signals import KnownParameter, PerRecord, SearchedParameter, Signal, StartState, Stretch
 from shaftprint.errors import SettingsError
 from shaftprint.notebook._shown import Shown
@@ -54,6 +54,8 @@ class Drive(Shown, Settings):
     """Parts of each recording that are records; the whole recording where none is named."""
     responses: tuple[ResponseColumns, ...] = ()
     """Columns of files that hold frequency responses in place of records."""
+    frequency_response: EstimatedResponse | None = None
+    """How records are turned into frequency responses, which are fitted in place of them."""
     blocks: tuple[Block, ...] = ()
     """Blocks that make the structure."""
     parameters: tuple[FreeParameter, ...] = ()
@@ -134,8 +136,8 @@ class Drive(Shown, Settings):
         foreign = [row for row in rows if row not in wanted]
         if foreign:
             errors.append(f"expected responses from inputs to outputs, found {foreign[0][1]} to {foreign[0][0]}.")
-        if self.records or self.start:
-            errors.append("expected no [[records]] and no [[start]] beside [[responses]].")
+        if self.records or self.start or self.frequency_response is not None:
+            errors.append("expected no [[records]], [[start]] or [frequency_response] beside [[responses]].")
         return errors
 
 

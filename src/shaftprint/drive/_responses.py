@@ -1,10 +1,36 @@
-"""Frequency responses of a drive that another instrument measured: which columns of their files hold what."""
+"""Frequency responses of a drive: columns of files of another instrument, and how records are turned into them."""
 
 from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
-from shaftprint.settings import Name, PositiveNumber, Settings
+from shaftprint.settings import Name, NotNegativeNumber, PositiveNumber, Settings
+
+
+class EstimatedResponse(Settings):
+    """How the frequency responses that are fitted are made of records in time."""
+
+    excitation: Literal["any", "periodic", "sine"] = "any"
+    """How the inputs were moved: in any way, as by a sweep or noise, from which smooth responses follow; in periods
+    that repeat; by one sine a record."""
+    period_s: PositiveNumber | None = None
+    """Period of what repeats [s]."""
+    settling_s: NotNegativeNumber | None = None
+    """Time at the beginning of each record that is left out [s]; one period, or a quarter of a record of a sine."""
+    lowest_hz: NotNegativeNumber = 0.0
+    """Lowest frequency [Hz]."""
+    highest_hz: PositiveNumber | None = None
+    """Highest frequency [Hz]; half of the sample rate, or a twentieth where inputs hold from sample to sample."""
+
+    @model_validator(mode="after")
+    def _of_one_kind(self) -> Self:
+        if (self.excitation == "periodic") != (self.period_s is not None):
+            raise ValueError('expected excitation = "periodic" and period_s together, found one of them alone.')
+        if self.excitation == "any" and self.settling_s is not None:
+            raise ValueError('expected no settling_s of excitation = "any", which finds how a record begins.')
+        if self.highest_hz is not None and not self.lowest_hz < self.highest_hz:
+            raise ValueError(f"expected lowest_hz below highest_hz, found {self.lowest_hz:g}, {self.highest_hz:g}.")
+        return self
 
 
 class ResponseColumns(Settings):
