@@ -99,7 +99,8 @@ def _frequency(samples: FloatArray, rate_hz: float) -> float:
 
     bounds = (max(first - 1.0, 0.25), min(first + 1.0, 0.5 * centred.size))
     best = minimize_scalar(left, bounds=bounds, method="bounded", options={"xatol": 1e-5})
-    return float(best.x) * rate_hz / centred.size
+    found: float = best.x * rate_hz / centred.size
+    return found
 
 
 def _line(amplitudes: ComplexArray) -> tuple[ComplexArray, ComplexArray, float]:
