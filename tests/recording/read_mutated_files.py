@@ -20,6 +20,7 @@ import scipy.io
 
 from shaftprint.errors import RecordingError
 from shaftprint.recording import RecordingWriter, read_recording, write_mat_v73
+from shaftprint.recording._journal import JournalWriter
 
 MOST_ADDRESSES = 6_000_000_000
 CLOCK = np.arange(400) / 100.0
@@ -129,6 +130,13 @@ def _frames(path):
             logger.on_message_received(frame)
 
 
+def _journal(path):
+    channel = {"name": "U", "unit": "V", "rate_hz": 100.0, "scale": 0.5, "offset": 0.0, "dtype": "int16"}
+    with JournalWriter(path, {"channels": [channel]}) as journal:
+        for number in range(40):
+            journal.block(number, 0.1 * number, 0.1, [np.arange(10, dtype=np.int16)])
+
+
 def _noise(path):
     path.write_bytes(np.random.default_rng(5).bytes(4000))
 
@@ -138,7 +146,7 @@ FORMATS = {
     "v5.mat": _mat("5"), "v73.mat": _mat73, "other.nc": _netcdf4, "classic.nc": _netcdf3, "log.csv": _text,
     "log.csv.gz": _packed, "plain.txt": _plain, "log.dxd": _noise,
     "log.blf": _frames, "log.asc": _frames, "log.trc": _frames, "log.log": _frames, "log.lvm": _labview,
-    "log.uff": _universal,
+    "log.uff": _universal, "test.journal": _journal,
 }  # fmt: skip
 
 

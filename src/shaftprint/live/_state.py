@@ -22,8 +22,8 @@ _MAY_FOLLOW = {
     State.IDLE: {State.ARMED},
     State.ARMED: {State.RAMP_IN, State.IDLE},
     State.RAMP_IN: {State.SETTLE, State.LEG, State.HOLD},
-    State.SETTLE: {State.LEG, State.HOLD, State.RAMP_OUT},
-    State.LEG: {State.LEG, State.RAMP_IN, State.RAMP_OUT, State.HOLD},
+    State.SETTLE: {State.LEG, State.HOLD},
+    State.LEG: {State.SETTLE, State.RAMP_IN, State.RAMP_OUT, State.HOLD},
     State.RAMP_OUT: {State.IDLE, State.HOLD},
     State.HOLD: {State.RAMP_IN, State.RAMP_OUT, State.IDLE},
     State.ABORT: {State.IDLE},
@@ -36,6 +36,8 @@ def following(state: State, wanted: State) -> State:
 
     Raises LiveError if it may not.
     """
+    if wanted is state:
+        return state
     if wanted is State.ABORT or wanted in _MAY_FOLLOW[state]:
         return wanted
     may = ", ".join(sorted(_MAY_FOLLOW[state]))

@@ -14,6 +14,7 @@ from shaftprint.errors import SettingsError
 from shaftprint.notebook._shown import Shown
 from shaftprint.notebook._summary import Summary, shortened
 from shaftprint.settings import Name, PositiveNumber, Settings, load_settings
+from shaftprint.vessel._envelope import StatedEnvelope
 from shaftprint.vessel._hull import Hull
 from shaftprint.vessel._inertia import InertiaRow
 from shaftprint.vessel._limits import OperatingLimits
@@ -58,6 +59,8 @@ class Vessel(Shown, Settings):
     """What was measured."""
     limits: OperatingLimits = OperatingLimits()
     """What must not be passed during a test."""
+    envelope: StatedEnvelope | None = None
+    """What the owner allows a program that plays a test; None where no program may."""
     hull: Hull | None = None
     """The ship around the shaft lines, for tests underway."""
     logger: Logger | None = None

@@ -1,0 +1,137 @@
+"""A campaign in time: what is put out, the state at each time, and the campaign as it was played."""
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from shaftprint.campaign._campaign import Campaign
+from shaftprint.campaign._excitation import Excitation
+from shaftprint.campaign._excitations import SPEED_SET_POINT, Chirp, Sine, Staircase
+from shaftprint.campaign._leg import FEWEST_PERIODS, Leg
+from shaftprint.campaign._setpoint import setpoint
+from shaftprint.errors import LiveError
+from shaftprint.live._play import Play
+from shaftprint.live._state import State
+
+if TYPE_CHECKING:
+    from shaftprint.arrays import FloatArray
+
+PLAY_HZ = 200.0
+"""Set points a second of a waveform [Hz]."""
+# A window of whole periods may fall short by rounding of its decimal stop time.
+_PERIOD_ROUNDING = 1e-6
+_TESTS = ("sines", "multisines", "binary_sequences", "chirps", "staircases")
+
+
+def expect_playable(campaign: Campaign) -> None:
+    """Refuse a campaign that moves something else than the set point of the speed.
+
+    Raises LiveError if it does.
+    """
+    others = [name for name in campaign.inputs if name != SPEED_SET_POINT]
+    if others:
+        raise LiveError(
+            f"campaign {campaign.name}: expected tests of the set point of the speed alone, found some of "
+            f"{', '.join(others)}; play those by hand."
+        )
+
+
+def rendered(campaign: Campaign, *, zero_s: float, from_s: float = 0.0) -> Play:
+    """Return what a campaign puts out from a time on.
+
+    ``zero_s``: its second 0 by the counterpart's clock [s]. ``from_s``: time of the campaign at which it begins [s].
+    """
+    count = math.ceil((campaign.duration_s - from_s) * PLAY_HZ) + 1
+    time_s: FloatArray = from_s + np.arange(count) / PLAY_HZ
+    return Play(name=campaign.name, start_s=zero_s + from_s, rate_hz=PLAY_HZ, volts=setpoint(campaign, time_s))
+
+
+def test_at(campaign: Campaign, time_s: float) -> Excitation | None:
+    """Return the test that is made at a time of the campaign [s]; None between tests."""
+    return next((one for one in campaign.excitations if one.start_s <= time_s < one.stop_s), None)
+
+
+def state_at(campaign: Campaign, time_s: float) -> State:
+    """Return what is done at a time of the campaign [s]."""
+    test = test_at(campaign, time_s)
+    if test is not None:
+        settled_s = test.settled_s if isinstance(test, Sine | Leg) else test.start_s
+        return State.SETTLE if time_s < settled_s else State.LEG
+    if any(one.start_s > time_s for one in campaign.excitations):
+        return State.RAMP_IN
+    return State.RAMP_OUT
+
+
+def shifted(campaign: Campaign, by_s: float) -> Campaign:
+    """Return a campaign that begins later, as it stands in a recording that began before it."""
+    tests = {section: tuple(_moved(one, by_s) for one in getattr(campaign, section)) for section in _TESTS}
+    return campaign.model_copy(update=tests | {"duration_s": campaign.duration_s + by_s})
+
+
+def played_until(campaign: Campaign, time_s: float) -> Campaign | None:
+    """Return what of a campaign was played until a time [s], whole periods alone; None where that is no test."""
+    tests: dict[str, Any] = {
+        section: tuple(
+            one
+            for one in (_until(test, time_s) for test in getattr(campaign, section) if test.start_s < time_s)
+            if one is not None
+        )
+        for section in _TESTS
+    }
+    if not any(tests.values()):
+        return None
+    return campaign.model_copy(update=tests | {"duration_s": min(campaign.duration_s, time_s)})
+
+
+def ended_early(campaign: Campaign, name: str, stop_s: float) -> Campaign:
+    """Return a campaign in which one test stops early, and the others follow as much sooner.
+
+    ``name``: the test. ``stop_s``: when it stops, by the campaign's time [s].
+    """
+    (test,) = (one for one in campaign.excitations if one.name == name)
+    sooner_s = test.stop_s - stop_s
+    tests = {
+        section: tuple(
+            one.model_copy(update={"stop_s": stop_s})
+            if one.name == name
+            else _moved(one, -sooner_s)
+            if one.start_s >= test.stop_s
+            else one
+            for one in getattr(campaign, section)
+        )
+        for section in _TESTS
+    }
+    return campaign.model_copy(update=tests | {"duration_s": campaign.duration_s - sooner_s})
+
+
+def period_s(test: Excitation | Leg) -> float | None:
+    """Return the period of a test [s]; None of one that does not repeat itself."""
+    if isinstance(test, Sine):
+        return 1.0 / test.frequency_hz
+    return test.length_of_period_s if isinstance(test, Leg) else None
+
+
+def _moved(test: Any, by_s: float) -> Any:
+    times = {name: getattr(test, name) + by_s for name in ("start_s", "settled_s", "stop_s") if name in _fields(test)}
+    return test.model_copy(update=times)
+
+
+def _fields(test: Any) -> set[str]:
+    return set(type(test).model_fields)
+
+
+def _until(test: Any, time_s: float) -> Any:
+    """Return what of a test was played until a time, None where that is too little."""
+    if test.stop_s <= time_s:
+        return test
+    if isinstance(test, Chirp):
+        return None
+    if isinstance(test, Staircase):
+        whole = math.floor((time_s - test.start_s) / test.dwell_s)
+        return test.model_copy(update={"levels_v": test.levels_v[:whole]}) if whole else None
+    length_s = period_s(test)
+    periods = math.floor((time_s - test.settled_s) / length_s + _PERIOD_ROUNDING) if length_s else 0
+    if length_s is None or periods < (FEWEST_PERIODS if isinstance(test, Leg) else 1):
+        return None
+    return test.model_copy(update={"stop_s": min(test.settled_s + periods * length_s + _PERIOD_ROUNDING, time_s)})
