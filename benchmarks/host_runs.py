@@ -3,8 +3,8 @@
 A tool runs in a process of its own, which it may take down: ``python -m benchmarks.host_runs TOOL FMU STIMULUS`` prints
 what one gives, as JSON, for a ``Stimulus`` in a JSON file.
 
-The hosts are no dependencies of anything else; in an environment of your own: ``pip install libcosimpy ecospy tbb
-fmuloader pathsim-fmi cofmupy``, and with Python 3.12 or newer ``modelica``.
+The hosts are no dependencies of anything else; in an environment of your own: ``pip install fmpy libcosimpy ecospy tbb
+fmuloader pathsim-fmi``. CoFMPy asks for an older FMPy, and so for another environment: ``pip install cofmupy``.
 """
 
 import ctypes
@@ -287,12 +287,12 @@ def is_installed(host: str) -> bool:
     return importlib.util.find_spec(HOSTS[host][0]) is not None
 
 
-def run_host(host: str, path: Path, stimulus: Stimulus, folder: Path) -> Rows:
-    """Return what a host gives, in a process of its instance."""
+def run_host(host: str, path: Path, stimulus: Stimulus, folder: Path, *, python: str = sys.executable) -> Rows:
+    """Return what a host gives, in a process of its instance, of the interpreter that has it."""
     job = folder / f"{host}.json"
     job.write_text(json.dumps(asdict(stimulus)), encoding="utf-8")
     done = subprocess.run(
-        [sys.executable, "-m", "benchmarks.host_runs", host, str(path), str(job)],
+        [python, "-m", "benchmarks.host_runs", host, str(path), str(job)],
         capture_output=True, text=True, timeout=LONGEST_S, check=False, cwd=Path(__file__).parents[1],
     )  # fmt: skip
     if done.returncode != 0:

@@ -1,9 +1,11 @@
 """An exported FMU in tools of others: the same step and sine in each, beside shaftprint's own simulation.
 
-``python -m benchmarks.hosts`` runs all that are installed; ``host_runs.py`` says how each is installed and called.
+``python -m benchmarks.hosts`` runs all that are installed; ``host_runs.py`` says how each is installed and called. Those
+of another environment are named with its interpreter: ``python -m benchmarks.hosts cofmupy=/other/venv/bin/python``.
 """
 
 import subprocess
+import sys
 import tempfile
 from collections.abc import Callable, Mapping
 from pathlib import Path
@@ -71,16 +73,16 @@ def stimulus_of(kind: str, last_s: float = 6.0) -> Stimulus:
     return Stimulus(step_s=STEP_S, set_point=SET_POINTS[kind](time).tolist(), parameters=PARAMETERS)
 
 
-def _compare(folder: Path) -> list[tuple[str, ...]]:
+def _compare(folder: Path, pythons: Mapping[str, str]) -> list[tuple[str, ...]]:
     table = []
     models = {version: exported_line(folder, version) for version in (2, 3)}
-    for host in filter(is_installed, HOSTS):
+    for host in (host for host in HOSTS if host in pythons or is_installed(host)):
         for version, (model, path) in models.items():
             cells = []
             for kind in SET_POINTS:
                 stimulus = stimulus_of(kind)
                 try:
-                    rows = run_host(host, path, stimulus, folder)
+                    rows = run_host(host, path, stimulus, folder, python=pythons.get(host, sys.executable))
                 except (RuntimeError, subprocess.TimeoutExpired) as error:
                     cells.append(str(error).strip().splitlines()[-1][:80])
                     continue
@@ -92,9 +94,10 @@ def _compare(folder: Path) -> list[tuple[str, ...]]:
 
 def main() -> None:
     """Run all hosts and print the table."""
+    pythons = dict(word.split("=", 1) for word in sys.argv[1:])
     with tempfile.TemporaryDirectory() as folder:
         header = ("host", "FMI", *(f"{kind}: speed, torque" for kind in SET_POINTS))
-        print_table("Largest difference over the motion", header, _compare(Path(folder)))
+        print_table("Largest difference over the motion", header, _compare(Path(folder), pythons))
 
 
 if __name__ == "__main__":

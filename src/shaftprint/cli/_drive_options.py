@@ -50,6 +50,12 @@ def expect_not_given(*options: str) -> None:
             "foreign": "model",
             "variables": "model-variable",
             "slope_rpm_per_v": "rpm-per-volt",
+            "is_shortest": "shortest",
+            "stairs": "staircase",
+            "limits": "limit",
+            "rehearsals": "rehearse",
+            "offset_v": "offset",
+            "freed": "free",
         }
         title = titles.get(given[0], given[0]).replace("_", "-")
         raise click.UsageError(f"--{title} is for ships; leave it out beside --drive.")

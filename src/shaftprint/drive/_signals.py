@@ -23,6 +23,18 @@ class Signal(Settings):
     zero_std: PositiveNumber | None = None
     """Of an output: standard deviation of the sensor's zero, in the unit. If not given, a tenth of the level is the
     most of what has a zero at rest, and the zero of an angle, a way or a temperature is anywhere."""
+    lowest: Number | None = None
+    """Lowest value that a planned test may ask for or lead to, in the unit."""
+    highest: Number | None = None
+    """Highest value that a planned test may ask for or lead to."""
+    fastest: PositiveNumber | None = None
+    """Of an input: largest change in a second that a planned test may ask for, in the unit."""
+
+    @model_validator(mode="after")
+    def _in_order(self) -> Self:
+        if self.lowest is not None and self.highest is not None and not self.lowest < self.highest:
+            raise ValueError(f"expected lowest below highest, found {self.lowest:g} and {self.highest:g}.")
+        return self
 
 
 class KnownParameter(Settings):

@@ -11,6 +11,7 @@ if TYPE_CHECKING:
     from shaftprint.bench._compare import DriveDifference
     from shaftprint.bench._structures import TimeComparison
     from shaftprint.bench._validate import ValidatedRecord
+    from shaftprint.drive._signals import Signal
     from shaftprint.fingerprint._drive_fingerprint import DriveFingerprint
     from shaftprint.models._parameter import Parameter
 
@@ -145,6 +146,16 @@ def drive_prediction_table(
         )
     columns = (*texts("parameter"), *numbers("value ± std", "std [%]"), *texts("unit"), MEANING)
     return Table(title="What the records would tell", columns=columns, rows=tuple(rows))
+
+
+def planned_signal_table(signals: "Sequence[Signal]", reached: Mapping[str, tuple[float, float]]) -> Table:
+    """Return what planned inputs and the outputs that they lead to reach, beside their limits."""
+    rows = []
+    for signal in signals:
+        limits = ("-" if limit is None else rounded(limit) for limit in (signal.lowest, signal.highest))
+        rows.append((Symbol(signal.name), *map(rounded, reached[signal.name]), *limits, unit_text(signal.unit)))
+    columns = (*texts("signal"), *numbers("lowest", "highest", "lowest limit", "highest limit"), *texts("unit"))
+    return Table(title="What the record reaches", columns=columns, rows=tuple(rows))
 
 
 def time_comparison_table(comparison: "TimeComparison") -> Table:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 from datetime import UTC, datetime
 from pathlib import Path
@@ -10,7 +11,9 @@ import click
 
 from shaftprint.choices import SET_POINT_RATE_HZ, STATED_LIMITS
 from shaftprint.cli._command_group import NOT_REACHED
-from shaftprint.cli._known_values import known_options
+from shaftprint.cli._drive_options import drive_option, expect_not_given, is_given
+from shaftprint.cli._drive_plan import plan_on_the_bench
+from shaftprint.cli._known_values import by_name, known_options, named_value
 from shaftprint.cli._options import DEFAULT_HELP, OWN_FILE_HELP, vessel_option
 from shaftprint.cli._plan_options import limit_of, seconds_of, shares_of, wish_from, wish_of
 from shaftprint.cli._plan_tables import print_planned_test
@@ -35,9 +38,14 @@ with late():
 
 
 LONGEST_S = 3600.0
+_OF_SHIPS = (
+    "vessel", "is_shortest", "stairs", "limits", "speeds", "offset_v", "noise_from", "noise_campaign", "rehearsals",
+    "name", "seed", "slope_rpm_per_v", "freed",
+)  # fmt: skip
 
 
 @click.command("plan")
+@drive_option
 @vessel_option
 @click.option(
     "--structure",
@@ -83,6 +91,24 @@ LONGEST_S = 3600.0
 )
 @click.option("--noise-from", type=click.Path(path_type=Path), help="Recording of the ship, for its noise.")
 @click.option("--noise-campaign", metavar="CAMPAIGN", help="Campaign of that recording.")
+@click.option(
+    "--noise",
+    "noise",
+    metavar="NAME=STD",
+    type=named_value,
+    multiple=True,
+    callback=by_name,
+    help="With --drive: noise of one sample of an output; that of --after when not given.",
+)
+@click.option(
+    "--at",
+    "at",
+    metavar="NAME=VALUE",
+    type=named_value,
+    multiple=True,
+    callback=by_name,
+    help="With --drive: middle of the input that is moved, or what another one is held at.",
+)
 @known_options
 @click.option(
     "--rehearse",
@@ -98,7 +124,7 @@ LONGEST_S = 3600.0
     type=float,
     default=SET_POINT_RATE_HZ,
     show_default=True,
-    help="Samples a second of the set point [Hz].",
+    help="Samples a second of the set point, or with --drive of the record [Hz].",
 )
 @click.option("--name", help="Name of the test.")
 @click.option("--seed", type=click.IntRange(min=0), default=1, show_default=True, help="Seed of all randomness.")
@@ -106,6 +132,7 @@ LONGEST_S = 3600.0
 @click.pass_context
 def command(
     context: click.Context,
+    drive_file: Path | None,
     vessel: str,
     structure_name: TypedName | None,
     wishes: tuple[tuple[str, float, bool], ...],
@@ -118,6 +145,8 @@ def command(
     after: Path | None,
     noise_from: Path | None,
     noise_campaign: str | None,
+    noise: Mapping[str, float],
+    at: Mapping[str, float],
     known: ShipBeforeTest,
     rehearsals: int,
     rate_hz: float,
@@ -129,8 +158,22 @@ def command(
 
     Writes campaign, set point, plan and a page into a folder. Ends with 3 where the wishes cannot be met; the best
     plan that can be reached is written then. --wish, --limit, --prior, --free, --hold and --value may be repeated.
+    With --drive, the input of a bench's record is planned, under the limits that stand in the drive file; --noise and
+    --at may be repeated.
     """
     wish = wish_from(wishes)
+    if drive_file is not None:
+        expect_not_given(*_OF_SHIPS)
+        rate = rate_hz if is_given("rate_hz") else None
+        enough = plan_on_the_bench(
+            drive_file, structure_name, wish, known, results,
+            within_s=within_s, rate_hz=rate, noise=noise, at=at, after=after,
+        )  # fmt: skip
+        if not enough:
+            context.exit(NOT_REACHED)
+        return
+    if noise or at:
+        raise click.UsageError("--noise and --at need --drive.")
     _expect_a_goal(wish, within_s, is_shortest=is_shortest)
     installation = checked_vessel(vessel)
     ship = replace(
