@@ -1,7 +1,7 @@
 """An exported FMU in tools of others: the same step and sine in each, beside shaftprint's own simulation.
 
-``python -m benchmarks.hosts`` runs all that are installed; ``host_runs.py`` says how each is installed and called. Those
-of another environment are named with its interpreter: ``python -m benchmarks.hosts cofmupy=/other/venv/bin/python``.
+``python -m benchmarks.hosts`` runs all that are installed; ``host_runs.py`` says how each is installed and called. One
+of another environment is named with its interpreter: ``python -m benchmarks.hosts cofmupy=/other/venv/bin/python``.
 """
 
 import subprocess
