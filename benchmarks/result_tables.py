@@ -60,6 +60,10 @@ def tables_beside(page: Path, text: str, name: str) -> str:
     """
     folder = page.parent / FOLDER
     folder.mkdir(exist_ok=True)
+    for old in folder.glob("*.tsv"):
+        # an earlier run may have had more tables
+        if re.fullmatch(rf"{re.escape(name)}(-\d+)?", old.stem):
+            old.unlink()
     tables = list(_TABLE.finditer(text))
     for number, found in reversed(list(enumerate(tables, start=1))):
         rows = [_cells(line) for line in found.group().splitlines()]

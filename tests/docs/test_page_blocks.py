@@ -335,6 +335,8 @@ def test_tables_of_a_benchmark_go_beside_their_page_and_come_back(tmp_path):
     back = read_between_marks(page, begin, end)
     assert back.strip() == text.replace("| - |", "| \u2013 |").strip()
     assert page.read_text(encoding="utf-8").endswith(f"{end}\n\nmore\n")
+    write_between_marks(page, text.partition("Said.")[0], begin, end)
+    assert [path.name for path in (tmp_path / "results").iterdir()] == ["x.tsv"]
 
 
 def test_the_page_on_wrong_recordings_has_every_case_and_counts_them():
