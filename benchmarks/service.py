@@ -14,7 +14,6 @@ import tempfile
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
@@ -26,12 +25,16 @@ sys.path.insert(0, str(ROOT))
 
 from benchmarks.kept_outcomes import kept
 from benchmarks.result_tables import write_between_marks
+from shaftprint.arrays import FloatArray
+from shaftprint.catalogue._shipped import shipped_structure
 from shaftprint.distributions import NORMAL_95
-from shaftprint.service import fit_service, scan
+from shaftprint.service import scan
+from shaftprint.service._fingerprint import STRUCTURE
 from shaftprint.service._fit import along, fit_segments
 from shaftprint.service._model import FREE, ServiceModel, service_model
 from shaftprint.service._score import noise_of, scores, simulated
 from shaftprint.service._segment_file import read_segments
+from shaftprint.service._ship_numbers import margin_numbers_of
 from shaftprint.tug import Tug, sail_service
 from shaftprint.vessel import load_vessel
 from shaftprint.vessel._vessel import Vessel
@@ -77,47 +80,85 @@ def drawn(seed: int, vessel: Vessel) -> Tug:
     )
 
 
-def outcome(seed: int, hours: float) -> dict[str, Any]:
-    """Return what some hours of service of one ship tell, beside its truth."""
+def sailed(seed: int, hours: float, folder: Path) -> None:
+    """Sail some hours of one ship, and keep in a folder what a scan of its logs finds, beside its truth.
+
+    Of a run that was stopped, ships that are sailed are not sailed again.
+    """
+    if (folder / "truth.json").exists():
+        return
     vessel = load_vessel(VESSEL)
-    model = service_model(vessel)
-    with tempfile.TemporaryDirectory() as place:
+    folder.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory(dir=folder) as place:
         files, truth = sail_service(vessel, Path(place) / "logs", hours=hours, seed=seed, tug=drawn(seed, vessel))
-        table = Path(place) / "segments.csv"
         begin = time.process_time()
         found = scan(files, vessel)
         scanned_s = time.process_time() - begin
-        if found.refused:
-            return {"seed": seed, "hours": hours, "refused": found.refused}
-        found.write(table)
-        day = fit_service(table, vessel, now=datetime.now(UTC))
-        segments, line, _ = read_segments(table)
-    true = np.array([truth.normalised.get(name, float(name == "c_set")) for name in FREE])
+    if not found.refused:
+        found.write(folder / "segments.csv")
+    kept(
+        folder / "truth.json",
+        lambda: {
+            **{name: truth.normalised.get(name, float(name == "c_set")) for name in FREE},
+            "refused": found.refused,
+            "scan_s": scanned_s,
+        },
+    )
+
+
+def outcome(seed: int, hours: float, folder: Path) -> dict[str, Any]:
+    """Return what some hours of service of one ship tell, beside its truth."""
+    vessel = load_vessel(VESSEL)
+    model = service_model(vessel)
+    sailed(seed, hours, folder)
+    told = json.loads((folder / "truth.json").read_text(encoding="utf-8"))
+    if told.get("refused"):
+        return {"seed": seed, "hours": hours, "refused": told["refused"]}
+    true = np.array([told[name] for name in FREE])
+    segments, line, facts = read_segments(folder / "segments.csv")
     records = model.records([one for one in segments if not one.reason], line)
     rng = np.random.default_rng((seed, 6))
     begin = time.process_time()
     fit = fit_segments(records, _at(model, true * np.exp(_OLD * rng.standard_normal(true.size) * _moved())))
     fitted_s = time.process_time() - begin
     begin = time.process_time()
-    runs = simulated(records, model, true)
+    runs = [one for one in simulated(records, model, true) if not one.meets_limit]
     each = scores(runs, noise_of(runs))
     scored_s = time.process_time() - begin
     causes = {}
     for cause, names in DIRECTIONS.items():
         direction = np.array([value if name in names else 0.0 for name, value in zip(FREE, true, strict=True)])
         causes[cause] = along(each, direction)
+    numbers = _numbers(fit.theta, model)
     return {
         "seed": seed,
         "hours": hours,
         "moves": len(segments),
-        "used": len(records),
-        "true": dict(zip(FREE, true.tolist(), strict=True)),
-        "value": dict(zip(FREE, fit.theta.tolist(), strict=True)),
-        "std": dict(zip(FREE, fit.std.tolist(), strict=True)),
-        "from_usual": {name: float(x) for name, x in zip(FREE, day.fit.theta, strict=True)},
+        "used": int(fit.counts.sum()),
+        "numbers": {
+            **{
+                name: (true_value, value, float(np.sqrt(slope @ fit.covariance @ slope)))
+                for (name, (value, slope)), (true_value, _) in zip(
+                    numbers.items(), _numbers(true, model).values(), strict=True
+                )
+            },
+            # the propeller of the simulated ship takes what the vessel file says
+            "K_Q": (1.0, float(str(facts["load"])), float(str(facts["load_std"]))),
+        },
         "causes": causes,
-        "cpu_s": {"scan": scanned_s, "fit": fitted_s, "score": scored_s},
+        "cpu_s": {"scan": told.get("scan_s", np.nan), "fit": fitted_s, "score": scored_s},
     }
+
+
+def _numbers(theta: FloatArray, model: ServiceModel) -> dict[str, tuple[float, FloatArray]]:
+    """Return numbers at parameters, and their slopes: the parameters, the sum of the delays and the gain margin."""
+    structure = shipped_structure(STRUCTURE, set(FREE))
+    held = {p.name: p.value for p in structure.parameters if p.name not in FREE} | {"k_q": 2.0}
+    numbers = {name: (float(theta[k]), np.eye(len(FREE))[k]) for k, name in enumerate(FREE)}
+    delays = np.array([float(name in ("t_d", "t_sp")) for name in FREE])
+    numbers["t_d + t_sp"] = (float(delays @ theta), delays)
+    margins = {one.name: (one.value, one.slope) for one in margin_numbers_of(structure, theta, held)}
+    return numbers | {"gain margin": margins["gain margin"]}
 
 
 def _moved() -> np.ndarray[Any, np.dtype[np.float64]]:
@@ -142,25 +183,26 @@ def report(outcomes: Sequence[Mapping[str, Any]]) -> str:
         "|---|---|---|---|---|",
     ]
     every = []
-    for name in FREE:
-        true, value, std = (np.array([one[key][name] for one in used]) for key in ("true", "value", "std"))
+    for name in used[0]["numbers"]:
+        true, value, std = np.array([one["numbers"][name] for one in used]).T
         z = (value - true) / std
-        every.append(z)
+        if name in FREE:
+            every.append(z)
         share = np.abs(true) if name not in ("g", "t_gauge") else np.ones(len(used))
         unit = " %" if name not in ("g", "t_gauge") else (" ms" if name == "t_gauge" else "")
         factor = {"g": 1.0, "t_gauge": 1e3}.get(name, _PERCENT)
         text.append(
-            f"| `{name}` | {factor * np.median(std / share):.2g}{unit} | "
+            f"| {name if ' ' in name else f'`{name}`'} | {factor * np.median(std / share):.2g}{unit} | "
             f"{factor * np.sqrt(np.mean(((value - true) / share) ** 2)):.2g}{unit} | {np.sqrt(np.mean(z**2)):.2f} | "
             f"{np.count_nonzero(np.abs(z) < NORMAL_95)} of {z.size} |"
         )
     held = np.abs(np.array(every)) < NORMAL_95
-    text.append(f"| all | | | {np.sqrt(np.mean(np.square(every))):.2f} | {_PERCENT * held.mean():.1f} % |")
+    text.append(f"| all parameters | | | {np.sqrt(np.mean(np.square(every))):.2f} | {_PERCENT * held.mean():.1f} % |")
     text += ["", "| change, all else known | one standard deviation, median | rms z at no change |", "|---|---|---|"]
     for cause in DIRECTIONS:
         size, std = np.array([one["causes"][cause] for one in used]).T
         text.append(f"| {cause} | {_PERCENT * np.median(std):.2g} % | {np.sqrt(np.mean((size / std) ** 2)):.2f} |")
-    cpu = {name: np.median([one["cpu_s"][name] / one["hours"] for one in used]) for name in ("scan", "fit", "score")}
+    cpu = {name: np.nanmedian([one["cpu_s"][name] / one["hours"] for one in used]) for name in ("scan", "fit", "score")}
     text += [
         "",
         f"CPU seconds an hour of service, median: scan {cpu['scan']:.1f}, fit from 3 % {cpu['fit']:.1f}, "
@@ -173,15 +215,19 @@ def main() -> None:
     """Make what is missing, and print the table."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--seeds", type=int, default=12, help="how many ships")
+    parser.add_argument("--first", type=int, default=1, help="the first of them")
     parser.add_argument("--hours", type=float, default=1.0, help="hours of service of each")
     parser.add_argument("--outcomes", type=Path, required=True, help="folder in which outcomes are kept")
     parser.add_argument("--write", action="store_true", help="write the table into docs/service.md")
     options = parser.parse_args()
     options.outcomes.mkdir(parents=True, exist_ok=True)
     outcomes = []
-    for seed in range(1, options.seeds + 1):
-        path = options.outcomes / f"{seed}-{options.hours:g}h.json"
-        outcomes.append(kept(path, lambda seed=seed: outcome(seed, options.hours)))
+    for seed in range(options.first, options.first + options.seeds):
+        folder = options.outcomes / f"{seed}-{options.hours:g}h"
+        folder.mkdir(exist_ok=True)
+        outcomes.append(
+            kept(folder / "outcome.json", lambda seed=seed, folder=folder: outcome(seed, options.hours, folder))
+        )
         last = outcomes[-1]
         print(json.dumps({name: last.get(name) for name in ("seed", "used", "refused", "cpu_s")}), flush=True)
     table = report(outcomes)

@@ -42,6 +42,11 @@ WRITTEN_ENDINGS: Final = tuple(dict.fromkeys(ending for endings in ENDINGS_OF_FO
 
 MESSAGES: Final = ("torque", "speed", "set-point")
 """What a simulated ship may send in messages."""
+SERVICE_TROUBLES: Final = (
+    *("lever-late", "lever-early", "trims", "trims-a-little", "trims-at-moves", "load-controller"),
+    *("hidden-load-controller", "lever-once-a-second", "deadband", "orders", "astern", "clutch-out"),
+)
+"""What may be wrong with the logs of a simulated ship in service."""
 STATED_LIMITS: Final = (
     *("set-point", "rate", "lowest-speed", "highest-speed", "resolution", "cycle", "frequency", "time-over"),
     *("noise-margin", "torque", "motoring", "full-scale", "ripple"),

@@ -63,6 +63,7 @@ VERBS = {
     "work": "fleet.work",
     "service scan": "service.scan",
     "service fit": "service.fit_service",
+    "service watch": "service.watch_folders",
 }
 GROUPS = ("export", "store", "fleet", "service")
 SHIP = "pt-may-underway"

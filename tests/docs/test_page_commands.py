@@ -40,7 +40,7 @@ BEGINS = {
     "limits": ("identify_limits",),
     "plan": ("plan_test",),
     "sail": ("sail_as", "sail_both_lines", "sail_service"),
-    "service": ("scan", "fit_service"),
+    "service": ("scan", "fit_service", "watch_folders"),
     "sensitivity": ("save_chart",),
     "simulate": ("simulated_ship", "crash_stop"),
 }

@@ -1,13 +1,14 @@
 """Logs in a row: what follows on each other, what is refused, and what the ship was doing."""
 
 import dataclasses
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from shaftprint.errors import ServiceError, SettingsError
 from shaftprint.recording import Channel, write_recording
-from shaftprint.service._log import blocks
+from shaftprint.service._log import blocks, expect_lever_at_once, expect_no_deadband
 from shaftprint.service._scan import scan
 from shaftprint.service._segment import LeverLine, Segment
 from shaftprint.service._segment_file import read_segments, write_segments
@@ -173,3 +174,56 @@ def test_channels_larger_than_any_log_are_not_unpacked(written, monkeypatch):
     monkeypatch.setattr("shaftprint.service._segment_file._LARGEST", 100)
     with pytest.raises(ServiceError, match="expected at most 0 MiB of channels, found 0 MiB; scan fewer logs"):
         read_segments(written)
+
+
+def held(values, period_s, rate_hz=100.0):
+    every = round(period_s * rate_hz)
+    return values[np.arange(values.size) // every * every]
+
+
+def hand(rng, seconds=3600.0, rate_hz=100.0):
+    """Return a lever that a hand moves at any time [rpm], steps of 0.125 rpm."""
+    corners, levels, at = [0.0], [1200.0], 0.0
+    while at < seconds:
+        at += rng.uniform(10.0, 120.0)
+        level = rng.uniform(700.0, 1600.0)
+        corners += [at, at + abs(level - levels[-1]) / rng.uniform(100.0, 1500.0) + 0.01]
+        levels += [levels[-1], level]
+        at = corners[-1]
+    time = np.arange(round(seconds * rate_hz)) / rate_hz
+    return np.round(8.0 * np.interp(time, corners, levels)) / 8.0
+
+
+@pytest.mark.parametrize("period_s", [0.1, 0.2, 1.0, 2.0])
+def test_a_lever_that_is_asked_for_now_and_then_is_refused(period_s):
+    lever = held(hand(np.random.default_rng(3)), period_s)
+    with pytest.raises(ServiceError, match=rf"changes once in {period_s:g} s: .* 20 times a second or more often"):
+        expect_lever_at_once(lever, 100.0, Path("log.nc"))
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_a_hand_moves_at_any_time(seed):
+    lever = hand(np.random.default_rng(seed))
+    expect_lever_at_once(lever, 100.0, Path("log.nc"))
+    # a lever of push buttons goes in steps, each at a time of its own
+    expect_lever_at_once(np.round(lever / 12.0) * 12.0, 100.0, Path("log.nc"))
+
+
+def channel(values):
+    return Channel(
+        name="EngineSpeed", unit="rpm", rate_hz=100.0, start_s=0.0, count=values.size,
+        source=lambda start, stop: values[start:stop],
+    )  # fmt: skip
+
+
+def test_a_channel_with_a_deadband_is_refused_and_one_of_coarse_steps_is_not():
+    rng = np.random.default_rng(5)
+    speed = 1183.8 + 6.0 * np.convolve(rng.standard_normal(30_050), np.ones(51) / np.sqrt(51.0), mode="valid")
+    fine = np.round(8.0 * speed) / 8.0
+    banded = fine.copy()
+    for k in range(1, banded.size):
+        banded[k] = fine[k] if abs(fine[k] - banded[k - 1]) > 3.0 else banded[k - 1]
+    with pytest.raises(ServiceError, match=r"stays until it is 3\.\d+ rpm off \(\d+% of the samples repeat the last\)"):
+        expect_no_deadband(channel(banded), Path("log.nc"))
+    expect_no_deadband(channel(fine), Path("log.nc"))
+    expect_no_deadband(channel(np.round(speed / 3.0) * 3.0), Path("log.nc"))

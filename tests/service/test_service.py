@@ -9,10 +9,11 @@ import pytest
 from shaftprint.errors import ServiceError
 from shaftprint.fingerprint import read_fingerprint, write_fingerprint
 from shaftprint.service import fit_service, scan
-from shaftprint.service._fit import along, clustered, sums_of
+from shaftprint.service._fit import _beside_limits, along, clustered, sums_of
 from shaftprint.service._gather import gather, lever_line
 from shaftprint.service._model import FREE, service_model
-from shaftprint.service._score import Score, simulated
+from shaftprint.service._progress import Progress
+from shaftprint.service._score import Score, Simulated, simulated
 from shaftprint.service._segment_file import read_segments
 from shaftprint.service._vetting import shift_of_lever
 from shaftprint.tug import Tug, sail_service
@@ -74,6 +75,26 @@ def test_size_along_a_direction_has_the_scatter_of_the_segments():
     assert np.mean(std) == pytest.approx(np.std(sizes), rel=0.15)
 
 
+def runs_of(*meet):
+    return [
+        Simulated(record=k, weight=None, residuals=None, slopes=None, beside=None, meets_limit=met)
+        for k, met in enumerate(meet)
+    ]
+
+
+def test_segments_at_a_limit_of_the_torque_do_not_count_and_stay_out():
+    counts = np.ones(11, dtype=bool)
+    left = _beside_limits(runs_of(*[False] * 3, True, *[False] * 7), counts)
+    left = _beside_limits(runs_of(*[False] * 3, True, *[False] * (len(left) - 4)), counts)
+    assert len(left) == 9
+    assert np.flatnonzero(~counts).tolist() == [3, 4]
+
+
+def test_a_crew_that_always_meets_a_limit_is_told():
+    with pytest.raises(ServiceError, match="in which no limit of the torque acts, found 7 beside 4 that meet one"):
+        _beside_limits(runs_of(*[False] * 7, *[True] * 4), np.ones(11, dtype=bool))
+
+
 @pytest.fixture(scope="module")
 def worked(vessel, tmp_path_factory):
     """Return the logs of half an hour of a busy crew, and the truth."""
@@ -105,6 +126,51 @@ def test_service_tells_the_truth_without_a_test(worked, vessel, tmp_path):
     assert lines[0].count(",") == 2 + 11 + 66
 
 
+def few_of(worked, vessel, path, *, kept=15):
+    """Write the first segments of the logs."""
+    files, _ = worked
+    found = scan(files[:1], vessel)
+    found.write(path)
+    lines = path.read_text().splitlines()
+    used = [k for k, line in enumerate(lines) if ",yes," in line]
+    for k in used[kept:]:
+        lines[k] = lines[k].replace(",yes,", ",no,")
+    path.write_text("\n".join(lines) + "\n")
+
+
+@pytest.mark.slow
+def test_a_fit_that_was_stopped_goes_on_where_it_was(worked, vessel, tmp_path, monkeypatch):
+    few_of(worked, vessel, tmp_path / "segments.csv")
+    whole = fit_service(tmp_path / "segments.csv", vessel, now=NOW)
+    keep, kept = Progress.keep, []
+
+    def stops(progress, reached):
+        keep(progress, reached)
+        kept.append(reached)
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(Progress, "keep", stops)
+    while not kept or not kept[-1].is_last:
+        with pytest.raises(KeyboardInterrupt):
+            fit_service(tmp_path / "segments.csv", vessel, progress=tmp_path / "fit.json", now=NOW)
+    monkeypatch.setattr(Progress, "keep", keep)
+    late = fit_service(tmp_path / "segments.csv", vessel, progress=tmp_path / "fit.json", now=NOW)
+    assert [one.steps for one in kept] == list(range(1, whole.fit.steps + 1))
+    assert late.fingerprint == whole.fingerprint
+    assert late.scores_text() == whole.scores_text()
+    assert late.scores_text(at_start=True) == whole.scores_text(at_start=True)
+
+
+@pytest.mark.long
+def test_the_same_day_twice_is_known_better_and_is_the_same(worked, vessel, tmp_path):
+    for name in ("a", "b"):
+        few_of(worked, vessel, tmp_path / f"{name}.csv")
+    one = fit_service(tmp_path / "a.csv", vessel, now=NOW).fit
+    both = fit_service([tmp_path / "a.csv", tmp_path / "b.csv"], vessel, now=NOW).fit
+    assert np.all(np.abs(both.theta - one.theta) < 0.5 * one.std)
+    assert both.std[FREE.index("tau_dn")] == pytest.approx(one.std[FREE.index("tau_dn")] / np.sqrt(2.0), rel=0.1)
+
+
 @pytest.mark.slow
 def test_segments_are_taken_out_by_hand(worked, vessel, tmp_path):
     files, _ = worked
@@ -132,6 +198,6 @@ def test_clock_of_the_lever_is_held_against_a_fingerprint(worked, vessel, late_s
         for one in gathered.segments
         if not one.reason
     ]
-    found = shift_of_lever(simulated([one.record(line, **point) for one in late], model, model.theta))
+    found = shift_of_lever(simulated([one.record(line, **point) for one in late], model, model.theta), model)
     assert found.value == pytest.approx(1e3 * late_s, abs=12.0)
     assert bool(found.refused) == (late_s > 0.02)

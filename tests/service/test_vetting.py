@@ -1,11 +1,13 @@
 """What is asked of a whole log, on levers and loads that were made up."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from shaftprint.service._gather import StillMeans, lever_line
-from shaftprint.service._segment import Segment
-from shaftprint.service._vetting import lever_follows_load, way_on
+from shaftprint.service._segment import LeverLine, Segment
+from shaftprint.service._vetting import lever_follows_load, off_the_line, speed_is_off, way_on
 
 
 def still(gain, *, count=600, seed=3):
@@ -75,3 +77,27 @@ def test_line_of_the_lever_is_found_beside_a_stretch_that_is_off():
     line = lever_line(StillMeans(lever_v=lever, speed_rev_s=speed, load=np.ones(lever.size), stretch=stretch))
     assert line.slope_rev_s_per_v == pytest.approx(-4.183, abs=0.01)
     assert line.stretches == 19
+
+
+LINE = LeverLine(slope_rev_s_per_v=-4.0, middle_v=-5.0, middle_rev_s=20.0, spread_rpm=2.0, stretches=20)
+
+
+@pytest.mark.parametrize(("held_share", "is_refused"), [(0.05, False), (0.3, True)])
+def test_a_load_controller_behind_the_lever_shows_where_it_stands_still(held_share, is_refused):
+    rng = np.random.default_rng(6)
+    lever = rng.uniform(-7.0, -4.0, 200)
+    speed = LINE.speed_rev_s(lever) + 0.03 * rng.standard_normal(200)
+    fastest = np.argsort(speed)[200 - round(200 * held_share) :]
+    speed[fastest] -= 1.0
+    found = off_the_line(StillMeans(lever_v=lever, speed_rev_s=speed, load=speed, stretch=np.zeros(200)), LINE)
+    assert found.value == pytest.approx(100.0 * held_share, abs=1.0)
+    assert bool(found.refused) == is_refused
+
+
+@pytest.mark.parametrize(("rpm", "is_off"), [(5.0, False), (40.0, True)])
+def test_a_move_to_a_speed_that_is_not_reached_is_not_used(rpm, is_off):
+    one = segment(18.0, 24.0, 2.0, np.random.default_rng(7))
+    time = np.arange(2900) / 100.0
+    lever = np.where(time < 3.0, -4.5, -6.0 - rpm / 60.0 / 4.0)
+    one = replace(one, lever_v=lever)
+    assert bool(speed_is_off(one, LINE)) == is_off

@@ -1,4 +1,5 @@
 from ._scan import Scan, scan
-from ._service_fit import ServiceDay, fit_service
+from ._service_fit import fit_service
+from ._watch import watch_folders
 
-__all__ = ["Scan", "ServiceDay", "fit_service", "scan"]
+__all__ = ["Scan", "fit_service", "scan", "watch_folders"]

@@ -69,15 +69,15 @@ def fingerprint_of_service(
     segments: Sequence[Segment],
     of: int,
     load: tuple[float, float],
-    table: Path,
+    tables: Sequence[Path],
     now: datetime,
 ) -> Fingerprint:
     """Return the fingerprint of a line from its service.
 
     ``fit``, ``model``: the fit, normalised at the working point of the vessel file, and its model. ``vessel``: the
     installation. ``line``: what the lever asks for. ``segments``, ``of``: the segments that were fitted, and how many
-    moves there were. ``load``: mean load over that of the working point, and its standard deviation. ``table``: the
-    table of segments. ``now``: time of making, with time zone. Raises ServiceError if ``now`` has no time zone.
+    moves there were. ``load``: mean load over that of the working point, and its standard deviation. ``tables``: the
+    tables of segments. ``now``: time of making, with time zone. Raises ServiceError if ``now`` has no time zone.
     """
     if now.tzinfo is None:
         raise ServiceError("now: expected a time with time zone, such as datetime.now(UTC), found one without.")
@@ -104,7 +104,7 @@ def fingerprint_of_service(
     return Fingerprint(
         shaftprint_version=shaftprint.__version__,
         created=now,
-        sources=(source_of("recording", table),),
+        sources=tuple(source_of("recording", table) for table in tables),
         conditions=_conditions(vessel, model, line, torque_nm=torque_nm, torque_std_nm=load[1] * model.shaft_torque_nm),
         structure=STRUCTURE,
         held=held,
@@ -159,7 +159,8 @@ def _conditions(
 
 def _quality(fit: ServiceFit, segments: Sequence[Segment]) -> Quality:
     count = sum(one.count for one in fit.scores)
-    met = sum(one.meets_limit for one in fit.scores)
+    met = int(np.count_nonzero(~fit.counts))
+    remark = f"In {met} of {fit.counts.size} segments a limit of the torque acted; they are left out."
     return Quality(
         weighting="segments of service",
         fit_percent={},
@@ -172,7 +173,7 @@ def _quality(fit: ServiceFit, segments: Sequence[Segment]) -> Quality:
         snr_overall={},
         snr_local_db={},
         repairs={},
-        remarks=(f"In {met} of {len(segments)} segments a limit of the torque acted.",),
+        remarks=(remark,) if met else (),
     )
 
 

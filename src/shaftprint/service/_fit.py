@@ -17,13 +17,15 @@ from types import MappingProxyType
 
 import numpy as np
 
-from shaftprint.arrays import FloatArray, frozen_float
+from shaftprint.arrays import BoolArray, FloatArray, frozen_bool, frozen_float
 from shaftprint.catalogue._gauge import GAUGE_K_I, GAUGE_K_P, GAUGE_OMEGA_N, GAUGE_ZETA, T_D, T_SP, TAU_DN, TAU_UP
 from shaftprint.errors import ServiceError
 from shaftprint.service._model import FREE, ServiceModel
-from shaftprint.service._score import Score, noise_of, scores, simulated
+from shaftprint.service._progress import Progress, Reached
+from shaftprint.service._score import Score, Simulated, noise_of, scores, simulated
 from shaftprint.time_domain._record import Record
 from shaftprint.time_domain._simulator import Simulator
+from shaftprint.time_domain._whitening import Whitening
 
 FEWEST_SEGMENTS = 8
 """Segments below which their scatter says nothing."""
@@ -33,6 +35,8 @@ _MOST_STEPS, _LAST, _SHORT, _NOISE_ANEW, _MOST_NOISES = 12, 0.3, 1.5, 1.5, 4
 # Where no part of a step helps, it was rough ground if the step was below so many standard deviations: eleven numbers
 # are known to three of them together.
 _ROUGH = 3.0
+# Condition of the scaled curvature beyond which some number is not told at all.
+_WORST = 1e12
 # Times that a step is halved before the fit ends.
 _HALVINGS = 6
 FLOOR: Mapping[str, float] = MappingProxyType({GAUGE_K_P.name: 0.003, GAUGE_K_I.name: 0.003, TAU_DN.name: 0.002})
@@ -52,7 +56,13 @@ class ServiceFit:
     of_prior: Mapping[str, FloatArray]
     """Change of them for one standard deviation of what the vessel file knows, by the number, shape (free,)."""
     scores: tuple[Score, ...]
-    """What each segment tells, at these values."""
+    """What each segment that counts tells, at these values."""
+    counts: BoolArray
+    """Which segments count: those that meet no limit of the torque, shape (segments,)."""
+    at_start: tuple[Score, ...]
+    """What each segment that counted there tells at the values that the fit began from."""
+    counts_at_start: BoolArray
+    """Which segments counted there, shape (segments,)."""
     steps: int
     """Steps that were taken."""
     last_step: float
@@ -77,8 +87,20 @@ class Sums:
 
     @property
     def step(self) -> FloatArray:
-        """Where the likelihood is greatest, as seen from the parameters, shape (free,)."""
-        return np.asarray(np.linalg.solve(self.information, self.slope))
+        """Where the likelihood is greatest, as seen from the parameters, shape (free,).
+
+        Raises ServiceError if the segments do not tell all parameters.
+        """
+        size = np.sqrt(np.diag(self.information))
+        if np.all(np.isfinite(size)) and np.all(size > 0.0):
+            scaled = self.information / np.outer(size, size)
+            if np.linalg.cond(scaled) < _WORST:
+                return np.asarray(np.linalg.solve(scaled, self.slope / size) / size)
+        raise ServiceError(
+            "service: expected segments that tell all numbers of the line, found none left that do: speed and torque "
+            "do not follow the lever as a governor does; begin from a fingerprint of this line (--fingerprint), or log "
+            "the demand that the control unit takes."
+        )
 
 
 def sums_of(each: Sequence[Score], model: ServiceModel, theta: FloatArray) -> Sums:
@@ -91,58 +113,74 @@ def sums_of(each: Sequence[Score], model: ServiceModel, theta: FloatArray) -> Su
     )
 
 
-def fit_segments(records: Sequence[Record], model: ServiceModel, *, simulator: Simulator | None = None) -> ServiceFit:
+def fit_segments(
+    records: Sequence[Record],
+    model: ServiceModel,
+    *,
+    simulator: Simulator | None = None,
+    progress: Progress | None = None,
+) -> ServiceFit:
     """Return the parameters that explain segments best.
 
     ``records``: the segments. ``model``: the model, with the values to begin from. ``simulator``: how it is simulated.
-    Raises ServiceError if there are too few segments, or the steps do not end.
+    ``progress``: keeps what each step has reached, and says where an earlier run was. Raises ServiceError if there are
+    too few segments, or the steps do not end.
     """
     if len(records) < FEWEST_SEGMENTS:
         raise ServiceError(
             f"service: expected {FEWEST_SEGMENTS} or more moves of the lever that can be used, found {len(records)}; "
             "give more logs."
         )
-    theta = model.theta
-    runs = simulated(records, model, theta, simulator)
+    counts = np.ones(len(records), dtype=np.bool_)
+    runs = _beside_limits(simulated(records, model, model.theta, simulator), counts)
     whitening = noise_of(runs)
     each = scores(runs, whitening)
-    size = before = np.inf
-    for step_number in range(1, _MOST_STEPS + 1):
+    at_start, counts_at_start = tuple(each), frozen_bool(counts)
+    theta, number, size, before, is_last = model.theta, 0, np.inf, np.inf, False
+    reached = None if progress is None else progress.reached(len(records))
+    if reached is not None:
+        theta, number, size, is_last = reached.theta, reached.steps, reached.size, reached.is_last
+        counts, whitening = reached.counts.copy(), Whitening(noise=reached.noise)
+        kept = [record for record, does in zip(records, counts, strict=True) if does]
+        runs = simulated(kept, model, theta, simulator)
+        each = scores(runs, whitening)
+    while not is_last:
+        if number == _MOST_STEPS:
+            if size <= _SHORT:
+                break
+            raise ServiceError(
+                f"service: expected a fit that comes to rest within {_MOST_STEPS} steps, found one whose last step was "
+                f"{size:.2g} standard deviations long; begin from a fingerprint of this line (--fingerprint)."
+            )
+        number, before = number + 1, size
         sums = sums_of(each, model, theta)
         step = sums.step
-        before, size = size, float(np.sqrt(step @ sums.information @ step))
-        misfit = _misfit(each, sums, model, theta)
-        for _ in range(_HALVINGS):
-            tried = _within(theta + step)
-            try:
-                new_runs = simulated(records, model, tried, simulator)
-            except ServiceError:
-                step = 0.5 * step
-                continue
-            new_each = scores(new_runs, whitening)
-            # from afar the filter still holds what the start leaves, and its misfit is no guide
-            if step_number <= _MOST_NOISES or size < _SHORT or _misfit(new_each, sums, model, tried) <= misfit:
-                break
-            step = 0.5 * step
-        else:
+        size = float(np.sqrt(step @ sums.information @ step))
+        # from afar the filter still holds what the start leaves, and its misfit is no guide
+        is_rough = number <= _MOST_NOISES or size < _SHORT
+        found = _stepped(runs, each, sums, model, theta, whitening, simulator, guided=not is_rough)
+        if found is None:
             if size < _ROUGH:
                 break
             raise ServiceError(
                 "service: expected a fit that comes nearer to the segments with each step, found none that does; "
                 "begin from a fingerprint of this line (--fingerprint)."
             )
-        theta, runs, each = tried, new_runs, new_each
-        if size < _LAST or max(size, before) < _SHORT:
-            break
-        if size > _NOISE_ANEW and step_number <= _MOST_NOISES:
+        theta, runs, each = found
+        if any(one.meets_limit for one in runs):
+            runs = _beside_limits(runs, counts)
+            each = scores(runs, whitening)
+        is_last = size < _LAST or max(size, before) < _SHORT
+        if not is_last and size > _NOISE_ANEW and number <= _MOST_NOISES:
+            runs = _with_those_back(runs, records, counts, model, theta, simulator)
             whitening = noise_of(runs)
             each = scores(runs, whitening)
-    else:
-        if size > _SHORT:
-            raise ServiceError(
-                f"service: expected a fit that comes to rest within {_MOST_STEPS} steps, found one whose last step was "
-                f"{size:.2g} standard deviations long; begin from a fingerprint of this line (--fingerprint)."
-            )
+        if progress is not None:
+            progress.keep(
+                Reached(
+                    theta=theta, counts=counts, noise=whitening.noise, steps=number, size=size, is_last=is_last
+                )
+            )  # fmt: skip
     sums = sums_of(each, model, theta)
     of_noise: FloatArray = np.linalg.inv(sums.information).astype(np.float64)
     return ServiceFit(
@@ -150,9 +188,75 @@ def fit_segments(records: Sequence[Record], model: ServiceModel, *, simulator: S
         covariance=frozen_float(with_floor(clustered(each, sums, of_noise), theta)),
         of_prior={name: frozen_float(of_noise[:, FREE.index(name)] / std) for name, std in model.prior_std.items()},
         scores=tuple(each),
-        steps=step_number,
+        counts=frozen_bool(counts),
+        at_start=at_start,
+        counts_at_start=counts_at_start,
+        steps=number,
         last_step=size,
     )
+
+
+def _stepped(
+    runs: Sequence[Simulated],
+    each: Sequence[Score],
+    sums: Sums,
+    model: ServiceModel,
+    theta: FloatArray,
+    whitening: Whitening,
+    simulator: Simulator | None,
+    *,
+    guided: bool,
+) -> tuple[FloatArray, list[Simulated], list[Score]] | None:
+    """Return what lies a step on, halved until it is no worse where the misfit is a guide; None if it never is."""
+    step, misfit = sums.step, _misfit(each, sums, model, theta)
+    for _ in range(_HALVINGS):
+        tried = _within(theta + step)
+        try:
+            new_runs = simulated([one.record for one in runs], model, tried, simulator)
+        except ServiceError:
+            step = 0.5 * step
+            continue
+        new_each = scores(new_runs, whitening)
+        if not guided or _misfit(new_each, sums, model, tried) <= misfit:
+            return tried, new_runs, new_each
+        step = 0.5 * step
+    return None
+
+
+def _beside_limits(runs: Sequence[Simulated], counts: BoolArray) -> list[Simulated]:
+    """Return segments in which no limit of the torque acted, and note which of all that are in ``counts``.
+
+    Where the model meets a limit, noise decides when the ship does, and how long it stays there: such a segment tells
+    half as much again beside the truth as it states. After short steps it stays out, so that they come to rest. Raises
+    ServiceError if too few are left.
+    """
+    kept = [one for one in runs if not one.meets_limit]
+    if len(kept) < FEWEST_SEGMENTS:
+        raise ServiceError(
+            f"service: expected {FEWEST_SEGMENTS} or more moves of the lever in which no limit of the torque acts, "
+            f"found {len(kept)} beside {len(runs) - len(kept)} that meet one; give more logs, or a fingerprint of this "
+            "line to begin from (--fingerprint)."
+        )
+    counts[np.flatnonzero(counts)] = [not one.meets_limit for one in runs]
+    return kept
+
+
+def _with_those_back(
+    runs: Sequence[Simulated],
+    records: Sequence[Record],
+    counts: BoolArray,
+    model: ServiceModel,
+    theta: FloatArray,
+    simulator: Simulator | None,
+) -> list[Simulated]:
+    """Return segments with those again that met a limit before a long step, and meet none now."""
+    out = np.flatnonzero(~counts).tolist()
+    if not out:
+        return list(runs)
+    back = simulated([records[k] for k in out], model, theta, simulator)
+    every = dict(zip(np.flatnonzero(counts).tolist(), runs, strict=True)) | dict(zip(out, back, strict=True))
+    counts[:] = True
+    return _beside_limits([every[k] for k in sorted(every)], counts)
 
 
 def clustered(each: Sequence[Score], sums: Sums, of_noise: FloatArray) -> FloatArray:

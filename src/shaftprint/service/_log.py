@@ -21,6 +21,7 @@ from shaftprint.signals._channel_readings import logger_channels, read_channels
 from shaftprint.signals.kinds._kinds import find_sources
 
 if TYPE_CHECKING:
+    from shaftprint.recording._channel import Channel
     from shaftprint.recording._recording import Recording
     from shaftprint.signals._channel_readings import ChannelReadings
     from shaftprint.vessel._vessel import Vessel
@@ -34,6 +35,13 @@ _BLOCK_S = 3600.0
 _FOLLOWS = 1.6
 # A channel that repeats its last value in this share of its samples shows no more than every so many of them.
 _HELD_SHARE = 0.3
+# Stretches of a channel that are looked at for a deadband, and how long each is [s]; changes that are needed to tell,
+# share of the samples that repeat the last, and steps of the resolution below which a deadband does no harm.
+_LOOKS, _LOOK_S, _FEWEST_MOVED, _KEPT_SHARE, _STEPS = 6, 60.0, 100, 0.5, 4.0
+# Periods of clocks at which a lever may be asked for [s], the longest first; changes that are needed to tell, and the
+# length of their mean arrow from which on they are at its ticks.
+_PERIODS_S = (10.0, 5.0, 3.0, 2.0, 1.5, 1.0, 0.75, 0.5, 0.4, 0.3, 0.25, 0.2, 0.1)
+_FEWEST_CHANGES, _AT_TICKS = 20, 0.9
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -157,8 +165,12 @@ def _read(part: "Recording", path: Path, vessel: "Vessel", *, told: Callable[[Le
         told(LeftOut(log=str(path), seconds=seconds, reason=str(problem)))
         return None
     expect_every_value(readings, path)
+    for channel in channels:
+        if channel.name != vessel.sensors.set_point.channel:
+            expect_no_deadband(channel, path)
     names = _names(vessel)
     lever, speed, torque = (readings.by_name[name].values for name in names)
+    expect_lever_at_once(lever, rate_hz, path)
     clock = readings.clock
     whole = np.isfinite(lever) & np.isfinite(speed) & np.isfinite(torque)
     for name in names:
@@ -206,6 +218,56 @@ def expect_every_value(readings: "ChannelReadings", path: Path) -> None:
                 f"{held.hold_s:.2g} s at a time ({held.share:.0%} of the samples): a historian that compresses, or "
                 "asks seldom. Switch off its deadband and compression for lever, speed and torque, or log these three "
                 f"beside it at {RECORD_HZ:g} Hz or more."
+            )
+
+
+def expect_no_deadband(channel: "Channel", path: Path) -> None:
+    """Refuse a channel that is written only when it is some way from its last value.
+
+    It stands still most of the time, and what it then goes by is never small beside its resolution; a coarse sensor
+    goes by one step of its resolution.
+
+    ``channel``: speed or torque. Raises ServiceError if it is written so.
+    """
+    length = round(_LOOK_S * channel.rate_hz)
+    begins = np.unique(np.linspace(0, max(channel.count - length, 0), _LOOKS).astype(np.int64))
+    values = [channel.values(int(begin), min(int(begin) + length, channel.count)) for begin in begins]
+    changes = np.abs(np.concatenate([np.diff(one) for one in values]))
+    changes = changes[np.isfinite(changes)]
+    moved = changes[changes > 0.0]
+    if moved.size < _FEWEST_MOVED or moved.size > (1.0 - _KEPT_SHARE) * changes.size:
+        return
+    levels = np.unique(np.concatenate(values))
+    steps = np.diff(levels[np.isfinite(levels)])
+    resolution = float(steps[steps > 1e-9 * float(np.abs(levels).max())].min())
+    least = float(np.quantile(moved, 0.02))
+    if least > _STEPS * resolution:
+        raise ServiceError(
+            f"{path}, channel {channel.name}: expected every value, found one that stays until it is {least:.3g} "
+            f"{channel.unit} off ({1.0 - moved.size / changes.size:.0%} of the samples repeat the last): a historian "
+            "with a deadband. Switch off its deadband and compression for lever, speed and torque, or log these three "
+            f"beside it at {RECORD_HZ:g} Hz or more."
+        )
+
+
+def expect_lever_at_once(lever: FloatArray, rate_hz: float, path: Path) -> None:
+    """Refuse a log whose lever changes at the ticks of a slower clock only: it was asked for its value now and then.
+
+    A hand moves at any time, so that the times of the changes are spread evenly over the period of any clock. That they
+    are not is told by the length of their mean arrow (Rayleigh).
+
+    ``lever``: shape (samples,). Raises ServiceError if the lever is held so.
+    """
+    changes = np.flatnonzero(np.abs(np.diff(np.nan_to_num(lever))) > 0.0) / rate_hz
+    if changes.size < _FEWEST_CHANGES:
+        return
+    for period_s in _PERIODS_S:
+        if abs(np.mean(np.exp(2j * np.pi * changes / period_s))) > _AT_TICKS:
+            raise ServiceError(
+                f"{path}: expected a lever that may change at every sample, found one that changes once in "
+                f"{period_s:g} s: it was asked for its value that seldom and kept in between, and a governor answers "
+                f"within a tenth of a second; log it {RECORD_HZ:g} times a second or more often, by the logger of the "
+                "others."
             )
 
 

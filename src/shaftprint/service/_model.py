@@ -62,6 +62,8 @@ class ServiceModel:
     """Shaft torque of the working point [N m]."""
     is_of_fingerprint: bool
     """Whether the values are those of a fingerprint, against which a log can be held."""
+    covariance: FloatArray | None = None
+    """Covariance of the free parameters by that fingerprint, shape (free, free); None where it has others."""
 
     @property
     def theta(self) -> FloatArray:
@@ -138,6 +140,7 @@ def service_model(vessel: "Vessel", fingerprint: "Fingerprint | None" = None) ->
         engine_speed_rev_s=speed,
         shaft_torque_nm=torque,
         is_of_fingerprint=fingerprint is not None,
+        covariance=None if fingerprint is None else _covariance(fingerprint, values),
     )
 
 
@@ -191,3 +194,16 @@ def _of_fingerprint(fingerprint: "Fingerprint", point: Normalisation, usual: Map
     scaled = dict.fromkeys((GAUGE_K_P.name, GAUGE_K_I.name, TAU_DN.name, TAU_UP.name), factor) | {G.name: factor}
     values = {name: own[name] * scaled.get(name, 1.0) for name in FREE if name in own}
     return {name: value for name, value in values.items() if name in usual and name not in (C_SET.name,)}
+
+
+def _covariance(fingerprint: "Fingerprint", values: Mapping[str, float]) -> FloatArray | None:
+    """Return the covariance of the free parameters at the working point of the vessel file; None where some are not."""
+    own = {one.name: (k, one.value) for k, one in enumerate(fingerprint.parameters)}
+    if fingerprint.covariance is None or any(name not in own for name in FREE):
+        return None
+    places = [own[name][0] for name in FREE]
+    # gains and inertia times go with the torque of the point; the scale of the set point begins at one
+    scale = np.array(
+        [values[name] / own[name][1] if own[name][1] and name not in (G.name, C_SET.name) else 1.0 for name in FREE]
+    )
+    return np.asarray(np.array(fingerprint.covariance)[np.ix_(places, places)] * np.outer(scale, scale))

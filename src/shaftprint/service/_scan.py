@@ -20,7 +20,7 @@ from shaftprint.service._model import FREE, ServiceModel, service_model
 from shaftprint.service._score import Score, noise_of, scores, simulated
 from shaftprint.service._segment import LeverLine, Segment
 from shaftprint.service._segment_file import USED, write_segments
-from shaftprint.service._vetting import Found, lever_follows_load, shift_of_lever, way_on
+from shaftprint.service._vetting import Found, lever_follows_load, off_the_line, shift_of_lever, speed_is_off, way_on
 from shaftprint.units import rpm_from_rev_s
 
 if TYPE_CHECKING:
@@ -31,6 +31,7 @@ TOLD = (GAUGE_K_P.name, GAUGE_K_I.name, T_D.name, T_SP.name, TAU_DN.name, GAUGE_
 """Numbers of which the table says what each segment tells."""
 _TOO_LOUD = 3.0
 _PERCENT = 100.0
+_LIMIT = "meets a limit of the torque, where noise decides how long: the fit leaves it out if it finds that too"
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
@@ -145,7 +146,7 @@ def scan(
             accuracy={}, values={}, rows=(), facts={},
         )  # fmt: skip
     segments, found, each = _judged(gathered, line, model)
-    accuracy, values = _accuracy([score for score in each if score is not None], model)
+    accuracy, values = _accuracy([one for one in each if one is not None and not one.meets_limit], model)
     load, load_std = _load(gathered)
     refused = " Also: ".join(one.refused for one in found if one.refused)
     return Scan(
@@ -173,13 +174,19 @@ def _judged(
     gathered: Gathered, line: LeverLine, model: ServiceModel
 ) -> tuple[tuple[Segment, ...], tuple[Found, ...], list[Score | None]]:
     """Return segments with their reasons, what was found of the whole log, and what each segment tells."""
+    gathered = replace(
+        gathered,
+        segments=tuple(
+            one if one.reason else replace(one, reason=speed_is_off(one, line)) for one in gathered.segments
+        ),
+    )
     usable = [one for one in gathered.segments if not one.reason]
-    found = [lever_follows_load(gathered.still), way_on(usable)]
+    found = [off_the_line(gathered.still, line), lever_follows_load(gathered.still), way_on(usable)]
     each: dict[int, Score] = {}
     if usable:
         runs = simulated(model.records(usable, line), model, model.theta)
         if model.is_of_fingerprint:
-            found.append(shift_of_lever(runs))
+            found.append(shift_of_lever(runs, model))
         each = dict(zip(map(id, usable), scores(runs, noise_of(runs)), strict=True))
         typical = float(np.median([score.level for score in each.values()]))
         loud = {key for key, score in each.items() if score.level > _TOO_LOUD * typical}
@@ -228,7 +235,7 @@ def _row(segment: Segment, score: Score | None, line: LeverLine, model: ServiceM
         "to_rpm": f"{speeds[-1]:.0f}",
         "state": segment.state,
         USED: "no" if segment.reason else "yes",
-        "reason": segment.reason or ("" if score is None or not score.meets_limit else "meets a limit of the torque"),
+        "reason": segment.reason or ("" if score is None or not score.meets_limit else _LIMIT),
         "noise": "" if score is None else f"{score.level:.3g}",
     }
     for name in TOLD:

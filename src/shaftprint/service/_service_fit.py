@@ -1,22 +1,24 @@
 """From segments to a day: a fingerprint of service, and slope and curvature of each segment beside it."""
 
-import csv
-import io
-import json
+from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING
+
+import numpy as np
 
 from shaftprint.arguments import refusing_none
 from shaftprint.catalogue._gauge import T_SP
 from shaftprint.errors import ServiceError
 from shaftprint.notebook._shown import Shown
 from shaftprint.notebook._summary import Summary
+from shaftprint.service._day_folder import scores_text, theta_text
 from shaftprint.service._fingerprint import fingerprint_of_service
 from shaftprint.service._fit import ServiceFit, fit_segments
 from shaftprint.service._model import FREE, ServiceModel, service_model
-from shaftprint.service._segment import Segment
+from shaftprint.service._progress import progress_of
+from shaftprint.service._segment import LeverLine, Segment
 from shaftprint.service._segment_file import read_segments
 
 if TYPE_CHECKING:
@@ -31,8 +33,10 @@ LATEST_T_SP_S, EARLIEST_T_SP_S = 0.5, -0.02
 class ServiceDay(Shown):
     """What some service told of a line."""
 
+    given: tuple[Segment, ...]
+    """The segments that the tables gave."""
     segments: tuple[Segment, ...]
-    """The segments that were used."""
+    """Those that were used."""
     model: ServiceModel
     """The model, with the values that the fit began from."""
     fit: ServiceFit
@@ -48,43 +52,45 @@ class ServiceDay(Shown):
         }
         return Summary(title=f"Service of {self.fingerprint.conditions.vessel}", facts=facts)
 
-    def scores_text(self) -> str:
-        """Return slope and upper half of the curvature of each segment at the fit, as a table of text.
+    def scores_text(self, *, at_start: bool = False) -> str:
+        """Return slope and upper half of the curvature of each segment, as a table of text.
 
         What days tell together is the sum of both; nothing of it needs the logs again.
-        """
-        text = io.StringIO(newline="")
-        table = csv.writer(text, lineterminator="\n")
-        pairs = [(i, j) for i in range(len(FREE)) for j in range(i, len(FREE))]
-        table.writerow(
-            ["log", "move_s", "noise", *(f"g_{n}" for n in FREE), *(f"H_{FREE[i]}_{FREE[j]}" for i, j in pairs)]
-        )
-        for segment, score in zip(self.segments, self.fit.scores, strict=True):
-            numbers = [*score.slope.tolist(), *(float(score.information[i, j]) for i, j in pairs)]
-            table.writerow(
-                [Path(segment.log).name, f"{segment.move_s:.2f}", f"{score.level:.6g}", *(f"{x:.9g}" for x in numbers)]
-            )
-        return text.getvalue()
 
-    def theta_text(self) -> str:
+        ``at_start``: at the values that the fit began from, against which days are held; else at the fit.
+        """
+        counts, scores = (
+            (self.fit.counts_at_start, self.fit.at_start) if at_start else (self.fit.counts, self.fit.scores)
+        )
+        return scores_text([one for one, does in zip(self.given, counts, strict=True) if does], scores)
+
+    def theta_text(self, *, at_start: bool = False) -> str:
         """Return at which values the slopes were taken, as JSON."""
-        return json.dumps(dict(zip(FREE, self.fit.theta.tolist(), strict=True)), indent=1) + "\n"
+        return theta_text(self.model.theta if at_start else self.fit.theta)
 
 
 @refusing_none(ServiceError)
 def fit_service(
-    table: str | Path, vessel: "Vessel", *, fingerprint: "Fingerprint | None" = None, now: datetime
+    tables: str | Path | Sequence[str | Path],
+    vessel: "Vessel",
+    *,
+    fingerprint: "Fingerprint | None" = None,
+    progress: str | Path | None = None,
+    now: datetime,
 ) -> ServiceDay:
-    """Fit a line to the segments of a table that ``Scan.write`` wrote, as edited since.
+    """Fit a line to the segments of tables that ``Scan.write`` wrote, as edited since.
 
     Parameters
     ----------
-    table
-        The table of segments; those marked "no" are left out.
+    tables
+        The table of segments, or those of several days; segments marked "no" are left out.
     vessel
         The installation.
     fingerprint
         One to begin from; none of its numbers counts.
+    progress
+        File that keeps what each step has reached. A fit that was stopped goes on from there and ends with the same
+        numbers to the last bit. Delete it when the result is written.
     now
         Time of making, with time zone.
 
@@ -93,38 +99,67 @@ def fit_service(
     ServiceError
         If a file cannot be used, the scan refused the logs, there are too few segments, or the fit does not end.
     """
-    segments, line, facts = read_segments(table)
-    refused = str(facts.get("refused", ""))
-    if refused:
-        raise ServiceError(f"{table}: nothing is fitted to these segments, since {refused}")
-    used = tuple(one for one in segments if not one.reason)
+    paths = [Path(tables)] if isinstance(tables, str | Path) else [Path(one) for one in tables]
+    if not paths:
+        raise ServiceError("service fit: expected at least one table of segments, found none.")
     model = service_model(vessel, fingerprint)
-    if facts.get("vessel") != vessel.name:
-        raise ServiceError(
-            f"{table}: expected segments of {vessel.name}, found some of {facts.get('vessel')}; name the vessel file "
-            "with which the logs were scanned."
-        )
-    fit = fit_segments(model.records(used, line), model)
+    days = [_of_table(path, vessel) for path in paths]
+    given = tuple(one for segments, *_ in days for one in segments if not one.reason)
+    records = [
+        record
+        for segments, line, _ in days
+        for record in model.records([one for one in segments if not one.reason], line)
+    ]
+    kept = None if progress is None else progress_of(Path(progress), paths, model)
+    fit = fit_segments(records, model, progress=kept)
+    used = tuple(one for one, counts in zip(given, fit.counts, strict=True) if counts)
     latency = float(fit.theta[FREE.index(T_SP.name)])
     if not EARLIEST_T_SP_S - 3.0 * _std(fit, T_SP.name) <= latency <= LATEST_T_SP_S:
         raise ServiceError(
-            f"{table}: expected a speed that follows the lever within {LATEST_T_SP_S:g} s, found a latency of "
+            f"{paths[0]}: expected a speed that follows the lever within {LATEST_T_SP_S:g} s, found a latency of "
             f"{1e3 * latency:.0f} ms: lever, speed and torque do not share one clock; log all three with one logger or "
             "bring its files onto one clock (shaftprint merge)."
         )
-    load, load_std = (float(str(facts[name])) for name in ("load", "load_std"))
     made = fingerprint_of_service(
         fit,
         model,
         vessel,
-        line=line,
+        line=days[0][1],
         segments=used,
-        of=len(segments),
-        load=(load, load_std),
-        table=Path(table),
+        of=sum(len(segments) for segments, *_ in days),
+        load=_mean_load([load for *_, load in days]),
+        tables=paths,
         now=now,
     )
-    return ServiceDay(segments=used, model=model, fit=fit, fingerprint=made)
+    return ServiceDay(given=given, segments=used, model=model, fit=fit, fingerprint=made)
+
+
+def _of_table(path: Path, vessel: "Vessel") -> tuple[tuple[Segment, ...], LeverLine, tuple[float, float]]:
+    """Return the segments of a table, the line of the lever, and mean load with its standard deviation.
+
+    Raises ServiceError if the table cannot be used.
+    """
+    segments, line, facts = read_segments(path)
+    refused = str(facts.get("refused", ""))
+    if refused:
+        raise ServiceError(f"{path}: nothing is fitted to these segments, since {refused}")
+    if facts.get("vessel") != vessel.name:
+        raise ServiceError(
+            f"{path}: expected segments of {vessel.name}, found some of {facts.get('vessel')}; name the vessel file "
+            "with which the logs were scanned."
+        )
+    return segments, line, (float(str(facts["load"])), float(str(facts["load_std"])))
+
+
+def _mean_load(loads: Sequence[tuple[float, float]]) -> tuple[float, float]:
+    """Return the mean load of several days and its standard deviation, that of days that differ included."""
+    if len(loads) == 1:
+        return loads[0]
+    values, std = np.array(loads).T
+    weight = 1.0 / np.maximum(std, 1e-6) ** 2
+    mean = float(weight @ values / weight.sum())
+    within = 1.0 / weight.sum()
+    return mean, float(np.sqrt(max(within, np.var(values, ddof=1) / values.size)))
 
 
 def _std(fit: ServiceFit, name: str) -> float:

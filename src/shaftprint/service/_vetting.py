@@ -6,6 +6,7 @@ closed-loop dynamic-stochastic systems, Technometrics 16, 1974). So each of thes
 
 - does the still lever follow the load of some seconds before?
 - by which shift of the lever does the log agree best with an earlier fingerprint?
+- does the speed follow the lever wherever it stands still?
 - does the torque go with the square of the speed across moves, as it does at the quay?
 
 Somebody who trims against the load only when he moves the lever anyway is seen by none of them.
@@ -17,12 +18,18 @@ from dataclasses import dataclass
 import numpy as np
 
 from shaftprint.arrays import FloatArray
+from shaftprint.catalogue._gauge import T_SP
 from shaftprint.service._gather import MEAN_S, StillMeans
+from shaftprint.service._model import FREE, ServiceModel
 from shaftprint.service._score import Simulated
-from shaftprint.service._segment import Segment
+from shaftprint.service._segment import LeverLine, Segment
+from shaftprint.time_domain._decimator import Decimator
+from shaftprint.units import SECONDS_PER_MINUTE
 
 LATEST_S = 0.02
 """Shift of the lever's clock from which on a log is refused [s]."""
+# A fingerprint leaves the shift open, and so many deviations of that are beyond doubt.
+_OPEN_STD = 2.0
 # A lever follows the load from this many standard deviations on; a crew without that in mind stays below 2.3 an hour.
 _FOLLOWS_STD = 4.0
 # Scatter is taken over so many seconds together.
@@ -32,6 +39,9 @@ _REACH_S = 0.5
 # A ship with way on takes a torque whose load rises with the speed across a move: by more than this share of it, beyond
 # so many standard deviations, in moves of so much of the speed.
 _WAY, _WAY_STD, _LEAST_MOVE = 0.1, 4.0, 0.08
+# Where the lever stands still the speed is what it asks for, within so much and so many deviations of its line [rpm];
+# elsewhere less than this share of the time. After a move that takes so long, and a mean over so much of the end.
+_OFF_RPM, _OFF_STD, _OFF_SHARE, _SETTLED_S, _END_S = 20.0, 6.0, 0.1, 15.0, 5.0
 _BEFORE_SAMPLES, _AFTER_S, _UNTIL_S = 40, 4.0, 9.0
 
 
@@ -75,10 +85,10 @@ def lever_follows_load(still: StillMeans) -> Found:
     return Found(what=what, value=ratio, unit="std", refused=refused)
 
 
-def shift_of_lever(runs: Sequence[Simulated]) -> Found:
+def shift_of_lever(runs: Sequence[Simulated], model: ServiceModel) -> Found:
     """Return by how much the lever is late against speed and torque, beside an earlier fingerprint [ms].
 
-    ``runs``: segments beside the simulation of that fingerprint.
+    ``runs``: segments beside the simulation of that fingerprint. ``model``: it, with what the fingerprint leaves open.
     """
     rate_hz = runs[0].record.rate_hz
     reach = round(_REACH_S * rate_hz)
@@ -86,25 +96,89 @@ def shift_of_lever(runs: Sequence[Simulated]) -> Found:
     cost = np.zeros(shifts.size)
     for run in runs:
         measured = run.record.outputs["n"]
-        model = measured - run.residuals[:, 0] / run.weight
+        simulated = measured - run.residuals[:, 0] / run.weight
         kept = slice(reach, measured.size - reach)
         size = float(np.mean((run.residuals[:, 0] - run.residuals[:, 0].mean()) ** 2))
         for place, shift in enumerate(shifts):
-            left = (measured - np.roll(model, shift))[kept] * run.weight[kept]
+            left = (measured - np.roll(simulated, shift))[kept] * run.weight[kept]
             cost[place] += float(np.sum((left - left.mean()) ** 2)) / size
     best = int(np.clip(np.argmin(cost), 1, cost.size - 2))
     below, at, above = cost[best - 1 : best + 2]
     bend = below - 2.0 * at + above
     shift_s = -float(shifts[best] + (0.5 * (below - above) / bend if bend > 0.0 else 0.0)) / rate_hz
+    open_s = _left_open_s(runs, model)
     refused = ""
-    if abs(shift_s) > LATEST_S:
+    if abs(shift_s) > LATEST_S + _OPEN_STD * open_s:
         side = "early" if shift_s < 0.0 else "late"
         refused = (
-            f"against the fingerprint the lever is {1e3 * abs(shift_s):.0f} ms {side}, and {1e3 * LATEST_S:.0f} ms are "
-            "too many for delays and gains: lever, speed and torque do not share one clock (or the latency of the set "
-            "point was changed); log all three with one logger, or bring its files onto one clock (shaftprint merge)."
+            f"against the fingerprint the lever is {1e3 * abs(shift_s):.0f} +/- {1e3 * open_s:.0f} ms {side}, and "
+            f"{1e3 * LATEST_S:.0f} ms are too many for delays and gains: lever, speed and torque do not share one "
+            "clock (or the latency of the set point was changed); log all three with one logger, or bring its files "
+            "onto one clock (shaftprint merge)."
         )
     return Found(what="clock of the lever beside the fingerprint", value=1e3 * shift_s, unit="ms", refused=refused)
+
+
+def _left_open_s(runs: Sequence[Simulated], model: ServiceModel) -> float:
+    """Return how far the other numbers that a fingerprint leaves open move the shift [s], one standard deviation."""
+    if model.covariance is None:
+        return 0.0
+    columns = [
+        (run.slopes[:, :, 0] - run.slopes[:, :, 0].mean(axis=1, keepdims=True)).reshape(len(FREE), -1)
+        / float(np.sqrt(np.mean((run.residuals[:, 0] - run.residuals[:, 0].mean()) ** 2)))
+        for run in runs
+    ]
+    late = FREE.index(T_SP.name)
+    moved = sum(one @ one[late] for one in columns)
+    towards = moved / moved[late]
+    return float(np.sqrt(max(towards @ model.covariance @ towards, 0.0)))
+
+
+def off_the_line(still: StillMeans, line: LeverLine) -> Found:
+    """Return in which share of the still stretches the speed is not what the lever asks for.
+
+    ``still``: means of lever and speed where the lever stands still. ``line``: what it asks for.
+    """
+    what = "speed off the line of the lever where it stands still"
+    # the first mean of a stretch may still hold what is left of the move before it
+    settled = np.flatnonzero(np.diff(still.stretch, prepend=-1.0) == 0.0)
+    if not settled.size:
+        return Found(what=what, value=float("nan"), unit="%")
+    off = _far_rpm(still.speed_rev_s - line.speed_rev_s(still.lever_v)) > farthest_rpm(line)
+    share = float(np.mean(off[settled]))
+    refused = ""
+    if share > _OFF_SHARE:
+        refused = (
+            f"in {share:.0%} of the time in which the lever stands still, the speed is more than "
+            f"{farthest_rpm(line):.0f} rpm from what it asks for: a load controller, a limit or another lever is "
+            "between it and the governor; log the demand that the control unit takes."
+        )
+    return Found(what=what, value=100.0 * share, unit="%", refused=refused)
+
+
+def farthest_rpm(line: LeverLine) -> float:
+    """Return how far from what the lever asks for the speed may be where it stands still [rpm]."""
+    return max(_OFF_STD * line.spread_rpm, _OFF_RPM)
+
+
+def speed_is_off(segment: Segment, line: LeverLine) -> str:
+    """Return why a segment cannot be used whose speed is not what the lever asks for; empty where it is.
+
+    ``segment``: a usable segment. ``line``: what the lever asks for.
+    """
+    if segment.start_s + segment.seconds - segment.move_end_s < _SETTLED_S:
+        return ""
+    last = round(_END_S * segment.rate_hz / segment.every)
+    # beyond the last sample there is the margin of the filter, and perhaps the next move
+    asked = float(line.speed_rev_s(segment.lever_v[[-1 - Decimator(every=segment.every).half]])[0])
+    far = float(_far_rpm(np.asarray(np.mean(segment.speed_rev_s[-last:]) - asked)))
+    if far > farthest_rpm(line):
+        return "the speed does not come to what the lever asks for: a limit acts, or a load controller"
+    return ""
+
+
+def _far_rpm(speed_rev_s: FloatArray) -> FloatArray:
+    return np.abs(speed_rev_s) * SECONDS_PER_MINUTE
 
 
 def way_on(segments: Sequence[Segment]) -> Found:

@@ -9,11 +9,12 @@ multiply what rounding has left there by thousands. The signals have nothing to 
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
-from shaftprint.arrays import FloatArray
+from shaftprint.arrays import FloatArray, frozen_float
 
 # Ends of the pass band and beginning of the stop band, as shares of the new rate; -6 dB in their middle.
 PASS_SHARE, STOP_SHARE = 0.4, 0.6
@@ -43,13 +44,7 @@ class Decimator:
 
         A sinc with a Kaiser window (Oppenheim and Schafer, Discrete-Time Signal Processing, section 7.5.3).
         """
-        half = self.half
-        if half == 0:
-            return np.ones(1)
-        sample = np.arange(-half, half + 1)
-        window = np.i0(0.1102 * (ATTENUATION_DB - 8.7) * np.sqrt(1.0 - (sample / (half + 1.0)) ** 2))
-        taps = np.sinc((PASS_SHARE + STOP_SHARE) / self.every * sample) * window
-        return np.asarray(taps / taps.sum())
+        return _taps(self.every, self.half)
 
     def filtered(self, values: FloatArray) -> FloatArray:
         """Return new samples, shape (..., new samples), from old ones, shape (..., old samples).
@@ -86,3 +81,14 @@ class Decimator:
             weights[row, row * self.every : row * self.every + taps.size] = taps
         windows = sliding_window_view(values, weights.shape[1], axis=0)[:: size * self.every]
         np.matmul(weights, windows[: blocks.shape[0]].swapaxes(1, 2), out=blocks)
+
+
+@lru_cache(maxsize=64)
+def _taps(every: int, half: int) -> FloatArray:
+    """Return the weights, which thousands of short records ask for, read-only."""
+    if half == 0:
+        return frozen_float(np.ones(1))
+    sample = np.arange(-half, half + 1)
+    window = np.i0(0.1102 * (ATTENUATION_DB - 8.7) * np.sqrt(1.0 - (sample / (half + 1.0)) ** 2))
+    taps = np.sinc((PASS_SHARE + STOP_SHARE) / every * sample) * window
+    return frozen_float(taps / taps.sum())

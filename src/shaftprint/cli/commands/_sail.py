@@ -7,7 +7,7 @@ from pathlib import Path
 
 import click
 
-from shaftprint.choices import MESSAGES
+from shaftprint.choices import MESSAGES, SERVICE_TROUBLES
 from shaftprint.cli._options import output_options, starboard_option
 from shaftprint.cli._sail_both import sail_both_lines
 from shaftprint.cli._terminal import answer, echo
@@ -49,6 +49,11 @@ MOST_HOURS = 200.0
     metavar="HOURS",
     help="Ordinary service in place of a campaign, such as 8h: a crew moves the lever, a file an hour is written.",
 )
+@click.option(
+    "--trouble",
+    type=click.Choice(SERVICE_TROUBLES),
+    help="What is wrong with the logs of --service, such as a lever on another clock.",
+)
 @click.option("--ending", default=".nc", show_default=True, help="Ending of the files of --service.")
 @click.option("--force", is_flag=True, help="Replace an existing recording.")
 @no_progress_option
@@ -63,6 +68,7 @@ def command(
     jitter: float,
     lost: float,
     service: str | None,
+    trouble: str | None,
     ending: str,
     force: bool,
     no_progress: bool,
@@ -81,13 +87,19 @@ def command(
 
     With --service HOURS the ship works: a crew with habits of its own moves the lever, lets the engine idle and takes
     the clutch out, and no campaign is given. What its logger keeps goes into the folder of --output, a file an hour,
-    with the truth beside; stan-tug-1205-service has the sensors for that.
+    with the truth beside; stan-tug-1205-service has the sensors for that. With --trouble something is wrong with what
+    is logged, as `shaftprint service scan` should find.
     """
     if service is not None:
         if campaign is not None or starboard is not None or rates or jitter or lost:
-            raise click.UsageError("--service goes with a vessel, --seed, --ending and --force alone.")
-        _work(vessel, output, hours=_hours(service), ending=ending, seed=seed, force=force, no_progress=no_progress)
+            raise click.UsageError("--service goes with a vessel, --seed, --trouble, --ending and --force alone.")
+        _work(
+            vessel, output, hours=_hours(service), trouble=trouble, ending=ending, seed=seed, force=force,
+            no_progress=no_progress,
+        )  # fmt: skip
         return
+    if trouble is not None:
+        raise click.UsageError("--trouble goes with --service.")
     if campaign is None:
         raise click.UsageError("Missing argument 'CAMPAIGN': name one such as thesis, or give --service 8h.")
     if output.is_dir():
@@ -124,13 +136,17 @@ def command(
     answer(f"{truth_path(output)}: what was put into it.")
 
 
-def _work(vessel: str, output: Path, *, hours: float, ending: str, seed: int, force: bool, no_progress: bool) -> None:
+def _work(
+    vessel: str, output: Path, *, hours: float, trouble: str | None, ending: str, seed: int, force: bool,
+    no_progress: bool,
+) -> None:  # fmt: skip
     """Write logs of ordinary service."""
     with progress(hidden=no_progress) as steps:
         steps.begin("Working", total=1.0)
         files, truth = sail_service(
-            load_vessel(vessel), output, hours=hours, seed=seed, ending=ending, overwrite=force, progress=steps.reach
-        )
+            load_vessel(vessel), output, hours=hours, seed=seed, trouble=trouble, ending=ending, overwrite=force,
+            progress=steps.reach,
+        )  # fmt: skip
     answer(f"{output}: {len(files)} files of {truth.duration_s / 3600.0:g} hours of ordinary service.")
     answer(f"{truth_path(output / 'log.nc')}: what was put into them.")
 

@@ -11,6 +11,7 @@ from shaftprint.cli._command_group import LazyGroup
 ACTIONS = {
     "scan": "Find the moves of the lever in logs, and say what they would tell.",
     "fit": "Identify the fingerprint from the moves that a scan has found.",
+    "watch": "Say whether the line changes from day to day.",
 }
 
 

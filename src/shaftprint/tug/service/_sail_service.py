@@ -1,15 +1,17 @@
 """Days of ordinary service into the files that a logger writes, one after the other."""
 
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from shaftprint.arguments import refusing_none
+from shaftprint.arrays import FloatArray
 from shaftprint.errors import RecordingError, SettingsError
 from shaftprint.files import reason, written_whole
+from shaftprint.recording._channel import Channel
 from shaftprint.recording._cut import cut
 from shaftprint.recording._read import read_recording
 from shaftprint.recording.writers._by_ending import expect_known_ending, write_by_ending
@@ -19,12 +21,15 @@ from shaftprint.tug._sail import sail
 from shaftprint.tug._truth import Truth, truth_path
 from shaftprint.tug._tug import Tug
 from shaftprint.tug.service._habits import Habits, lever_course
+from shaftprint.tug.service._troubles import TROUBLES, Channels, Load, Logged, Trouble, trimmed
 from shaftprint.vessel._vessel import Vessel
 
 FILE_S = 3600.0
 """What one file of the logger holds [s]."""
 # The ship is simulated ten times as fast as it is logged, at least so fast [Hz].
 _OVER, _LEAST_HZ = 10.0, 500.0
+# A load that is further from the usual one is none of the propeller.
+_SEEN = 0.3
 
 
 @refusing_none(SettingsError)
@@ -36,6 +41,7 @@ def sail_service(
     seed: int,
     tug: Tug | None = None,
     habits: Habits | None = None,
+    trouble: str | None = None,
     ending: str = ".nc",
     overwrite: bool = False,
     progress: Callable[[float], None] | None = None,
@@ -57,6 +63,8 @@ def sail_service(
         Seed of all randomness: what the crew does, weather and noise.
     tug, habits
         The truth, and what the crew is used to; those of the reference tug, and of some crew, when not given.
+    trouble
+        What is wrong with the logs, one of ``SERVICE_TROUBLES``; nothing when not given.
     ending
         Ending of the files, which says their format.
     overwrite
@@ -71,8 +79,8 @@ def sail_service(
     Raises
     ------
     SettingsError
-        If the truth is not physical, or the vessel file has no logger, or other sensors than those that can be logged
-        so.
+        If the truth is not physical, there is no such trouble, or the vessel file has no logger, or other sensors than
+        those that can be logged so.
     RecordingError
         If a file exists and may not be replaced, or cannot be written.
     """
@@ -97,20 +105,84 @@ def sail_service(
         tug = in_messages(tug, vessel, rates_hz=dict.fromkeys(("torque", "speed", "set-point"), logged_hz))
     except SettingsError as error:
         raise SettingsError(f"{error} Service is logged so; stan-tug-1205-service has such sensors.") from None
-    course = lever_course(habits or Habits.drawn(draws), tug, vessel, hours=hours, rng=draws)
+    wrong = _trouble(trouble)
+    tug = tug if wrong.ship is None else wrong.ship(tug)
+    crew = habits or Habits.drawn(draws)
+    course = lever_course(wrong.crew(crew) if wrong.crew else crew, tug, vessel, hours=hours, rng=draws)
+    channels = Channels(
+        lever=vessel.sensors.set_point.channel, speed=vessel.sensors.speed[0].channel,
+        torque=vessel.sensors.shaft_torque.channel,
+    )  # fmt: skip
     try:
         folder.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryDirectory(prefix=".shaftprint-", dir=folder) as place:
-            whole = Path(place) / "log.nc"
+            whole, before = Path(place) / "log.nc", Path(place) / "before.nc"
+            if wrong.lever is not None:
+                sail(fast, course, before, tug=tug, seed=seed)
+                course = trimmed(course, wrong, _load_of(before, channels), line=_line_of(tug))
             truth = sail(fast, course, whole, tug=tug, seed=seed, progress=progress)
-            with read_recording(whole) as recording:
+            hidden = wrong.lever is not None and not wrong.is_logged
+            with read_recording(whole) as recording, read_recording(before if hidden else whole) as lever:
                 for k, file in enumerate(files):
-                    part = cut(
-                        recording, from_s=k * FILE_S or None, to_s=None if k == len(files) - 1 else (k + 1) * FILE_S
-                    )
-                    write_by_ending(file, part.channels.values(), overwrite=overwrite)
+                    stretch = {"from_s": k * FILE_S or None, "to_s": None if k == len(files) - 1 else (k + 1) * FILE_S}
+                    written = {**cut(recording, **stretch).channels}
+                    written[channels.lever] = cut(lever, **stretch).channels[channels.lever]
+                    if wrong.logged is not None:
+                        written = _changed(written, wrong.logged, channels)
+                    write_by_ending(file, written.values(), overwrite=overwrite)
             with written_whole(truth_path(folder / "log.nc"), overwrite=overwrite) as told:
                 told.write_bytes(truth_path(whole).read_bytes())
     except OSError as error:
         raise RecordingError(f"{folder}: the logs cannot be written: {reason(error)}") from None
     return files, replace(truth, rate_hz=logged_hz)
+
+
+def _trouble(name: str | None) -> Trouble:
+    """Return a trouble by its name.
+
+    Raises SettingsError if there is none.
+    """
+    if name is None:
+        return Trouble()
+    if name not in TROUBLES:
+        raise SettingsError(f"service: expected a trouble of {', '.join(TROUBLES)}, found {name}.")
+    return TROUBLES[name]
+
+
+def _line_of(tug: Tug) -> tuple[float, float]:
+    """Return the speed at zero volts of a campaign and for one volt more [rev/min, rev/min per V]."""
+    slope = tug.set_point_slope_rpm_per_v
+    return tug.set_point_intercept_rpm + slope * tug.set_point_offset_v, slope
+
+
+def _load_of(path: Path, names: Channels) -> Load:
+    """Return the load second by second that a log shows."""
+    with read_recording(path) as recording:
+        means = []
+        for name in (names.speed, names.torque):
+            channel = recording.channels[name]
+            every = round(channel.rate_hz)
+            seconds = channel.count // every
+            means.append(channel.values(0, seconds * every).reshape(seconds, every).mean(axis=1))
+    seconds = min(one.size for one in means)
+    speed, torque = (one[:seconds] for one in means)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        load = torque / speed**2
+    usual = float(np.nanmedian(load))
+    # where the shaft stands or the clutch is out there is nothing to see
+    seen = np.isfinite(load) & (np.abs(load / usual - 1.0) < _SEEN)
+    time_s = np.arange(load.size) + 0.5
+    filled = np.interp(time_s, time_s[seen], load[seen])
+    return Load(time_s=time_s, load=filled / float(filled.mean()))
+
+
+def _changed(channels: Mapping[str, Channel], logged: Logged, names: Channels) -> dict[str, Channel]:
+    """Return channels with other values."""
+    values = {name: channel.values(0, channel.count) for name, channel in channels.items()}
+    new = logged(values, channels[names.lever].rate_hz, names)
+    return {name: _of(channel, new[name]) for name, channel in channels.items()}
+
+
+def _of(channel: Channel, values: FloatArray) -> Channel:
+    """Return a channel with other values."""
+    return replace(channel, scale=1.0, offset=0.0, source=lambda start, stop: values[start:stop])

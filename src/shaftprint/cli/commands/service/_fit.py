@@ -17,15 +17,13 @@ from shaftprint.late import late
 
 with late():
     from shaftprint.fingerprint._json_file import write_fingerprint
+    from shaftprint.service._day_folder import SCORES, SCORES_AGAINST, VALUES, VALUES_AGAINST
     from shaftprint.service._service_fit import fit_service
     from shaftprint.vessel._vessel import load_vessel
 
-SCORE_FILE, VALUE_FILE = "scores.csv", "values.json"
-"""Files of a day beside the fingerprint: slope and curvature of each segment, and at which values."""
-
 
 @click.command("fit")
-@click.argument("segments", type=click.Path(path_type=Path))
+@click.argument("segments", nargs=-1, required=True, type=click.Path(path_type=Path))
 @vessel_option
 @click.option(
     "--fingerprint",
@@ -42,22 +40,31 @@ SCORE_FILE, VALUE_FILE = "scores.csv", "values.json"
 @force_option
 @no_progress_option
 def command(
-    segments: Path, *, vessel: str, fingerprint: Path | None, output: Path, force: bool, no_progress: bool
+    segments: tuple[Path, ...], *, vessel: str, fingerprint: Path | None, output: Path, force: bool, no_progress: bool
 ) -> None:
     """Identify the fingerprint from the moves that a scan has found.
 
-    SEGMENTS is the table that `shaftprint service scan -o` wrote, as edited since. The fingerprint has the layout of
-    one from a test, with ordinary service as its test. Beside it, for each segment, stand slope and curvature of the
-    likelihood at its values.
+    SEGMENTS are tables that `shaftprint service scan -o` wrote, as edited since: one, or those of several days, which
+    are fitted together. The fingerprint has the layout of one from a test, with ordinary service as its test. Beside
+    it, for each segment, stand slope and curvature of the likelihood at its values, and with --fingerprint at those of
+    that one too, which `shaftprint service watch` takes. A fit that is stopped goes on where it was when it is asked
+    for again.
     """
     installation = load_vessel(vessel)
     earlier = None if fingerprint is None else fingerprint_at(fingerprint)
+    reached = output.with_name(f".{output.name}.fit.json")
     with output_folder(output, of="service", force=force) as folder:
         with progress(hidden=no_progress) as steps:
             steps.begin("Fitting")
-            day = fit_service(segments, installation, fingerprint=earlier, now=datetime.now(UTC))
+            day = fit_service(
+                segments, installation, fingerprint=earlier, progress=reached, now=datetime.now(UTC)
+            )  # fmt: skip
         write_fingerprint(day.fingerprint, folder / FINGERPRINT)
-        (folder / SCORE_FILE).write_text(day.scores_text(), encoding="utf-8")
-        (folder / VALUE_FILE).write_text(day.theta_text(), encoding="utf-8")
+        (folder / SCORES).write_text(day.scores_text(), encoding="utf-8")
+        (folder / VALUES).write_text(day.theta_text(), encoding="utf-8")
+        if earlier is not None:
+            (folder / SCORES_AGAINST).write_text(day.scores_text(at_start=True), encoding="utf-8")
+            (folder / VALUES_AGAINST).write_text(day.theta_text(at_start=True), encoding="utf-8")
+    reached.unlink(missing_ok=True)
     print_fingerprint(day.fingerprint)
     print_paths(output, report=False)
