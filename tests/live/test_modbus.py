@@ -150,7 +150,7 @@ def test_the_device_obeys_and_refuses(tmp_path):
         await counterpart.take()
         await counterpart.write(5.125)
         status = (await counterpart.read(1.0)).device
-        assert (status.mode, status.heartbeat, status.set_point_v) == (DeviceMode.HELD, 9, 5.125)
+        assert (status.mode, status.heartbeat, status.set_point_v) == (DeviceMode.HELD, 65536 + 9, 5.125)
         await counterpart.abort(2.0)
         assert device.writes[-1] == (203, [4, 3, 2000])
         # each once, and a command's words together

@@ -16,6 +16,11 @@ MOST_SAMPLES = 1_000_000
 """Samples of all channels in one block."""
 
 
+def latest_like(sent: int, seen: int, bits: int) -> int:
+    """Return the last number up to one that was sent of which a device gives so many bits back."""
+    return sent - (sent - seen) % (1 << bits)
+
+
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Description:
     """What a counterpart says of itself."""

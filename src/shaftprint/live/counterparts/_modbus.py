@@ -22,7 +22,7 @@ from shaftprint.live._block import Block, DeviceStatus, LiveChannel
 from shaftprint.live._counterpart import SILENT_S, Abilities
 from shaftprint.live._play import Play
 from shaftprint.live.counterparts._access import Access, address
-from shaftprint.live.counterparts._dialect import MODES
+from shaftprint.live.counterparts._dialect import MODES, latest_like
 from shaftprint.live.counterparts._extra import library
 from shaftprint.live.counterparts._modbus_map import REGISTERS, ModbusMap
 from shaftprint.settings import read_settings
@@ -51,8 +51,7 @@ class ModbusCounterpart:
         self.name = f"modbus://{self._host}:{self._port}"
         self._client: Any = None
         self._convert: Any = None
-        self._number = 0
-        self._counter = 0
+        self._number = self._counter = self._beat = 0
         self._next_s = 0.0
         self._last_count: int | None = None
         self._counted_s = 0.0
@@ -126,6 +125,7 @@ class ModbusCounterpart:
     async def beat(self, count: int) -> None:
         """Write the heartbeat."""
         await self._write(self._device().heartbeat, [count & 0xFFFF])
+        self._beat = count
 
     async def take(self) -> None:
         """Take the set point over at the lever's value."""
@@ -233,7 +233,7 @@ class ModbusCounterpart:
             raise LiveError(f"{self.name}: expected a mode from 0 to 3, found {mode}; compare the map of registers.")
         return DeviceStatus(
             mode=MODES[mode & ~_KEY_IS_OFF],
-            heartbeat=heartbeat,
+            heartbeat=latest_like(self._beat, heartbeat, 16),
             set_point_v=self._value(registers, device.set_point_out, "float32"),
             is_enabled=not mode & _KEY_IS_OFF,
         )
