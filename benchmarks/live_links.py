@@ -116,7 +116,7 @@ def resident_mb() -> float:
 async def listen(counterpart: Any, seconds: float, *, is_asked: bool = False) -> Seen:
     """Read blocks for some time."""
     seen = Seen()
-    await counterpart.connect()
+    await reached(counterpart)
     with contextlib.suppress(SilentLinkError):
         await counterpart.read(2.0)
     began, cpu, next_s = time.monotonic(), time.process_time(), 0.0
@@ -135,6 +135,16 @@ async def listen(counterpart: Any, seconds: float, *, is_asked: bool = False) ->
         seen.seconds, seen.cpu_s = time.monotonic() - began, time.process_time() - cpu
         await counterpart.close()
     return seen
+
+
+async def reached(counterpart: Any) -> None:
+    """Connect as soon as the other process is there."""
+    for _ in range(30):
+        try:
+            return await counterpart.connect()
+        except SilentLinkError:
+            await counterpart.close()
+    raise SilentLinkError("expected the other side within 30 s, found none.")
 
 
 # ---- the other side, in a process of its own ----
@@ -299,7 +309,7 @@ def silences(runs: int) -> list[list[str]]:
     import signal
 
     async def noticed(counterpart: Any, act: Callable[[], None]) -> float:
-        await counterpart.connect()
+        await reached(counterpart)
         for _ in range(5):
             await counterpart.read(2.0)
         act()

@@ -133,8 +133,10 @@ def test_registers_are_values_of_one_question(tmp_path):
         draught, rack, fuel = (float(block.values(channel)[0]) for channel in counterpart.channels)
         assert (draught, rack, fuel) == (4.25, pytest.approx(-12.3 - 5.0), 3_000_000_001.0)
         assert [channel.rate_hz for channel in counterpart.channels] == [50.0] * 3
-        assert [one.counter for one in came] == list(range(1, 21))
-        assert np.mean(np.diff([one.source_s for one in came])) == pytest.approx(0.02, rel=0.5)
+        # a moment that was missed is a block that was lost
+        moments = np.array([one.source_s for one in came])
+        counters = np.array([one.counter for one in came])
+        assert np.all(np.abs(np.diff(moments) - 0.02 * np.diff(counters)) <= 0.021)
         assert (block.device.mode, block.device.is_enabled) == (DeviceMode.LEVER, True)
         device.set(111, 16)
         assert not (await counterpart.read(1.0)).device.is_enabled
@@ -241,6 +243,6 @@ def test_maps_that_cannot_be_used(tmp_path, old, new, sentence):
 def test_a_block_that_is_not_due_is_not_waited_for():
     counterpart = ModbusCounterpart("modbus://127.0.0.1", a_map().model_copy(update={"period_s": 5.0}))
     counterpart._client = SimpleNamespace(connected=True)
-    counterpart._next_s = counterpart.clock() + 5.0
+    counterpart._began_s = counterpart.clock() + 5.0
     with pytest.raises(SilentLinkError, match="asked for every 5 s"):
         asyncio.run(counterpart.read(0.05))

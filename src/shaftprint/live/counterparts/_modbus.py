@@ -52,7 +52,7 @@ class ModbusCounterpart:
         self._client: Any = None
         self._convert: Any = None
         self._number = self._counter = self._beat = 0
-        self._next_s = 0.0
+        self._began_s = 0.0
         self._last_count: int | None = None
         self._counted_s = 0.0
         self._answer = (0, 0)
@@ -91,11 +91,11 @@ class ModbusCounterpart:
             is_there = False
         if not is_there:
             raise SilentLinkError(f"{self.name}: expected a Modbus device within {SILENT_S:g} s, found none.")
-        self._counted_s = self._next_s = self.clock()
+        self._counted_s = self._began_s = self.clock()
 
     async def read(self, timeout_s: float) -> Block:
         """Return what the next question brings."""
-        wait_s = self._next_s - self.clock()
+        wait_s = self._began_s + self._counter * self._map.period_s - self.clock()
         if wait_s > timeout_s:
             await asyncio.sleep(timeout_s)
             raise SilentLinkError(
@@ -103,19 +103,19 @@ class ModbusCounterpart:
             )
         await asyncio.sleep(max(0.0, wait_s))
         asked_s = self.clock()
-        # after a pause it does not hurry to make up for it
-        self._next_s = max(self._next_s + self._map.period_s, asked_s)
         registers = await self._asked()
         now_s = self.clock()
         self._expect_running(registers, now_s)
-        self._counter += 1
+        moment_s = (asked_s + now_s) / 2.0
+        # moments at which nothing was asked, or not answered in time, are lost
+        self._counter = max(self._counter, round((moment_s - self._began_s) / self._map.period_s)) + 1
         samples = {
             one.name: np.array([self._value(registers, one.address, one.kind)], dtype=np.float64)
             for one in self._map.channel
         }
         return Block(
             counter=self._counter,
-            source_s=(asked_s + now_s) / 2.0,
+            source_s=moment_s,
             span_s=self._map.period_s,
             samples=samples,
             device=self._status(registers),
