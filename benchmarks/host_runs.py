@@ -251,7 +251,8 @@ def by_cofmupy(path: str, stimulus: Stimulus) -> Rows:
 
     with tempfile.TemporaryDirectory() as folder:
         table = Path(folder) / "set_point.csv"
-        rows = (f"{max(step - 1e-6, 0.0) * stimulus.step_s!r},{value!r}\n" for step, value in enumerate(stimulus.set_point))
+        times = [max(step - 1e-6, 0.0) * stimulus.step_s for step in range(len(stimulus.set_point))]
+        rows = (f"{time!r},{value!r}\n" for time, value in zip(times, stimulus.set_point, strict=True))
         table.write_text("t," + SET_POINT + "\n" + "".join(rows), encoding="utf-8")
         config = {
             "fmus": [{"id": "line", "path": path, "initialization": stimulus.start}],
