@@ -4,7 +4,7 @@ Histories of twenty quarterly tests are drawn without repetition from raw record
 (fingerprints that ``benchmarks/watching.py --outcomes FOLDER`` has kept), their numbers are changed by what happens to
 the ship, and they are looked at after every test until something is found. Ships share tests. Ten ships more are
 sailed, a raw recording for each test (``sailed_histories.py``). Run ``python benchmarks/histories.py FOLDER --ships
-100``, half a second of one core a look; ``--write`` puts the tables into docs/watching.md.
+100``, half a second of one core a look; ``--write`` puts the tables into docs/watching-measured.md.
 """
 
 import argparse
@@ -31,7 +31,7 @@ from shaftprint.drift._drift_finding import WatchFinding
 from shaftprint.fingerprint import Fingerprint, read_fingerprint
 from shaftprint.identify import Estimate
 
-DOCUMENT = ROOT / "docs" / "watching.md"
+DOCUMENT = ROOT / "docs" / "watching-measured.md"
 BEGIN, END = ("<!-- table of benchmarks/histories.py: begin -->", "<!-- table of benchmarks/histories.py: end -->")
 SEED = 17
 P_ACTION, I_ACTION = "governor proportional action", "governor integral action"

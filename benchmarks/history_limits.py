@@ -7,7 +7,7 @@ ramp after this one test alone, wrong in 5 % of sound ships; no test can find it
 E. Pearson, "On the problem of the most efficient tests of statistical hypotheses", Philosophical Transactions of the
 Royal Society A 231, 1933). *Asked after every test*: whoever looks at this one ramp after each of twenty tests with one
 limit, wrong in 5 % of sound ships in five years; drawn. Run ``python benchmarks/history_limits.py FOLDER``, half a
-minute; ``--write`` puts the table into docs/watching.md.
+minute; ``--write`` puts the table into docs/watching-measured.md.
 """
 
 import argparse

@@ -54,7 +54,7 @@ from shaftprint.survey._assumed_noise import NOISE_SPREAD, RECORDED_SPREAD, cont
 from shaftprint.survey._fits import stated_working_point
 from shaftprint.tug import Tug
 
-DOCUMENT = ROOT / "docs" / "planning.md"
+DOCUMENT = ROOT / "docs" / "planned-tests.md"
 BEGIN, END = (
     "<!-- table of benchmarks/plan_promises.py: begin -->",
     "<!-- table of benchmarks/plan_promises.py: end -->",

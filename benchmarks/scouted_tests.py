@@ -47,7 +47,7 @@ from shaftprint.survey._fits import stated_working_point
 from shaftprint.survey._of_vessel import at_speeds
 from shaftprint.tug import Tug, normalised_truth, sail
 
-DOCUMENT = ROOT / "docs" / "planning.md"
+DOCUMENT = ROOT / "docs" / "planned-tests.md"
 BEGIN, END = (
     "<!-- table of benchmarks/scouted_tests.py: begin -->",
     "<!-- table of benchmarks/scouted_tests.py: end -->",

@@ -4,7 +4,7 @@ Classes of eight ships with three tests each. The first table draws them from ra
 other days (fingerprints that ``benchmarks/watching.py --outcomes FOLDER`` has kept) whose numbers are changed by how
 the ship was built, so that tolerances and changes of all sizes can be tried. The second has ships that were sailed as
 they were built, each with its own gauge: eight of a pool, 3 s of a processor a test, kept in the folder too. Run
-``python benchmarks/sisters.py FOLDER``; ``--write`` puts the tables into docs/watching.md.
+``python benchmarks/sisters.py FOLDER``; ``--write`` puts the tables into docs/watching-measured.md.
 """
 
 import argparse
@@ -37,7 +37,7 @@ from shaftprint.tug._simulated_fleet import SimulatedFleet, simulated_fleet
 from shaftprint.tug._simulated_ship import ShipWork, with_works
 from shaftprint.vessel import load_vessel
 
-DOCUMENT = ROOT / "docs" / "watching.md"
+DOCUMENT = ROOT / "docs" / "watching-measured.md"
 BEGIN, END = ("<!-- tables of benchmarks/sisters.py: begin -->", "<!-- tables of benchmarks/sisters.py: end -->")
 SEED = 73
 SHIPS, TESTS, HALF_YEAR = 8, 3, timedelta(days=182.625)

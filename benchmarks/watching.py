@@ -1,4 +1,4 @@
-"""Whether a comparison of two tests cries wolf, and which change it sees: the tables of docs/watching.md.
+"""Whether a comparison of two tests cries wolf, and which change it sees: the tables of docs/watching-measured.md.
 
 Simulated ships are tested, a raw recording each, and their fingerprints compared as ``shaftprint compare`` does. No two
 tests are made on the same day: strength of the wandering inflow, surge, combustion noise and hunting, the torque of the
@@ -53,7 +53,7 @@ from shaftprint.tug._changes import (
 from shaftprint.tug._simulated_fleet import zero_taken
 from shaftprint.vessel import load_vessel
 
-DOCUMENT = ROOT / "docs" / "watching.md"
+DOCUMENT = ROOT / "docs" / "watching-measured.md"
 BEGIN, END = ("<!-- tables of benchmarks/watching.py: begin -->", "<!-- tables of benchmarks/watching.py: end -->")
 STRUCTURE = "GAUGE-CLOSED"
 SEED = 29

@@ -1,7 +1,7 @@
 """Two tests of one ship: an unchanged one is called unchanged, and what has changed is named.
 
 The second test is on another day: the zero of its gauge has drifted by 20 N m and its inflow wanders more. What the
-changes are against the size that is seen in four of five comparisons stands in docs/watching.md.
+changes are against the size that is seen in four of five comparisons stands in docs/watching-measured.md.
 """
 
 from dataclasses import replace
