@@ -6,7 +6,7 @@ from shaftprint.errors import SignalError
 from shaftprint.signals.kinds._kind import SteadyState
 from shaftprint.signals.levels._dc_scale import DcScale
 from shaftprint.signals.levels._leg_periods import leg_periods
-from shaftprint.signals.levels._leg_state import LegSamples, calibration_of_legs, leg_state, stretch_of
+from shaftprint.signals.levels._leg_state import LegSamples, calibration_of_legs, leg_states, stretch_of
 from shaftprint.signals.levels._repeated_periods import repeated_periods
 
 if TYPE_CHECKING:
@@ -74,7 +74,7 @@ def steady_state_of_legs(
             f'expected at least two whole periods of a leg of campaign "{campaign.name}", such as {first.name} from '
             f"{first.settled_s:g} s on, found none without a gap; check that campaign and recording belong together."
         )
-    states = tuple(leg_state(one) for one in samples)
+    states = leg_states(samples)
     calibration = calibration_of_legs(samples, states, channel=channel)
     main = min(states, key=lambda state: abs(state.working_point.set_point_v - campaign.offset_v))
     slope_std = float(calibration.covariance[0, 0]) ** 0.5 / abs(calibration.slope_rev_s_per_v)

@@ -35,7 +35,7 @@ from shaftprint.signals.kinds._set_point import SetPointMessages, read_set_point
 from shaftprint.signals.kinds._torque import expect_moving_torque, expect_one_sign
 from shaftprint.signals.levels._calibrate import calibrate, calibrate_through_wander
 from shaftprint.signals.levels._dc_scale import DcScale, dc_scale, scale_of_sines
-from shaftprint.signals.levels._leg_state import leg_state
+from shaftprint.signals.levels._leg_state import leg_states
 from shaftprint.signals.levels._steady import steady_stretches
 from shaftprint.signals.levels._working_point import (
     expect_asked_speed,
@@ -132,7 +132,7 @@ def _prepared(recording: "Recording", vessel: "Vessel", campaign: Campaign, read
         strange = expect_plausible(steady.working_point, vessel)
         _calibrated_in_place(readings.set_point, steady.calibration)
     else:
-        states = tuple(leg_state(one) for one in legs)
+        states = leg_states(legs)
         steady, strange = _steady_state(vessel, campaign, readings)
     reasons += changes_of_gauge(vessel, campaign, readings)
     signals, absent = _signals_by_name(readings, steady)

@@ -35,7 +35,12 @@ class LegPeriods:
     @property
     def stop_s(self) -> float:
         """When the last one ends [s]."""
-        return self.start_s + self.periods * self.period_s
+        return self.start_s + self.duration_s
+
+    @property
+    def duration_s(self) -> float:
+        """How long they are together [s]."""
+        return self.periods * self.period_s
 
     def cut(self, values: "FloatArray", *, rate_hz: float, start_s: float) -> "FloatArray":
         """Return the samples of a signal on the grid in these periods, to the nearest sample.
