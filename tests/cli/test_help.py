@@ -59,6 +59,7 @@ def test_commands_are_those_that_were_asked_for():
         "fleet",
         "work",
         "serve",
+        "live",
     }
 
 
@@ -178,6 +179,7 @@ def test_commands_stand_under_what_they_are_for(run):
     lines = run("--help").output.splitlines()
     sections = [line for line in lines if line.endswith(":") and not line.startswith(" ") and line != "Options:"]
     assert sections == [
-        *("Begin:", "Plan a test:", "Prepare a recording:", "Identify:", "Judge:", "Use the model:"),
+        *("Begin:", "Plan a test:", "Make a test:", "Prepare a recording:", "Identify:", "Judge:"),
+        "Use the model:",
         "Keep over the years:",
     ]

@@ -7,8 +7,9 @@ import shaftprint as sp
 from shaftprint.live._engine import LiveTest
 from shaftprint.live._envelope import envelope_of
 from shaftprint.live._record import LiveRecord
-from shaftprint.live.counterparts._simulated import SimulatedCounterpart, SimulatedShip
-from shaftprint.tug._stepped import SteppedTug
+from shaftprint.live._rehearse import simulated_ship_of
+from shaftprint.live.counterparts._faults import LinkFaults
+from shaftprint.live.counterparts._simulated import SimulatedCounterpart
 
 VESSEL = sp.vessel.load_vessel("stan-tug-1205")
 TUG = replace(sp.tug.like_stan_tug_1205(VESSEL, offset_v=-5.0))
@@ -45,9 +46,7 @@ CAMPAIGN = sp.campaign.Campaign.model_validate(
 
 def played(folder, faults=None, *, tug=TUG, seed=1, envelope=ENVELOPE, campaign=CAMPAIGN, **options):
     """Play the test; return the outcome, the test, and the ship."""
-    ship = SimulatedShip(
-        SteppedTug(tug, VESSEL, first_v=-5.0, duration_s=600.0, seed=seed), lever_v=-5.0, faults=faults
-    )
+    ship = simulated_ship_of(VESSEL, campaign, seed=seed, faults=faults or LinkFaults(), tug=tug)
     counterpart = SimulatedCounterpart(ship)
     test = LiveTest(
         counterpart=counterpart,

@@ -28,6 +28,9 @@ SECTIONS = {
         "continue": "Say what is known so far of a planned test, and plan what is still missing.",
         "sail": "Simulate a tug in a campaign and write its raw recording.",
     },
+    "Make a test": {
+        "live": "Play a test through a counterpart on board, watch it, judge it and stop it.",
+    },
     "Prepare a recording": {
         "inspect": "Show what is in a recording and whether it is good enough.",
         "merge": "Bring the recordings of two loggers onto the clock of the first.",

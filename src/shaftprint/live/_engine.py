@@ -16,6 +16,7 @@ from shaftprint.live._judgement import LineJudgement
 from shaftprint.live._lines import LineJudge
 from shaftprint.live._loop import AbortingError, Loop
 from shaftprint.live._outcome import Outcome
+from shaftprint.live._replay import judged_channels
 from shaftprint.live._state import State
 from shaftprint.live._timetable import ended_early, expect_playable, played_until, rendered, shifted, state_at, test_at
 from shaftprint.live._watch import (
@@ -195,11 +196,8 @@ class LiveTest(Loop):
 
     def _judge_of(self, test: Sine | Leg) -> LineJudge:
         """Return what judges a test: over the set point, of what its blocks hold as evenly."""
-        sensors, set_point = self.vessel.sensors, self.vessel.sensors.set_point.channel
-        pulses = {one.channel for one in sensors.speed if one.counts_turns}
-        by_name = {one.name: one for one in self.counterpart.channels if one.name not in pulses}
-        even = [one for one in by_name.values() if one.rate_hz == by_name[set_point].rate_hz]
-        return LineJudge(test, zero_s=self._zero_s, channels=even, set_point=set_point)
+        even = judged_channels(self.counterpart.channels, self.vessel)
+        return LineJudge(test, zero_s=self._zero_s, channels=even, set_point=self.vessel.sensors.set_point.channel)
 
     async def _perhaps_end(self, test: Sine | Leg, judge: LineJudge) -> None:
         """End a test early where the rest of it is not needed."""

@@ -5,7 +5,14 @@ from typing import Any, Final
 
 from shaftprint.errors import RequestError
 
-_EXTRAS: Final = {"aiomqtt": "mqtt", "paho": "mqtt", "pymodbus": "modbus", "can": "can", "defusedxml": "mqtt"}
+_EXTRAS: Final = {
+    "asyncua": "opcua",
+    "aiomqtt": "mqtt",
+    "paho": "mqtt",
+    "pymodbus": "modbus",
+    "can": "can",
+    "defusedxml": "mqtt",
+}
 
 
 def library(module: str, what: str) -> Any:

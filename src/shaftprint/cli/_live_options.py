@@ -1,0 +1,83 @@
+"""What the actions of ``shaftprint live`` share: options, what is printed while a test runs, and how it ends."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from shaftprint.cli._terminal import answer, echo, print_findings
+from shaftprint.cli.output._json import give
+
+if TYPE_CHECKING:
+    from shaftprint.live._block import Event
+    from shaftprint.live._judgement import LineJudgement
+    from shaftprint.live._outcome import Outcome
+    from shaftprint.live._proof import Proof
+    from shaftprint.live._record import Left
+
+slope_option = click.option(
+    "--rpm-per-volt",
+    "slope_rpm_per_v",
+    type=float,
+    help="What one volt asks for [rpm/V], where neither campaign nor fingerprint say it.",
+)
+fingerprint_option = click.option(
+    "--fingerprint", type=click.Path(path_type=Path), help="Fingerprint of an earlier test, to predict the motion with."
+)
+
+
+def recording_option(command: Callable[..., Any]) -> Callable[..., Any]:
+    """Add the option ``--output`` of a recording that must not be there yet."""
+    return click.option(
+        "-o",
+        "--output",
+        required=True,
+        type=click.Path(path_type=Path),
+        help="Recording to write; campaign as played and log go beside it.",
+    )(command)
+
+
+def print_proof(proof: Proof) -> None:
+    """Print what a campaign will do, and what speaks against it."""
+    for one in proof.foreseen:
+        bound = "" if one.bound is None else f"; allowed {one.bound.lowest:g} to {one.bound.highest:g} {one.unit}"
+        echo(f"{one.quantity}: foreseen {one.lowest:.5g} to {one.highest:.5g} {one.unit}{bound}")
+    echo(f"Band: {proof.band}.")
+    give("foreseen", proof.foreseen)
+    if proof.refusals:
+        print_findings("Not to be played", proof.refusals)
+
+
+def tell(event: Event) -> None:
+    """Print an event; an abort rings."""
+    bell = "\a" if event.kind in ("abort", "alarm") else ""
+    click.echo(bell, nl=False, err=True)
+    echo(f"{event.time_s:9.2f} s  {event.kind:<10} {event.sentence}", err=True)
+
+
+def print_lines(judgements: tuple[LineJudgement, ...]) -> None:
+    """Print what is known of each line."""
+    for one in judgements:
+        sizes = ", ".join(
+            f"{name} {abs(value):.4g} +- {std:.2g}"
+            for name, value, std in zip(one.outputs, one.response.tolist(), one.std.tolist(), strict=True)
+        )
+        echo(f"{one.line:<8} {one.frequency_hz:8.4g} Hz  {one.periods} periods  {sizes}")
+
+
+def print_outcome(outcome: Outcome, left: Left) -> None:
+    """Print how a test ended and what it has left."""
+    answer(f"{outcome.word}{': ' if outcome.reason else ''}{outcome.reason}")
+    if not outcome.is_back:
+        answer("NOTHING HAS SHOWN THAT THE LEVER RULES: take the engine to local control.")
+    print_lines(outcome.judgements)
+    give("word", outcome.word)
+    give("reason", outcome.reason)
+    give("lever_rules", outcome.is_back)
+    answer(f"{left.recording}: every block that came.")
+    if left.campaign is not None:
+        answer(f"{left.campaign}: the campaign as it was played, for shaftprint identify.")
+    answer(f"{left.log}: what happened.")

@@ -1,0 +1,32 @@
+"""``shaftprint live``: a test that the program plays, watches, judges and stops, one file an action."""
+
+from collections.abc import Mapping
+from typing import ClassVar
+
+import click
+
+from shaftprint.cli._command_group import LazyGroup
+
+# The one-line help of every action: a list of them imports none of their files.
+ACTIONS = {
+    "check": "Prove that a campaign stays within the envelope of a ship; nothing is played.",
+    "rehearse": "Play a test on a simulated ship, as fast as it can be calculated or by the clock.",
+    "play": "Play a test through a counterpart on board.",
+    "replay": "Judge a recording as if it came in now.",
+}
+
+
+class ActionGroup(LazyGroup):
+    """The actions by name."""
+
+    sections: ClassVar[Mapping[str, Mapping[str, str]]] = {"Actions": ACTIONS}
+    folder = "shaftprint.cli.commands.live"
+
+
+@click.group("live", cls=ActionGroup, subcommand_metavar="ACTION [ARGS]...")
+def command() -> None:
+    """Play a test through a counterpart on board, watch it, judge it and stop it.
+
+    The program never replaces the lever: the counterpart goes back to it by itself when the program is gone, and
+    nothing is armed before that was seen. Begin with `shaftprint live check`, then `shaftprint live rehearse`.
+    """

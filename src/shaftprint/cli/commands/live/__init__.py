@@ -1,0 +1,1 @@
+"""The actions of ``shaftprint live``, one file each."""

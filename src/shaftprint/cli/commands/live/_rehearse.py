@@ -1,0 +1,82 @@
+"""``shaftprint live rehearse``: a test played on a simulated ship."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from shaftprint.cli._command_group import NOT_REACHED
+from shaftprint.cli._live_options import (
+    fingerprint_option,
+    print_outcome,
+    print_proof,
+    recording_option,
+    slope_option,
+    tell,
+)
+from shaftprint.cli._terminal import echo
+from shaftprint.cli.output._fingerprint_file import fingerprint_at
+from shaftprint.late import late
+
+with late():
+    from shaftprint.live._envelope import envelope_of
+    from shaftprint.live._proof import prove
+    from shaftprint.live._rehearse import faults_named, rehearse
+    from shaftprint.survey._trial import load_trial
+
+
+@click.command("rehearse")
+@click.argument("vessel")
+@click.argument("campaign")
+@recording_option
+@fingerprint_option
+@slope_option
+@click.option("--seed", type=click.IntRange(min=0), default=1, show_default=True, help="Seed of all randomness.")
+@click.option("--pace", type=click.FloatRange(0.1, 100.0), help="Times the clock; as fast as possible without it.")
+@click.option(
+    "--fault",
+    "faults",
+    multiple=True,
+    metavar="KIND@SECOND",
+    help="Something that goes wrong: frozen, silent, stale, not-a-number, stuck or deaf, such as silent@60; or "
+    "late-revert; may be repeated.",
+)
+@click.pass_context
+def command(
+    context: click.Context,
+    vessel: str,
+    campaign: str,
+    output: Path,
+    fingerprint: Path | None,
+    slope_rpm_per_v: float | None,
+    seed: int,
+    pace: float | None,
+    faults: tuple[str, ...],
+) -> None:
+    """Play a test on a simulated ship, as fast as it can be calculated or by the clock.
+
+    VESSEL and CAMPAIGN are files, or names of shipped ones. Without [envelope] in the vessel file idle speed, rated
+    speed and rated torque bound the rehearsal; on board the file has to state it. Ends with 3 where the test was
+    refused or aborted.
+    """
+    trial = load_trial(vessel, campaign)
+    wrong = faults_named(faults)
+    envelope = envelope_of(trial.vessel, is_rehearsed=True)
+    if not envelope.is_stated:
+        echo(f"{vessel}: no [envelope]; idle speed, rated speed and rated torque are taken.", err=True)
+    proof = prove(
+        trial.campaign,
+        trial.vessel,
+        envelope,
+        fingerprint=None if fingerprint is None else fingerprint_at(fingerprint),
+        slope_rpm_per_v=slope_rpm_per_v,
+    )
+    print_proof(proof)
+    proof.expect_within()
+    outcome, left = rehearse(
+        trial.vessel, trial.campaign, envelope, output, seed=seed, pace=pace, faults=wrong, told=tell
+    )
+    print_outcome(outcome, left)
+    if outcome.word != "played":
+        context.exit(NOT_REACHED)

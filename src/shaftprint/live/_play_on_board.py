@@ -1,0 +1,110 @@
+"""The verb ``play_on_board``: a test played through a counterpart that is reached by its address."""
+
+import asyncio
+import signal
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from shaftprint.errors import LiveError
+from shaftprint.escape import printable
+from shaftprint.live._block import Event
+from shaftprint.live._counterpart import Counterpart
+from shaftprint.live._engine import LiveTest
+from shaftprint.live._outcome import Operator, Outcome
+from shaftprint.live._record import Left, LiveRecord
+from shaftprint.live.counterparts._opcua import OpcUaCounterpart
+
+if TYPE_CHECKING:
+    from shaftprint.campaign._campaign import Campaign
+    from shaftprint.live._envelope import Envelope
+    from shaftprint.live.counterparts._access import Access
+    from shaftprint.vessel._vessel import Vessel
+
+_SCHEMES = ("opc.tcp",)
+
+
+def counterpart_at(url: str, access: "Access") -> Counterpart:
+    """Return the counterpart of an address.
+
+    Raises LiveError if no protocol has that address.
+    """
+    scheme = url.partition("://")[0]
+    if scheme == "opc.tcp":
+        return OpcUaCounterpart(url, access=access)
+    raise LiveError(f"expected an address that begins with {', '.join(_SCHEMES)}, found {printable(scheme)}.")
+
+
+def play_on_board(
+    url: str,
+    vessel: "Vessel",
+    campaign: "Campaign",
+    envelope: "Envelope",
+    path: Path,
+    *,
+    access: "Access",
+    confirm: Callable[[str], bool],
+    dry: bool = False,
+    slope_rpm_per_v: float | None = None,
+    told: Callable[[Event], None] = lambda event: None,
+) -> tuple[Outcome, Left]:
+    """Play a test through the counterpart of an address, and write what it leaves.
+
+    ``path``: the recording. ``confirm``: asks on the bridge; it may take its time. ``dry``: whether nothing is written
+    to the counterpart. An interrupt of the program aborts the test. Raises LiveError if the counterpart is not reached,
+    RecordingError if the recording is there already or cannot be written.
+    """
+    return asyncio.run(
+        _played(
+            counterpart_at(url, access),
+            vessel,
+            campaign,
+            envelope,
+            path,
+            confirm=confirm,
+            dry=dry,
+            slope_rpm_per_v=slope_rpm_per_v,
+            told=told,
+        )
+    )
+
+
+async def _played(
+    counterpart: Counterpart,
+    vessel: "Vessel",
+    campaign: "Campaign",
+    envelope: "Envelope",
+    path: Path,
+    *,
+    confirm: Callable[[str], bool],
+    dry: bool,
+    slope_rpm_per_v: float | None,
+    told: Callable[[Event], None],
+) -> tuple[Outcome, Left]:
+    async def asked(question: str) -> bool:
+        return await asyncio.to_thread(confirm, question)
+
+    operator = Operator(confirm=asked)
+    before = signal.signal(signal.SIGINT, lambda number, frame: setattr(operator, "stops", "interrupted"))
+    try:
+        await counterpart.connect()
+        record = LiveRecord(path, counterpart.channels, {"vessel": vessel.name})
+        test = LiveTest(
+            counterpart=counterpart,
+            vessel=vessel,
+            campaign=campaign,
+            envelope=envelope,
+            record=record,
+            operator=operator,
+            slope_rpm_per_v=slope_rpm_per_v,
+            told=told,
+            dry=dry,
+        )
+        try:
+            outcome = await test.run()
+        finally:
+            record.close()
+    finally:
+        signal.signal(signal.SIGINT, before)
+        await counterpart.close()
+    return outcome, record.finish(outcome.campaign)

@@ -1,0 +1,208 @@
+"""Proof before arming: what a campaign will ask for, and what the ship is predicted to do, within the envelope."""
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from shaftprint.arrays import FloatArray
+from shaftprint.catalogue._own_structure import TypedName
+from shaftprint.choices import CLOSED_LOOPS
+from shaftprint.errors import LiveError, ShaftprintError
+from shaftprint.forecast._ship_before_test import ShipBeforeTest
+from shaftprint.forecast._simulation import SimulatedSignal, simulated_ship
+from shaftprint.live._envelope import SET_POINT, SPEED, TORQUE, Bound, Envelope
+from shaftprint.live._timetable import PLAY_HZ, expect_playable, rendered
+
+if TYPE_CHECKING:
+    from shaftprint.campaign._campaign import Campaign
+    from shaftprint.fingerprint._fingerprint import Fingerprint
+    from shaftprint.vessel._vessel import Vessel
+
+# Two-sided 99 %: deviations of a predicted motion.
+_DEVIATIONS = 2.576
+# A ship of which no fingerprint is known may move by so much more than the usual one: where its speed goes, the set
+# point says, how its torque swings, hardly anything.
+_UNKNOWN_SHARE = {"rpm": 0.1, "N m": 0.5}
+_PREDICTED_HZ = 50.0
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Foreseen:
+    """Lowest and highest value of a quantity during a campaign."""
+
+    quantity: str
+    """Which."""
+    unit: str
+    """Its unit."""
+    lowest: float
+    """Lowest value, the band included [unit]."""
+    highest: float
+    """Highest value, the band included [unit]."""
+    bound: Bound | None
+    """What it has to stay within; None without one."""
+
+    @property
+    def is_within(self) -> bool:
+        """Whether it stays within its bound."""
+        return self.bound is None or (self.bound.lowest <= self.lowest and self.highest <= self.bound.highest)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Proof:
+    """What a campaign will do, and every reason against it."""
+
+    foreseen: tuple[Foreseen, ...]
+    """Set point, engine speed and shaft torque."""
+    refusals: tuple[str, ...]
+    """Why it may not be played, a sentence each; none where it may."""
+    band: str
+    """How well the motion is known, in words."""
+
+    def expect_within(self) -> None:
+        """Refuse a campaign that leaves the envelope.
+
+        Raises LiveError with every reason if it does.
+        """
+        if self.refusals:
+            raise LiveError("\n  ".join(["expected a campaign within the envelope, found otherwise.", *self.refusals]))
+
+
+def prove(
+    campaign: "Campaign",
+    vessel: "Vessel",
+    envelope: Envelope,
+    *,
+    fingerprint: "Fingerprint | None" = None,
+    slope_rpm_per_v: float | None = None,
+) -> Proof:
+    """Hold a campaign against an envelope: the waveform as it is rendered, and the predicted response with its band.
+
+    ``fingerprint``: of an earlier test of the ship; the usual ship of its kind with a wider motion without one.
+    ``slope_rpm_per_v``: what one volt asks for [rpm/V], where neither says it. Raises LiveError if the motion cannot be
+    predicted.
+    """
+    expect_playable(campaign)
+    volts = rendered(campaign, zero_s=0.0).volts
+    set_point = Foreseen(
+        quantity=SET_POINT,
+        unit="V",
+        lowest=float(volts.min()),
+        highest=float(volts.max()),
+        bound=envelope.bound_of(SET_POINT),
+    )
+    predicted, band = _predicted(campaign, vessel, fingerprint, slope_rpm_per_v)
+    speed, torque = predicted["rpm"], predicted["N m"]
+    foreseen = (
+        set_point,
+        _foreseen(SPEED, "rpm", speed, envelope),
+        _foreseen(TORQUE, "N m", torque, envelope),
+    )
+    refusals = [_outside(one) for one in foreseen if not one.is_within]
+    refusals += _too_fast(volts, envelope)
+    if campaign.duration_s > envelope.longest_s:
+        refusals.append(
+            f"campaign {campaign.name}: expected at most {envelope.longest_s:g} s, found {campaign.duration_s:g} s."
+        )
+    refusals += _barred(speed[0], envelope)
+    refusals += _amplitudes(campaign, torque, envelope)
+    return Proof(foreseen=foreseen, refusals=tuple(refusals), band=band)
+
+
+def _predicted(
+    campaign: "Campaign", vessel: "Vessel", fingerprint: "Fingerprint | None", slope_rpm_per_v: float | None
+) -> tuple[dict[str, tuple[FloatArray, FloatArray]], str]:
+    """Return speed and torque over time by their units, rpm and N m, with half of their bands; and what that is."""
+    ship = ShipBeforeTest(
+        first_test=fingerprint,
+        vessel=vessel,
+        slope_rpm_per_v=campaign.slope_rpm_per_v if slope_rpm_per_v is None else slope_rpm_per_v,
+        values={},
+    )
+    structure = None if fingerprint is not None else TypedName(CLOSED_LOOPS[vessel.drive])
+    try:
+        simulation = simulated_ship(ship, campaign, structure=structure, linear=True, rate_hz=_PREDICTED_HZ)
+    except ShaftprintError as error:
+        raise LiveError(f"the motion cannot be predicted: {error}") from None
+    found: dict[str, tuple[FloatArray, FloatArray]] = {}
+    for signal in simulation.signals:
+        if signal.unit in ("rpm", "N m") and not signal.is_input and signal.unit not in found:
+            found[signal.unit] = signal.values, _half_band(signal)
+    if len(found) < 2:
+        raise LiveError(
+            "the motion cannot be predicted: expected speed and shaft torque from the model, found "
+            f"{', '.join(found) or 'neither'}."
+        )
+    words = (
+        "99 % band of the fingerprint"
+        if fingerprint is not None
+        else "no fingerprint: the usual ship, half as much again"
+    )
+    return found, words
+
+
+def _half_band(signal: SimulatedSignal) -> FloatArray:
+    if signal.std is not None:
+        return np.asarray(_DEVIATIONS * signal.std)
+    return np.asarray(_UNKNOWN_SHARE[signal.unit] * np.abs(signal.values - signal.values[0]))
+
+
+def _foreseen(quantity: str, unit: str, motion: tuple[FloatArray, FloatArray], envelope: Envelope) -> Foreseen:
+    values, half = motion
+    return Foreseen(
+        quantity=quantity,
+        unit=unit,
+        lowest=float((values - half).min()),
+        highest=float((values + half).max()),
+        bound=envelope.bound_of(quantity),
+    )
+
+
+def _outside(one: Foreseen) -> str:
+    bound = one.bound
+    low, high = (-math.inf, math.inf) if bound is None else (bound.lowest, bound.highest)
+    return (
+        f"{one.quantity}: expected within {low:.6g} to {high:.6g} {one.unit}, foreseen {one.lowest:.6g} to "
+        f"{one.highest:.6g} {one.unit}; make the test smaller or move its level."
+    )
+
+
+def _too_fast(volts: FloatArray, envelope: Envelope) -> list[str]:
+    fastest = float(np.abs(np.diff(volts)).max(initial=0.0)) * PLAY_HZ
+    if fastest <= envelope.highest_slew_v_per_s:
+        return []
+    return [
+        f"set point: expected at most {envelope.highest_slew_v_per_s:g} V/s, found {fastest:.4g} V/s; staircases and "
+        "sines that begin at once jump, multisines with ramp_s do not."
+    ]
+
+
+def _barred(speed_rpm: FloatArray, envelope: Envelope) -> list[str]:
+    refusals = []
+    for low, high in envelope.barred_rpm:
+        inside = np.concatenate([[0.0], ((speed_rpm > low) & (speed_rpm < high)).astype(np.float64), [0.0]])
+        ends = np.flatnonzero(np.diff(inside))
+        longest_s = float(np.max(ends[1::2] - ends[::2], initial=0.0)) / _PREDICTED_HZ
+        if longest_s > envelope.barred_passage_s:
+            refusals.append(
+                f"engine speed: expected to pass {low:g} to {high:g} rpm, which is barred, within "
+                f"{envelope.barred_passage_s:g} s, foreseen {longest_s:.3g} s in it."
+            )
+    return refusals
+
+
+def _amplitudes(campaign: "Campaign", torque: tuple[FloatArray, FloatArray], envelope: Envelope) -> list[str]:
+    refusals = []
+    time_s = np.arange(torque[0].size) / _PREDICTED_HZ
+    for test in campaign.excitations:
+        inside = (time_s >= getattr(test, "settled_s", test.start_s)) & (time_s < test.stop_s)
+        if not inside.any():
+            continue
+        half = 0.5 * float(np.ptp(torque[0][inside])) + float(torque[1][inside].max())
+        if half > envelope.highest_torque_amplitude_nm:
+            refusals.append(
+                f"{test.name}: expected an amplitude of the shaft torque of at most "
+                f"{envelope.highest_torque_amplitude_nm:g} N m, foreseen {half:.4g} N m; make it smaller."
+            )
+    return refusals

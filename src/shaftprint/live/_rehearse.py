@@ -1,0 +1,121 @@
+"""The verb ``rehearse``: a test played on a simulated ship, by the engine that plays it on board."""
+
+import asyncio
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from shaftprint.errors import RequestError
+from shaftprint.live._block import Event
+from shaftprint.live._engine import LiveTest
+from shaftprint.live._outcome import Operator, Outcome
+from shaftprint.live._record import Left, LiveRecord
+from shaftprint.live.counterparts._faults import LinkFaults, Spell
+from shaftprint.live.counterparts._simulated import SimulatedCounterpart, SimulatedShip
+from shaftprint.tug._like_stan_tug import like_stan_tug_1205, with_lever_of
+from shaftprint.tug._stepped import SteppedTug
+
+if TYPE_CHECKING:
+    from shaftprint.campaign._campaign import Campaign
+    from shaftprint.live._envelope import Envelope
+    from shaftprint.tug._tug import Tug
+    from shaftprint.vessel._vessel import Vessel
+
+# Beside the campaign: channels alive, revert, arming, ramps of an abort [s].
+_BESIDE_S = 120.0
+_SPELLS = {
+    "frozen": "frozen",
+    "silent": "silent",
+    "stale": "stale",
+    "not-a-number": "not_a_number",
+    "stuck": "stuck_set_point",
+    "deaf": "deaf",
+}
+_LATE_S = 3.0
+
+
+def _silent(event: Event) -> None:
+    """Say nothing."""
+
+
+def simulated_ship_of(
+    vessel: "Vessel", campaign: "Campaign", *, seed: int, faults: LinkFaults, tug: "Tug | None" = None
+) -> SimulatedShip:
+    """Return a ship like the Stan Tug behind a device that keeps the contract, but for its faults."""
+    usual = with_lever_of(like_stan_tug_1205(vessel, offset_v=campaign.offset_v), vessel, campaign)
+    ship = SteppedTug(
+        tug or usual, vessel, first_v=campaign.offset_v, duration_s=campaign.duration_s + _BESIDE_S, seed=seed
+    )
+    faults = replace(faults, channel=vessel.sensors.shaft_torque.channel)
+    return SimulatedShip(ship, lever_v=campaign.offset_v, faults=faults)
+
+
+def rehearse(
+    vessel: "Vessel",
+    campaign: "Campaign",
+    envelope: "Envelope",
+    path: Path,
+    *,
+    seed: int = 1,
+    pace: float | None = None,
+    faults: LinkFaults | None = None,
+    tug: "Tug | None" = None,
+    operator: Operator | None = None,
+    told: Callable[[Event], None] = _silent,
+) -> tuple[Outcome, Left]:
+    """Play a test on a simulated ship, and write what it leaves.
+
+    ``path``: the recording. ``pace``: times the clock; None: as fast as it can be calculated. ``faults``: what goes
+    wrong. ``tug``: the truth; like the Stan Tug where not given. ``told``: is told what happens. Raises RecordingError
+    if the recording is there already or cannot be written.
+    """
+    ship = simulated_ship_of(vessel, campaign, seed=seed, faults=faults or LinkFaults(), tug=tug)
+    counterpart = SimulatedCounterpart(ship, pace=pace)
+    record = LiveRecord(path, counterpart.channels, {"vessel": vessel.name})
+    test = LiveTest(
+        counterpart=counterpart,
+        vessel=vessel,
+        campaign=campaign,
+        envelope=envelope,
+        record=record,
+        operator=operator or Operator(),
+        slope_rpm_per_v=_slope(vessel, campaign, tug),
+        told=told,
+    )
+    try:
+        outcome = asyncio.run(test.run())
+    finally:
+        record.close()
+    return outcome, record.finish(outcome.campaign)
+
+
+def _slope(vessel: "Vessel", campaign: "Campaign", tug: "Tug | None") -> float:
+    usual = with_lever_of(like_stan_tug_1205(vessel, offset_v=campaign.offset_v), vessel, campaign)
+    return (tug or usual).set_point_slope_rpm_per_v
+
+
+def faults_named(words: Sequence[str]) -> LinkFaults:
+    """Return faults by what was typed, such as ``silent@60``.
+
+    Raises RequestError if there is no such fault, or its time is none.
+    """
+    faults = LinkFaults()
+    for word in words:
+        kind, _, second = word.partition("@")
+        if kind == "late-revert" and not second:
+            faults = replace(faults, revert_s=_LATE_S)
+            continue
+        try:
+            start_s = float(second)
+        except ValueError:
+            start_s = -1.0
+        if kind not in _SPELLS or not 0.0 <= start_s < math.inf:
+            raise RequestError(
+                f"--fault: expected {', '.join(_SPELLS)} with a second, such as silent@60, or late-revert, found "
+                f'"{word}".'
+            )
+        spell: dict[str, Any] = {_SPELLS[kind]: Spell(start_s=start_s)}
+        faults = replace(faults, **spell)
+    return faults
