@@ -35,7 +35,7 @@ from shaftprint.survey import Trial, fit, load_trial, priors_of, run
 from shaftprint.survey._measurement import of_legs
 from shaftprint.tug import Truth, Tug, sail
 
-DOCUMENT = ROOT / "docs" / "legs.md"
+DOCUMENT = ROOT / "docs" / "planned-tests.md"
 BEGIN, END = (
     "<!-- tables of benchmarks/faulty_tests.py: begin -->",
     "<!-- tables of benchmarks/faulty_tests.py: end -->",
