@@ -4,6 +4,7 @@
 of another environment is named with its interpreter: ``python -m benchmarks.hosts cofmupy=/other/venv/bin/python``.
 """
 
+import argparse
 import subprocess
 import sys
 import tempfile
@@ -94,7 +95,9 @@ def _compare(folder: Path, pythons: Mapping[str, str]) -> list[tuple[str, ...]]:
 
 def main() -> None:
     """Run all hosts and print the table."""
-    pythons = dict(word.split("=", 1) for word in sys.argv[1:])
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("pythons", nargs="*", metavar="HOST=PYTHON", help="another Python for a host")
+    pythons = dict(word.split("=", 1) for word in parser.parse_args().pythons)
     with tempfile.TemporaryDirectory() as folder:
         header = ("host", "FMI", *(f"{kind}: speed, torque" for kind in SET_POINTS))
         print_table("Largest difference over the motion", header, _compare(Path(folder), pythons))

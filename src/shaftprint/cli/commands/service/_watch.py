@@ -21,7 +21,7 @@ with late():
 
 
 @click.command("watch")
-@click.argument("days", nargs=-1, required=True, type=click.Path(path_type=Path, exists=True, file_okay=False))
+@click.argument("days", nargs=-1, required=True, type=click.Path(path_type=Path))
 @vessel_option
 @click.option(
     "--against",
