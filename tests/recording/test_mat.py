@@ -259,7 +259,7 @@ def _object(name, words):
         ("string", r"in MATLAB: tt = char\(tt\)\.$"),
         ("datetime", r"in MATLAB: tt = posixtime\(tt\)\.$"),
         ("duration", r"in MATLAB: tt = seconds\(tt\)\.$"),
-        ("timeseries", r"in MATLAB: tt = struct\('t', tt\.Time, 'value', tt\.Data\)\.$"),
+        ("timeseries", r"reads it, or in MATLAB: tt = struct\('t', tt\.Time, 'value', tt\.Data\)\.$"),
     ],
 )
 @pytest.mark.parametrize("is_packed", [False, True])

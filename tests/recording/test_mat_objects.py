@@ -63,6 +63,42 @@ def test_a_table_and_a_duration(save):
         assert (set(recording.channels), recording.channel("u").rate_hz) == ({"u"}, 2000.0)
 
 
+def _series(data, times=(), start=0.0, step=0.0, unit="", clock="seconds"):
+    """Return what MATLAB keeps of a timeseries: times, or the first of them and their step."""
+    opaque = importlib.import_module("matio.utils.matclass").MatlabOpaque
+    column = np.array(times, dtype=np.float64).reshape(-1, 1)
+    of_time = {
+        "Units": clock, "Time_": np.empty((0, 0)), "Start_": start, "Increment_": step,
+        "Length": float(max(np.shape(data))),
+    }  # fmt: skip
+    properties = {
+        "Name": "measured", "Data_": data, "Time_": column, "IsTimeFirst_": data.ndim == 2,
+        "DataInfo": opaque({"Units": unit}, "tsdata.datametadata"),
+        "TimeInfo": opaque(of_time, "tsdata.timemetadata"),
+    }  # fmt: skip
+    return opaque(properties, "timeseries")
+
+
+def test_time_series_have_the_times_that_they_keep_or_count(save):
+    torque, both = TORQUE.reshape(-1, 1), np.stack([TORQUE, 2.0 * TORQUE], axis=1)
+    path = save(
+        M_s=_series(torque, start=3.0, step=0.01, unit="N m"),
+        n=_series(both, times=5.0 * np.arange(COUNT), clock="milliseconds"),
+        X=_series(both.T.reshape(1, 2, COUNT).copy(), start=0.0, step=0.5),
+    )
+    with read_recording(path) as recording:
+        channels = {name: (one.rate_hz, one.start_s, one.unit) for name, one in recording.channels.items()}
+        assert channels == {
+            "M_s": (pytest.approx(100.0), 3.0, "N m"),
+            "n 1": (pytest.approx(200.0), 0.0, ""),
+            "n 2": (pytest.approx(200.0), 0.0, ""),
+            "X 1": (pytest.approx(2.0), 0.0, ""),
+            "X 2": (pytest.approx(2.0), 0.0, ""),
+        }
+        for name, values in (("M_s", TORQUE), ("n 2", 2.0 * TORQUE), ("X 2", 2.0 * TORQUE)):
+            assert np.array_equal(recording.channel(name).values(0, COUNT), values)
+
+
 def test_without_the_library_the_remedy_is_that_of_the_class(save, monkeypatch):
     path = save(tt=_timetable(pd.to_timedelta(PASSED)))
     timetable = path.rename(path.with_name("timetable.mat"))

@@ -1,4 +1,4 @@
-"""Objects in MATLAB files, which mat-io opens: timetables, tables, durations and dates become vectors."""
+"""Objects in MATLAB files, which mat-io opens: timetables, tables, series, durations and dates become vectors."""
 
 import importlib
 import warnings
@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from shaftprint.recording.readers._vectors import LOCAL, Vector
 from shaftprint.recording.readers.matlab._variables import MatVariables, object_reason
 
-_READ = ("timetable", "table", "duration", "datetime")
+_READ = ("timetable", "table", "duration", "datetime", "timeseries")
 _NUMBERS = "fiub"
 
 
@@ -32,6 +32,8 @@ def keep_objects(path: Path, kinds: Mapping[str, str], variables: MatVariables) 
             _keep_table(name, value, variables, is_zoned=is_zoned)
         elif isinstance(value, np.ndarray) and value.dtype.kind in "mM" and value.size > 1:
             variables.vectors.append(_vector(name, "", value.ravel(), "", is_zoned=is_zoned))
+        elif kind == "timeseries" and hasattr(value, "properties"):
+            _keep_series(name, value.properties, variables)
         else:
             variables.left_out[name] = object_reason(name.replace("/", "."), kind)
 
@@ -66,6 +68,42 @@ def _keep_table(name: str, table: Any, variables: MatVariables, *, is_zoned: boo
             continue
         unit = stated[place] if len(stated) == len(table.columns) else ""
         variables.vectors.append(_vector(str(title), name, values, unit, is_zoned=is_zoned))
+
+
+def _keep_series(name: str, series: Mapping[str, Any], variables: MatVariables) -> None:
+    """Add the columns of a time series and its times, which are stored, or an increment from a start on."""
+    data, of_time = np.asarray(series.get("Data_")), _properties(series.get("TimeInfo"))
+    times = next((one for one in map(_numbers, (series.get("Time_"), of_time.get("Time_"))) if one.size), None)
+    if times is None:
+        start, step, length = (_numbers(of_time.get(key)) for key in ("Start_", "Increment_", "Length"))
+        times = start[0] + step[0] * np.arange(int(length[0])) if start.size and step.size and length.size else None
+    if times is None or times.size < 2 or data.dtype.kind not in _NUMBERS or times.size not in data.shape:
+        variables.left_out[name] = "expected a time for each sample, found a time series without."
+        return
+    # of a series of matrices the time comes last
+    first = data.shape[0] == times.size and (data.ndim == 2 or bool(np.ravel(series.get("IsTimeFirst_", True))[0]))
+    columns = np.moveaxis(data, 0 if first else -1, 0).reshape(times.size, -1)
+    variables.vectors.append(_vector("time", name, times, _text(of_time.get("Units")), is_zoned=False))
+    unit = _properties(series.get("DataInfo")).get("Units")
+    unit = _text(_properties(unit).get("Name", unit))
+    for place, column in enumerate(columns.T, start=1):
+        title = name if columns.shape[1] == 1 else f"{name} {place}"
+        variables.vectors.append(_vector(title, name, column, unit, is_zoned=False))
+
+
+def _properties(value: Any) -> Mapping[str, Any]:
+    properties: Mapping[str, Any] = getattr(value, "properties", None) or {}
+    return properties
+
+
+def _numbers(value: Any) -> NDArray[Any]:
+    numbers = np.ravel(np.asarray([] if value is None else value))
+    return numbers.astype(np.float64) if numbers.dtype.kind in _NUMBERS else np.empty(0)
+
+
+def _text(value: Any) -> str:
+    texts = np.ravel(np.asarray([] if value is None else value))
+    return str(texts[0]) if texts.size and texts.dtype.kind == "U" else ""
 
 
 def _vector(name: str, group: str, values: NDArray[Any], unit: str, *, is_zoned: bool) -> Vector:

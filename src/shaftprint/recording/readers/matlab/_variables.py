@@ -74,7 +74,9 @@ def object_reason(name: str, kind: str) -> str:
         case "duration":
             return f"{reason}; in MATLAB: {name} = seconds({name})."
         case "timeseries":
-            return f"{reason}; in MATLAB: {name} = struct('t', {name}.Time, 'value', {name}.Data)."
+            return (
+                f"{reason}; {_INSTALL} reads it, or in MATLAB: {name} = struct('t', {name}.Time, 'value', {name}.Data)."
+            )
         case "categorical":
             return f"{reason}; in MATLAB: {name} = double({name})."
         case "table":
