@@ -32,8 +32,8 @@ def keep_objects(path: Path, kinds: Mapping[str, str], variables: MatVariables) 
             _keep_table(name, value, variables, is_zoned=is_zoned)
         elif isinstance(value, np.ndarray) and value.dtype.kind in "mM" and value.size > 1:
             variables.vectors.append(_vector(name, "", value.ravel(), "", is_zoned=is_zoned))
-        elif kind == "timeseries" and hasattr(value, "properties"):
-            _keep_series(name, value.properties, variables)
+        elif kind == "timeseries" and (series := _properties(value)):
+            _keep_series(name, series, variables)
         else:
             variables.left_out[name] = object_reason(name.replace("/", "."), kind)
 
