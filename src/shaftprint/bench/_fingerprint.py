@@ -15,18 +15,23 @@ from shaftprint.bench._fit import DriveFit
 from shaftprint.bench._per_record import base_name, record_structure
 from shaftprint.errors import FingerprintError
 from shaftprint.fingerprint._drive_fingerprint import DriveFingerprint, DriveRecord, DriveResponse, NoiseOfRecord
-from shaftprint.fingerprint._fingerprint import SourceFile
+from shaftprint.fingerprint._joint_numbers import JointNumbers, kept_together
+from shaftprint.fingerprint._line_fingerprint import SourceFile
 from shaftprint.fingerprint._model import IdentifiedModel
 from shaftprint.identify.fit._estimate import Estimate
+from shaftprint.identify.uncertainty._joint import joint_covariance
 from shaftprint.models._structure import Structure
 from shaftprint.time_domain._record_fit import RecordFit
 
 
 @refusing_none(FingerprintError)
-def drive_fingerprint(fit: DriveFit, *, sources: Sequence[SourceFile], now: datetime) -> DriveFingerprint:
+def drive_fingerprint(
+    fit: DriveFit, *, sources: Sequence[SourceFile], now: datetime, tested_at: datetime | None = None
+) -> DriveFingerprint:
     """Return what is kept of a fit.
 
     ``sources``: recordings, drive file and own structure with their hashes. ``now``: time of making, with time zone.
+    ``tested_at``: when the first record was made; None where nobody says it.
     """
     identification, one = fit.identification, fit.equipped
     structure, parameters = one.structure, identification.objective.parameters
@@ -35,6 +40,7 @@ def drive_fingerprint(fit: DriveFit, *, sources: Sequence[SourceFile], now: date
         created=now,
         sources=tuple(sources),
         drive=one.drive.name,
+        tested_at=tested_at,
         structure=structure.name,
         inputs={name: one.units[name] for name in structure.inputs},
         outputs={name: one.units[name] for name in structure.outputs},
@@ -48,9 +54,17 @@ def drive_fingerprint(fit: DriveFit, *, sources: Sequence[SourceFile], now: date
         p_value=identification.p_value,
         starts=identification.settings.starts,
         starts_at_optimum=fit.agreeing,
+        joint=_joint(fit),
         verdict=fit.verdict,
         inputs_hold=fit.inputs_hold,
     )
+
+
+def _joint(fit: DriveFit) -> JointNumbers:
+    """Return the covariance of what is of the drive, not of one record alone."""
+    free = [estimate.name for estimate in fit.identification.parameters]
+    bases = set(fit.equipped.structure.names)
+    return kept_together(joint_covariance(fit.identification, [name for name in free if name in bases]))
 
 
 def _quantity(fit: DriveFit, estimate: Estimate) -> Estimate:

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
+from datetime import datetime
 from pathlib import Path
 from typing import Any
 
@@ -70,6 +71,17 @@ def read_records(
             records += [replace(record, remarks=(*record.remarks, *taken)) for record in of_file]
     expect_different_names("records", [record.name for record in records])
     return tuple(records)
+
+
+def began_at(one: EquippedDrive, paths: Sequence[Path], **hints: Any) -> datetime | None:
+    """Return when the first file of records began, as it says itself; None where it does not say it.
+
+    ``one``: the drive. ``paths``: its files. ``hints``: as for ``read_records``.
+    """
+    if one.drive.responses:
+        return None
+    with read_recording(paths[0], **hints) as recording:
+        return recording.began
 
 
 def expect_different_names(what: str, names: Sequence[str]) -> None:

@@ -23,9 +23,11 @@ with late():
     from shaftprint.bench._fingerprint import drive_fingerprint
     from shaftprint.bench._identify import identify_files
     from shaftprint.bench._named import named_drives
+    from shaftprint.bench._records import began_at
     from shaftprint.catalogue._own_structure import TypedName
     from shaftprint.drive._drive import load_drive
-    from shaftprint.fingerprint._drive_fingerprint import DriveFingerprint, write_drive_fingerprint
+    from shaftprint.fingerprint._drive_fingerprint import DriveFingerprint
+    from shaftprint.fingerprint._json_file import write_fingerprint
     from shaftprint.fingerprint._sources import source_of, structure_sources
     from shaftprint.report._drive_page import render_drive
     from shaftprint.survey._fit_options import FitOptions
@@ -41,10 +43,11 @@ def identify_on_the_bench(
     results: Results,
     *,
     hints: Mapping[str, Any],
+    tested_at: datetime | None,
     pictures: bool,
 ) -> None:
     """Identify a drive from its records, print what was found, and write fingerprint and page into a folder."""
-    expect_not_given("vessel", "campaign", "legs", "tested_at", "conditions", "previous", "pdf")
+    expect_not_given("vessel", "campaign", "legs", "conditions", "previous", "pdf")
     chosen = names if is_given("names") else ()
     (one,) = named_drives(load_drive(drive_file), chosen, options)
     with results.folder("identify") as folder:
@@ -57,9 +60,11 @@ def identify_on_the_bench(
             source_of("drive", drive_file),
             *structure_sources(chosen),
         )
-        fingerprint = drive_fingerprint(fit, sources=sources, now=datetime.now(UTC))
+        fingerprint = drive_fingerprint(
+            fit, sources=sources, now=datetime.now(UTC), tested_at=tested_at or began_at(one, recordings, **hints)
+        )
         print_drive(fingerprint, whole=False)
-        write_drive_fingerprint(fingerprint, folder / FINGERPRINT)
+        write_fingerprint(fingerprint, folder / FINGERPRINT)
         with results.progress() as steps:
             steps.begin("Writing the report", total=1.0)
             render_drive(folder, fit, fingerprint, pictures=pictures, progress=steps.reach)

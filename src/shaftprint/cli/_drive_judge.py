@@ -1,4 +1,4 @@
-"""What the judging commands do with a drive: compare, validate, predict, compare structures."""
+"""What the judging commands do with a drive: validate, predict, compare structures."""
 
 from __future__ import annotations
 
@@ -7,8 +7,9 @@ from pathlib import Path
 
 import click
 
-from shaftprint.cli._drive_options import drive_fingerprint_at, is_given
+from shaftprint.cli._drive_options import is_given
 from shaftprint.cli._terminal import answer, print_findings, say
+from shaftprint.cli.output._fingerprint_file import drive_fingerprint_at
 from shaftprint.cli.output._json import give
 from shaftprint.cli.output._progress import progress
 from shaftprint.cli.output._tables import print_table, print_tables
@@ -18,7 +19,6 @@ with late():
     import numpy as np
 
     from shaftprint.bench import _fit
-    from shaftprint.bench._compare import drive_differences
     from shaftprint.bench._kept import kept_drive
     from shaftprint.bench._named import holding, named_drives
     from shaftprint.bench._predict import predict_files
@@ -27,31 +27,10 @@ with late():
     from shaftprint.bench._validate import identified_from, validate_drive
     from shaftprint.catalogue._own_structure import TypedName, chosen_structures
     from shaftprint.drive._drive import load_drive
-    from shaftprint.fingerprint._drive_fingerprint import DriveFingerprint
     from shaftprint.forecast._ship_before_test import ShipBeforeTest
     from shaftprint.recording._recording import sha256_of
     from shaftprint.survey._fit_options import FitOptions
-    from shaftprint.tables._drive import (
-        drive_difference_table,
-        drive_prediction_table,
-        time_comparison_table,
-        validated_drive_table,
-    )
-
-
-def compare_on_the_bench(named: Mapping[str, DriveFingerprint]) -> None:
-    """Print what differs between fingerprints of a drive; all are compared with the first."""
-    (first_name, first), *others = named.items()
-    for name, other in others:
-        found = drive_differences(first, other)
-        doubtful = [label for label, one in ((first_name, first), (name, other)) if not one.verdict.trustworthy]
-        differing = [one.first.name for one in found if one.outcome == "differs"]
-        words = f"Yes: {', '.join(differing)}." if differing else "No difference is seen that chance would not make."
-        if doubtful:
-            words = f"It cannot be told: not trustworthy: {', '.join(doubtful)}."
-        answer(f"Has the drive changed{f', {name}' if len(others) > 1 else ''}? {words}")
-        give(f"differences {name}", {one.first.name: one for one in found})
-        print_table(drive_difference_table(first_name, name, found))
+    from shaftprint.tables._drive import drive_prediction_table, time_comparison_table, validated_drive_table
 
 
 def validate_on_the_bench(

@@ -9,14 +9,6 @@ from typing import Any
 import click
 from click.core import ParameterSource
 
-from shaftprint.cli.output._fingerprint_file import fingerprint_file
-from shaftprint.errors import FingerprintError
-from shaftprint.files import read_json
-from shaftprint.late import late
-
-with late():
-    from shaftprint.fingerprint._drive_fingerprint import DriveFingerprint, is_of_a_drive, read_drive_fingerprint
-
 
 def drive_option(command: Callable[..., Any]) -> Callable[..., Any]:
     """Add the option ``--drive``; where it is given, vessel and campaign are not needed."""
@@ -72,21 +64,3 @@ def only_recording(recordings: Sequence[Path]) -> Path:
             "`shaftprint join`, those of several by `shaftprint merge`."
         )
     return recordings[0]
-
-
-def is_drive_place(place: Path) -> bool:
-    """Return whether a fingerprint, named by its file or folder, says that it is of a drive; False where it is none."""
-    try:
-        _, content = read_json(fingerprint_file(place), noun="fingerprint", where="", error=FingerprintError)
-    except FingerprintError:
-        # what is wrong with it says whoever reads it
-        return False
-    return is_of_a_drive(content)
-
-
-def drive_fingerprint_at(place: Path) -> DriveFingerprint:
-    """Return the fingerprint of a drive that is named by its file or folder.
-
-    Raises FingerprintError if there is none.
-    """
-    return read_drive_fingerprint(fingerprint_file(place))

@@ -217,6 +217,14 @@ ALL_CAUSES: tuple[Cause, ...] = (*CAUSES, GAUGE)
 """Every cause, in the order of tables."""
 
 
+def of_number(name: str, unit: str) -> Cause:
+    """Return the change of a number that has no role, as those of a drive: each may have changed by itself."""
+    told_by = f"a test that tells {name} better, see `shaftprint predict`"
+    return Cause(
+        name=name, less=f"a lower {name}", more=f"a higher {name}", told_by=told_by, roles=(), is_share=unit != "s"
+    )
+
+
 def by_role(cause: Cause, roles: Mapping[str, Role | None]) -> tuple[str, ...]:
     """Return the numbers that a cause moves by their roles; none where one that it should move is not there.
 

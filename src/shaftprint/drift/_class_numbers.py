@@ -117,13 +117,14 @@ def class_numbers(
     judged = judged_in([test for ship in ships for test in ship.tests])
     names = judged.names
     roles = {name: tests[0].quantity(name).role for name in names}
+    units = {name: tests[0].quantity(name).unit for name in names}
     singles = straightened(tests, judged.told([single_test(one, names) for one in tests]), names)
     load = np.diag([(load_repeatability * (role == ShipRole.TORQUE)) ** 2 for role in roles.values()])
     covariances = own_covariances(tests, singles, judged.whole)
     own = [one + np.diag(unknown) for one, unknown in zip(covariances, judged.unknown, strict=True)]
     weights = _weights(ships, own)
     alone, common = _left_open(ships, singles, weights, [one + load for one in own], judged.whole)
-    causes, directions = directions_of(roles, singles[0].loadings.get(GAUGE_SCALE))
+    causes, directions = directions_of(roles, singles[0].loadings.get(GAUGE_SCALE), units)
     stated = np.array([(tolerances or {}).get(cause, cause.tolerance) for cause in causes])
     return ClassNumbers(
         names=names,

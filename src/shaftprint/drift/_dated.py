@@ -8,7 +8,7 @@ from shaftprint.catalogue._roles import ShipRole
 from shaftprint.errors import FingerprintError
 
 if TYPE_CHECKING:
-    from shaftprint.fingerprint._fingerprint import Fingerprint
+    from shaftprint.fingerprint._line_fingerprint import LineFingerprint
     from shaftprint.models._role import Role
 
 _GOVERNOR = (
@@ -65,5 +65,5 @@ class DatedTest:
     """What it is called."""
     at: datetime
     """When it was made, with time zone."""
-    fingerprint: "Fingerprint"
+    fingerprint: "LineFingerprint"
     """What it gave."""

@@ -12,7 +12,7 @@ from shaftprint.drift._finding import Finding, ShipChange, SizedCause, odds_agai
 from shaftprint.drift._pair import Pair, pair_of
 
 if TYPE_CHECKING:
-    from shaftprint.fingerprint._fingerprint import Fingerprint
+    from shaftprint.fingerprint._line_fingerprint import LineFingerprint
 
 UNLIKELY = 0.05
 """A change that chance makes in fewer than this share of unchanged pairs counts."""
@@ -25,7 +25,9 @@ NOT_TOLD = "no number of both fingerprints can be judged"
 NOT_DETERMINED = "the covariance of the numbers is not positive definite"
 
 
-def differ(first: "Fingerprint", other: "Fingerprint", *, load_repeatability: float = LOAD_REPEATABILITY) -> Finding:
+def differ(
+    first: "LineFingerprint", other: "LineFingerprint", *, load_repeatability: float = LOAD_REPEATABILITY
+) -> Finding:
     """Return whether a ship has changed from one test to another, by how much, and what may have changed.
 
     Numbers of one test are known to a few per cent each and to a few per mille against each other: governor gains,

@@ -18,7 +18,7 @@ from shaftprint.identify.judgement._phrases import listed
 
 if TYPE_CHECKING:
     from shaftprint.drift._dated import DatedTest
-    from shaftprint.fingerprint._fingerprint import Fingerprint
+    from shaftprint.fingerprint._line_fingerprint import LineFingerprint
 
 NOT_POSITIVE = "it is not larger than zero"
 HELD = "it was held"
@@ -104,7 +104,7 @@ def left_out_of(doubts: Mapping[str, str]) -> dict[str, str]:
     return {name: doubt for name, doubt in doubts.items() if doubt}
 
 
-def doubts_of(*fingerprints: "Fingerprint") -> dict[str, str]:
+def doubts_of(*fingerprints: "LineFingerprint") -> dict[str, str]:
     """Return why each number of a few fingerprints is not judged, one doubt being enough; empty for those that are.
 
     One that stopped at its bound is judged: it was pushed there along its column of the covariance, which in the metric
@@ -116,29 +116,36 @@ def doubts_of(*fingerprints: "Fingerprint") -> dict[str, str]:
     return doubts
 
 
-def _not_comparable(fingerprints: "Sequence[Fingerprint]") -> dict[str, str]:
+def _not_comparable(fingerprints: "Sequence[LineFingerprint]") -> dict[str, str]:
     """Return why each number of several fingerprints cannot be compared; empty for those that can."""
     joints = [fingerprint.joint for fingerprint in fingerprints if fingerprint.joint is not None]
     every = dict.fromkeys(name for joint in joints for name in joint.names)
     doubts = {name: next(filter(None, (_absent(name, one) for one in fingerprints)), "") for name in every}
-    if len({one.vessel_fields.get(DIRECTION, "ahead") for one in fingerprints}) > 1:
-        role_of = {number.name: number.role for one in fingerprints for number in (*one.parameters, *one.physical)}
+    if len({one.stated_fields.get(DIRECTION, "ahead") for one in fingerprints}) > 1:
+        role_of = {
+            number.name: number.role
+            for one in fingerprints
+            for number in (*one.parameters, *one.numbers["physical value"])
+        }
         doubts |= {name: OTHER_DIRECTION for name in every if role_of.get(name) in OF_DIRECTION}
     return doubts
 
 
-def _absent(name: str, fingerprint: "Fingerprint") -> str:
+def _absent(name: str, fingerprint: "LineFingerprint") -> str:
     """Return why a fingerprint has no such number to compare; empty where it has."""
     if fingerprint.joint is None or name not in fingerprint.joint.names:
         return NOT_IN_ALL
     if fingerprint.joint.covariance_of((name,))[0, 0] <= 0.0:
         return HELD
     number = fingerprint.quantity(name)
-    return NOT_POSITIVE if is_share(number.role) and number.value <= 0.0 else ""
+    return NOT_POSITIVE if is_share(number.role, number.unit) and number.value <= 0.0 else ""
 
 
-def _doubted(name: str, fingerprint: "Fingerprint") -> str:
+def _doubted(name: str, fingerprint: "LineFingerprint") -> str:
     """Return why the verdict of a test doubts a number; empty where it does not."""
     number = fingerprint.quantity(name)
+    if number.role is None:
+        # of what it is made nothing is known here: what its test says of it stands
+        return fingerprint.verdict.not_trusted.get(name, "")
     kinds = (reason.kind for reason in fingerprint.verdict.reasons)
     return next((AFFECTED[kind][1] for kind in kinds if depends_on(number, kind)), "")

@@ -1,6 +1,6 @@
 """The tests of one line in order of time, and what was done to the ship between them."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
@@ -9,7 +9,7 @@ from shaftprint.drift._program_epochs import program_epochs
 from shaftprint.errors import FingerprintError
 
 if TYPE_CHECKING:
-    from shaftprint.fingerprint._fingerprint import Fingerprint
+    from shaftprint.fingerprint._line_fingerprint import LineFingerprint
 
 SECONDS_PER_YEAR: Final = 365.25 * 86400.0
 
@@ -26,7 +26,7 @@ class History:
     """Why other tests are not judged, by name."""
 
 
-def history_of(fingerprints: "dict[str, Fingerprint]", events: Sequence[Event] = ()) -> History:
+def history_of(fingerprints: "Mapping[str, LineFingerprint]", events: Sequence[Event] = ()) -> History:
     """Return the tests of one line in order of time.
 
     Where another version of the program identified a test than the one before, that is one more event, unless a
@@ -49,7 +49,7 @@ def history_of(fingerprints: "dict[str, Fingerprint]", events: Sequence[Event] =
     recordings: dict[str, str] = {}
     # of two fingerprints of one recording the one that was made later counts
     for name, fingerprint in sorted(fingerprints.items(), key=lambda item: item[1].created, reverse=True):
-        at = fingerprint.conditions.tested_at
+        at = fingerprint.tested.tested_at
         if at is None or at.tzinfo is None:
             raise FingerprintError(
                 f"{name}: expected when the test was made, with time zone, found "

@@ -7,20 +7,21 @@ files state the same scale of the gauge, its error moves both tests alike (``_sh
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.catalogue._roles import ShipRole
-from shaftprint.drift._causes import CAUSES, GAUGE, GAUGE_SCALE, Cause, by_role, may_happen
+from shaftprint.drift._causes import CAUSES, GAUGE, GAUGE_SCALE, Cause, by_role, may_happen, of_number
 from shaftprint.drift._doubts import doubts_of, judged_together, left_out_of
 from shaftprint.drift._shared_errors import SharedErrors, shared_errors
 from shaftprint.drift._single_test import SingleTest, single_test
 from shaftprint.drift._straight import straightened
 
 if TYPE_CHECKING:
-    from shaftprint.fingerprint._fingerprint import Fingerprint
+    from shaftprint.fingerprint._line_fingerprint import LineFingerprint
     from shaftprint.models._role import Role
 
 
@@ -45,7 +46,7 @@ class Pair:
 
 
 def pair_of(
-    first: "Fingerprint", other: "Fingerprint", *, load_repeatability: float, moved: FloatArray | None = None
+    first: "LineFingerprint", other: "LineFingerprint", *, load_repeatability: float, moved: FloatArray | None = None
 ) -> Pair | None:
     """Return the difference of two fingerprints; None where one of them does not hold its numbers together.
 
@@ -64,7 +65,8 @@ def pair_of(
     # the propeller takes another torque on another day
     shared = shared_errors(first, other)
     load = np.array([load_repeatability * (role == ShipRole.TORQUE) for role in roles.values()])
-    causes, directions = directions_of(roles, before.loadings.get(GAUGE_SCALE))
+    units = {name: first.quantity(name).unit for name in names}
+    causes, directions = directions_of(roles, before.loadings.get(GAUGE_SCALE), units)
     return Pair(
         names=names,
         left_out=left_out_of(doubts),
@@ -78,7 +80,7 @@ def pair_of(
 
 
 def not_judged(
-    causes: tuple[Cause, ...], doubts: Mapping[str, str], fingerprints: "Sequence[Fingerprint]"
+    causes: tuple[Cause, ...], doubts: Mapping[str, str], fingerprints: "Sequence[LineFingerprint]"
 ) -> tuple[Cause, ...]:
     """Return the causes that move numbers which were left out, so that they are not excluded.
 
@@ -99,10 +101,10 @@ def not_judged(
     )
 
 
-def alike(first: "Fingerprint", other: "Fingerprint") -> bool:
+def alike(first: "LineFingerprint", other: "LineFingerprint") -> bool:
     """Return whether two tests weigh what was stated against their data alike: the same lines, the same structure."""
-    campaigns = [{one.sha256 for one in test.sources if one.role == "campaign"} for test in (first, other)]
-    return campaigns[0] == campaigns[1] and first.structure == other.structure
+    asked = [{one.sha256 for one in test.sources if one.role in ("campaign", "drive")} for test in (first, other)]
+    return asked[0] == asked[1] and first.structure == other.structure
 
 
 def _covariance(before: SingleTest, after: SingleTest, shared: SharedErrors, *, unmoved: bool) -> FloatArray:
@@ -130,14 +132,19 @@ def _covariance(before: SingleTest, after: SingleTest, shared: SharedErrors, *, 
     return covariance
 
 
-def directions_of(roles: "dict[str, Role | None]", scale: FloatArray | None) -> tuple[tuple[Cause, ...], FloatArray]:
+def directions_of(
+    roles: "dict[str, Role | None]", scale: FloatArray | None, units: Mapping[str, str] = MappingProxyType({})
+) -> tuple[tuple[Cause, ...], FloatArray]:
     """Return what may have moved the numbers, and how.
 
-    ``roles``: role of each number. ``scale``: what one standard deviation of the scale of the gauge does to them; None
-    where it is known exactly.
+    ``roles``: role of each number; where none has one, as in a drive, each may have moved by itself. ``scale``: what
+    one standard deviation of the scale of the gauge does to them; None where it is known exactly. ``units``: unit of
+    each number that has no role.
     """
     names = list(roles)
     moved = {cause: by_role(cause, roles) for cause in CAUSES}
+    if not any(roles.values()):
+        moved = {of_number(name, units[name]): (name,) for name in names}
     columns = {cause: np.isin(names, there).astype(np.float64) for cause, there in moved.items() if there}
     torque = list(roles.values()).index(ShipRole.TORQUE) if ShipRole.TORQUE in roles.values() else None
     if scale is not None and torque is not None and scale[torque]:

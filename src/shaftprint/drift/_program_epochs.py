@@ -11,14 +11,14 @@ from typing import TYPE_CHECKING, Final
 from shaftprint.drift._dated import DatedTest, Event
 
 if TYPE_CHECKING:
-    from shaftprint.fingerprint._fingerprint import Fingerprint
+    from shaftprint.fingerprint._line_fingerprint import LineFingerprint
 
 SAME_WITHIN: Final = 0.2
 """Two versions find the same where every number of the ship moves by at most so many of its standard deviations."""
 
 
 def program_epochs(
-    tests: Sequence[DatedTest], fingerprints: "Iterable[Fingerprint]", events: Sequence[Event]
+    tests: Sequence[DatedTest], fingerprints: "Iterable[LineFingerprint]", events: Sequence[Event]
 ) -> tuple[Event, ...]:
     """Return an event for each test of another version than the one before, where their numbers may differ.
 
@@ -37,9 +37,9 @@ def program_epochs(
     return tuple(epochs)
 
 
-def _shown_alike(fingerprints: "Iterable[Fingerprint]") -> frozenset[frozenset[str]]:
+def _shown_alike(fingerprints: "Iterable[LineFingerprint]") -> frozenset[frozenset[str]]:
     """Return the pairs of versions of which recordings show that they find the same, and none that they do not."""
-    of_recording: dict[str, list[Fingerprint]] = {}
+    of_recording: dict[str, list[LineFingerprint]] = {}
     for one in fingerprints:
         recording = one.recording_sha256
         if recording is not None and one.joint is not None:
@@ -52,7 +52,7 @@ def _shown_alike(fingerprints: "Iterable[Fingerprint]") -> frozenset[frozenset[s
     return frozenset(pair for pair, found in alike.items() if found)
 
 
-def _largest_shift(one: "Fingerprint", other: "Fingerprint") -> float:
+def _largest_shift(one: "LineFingerprint", other: "LineFingerprint") -> float:
     """Return by how many standard deviations the numbers of the ship differ, at the most."""
     if one.joint is None or other.joint is None or set(one.joint.names) != set(other.joint.names):
         return float("inf")

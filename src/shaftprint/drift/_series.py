@@ -18,7 +18,7 @@ from shaftprint.drift._single_test import SingleTest, single_test
 from shaftprint.drift._straight import straightened
 
 if TYPE_CHECKING:
-    from shaftprint.fingerprint._fingerprint import Fingerprint
+    from shaftprint.fingerprint._line_fingerprint import LineFingerprint
     from shaftprint.models._role import Role
 
 
@@ -58,6 +58,7 @@ def series_of(history: History, *, made: int, load_repeatability: float, moved: 
     judged = judged_in(history.tests[:made])
     names = judged.names
     roles = {name: fingerprints[0].quantity(name).role for name in names}
+    units = {name: fingerprints[0].quantity(name).unit for name in names}
     made_tests = fingerprints[:made]
     raw = judged.told([single_test(one, names) for one in made_tests])
     baseline = _baseline(history, roles)
@@ -68,7 +69,7 @@ def series_of(history: History, *, made: int, load_repeatability: float, moved: 
     start = history.tests[0].at
     time_a = np.array([(test.at - start).total_seconds() / SECONDS_PER_YEAR for test in history.tests])
     load = np.diag([(load_repeatability * (role == ShipRole.TORQUE)) ** 2 for role in roles.values()])
-    causes, directions = directions_of(roles, singles[0].loadings.get(GAUGE_SCALE))
+    causes, directions = directions_of(roles, singles[0].loadings.get(GAUGE_SCALE), units)
     return Series(
         names=names,
         left_out=judged.left_out,
@@ -116,7 +117,7 @@ def _covariance(history: History, singles: list[SingleTest], load: FloatArray, w
 
 
 def own_covariances(
-    tests: "Sequence[Fingerprint]", singles: Sequence[SingleTest], whole: BoolArray
+    tests: "Sequence[LineFingerprint]", singles: Sequence[SingleTest], whole: BoolArray
 ) -> Iterator[FloatArray]:
     """Yield what each test left open, of the mean shape of all tests with the same lines and structure.
 
@@ -137,14 +138,14 @@ def own_covariances(
         yield noisy[one] * shape
 
 
-def _kin(one: int, of: Iterable[int], tests: "Sequence[Fingerprint]", whole: BoolArray) -> list[int]:
+def _kin(one: int, of: Iterable[int], tests: "Sequence[LineFingerprint]", whole: BoolArray) -> list[int]:
     """Return those tests of some with the same lines and structure that say something of every number."""
     alike_to = [other for other in of if alike(tests[one], tests[other])]
     return [other for other in alike_to if whole[min(other, len(whole) - 1)]] or alike_to
 
 
 def stated_errors(
-    tests: "Sequence[Fingerprint]",
+    tests: "Sequence[LineFingerprint]",
     singles: Sequence[SingleTest],
     shared: Callable[[str, int, int], bool],
     whole: BoolArray,
@@ -174,7 +175,10 @@ def _baseline(history: History, roles: "dict[str, Role | None]") -> FloatArray:
             concerned = [
                 at
                 for at, (name, role) in enumerate(roles.items())
-                if role in EVENTS[event.kind] or name in event.numbers
+                if role in EVENTS[event.kind]
+                or name in event.numbers
+                # another program may find any number of a drive otherwise
+                or (role is None and event.kind == "program-changed")
             ]
             columns += [np.kron(after, np.eye(size)[at]) for at in concerned]
     return np.array(columns).reshape(len(columns), count * size).T

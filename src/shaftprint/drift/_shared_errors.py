@@ -12,7 +12,7 @@ from shaftprint.fingerprint._vessel_fields import BEHIND, TVC, FieldValue, state
 from shaftprint.identify.likelihood._prior import PRIOR_OF
 
 if TYPE_CHECKING:
-    from shaftprint.fingerprint._fingerprint import Fingerprint
+    from shaftprint.fingerprint._line_fingerprint import LineFingerprint
 
 OF_EACH_PIECE = 1.0 / 16.0
 """Share of the variance of a drawing's or an assumption's error that is another in each of two lines: parts are made to
@@ -47,9 +47,9 @@ class SharedErrors:
     """Share of the variance of a common error that is of each test alone: two lines of one drawing are two pieces."""
 
 
-def are_two_lines(first: "Fingerprint", other: "Fingerprint") -> bool:
+def are_two_lines(first: "LineFingerprint", other: "LineFingerprint") -> bool:
     """Return whether two fingerprints are of two lines of one ship: of one recording by two gauges, or said to be."""
-    fields = first.vessel_fields, other.vessel_fields
+    fields = first.stated_fields, other.stated_fields
     lines = [one.get(LINE_OF_SHIP) for one in fields]
     gauges = [one.get(GAUGE_CHANNEL) for one in fields]
     if None not in lines and lines[0] != lines[1]:
@@ -57,12 +57,12 @@ def are_two_lines(first: "Fingerprint", other: "Fingerprint") -> bool:
     return None not in gauges and gauges[0] != gauges[1] and _of_one_recording(first, other)
 
 
-def _of_one_recording(first: "Fingerprint", other: "Fingerprint") -> bool:
+def _of_one_recording(first: "LineFingerprint", other: "LineFingerprint") -> bool:
     recordings = [{one.sha256 for one in test.sources if one.role == "recording"} for test in (first, other)]
     return bool(recordings[0] & recordings[1])
 
 
-def shared_errors(first: "Fingerprint", other: "Fingerprint") -> SharedErrors:
+def shared_errors(first: "LineFingerprint", other: "LineFingerprint") -> SharedErrors:
     """Return which errors two tests share.
 
     The error of a calibration, an inertia table or an assumption is one and the same in both tests if both were given
@@ -74,7 +74,7 @@ def shared_errors(first: "Fingerprint", other: "Fingerprint") -> SharedErrors:
     first, other
         Two fingerprints.
     """
-    sources = [source for source in first.budget.sources if source in other.budget.sources and _is_stated(source)]
+    sources = [source for source in first.error_sources if source in other.error_sources and _is_stated(source)]
     two_lines = are_two_lines(first, other)
     common = tuple(
         source for source in sources if is_common(source, first, other) and not (two_lines and source in BEHIND)
@@ -91,7 +91,7 @@ def _is_stated(source: str) -> bool:
     return source in BEHIND or source == TVC or source.startswith(PRIOR_OF)
 
 
-def is_common(source: str, first: "Fingerprint", other: "Fingerprint") -> bool:
+def is_common(source: str, first: "LineFingerprint", other: "LineFingerprint") -> bool:
     """Return whether two tests were given the same figures for a source of error, so that its error is the same."""
     if _vessel_file(first) is not None and _vessel_file(first) == _vessel_file(other):
         return True
@@ -99,16 +99,16 @@ def is_common(source: str, first: "Fingerprint", other: "Fingerprint") -> bool:
         name = source.removeprefix(PRIOR_OF)
         one, two = first.priors.get(name), other.priors.get(name)
         return one is not None and two is not None and (one.mean, one.std) == (two.mean, two.std)
-    stated = stated_behind(source, first.vessel_fields)
-    return bool(stated) and stated == stated_behind(source, other.vessel_fields)
+    stated = stated_behind(source, first.stated_fields)
+    return bool(stated) and stated == stated_behind(source, other.stated_fields)
 
 
-def _vessel_file(fingerprint: "Fingerprint") -> str | None:
+def _vessel_file(fingerprint: "LineFingerprint") -> str | None:
     return next((source.sha256 for source in fingerprint.sources if source.role == "vessel"), None)
 
 
-def _changes(first: "Fingerprint", other: "Fingerprint") -> tuple[FieldChange, ...] | None:
-    before, after = first.vessel_fields, other.vessel_fields
+def _changes(first: "LineFingerprint", other: "LineFingerprint") -> tuple[FieldChange, ...] | None:
+    before, after = first.stated_fields, other.stated_fields
     if not before or not after:
         return () if _vessel_file(first) is not None and _vessel_file(first) == _vessel_file(other) else None
     return tuple(

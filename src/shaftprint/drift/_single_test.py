@@ -15,7 +15,7 @@ from shaftprint.errors import FingerprintError
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from shaftprint.fingerprint._fingerprint import Fingerprint
+    from shaftprint.fingerprint._line_fingerprint import LineFingerprint
     from shaftprint.identify.fit._estimate import Estimate
     from shaftprint.models._role import Role
 
@@ -38,48 +38,45 @@ class SingleTest:
     that of the line itself is another."""
 
 
-def is_share(role: "Role | None") -> bool:
-    """Return whether a change of a number is a share of it; times and slopes may be zero."""
-    return role is not None and (role.physical is not None or role in SHARES)
+def is_share(role: "Role | None", unit: str) -> bool:
+    """Return whether a change of a number is a share of it; times and slopes may be zero.
+
+    What has no role, as the numbers of a drive, is a time where its unit is one.
+    """
+    return unit != "s" if role is None else role.physical is not None or role in SHARES
 
 
-def single_test(fingerprint: "Fingerprint", names: tuple[str, ...]) -> SingleTest:
+def single_test(fingerprint: "LineFingerprint", names: tuple[str, ...]) -> SingleTest:
     """Return a test with some of its numbers, in the coordinates in which tests are compared.
 
     Raises FingerprintError if the fingerprint does not hold its numbers together.
     """
     joint = fingerprint.joint
     if joint is None:
-        raise FingerprintError(f"{fingerprint.conditions.campaign}: expected a joint covariance, found none.")
+        raise FingerprintError(f"{fingerprint.title}: expected a joint covariance, found none.")
     numbers = [fingerprint.quantity(name) for name in names]
     values = np.array([number.value for number in numbers])
-    shares = np.array([is_share(number.role) for number in numbers], dtype=bool)
+    shares = np.array([is_share(number.role, number.unit) for number in numbers], dtype=bool)
     size = np.where(shares, values, 1.0)
     return SingleTest(
         values=np.where(shares, np.log(size), values),
-        own=_misfit(fingerprint) * joint.covariance_of(names) / np.outer(size, size),
+        own=fingerprint.misfit * joint.covariance_of(names) / np.outer(size, size),
         loadings={source: change / size for source, change in joint.loadings_of(names).items()},
         stated={source: _stated(fingerprint, source, numbers, shares) for source in joint.loadings},
     )
 
 
-def _stated(fingerprint: "Fingerprint", source: str, numbers: "Sequence[Estimate]", shares: BoolArray) -> FloatArray:
+def _stated(
+    fingerprint: "LineFingerprint", source: str, numbers: "Sequence[Estimate]", shares: BoolArray
+) -> FloatArray:
     """Return the change of each number for one standard deviation of a source of the priors."""
-    by_role = {
-        fingerprint.quantity(name).role: (prior.mean, prior.by_source(name).get(source, 0.0))
+    told = {
+        fingerprint.quantity(name).role or name: (prior.mean, prior.by_source(name).get(source, 0.0))
         for name, prior in fingerprint.priors.items()
     }
     changes = np.zeros(len(numbers))
     for place, number in enumerate(numbers):
-        if number.role is not None and number.role in by_role:
-            mean, change = by_role[number.role]
+        if (number.role or number.name) in told:
+            mean, change = told[number.role or number.name]
             changes[place] = change / mean if shares[place] else change
     return changes
-
-
-def _misfit(fingerprint: "Fingerprint") -> float:
-    """Return by how much the residuals of a fit are larger than its noise, as a variance; 1 at least."""
-    quality = fingerprint.quality
-    if quality.chi_square is None or quality.degrees_of_freedom <= 0:
-        return 1.0
-    return max(quality.chi_square / quality.degrees_of_freedom, 1.0)

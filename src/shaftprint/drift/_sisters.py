@@ -179,7 +179,7 @@ def _number_spreads(ships: Sequence[Sister], numbers: ClassNumbers, spread: Spre
     found = []
     for at, name in enumerate(numbers.names):
         quantity = first.quantity(name)
-        unscaled = math.exp if is_share(quantity.role) else float
+        unscaled = math.exp if is_share(quantity.role, quantity.unit) else float
         mean = float(spread.mean[at])
         factor = deviations(_COVERAGE, float(freedom[at]))
         half = factor * math.sqrt(float(variance[at]))

@@ -27,16 +27,17 @@ from shaftprint.arrays import FloatArray
 from shaftprint.catalogue._shipped import shipped_structure
 from shaftprint.drift._single_test import SingleTest, is_share
 from shaftprint.errors import StructureError
+from shaftprint.fingerprint._fingerprint import Fingerprint
 from shaftprint.models._working_point import at_working_point
 
 if TYPE_CHECKING:
-    from shaftprint.fingerprint._fingerprint import Fingerprint
     from shaftprint.fingerprint._leg_records import LegRecord, NoiseSpectrum
+    from shaftprint.fingerprint._line_fingerprint import LineFingerprint
     from shaftprint.models._structure import Structure
 
 
 def straightened(
-    tests: "Sequence[Fingerprint]",
+    tests: "Sequence[LineFingerprint]",
     singles: Sequence[SingleTest],
     names: tuple[str, ...],
     moved: FloatArray | None = None,
@@ -50,11 +51,13 @@ def straightened(
     ``moved``: what changes of the ship have done to the numbers of each test, so that it is no way along the valley;
     shape (tests, numbers), nothing when not given.
     """
-    model = _model_of(tests)
+    ships = [test for test in tests if isinstance(test, Fingerprint)]
+    model = _model_of(ships) if len(ships) == len(tests) else None
     if model is None:
         return tuple(singles)
     structure, speeds = model
-    roles = [tests[0].quantity(name).role for name in names]
+    numbers = [tests[0].quantity(name) for name in names]
+    roles = [number.role for number in numbers]
     stands_for = [structure.named_as(role) if role is not None else None for role in roles]
     of_model = [at for at, parameter in enumerate(stands_for) if parameter is not None]
     told = {*tests[0].priors, *(name for test in tests for name in test.held)}
@@ -64,8 +67,8 @@ def straightened(
         return tuple(singles)
     unmoved = np.array([one.values for one in singles]) - (0.0 if moved is None else moved)
     apart = (unmoved - unmoved.mean(axis=0))[:, of_model]
-    shares = np.array([is_share(roles[at]) for at in of_model], dtype=bool)
-    reference = _reference(structure, tests)
+    shares = np.array([is_share(roles[at], numbers[at].unit) for at in of_model], dtype=bool)
+    reference = _reference(structure, ships)
     found_at = [_responses(at, reference, parameters, apart, shares, frequency_hz) for at, frequency_hz in speeds]
     responses, slopes = (np.concatenate(of_all, axis=1) for of_all in zip(*found_at, strict=True))
     if not (np.all(np.isfinite(responses)) and np.all(np.isfinite(slopes))):
@@ -86,7 +89,7 @@ def straightened(
     return tuple(found)
 
 
-def _model_of(tests: "Sequence[Fingerprint]") -> "tuple[Structure, list[tuple[Structure, FloatArray]]] | None":
+def _model_of(tests: Sequence[Fingerprint]) -> "tuple[Structure, list[tuple[Structure, FloatArray]]] | None":
     """Return the structure of all tests, and as it is at each of their speeds with the frequencies of its lines [Hz].
 
     None where it is not one structure, or the lines of a test are not told.
@@ -119,13 +122,13 @@ def _speed(of_one_speed: "LegRecord | NoiseSpectrum") -> float:
     return of_one_speed.engine_speed_rpm
 
 
-def _shares(leg: "LegRecord", test: "Fingerprint") -> tuple[float, float]:
+def _shares(leg: "LegRecord", test: Fingerprint) -> tuple[float, float]:
     """Return speed and torque of a leg over those at which the parameters of its test are normalised."""
     speed_rpm, torque_nm = test.conditions.engine_speed.value, test.conditions.shaft_torque.value
     return leg.engine_speed_rpm / speed_rpm, leg.shaft_torque_nm / torque_nm
 
 
-def _reference(structure: "Structure", tests: "Sequence[Fingerprint]") -> FloatArray:
+def _reference(structure: "Structure", tests: Sequence[Fingerprint]) -> FloatArray:
     """Return the mean parameters of all tests, shape (parameters,)."""
     values = [{one.name: one.value for one in test.parameters} | test.held for test in tests]
     mean: FloatArray = np.mean([[one[name] for name in structure.names] for one in values], axis=0)

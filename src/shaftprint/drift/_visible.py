@@ -58,7 +58,9 @@ def visible_changes(accuracy: "Accuracy") -> tuple[VisibleChange, ...]:
     across = information[np.ix_(of_ship, of_test)]
     within = within - across @ np.linalg.pinv(information[np.ix_(of_test, of_test)], hermitian=True) @ across.T
     values = [accuracy.estimate(names[at]).value for at in of_ship]
-    size = np.array([value if is_share(free[at].role) else 1.0 for value, at in zip(values, of_ship, strict=True)])
+    size = np.array(
+        [value if is_share(free[at].role, free[at].unit) else 1.0 for value, at in zip(values, of_ship, strict=True)]
+    )
     # in the valley that the data leave open the information is zero, and by rounding less
     strength, axes = np.linalg.eigh(within)
     root = np.sqrt(np.maximum(strength, 0.0))[:, None] * axes.T

@@ -17,10 +17,10 @@ UNEXPLAINED = 0.001
 """Where chance leaves as much in fewer cases than this, something else has changed."""
 
 
-def finding_sentences(finding: Finding) -> tuple[str, ...]:
+def finding_sentences(finding: Finding, noun: str = "ship") -> tuple[str, ...]:
     """Return whether the ship has changed and what may have changed, the answer first.
 
-    ``finding``: what ``differ`` has found.
+    ``finding``: what ``differ`` has found. ``noun``: what was tested, in a word.
     """
     if finding.because:
         return (f"It cannot be told: {finding.because}.",)
@@ -34,7 +34,7 @@ def finding_sentences(finding: Finding) -> tuple[str, ...]:
                 "the causes that are known; look at each number, and at the conditions of both tests.",
             )
         return (
-            f"No: {count} numbers of the ship, judged together, agree within chance.",
+            f"No: {count} numbers of the {noun}, judged together, agree within chance.",
             *open_sentences(finding.not_judged),
         )
     sentences = [f"Yes: {_of_change(finding.changes[0])}"]

@@ -1,9 +1,9 @@
 from ._clock_influence import ClockInfluence
 from ._conditions import ShipIdentity
-from ._drive_fingerprint import read_drive_fingerprint
-from ._fingerprint import Fingerprint, SourceFile
+from ._fingerprint import Fingerprint
 from ._inertia import inertia_beside
-from ._json_file import read_fingerprint, write_fingerprint
+from ._json_file import read_drive_fingerprint, read_fingerprint, write_fingerprint
+from ._line_fingerprint import SourceFile
 from ._physical import physical_quantities
 from ._take import take_fingerprint
 from ._vessel_fields import vessel_fields

@@ -32,20 +32,29 @@ class ShipIdentity(Record):
     """The shaft line, such as ``port``."""
 
 
-class Conditions(Record):
-    """Under which conditions the fingerprint holds."""
+class Tested(Record):
+    """What was tested, when and where."""
 
-    vessel: str
-    """Name of the vessel and shaft line."""
-    campaign: str
-    """Name of the test."""
     place: str | None = None
     """Where it was made; None where the campaign file does not say."""
     tested_at: datetime | None = None
     """When the recording began, by the logger's clock or as stated; None where neither says. Without an offset it is
     what a clock showed in a zone that nobody stated."""
     ship: ShipIdentity | None = None
-    """Which ship and shaft line; None where the vessel file does not say."""
+    """Which ship and shaft line; None where the vessel file does not say. A drive is called by its name here."""
+
+    def of_ship_and_water(self) -> dict[str, float | None]:
+        """Return what is stated of ship and water; empty for what is no ship."""
+        return {}
+
+
+class Conditions(Tested):
+    """Under which conditions the fingerprint holds."""
+
+    vessel: str
+    """Name of the vessel and shaft line."""
+    campaign: str
+    """Name of the test."""
     draught_m: FiniteFloat | None = None
     """Mean draught [m]; this and the following are None where nobody stated them."""
     trim_m: FiniteFloat | None = None
@@ -72,6 +81,10 @@ class Conditions(Record):
     """Test lines that were fitted."""
     lines_left_out: dict[str, str]
     """Test lines that were not, with the reason."""
+
+    def of_ship_and_water(self) -> dict[str, float | None]:
+        """Return what is stated of ship and water, None where nobody stated it."""
+        return {name: getattr(self, name) for name in WATER}
 
 
 def conditions_stated(

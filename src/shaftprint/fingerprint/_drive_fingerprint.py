@@ -1,29 +1,23 @@
 """The fingerprint of a drive that is no ship's: parameters with covariance, verdict and records, as a JSON record."""
 
 import math
-from collections.abc import Sequence
-from pathlib import Path
-from typing import Final, Literal, Self
+from datetime import datetime
+from typing import ClassVar, Final, Literal, Self
 
-import numpy as np
-from pydantic import AwareDatetime, Field, ValidationError, model_validator
+from pydantic import Field
 
-from shaftprint.arguments import refusing_none
-from shaftprint.arrays import FloatArray
-from shaftprint.errors import FingerprintError, ShaftprintError
-from shaftprint.files import read_json, write_bytes
-from shaftprint.fingerprint._covariance_check import covariance_fault
-from shaftprint.fingerprint._fingerprint import SourceFile
-from shaftprint.fingerprint._number import Deviation, Number
-from shaftprint.identify.judgement._verdict import Verdict
-from shaftprint.identify.likelihood._prior import Prior
-from shaftprint.notebook._shown import Shown
+from shaftprint.fingerprint._conditions import ShipIdentity, Tested
+from shaftprint.fingerprint._line_fingerprint import LineFingerprint
+from shaftprint.fingerprint._number import Deviation
+from shaftprint.identify.fit._estimate import Estimate
 from shaftprint.notebook._summary import Summary, shortened
-from shaftprint.publication._publish import complete
-from shaftprint.records import Record, faults
+from shaftprint.records import Record
+from shaftprint.vessel._ship import LONGEST_NAME
 
-DRIVE_SCHEMA: Final = "drive 1.2"
+DRIVE_SCHEMA: Final = "drive 1.3"
 """Version of the layout of a drive's fingerprint."""
+LINE_OF_DRIVE: Final = "drive"
+"""What its line is called in a store, where ships have port and starboard."""
 
 
 class NoiseOfRecord(Record):
@@ -85,37 +79,24 @@ class DriveResponse(Record):
     """FitPercent that the stated deviations allow."""
 
 
-class DriveFingerprint(Shown, Record):
+class DriveFingerprint(LineFingerprint):
     """Parameters of one drive with uncertainty, and how well its records are explained."""
+
+    noun: ClassVar[str] = "drive"
 
     kind: Literal["drive"] = "drive"
     """Tells it from the fingerprint of a ship."""
-    schema_version: Literal["drive 1.0", "drive 1.1", "drive 1.2"] = DRIVE_SCHEMA
+    schema_version: Literal["drive 1.0", "drive 1.1", "drive 1.2", "drive 1.3"] = DRIVE_SCHEMA
     """Version of this record's layout."""
-    shaftprint_version: str
-    """Version of shaftprint that made it."""
-    created: AwareDatetime
-    """When it was made, with time zone."""
-    sources: tuple[SourceFile, ...]
-    """Recordings, drive file and own structure with their hashes."""
     drive: str
     """Name of the drive."""
-    structure: str
-    """Name of the model structure."""
+    tested_at: datetime | None = None
+    """When its first record was made, as its file says or as stated; None where neither says, and in files of earlier
+    versions. Without an offset it is what a clock showed in a zone that nobody stated."""
     inputs: dict[str, str]
     """Unit of each input by its name; empty where it is that of an own structure."""
     outputs: dict[str, str]
     """Unit of each output by its name."""
-    parameters: tuple[Number, ...]
-    """Free parameters."""
-    held: dict[str, float]
-    """Parameters that were held, with their values."""
-    priors: dict[str, Prior]
-    """Parameters of which something was known before the test; it counts in the standard deviations."""
-    covariance: tuple[tuple[float, ...], ...]
-    """Covariance of the free parameters, in their order."""
-    combinations: tuple[Number, ...]
-    """Combinations of parameters."""
     records: tuple[DriveRecord, ...]
     """The records that were fitted."""
     responses: tuple[DriveResponse, ...] = ()
@@ -126,8 +107,6 @@ class DriveFingerprint(Shown, Record):
     """Starts of the search."""
     starts_at_optimum: int
     """How many of them reached the result."""
-    verdict: Verdict
-    """Whether the numbers may be used, and which of them."""
     inputs_hold: bool = False
     """Whether inputs held from sample to sample; else they went straight."""
 
@@ -144,68 +123,27 @@ class DriveFingerprint(Shown, Record):
         }
         return Summary(title=f"Fingerprint of the drive {self.drive}", facts=facts)
 
-    @model_validator(mode="after")
-    def _expect_covariance(self) -> Self:
-        fault = covariance_fault(self.covariance, [quantity.std for quantity in self.parameters])
-        if fault:
-            raise ValueError(f"covariance: {fault}")
-        return self
+    @property
+    def tested(self) -> Tested:
+        """The drive by its name, and when it was tested; one whose name is too long is called in some other way."""
+        is_short = 0 < len(self.drive) <= LONGEST_NAME
+        return Tested(
+            tested_at=self.tested_at, ship=ShipIdentity(name=self.drive, line=LINE_OF_DRIVE) if is_short else None
+        )
+
+    def dated(self, at: datetime) -> Self:
+        """Return it with another time of the test."""
+        return self.model_copy(update={"tested_at": at})
 
     @property
-    def values(self) -> dict[str, float]:
-        """Every parameter by its name, held ones too."""
-        return self.held | {quantity.name: quantity.value for quantity in self.parameters}
+    def title(self) -> str:
+        """Name of the drive."""
+        return self.drive
 
-    def covariance_of(self, names: Sequence[str]) -> FloatArray:
-        """Return the covariance of some of the parameters, shape (names, names).
-
-        Raises FingerprintError if one of them is not a free parameter.
-        """
-        order = [quantity.name for quantity in self.parameters]
-        foreign = [name for name in names if name not in order]
-        if foreign:
-            raise FingerprintError(f"the fingerprint has no parameter {foreign[0]!r}; it has {', '.join(order)}.")
-        places = [order.index(name) for name in names]
-        return np.array(self.covariance).reshape(len(order), len(order))[np.ix_(places, places)]
-
-
-def write_drive_fingerprint(fingerprint: DriveFingerprint, path: str | Path) -> None:
-    """Write the fingerprint of a drive as JSON, whole or not at all; an existing file is replaced.
-
-    Raises FingerprintError if the file cannot be written.
-    """
-    write_bytes(Path(path), drive_fingerprint_content(fingerprint), noun="fingerprint", error=FingerprintError)
-
-
-def drive_fingerprint_content(fingerprint: DriveFingerprint) -> bytes:
-    """Return what ``write_drive_fingerprint`` writes."""
-    return (fingerprint.model_dump_json(indent=2) + "\n").encode()
-
-
-@refusing_none(FingerprintError)
-def read_drive_fingerprint(path: str | Path) -> DriveFingerprint:
-    """Read the fingerprint of a drive from JSON; what was written comes back equal.
-
-    Raises
-    ------
-    FingerprintError
-        If the file is missing, is no fingerprint of a drive, or has fields that are wrong; all of them are listed.
-    """
-    json_path = Path(path)
-    complete(json_path.parent)
-    where = "name the file, or the folder in which identify has put it"
-    text, content = read_json(json_path, noun="fingerprint", where=where, error=FingerprintError)
-    if not is_of_a_drive(content):
-        raise FingerprintError(
-            f"{json_path}: expected the fingerprint of a drive, made with --drive, found another file; leave --drive "
-            "out for that of a ship."
-        )
-    try:
-        return DriveFingerprint.model_validate_json(text)
-    except ValidationError as error:
-        raise FingerprintError(f"{json_path} is not a fingerprint of schema {DRIVE_SCHEMA}: {faults(error)}.") from None
-    except ShaftprintError as error:
-        raise FingerprintError(f"{json_path} is not a fingerprint of schema {DRIVE_SCHEMA}: {error}") from None
+    @property
+    def numbers(self) -> dict[str, tuple[Estimate, ...]]:
+        """All numbers; they have the units of the drive."""
+        return {"physical value": (*self.parameters, *self.combinations)}
 
 
 def is_of_a_drive(content: object) -> bool:

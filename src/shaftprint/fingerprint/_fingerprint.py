@@ -1,46 +1,30 @@
 """The noun of the room: what is kept of one test, as a JSON record."""
 
-from collections.abc import Sequence
-from typing import Final, Literal, Self
+from collections.abc import Mapping, Sequence
+from datetime import datetime
+from typing import ClassVar, Final, Literal, Self
 
 import numpy as np
-from pydantic import AwareDatetime, Field, NonNegativeFloat, model_validator
+from pydantic import Field, NonNegativeFloat
 
-from shaftprint.arrays import FloatArray
 from shaftprint.catalogue._roles import ShipRole
-from shaftprint.errors import FingerprintError
 from shaftprint.fingerprint._conditions import Conditions
-from shaftprint.fingerprint._covariance_check import covariance_fault
-from shaftprint.fingerprint._joint_numbers import JointNumbers
 from shaftprint.fingerprint._labelled_numbers import labelled_numbers
 from shaftprint.fingerprint._leg_records import LegRecord, NoiseSpectrum
+from shaftprint.fingerprint._line_fingerprint import LineFingerprint
 from shaftprint.fingerprint._line_with_limits import LineWithLimits
 from shaftprint.fingerprint._number import Number
 from shaftprint.fingerprint._validation_record import ValidationRecord
 from shaftprint.fingerprint._vessel_fields import FieldValue
 from shaftprint.identify.fit._estimate import Estimate
-from shaftprint.identify.judgement._verdict import Verdict
-from shaftprint.identify.likelihood._prior import Prior
 from shaftprint.identify.prediction._noise_levels import NoiseLevels
-from shaftprint.identify.uncertainty._budget import Budget
+from shaftprint.identify.uncertainty._budget import Budget, BudgetRow
 from shaftprint.notebook._labelled import Labelled, LabelledData
-from shaftprint.notebook._shown import Shown
 from shaftprint.notebook._summary import Summary, shortened
 from shaftprint.records import Record
 
 SCHEMA_VERSION: Final = "2.2"
 """Version of the layout: the second number grows with what is added to it, see ``docs/fingerprint-file.md``."""
-
-
-class SourceFile(Record):
-    """A file that went into the fingerprint."""
-
-    role: Literal["recording", "vessel", "campaign", "structure", "drive"]
-    """What it is."""
-    name: str
-    """File name or the name of a shipped file."""
-    sha256: str
-    """SHA-256 of its content."""
 
 
 class Quality(Record):
@@ -74,17 +58,13 @@ class Quality(Record):
     """What was found on the signals, and on test lines that were fitted all the same."""
 
 
-class Fingerprint(Shown, Labelled, Record):
+class Fingerprint(Labelled, LineFingerprint):
     """Physical and normalised parameters of one propulsion line with uncertainty, margins and conditions."""
+
+    noun: ClassVar[str] = "ship"
 
     schema_version: Literal["2.2"] = SCHEMA_VERSION
     """Version of this record's layout."""
-    shaftprint_version: str
-    """Version of shaftprint that made it."""
-    created: AwareDatetime
-    """When it was made, with time zone."""
-    sources: tuple[SourceFile, ...]
-    """Recording, vessel and campaign with their hashes."""
     conditions: Conditions
     """Where it holds."""
     legs: tuple[LegRecord, ...] = ()
@@ -94,25 +74,10 @@ class Fingerprint(Shown, Labelled, Record):
     torque_ripple: NonNegativeFloat | None = None
     """Torque of orders and noise at the gauge over the load, which one raw sample in a hundred passes; None where it
     was not measured."""
-    structure: str
-    """Name of the model structure."""
-    parameters: tuple[Number, ...]
-    """Free parameters, normalised."""
-    held: dict[str, float]
-    """Parameters that were held, with their values."""
-    priors: dict[str, Prior]
-    """Parameters of which something was known before the test; it counts in the standard deviations."""
-    covariance: tuple[tuple[float, ...], ...]
-    """Covariance of the free parameters, in their order."""
-    combinations: tuple[Number, ...]
-    """Combinations of parameters."""
     physical: tuple[Number, ...]
     """Physical values, each with what was expected."""
     margins: tuple[Number, ...]
     """Stability margins; empty for a structure without feedback."""
-    joint: JointNumbers | None = None
-    """Covariance of the numbers of the ship together, by which two tests are compared along causes; None in the file of
-    an earlier version."""
     budget: Budget
     """Which source contributes how much to the variance of parameters, combinations, physical values and margins; a
     number of which the test says nothing is left out."""
@@ -127,8 +92,6 @@ class Fingerprint(Shown, Labelled, Record):
     """The same line with its limits, for large moves; None where limits were not looked for."""
     validation: ValidationRecord | None = None
     """What the model was worth on records that its fit had not seen; None where it was held against none."""
-    verdict: Verdict
-    """Whether the numbers may be used, and which of them."""
     findings: tuple[str, ...]
     """What a reader must know, in words."""
 
@@ -147,16 +110,42 @@ class Fingerprint(Shown, Labelled, Record):
         }
         return Summary(title=f"Fingerprint of {test.vessel}", facts=facts)
 
-    @model_validator(mode="after")
-    def _expect_covariance(self) -> Self:
-        fault = covariance_fault(self.covariance, [quantity.std for quantity in self.parameters])
-        if fault:
-            raise ValueError(f"covariance: {fault}")
-        there = {quantity.name for quantities in self.numbers.values() for quantity in quantities}
-        foreign = [] if self.joint is None else [name for name in self.joint.names if name not in there]
-        if foreign:
-            raise ValueError(f"joint: expected names of its numbers, found {foreign[0][:100]!r}")
-        return self
+    @property
+    def tested(self) -> Conditions:
+        """The conditions."""
+        return self.conditions
+
+    def dated(self, at: datetime) -> Self:
+        """Return it with another time of the test."""
+        return self.model_copy(update={"conditions": self.conditions.model_copy(update={"tested_at": at})})
+
+    @property
+    def title(self) -> str:
+        """Name of the vessel and shaft line."""
+        return self.conditions.vessel
+
+    @property
+    def stated_fields(self) -> Mapping[str, FieldValue]:
+        """What the vessel file states, field by field; empty in the file of an earlier version."""
+        return self.vessel_fields
+
+    @property
+    def error_sources(self) -> Sequence[str]:
+        """What the errors of the numbers come from, in the order of the budget."""
+        return self.budget.sources
+
+    @property
+    def budget_rows(self) -> Sequence[BudgetRow]:
+        """Where the variance of each number comes from."""
+        return self.budget.rows
+
+    @property
+    def misfit(self) -> float:
+        """By how much the residuals of the fit are larger than its noise, as a variance; 1 at least."""
+        quality = self.quality
+        if quality.chi_square is None or quality.degrees_of_freedom <= 0:
+            return 1.0
+        return max(quality.chi_square / quality.degrees_of_freedom, 1.0)
 
     @property
     def numbers(self) -> dict[str, tuple[Estimate, ...]]:
@@ -179,27 +168,6 @@ class Fingerprint(Shown, Labelled, Record):
         facts = {"vessel": self.conditions.vessel, "campaign": self.conditions.campaign, "structure": self.structure}
         return labelled_numbers(self.numbers, np.array(self.covariance), facts | {"created": self.created.isoformat()})
 
-    @property
-    def recording_sha256(self) -> str | None:
-        """SHA-256 of the recording; None where the file does not say it."""
-        return next((one.sha256 for one in self.sources if one.role == "recording"), None)
-
-    def quantity(self, name: str) -> Estimate:
-        """Return a parameter, combination, physical value, margin or calibration by its name.
-
-        Raises
-        ------
-        FingerprintError
-            If there is none of that name.
-        """
-        quantities = [quantity for kind in self.numbers.values() for quantity in kind]
-        for quantity in quantities:
-            if quantity.name == name:
-                return quantity
-        raise FingerprintError(
-            f"the fingerprint has no {name!r}; it has {', '.join(quantity.name for quantity in quantities)}."
-        )
-
     def multiplied(self, number: Estimate) -> Estimate | None:
         """Return the parameter of which a physical value is a multiple; None where it is none.
 
@@ -210,18 +178,3 @@ class Fingerprint(Shown, Labelled, Record):
             return None
         by_role = {parameter.role: parameter for parameter in self.parameters}
         return None if role.rack_power and ShipRole.ENGINE_RACK_SLOPE in by_role else by_role.get(role)
-
-    def covariance_of(self, names: Sequence[str]) -> FloatArray:
-        """Return the covariance of some of the parameters, shape (names, names).
-
-        Raises
-        ------
-        FingerprintError
-            If one of them is not a parameter.
-        """
-        order = [quantity.name for quantity in self.parameters]
-        foreign = [name for name in names if name not in order]
-        if foreign:
-            raise FingerprintError(f"the fingerprint has no parameter {foreign[0]!r}; it has {', '.join(order)}.")
-        places = [order.index(name) for name in names]
-        return np.array(self.covariance).reshape(len(order), len(order))[np.ix_(places, places)]

@@ -14,7 +14,7 @@ from pydantic import Field, model_validator
 from shaftprint.arrays import FloatArray
 from shaftprint.fingerprint._covariance_check import covariance_fault
 from shaftprint.fingerprint._physical import GAUGE_ZERO, physical_numbers
-from shaftprint.identify.uncertainty._joint import joint_covariance
+from shaftprint.identify.uncertainty._joint import JointCovariance, joint_covariance
 from shaftprint.records import Record
 
 if TYPE_CHECKING:
@@ -87,6 +87,11 @@ def joint_numbers(
         shifts=shifts,
         of_the_test=OF_THE_TEST,
     )
+    return kept_together(joint)
+
+
+def kept_together(joint: JointCovariance) -> JointNumbers:
+    """Return what is kept of a joint covariance."""
     return JointNumbers(
         names=joint.names,
         own_covariance=tuple(tuple(row) for row in joint.own.tolist()),

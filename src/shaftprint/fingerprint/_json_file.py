@@ -11,9 +11,10 @@ from pydantic import ValidationError
 from shaftprint.arguments import refusing_none
 from shaftprint.errors import FingerprintError, ShaftprintError
 from shaftprint.files import read_json, write_bytes
-from shaftprint.fingerprint._drive_fingerprint import is_of_a_drive
+from shaftprint.fingerprint._drive_fingerprint import DRIVE_SCHEMA, DriveFingerprint, is_of_a_drive
 from shaftprint.fingerprint._earlier_files import of_earlier_schema, of_later_schema, with_roles
 from shaftprint.fingerprint._fingerprint import SCHEMA_VERSION, Fingerprint
+from shaftprint.fingerprint._line_fingerprint import LineFingerprint
 from shaftprint.publication._publish import complete
 from shaftprint.records import faults
 
@@ -21,8 +22,8 @@ _SCHEMA_2 = re.compile(r"2\.([0-9]{1,4})")
 MINOR = int(SCHEMA_VERSION.partition(".")[2])
 
 
-def write_fingerprint(fingerprint: Fingerprint, path: str | Path) -> None:
-    """Write a fingerprint as JSON, whole or not at all; an existing file is replaced.
+def write_fingerprint(fingerprint: LineFingerprint, path: str | Path) -> None:
+    """Write a fingerprint, of a ship or a drive, as JSON, whole or not at all; an existing file is replaced.
 
     Raises
     ------
@@ -32,12 +33,12 @@ def write_fingerprint(fingerprint: Fingerprint, path: str | Path) -> None:
     write_bytes(Path(path), fingerprint_document(fingerprint), noun="fingerprint", error=FingerprintError)
 
 
-def fingerprint_sha256(fingerprint: Fingerprint) -> str:
+def fingerprint_sha256(fingerprint: LineFingerprint) -> str:
     """Return the SHA-256 of the file that ``write_fingerprint`` writes, hexadecimal."""
     return hashlib.sha256(fingerprint_document(fingerprint)).hexdigest()
 
 
-def fingerprint_document(fingerprint: Fingerprint) -> bytes:
+def fingerprint_document(fingerprint: LineFingerprint) -> bytes:
     """Return the content of the file that ``write_fingerprint`` writes."""
     # bytes, not text: the same on every system
     return (fingerprint.model_dump_json(indent=2) + "\n").encode()
@@ -45,7 +46,7 @@ def fingerprint_document(fingerprint: Fingerprint) -> bytes:
 
 @refusing_none(FingerprintError)
 def read_fingerprint(path: str | Path) -> Fingerprint:
-    """Read a fingerprint from JSON; what was written comes back equal.
+    """Read the fingerprint of a ship from JSON; what was written comes back equal.
 
     Raises
     ------
@@ -55,6 +56,52 @@ def read_fingerprint(path: str | Path) -> Fingerprint:
     PublicationError
         If its folder holds new results that cannot be put in place.
     """
+    return of_a_ship(read_any_fingerprint(path), named=str(path))
+
+
+@refusing_none(FingerprintError)
+def read_drive_fingerprint(path: str | Path) -> DriveFingerprint:
+    """Read the fingerprint of a drive from JSON; what was written comes back equal.
+
+    Raises
+    ------
+    FingerprintError
+        If the file is missing, is no fingerprint of a drive, or has fields that are wrong; all of them are listed.
+    """
+    return of_a_drive(read_any_fingerprint(path), named=str(path))
+
+
+def of_a_drive(fingerprint: LineFingerprint, *, named: str) -> DriveFingerprint:
+    """Return the fingerprint of a drive.
+
+    Raises FingerprintError if it is of a ship.
+    """
+    if not isinstance(fingerprint, DriveFingerprint):
+        raise FingerprintError(
+            f"{named}: expected the fingerprint of a drive, made with --drive, found that of a ship; leave --drive out."
+        )
+    return fingerprint
+
+
+def of_a_ship(fingerprint: LineFingerprint, *, named: str) -> Fingerprint:
+    """Return the fingerprint of a ship.
+
+    Raises FingerprintError if it is of a drive.
+    """
+    if not isinstance(fingerprint, Fingerprint):
+        raise FingerprintError(
+            f"{named}: expected the fingerprint of a ship, found that of a drive; show, compare, store, drift, "
+            "validate --drive and export fmu, modelica, matlab, ssp and osp take it."
+        )
+    return fingerprint
+
+
+@refusing_none(FingerprintError)
+def read_any_fingerprint(path: str | Path) -> LineFingerprint:
+    """Read a fingerprint, of a ship or a drive, from JSON.
+
+    Raises FingerprintError as ``read_fingerprint`` does, and PublicationError.
+    """
     json_path = Path(path)
     complete(json_path.parent)
     where = "name the file, or the folder in which identify or demo has put it"
@@ -63,20 +110,12 @@ def read_fingerprint(path: str | Path) -> Fingerprint:
 
 
 @refusing_none(FingerprintError)
-def parse_fingerprint(document: bytes, *, named: str) -> Fingerprint:
-    """Read a fingerprint from the bytes of its file, as ``read_fingerprint`` reads the file.
+def parse_fingerprint(document: bytes, *, named: str) -> LineFingerprint:
+    """Read a fingerprint, of a ship or a drive, from the bytes of its file, as ``read_any_fingerprint`` does.
 
-    Parameters
-    ----------
-    document
-        Content of the file.
-    named
-        What the document is called in an error, such as the path it came from.
-
-    Raises
-    ------
-    FingerprintError
-        If it is no fingerprint, is of another schema, or has fields that are wrong; all of them are listed.
+    ``document``: content of the file. ``named``: what it is called in an error, such as the path it came from. Raises
+    FingerprintError if it is no fingerprint, is of another schema, or has fields that are wrong; all of them are
+    listed.
     """
     try:
         fingerprint = Fingerprint.model_validate_json(document)
@@ -94,28 +133,27 @@ def parse_fingerprint(document: bytes, *, named: str) -> Fingerprint:
     return _fingerprint_of(text, content, named=named)
 
 
-def _fingerprint_of(text: str, content: Any, *, named: str) -> Fingerprint:
-    """Return the fingerprint of a document, whatever schema it states."""
-    minor = _minor_of(content, named)
+def _fingerprint_of(text: str, content: Any, *, named: str) -> LineFingerprint:
+    """Return the fingerprint of a document, whatever it is of and whatever schema it states."""
+    of_drive = is_of_a_drive(content)
+    minor = None if of_drive else _minor_of(content, named)
+    schema = DRIVE_SCHEMA if of_drive else SCHEMA_VERSION
     try:
+        if of_drive:
+            return DriveFingerprint.model_validate_json(text)
         if minor is None or minor < MINOR:
             return with_roles(of_earlier_schema(text))
         return with_roles(of_later_schema(text) if minor > MINOR else Fingerprint.model_validate_json(text))
     except ValidationError as error:
-        raise FingerprintError(f"{named} is not a fingerprint of schema {SCHEMA_VERSION}: {faults(error)}.") from None
+        raise FingerprintError(f"{named} is not a fingerprint of schema {schema}: {faults(error)}.") from None
     except ShaftprintError as error:
         # what other rooms ask of their own nouns, such as a prior
-        raise FingerprintError(f"{named} is not a fingerprint of schema {SCHEMA_VERSION}: {error}") from None
+        raise FingerprintError(f"{named} is not a fingerprint of schema {schema}: {error}") from None
 
 
 def _minor_of(content: Any, named: str) -> int | None:
     """Return N of schema 2.N of a document that claims to be a fingerprint; None for schema 1."""
     schema = content.get("schema_version") if isinstance(content, dict) else None
-    if is_of_a_drive(content):
-        raise FingerprintError(
-            f"{named}: expected the fingerprint of a ship, found that of a drive; show, compare, validate --drive "
-            "and export fmu, modelica, matlab, ssp and osp take it."
-        )
     if schema is None:
         raise FingerprintError(f"{named}: expected a fingerprint, found JSON without a schema_version.")
     second = _SCHEMA_2.fullmatch(schema) if isinstance(schema, str) else None

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from shaftprint.catalogue._own_structure import TypedName, own_file
-from shaftprint.fingerprint._fingerprint import SourceFile
+from shaftprint.fingerprint._line_fingerprint import SourceFile
 from shaftprint.recording._recording import sha256_of
 
 

@@ -18,9 +18,10 @@ from shaftprint.fingerprint._calibration import calibration_quantities
 from shaftprint.fingerprint._conditions import Conditions, conditions_stated
 from shaftprint.fingerprint._contradictions import contradictions
 from shaftprint.fingerprint._findings import findings_of
-from shaftprint.fingerprint._fingerprint import Fingerprint, Quality, SourceFile
+from shaftprint.fingerprint._fingerprint import Fingerprint, Quality
 from shaftprint.fingerprint._joint_numbers import joint_numbers
 from shaftprint.fingerprint._leg_records import LegRecord, NoiseSpectrum
+from shaftprint.fingerprint._line_fingerprint import SourceFile
 from shaftprint.fingerprint._margin_numbers import margin_numbers
 from shaftprint.fingerprint._margins import margin_quantities
 from shaftprint.fingerprint._physical import physical_numbers, physical_quantities

@@ -2,13 +2,13 @@
 
 from collections.abc import Callable
 from functools import partial
-from hashlib import sha256
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from shaftprint.arguments import refusing_none
 from shaftprint.errors import ReportError
-from shaftprint.fingerprint._drive_fingerprint import DriveFingerprint, drive_fingerprint_content
+from shaftprint.fingerprint._drive_fingerprint import DriveFingerprint
+from shaftprint.fingerprint._json_file import fingerprint_sha256
 from shaftprint.forecast._simulation import SimulatedSignal
 from shaftprint.plain_table import Table, texts
 from shaftprint.report._page import Page, write_page
@@ -52,7 +52,7 @@ def render_drive(
             f"shaftprint {fingerprint.shaftprint_version}, fingerprint schema {fingerprint.schema_version}. ± is one "
             "standard deviation throughout; intervals hold 95 %."
         ),
-        fingerprint_sha256=sha256(drive_fingerprint_content(fingerprint)).hexdigest(),
+        fingerprint_sha256=fingerprint_sha256(fingerprint),
     )
     return write_page(directory, page, pictures=pictures, overwrite=overwrite, progress=progress)
 

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 HEADLINES: Mapping[State, str] = {
-    "look": "The ship has changed by more than chance",
+    "look": "The {noun} has changed by more than chance",
     "fine": "No change is seen",
     "open": "It cannot be told",
 }
@@ -51,6 +51,7 @@ def render_history(
     """
     sizes = sizes_of_tests(history, load_repeatability=load_repeatability)
     sentences = watch_sentences(finding, history)
+    noun = history.tests[0].fingerprint.noun if history.tests else "ship"
     state: State = "look" if finding.drifts else "open" if finding.because else "fine"
     days = f"{history.tests[0].at:%Y-%m-%d} to {history.tests[-1].at:%Y-%m-%d}" if history.tests else ""
     page = Page(
@@ -59,10 +60,10 @@ def render_history(
         created=now,
         version=history.tests[-1].fingerprint.shaftprint_version if history.tests else "",
         cover=Cover(
-            headline=HEADLINES[state],
+            headline=HEADLINES[state].format(noun=noun),
             state=state,
             opening="Every cause is judged in all tests together, against an unchanged ship that is tested for years.",
-            cards=[Card(question="Has the ship changed?", state=state, sentence=" ".join(sentences))],
+            cards=[Card(question=f"Has the {noun} changed?", state=state, sentence=" ".join(sentences))],
         ),
         sections=_sections(history, finding, sizes),
         files=source_table({test.name: test.fingerprint for test in history.tests}),
@@ -81,8 +82,8 @@ def sizes_of_tests(history: "History", *, load_repeatability: float) -> dict[str
         finding = differ(first, test.fingerprint, load_repeatability=load_repeatability)
         change = finding.changes[0] if finding.changes else finding.nearest
         rows.append({one.cause.name: one for one in (() if change is None else change.candidates)})
-    names = [cause.name for cause in ALL_CAUSES if any(cause.name in row for row in rows)]
-    return {name: [None, *(row.get(name) for row in rows)] for name in names}
+    names = dict.fromkeys([cause.name for cause in ALL_CAUSES] + [name for row in rows for name in row])
+    return {name: [None, *(row.get(name) for row in rows)] for name in names if any(name in row for row in rows)}
 
 
 def _sections(

@@ -23,7 +23,7 @@ with late():
     from shaftprint.fingerprint._json_file import parse_fingerprint
 
 if TYPE_CHECKING:
-    from shaftprint.fingerprint._fingerprint import Fingerprint
+    from shaftprint.fingerprint._line_fingerprint import LineFingerprint
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -32,7 +32,7 @@ class LineHistory:
 
     line: Line
     """The line."""
-    fingerprints: dict[str, Fingerprint] = field(repr=False)
+    fingerprints: dict[str, LineFingerprint] = field(repr=False)
     """Its fingerprints by the time of their test; of one recording also those of other versions of the program, which
     show whether these find the same."""
     events: tuple[Event, ...]
@@ -55,7 +55,7 @@ def line_history(store: Store, ship: str | Ship, *, line: str | None = None, new
         if event.line.position == tested.position and event.withdrawn is None
     )
     names, recordings = _names(kept), list(_of_each_version(kept).values())
-    read: dict[str, Fingerprint] = {}
+    read: dict[str, LineFingerprint] = {}
     count = len(recordings) if newest is None else newest
     while True:
         begin = _tested_at(recordings[-min(count, len(recordings))])
@@ -122,12 +122,10 @@ def _tested_at(of_test: Mapping[str, StoredFingerprint]) -> datetime:
     return next(iter(of_test.values())).trial.tested_at
 
 
-def _read(store: Store, kept: StoredFingerprint, name: str) -> Fingerprint:
-    fingerprint = parse_fingerprint(document(store, kept.sha256), named=name)
-    conditions = fingerprint.conditions.model_copy(update={"tested_at": kept.trial.tested_at})
-    return fingerprint.model_copy(update={"conditions": conditions})
+def _read(store: Store, kept: StoredFingerprint, name: str) -> LineFingerprint:
+    return parse_fingerprint(document(store, kept.sha256), named=name).dated(kept.trial.tested_at)
 
 
-def _judged(fingerprints: dict[str, Fingerprint], events: tuple[Event, ...], begin: datetime) -> int:
+def _judged(fingerprints: dict[str, LineFingerprint], events: tuple[Event, ...], begin: datetime) -> int:
     """Return how many tests since a time can be judged."""
     return sum(test.at >= begin for test in history_of(fingerprints, events).tests)

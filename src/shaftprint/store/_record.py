@@ -17,12 +17,11 @@ from shaftprint.store._stated import Stated, possible_time, ship_of, time_of_tes
 from shaftprint.store._text import LONGEST_TEXT, expect_short
 
 with late():
-    from shaftprint.fingerprint import _conditions
     from shaftprint.fingerprint._json_file import parse_fingerprint
 
 if TYPE_CHECKING:
     from shaftprint.fingerprint._conditions import ShipIdentity
-    from shaftprint.fingerprint._fingerprint import Fingerprint, SourceFile
+    from shaftprint.fingerprint._line_fingerprint import LineFingerprint, SourceFile
     from shaftprint.identify.fit._estimate import Estimate
 
 
@@ -69,7 +68,7 @@ def record_of(
     """
     expect_length(document, named=named)
     fingerprint = parse_fingerprint(document, named=named)
-    conditions = fingerprint.conditions
+    conditions = fingerprint.tested
     tested_at = time_of_test(conditions, stated.tested_at, zone, named=named, now=now)
     needs_time = conditions.tested_at is None or conditions.tested_at.tzinfo is None
     kept = replace(stated, tested_at=tested_at if needs_time else None)
@@ -82,7 +81,7 @@ def record_of(
             tested_at=tested_at,
             place=conditions.place or None,
             recording_sha256=_recording(fingerprint.sources),
-            **{name: getattr(conditions, name) for name in _conditions.WATER},
+            **conditions.of_ship_and_water(),
         ),
         document=document,
         sha256=document_sha256(document),
@@ -110,7 +109,7 @@ def _hash(source: SourceFile, named: str) -> str:
     return source.sha256
 
 
-def numbers_of(fingerprint: Fingerprint, *, named: str) -> tuple[StoredNumber, ...]:
+def numbers_of(fingerprint: LineFingerprint, *, named: str) -> tuple[StoredNumber, ...]:
     """Return the numbers of a fingerprint as they are kept, each name of a kind once.
 
     Raises StoreError if a name or unit cannot be kept, or a kind of numbers has a name twice.

@@ -16,7 +16,7 @@ with late():
     from shaftprint.vessel._ship import is_imo_number
 
 if TYPE_CHECKING:
-    from shaftprint.fingerprint._conditions import Conditions
+    from shaftprint.fingerprint._conditions import Tested
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -45,7 +45,7 @@ def utc_iso(moment: datetime) -> str:
 
 
 def time_of_test(
-    conditions: Conditions, stated: datetime | None, zone: tzinfo | None, *, named: str, now: datetime | None = None
+    conditions: Tested, stated: datetime | None, zone: tzinfo | None, *, named: str, now: datetime | None = None
 ) -> datetime:
     """Return when a test was made: as its document says, else as stated; nothing is guessed.
 
@@ -65,7 +65,7 @@ def possible_time(moment: datetime, *, now: datetime | None, named: str) -> date
         raise StoreError(f"{named}: {error}; correct it.") from None
 
 
-def _time_of_test(conditions: Conditions, stated: datetime | None, zone: tzinfo | None, *, named: str) -> datetime:
+def _time_of_test(conditions: Tested, stated: datetime | None, zone: tzinfo | None, *, named: str) -> datetime:
     shown = conditions.tested_at
     if stated is not None:
         instant = _instant(stated, zone, named=named)
@@ -97,7 +97,7 @@ def _instant(shown: datetime, zone: tzinfo | None, *, named: str) -> datetime:
         raise StoreError(f"{named}: {error}; state it with --tested-at and its offset.") from None
 
 
-def ship_of(conditions: Conditions, stated: Stated, *, named: str) -> ShipIdentity:
+def ship_of(conditions: Tested, stated: Stated, *, named: str) -> ShipIdentity:
     """Return ship and line of a fingerprint: as its document says, what it leaves open as stated.
 
     Raises StoreError if neither says it, or they differ.

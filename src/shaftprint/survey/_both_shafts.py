@@ -14,7 +14,7 @@ from shaftprint.arguments import refusing_none
 from shaftprint.campaign._both_shafts import SIDES, CampaignOfBoth, load_campaign_of_both
 from shaftprint.campaign._trial_conditions import TrialConditions
 from shaftprint.errors import SettingsError
-from shaftprint.fingerprint._fingerprint import SourceFile
+from shaftprint.fingerprint._line_fingerprint import SourceFile
 from shaftprint.models._structure import Structure
 from shaftprint.notebook._shown import Shown
 from shaftprint.notebook._summary import Summary

@@ -16,8 +16,9 @@ from shaftprint.campaign._campaign import Campaign
 from shaftprint.campaign._trial_conditions import TrialConditions
 from shaftprint.catalogue._shipped import shipped_structure
 from shaftprint.errors import IdentificationError, SettingsError, StructureError
-from shaftprint.fingerprint._fingerprint import Fingerprint, SourceFile
+from shaftprint.fingerprint._fingerprint import Fingerprint
 from shaftprint.fingerprint._leg_records import LegRecord, NoiseSpectrum, leg_record, noise_spectra
+from shaftprint.fingerprint._line_fingerprint import SourceFile
 from shaftprint.fingerprint._take import take_fingerprint
 from shaftprint.identify.comparison._comparison import StructureComparison
 from shaftprint.identify.fit._estimate import Estimate

@@ -8,7 +8,7 @@ from typing import Literal
 
 from shaftprint.campaign._campaign import Campaign, load_campaign
 from shaftprint.campaign._trial_conditions import TrialConditions, load_trial_conditions
-from shaftprint.fingerprint._fingerprint import SourceFile
+from shaftprint.fingerprint._line_fingerprint import SourceFile
 from shaftprint.notebook._shown import Shown
 from shaftprint.settings import settings_content
 from shaftprint.vessel._vessel import Vessel, load_vessel

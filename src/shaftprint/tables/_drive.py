@@ -8,7 +8,6 @@ from shaftprint.digits import p_value_text, rounded, stated, unit_text, with_dev
 from shaftprint.plain_table import MEANING, Symbol, Table, numbers, texts
 
 if TYPE_CHECKING:
-    from shaftprint.bench._compare import DriveDifference
     from shaftprint.bench._structures import TimeComparison
     from shaftprint.bench._validate import ValidatedRecord
     from shaftprint.drive._signals import Signal
@@ -85,30 +84,6 @@ def drive_assumed_table(fingerprint: "DriveFingerprint") -> Table:
     ]
     rows += [(Symbol(name), "held", f"{value:g}") for name, value in fingerprint.held.items()]
     return Table(title="What was taken as known", columns=texts("parameter", "how", "value"), rows=tuple(rows))
-
-
-def drive_difference_table(first: str, other: str, differences: "Sequence[DriveDifference]") -> Table:
-    """Return numbers of two fingerprints of a drive beside each other.
-
-    ``first``, ``other``: what the fingerprints are called.
-    """
-    rows = []
-    for one in differences:
-        change = one.other.value - one.first.value
-        p_value = "" if one.p_value is None else p_value_text(one.p_value)
-        rows.append(
-            (
-                Symbol(one.first.name),
-                with_deviation(one.first.value, one.first.std),
-                with_deviation(one.other.value, one.other.std),
-                "" if one.p_value is None else with_deviation(change, one.std),
-                p_value,
-                one.outcome,
-                unit_text(one.first.unit),
-            )
-        )
-    columns = (*texts("quantity"), *numbers(first, other, "difference", "p"), *texts("outcome", "unit"))
-    return Table(title=f"{other} beside {first}", columns=columns, rows=tuple(rows))
 
 
 def validated_drive_table(records: "Sequence[ValidatedRecord]") -> Table:

@@ -8,7 +8,8 @@ from shaftprint.settings import Settings
 
 DIGITS = 7
 
-ShortName = Annotated[str, Field(strict=True, min_length=1, max_length=100)]
+LONGEST_NAME = 100
+ShortName = Annotated[str, Field(strict=True, min_length=1, max_length=LONGEST_NAME)]
 
 
 def _checked(number: int) -> int:

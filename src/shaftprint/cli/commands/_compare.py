@@ -6,12 +6,10 @@ from pathlib import Path
 
 import click
 
-from shaftprint.cli._drive_judge import compare_on_the_bench
-from shaftprint.cli._drive_options import drive_fingerprint_at, is_drive_place
 from shaftprint.cli._load_option import load_repeatability_option
 from shaftprint.cli._options import OWN_FILE_HELP
 from shaftprint.cli._terminal import answer, echo, say
-from shaftprint.cli.output._fingerprint_file import FINGERPRINT, REPORT, fingerprint_at
+from shaftprint.cli.output._fingerprint_file import FINGERPRINT, REPORT, any_fingerprint_at
 from shaftprint.cli.output._json import give
 from shaftprint.cli.output._output_folder import force_option, output_folder
 from shaftprint.cli.output._tables import print_tables
@@ -23,7 +21,8 @@ with late():
     from shaftprint.drift._finding import Finding
     from shaftprint.drift._shared_errors import are_two_lines
     from shaftprint.drift._words import finding_sentences
-    from shaftprint.fingerprint._fingerprint import Fingerprint
+    from shaftprint.fingerprint._json_file import of_a_ship
+    from shaftprint.fingerprint._line_fingerprint import LineFingerprint
     from shaftprint.report._comparison import render_comparison
     from shaftprint.report.comparison._cause_table import cause_table
     from shaftprint.report.comparison._differences import Difference, differences
@@ -70,56 +69,54 @@ def command(
     FINGERPRINTS are two or more JSON files, or the folders in which identify or demo has put them. All are
     compared with the first. --name and --structure may be repeated. Fingerprints of a drive are known as such.
     """
-    if len(fingerprints) >= FEWEST and all(map(is_drive_place, fingerprints)):
-        if output is not None:
-            raise click.UsageError("--output is for ships; fingerprints of a drive are compared on the terminal.")
-        compare_on_the_bench(
-            dict(zip(_called(fingerprints, names), map(drive_fingerprint_at, fingerprints), strict=True))
-        )
-        return
     named = _named(fingerprints, names)
     structures = {structure.name: structure for structure in chosen_structures(own)}
     load = load_percent / PERCENT
     (first_name, first), *others = named.items()
+    ships = {name: of_a_ship(one, named=name) for name, one in named.items() if one.noun == "ship"}
+    if ships and len(ships) < len(named):
+        raise click.UsageError("expected fingerprints of ships, or of drives, found both.")
     if output is not None:
+        if not ships:
+            raise click.UsageError("--output is for ships; fingerprints of a drive are compared on the terminal.")
         with output_folder(output, of="compare", force=force) as folder:
-            render_comparison(folder, named, structures=structures, load_repeatability=load)
+            render_comparison(folder, ships, structures=structures, load_repeatability=load)
     apart = {name: differences(first, other, load_repeatability=load) for name, other in others}
     along = {} if each_number else {name: differ(first, other, load_repeatability=load) for name, other in others}
     for name, other in others:
         doubtful = [label for label, one in ((first_name, first), (name, other)) if not one.verdict.trustworthy]
-        words = _judged(apart[name], along.get(name))
+        words = _judged(apart[name], along.get(name), first.noun)
         if doubtful:
             words = f"It cannot be told: not trustworthy: {', '.join(doubtful)}."
-        asked = f"Is {name} other than {first_name}" if are_two_lines(first, other) else "Has the ship changed"
+        asked = f"Is {name} other than {first_name}" if are_two_lines(first, other) else f"Has the {first.noun} changed"
         answer(f"{asked}{f', {name}' if len(others) > 1 else ''}? {words}")
     give("differences", apart)
     give("causes", along)
-    give("conditions", {name: fingerprint.conditions for name, fingerprint in named.items()})
+    give("conditions", {name: fingerprint.tested for name, fingerprint in named.items()})
     for name, other in others:
         if name in along and not along[name].because:
             print_tables([cause_table(name, along[name])])
         _print_tables(first_name, name, apart[name])
         for sentence in vessel_file_sentences(first, other):
             say(sentence)
-    stated = stated_table(named)
+    stated = stated_table(ships)
     if stated.rows:
         print_tables([stated])
     if output is not None:
         echo(f"Report: {output / REPORT}")
 
 
-def _judged(found: tuple[Difference, ...], finding: Finding | None) -> str:
+def _judged(found: tuple[Difference, ...], finding: Finding | None, noun: str) -> str:
     """Return whether the ship has changed: along causes, or number by number where that was asked for or must do."""
     if finding is None:
         return change_in_words(found)
     if finding.because:
         return f"{change_in_words(found)} Judged number by number: {finding.because}."
-    return " ".join(finding_sentences(finding))
+    return " ".join(finding_sentences(finding, noun))
 
 
-def _named(places: tuple[Path, ...], names: tuple[str, ...]) -> dict[str, Fingerprint]:
-    return {name: fingerprint_at(path) for name, path in zip(_called(places, names), places, strict=True)}
+def _named(places: tuple[Path, ...], names: tuple[str, ...]) -> dict[str, LineFingerprint]:
+    return {name: any_fingerprint_at(path) for name, path in zip(_called(places, names), places, strict=True)}
 
 
 def _called(places: tuple[Path, ...], names: tuple[str, ...]) -> tuple[str, ...]:
@@ -157,6 +154,5 @@ def _parts(place: Path) -> tuple[str, ...]:
 
 
 def _print_tables(first: str, name: str, compared: tuple[Difference, ...]) -> None:
-    physical = [one for one in compared if not one.normalised]
-    normalised = [one for one in compared if one.normalised]
-    print_tables([difference_table(first, name, physical), difference_table(first, name, normalised)])
+    groups = [[one for one in compared if one.normalised == normalised] for normalised in (False, True)]
+    print_tables([difference_table(first, name, group) for group in groups if group])

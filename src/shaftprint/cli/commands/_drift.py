@@ -12,7 +12,7 @@ from shaftprint.cli._dates import Moment, zone_option
 from shaftprint.cli._load_option import load_repeatability_option
 from shaftprint.cli._store_options import instant, opened_store, store_option
 from shaftprint.cli._terminal import answer, echo, say
-from shaftprint.cli.output._fingerprint_file import REPORT, fingerprint_at
+from shaftprint.cli.output._fingerprint_file import REPORT, any_fingerprint_at
 from shaftprint.cli.output._json import give
 from shaftprint.cli.output._output_folder import force_option, output_folder
 from shaftprint.cli.output._tables import print_tables
@@ -27,7 +27,7 @@ with late():
     from shaftprint.drift._history import History, history_of
     from shaftprint.drift._watch import watch
     from shaftprint.drift._words import limit_sentence, watch_sentences
-    from shaftprint.fingerprint._fingerprint import Fingerprint
+    from shaftprint.fingerprint._line_fingerprint import LineFingerprint
     from shaftprint.report._history_page import render_history, sizes_of_tests
     from shaftprint.report.comparison._history_tables import course_table, history_table
     from shaftprint.store._line_history import line_history
@@ -96,12 +96,13 @@ def command(
     """
     done = [Event(kind=kind, at=instant(moment, zone or UTC, option="--event")) for kind, moment in events]
     title, fingerprints, kept = _of_files(tests) if _are_files(tests) else _of_ship(tests[0], url, line)
+    noun = next((one.noun for one in fingerprints.values()), "ship")
     history, load = history_of(fingerprints, (*kept, *done)), load_percent / PERCENT
     finding = watch(history, rng=np.random.default_rng(SEED), load_repeatability=load)
     if output is not None:
         with output_folder(output, of="drift", force=force) as folder:
             render_history(folder, title, history, finding, now=datetime.now(UTC), load_repeatability=load)
-    answer(f"Has the ship changed? {' '.join(watch_sentences(finding, history))}")
+    answer(f"Has the {noun} changed? {' '.join(watch_sentences(finding, history))}")
     for causes, size in limits:
         answer(limit_sentence(finding, _of_the_line(causes, history), size, history))
     give("finding", finding)
@@ -130,17 +131,17 @@ def _are_files(tests: tuple[str, ...]) -> bool:
     return len(tests) > 1 or Path(tests[0]).exists()
 
 
-def _of_files(tests: tuple[str, ...]) -> tuple[str, dict[str, Fingerprint], tuple[Event, ...]]:
+def _of_files(tests: tuple[str, ...]) -> tuple[str, dict[str, LineFingerprint], tuple[Event, ...]]:
     """Return what a line is called, and its fingerprints by the names of their folders or files."""
     if len(tests) < FEWEST:
         raise click.UsageError(f"expected two or more fingerprints, found {len(tests)}; name another one.")
-    named = {_called(Path(path)): fingerprint_at(Path(path)) for path in tests}
+    named = {_called(Path(path)): any_fingerprint_at(Path(path)) for path in tests}
     if len(named) < len(tests):
         raise click.UsageError("expected fingerprints in folders or files of different names, found two alike.")
-    return next(iter(named.values())).conditions.vessel, named, ()
+    return next(iter(named.values())).title, named, ()
 
 
-def _of_ship(ship: str, url: str, line: str | None) -> tuple[str, dict[str, Fingerprint], tuple[Event, ...]]:
+def _of_ship(ship: str, url: str, line: str | None) -> tuple[str, dict[str, LineFingerprint], tuple[Event, ...]]:
     """Return what a line of the store is called, its fingerprints by the day of their test, and what was done to it."""
     with opened_store(url) as store:
         found = line_history(store, ship, line=line)

@@ -115,7 +115,16 @@ def command(
         raise click.UsageError("--starboard goes with neither --with nor --leg, and with signals of shaftprint.")
     hints = hints_of(**said)
     if drive_file is not None:
-        identify_on_the_bench(recordings, drive_file, names, options, results, hints=hints, pictures=figures)
+        identify_on_the_bench(
+            recordings,
+            drive_file,
+            names,
+            options,
+            results,
+            hints=hints,
+            tested_at=about.tested_at,
+            pictures=figures,
+        )
         return
     report = None if no_report else Report(about=about, pictures=figures)
     recording = only_recording(recordings)

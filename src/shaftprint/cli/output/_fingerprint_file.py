@@ -10,8 +10,10 @@ from shaftprint.errors import FingerprintError
 from shaftprint.late import late
 
 with late():
+    from shaftprint.fingerprint._drive_fingerprint import DriveFingerprint
     from shaftprint.fingerprint._fingerprint import Fingerprint
-    from shaftprint.fingerprint._json_file import read_fingerprint
+    from shaftprint.fingerprint._json_file import of_a_drive, of_a_ship, read_any_fingerprint
+    from shaftprint.fingerprint._line_fingerprint import LineFingerprint
 
 
 FINGERPRINT = "fingerprint.json"
@@ -27,16 +29,32 @@ def fingerprint_file(place: Path) -> Path:
 
 
 def fingerprint_at(place: Path) -> Fingerprint:
-    """Return the fingerprint of a file, or of the folder with it.
+    """Return the fingerprint of a ship of a file, or of the folder with it.
+
+    Raises FingerprintError if there is none, it is of a drive, or the page in the folder shows another one.
+    """
+    return of_a_ship(any_fingerprint_at(place), named=str(fingerprint_file(place)))
+
+
+def drive_fingerprint_at(place: Path) -> DriveFingerprint:
+    """Return the fingerprint of a drive of a file, or of the folder with it.
+
+    Raises FingerprintError if there is none, it is of a ship, or the page in the folder shows another one.
+    """
+    return of_a_drive(any_fingerprint_at(place), named=str(fingerprint_file(place)))
+
+
+def any_fingerprint_at(place: Path) -> LineFingerprint:
+    """Return the fingerprint of a file, or of the folder with it, of a ship or a drive.
 
     Raises FingerprintError if there is none, or the page in the folder shows another one.
     """
     if not place.is_dir():
-        return read_fingerprint(place)
-    fingerprint = read_fingerprint(place / FINGERPRINT)
+        return read_any_fingerprint(place)
+    fingerprint = read_any_fingerprint(place / FINGERPRINT)
     if not _is_shown(place):
         # new results may have come in between
-        fingerprint = read_fingerprint(place / FINGERPRINT)
+        fingerprint = read_any_fingerprint(place / FINGERPRINT)
         if not _is_shown(place):
             raise FingerprintError(
                 f"{place}: expected a page that shows the fingerprint beside it, found {REPORT} of another one than "

@@ -31,7 +31,7 @@ from shaftprint.fingerprint._physical import GAUGE_ZERO
 from shaftprint.tables._fingerprint import limits
 
 if TYPE_CHECKING:
-    from shaftprint.fingerprint._fingerprint import Fingerprint
+    from shaftprint.fingerprint._line_fingerprint import LineFingerprint
     from shaftprint.identify.fit._estimate import Estimate
 
 Outcome: TypeAlias = Literal["differs", "perhaps", "no difference seen", "cannot be compared"]
@@ -67,7 +67,7 @@ class Difference:
 
 
 def differences(
-    first: "Fingerprint", other: "Fingerprint", *, load_repeatability: float = LOAD_REPEATABILITY
+    first: "LineFingerprint", other: "LineFingerprint", *, load_repeatability: float = LOAD_REPEATABILITY
 ) -> tuple[Difference, ...]:
     """Return the differences of all numbers that two fingerprints share, those of the ship first, with significance.
 
@@ -96,10 +96,14 @@ def differences(
         load=load_repeatability,
         of_each_piece=shared.of_each_piece,
     )
-    kept = _shared(pair, ("physical", "margins"))
-    model_numbers = _shared(pair, ("combinations", "parameters"))
+    kept = _shared(pair, ("physical value", "margin"))
+    model_numbers = _shared(pair, ("combination", "parameter"))
     kept += [difference for difference in model_numbers if _is_of_line(difference.first)]
-    moving = [_moving(difference, first.physical) for difference in model_numbers if not _is_of_line(difference.first)]
+    moving = [
+        _moving(difference, first.numbers["physical value"])
+        for difference in model_numbers
+        if not _is_of_line(difference.first)
+    ]
     return (*_judged(kept), *_judged(moving))
 
 
@@ -127,8 +131,8 @@ def _moving(difference: Difference, physical: "Sequence[Estimate]") -> Differenc
 class _Pair:
     """Two fingerprints, and what is assumed of what they have in common."""
 
-    first: "Fingerprint"
-    other: "Fingerprint"
+    first: "LineFingerprint"
+    other: "LineFingerprint"
     common: tuple[str, ...]
     """Sources of error that are the same in both."""
     load: float
@@ -139,11 +143,11 @@ class _Pair:
 
 def _shared(pair: _Pair, groups: Sequence[str]) -> list[Difference]:
     """Return the differences of all numbers of some groups that both have in the same unit."""
-    there = {quantity.name: quantity for group in groups for quantity in getattr(pair.other, group)}
+    there = {quantity.name: quantity for group in groups for quantity in pair.other.numbers.get(group, ())}
     return [
         _difference(quantity, there[quantity.name], pair)
         for group in groups
-        for quantity in getattr(pair.first, group)
+        for quantity in pair.first.numbers.get(group, ())
         if quantity.name in there and there[quantity.name].unit == quantity.unit
     ]
 
@@ -184,7 +188,7 @@ def _between_tests(quantity: "Estimate", load: float) -> float:
     return (load * quantity.value) ** 2 if quantity.name == TORQUE_COEFFICIENT else 0.0
 
 
-def _interval(quantity: "Estimate", fingerprint: "Fingerprint") -> tuple[tuple[float, float], tuple[bool, bool]]:
+def _interval(quantity: "Estimate", fingerprint: "LineFingerprint") -> tuple[tuple[float, float], tuple[bool, bool]]:
     """Return the 95 % interval of a number and which ends are open, as those of the parameter that it follows from."""
     low, high = limits(quantity)
     parameter = fingerprint.multiplied(quantity)
@@ -197,13 +201,13 @@ def _interval(quantity: "Estimate", fingerprint: "Fingerprint") -> tuple[tuple[f
     return (min(low, lowest), max(high, highest)), (open_low, open_high)
 
 
-def _told(fingerprint: "Fingerprint", name: str, common: Collection[str]) -> dict[str, float]:
+def _told(fingerprint: "LineFingerprint", name: str, common: Collection[str]) -> dict[str, float]:
     """Return the standard deviation by each source that both tests have in common, of one number."""
     variances = _variances(fingerprint, name)
     return {source: math.sqrt(max(variances[source], 0.0)) for source in common if source in variances}
 
 
-def _own_share(fingerprint: "Fingerprint", name: str, common_std: dict[str, float]) -> float:
+def _own_share(fingerprint: "LineFingerprint", name: str, common_std: dict[str, float]) -> float:
     """Return the share of the variance that is of the test itself."""
     total = sum(_variances(fingerprint, name).values())
     if not common_std or total <= 0.0:
@@ -211,8 +215,8 @@ def _own_share(fingerprint: "Fingerprint", name: str, common_std: dict[str, floa
     return max(1.0 - sum(std**2 for std in common_std.values()) / total, 0.0)
 
 
-def _variances(fingerprint: "Fingerprint", name: str) -> dict[str, float]:
-    return next((dict(row.variances) for row in fingerprint.budget.rows if row.name == name), {})
+def _variances(fingerprint: "LineFingerprint", name: str) -> dict[str, float]:
+    return next((dict(row.variances) for row in fingerprint.budget_rows if row.name == name), {})
 
 
 def _judged(found: Sequence[Difference]) -> list[Difference]:

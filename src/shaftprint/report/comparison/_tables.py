@@ -11,6 +11,7 @@ from shaftprint.tables._fingerprint import limits
 
 if TYPE_CHECKING:
     from shaftprint.fingerprint._fingerprint import Fingerprint
+    from shaftprint.fingerprint._line_fingerprint import LineFingerprint
     from shaftprint.identify.fit._estimate import Estimate
     from shaftprint.report.comparison._differences import Difference
 
@@ -141,7 +142,7 @@ def _working(quantity: "Estimate") -> str:
     return f"{with_deviation(quantity.value, quantity.std)} {unit_text(quantity.unit)}"
 
 
-def source_table(fingerprints: "Mapping[str, Fingerprint]") -> Table:
+def source_table(fingerprints: "Mapping[str, LineFingerprint]") -> Table:
     """Return the files that went into fingerprints, with their hashes."""
     rows = tuple(
         (name, source.name, source.role, source.sha256)

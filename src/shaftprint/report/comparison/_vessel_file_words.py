@@ -9,6 +9,7 @@ from shaftprint.plain_table import Table, texts
 if TYPE_CHECKING:
     from shaftprint.drift._shared_errors import FieldChange
     from shaftprint.fingerprint._fingerprint import Fingerprint
+    from shaftprint.fingerprint._line_fingerprint import LineFingerprint
     from shaftprint.fingerprint._vessel_fields import FieldValue
 
 MOST_NAMED = 4
@@ -18,13 +19,13 @@ NOTABLE_SHARE = 0.05
 NOT_STATED = "not stated"
 
 
-def vessel_file_sentences(first: "Fingerprint", other: "Fingerprint") -> tuple[str, ...]:
+def vessel_file_sentences(first: "LineFingerprint", other: "LineFingerprint") -> tuple[str, ...]:
     """Return in sentences where the vessel files of two tests differ, and which errors the tests have in common.
 
-    ``first``, ``other``: two fingerprints.
+    ``first``, ``other``: two fingerprints; a drive has no vessel file.
     """
     shared = shared_errors(first, other)
-    sentences = [_files(shared.changes)]
+    sentences = [_files(shared.changes)] if first.noun == "ship" else []
     for sources, words in (
         (shared.common, "Stated alike for both tests, so that the error cancels"),
         (shared.apart, "Not the same in both tests, so that the error counts in full"),
@@ -35,9 +36,9 @@ def vessel_file_sentences(first: "Fingerprint", other: "Fingerprint") -> tuple[s
     return tuple(sentences)
 
 
-def _numbers(source: str, *fingerprints: "Fingerprint") -> str:
+def _numbers(source: str, *fingerprints: "LineFingerprint") -> str:
     """Return in brackets which numbers owe a notable share of their variance to a source, in any of the tests."""
-    rows = (row for fingerprint in fingerprints for row in fingerprint.budget.rows)
+    rows = (row for fingerprint in fingerprints for row in fingerprint.budget_rows)
     notable = (row.name for row in rows if row.variances.get(source, 0.0) > NOTABLE_SHARE * sum(row.variances.values()))
     names = list(dict.fromkeys(notable))
     more = f" and {len(names) - MOST_NUMBERS} more" if len(names) > MOST_NUMBERS else ""

@@ -31,7 +31,7 @@ def compared(first: str, other: str, names: list[str]) -> dict[str, Any]:
     trusted = one.verdict.trustworthy and two.verdict.trustworthy
     return {
         "word": "changed" if finding.changes else "cannot be told" if finding.because or not trusted else "unchanged",
-        "sentences": list(finding_sentences(finding)),
+        "sentences": list(finding_sentences(finding, one.noun)),
         "not_trustworthy": [
             name for name, fingerprint in zip(names, (one, two), strict=True) if not fingerprint.verdict.trustworthy
         ],

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from shaftprint.drift._drift_finding import DatedCause, WatchFinding
     from shaftprint.drift._finding import SizedCause
     from shaftprint.drift._history import History
-    from shaftprint.fingerprint._fingerprint import Fingerprint
+    from shaftprint.fingerprint._line_fingerprint import LineFingerprint
 
 SEED: Final = 1
 MOST_TESTS: Final = 40
@@ -53,12 +53,12 @@ def judged_line(ship: dict[str, Any], line: str) -> dict[str, Any]:
     }
 
 
-def _newest(fingerprints: "dict[str, Fingerprint]") -> "tuple[dict[str, Fingerprint], int]":
+def _newest(fingerprints: "dict[str, LineFingerprint]") -> "tuple[dict[str, LineFingerprint], int]":
     """Return the fingerprints of the newest recordings, and how many earlier recordings there are.
 
     Of one recording several versions of the program may have made some, of which one counts as a test.
     """
-    of_recording: dict[str, dict[str, Fingerprint]] = {}
+    of_recording: dict[str, dict[str, LineFingerprint]] = {}
     for name, one in fingerprints.items():
         of_recording.setdefault(one.recording_sha256 or name, {})[name] = one
     newest = list(of_recording.values())[-MOST_TESTS:]

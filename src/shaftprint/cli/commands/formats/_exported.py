@@ -8,12 +8,11 @@ from typing import Any
 
 import click
 
-from shaftprint.cli._drive_options import drive_fingerprint_at, is_drive_place
 from shaftprint.cli._known_values import by_name, named_value
 from shaftprint.cli._options import LIMITED_HELP, OWN_FILE_HELP
 from shaftprint.cli._terminal import say
 from shaftprint.cli.output._file_to_write import expect_free, expect_no_input
-from shaftprint.cli.output._fingerprint_file import fingerprint_at, fingerprint_file
+from shaftprint.cli.output._fingerprint_file import any_fingerprint_at, fingerprint_file
 from shaftprint.errors import StructureError
 from shaftprint.escape import plain_name
 from shaftprint.late import late
@@ -28,6 +27,8 @@ with late():
     from shaftprint.catalogue._own_structure import TypedName, chosen_structures
     from shaftprint.drive._drive import load_drive
     from shaftprint.export._model import ExportedModel, validation_remark
+    from shaftprint.fingerprint._drive_fingerprint import DriveFingerprint
+    from shaftprint.fingerprint._json_file import of_a_drive, of_a_ship
     from shaftprint.forecast._simulated_model import simulated_model
 
 
@@ -84,9 +85,10 @@ def model_to_export(
     lacks; StructureError if there is no such structure or parameter, or a value is missing.
     """
     drive_file = click.get_current_context().meta.get(DRIVE)
-    if drive_file is not None or is_drive_place(fingerprint):
-        return _drive_to_export(fingerprint, structure, given, drive_file)
-    identified = fingerprint_at(fingerprint)
+    kept, place = any_fingerprint_at(fingerprint), str(fingerprint_file(fingerprint))
+    if drive_file is not None or kept.noun == "drive":
+        return _drive_to_export(of_a_drive(kept, named=place), structure, given, drive_file)
+    identified = of_a_ship(kept, named=place)
     model = simulated_model(structure, identified, given, linear=linear)
     remark = validation_remark(identified, model.structure.name)
     if remark:
@@ -105,10 +107,9 @@ def model_to_export(
 
 
 def _drive_to_export(
-    place: Path, structure: TypedName | None, given: Mapping[str, float], drive_file: Path | None
+    kept: DriveFingerprint, structure: TypedName | None, given: Mapping[str, float], drive_file: Path | None
 ) -> ExportedModel:
     """Return the model of a drive's fingerprint."""
-    kept = drive_fingerprint_at(place)
     one = kept_drive(
         kept,
         None if drive_file is None else load_drive(drive_file),

@@ -10,7 +10,7 @@ import click
 from shaftprint.cli._dates import zone_option
 from shaftprint.cli._store_options import moment_option, opened_store, store_option
 from shaftprint.cli._terminal import answer
-from shaftprint.cli.output._fingerprint_file import fingerprint_at, fingerprint_file
+from shaftprint.cli.output._fingerprint_file import any_fingerprint_at, fingerprint_file
 from shaftprint.cli.output._json import give
 from shaftprint.late import late
 
@@ -57,7 +57,7 @@ def command(
         for place in results:
             if place.is_dir():
                 # a folder whose page shows another fingerprint is refused
-                fingerprint_at(place)
+                any_fingerprint_at(place)
             added = add(store, fingerprint_file(place), now=datetime.now(UTC), stated=stated, zone=zone)
             outcomes.append(added)
             answer(f"{place}: {_in_words(added)}")

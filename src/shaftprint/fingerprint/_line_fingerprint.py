@@ -1,0 +1,160 @@
+"""What is kept of one test, whatever was tested: a line of a ship, or a drive on a bench.
+
+A store, a history and the search for drift take this; what only a ship has is in ``Fingerprint``, what only a drive
+has in ``DriveFingerprint``.
+"""
+
+from abc import abstractmethod
+from collections.abc import Mapping, Sequence
+from datetime import datetime
+from typing import ClassVar, Literal, Self
+
+import numpy as np
+from pydantic import AwareDatetime, model_validator
+
+from shaftprint.arrays import FloatArray
+from shaftprint.errors import FingerprintError
+from shaftprint.fingerprint._conditions import Tested
+from shaftprint.fingerprint._covariance_check import covariance_fault
+from shaftprint.fingerprint._joint_numbers import JointNumbers
+from shaftprint.fingerprint._number import Number
+from shaftprint.fingerprint._vessel_fields import FieldValue
+from shaftprint.identify.fit._estimate import Estimate
+from shaftprint.identify.judgement._verdict import Verdict
+from shaftprint.identify.likelihood._prior import Prior
+from shaftprint.identify.uncertainty._budget import BudgetRow
+from shaftprint.notebook._shown import Shown
+from shaftprint.records import Record
+
+
+class SourceFile(Record):
+    """A file that went into the fingerprint."""
+
+    role: Literal["recording", "vessel", "campaign", "structure", "drive"]
+    """What it is."""
+    name: str
+    """File name or the name of a shipped file."""
+    sha256: str
+    """SHA-256 of its content."""
+
+
+class LineFingerprint(Shown, Record):
+    """Numbers of one line with uncertainty, what they rest on, and whether they may be used."""
+
+    noun: ClassVar[str]
+    """What is tested, in a word."""
+
+    schema_version: str
+    """Version of this record's layout."""
+    shaftprint_version: str
+    """Version of shaftprint that made it."""
+    created: AwareDatetime
+    """When it was made, with time zone."""
+    sources: tuple[SourceFile, ...]
+    """Recordings and files of settings with their hashes."""
+    structure: str
+    """Name of the model structure."""
+    parameters: tuple[Number, ...]
+    """Free parameters."""
+    held: dict[str, float]
+    """Parameters that were held, with their values."""
+    priors: dict[str, Prior]
+    """Parameters of which something was known before the test; it counts in the standard deviations."""
+    covariance: tuple[tuple[float, ...], ...]
+    """Covariance of the free parameters, in their order."""
+    combinations: tuple[Number, ...]
+    """Combinations of parameters."""
+    joint: JointNumbers | None = None
+    """Covariance of the numbers of the line together, by which two tests are compared along causes; None in the file of
+    an earlier version."""
+    verdict: Verdict
+    """Whether the numbers may be used, and which of them."""
+
+    @model_validator(mode="after")
+    def _expect_covariance(self) -> Self:
+        fault = covariance_fault(self.covariance, [quantity.std for quantity in self.parameters])
+        if fault:
+            raise ValueError(f"covariance: {fault}")
+        there = {quantity.name for quantities in self.numbers.values() for quantity in quantities}
+        foreign = [] if self.joint is None else [name for name in self.joint.names if name not in there]
+        if foreign:
+            raise ValueError(f"joint: expected names of its numbers, found {foreign[0][:100]!r}")
+        return self
+
+    @property
+    @abstractmethod
+    def tested(self) -> Tested:
+        """What was tested, when and where."""
+
+    @abstractmethod
+    def dated(self, at: datetime) -> Self:
+        """Return it with another time of the test."""
+
+    @property
+    @abstractmethod
+    def title(self) -> str:
+        """What the line is called."""
+
+    @property
+    @abstractmethod
+    def numbers(self) -> dict[str, tuple[Estimate, ...]]:
+        """All numbers, by what they are."""
+
+    @property
+    def stated_fields(self) -> Mapping[str, FieldValue]:
+        """What the vessel file states, field by field; empty where there is none."""
+        return {}
+
+    @property
+    def error_sources(self) -> Sequence[str]:
+        """What the errors of the numbers come from, as far as it was stated beforehand."""
+        return () if self.joint is None else tuple(self.joint.loadings)
+
+    @property
+    def budget_rows(self) -> Sequence[BudgetRow]:
+        """Where the variance of each number comes from; empty where it was not looked for."""
+        return ()
+
+    @property
+    def misfit(self) -> float:
+        """By how much the residuals of the fit are larger than its noise, as a variance; 1 at least."""
+        return 1.0
+
+    @property
+    def recording_sha256(self) -> str | None:
+        """SHA-256 of the recording; None where the file does not say it."""
+        return next((one.sha256 for one in self.sources if one.role == "recording"), None)
+
+    @property
+    def values(self) -> dict[str, float]:
+        """Every parameter by its name, held ones too."""
+        return self.held | {quantity.name: quantity.value for quantity in self.parameters}
+
+    def quantity(self, name: str) -> Estimate:
+        """Return one of its numbers by its name.
+
+        Raises FingerprintError if there is none of that name.
+        """
+        quantities = [quantity for kind in self.numbers.values() for quantity in kind]
+        for quantity in quantities:
+            if quantity.name == name:
+                return quantity
+        raise FingerprintError(
+            f"the fingerprint has no {name!r}; it has {', '.join(quantity.name for quantity in quantities)}."
+        )
+
+    def multiplied(self, number: Estimate) -> Estimate | None:
+        """Return the parameter of which a physical value is a multiple; None where it is none."""
+        return None
+
+    def covariance_of(self, names: Sequence[str]) -> FloatArray:
+        """Return the covariance of some of the parameters, shape (names, names).
+
+        Raises FingerprintError if one of them is not a free parameter.
+        """
+        order = [quantity.name for quantity in self.parameters]
+        foreign = [name for name in names if name not in order]
+        if foreign:
+            raise FingerprintError(f"the fingerprint has no parameter {foreign[0]!r}; it has {', '.join(order)}.")
+        places = [order.index(name) for name in names]
+        return np.array(self.covariance).reshape(len(order), len(order))[np.ix_(places, places)]
