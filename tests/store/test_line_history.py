@@ -7,10 +7,9 @@ from datetime import UTC, datetime, timedelta
 import pytest
 from benchmarks.store_documents import document
 
-from shaftprint.drift import history_of
-from shaftprint.drift._class_numbers import sister_of
 from shaftprint.store import add_document, record_event
 from shaftprint.store._line_history import line_history
+from shaftprint.store._sisters import sisters_of
 
 FIRST = datetime(2020, 1, 1, tzinfo=UTC)
 NEWEST = 3
@@ -40,8 +39,8 @@ def tested(file_store):
 def standing(store, newest):
     """Return the days of the tests that stand for the ship, and how many documents were read."""
     found = line_history(store, "Meander", line="port", newest=newest)
-    tests = sister_of("Meander", history_of(found.fingerprints, found.events), newest=NEWEST).tests
-    return [(test.at - FIRST).days for test in tests], len(found.fingerprints)
+    ((ship,), _) = sisters_of([found], newest=NEWEST)
+    return [(test.at - FIRST).days for test in ship.tests], len(found.fingerprints)
 
 
 def test_only_the_newest_documents_are_read(file_store, tested):
