@@ -8,9 +8,9 @@ from pathlib import Path
 
 import click
 
-from shaftprint.cli._drive_options import drive_fingerprint_at
 from shaftprint.cli._results import print_paths
 from shaftprint.cli._terminal import answer, say
+from shaftprint.cli.output._fingerprint_file import drive_fingerprint_at
 from shaftprint.cli.output._json import give
 from shaftprint.cli.output._results_options import Results
 from shaftprint.cli.output._tables import print_tables
