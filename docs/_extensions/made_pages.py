@@ -9,12 +9,20 @@ import re
 from decision_index import index
 from feature_map import feature_map
 from room_diagram import ROOT, SOURCE, rooms_page, stub
+from wings import wing_table
 
 MADE = re.compile(r"(?<=<!-- made -->\n\n).*?(?=\n\n<!-- end -->)", flags=re.DOTALL)
+
+
+def house() -> str:
+    """Return where features live, and the wings."""
+    return f"{feature_map()}\n\n{wing_table()}"
+
+
 PAGES = {
     ROOT / "docs" / "rooms.md": rooms_page,
     ROOT / "docs" / "decisions.md": index,
-    ROOT / "docs" / "house.md": feature_map,
+    ROOT / "docs" / "house.md": house,
 }
 """Pages with a made part, and what makes it."""
 STUB = SOURCE / "__init__.pyi"
