@@ -14,7 +14,9 @@ def wings() -> dict[str, tuple[str, tuple[str, ...]]]:
     settings = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
     contracts = [one for one in settings["tool"]["importlinter"]["contracts"] if one["name"].startswith(WING)]
     parts = [(*one["name"].removeprefix(WING).split(": ", 1), one["protected_modules"]) for one in contracts]
-    return {name: (what, tuple(module.removeprefix("shaftprint.") for module in inside)) for name, what, inside in parts}
+    return {
+        name: (what, tuple(module.removeprefix("shaftprint.") for module in inside)) for name, what, inside in parts
+    }
 
 
 def files_of(modules: tuple[str, ...]) -> set[Path]:

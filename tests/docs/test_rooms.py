@@ -1,11 +1,15 @@
 """What is made from the code stands in the repository as it is made now; the floors hold every room."""
 
+import ast
 import re
+import sys
+import tomllib
 from pathlib import Path
 
 import pytest
 from made_pages import MADE, PAGES, STUB
 from room_diagram import SOURCE, floors, imports, purpose, stub
+from wings import files_of, wings
 
 ROOT = Path(__file__).parents[2]
 RUN = "run python docs/_extensions/made_pages.py"
@@ -66,3 +70,37 @@ def test_files_that_the_house_names_are_there():
     named = re.findall(r"`([\w/]+/_?\w+\.py)`", HOUSE)
     assert len(named) > 100
     assert [path for path in named if not (SOURCE / path).exists()] == []
+
+
+# comes with pydantic and jinja2
+PULLED_IN = {"pydantic_core", "markupsafe"}
+# loaded when somebody asks for a PDF or a foreign model: a sentence says which extra to take
+ON_REQUEST = {"report/paper reportlab", "validation fmpy"}
+
+
+def test_the_core_needs_no_extra():
+    """What the files of the core import when they are loaded comes with `pip install shaftprint`."""
+    settings = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+    own = {re.split(r"[<>=!;\[ ]", one)[0].replace("-", "_") for one in settings["project"]["dependencies"]}
+    beside = set().union(*(files_of(modules) for _, modules in wings().values()))
+    foreign = {
+        f"{path.relative_to(SOURCE).parent.as_posix()} {name}"
+        for path in sorted(set(SOURCE.rglob("*.py")) - beside)
+        for node in ast.parse(path.read_text(encoding="utf-8")).body
+        for name in loaded(node)
+        if name not in own | PULLED_IN | set(sys.stdlib_module_names) | {"shaftprint"}
+    }
+    assert foreign == ON_REQUEST
+
+
+def loaded(node):
+    """Return the packages that a statement of a file loads at once."""
+    if isinstance(node, ast.Import):
+        return {alias.name.split(".")[0] for alias in node.names}
+    return {(node.module or "").split(".")[0]} if isinstance(node, ast.ImportFrom) else set()
+
+
+def test_a_wing_holds_what_is_there():
+    for name, (what, modules) in wings().items():
+        assert what, name
+        assert [str(path) for path in files_of(modules) if not path.exists()] == []
