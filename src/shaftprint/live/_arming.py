@@ -42,7 +42,7 @@ class Ground(Protocol):
 
 
 async def seen_at_rest(
-    ground: Ground, counterpart: "Counterpart", *, offset_v: float, begins_at_lever: bool = True
+    ground: Ground, counterpart: "Counterpart", *, offset_v: float, alive_s: float = ALIVE_S
 ) -> Rest:
     """Look at the channels for some seconds while the lever rules; return what they show at rest.
 
@@ -50,7 +50,7 @@ async def seen_at_rest(
     ``offset_v``.
     """
     sights: list[Sight] = [await ground.next()]
-    while sights[-1].time_s - sights[0].time_s < ALIVE_S:
+    while sights[-1].time_s - sights[0].time_s < alive_s:
         sights.append(await ground.next())
     name = counterpart.name
     mode = sights[-1].block.device.mode
@@ -58,7 +58,7 @@ async def seen_at_rest(
         raise LiveError(f'{name}: expected the lever to rule before the test, found "{mode}"; release it.')
     lost = sights[-1].block.counter - sights[0].block.counter - (len(sights) - 1)
     if lost:
-        raise LiveError(f"{name}: expected every block of {ALIVE_S:g} s, found {lost} lost; mend the link first.")
+        raise LiveError(f"{name}: expected every block of {alive_s:g} s, found {lost} lost; mend the link first.")
     for channel in sights[0].means:
         means = np.array([one.means.get(channel, math.nan) for one in sights])
         if not np.isfinite(means).all():
@@ -66,7 +66,7 @@ async def seen_at_rest(
         if _longest_repetition_s(sights, channel) > MISSING_S:
             raise LiveError(f"{name}: expected channel {channel} to be alive, found the same samples again and again.")
     volts = sights[-1].block.device.set_point_v
-    if begins_at_lever and abs(volts - offset_v) > _SAME_V:
+    if abs(volts - offset_v) > _SAME_V:
         raise LiveError(
             f"{name}: expected the lever at {offset_v:g} V, where the campaign begins, found {volts:.4g} V; move it "
             "there, so that nothing jumps when the test ends."

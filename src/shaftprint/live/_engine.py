@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from shaftprint.campaign._excitations import Sine
 from shaftprint.campaign._leg import Leg
 from shaftprint.errors import LiveError, SilentLinkError
-from shaftprint.live._arming import expect_revert, seen_at_rest, taken_over
+from shaftprint.live._arming import ALIVE_S, expect_revert, seen_at_rest, taken_over
 from shaftprint.live._block import DeviceMode
 from shaftprint.live._counterpart import ABORT_RAMP_S, REVERT_S
 from shaftprint.live._following import FollowedWatch, OscillationWatch, PutOutWatch
@@ -56,6 +56,10 @@ class LiveTest(Loop):
     """Asked at the end of each period of a leg, with its name and whole periods, whether the rest is not needed."""
     dry: bool = False
     """Whether nothing is written: channels are looked at, and the test ends before heartbeat and arming."""
+    alive_s: float = ALIVE_S
+    """Time for which all channels are looked at before anything is taken over [s]."""
+    waits: bool = False
+    """Whether the ship waits for what is worked out, as a simulated one does that is not tied to a clock."""
     fewest_periods: int = 3
     """Periods of a leg that are played at least."""
     judgements: dict[str, tuple[LineJudgement, ...]] = field(default_factory=dict)
@@ -122,7 +126,7 @@ class LiveTest(Loop):
                 f"{self.counterpart.name}: expected a counterpart that reverts, ramps and plays, found one "
                 "that can only be listened to; use --dry."
             )
-        rest = await seen_at_rest(self, self.counterpart, offset_v=self.campaign.offset_v)
+        rest = await seen_at_rest(self, self.counterpart, offset_v=self.campaign.offset_v, alive_s=self.alive_s)
         self._tell("alive", "All channels are alive, the lever stands where the campaign begins.")
         if self.dry:
             return
@@ -295,8 +299,12 @@ class LiveTest(Loop):
 
     # ---- what comes out ----
 
+    def recorded_s(self, campaign_s: float) -> float:
+        """Return a time of the campaign by the time of the recording [s]."""
+        return campaign_s + self._zero_s - (self.record.first_s or 0.0)
+
     def _as_played(self, campaign: "Campaign") -> "Campaign":
-        return shifted(campaign, self._zero_s - (self.record.first_s or 0.0))
+        return shifted(campaign, self.recorded_s(0.0))
 
     def _outcome(self, word: str, reason: str, breach: Breach | None, *, back: bool) -> Outcome:
         played = None

@@ -112,20 +112,23 @@ class OpcUaCounterpart:
 
     async def beat(self, count: int) -> None:
         """Send the heartbeat."""
+        self._expect_writer()
         value = self._asyncua.ua.DataValue(self._asyncua.ua.Variant(count, self._asyncua.ua.VariantType.Int64))
         await self._answered(self._heartbeat.write_value(value))
 
     async def take(self) -> None:
         """Take the set point over; refused where anybody could."""
-        self._access.expect_writer(self.name, is_encrypted=self._access.certificate is not None)
+        self._expect_writer()
         await self._call("Take")
 
     async def write(self, volts: float) -> None:
         """Write a set point."""
+        self._expect_writer()
         await self._call("Write", float(volts))
 
     async def play(self, play: Play) -> None:
         """Play a waveform."""
+        self._expect_writer()
         await self._call("Play", play.name, float(play.start_s), float(play.rate_hz), play.volts.tolist())
 
     async def abort(self, ramp_s: float) -> None:
@@ -184,6 +187,10 @@ class OpcUaCounterpart:
     async def _value(self, name: str) -> Any:
         node = await self._folder.get_child([f"{self._space}:{name}"])
         return await node.read_value()
+
+    def _expect_writer(self) -> None:
+        """Refuse to write where anybody could; giving the set point back is always allowed."""
+        self._access.expect_writer(self.name, is_encrypted=self._access.certificate is not None)
 
     async def _call(self, name: str, *arguments: Any) -> None:
         refused = await self._answered(self._folder.call_method(f"{self._space}:{name}", *arguments))

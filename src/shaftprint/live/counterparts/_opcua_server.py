@@ -1,0 +1,115 @@
+"""A simulated ship behind a real OPC UA server, in the time of the clock: for rehearsals of the link, and for tests."""
+
+import asyncio
+import contextlib
+from types import TracebackType
+from typing import Any, Self
+
+import numpy as np
+
+from shaftprint.errors import LiveError
+from shaftprint.live._play import Play
+from shaftprint.live.counterparts._dialect import Description
+from shaftprint.live.counterparts._extra import library
+from shaftprint.live.counterparts._opcua import FOLDER, NAMESPACE
+from shaftprint.live.counterparts._plain import described, written_block
+from shaftprint.live.counterparts._simulated import SimulatedCounterpart, SimulatedShip
+
+
+class SimulatedServer:
+    """The server; it listens while its ``async with`` block runs."""
+
+    def __init__(self, ship: SimulatedShip, url: str) -> None:
+        """``ship``: what sails behind it. ``url``: where it listens, such as ``opc.tcp://127.0.0.1:48400``."""
+        self.ship = ship
+        """What sails behind it."""
+        self.url = url
+        """Where it listens."""
+        self.heard: list[tuple[str, float]] = []
+        """Commands that were heard, each with the loop's time [s]."""
+        self.is_frozen = False
+        """Whether it sends nothing and hears nothing: the link is silent, and the ship sails on."""
+        self._asyncua: Any = library("asyncua", "OPC UA")
+        self._sailing: asyncio.Task[None] | None = None
+        self._server: Any = None
+
+    async def __aenter__(self) -> Self:
+        """Listen, and let the ship sail."""
+        ua, methods = self._asyncua.ua, self._asyncua.common.methods
+        self._server = self._asyncua.Server()
+        await self._server.init()
+        self._server.set_endpoint(self.url)
+        self._server.set_security_policy([ua.SecurityPolicyType.NoSecurity])
+        space = await self._server.register_namespace(NAMESPACE)
+        folder = await self._server.nodes.objects.add_object(space, FOLDER)
+        description = Description(channels=self.ship.channels, abilities=SimulatedCounterpart.abilities)
+        await folder.add_variable(space, "Description", described(description).decode())
+        self._block = await folder.add_variable(space, "Block", b"", ua.VariantType.ByteString)
+        self._heartbeat = await folder.add_variable(space, "Heartbeat", 0, ua.VariantType.Int64)
+        await self._heartbeat.set_writable()
+        double, text = ua.VariantType.Double, ua.VariantType.String
+        for name, kinds in {
+            "Take": [],
+            "Write": [double],
+            "Play": [text, double, double, double],
+            "Abort": [double],
+            "Release": [],
+        }.items():
+            await folder.add_method(space, name, methods.uamethod(self._method(name)), kinds, [text])
+        await self._server.start()
+        self._sailing = asyncio.create_task(self._sail())
+        return self
+
+    async def __aexit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        """Stop."""
+        if self._sailing is not None:
+            self._sailing.cancel()
+            with contextlib.suppress(asyncio.CancelledError):
+                await self._sailing
+        await self._server.stop()
+
+    async def _sail(self) -> None:
+        """Let the ship sail in the time of the clock; what is frozen sends nothing and hears nothing."""
+        loop = asyncio.get_running_loop()
+        begun_s = loop.time() - self.ship.time_s
+        while True:
+            if not self.is_frozen:
+                count = await self._heartbeat.read_value()
+                self.ship.device.hear(int(count), self.ship.time_s)
+            for block in self.ship.sail():
+                if not self.is_frozen:
+                    await self._block.write_value(written_block(block, self.ship.channels))
+            await asyncio.sleep(max(0.0, begun_s + self.ship.time_s - loop.time()))
+
+    def _method(self, name: str) -> Any:
+        async def called(parent: Any, *arguments: Any) -> str:
+            while self.is_frozen:
+                await asyncio.sleep(0.05)
+            self.heard.append((name, asyncio.get_running_loop().time()))
+            try:
+                self._act(name, arguments)
+            except LiveError as refusal:
+                return str(refusal)
+            return ""
+
+        return called
+
+    def _act(self, name: str, arguments: tuple[Any, ...]) -> None:
+        device, now_s = self.ship.device, self.ship.time_s
+        match name:
+            case "Take":
+                device.take(now_s)
+            case "Write":
+                device.write(float(arguments[0]))
+            case "Play":
+                title, start_s, rate_hz, volts = arguments
+                device.play(
+                    Play(name=str(title), start_s=start_s, rate_hz=rate_hz, volts=np.asarray(volts, dtype=np.float64)),
+                    now_s,
+                )
+            case "Abort":
+                device.abort(float(arguments[0]), now_s)
+            case _:
+                device.release()

@@ -1,0 +1,169 @@
+"""OPC UA: a real server around a simulated ship, in the time of the clock."""
+
+import asyncio
+import logging
+import socket
+
+import numpy as np
+import pytest
+from tests.live.rehearsed import CAMPAIGN, ENVELOPE, TUG, VESSEL, leg
+
+from shaftprint.errors import LiveError, SilentLinkError
+from shaftprint.live._block import DeviceMode
+from shaftprint.live._counterpart import SILENT_S
+from shaftprint.live._engine import LiveTest
+from shaftprint.live._record import LiveRecord
+from shaftprint.live._rehearse import simulated_ship_of
+from shaftprint.live._watch import AbortRule
+from shaftprint.live.counterparts._access import Access
+from shaftprint.live.counterparts._faults import LinkFaults
+from shaftprint.live.counterparts._opcua import QUEUE, OpcUaCounterpart
+from shaftprint.live.counterparts._opcua_server import SimulatedServer
+
+pytest.importorskip("asyncua", reason="belongs to the extra opcua")
+# the library's own threads and sockets end after its server has
+pytestmark = [pytest.mark.slow, pytest.mark.filterwarnings("ignore::ResourceWarning")]
+
+ONE_LEG = CAMPAIGN.model_copy(
+    update={
+        "multisines": tuple(
+            type(CAMPAIGN.multisines[0]).model_validate(one)
+            for one in (leg("M1", level_v=-4.9, start_s=1.5, settled_s=2.0, stop_s=4.1, period_s=1.0),)
+        ),
+        "ramp_s": 0.5,
+        "duration_s": 5.0,
+    }
+)
+
+
+@pytest.fixture(autouse=True)
+def _quiet():
+    logging.disable(logging.CRITICAL)
+    yield
+    logging.disable(logging.NOTSET)
+
+
+def free_address():
+    with socket.socket() as taken:
+        taken.bind(("127.0.0.1", 0))
+        return f"opc.tcp://127.0.0.1:{taken.getsockname()[1]}"
+
+
+def with_server(work, *, faults=None, is_insecure=True):
+    """Run what is done with a counterpart at a server around a ship."""
+
+    async def done():
+        ship = simulated_ship_of(VESSEL, ONE_LEG, seed=1, faults=faults or LinkFaults(), tug=TUG)
+        # compiled before the clock runs
+        ship.sail()
+        async with SimulatedServer(ship, free_address()) as server:
+            counterpart = OpcUaCounterpart(server.url, access=Access(is_insecure=is_insecure))
+            await counterpart.connect()
+            try:
+                return await work(counterpart, server)
+            finally:
+                await counterpart.close()
+
+    return asyncio.run(done())
+
+
+def played(tmp_path, *, shown=lambda test, sight, server: None, **options):
+    async def work(counterpart, server):
+        record = LiveRecord(tmp_path / "test.nc", counterpart.channels, {})
+        test = LiveTest(
+            counterpart=counterpart,
+            vessel=VESSEL,
+            campaign=ONE_LEG,
+            envelope=ENVELOPE,
+            record=record,
+            alive_s=1.0,
+            shown=lambda test, sight: shown(test, sight, server),
+        )
+        try:
+            return await test.run(), test, server
+        finally:
+            record.close()
+
+    return with_server(work, **options)
+
+
+def test_a_test_is_played_over_the_network_and_no_block_is_lost(tmp_path):
+    outcome, test, server = played(tmp_path)
+    assert (outcome.word, outcome.is_back) == ("played", True)
+    assert server.ship.device.mode is DeviceMode.LEVER
+    assert not {"lost", "doubled", "link", "clock"} & {event.kind for event in test.record.events}
+    assert [one.periods for one in outcome.judgements] == [2, 2, 2]
+    # what was put out is the campaign: its largest set point is that of the waveform
+    volts = [volts for _, volts, *_ in server.ship.trace]
+    level, high = ONE_LEG.multisines[0].extremes_v
+    assert min(volts) == pytest.approx(min(level, -5.0), abs=0.05)
+    assert max(volts) == pytest.approx(high, abs=0.05)
+
+
+def test_a_server_that_goes_silent_is_noticed_and_the_ship_reverts(tmp_path):
+    def freeze(test, sight, server):
+        if test.is_ruling and test.campaign_s > 2.5:
+            server.is_frozen = True
+
+    outcome, _, server = played(tmp_path, shown=freeze)
+    assert outcome.breach.rule is AbortRule.DATA
+    assert not outcome.is_back
+    # nobody has told it
+    assert [name for name, _ in server.heard] == ["Take", "Take", "Play"]
+    assert server.ship.device.mode is DeviceMode.LEVER
+
+
+def test_what_is_asked_of_a_silent_link_ends_within_its_time():
+    async def work(counterpart, server):
+        await counterpart.read(5.0)
+        server.is_frozen = True
+        loop = asyncio.get_running_loop()
+        begun_s = loop.time()
+        for asked in (counterpart.take, counterpart.release, lambda: counterpart.abort(2.0)):
+            with pytest.raises(SilentLinkError):
+                await asked()
+        while True:
+            try:
+                await counterpart.read(SILENT_S)
+            except SilentLinkError:
+                return loop.time() - begun_s
+
+    assert with_server(work) < 60.0
+
+
+def test_nothing_is_written_without_user_and_encryption():
+    async def work(counterpart, server):
+        for asked in (counterpart.take, lambda: counterpart.beat(1)):
+            with pytest.raises(LiveError, match="--insecure"):
+                await asked()
+        # giving back is always allowed
+        await counterpart.release()
+        return server.heard
+
+    assert [name for name, _ in with_server(work, is_insecure=False)] == ["Release"]
+
+
+def test_a_queue_that_overflows_is_a_finding_with_a_gap():
+    async def work(counterpart, server):
+        found = []
+        first = await counterpart.read(5.0)
+        # the server publishes nothing for longer than its queue holds
+        held = server.heard
+        payload = bytes(await server._block.read_value())
+        counterpart.take_value(payload, overflowed=True)
+        while not found:
+            block = await counterpart.read(5.0)
+            found = [block] if block.findings else []
+        return first, found[0], held
+
+    first, block, _ = with_server(work)
+    assert QUEUE * first.span_s >= 10.0
+    assert block.findings == ("the queue of the server has overflowed: blocks before this were lost",)
+    assert np.isfinite(block.source_s)
+
+
+@pytest.mark.parametrize("url", ["opc.tcp://me:secret@host", "http://host", "opc.tcp://"])
+def test_addresses_that_are_none_or_hold_a_secret_are_refused_without_it(url):
+    with pytest.raises(LiveError) as found:
+        OpcUaCounterpart(url)
+    assert "secret" not in str(found.value)
