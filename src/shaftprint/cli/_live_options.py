@@ -28,6 +28,13 @@ fingerprint_option = click.option(
     "--fingerprint", type=click.Path(path_type=Path), help="Fingerprint of an earlier test, to predict the motion with."
 )
 
+plan_option = click.option(
+    "--plan",
+    "place",
+    type=click.Path(path_type=Path),
+    help="Folder of shaftprint plan: a leg ends early where its wishes are met, as predicted.",
+)
+
 
 def recording_option(command: Callable[..., Any]) -> Callable[..., Any]:
     """Add the option ``--output`` of a recording that must not be there yet."""

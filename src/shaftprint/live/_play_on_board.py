@@ -13,10 +13,12 @@ from shaftprint.live._counterpart import Counterpart
 from shaftprint.live._engine import LiveTest
 from shaftprint.live._outcome import Operator, Outcome
 from shaftprint.live._record import Left, LiveRecord
+from shaftprint.live._stop_rule import enough_by
 from shaftprint.live.counterparts._opcua import OpcUaCounterpart
 
 if TYPE_CHECKING:
     from shaftprint.campaign._campaign import Campaign
+    from shaftprint.design.planned_test._planned_test import PlannedTest
     from shaftprint.live._envelope import Envelope
     from shaftprint.live.counterparts._access import Access
     from shaftprint.vessel._vessel import Vessel
@@ -45,14 +47,15 @@ def play_on_board(
     access: "Access",
     confirm: Callable[[str], bool],
     dry: bool = False,
+    planned: "PlannedTest | None" = None,
     slope_rpm_per_v: float | None = None,
     told: Callable[[Event], None] = lambda event: None,
 ) -> tuple[Outcome, Left]:
     """Play a test through the counterpart of an address, and write what it leaves.
 
     ``path``: the recording. ``confirm``: asks on the bridge; it may take its time. ``dry``: whether nothing is written
-    to the counterpart. An interrupt of the program aborts the test. Raises LiveError if the counterpart is not reached,
-    RecordingError if the recording is there already or cannot be written.
+    to the counterpart. ``planned``: by whose wishes legs end early. An interrupt of the program aborts the test. Raises
+    LiveError if the counterpart is not reached, RecordingError if the recording is there already or cannot be written.
     """
     return asyncio.run(
         _played(
@@ -63,6 +66,7 @@ def play_on_board(
             path,
             confirm=confirm,
             dry=dry,
+            planned=planned,
             slope_rpm_per_v=slope_rpm_per_v,
             told=told,
         )
@@ -78,6 +82,7 @@ async def _played(
     *,
     confirm: Callable[[str], bool],
     dry: bool,
+    planned: "PlannedTest | None",
     slope_rpm_per_v: float | None,
     told: Callable[[Event], None],
 ) -> tuple[Outcome, Left]:
@@ -99,6 +104,7 @@ async def _played(
             slope_rpm_per_v=slope_rpm_per_v,
             told=told,
             dry=dry,
+            is_enough=None if planned is None else enough_by(planned),
         )
         try:
             outcome = await test.run()

@@ -12,6 +12,7 @@ from shaftprint.live._block import Event
 from shaftprint.live._engine import LiveTest
 from shaftprint.live._outcome import Operator, Outcome
 from shaftprint.live._record import Left, LiveRecord
+from shaftprint.live._stop_rule import enough_by
 from shaftprint.live.counterparts._faults import LinkFaults, Spell
 from shaftprint.live.counterparts._simulated import SimulatedCounterpart, SimulatedShip
 from shaftprint.tug._like_stan_tug import like_stan_tug_1205, with_lever_of
@@ -19,6 +20,7 @@ from shaftprint.tug._stepped import SteppedTug
 
 if TYPE_CHECKING:
     from shaftprint.campaign._campaign import Campaign
+    from shaftprint.design.planned_test._planned_test import PlannedTest
     from shaftprint.live._envelope import Envelope
     from shaftprint.tug._tug import Tug
     from shaftprint.vessel._vessel import Vessel
@@ -63,13 +65,14 @@ def rehearse(
     faults: LinkFaults | None = None,
     tug: "Tug | None" = None,
     operator: Operator | None = None,
+    planned: "PlannedTest | None" = None,
     told: Callable[[Event], None] = _silent,
 ) -> tuple[Outcome, Left]:
     """Play a test on a simulated ship, and write what it leaves.
 
     ``path``: the recording. ``pace``: times the clock; None: as fast as it can be calculated. ``faults``: what goes
-    wrong. ``tug``: the truth; like the Stan Tug where not given. ``told``: is told what happens. Raises RecordingError
-    if the recording is there already or cannot be written.
+    wrong. ``tug``: the truth; like the Stan Tug where not given. ``planned``: by whose wishes legs end early. ``told``:
+    is told what happens. Raises RecordingError if the recording is there already or cannot be written.
     """
     ship = simulated_ship_of(vessel, campaign, seed=seed, faults=faults or LinkFaults(), tug=tug)
     counterpart = SimulatedCounterpart(ship, pace=pace)
@@ -83,6 +86,8 @@ def rehearse(
         operator=operator or Operator(),
         slope_rpm_per_v=_slope(vessel, campaign, tug),
         told=told,
+        waits=pace is None,
+        is_enough=None if planned is None else enough_by(planned),
     )
     try:
         outcome = asyncio.run(test.run())

@@ -10,6 +10,7 @@ import click
 from shaftprint.cli._command_group import NOT_REACHED
 from shaftprint.cli._live_options import (
     fingerprint_option,
+    plan_option,
     print_outcome,
     print_proof,
     recording_option,
@@ -21,6 +22,7 @@ from shaftprint.cli.output._fingerprint_file import fingerprint_at
 from shaftprint.late import late
 
 with late():
+    from shaftprint.design.files._plan_json import read_plan
     from shaftprint.live._envelope import envelope_of
     from shaftprint.live._play_on_board import play_on_board
     from shaftprint.live._proof import prove
@@ -37,6 +39,7 @@ PASSWORD = "SHAFTPRINT_LIVE_PASSWORD"  # noqa: S105  (the name of the variable, 
 @recording_option
 @fingerprint_option
 @slope_option
+@plan_option
 @click.option("--dry", is_flag=True, help="Look at the channels, record them, and write nothing to the counterpart.")
 @click.option("--user", help=f"Name of the user; the password is taken from {PASSWORD}, or asked for.")
 @click.option(
@@ -53,6 +56,7 @@ def command(
     output: Path,
     fingerprint: Path | None,
     slope_rpm_per_v: float | None,
+    place: Path | None,
     dry: bool,
     user: str | None,
     certificate: Path | None,
@@ -87,6 +91,7 @@ def command(
         output,
         access=access,
         dry=dry,
+        planned=None if place is None else read_plan(place),
         slope_rpm_per_v=trial.campaign.slope_rpm_per_v if slope_rpm_per_v is None else slope_rpm_per_v,
         confirm=lambda question: click.confirm(question, err=True),
         told=tell,

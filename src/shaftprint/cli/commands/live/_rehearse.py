@@ -9,6 +9,7 @@ import click
 from shaftprint.cli._command_group import NOT_REACHED
 from shaftprint.cli._live_options import (
     fingerprint_option,
+    plan_option,
     print_outcome,
     print_proof,
     recording_option,
@@ -20,6 +21,7 @@ from shaftprint.cli.output._fingerprint_file import fingerprint_at
 from shaftprint.late import late
 
 with late():
+    from shaftprint.design.files._plan_json import read_plan
     from shaftprint.live._envelope import envelope_of
     from shaftprint.live._proof import prove
     from shaftprint.live._rehearse import faults_named, rehearse
@@ -32,6 +34,7 @@ with late():
 @recording_option
 @fingerprint_option
 @slope_option
+@plan_option
 @click.option("--seed", type=click.IntRange(min=0), default=1, show_default=True, help="Seed of all randomness.")
 @click.option("--pace", type=click.FloatRange(0.1, 100.0), help="Times the clock; as fast as possible without it.")
 @click.option(
@@ -50,6 +53,7 @@ def command(
     output: Path,
     fingerprint: Path | None,
     slope_rpm_per_v: float | None,
+    place: Path | None,
     seed: int,
     pace: float | None,
     faults: tuple[str, ...],
@@ -75,7 +79,15 @@ def command(
     print_proof(proof)
     proof.expect_within()
     outcome, left = rehearse(
-        trial.vessel, trial.campaign, envelope, output, seed=seed, pace=pace, faults=wrong, told=tell
+        trial.vessel,
+        trial.campaign,
+        envelope,
+        output,
+        seed=seed,
+        pace=pace,
+        faults=wrong,
+        planned=None if place is None else read_plan(place),
+        told=tell,
     )
     print_outcome(outcome, left)
     if outcome.word != "played":
