@@ -31,6 +31,7 @@ HEAVY = (
 def test_commands_are_those_that_were_asked_for():
     assert set(shaftprint.helps) == {
         "demo",
+        "start",
         "sail",
         "inspect",
         "convert",

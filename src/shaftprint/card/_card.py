@@ -31,6 +31,16 @@ class Gauge:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
+class Lever:
+    """What the logger records of the lever, and which speed it asks for."""
+
+    unit: Literal["V", "mA", "%", "rpm", "counts"] = "V"
+    """Unit of the channel."""
+    pairs: tuple[tuple[float, float], ...] = ()
+    """Readings in that unit, each with the engine speed that it asks for [rpm]; none where nobody knows."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
 class Card:
     """What is known of one shaft line without asking the builder; what is None is derived or a documented default."""
 
@@ -79,7 +89,9 @@ class Card:
     gauge: Gauge = Gauge()
     """The torque gauge."""
     set_point_channel: str = "U_setpoint"
-    """Channel of the set-point voltage."""
+    """Channel of the set point."""
+    lever: Lever = Lever()
+    """What that channel shows."""
     sample_rate_hz: float = 2000.0
     """Samples a second of the logger [Hz]."""
 

@@ -1,5 +1,6 @@
 """A card as the text of a vessel file, in which every number that is not from the card says where it is from."""
 
+import math
 from collections.abc import Iterable
 
 from shaftprint.card._card import Card, Gauge, Pulses
@@ -25,6 +26,8 @@ from shaftprint.units import NM_PER_UNIT
 _DIGITS = 5
 # Longer numbers of pulses are refused as wheels.
 _MOST_DIGITS = 6
+# What generators put out, and loggers take in.
+_RANGE_V = 10.0
 
 
 def vessel_text(card: Card) -> str:
@@ -141,9 +144,7 @@ def _sensors(card: Card) -> Iterable[str]:
         *lines,
         *_gauge(card.gauge, full_scale(card)),
         "",
-        "[sensors.set_point]",
-        f"channel = {toml_string(card.set_point_channel)}",
-        'unit = "V"',
+        *_set_point(card),
         "",
         "[logger]",
         f"sample_rate_hz = {_number(card.sample_rate_hz)}",
@@ -180,6 +181,31 @@ def _gauge(gauge: Gauge, largest: Derived) -> tuple[str, ...]:
         "latency_s = 0.005  # usual for telemetry, +/- 0.002 s",
         _line("full_scale_nm", largest),
     )
+
+
+def _set_point(card: Card) -> tuple[str, ...]:
+    """Return the set point, with the volts of a campaign for one of its unit."""
+    unit, pairs = card.lever.unit, sorted(card.lever.pairs)
+    lines = ["[sensors.set_point]", f"channel = {toml_string(card.set_point_channel)}", f'unit = "{unit}"']
+    if unit != "V":
+        lines.append(f"v_per_unit = {_volts_per_unit(card)!r}  # volts of plan and campaign for one {unit}")
+    if pairs:
+        rows = ", ".join(f"[{_number(reading)}, {_number(rpm)}]" for reading, rpm in pairs)
+        lines.append(f"table_rpm = [{rows}]  # reading, and the engine speed that it asks for")
+    return tuple(lines)
+
+
+def _volts_per_unit(card: Card) -> float:
+    """Return a round number of volts for one of the lever's unit with which all of its range is within 10 V.
+
+    Raises SettingsError if nothing says how far counts go.
+    """
+    usual = {"mA": 20.0, "%": 100.0, "rpm": card.rated_speed_rpm}.get(card.lever.unit, 0.0)
+    highest = max([usual, *(abs(reading) for reading, _ in card.lever.pairs)])
+    if highest == 0.0:
+        raise SettingsError("lever in counts: expected readings with the speeds that they ask for, found none.")
+    decade = 10.0 ** math.floor(math.log10(_RANGE_V / highest))
+    return float(f"{max(step * decade for step in (1.0, 2.0, 5.0) if step * decade * highest <= _RANGE_V):.1g}")
 
 
 def _line(key: str, derived: Derived) -> str:

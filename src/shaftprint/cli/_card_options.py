@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from typing import Any, Literal, cast
 
@@ -10,7 +11,7 @@ import click
 from shaftprint.late import late
 
 with late():
-    from shaftprint.card._card import Card, Gauge, Pulses
+    from shaftprint.card._card import Card, Gauge, Lever, Pulses
 
 
 # Wider than any ship, and so that no power of them is beyond all numbers.
@@ -52,7 +53,7 @@ _FURTHER: Mapping[str, tuple[str, Any, str]] = {
         "Inertia from gauge to propeller, with its water [kg m2].",
     ),
     "water_density_kg_m3": ("--density", _POSITIVE, "Density of the water [kg/m3]; 1025, sea water."),
-    "set_point_channel": ("--set-point", click.STRING, "Channel of the set-point voltage; U_setpoint."),
+    "set_point_channel": ("--set-point", click.STRING, "Channel of the set point; U_setpoint."),
     "sample_rate_hz": ("--sample-rate", _POSITIVE, "Samples a second of the logger [Hz]; 2000."),
 }
 _GAUGE: Mapping[str, tuple[str, Any, str]] = {
@@ -61,6 +62,7 @@ _GAUGE: Mapping[str, tuple[str, Any, str]] = {
     "scale_nm_per_unit": ("--torque-scale", click.FLOAT, "Torque for one unit of it [N m]; needed for V."),
     "full_scale_nm": ("--full-scale-nm", _POSITIVE, "Largest torque that it passes on [N m]."),
 }
+_LEVER = ("V", "mA", "%", "rpm", "counts")
 _FLAGS = {
     "in_nozzle": ("--nozzle", "The propeller turns in a nozzle."),
     "is_underway": ("--underway", "The test is made underway, not at bollard pull."),
@@ -86,12 +88,54 @@ def pulses(text: str) -> Pulses:
     return Pulses(channel=channel, wheel=wheel)
 
 
+def lever_pair(text: str) -> tuple[float, float]:
+    """Return a reading and the engine speed that it asks for, of ``READING=RPM``.
+
+    Raises click.BadParameter if the text is something else.
+    """
+    reading, _, rpm = text.partition("=")
+    try:
+        pair = (float(reading), float(rpm))
+    except ValueError:
+        pair = (math.nan, math.nan)
+    if not all(map(math.isfinite, pair)):
+        raise click.BadParameter(f'expected READING=RPM such as 4=600 or -5=1184, found "{text}".')
+    return pair
+
+
+class _Parsed(click.ParamType):  # type: ignore[type-arg]
+    """What a function makes of the text; a default in text is read too."""
+
+    def __init__(self, name: str, read: Callable[[str], Any]) -> None:
+        self.name, self._read = name, read
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """Return what the text says."""
+        return self._read(value) if isinstance(value, str) else value
+
+
+PULSES, PAIR = _Parsed("CHANNEL=PULSES", pulses), _Parsed("READING=RPM", lever_pair)
+"""Types of the answers on a pick-up and on the lever."""
+
+
 def card_options(command: Callable[..., Any]) -> Callable[..., Any]:
     """Add what stands on a card; all of it reaches the command by the names of the fields of ``Card``."""
     for field, (option, help_text) in reversed(_PULSES.items()):
         command = click.option(
             option, field, type=pulses, metavar="CHANNEL=PULSES", multiple=True, default=(), help=help_text
         )(command)
+    command = click.option(
+        "--lever",
+        "lever_pairs",
+        type=lever_pair,
+        metavar="READING=RPM",
+        multiple=True,
+        default=(),
+        help="What the lever reads and the engine speed that it asks for, such as 4=600 and 20=1600; twice or more.",
+    )(command)
+    command = click.option(
+        "--lever-unit", "lever_unit", type=click.Choice(_LEVER), help="Unit of the set point's channel; V."
+    )(command)
     for field, (option, help_text) in reversed(_FLAGS.items()):
         command = click.option(option, field, is_flag=True, help=help_text)(command)
     gauge = {f"{_OF_GAUGE}{field}": words for field, words in _GAUGE.items()}
@@ -113,8 +157,43 @@ def card_of(said: Mapping[str, Any]) -> Card | None:
         missing.append("--ratio or --propeller-rpm")
     if missing:
         raise click.UsageError(f"A vessel file from a card needs {', '.join(missing)} too.")
+    lever = Lever(unit=stated.pop("lever_unit", "V"), pairs=stated.pop("lever_pairs", ()))
+    if len(lever.pairs) == 1:
+        raise click.UsageError("--lever is needed twice, at a low and at a high speed, such as 4=600 and 20=1600.")
     gauge = {field.removeprefix(_OF_GAUGE): stated.pop(field) for field in [*stated] if field.startswith(_OF_GAUGE)}
     if gauge.get("unit") == "V" and not gauge.get("scale_nm_per_unit"):
         raise click.UsageError("--torque-unit V needs --torque-scale, the torque for one volt [N m].")
     unit = cast(Literal["V", "N m", "kN m"], gauge.pop("unit", "N m"))
-    return Card(**stated, gauge=Gauge(unit=unit, **gauge))
+    return Card(**stated, lever=lever, gauge=Gauge(unit=unit, **gauge))
+
+
+def ask_card(said: Mapping[str, Any], ask: Callable[[str, Any, Any], Any]) -> dict[str, Any]:
+    """Return what was said of a card with the answers to what is needed and was not said.
+
+    ``said``: values by the names of the options. ``ask``: asks for one answer, with a text, its type and what is taken
+    where nothing is typed; None where an answer is needed.
+    """
+    answers = {field: value for field, value in said.items() if value not in (None, False, ())}
+    if "name" not in answers:
+        answers["name"] = ask("Name of ship and shaft line", click.STRING, "My ship, port")
+    for field, (_, kind, words) in _NEEDED.items():
+        if field not in answers:
+            answers[field] = ask(words.rstrip("."), kind, None)
+    if not set(_GEAR) & set(answers):
+        answers["gear_ratio"] = ask("Engine speed over propeller speed, the ratio of the gearbox", _POSITIVE, None)
+    if "engine_pulses" not in answers and "shaft_pulses" not in answers:
+        answers["engine_pulses"] = (ask("Pick-up on the engine, CHANNEL=PULSES a turn", PULSES, "PTM_e=1"),)
+    if f"{_OF_GAUGE}channel" not in answers:
+        answers[f"{_OF_GAUGE}channel"] = ask("Channel of the shaft torque", click.STRING, "M_s")
+    if f"{_OF_GAUGE}unit" not in answers:
+        answers[f"{_OF_GAUGE}unit"] = ask("Its unit", click.Choice(["V", "N m", "kN m"]), "N m")
+    if answers[f"{_OF_GAUGE}unit"] == "V" and f"{_OF_GAUGE}scale_nm_per_unit" not in answers:
+        answers[f"{_OF_GAUGE}scale_nm_per_unit"] = ask("Torque for one volt [N m]", click.FLOAT, None)
+    if "set_point_channel" not in answers:
+        answers["set_point_channel"] = ask("Channel of the lever's set point", click.STRING, "U_setpoint")
+    unit = answers["lever_unit"] = answers.get("lever_unit") or ask("Its unit", click.Choice(_LEVER), "V")
+    if "lever_pairs" not in answers and unit != "rpm":
+        low = ask(f"A low reading of it and the engine speed that it asks for, {unit}=rpm such as 4=600", PAIR, None)
+        high = ask(f"A high reading and its engine speed, {unit}=rpm such as 20=1600", PAIR, None)
+        answers["lever_pairs"] = (low, high)
+    return answers

@@ -17,6 +17,7 @@ from shaftprint.spelling import meant
 # asking every command for it would import them all: 0.26 s instead of 0.07. A test holds both against each other.
 SECTIONS = {
     "Begin": {
+        "start": "Say what lies in a folder and what comes next; ask for a ship's card where there is none.",
         "demo": "Simulate the Stan Tug 1205 and identify it from its recording.",
     },
     "Plan a test": {

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
-from shaftprint.cli._terminal import echo, say
+from pathlib import Path
+
+from shaftprint.cli._terminal import answer, echo, say
+from shaftprint.cli.output._file_to_write import expect_free
 from shaftprint.cli.output._tables import print_table
-from shaftprint.errors import SignalError
+from shaftprint.errors import SettingsError, SignalError
+from shaftprint.files import write_bytes
 from shaftprint.late import late
 from shaftprint.plain_table import Table, numbers, texts
 
 with late():
     from shaftprint.campaign import _excitations
     from shaftprint.campaign._campaign import Campaign
-    from shaftprint.campaign._file_text import tests_text
+    from shaftprint.campaign._file_text import campaign_text, tests_text
     from shaftprint.signals.excitation._found_test import FoundTest, common_shift_s
     from shaftprint.signals.excitation._proposed_campaign import proposed_campaign
 
@@ -38,6 +42,21 @@ def print_found_tests(found: tuple[FoundTest, ...], campaign: Campaign) -> None:
     for line in text.splitlines():
         echo(line)
     echo()
+
+
+def write_proposal(found: tuple[FoundTest, ...], campaign: Campaign, file: Path) -> None:
+    """Write a campaign with its tests where the recorded set point shows them.
+
+    ``found``: where they are. ``campaign``: what was asked. ``file``: the campaign file, which must not exist yet.
+    Raises SignalError if the set point shows too little of them.
+    """
+    expect_free(file, force=False)
+    shift_s = common_shift_s(found)
+    moved = f"; all of them {abs(shift_s):.2f} s {'later' if shift_s > 0.0 else 'earlier'}" if shift_s else ""
+    remarks = f"{campaign.name}, with its tests at the times that the recorded set point shows{moved}."
+    text = campaign_text(proposed_campaign(found, campaign), remarks=remarks)
+    write_bytes(file, text.encode(), noun="campaign file", error=SettingsError)
+    answer(f"{file}: {remarks}\n")
 
 
 def _row(test: FoundTest) -> tuple[str, ...]:

@@ -220,6 +220,7 @@ def _noise(stated: _Stated, ship: AssumedShip) -> tuple[Mapping[float, NoiseLeve
 def _line(stated: _Stated) -> SetPointLine:
     known = stated.recorded.line if stated.recorded is not None else None
     known = line_of_fingerprint(stated.ship.first_test) if stated.ship.first_test is not None else known
+    known = _line_of_sensor(stated.vessel) if known is None else known
     slope, offset_v = stated.ship.slope_rpm_per_v, stated.ship.offset_v
     slope = slope if slope is not None else getattr(known, "slope_rpm_per_v", None)
     offset_v = offset_v if offset_v is not None else getattr(known, "offset_v", None)
@@ -228,11 +229,19 @@ def _line(stated: _Stated) -> SetPointLine:
         limited = any(limit.name == "set-point" for limit in stated.limits)
         raise RequestError(
             "expected --rpm-per-volt and --offset, what one volt of set point asks for and the voltage at "
-            f"{point.engine_speed_rpm:g} rpm, such as --rpm-per-volt -251 --offset -5; or a first test that has "
-            "measured them, with --after or --noise-from"
+            f"{point.engine_speed_rpm:g} rpm, such as --rpm-per-volt -251 --offset -5; or table_rpm of "
+            "sensors.set_point in the vessel file; or a first test that has measured them, with --after or --noise-from"
             f"{'' if limited else f'; and {_SET_POINT_LIMIT}'}."
         )
     return SetPointLine(slope_rpm_per_v=slope, offset_v=offset_v)
+
+
+def _line_of_sensor(vessel: Vessel) -> SetPointLine | None:
+    """Return the line that the vessel file states of the lever about its working point; None where it states none."""
+    sensor = vessel.sensors.set_point
+    offset_v = sensor.volts_for(vessel.working_point.engine_speed_rpm)
+    slope = None if offset_v is None else sensor.slope_rpm_per_v(offset_v)
+    return None if offset_v is None or slope is None else SetPointLine(slope_rpm_per_v=slope, offset_v=offset_v)
 
 
 def _limits(stated: _Stated, line: SetPointLine) -> Limits:

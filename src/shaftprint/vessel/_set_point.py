@@ -19,11 +19,11 @@ _AROUND_SPEED = 4.0
 _BESIDE = 0.02
 
 
-SetPointUnit: TypeAlias = Annotated[Literal["V", "mA", "%", "rpm"], PLAIN_UNIT]
+SetPointUnit: TypeAlias = Annotated[Literal["V", "mA", "%", "rpm", "counts"], PLAIN_UNIT]
 
 
 class SetPointSensor(Settings):
-    """What asks the governor for a speed: a voltage, a current, a percentage, or the demand itself in rpm.
+    """What asks the governor for a speed: a voltage, a current, a percentage, counts, or the demand itself in rpm.
 
     Campaigns are in volts: ``U = v_per_unit * reading + v_at_zero``.
     """
@@ -116,6 +116,22 @@ class SetPointSensor(Settings):
         pairs = self.table_rpm
         return pairs is None or pairs[0][0] <= float(self.reading(volts)) <= pairs[-1][0]
 
+    def slope_rpm_per_v(self, volts: float) -> float | None:
+        """Return the engine speed that one volt more asks for at a set point [rpm/V], where table or unit say it."""
+        if self.table_rpm is None:
+            return 1.0 / self.slope_v if self.unit == "rpm" else None
+        shown, rpm = np.array(self.table_rpm).T
+        about, beside = float(self.reading(volts)), _BESIDE * float(np.ptp(shown))
+        lower, upper = _along(np.array([about - beside, about + beside]), shown, rpm)
+        return float(upper - lower) / (2.0 * beside) / self.slope_v
+
+    def volts_for(self, speed_rpm: float) -> float | None:
+        """Return the set point that asks for an engine speed [V], where table or unit say it."""
+        if self.table_rpm is None:
+            return float(self.volts(speed_rpm)) if self.unit == "rpm" else None
+        shown, rpm = np.array(sorted(self.table_rpm, key=lambda pair: pair[1])).T
+        return float(self.volts(_along(np.array(speed_rpm), rpm, shown)))
+
     def asked_rpm(self, volts: float) -> float | None:
         """Return the engine speed that a set point [V] asks for [rpm], where table or unit say it."""
         reading = self.reading(volts)
@@ -128,6 +144,8 @@ class SetPointSensor(Settings):
 
         ``reading``: what the channel shows, in its unit. ``speed_rpm``: engine speed of the working point [rpm].
         """
+        if self.unit == "counts":
+            return None
         reach = _REACH | {"rpm": (speed_rpm / _AROUND_SPEED, speed_rpm * _AROUND_SPEED)}
         fitting = [unit for unit, (lowest, highest) in reach.items() if lowest <= reading <= highest]
         return None if self.unit in fitting or not fitting else fitting[0]

@@ -8,6 +8,7 @@ from pathlib import Path
 import click
 
 from shaftprint.choices import NATIVE_ENDINGS
+from shaftprint.cli._next import print_next
 from shaftprint.cli._options import cut_options, hints_of, output_options, reading_options
 from shaftprint.cli._terminal import answer, echo
 from shaftprint.cli.output._file_to_write import expect_no_input
@@ -88,6 +89,7 @@ def command(
             for name, reason in left_out.items():
                 echo(f"{source}: left out {name}: {reason}", err=True)
             answer(f"{target}: {len(channels)} channels of {source}.")
+    print_next("inspect", targets[0])
 
 
 def _only(recording: Recording, chosen: tuple[str, ...]) -> Recording:

@@ -8,9 +8,10 @@ from pathlib import Path
 
 import click
 
-from shaftprint.cli._found_tests import print_found_tests
+from shaftprint.cli._found_tests import print_found_tests, write_proposal
 from shaftprint.cli._inspect_headline import headline, lines_of, lost_parts
 from shaftprint.cli._limit_uses import print_limit_uses
+from shaftprint.cli._next import free, print_next
 from shaftprint.cli._options import NAMES, hints_of, reading_options
 from shaftprint.cli._signal_tables import print_lines, print_signals
 from shaftprint.cli._terminal import answer, echo, print_findings, say
@@ -56,9 +57,17 @@ _MOST_STRIPS = 12
 @click.argument("recording", type=click.Path(path_type=Path))
 @click.option("--vessel", help=f"Vessel file, {NAMES} stan-tug-1205: says what the channels are.")
 @click.option("--campaign", help=f"Campaign file, {NAMES} thesis: says what was asked of the ship.")
+@click.option(
+    "-o",
+    "--output",
+    type=click.Path(path_type=Path),
+    help="Campaign file to write with --campaign: its tests where the recorded set point shows them.",
+)
 @reading_options
 @no_progress_option
-def command(recording: Path, vessel: str | None, campaign: str | None, no_progress: bool, **said: object) -> None:
+def command(
+    recording: Path, vessel: str | None, campaign: str | None, output: Path | None, no_progress: bool, **said: object
+) -> None:
     """Show what is in a recording and whether it is good enough.
 
     Without a vessel file, the channels with rates, spans and levels, and a proposal for its sensors. With one, what in
@@ -67,6 +76,8 @@ def command(recording: Path, vessel: str | None, campaign: str | None, no_progre
     """
     if campaign is not None and vessel is None:
         raise click.UsageError("--campaign needs --vessel, which says what each channel is.")
+    if output is not None and campaign is None:
+        raise click.UsageError("--output is the campaign of --campaign as the recording shows it: name that too.")
     ship = None if vessel is None else load_vessel(vessel)
     planned = None if campaign is None else load_campaign(campaign)
     if ship is not None and vessel is not None:
@@ -78,6 +89,8 @@ def command(recording: Path, vessel: str | None, campaign: str | None, no_progre
         levels = _levels(watch, hidden=no_progress)
         if ship is None or readings is None:
             _print_proposal(opened, _print_channels(opened, levels), clocks)
+            # a comment of the vessel file into which the proposal is pasted
+            print_next("new", "vessel", free("vessel.toml"), label="# Next:")
             return
         test = None if planned is None else _tested(opened, ship, planned, readings, clocks, hidden=no_progress)
         reports = channel_reports(readings, levels)
@@ -85,8 +98,25 @@ def command(recording: Path, vessel: str | None, campaign: str | None, no_progre
         _print_channels(opened, levels)
         print_tables([clock_map_table(clocks)])
         _print_sensors(reports)
+        if test is not None and output is not None:
+            write_proposal(test.tests, test.planned, output)
         if test is not None:
             _print_test(test)
+    _print_next((recording, "--vessel", vessel), campaign, output, test)
+    if test is not None and test.refusal is not None:
+        raise test.refusal
+
+
+def _print_next(files: tuple[object, ...], campaign: str | None, output: Path | None, test: _Test | None) -> None:
+    """Print the next command; none where the recording can only be made anew."""
+    if test is None or campaign is None:
+        print_next("new", "campaign", free("campaign.toml"), "--from", *files)
+    elif output is not None:
+        print_next("inspect", *files, "--campaign", output)
+    elif any(one.differences for one in test.tests):
+        print_next("inspect", *files, "--campaign", campaign, "-o", free("campaign-as-recorded.toml"))
+    elif test.refusal is None:
+        print_next("identify", *files, "--campaign", campaign, "-o", free("result"))
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -305,8 +335,6 @@ def _print_test(test: _Test) -> None:
     if test.tests:
         print_found_tests(test.tests, test.planned)
     if test.signals is None or test.spectra is None:
-        if test.refusal is not None:
-            raise test.refusal
         return
     print_signals(test.signals)
     if test.legs:

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import click
 
+from shaftprint.cli._next import print_next
 from shaftprint.cli._options import cut_options
 from shaftprint.cli._terminal import answer, echo
 from shaftprint.cli.output._file_to_write import expect_no_input
@@ -42,3 +43,4 @@ def command(
         for channel in recording.channels.values():
             echo(f"{channel.name}: {channel.count} samples, {channel.duration_s:.1f} s")
     answer(output)
+    print_next("inspect", output)

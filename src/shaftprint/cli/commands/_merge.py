@@ -6,6 +6,7 @@ from pathlib import Path
 
 import click
 
+from shaftprint.cli._next import print_next
 from shaftprint.cli._options import NAMES
 from shaftprint.cli._terminal import answer
 from shaftprint.cli.output._file_to_write import expect_no_input
@@ -86,6 +87,7 @@ def command(
         print_tables([clock_map_table(logger_clocks(both))])
         write_recording(output, both.channels.values(), attributes=both.attributes, began=both.began, overwrite=force)
     answer(output)
+    print_next("inspect", output)
 
 
 def _one_clock(other: Recording) -> Alignment:

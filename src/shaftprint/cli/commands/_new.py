@@ -9,6 +9,7 @@ from typing import Literal
 import click
 
 from shaftprint.cli._card_options import card_of, card_options
+from shaftprint.cli._next import plan_words, print_next
 from shaftprint.cli._options import NAMES
 from shaftprint.cli._recorded_campaign import write_recorded_campaign
 from shaftprint.cli._terminal import answer, echo
@@ -97,15 +98,20 @@ def command(
                 "--from makes a campaign file of a recording; write `shaftprint new campaign` alone."
             )
         write_recorded_campaign(recorded, vessel, path)
+        print_next("inspect", recorded, "--vessel", vessel, "--campaign", path)
         return
     if recorded is not None or vessel is not None:
         raise click.UsageError("--from needs --vessel, which says what is in the recording, and --vessel --from.")
     if card is not None:
         print_disagreements(write_vessel(card, path), str(path))
         answer(f"{path}: a vessel file from the card; its comments say what was derived and what is usual only.")
+        has_lever = bool(card.lever.pairs) or card.lever.unit == "rpm"
+        print_next(*plan_words(path, has_lever=has_lever, rated_rpm=card.rated_speed_rpm))
         return
     write_template(kind, path, shipped=test)
     answer(f"{path}: {_CALLED[kind]} to fill in." if test is None else f"{path}: {TESTS[test]}, for the Stan Tug 1205.")
+    if kind == "vessel":
+        print_next("inertia", path)
 
 
 def _path(file: Path | None, output: Path | None) -> Path:

@@ -14,6 +14,7 @@ from shaftprint.cli._command_group import NOT_REACHED
 from shaftprint.cli._drive_options import drive_option, expect_not_given, is_given
 from shaftprint.cli._drive_plan import plan_on_the_bench
 from shaftprint.cli._known_values import by_name, known_options, named_value
+from shaftprint.cli._next import free, print_next
 from shaftprint.cli._options import DEFAULT_HELP, OWN_FILE_HELP, vessel_option
 from shaftprint.cli._plan_options import limit_of, seconds_of, shares_of, wish_from, wish_of
 from shaftprint.cli._plan_tables import print_planned_test
@@ -25,6 +26,7 @@ from shaftprint.late import late
 
 with late():
     from shaftprint.catalogue._own_structure import TypedName
+    from shaftprint.design.files import _plan_folder
     from shaftprint.design.files._plan_folder import write_plan_files
     from shaftprint.design.inputs._stated_limits import StatedLimit
     from shaftprint.design.inputs._wish import Wish
@@ -202,6 +204,8 @@ def command(
         write_plan_files(planned, folder, rate_hz=rate_hz)
         render_plan(folder, planned)
     print_planned_test(planned, results.output)
+    # on board the recording of the real test takes the place of the simulated one
+    print_next("sail", vessel, results.output / _plan_folder.CAMPAIGN, "-o", free("sailed.nc"), label="Next, tried:")
     if wish.names and not planned.plan.is_enough:
         context.exit(NOT_REACHED)
 

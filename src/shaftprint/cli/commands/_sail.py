@@ -8,6 +8,7 @@ from pathlib import Path
 import click
 
 from shaftprint.choices import MESSAGES, SERVICE_TROUBLES
+from shaftprint.cli._next import print_next
 from shaftprint.cli._options import output_options, starboard_option
 from shaftprint.cli._sail_both import sail_both_lines
 from shaftprint.cli._terminal import answer, echo
@@ -134,6 +135,7 @@ def command(
         echo(f"{output}: {remark}", err=True)
     answer(f"{output}: the raw recording of {trial.campaign.duration_s:g} s.")
     answer(f"{truth_path(output)}: what was put into it.")
+    print_next("inspect", output, "--vessel", vessel, "--campaign", campaign)
 
 
 def _work(

@@ -1,0 +1,53 @@
+"""The last line of a command: the next sensible command, with the names of the files that were just used or made."""
+
+from __future__ import annotations
+
+import os
+import shlex
+import subprocess
+from pathlib import Path
+
+from shaftprint.cli._terminal import echo
+from shaftprint.cli.output._json import give
+
+FIRST_LENGTH = "12min"
+"""Length of a test that is proposed where nobody has said one."""
+
+
+def command_line(*words: object) -> str:
+    """Return a command of this program as it is typed into the shell of this computer."""
+    typed = ["shaftprint", *map(str, words)]
+    return subprocess.list2cmdline(typed) if os.name == "nt" else shlex.join(typed)
+
+
+def print_next(*words: object, label: str = "Next:") -> None:
+    """Print the next command.
+
+    ``words``: the command with its options. ``label``: what stands before it.
+    """
+    line = command_line(*words)
+    give("next", line)
+    echo(f"{label:<12} {line}")
+
+
+def free(name: str) -> Path:
+    """Return a file or folder of a name, with a number where there is one already."""
+    path, number = Path(name), 2
+    while path.exists():
+        path, number = Path(name).with_name(f"{Path(name).stem}-{number}{Path(name).suffix}"), number + 1
+    return path
+
+
+def plan_words(vessel: object, *, has_lever: bool, rated_rpm: float | None, after: object = None) -> tuple[object, ...]:
+    """Return the words of ``plan`` for a ship.
+
+    ``vessel``: its vessel file. ``has_lever``: whether the file says which speed the lever asks for; otherwise the
+    command leaves room for it. ``rated_rpm``: rated speed of the engine [rpm]; None where there is none. ``after``:
+    the result of a first test.
+    """
+    # small beside the speed, so that the line stays linear, and large beside its noise
+    reach = "100rpm" if rated_rpm is None else f"{round(0.06 * rated_rpm, -1):.0f}rpm"
+    lever = () if has_lever or after is not None else ("--rpm-per-volt", "RPM", "--offset", "VOLT")
+    first = () if after is None else ("--after", after)
+    limits = ("--within", FIRST_LENGTH, "--limit", f"set-point={reach}")
+    return ("plan", "--vessel", vessel, *first, *limits, *lever, "-o", free("next-plan" if after else "plan"))

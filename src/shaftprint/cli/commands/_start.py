@@ -1,0 +1,127 @@
+"""``shaftprint start``: what lies in a folder, and what comes next."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import click
+
+from shaftprint.cli._card_options import ask_card, card_of, card_options
+from shaftprint.cli._lying_files import LyingFiles, lying_files
+from shaftprint.cli._next import free, plan_words, print_next
+from shaftprint.cli._terminal import answer, print_findings
+from shaftprint.cli._vessel_file import print_disagreements
+from shaftprint.cli.output._fingerprint_file import fingerprint_at
+from shaftprint.errors import ShaftprintError
+from shaftprint.late import late
+
+with late():
+    from shaftprint.campaign._campaign import load_campaign
+    from shaftprint.card._write import write_vessel
+    from shaftprint.vessel._vessel import load_vessel
+
+
+@click.command("start")
+@click.argument("folder", type=click.Path(path_type=Path, file_okay=False, exists=True), default=Path())
+@click.option("--yes", is_flag=True, help="Ask nothing: what is not stated is derived or usual.")
+@card_options
+def command(folder: Path, *, yes: bool, **said: object) -> None:
+    """Say what lies in a folder and what comes next; ask for a ship's card where there is none.
+
+    FOLDER is where you are if none is named. Where there is no vessel file yet, the card of the ship is asked for step
+    by step and vessel.toml is written; options answer beforehand, as those of `shaftprint new vessel`. From then on
+    each command ends with the next one.
+    """
+    lying = lying_files(folder)
+    _print(lying)
+    vessel = lying.vessels[-1] if lying.vessels else None
+    if vessel is None:
+        vessel = _written(folder, said, yes=yes)
+    elif any(value not in (None, False, ()) for value in said.values()):
+        answer(f"{vessel} is there: what was stated of the card was not used. `shaftprint new vessel` writes another.")
+    for words in _next(vessel, lying):
+        print_next(*words)
+
+
+def _print(lying: LyingFiles) -> None:
+    """Print what lies there, and which of several is taken."""
+    kinds: dict[str, tuple[Path, ...]] = {
+        "Vessel file": lying.vessels,
+        "Campaign": lying.campaigns,
+        "Recording": lying.recordings,
+        "Result": lying.results,
+    }
+    sentences = []
+    for kind, paths in kinds.items():
+        if paths:
+            before = f"; older: {', '.join(map(str, paths[-2::-1]))}" if len(paths) > 1 else ""
+            sentences.append(f"{kind}: {paths[-1]}{before}.")
+        else:
+            sentences.append(f"{kind}: none.")
+    if lying.others:
+        sentences.append(f"Not used: {', '.join(str(path) for path in lying.others)}.")
+    print_findings("What lies here", sentences, is_answer=True)
+
+
+def _written(folder: Path, said: dict[str, object], *, yes: bool) -> Path:
+    """Return the vessel file that is written from the card.
+
+    Raises click.UsageError if the card cannot be asked for and lacks what cannot be derived.
+    """
+    if not yes:
+        said = ask_card(said, _prompt)
+    card = card_of(said)
+    if card is None:
+        raise click.UsageError("--yes needs the ship's card by options, such as --power-kw 221; see --help.")
+    path = free(str(folder / "vessel.toml"))
+    print_disagreements(write_vessel(card, path), str(path))
+    answer(f"{path}: a vessel file from the card; its comments say what was derived and what is usual only.")
+    return path
+
+
+def _prompt(text: str, kind: Any, default: object) -> object:
+    """Ask for one answer on the error output, so that the output holds what was found alone."""
+    return click.prompt(text, type=kind, default=default, err=True)
+
+
+def _next(vessel: Path, lying: LyingFiles) -> list[tuple[object, ...]]:
+    """Return the next commands, the first to be done first."""
+    ship = load_vessel(vessel)
+    rated_rpm = None if ship.engine is None else ship.engine.rated_speed_rpm
+    sensor = ship.sensors.set_point
+    has_lever = sensor.volts_for(ship.working_point.engine_speed_rpm) is not None
+    plan = partial(plan_words, vessel, has_lever=has_lever, rated_rpm=rated_rpm)
+    if not lying.recordings:
+        if not lying.campaigns:
+            return [plan()]
+        return [("sail", vessel, lying.campaigns[-1], "-o", free("sailed.nc"))]
+    recording = lying.recordings[-1]
+    files = (recording, "--vessel", vessel)
+    if not lying.campaigns:
+        return [("new", "campaign", free("campaign.toml"), "--from", *files)]
+    # a campaign that was written after the recording is that of the next test
+    written = recording.stat().st_mtime
+    campaign = [lying.campaigns[0], *(one for one in lying.campaigns if one.stat().st_mtime <= written)][-1]
+    if not lying.results or lying.results[-1].stat().st_mtime < recording.stat().st_mtime:
+        files = (*files, "--campaign", campaign)
+        return [("inspect", *files), ("identify", *files, "-o", free("result"))]
+    return _after(lying.results[-1], files, campaign, plan)
+
+
+def _after(
+    result: Path, files: tuple[object, ...], campaign: Path, plan: Callable[..., tuple[object, ...]]
+) -> list[tuple[object, ...]]:
+    """Return what comes after a result."""
+    try:
+        fingerprint = fingerprint_at(result)
+    except ShaftprintError:
+        return [("show", result)]
+    if not fingerprint.verdict.trustworthy:
+        return [("inspect", *files, "--campaign", campaign)]
+    asked = load_campaign(campaign)
+    if asked.staircases or asked.chirps:
+        return [("validate", *files, "--campaign", campaign, "--fingerprint", result), plan(after=result)]
+    return [plan(after=result)]

@@ -1,0 +1,117 @@
+"""``shaftprint start``, and the next command that each command ends with."""
+
+import os
+import shlex
+
+import pytest
+
+from shaftprint.cli._next import free
+from shaftprint.errors import SettingsError
+from shaftprint.settings import kind_of_file
+from shaftprint.vessel import load_vessel
+
+CARD = (
+    *("--power-kw", 1325, "--rated-rpm", 1600, "--cylinders", 12, "--diameter-m", 2.1),
+    *("--blades", 4, "--pitch-ratio", 0.95, "--ratio", 5.2),
+)
+TYPED = "Kiel Tug, port\n1325\n1600\n12\n2.1\n4\n0.95\n5.2\n\n\nN m\n\nmA\n4=500\n20=1650\n"
+
+
+def following(result):
+    """Return the words of the next command, the last line that names one."""
+    assert result.exit_code == 0, result.output
+    return shlex.split(result.output.rstrip().splitlines()[-1].partition("shaftprint ")[2])
+
+
+@pytest.fixture
+def here(tmp_path, monkeypatch):
+    """An empty folder to be in."""
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def test_a_card_is_asked_for_step_by_step(run, here):
+    words = following(run("start", input=TYPED))
+    assert words[:3] == ["plan", "--vessel", "vessel.toml"]
+    vessel = load_vessel(here / "vessel.toml")
+    assert (vessel.name, vessel.gearbox.ratio, vessel.engine.rated_power_kw) == ("Kiel Tug, port", 5.2, 1325.0)
+    lever = vessel.sensors.set_point
+    # half of 16 mA more asks for half of 1150 rpm more; 20 mA are 10 V of the campaign
+    assert lever.asked_rpm(lever.volts(12.0)) == pytest.approx(1075.0)
+    assert lever.slope_rpm_per_v(6.0) == pytest.approx(1150.0 / 16.0 / 0.5)
+    assert lever.volts_for(1075.0) == pytest.approx(6.0)
+    # nothing of the lever is left to say
+    assert "--rpm-per-volt" not in words
+
+
+@pytest.mark.parametrize(
+    ("unit", "pairs", "slope"),
+    [
+        ("V", ("-3=600", "-7=1600"), -250.0),
+        ("%", ("0=600", "100=1600"), 10.0 / 0.1),
+        ("counts", ("0=600", "65535=1600"), 1000.0 / 65535 / 1e-4),
+        ("rpm", (), 1.0 / 0.005),
+    ],
+)
+def test_a_lever_in_any_unit_says_which_speed_it_asks_for(run, here, unit, pairs, slope):
+    lever = ("--lever-unit", unit, *(word for pair in pairs for word in ("--lever", pair)))
+    assert "--rpm-per-volt" not in following(run("start", "--yes", *CARD, *lever))
+    sensor = load_vessel(here / "vessel.toml").sensors.set_point
+    assert sensor.slope_rpm_per_v(sensor.volts_for(1067.0)) == pytest.approx(slope)
+    assert sensor.asked_rpm(sensor.volts_for(1067.0)) == pytest.approx(1067.0)
+
+
+def test_counts_without_a_speed_are_asked_for(run, here):
+    refused = run("new", "vessel", "mine.toml", *CARD, "--lever-unit", "counts")
+    assert refused.exit_code == 1
+    assert "lever in counts: expected readings with the speeds that they ask for" in refused.stderr
+
+
+def test_a_card_that_lacks_something_is_named_and_nothing_is_asked(run, here):
+    refused = run("start", "--yes", "--power-kw", 221)
+    assert refused.exit_code == 2
+    assert "--rated-rpm" in refused.stderr
+    assert not list(here.iterdir())
+
+
+def test_the_files_that_lie_there_are_known_by_what_is_in_them(run, here, recording):
+    assert following(run("start", "--yes", *CARD))[0] == "plan"
+    run("new", "campaign", "a.toml", "--test", "short")
+    (here / "notes.txt").write_text("speed 1184\n")
+    words = following(run("start"))
+    assert words[:3] == ["sail", "vessel.toml", "a.toml"]
+    (here / "log.nc").symlink_to(recording)
+    said = run("start")
+    assert following(said) == ["identify", "log.nc", "--vessel", "vessel.toml", "--campaign", "a.toml", "-o", "result"]
+    assert "Recording: log.nc." in said.output
+    assert "Not used: notes.txt." in said.output
+
+
+def test_the_campaign_of_a_recording_is_not_one_that_was_written_after_it(run, here, recording):
+    run("start", "--yes", *CARD)
+    for name, at in (("first.toml", 1e9), ("later.toml", 3e9)):
+        run("new", "campaign", name, "--test", "short")
+        os.utime(here / name, (at, at))
+    (here / "log.nc").write_bytes(recording.read_bytes())
+    os.utime(here / "log.nc", (2e9, 2e9))
+    assert "first.toml" in following(run("start"))
+
+
+def test_a_name_that_is_taken_gets_a_number(here):
+    (here / "plan").mkdir()
+    (here / "plan-2").mkdir()
+    assert str(free("plan")) == "plan-3"
+    assert str(free("log.nc")) == "log.nc"
+
+
+def test_a_campaign_where_a_vessel_is_asked_for_is_one_sentence(run, here):
+    run("new", "campaign", "test.toml")
+    run("new", "vessel", "ship.toml")
+    assert (kind_of_file(here / "test.toml"), kind_of_file(here / "ship.toml")) == ("campaign", "vessel")
+    with pytest.raises(SettingsError) as caught:
+        load_vessel(here / "test.toml")
+    assert str(caught.value).startswith(f"{here / 'test.toml'}: expected a vessel file, found a campaign file; ")
+    assert len(str(caught.value).splitlines()) == 1
+    swapped = run("predict", "--vessel", "test.toml", "--campaign", "ship.toml")
+    assert swapped.exit_code == 1
+    assert "expected a vessel file, found a campaign file" in swapped.stderr
