@@ -47,8 +47,16 @@ def test_an_unchanged_line_and_a_line_whose_governor_was_exchanged_have_no_drift
     changed = years()
     event = ("--event", "governor-changed=2023-09-01", "--time-zone", "Europe/Amsterdam")
     result = run("drift", *changed, *event)
-    assert result.output.startswith("Has the ship changed? No change beyond chance")
+    assert result.output.startswith("Has the ship changed? No change but what was noted")
     assert "governor" in result.output.partition("2023-09-01")[2].splitlines()[0]
+
+
+def test_the_exit_code_says_what_was_found_where_it_is_asked_for(run, years):
+    assert run("drift", *years()).exit_code == 0
+    changed = run("drift", *years(), "--exit-code", "--json")
+    assert changed.exit_code == 4
+    assert json.loads(changed.stdout)["answer"][0].startswith("Has the ship changed? Yes")
+    assert run("drift", *years(lower_from=9), "--exit-code").exit_code == 0
 
 
 def test_a_step_goes_on_to_no_limit(run, years):
@@ -106,7 +114,7 @@ def test_a_ship_of_the_store_is_watched_with_what_was_noted_as_done_to_it(run, y
     assert "Yes: a lower proportional gain of the governor, by 20.0" in " ".join(found.output.split())
     exchanged = ("governor-changed", "--at", "2023-09-01T08:00+02:00")
     assert run("store", "event", "Meander", *exchanged, *store).exit_code == 0
-    assert run("drift", "Meander", *store).output.startswith("Has the ship changed? No change beyond chance")
+    assert run("drift", "Meander", *store).output.startswith("Has the ship changed? No change but what was noted")
     missing = run("drift", "Maas", *store)
     assert missing.exit_code == 1
     assert "expected the name or IMO number of a ship in the store, found none" in missing.stderr

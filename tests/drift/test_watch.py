@@ -66,6 +66,69 @@ def test_a_step_is_found_with_its_size_and_the_test_at_which_it_began(base):
     assert "between 2024-07-01 and 2024-09-30" in sentence
 
 
+def test_what_was_noted_is_confirmed_with_its_size(base):
+    """A governor that somebody set 5 % lower and noted is no alarm, and no "no change" either."""
+    tests = [made(place, base, **({P_ACTION: 0.95} if place >= 3 else {})) for place in range(6)]
+    noted = Event(kind="governor-changed", at=FIRST + 2.5 * QUARTER)
+    history, finding = looked_at(tests, [noted])
+    assert finding.drifts == ()
+    ((event, changes),) = [(one.event, one.changes) for one in finding.noted]
+    assert event == noted
+    assert [one.cause.name for one in changes] == ["proportional gain of the governor"]
+    assert changes[0].size == pytest.approx(-0.05, abs=1e-6)
+    # the same deviation as of a step whose time nobody knew, beside the levels of both times
+    _, alone = looked_at(tests)
+    assert changes[0].std == pytest.approx(alone.drifts[0].best.std, rel=1e-6)
+    first, second = watch_sentences(finding, history)
+    assert first == "No change but what was noted in 6 tests from 2024-01-01 to 2025-04-01."
+    day = f"{noted.at:%Y-%m-%d}"
+    assert second.startswith(
+        f"Since the change of the governor on {day}, as noted: a lower proportional gain of the governor, by 5.0"
+    )
+
+
+def test_what_was_noted_and_did_nothing_is_said(base):
+    history, finding = looked_at(
+        [made(place, base) for place in range(5)], [Event(kind="injectors-changed", at=FIRST + 1.5 * QUARTER)]
+    )
+    assert [one.changes for one in finding.noted] == [()]
+    assert "nothing is other than before by more than chance" in watch_sentences(finding, history)[1]
+
+
+def test_a_docking_takes_fouling_off_and_what_is_left_is_said(base):
+    """Fouling of 4 % a year, of which the dock takes all that was there after two and a half years."""
+    dock = 10
+    fouled = [0.04 * place / 4.0 - (0.1 if place >= dock else 0.0) for place in range(16)]
+    tests = [made(place, base, K_Q=float(np.exp(size))) for place, size in enumerate(fouled)]
+    history, finding = looked_at(tests, [Event(kind="docking", at=FIRST + (dock - 0.5) * QUARTER)])
+    (drift,) = finding.drifts
+    assert (drift.best.cause.name, drift.best.shape, drift.best.is_expected) == ("propeller", "ramp", True)
+    (noted,) = finding.noted
+    assert noted.changes[0].cause.name == "propeller"
+    assert noted.changes[0].size == pytest.approx(np.expm1(-0.1), abs=1e-4)
+    # 15 quarters at 1 % less the 10 %
+    assert finding.by_now["propeller"].size == pytest.approx(np.expm1(0.05), abs=1e-4)
+    first, second, last = watch_sentences(finding, history)
+    assert first.startswith("No change but expected wear: more propeller torque at the same speed")
+    assert ", 5.1" in first
+    assert f" by {history.tests[-1].at:%Y-%m-%d}" in first
+    assert second.startswith("Since the docking on ")
+    assert last == "What to do: cleaning the propeller takes it off."
+
+
+def test_a_real_change_stands_before_wear_that_is_expected(base):
+    tests = [
+        made(place, base, **{"K_Q": float(np.exp(0.02 * place)), P_ACTION: 0.97 if place >= 6 else 1.0})
+        for place in range(12)
+    ]
+    history, finding = looked_at(tests)
+    assert [drift.best.is_expected for drift in finding.by_urgency] == [False, True]
+    sentences = watch_sentences(finding, history)
+    assert sentences[0].startswith("Yes: a lower proportional gain of the governor")
+    assert sentences[1].startswith("As expected, beside it more propeller torque")
+    assert sentences[-1] == "What to do: read the gains in the control unit; cleaning the propeller takes it off."
+
+
 def test_a_ramp_is_found_with_its_slope_and_beginning(base):
     """Three per cent a year from the third test on, in logarithms."""
     tests = [made(place, base, I_dn=float(np.exp(0.03 * max(place - 2, 0) / 4.0))) for place in range(12)]

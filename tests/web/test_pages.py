@@ -27,6 +27,15 @@ def test_words_of_a_line(site):
     assert (changed.word, changed.look) == ("changed: propeller", "look")
     assert changed.note == "4.20 ± 0.80 %, seen on 2026-03-01"
     assert stands(site, {"causes": [STEP | {"shape": "ramp"}]}).note == "4.20 ± 0.80 % a year since 2026-03-01"
+    worn = STEP | {"shape": "ramp", "expected": True, "now": {"size": 6.3, "std": 0.8}}
+    fouled = stands(site, {"causes": [worn]})
+    assert (fouled.kind, fouled.word, fouled.look) == ("worn as expected", "worn as expected: propeller", "worn")
+    assert fouled.note == "6.30 ± 0.80 % by now, 4.20 ± 0.80 % a year since 2026-03-01"
+    gain = STEP | {"name": "proportional gain of the governor", "to_do": "read the gains"}
+    both = stands(site, {"causes": [worn, gain]})
+    assert both.word == "changed: proportional gain of the governor"
+    assert both.note == "4.20 ± 0.80 %, seen on 2026-03-01; beside it propeller. Read the gains"
+    assert (both.clearness, fouled.clearness) == (4.2 / 0.8, 0.0)
     assert stands(site, {}, trustworthy=False).word == "not trustworthy"
     assert stands(site, {"because": "two of them differ"}).note == "two of them differ"
     assert stands(site, {}, tests=0, tested_at=None, trustworthy=None).word == "no test yet"
@@ -37,6 +46,9 @@ def test_a_line_is_overdue_after_its_days_and_not_before(site):
     assert stands(site, {}, now=newest + timedelta(days=365)).kind == "unchanged"
     late = stands(site, {}, now=newest + timedelta(days=366))
     assert (late.kind, late.note) == ("test overdue", "unchanged since 2025-03")
+    # what is not judged yet is not told as overdue, but beside it
+    unknown = stands(site, now=newest + timedelta(days=366))
+    assert (unknown.kind, unknown.overdue) == ("being judged", True)
     both = stands(site, {"causes": [STEP]}, now=newest + timedelta(days=366))
     assert (both.kind, both.overdue) == ("changed", True)
 

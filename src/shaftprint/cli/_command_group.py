@@ -67,6 +67,8 @@ SECTIONS = {
 
 NOT_REACHED = 3
 """Exit code of a command that has done its work, and whose answer is that what was asked for cannot be had."""
+CHANGED = 4
+"""Exit code of a command that was asked to say so, and has found that a ship has changed."""
 INTERRUPTED = 130
 
 
@@ -133,7 +135,7 @@ class CommandGroup(LazyGroup):
             vars(error)["message"] = terminal_message(error.message)
             raise
         except click.exceptions.Exit as end:
-            if end.exit_code == NOT_REACHED:
+            if end.exit_code in (NOT_REACHED, CHANGED):
                 print_document()
             raise
         except KeyboardInterrupt:

@@ -41,6 +41,8 @@ class Cause:
     """What drives the lines in which it may happen; None: either."""
     wears: Literal[-1, 0, 1] = 0
     """Which way it goes by itself over the years: less, neither, more."""
+    taken_off_by: str = ""
+    """What takes such wear off, as a docking does fouling; then it is expected, and no fault. Empty for others."""
     tolerance: float = 0.0
     """Standard deviation between sister ships as they are built, in the unit of the size; see docs/watching.md."""
 
@@ -183,6 +185,7 @@ CAUSES: tuple[Cause, ...] = (
         told_by="look at the propeller, and note draught and water of each test",
         roles=((ShipRole.TORQUE,),),
         wears=1,
+        taken_off_by="cleaning the propeller",
         tolerance=0.025,
     ),
     Cause(

@@ -9,12 +9,13 @@ they are wrong and gain much where they are right).
 """
 
 import math
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
 
-from shaftprint.arrays import FloatArray
+from shaftprint.arrays import FloatArray, IntArray
 from shaftprint.distributions import normal_cdf
 from shaftprint.drift._along import whitened
 from shaftprint.drift._drift_finding import DatedCause, Drift, Shape
@@ -27,6 +28,8 @@ WEAR_ODDS: Final = 50.0
 _BONUS = 2.0 * math.log(WEAR_ODDS)
 # What is left of a column that lies in others is rounding.
 _ROUNDING = 1e-6
+# Histories that are drawn at once.
+_PIECE = 250
 # Evidence that differs by less is the same.
 _DIGITS = 9
 
@@ -92,7 +95,7 @@ class CourseSearch:
         size = float(directions[:, at] @ self.values[: len(directions)]) / length[at]
         cause, shape, since = self.courses[at]
         time_a = self.series.time_a[: self.tests]
-        growth = np.arange(self.tests) >= since if shape == "step" else np.maximum(time_a - time_a[since], 0.0)
+        growth = growth_of(shape, since, time_a)
         moved: FloatArray = size * np.outer(growth, self.series.directions[:, cause])
         return moved
 
@@ -151,19 +154,81 @@ class CourseSearch:
         top = float(_evidence(directions.T @ self.values[: len(directions)], self.wear)[length > 0.0].max())
         beyond = float(normal_cdf(-math.sqrt(top)))
         beyond_as_wear = float(normal_cdf(-math.sqrt(max(top - _BONUS, 0.0))))
-        largest = np.zeros(noise.shape[1])
+        looks = list(self._looks())
         bound = 0.0
-        for tests in range(FEWEST_TESTS, self.series.time_a.size + 1):
-            directions, length = self._directions(tests)
-            told = length > 0.0
-            scores = directions[:, told].T @ noise[: len(directions)]
-            wear = self.wear[told]
+        for look in looks[FEWEST_TESTS - 1 :]:
+            wear = self.wear[look.told]
+            bound += 2.0 * wear.size * beyond + np.count_nonzero(wear) * (beyond_as_wear - beyond)
+        if bound < 1.0 / (1.0 + noise.shape[1]):
+            # what is too rare to be drawn is bounded by the sum over all looks
+            return bound
+        drawn = (1.0 + np.count_nonzero(self._largest(looks, noise) >= top)) / (1.0 + noise.shape[1])
+        return min(drawn, bound)
+
+    def _looks(self) -> Iterator["_Look"]:
+        """Yield what the first test tells, the first two, and so on; each goes on from the one before.
+
+        An orthonormal basis of what is free is kept for the tests so far, and turned by each further one.
+        """
+        size = len(self.series.names)
+        free, along = np.zeros((0, self.free.shape[1])), np.zeros((0, self.columns.shape[1]))
+        squares, whole = np.zeros(self.columns.shape[1]), np.linalg.norm(self.columns, axis=0)
+        for first in range(0, len(self.columns), size):
+            rows = slice(first, first + size)
+            stacked = np.vstack([free, self.free[rows]])
+            turn = _basis(stacked)
+            free, along = turn.T @ stacked, turn.T @ np.vstack([along, self.columns[rows]])
+            squares = squares + (self.columns[rows] ** 2).sum(axis=0)
+            length = np.sqrt(np.maximum(squares - (along**2).sum(axis=0), 0.0))
+            told = np.flatnonzero(length > _ROUNDING * whole)
+            yield _Look(rows=rows, turn=turn, told=told, along=along[:, told] / length[told], length=length[told])
+
+    def _largest(self, looks: Sequence["_Look"], noise: FloatArray) -> FloatArray:
+        """Return the largest evidence of each drawn history of an unchanged ship in any look, shape (draws,)."""
+        # in pieces that stay in the cache of a processor
+        pieces = [self._largest_of(looks, noise[:, at : at + _PIECE]) for at in range(0, noise.shape[1], _PIECE)]
+        return np.concatenate(pieces)
+
+    def _largest_of(self, looks: Sequence["_Look"], noise: FloatArray) -> FloatArray:
+        largest = np.zeros(noise.shape[1])
+        inner, free = np.zeros((self.columns.shape[1], noise.shape[1])), np.zeros((0, noise.shape[1]))
+        for tests, look in enumerate(looks, start=1):
+            inner += self.columns[look.rows].T @ noise[look.rows]
+            free = look.turn.T @ np.vstack([free, noise[look.rows]])
+            if tests < FEWEST_TESTS:
+                continue
+            scores = inner[look.told] / look.length[:, None] - look.along.T @ free
+            wear = self.wear[look.told]
             largest = np.maximum(largest, np.abs(scores).max(axis=0, initial=0.0) ** 2)
             largest = np.maximum(largest, _evidence(scores[wear != 0.0], wear[wear != 0.0]).max(axis=0, initial=0.0))
-            bound += 2.0 * wear.size * beyond + np.count_nonzero(wear) * (beyond_as_wear - beyond)
-        drawn = (1.0 + np.count_nonzero(largest >= top)) / (1.0 + largest.size)
-        # what is too rare to be drawn is bounded by the sum over all looks
-        return min(drawn, bound)
+        return largest
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class _Look:
+    """What the tests up to one tell of the courses."""
+
+    rows: slice
+    """Rows of the last of these tests."""
+    turn: FloatArray
+    """From the basis of the tests before, with the rows of this one, to that of all of them."""
+    told: IntArray
+    """Courses that can be told."""
+    along: FloatArray
+    """How far the unit vector of each of them lies along the basis, shape (basis, told)."""
+    length: FloatArray
+    """Length of each of them beside what is free, shape (told,)."""
+
+
+def growth_of(shape: Shape, since: int, time_a: FloatArray) -> FloatArray:
+    """Return how far a course of size 1 has come at each test, shape (tests,).
+
+    ``shape``, ``since``: the course. ``time_a``: when each test was made [years].
+    """
+    if shape == "step":
+        return (np.arange(time_a.size) >= since).astype(np.float64)
+    growth: FloatArray = np.maximum(time_a - time_a[since], 0.0)
+    return growth
 
 
 def _evidence(scores: FloatArray, wear: FloatArray) -> FloatArray:

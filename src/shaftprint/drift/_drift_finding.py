@@ -1,9 +1,11 @@
 """What the history of a line says about a change of the ship: the nouns."""
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from typing import Literal, TypeAlias
 
 from shaftprint.drift._causes import Cause
+from shaftprint.drift._dated import Event
 from shaftprint.drift._finding import SizedCause
 
 Shape: TypeAlias = Literal["step", "ramp"]
@@ -17,6 +19,11 @@ class DatedCause(SizedCause):
     """Whether it changed once or goes on."""
     since: int
     """Place of the first test with the changed ship (step), or of the last one before it began (ramp)."""
+
+    @property
+    def is_expected(self) -> bool:
+        """Whether it is wear that goes on with every ship and that work in a dock takes off, as fouling is."""
+        return self.shape == "ramp" and self.cause.taken_off_by != "" and self.size * self.cause.wears > 0.0
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -35,6 +42,26 @@ class Drift:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
+class NotedChange:
+    """What was done to the ship, and what it did to the numbers."""
+
+    event: Event
+    """What was noted."""
+    changes: tuple[SizedCause, ...]
+    """What moved with it beyond chance, the clearest first; empty where nothing did."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class SizeByNow:
+    """How far a cause is at the last test from where it began, what was done to the ship counted."""
+
+    size: float
+    """A share, or a time [s]."""
+    std: float
+    """Its standard deviation."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
 class WatchFinding:
     """What the history of a line says."""
 
@@ -50,3 +77,12 @@ class WatchFinding:
     """Causes of numbers that were left out: they are not excluded."""
     because: str = ""
     """Why nothing could be judged; empty where something was."""
+    noted: tuple[NotedChange, ...] = ()
+    """What the events of the history did, in their order."""
+    by_now: Mapping[str, SizeByNow] = field(default_factory=dict)
+    """How far each cause that drifts is at the last test, by the name of the cause."""
+
+    @property
+    def by_urgency(self) -> tuple[Drift, ...]:
+        """The changes, wear that is expected last."""
+        return tuple(sorted(self.drifts, key=lambda drift: drift.best.is_expected))

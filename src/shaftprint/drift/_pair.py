@@ -103,8 +103,12 @@ def not_judged(
 
 def alike(first: "LineFingerprint", other: "LineFingerprint") -> bool:
     """Return whether two tests weigh what was stated against their data alike: the same lines, the same structure."""
-    asked = [{one.sha256 for one in test.sources if one.role in ("campaign", "drive")} for test in (first, other)]
-    return asked[0] == asked[1] and first.structure == other.structure
+    return weighing(first) == weighing(other)
+
+
+def weighing(test: "LineFingerprint") -> tuple[frozenset[str], str]:
+    """Return what is the same of tests that are ``alike``."""
+    return frozenset(one.sha256 for one in test.sources if one.role in ("campaign", "drive")), test.structure
 
 
 def _covariance(before: SingleTest, after: SingleTest, shared: SharedErrors, *, unmoved: bool) -> FloatArray:

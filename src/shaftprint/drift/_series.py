@@ -9,10 +9,10 @@ import numpy as np
 from shaftprint.arrays import BoolArray, FloatArray
 from shaftprint.catalogue._roles import ShipRole
 from shaftprint.drift._causes import GAUGE_SCALE, Cause
-from shaftprint.drift._dated import EVENTS
+from shaftprint.drift._dated import EVENTS, Event
 from shaftprint.drift._doubts import judged_in
 from shaftprint.drift._history import SECONDS_PER_YEAR, History
-from shaftprint.drift._pair import alike, directions_of, not_judged
+from shaftprint.drift._pair import directions_of, not_judged, weighing
 from shaftprint.drift._shared_errors import is_common
 from shaftprint.drift._single_test import SingleTest, single_test
 from shaftprint.drift._straight import straightened
@@ -28,6 +28,8 @@ class Series:
 
     names: tuple[str, ...]
     """Numbers that are judged together."""
+    roles: "dict[str, Role | None]"
+    """What each of them is in the line."""
     left_out: dict[str, str]
     """Why others are not, by name."""
     time_a: FloatArray
@@ -72,6 +74,7 @@ def series_of(history: History, *, made: int, load_repeatability: float, moved: 
     causes, directions = directions_of(roles, singles[0].loadings.get(GAUGE_SCALE), units)
     return Series(
         names=names,
+        roles=roles,
         left_out=judged.left_out,
         time_a=time_a,
         values=np.array([one.values for one in singles]),
@@ -128,9 +131,10 @@ def own_covariances(
     ``whole``: whether a test says something of every number, shape (made,): else its shape is that of the others.
     """
     variances = np.array([np.diag(one.own) for one in singles])
+    kinds = [weighing(test) for test in tests]
     for at in range(len(tests)):
         one = min(at, len(whole) - 1)
-        kin = _kin(one, range(len(whole)), tests, whole)
+        kin = _kin(one, range(len(whole)), kinds, whole)
         # how noisy a test is beside its kin, as the geometric mean over its numbers; where none is judged none is noisy
         logarithms = np.log(variances / variances[kin].mean(axis=0))
         noisy = np.exp(logarithms.sum(axis=1) / max(logarithms.shape[1], 1))
@@ -138,9 +142,9 @@ def own_covariances(
         yield noisy[one] * shape
 
 
-def _kin(one: int, of: Iterable[int], tests: "Sequence[LineFingerprint]", whole: BoolArray) -> list[int]:
+def _kin(one: int, of: Iterable[int], kinds: Sequence[object], whole: BoolArray) -> list[int]:
     """Return those tests of some with the same lines and structure that say something of every number."""
-    alike_to = [other for other in of if alike(tests[one], tests[other])]
+    alike_to = [other for other in of if kinds[one] == kinds[other]]
     return [other for other in alike_to if whole[min(other, len(whole) - 1)]] or alike_to
 
 
@@ -151,6 +155,7 @@ def stated_errors(
     whole: BoolArray,
 ) -> Iterator[FloatArray]:
     """Yield what each error that was stated beforehand does to the tests that share it, shape (tests, numbers)."""
+    kinds = [weighing(test) for test in tests]
     for source in dict.fromkeys(name for one in singles for name in one.loadings):
         left = [at for at, one in enumerate(singles) if source in one.loadings]
         while left:
@@ -160,7 +165,7 @@ def stated_errors(
             moved = np.zeros((len(singles), len(singles[0].values)))
             for at in sharing:
                 # of tests alike it is the same: what it differs by is noise of the estimates, see ``pair_of``
-                kin = _kin(at, sharing, tests, whole)
+                kin = _kin(at, sharing, kinds, whole)
                 moved[at] = np.mean([singles[other].loadings[source] for other in kin], axis=0)
             yield moved
 
@@ -170,15 +175,25 @@ def _baseline(history: History, roles: "dict[str, Role | None]") -> FloatArray:
     count, size = len(history.tests), len(roles)
     columns = [np.kron(np.ones(count), unit) for unit in np.eye(size)]
     for event in history.events:
-        after = np.array([float(test.at >= event.at) for test in history.tests])
-        if 0.0 < after.sum() < count:
-            concerned = [
-                at
-                for at, (name, role) in enumerate(roles.items())
-                if role in EVENTS[event.kind]
-                or name in event.numbers
-                # another program may find any number of a drive otherwise
-                or (role is None and event.kind == "program-changed")
-            ]
-            columns += [np.kron(after, np.eye(size)[at]) for at in concerned]
+        columns += [column for _, column in freed_by(history, event, roles)]
     return np.array(columns).reshape(len(columns), count * size).T
+
+
+def freed_by(history: History, event: Event, roles: "dict[str, Role | None]") -> list[tuple[int, FloatArray]]:
+    """Return the place of each number that may be another after an event, with its column, shape (tests * numbers,).
+
+    ``history``: the tests. ``event``: what was done; nothing is free where no test is before or after it. ``roles``:
+    role of each number.
+    """
+    after = np.array([float(test.at >= event.at) for test in history.tests])
+    if not 0.0 < after.sum() < after.size:
+        return []
+    units = np.eye(len(roles))
+    return [
+        (at, np.kron(after, units[at]))
+        for at, (name, role) in enumerate(roles.items())
+        if role in EVENTS[event.kind]
+        or name in event.numbers
+        # another program may find any number of a drive otherwise
+        or (role is None and event.kind == "program-changed")
+    ]

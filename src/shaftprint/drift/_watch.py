@@ -21,6 +21,7 @@ from shaftprint.drift._course_search import FEWEST_TESTS, CourseSearch
 from shaftprint.drift._differ import MOST_CHANGES, NOT_DETERMINED, NOT_TOLD, ROUNDS, UNLIKELY
 from shaftprint.drift._drift_finding import Drift, WatchFinding
 from shaftprint.drift._history import SECONDS_PER_YEAR, History
+from shaftprint.drift._noted import noted_changes
 from shaftprint.drift._series import series_of
 
 HORIZON = 20
@@ -76,12 +77,15 @@ def watch(
         drifts.append(nearest)
         search = search.beside(nearest.best)
         nearest = search.nearest(noise)
+    noted, by_now = noted_changes(history, series, drifts)
     return WatchFinding(
         drifts=tuple(drifts),
         nearest=nearest,
         names=series.names,
         left_out=series.left_out,
         not_judged=series.not_judged,
+        noted=noted,
+        by_now=by_now,
     )
 
 

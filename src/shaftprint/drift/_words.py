@@ -4,7 +4,7 @@ from collections.abc import Iterable, Sequence
 
 from shaftprint.digits import p_value_text, plain_letters, stated
 from shaftprint.drift._causes import Cause
-from shaftprint.drift._drift_finding import DatedCause, Drift, WatchFinding
+from shaftprint.drift._drift_finding import DatedCause, Drift, NotedChange, WatchFinding
 from shaftprint.drift._finding import Finding, ShipChange, SizedCause
 from shaftprint.drift._history import History
 from shaftprint.drift._time_to_limit import time_to_limit
@@ -13,6 +13,15 @@ from shaftprint.drift._time_to_limit import time_to_limit
 ALIKE = 3.0
 # Odds beyond this are said as such: the model itself is not known that well.
 MOST_ODDS = 1000.0
+_DONE = {
+    "docking": "the docking",
+    "propeller-polished": "the polishing of the propeller",
+    "propeller-changed": "the change of the propeller",
+    "governor-changed": "the change of the governor",
+    "injectors-changed": "the change of the injectors",
+    "gauge-calibrated": "the calibration of the torque gauge",
+}
+"""What an event is in a sentence."""
 UNEXPLAINED = 0.001
 """Where chance leaves as much in fewer cases than this, something else has changed."""
 
@@ -90,12 +99,42 @@ def watch_sentences(finding: WatchFinding, history: History) -> tuple[str, ...]:
     if finding.because:
         return (f"It cannot be told: {finding.because}.",)
     days = [f"{test.at:%Y-%m-%d}" for test in history.tests]
+    noted = noted_sentences(finding)
+    ends = (*noted, *open_sentences(finding.not_judged))
+    span = f"{len(days)} tests from {days[0]} to {days[-1]}"
     if not finding.drifts:
-        unchanged = f"No change beyond chance in {len(days)} tests from {days[0]} to {days[-1]}."
-        return (unchanged, *open_sentences(finding.not_judged))
-    sentences = [f"Yes: {_of_drift(finding.drifts[0], days)}"]
-    further = (f"Beside it {_of_drift(drift, days)}" for drift in finding.drifts[1:])
-    return (*sentences, *further, *open_sentences(finding.not_judged))
+        seen = any(one.changes for one in finding.noted)
+        unchanged = "No change but what was noted" if seen else "No change beyond chance"
+        return (f"{unchanged} in {span}.", *ends)
+    first, *others = finding.by_urgency
+    begin = "No change but expected wear" if first.best.is_expected else "Yes"
+    sentences = [f"{begin}: {_of_drift(first, days, finding)}"]
+    for drift in others:
+        beside = "As expected, beside it" if drift.best.is_expected else "Beside it"
+        sentences.append(f"{beside} {_of_drift(drift, days, finding)}")
+    return (*sentences, *ends, *_to_do(finding))
+
+
+def noted_sentences(finding: WatchFinding) -> tuple[str, ...]:
+    """Return what the events of a history did, a sentence for each, by how much; or that nothing of it is seen."""
+    return tuple(_of_noted(one) for one in finding.noted)
+
+
+def _of_noted(noted: NotedChange) -> str:
+    event = noted.event
+    what = f"{_DONE.get(event.kind, 'what was done')} on {event.at:%Y-%m-%d}"
+    if not noted.changes:
+        return f"After {what}, which was noted, nothing is other than before by more than chance."
+    named = ", and ".join(f"{one.words}, by {size_text(one)}" for one in noted.changes)
+    return f"Since {what}, as noted: {named}."
+
+
+def _to_do(finding: WatchFinding) -> tuple[str, ...]:
+    """Return what to do about the changes, those of one kind once."""
+    real = [drift.best.cause.told_by for drift in finding.by_urgency if not drift.best.is_expected]
+    worn = [f"{drift.best.cause.taken_off_by} takes it off" for drift in finding.drifts if drift.best.is_expected]
+    ways = "; ".join(dict.fromkeys((*real, *worn)))
+    return (f"What to do: {ways}.",)
 
 
 def limit_sentence(finding: WatchFinding, cause: Cause, limit: float, history: History) -> str:
@@ -125,10 +164,21 @@ def _course_text(course: DatedCause, days: Sequence[str]) -> str:
     return f"{size}, between {days[course.since - 1]} and {days[course.since]}"
 
 
-def _of_drift(drift: Drift, days: Sequence[str]) -> str:
+def _by_now_text(course: DatedCause, days: Sequence[str], finding: WatchFinding) -> str:
+    """Return how far a ramp has come by the last test; empty for a step, whose size says it."""
+    now = finding.by_now.get(course.cause.name)
+    if course.shape == "step" or now is None:
+        return ""
+    cause = course.cause
+    sign = "" if now.size * course.size > 0.0 else "-"
+    size = stated(cause.in_unit(abs(now.size)), cause.in_unit(now.std), cause.unit)
+    return f", {sign}{size} by {days[-1]}"
+
+
+def _of_drift(drift: Drift, days: Sequence[str], finding: WatchFinding) -> str:
     alike = [one for one in drift.courses if one.odds < ALIKE]
     rest = drift.courses[len(alike) :]
-    named = ", or ".join(_course_text(one, days) for one in alike)
+    named = ", or ".join(f"{_course_text(one, days)}{_by_now_text(one, days, finding)}" for one in alike)
     odds = f" Odds {odds_text(rest[0].odds)} against {rest[0].words}." if rest else ""
     told = "" if len(alike) == 1 else f" These tests hardly tell them apart: {ways_text(one.cause for one in alike)}."
     return f"{named}.{odds}{told}"

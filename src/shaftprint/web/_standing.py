@@ -7,17 +7,22 @@ from typing import Any, Final, Literal, TypeAlias
 from shaftprint.digits import with_deviation
 from shaftprint.store._overview import LineNow
 
-Look: TypeAlias = Literal["fine", "look", "bad", "open"]
+Look: TypeAlias = Literal["fine", "worn", "look", "bad", "open"]
 WORDS: Final = (
     "changed",
     "not trustworthy",
     "test overdue",
+    "worn as expected",
     "unchanged",
     "cannot be told",
     "being judged",
     "no test yet",
 )
 """What a line may be, in the order in which somebody wants to hear of it."""
+
+
+_NAMED: Final = 2
+"""Changes of a line that are named in its note."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -34,6 +39,8 @@ class Standing:
     """What else is to be said, in a few words."""
     overdue: bool
     """Whether its newest test is too long ago."""
+    clearness: float = 0.0
+    """Size over deviation of what has changed, by which lines of one word are ordered."""
 
 
 def standing_of(
@@ -49,10 +56,17 @@ def standing_of(
     kind, word, look, note = _said(line, found)
     if found is not None and found[0] != line.state:
         note = "; ".join(filter(None, (note, "being judged anew")))
-    if overdue and kind not in {"changed", "not trustworthy"}:
+    # what is not known yet is told as such, with the test that is overdue beside it
+    if overdue and kind in {"worn as expected", "unchanged"}:
         note = "; ".join(filter(None, (word, note)))
         return Standing(kind="test overdue", word="test overdue", look="look", note=note, overdue=True)
-    return Standing(kind=kind, word=word, look=look, note=note, overdue=overdue)
+    clearness = 0.0 if found is None or kind != "changed" else _clearness(found[1])
+    return Standing(kind=kind, word=word, look=look, note=note, overdue=overdue, clearness=clearness)
+
+
+def _clearness(summary: dict[str, Any]) -> float:
+    real = [one for one in summary.get("causes") or [] if not one.get("expected")]
+    return max((abs(one["size"]) / one["std"] for one in real if one["std"]), default=0.0)
 
 
 def _said(line: LineNow, found: tuple[str, dict[str, Any]] | None) -> tuple[str, str, Look, str]:
@@ -63,10 +77,16 @@ def _said(line: LineNow, found: tuple[str, dict[str, Any]] | None) -> tuple[str,
     if found is None:
         return "being judged", "being judged", "open", ""
     summary = found[1]
-    causes = summary.get("causes") or []
+    # findings of an earlier version do not say which wear is expected
+    causes = sorted(summary.get("causes") or [], key=lambda one: bool(one.get("expected")))
     if causes:
-        note = change_words(causes[0]) + (f", and {len(causes) - 1} more" if len(causes) > 1 else "")
-        return "changed", f"changed: {causes[0]['name']}", "look", note
+        first = causes[0]
+        note = change_words(first) + (f"; beside it {causes[1]['name']}" if len(causes) > 1 else "")
+        note += f", and {len(causes) - 2} more" if len(causes) > _NAMED else ""
+        if first.get("expected"):
+            return "worn as expected", f"worn as expected: {first['name']}", "worn", note
+        note += f". {first['to_do'][:1].upper()}{first['to_do'][1:]}" if first.get("to_do") else ""
+        return "changed", f"changed: {first['name']}", "look", note
     if line.tests == 1:
         return "cannot be told", "one test only", "open", "from two tests on a change can be seen"
     if summary.get("because"):
@@ -77,4 +97,8 @@ def _said(line: LineNow, found: tuple[str, dict[str, Any]] | None) -> tuple[str,
 def change_words(cause: dict[str, Any]) -> str:
     """Return by how much and since when, in a few words."""
     size = f"{with_deviation(cause['size'], cause['std'])} {cause['unit']}"
-    return f"{size} a year since {cause['since']}" if cause["shape"] == "ramp" else f"{size}, seen on {cause['since']}"
+    if cause["shape"] != "ramp":
+        return f"{size}, seen on {cause['since']}"
+    now = cause.get("now")
+    by_now = "" if now is None else f"{with_deviation(now['size'], now['std'])} {cause['unit']} by now, "
+    return f"{by_now}{size} a year since {cause['since']}"

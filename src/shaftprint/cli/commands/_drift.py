@@ -8,6 +8,7 @@ from pathlib import Path
 import click
 
 from shaftprint.cli._cause_size import CauseSize
+from shaftprint.cli._command_group import CHANGED, NOT_REACHED
 from shaftprint.cli._dates import Moment, zone_option
 from shaftprint.cli._load_option import load_repeatability_option
 from shaftprint.cli._store_options import instant, opened_store, store_option
@@ -76,7 +77,16 @@ class EventAt(click.ParamType):  # type: ignore[type-arg]
 @load_repeatability_option
 @click.option("-o", "--output", type=click.Path(path_type=Path), help="Folder for a page with a chart over the years.")
 @force_option
+@click.option(
+    "--exit-code",
+    "as_exit_code",
+    is_flag=True,
+    help=f"End with {CHANGED} where the ship has changed by more than wear that is expected, with {NOT_REACHED} where "
+    "it cannot be told, for what watches by itself.",
+)
+@click.pass_context
 def command(
+    context: click.Context,
     tests: tuple[str, ...],
     url: str,
     *,
@@ -87,6 +97,7 @@ def command(
     load_percent: float,
     output: Path | None,
     force: bool,
+    as_exit_code: bool,
 ) -> None:
     """Watch a line over the years: what has changed, since when, and how fast.
 
@@ -110,6 +121,10 @@ def command(
     print_tables([] if finding.because else [course_table(finding, history)])
     if output is not None:
         echo(f"Report: {output / REPORT}")
+    if as_exit_code and finding.because:
+        context.exit(NOT_REACHED)
+    if as_exit_code and any(not drift.best.is_expected for drift in finding.drifts):
+        context.exit(CHANGED)
 
 
 def _of_the_line(causes: tuple[Cause, ...], history: History) -> Cause:

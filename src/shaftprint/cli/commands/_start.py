@@ -106,8 +106,8 @@ def _next(vessel: Path, lying: LyingFiles) -> list[tuple[object, ...]]:
     written = recording.stat().st_mtime
     campaign = [lying.campaigns[0], *(one for one in lying.campaigns if one.stat().st_mtime <= written)][-1]
     if not lying.results or lying.results[-1].stat().st_mtime < recording.stat().st_mtime:
-        files = (*files, "--campaign", campaign)
-        return [("inspect", *files), ("identify", *files, "-o", free("result"))]
+        of_test = (*files, "--campaign", campaign)
+        return [("inspect", *of_test), ("identify", *of_test, "-o", free("result"))]
     return _after(lying.results[-1], files, campaign, plan)
 
 

@@ -28,9 +28,13 @@ def _ships(asked: Asked) -> Shown:
     counts = {word: sum(row.standing.kind == word for row in rows) for word in WORDS}
     kind, sought = asked.query("kind"), asked.query("q").strip()
     chosen = [row for row in rows if (not kind or row.standing.kind == kind) and _matches(row.line, sought)]
-    # those that need somebody first; among them the newest test
+    # those that need somebody first, among them the clearest change, then the newest test
     chosen.sort(
-        key=lambda row: (WORDS.index(row.standing.kind), -(row.line.tested_at or asked.service.now()).timestamp())
+        key=lambda row: (
+            WORDS.index(row.standing.kind),
+            -row.standing.clearness,
+            -(row.line.tested_at or asked.service.now()).timestamp(),
+        )
     )
     pages = max(1, -(-len(chosen) // MOST_ROWS))
     page = min(max(1, int(text) if (text := asked.query("page", "1")).isdecimal() and len(text) < 7 else 1), pages)
@@ -81,8 +85,12 @@ def _headline(counts: dict[str, int], lines: int) -> str:
         "changed": "changed",
         "not trustworthy": "without a trustworthy newest test",
         "test overdue": "with a test overdue",
+        "worn as expected": "worn as expected",
+        "being judged": "being judged",
     }
     parts = [f"{counts[word]} {words}" for word, words in said.items() if counts[word]]
+    if not counts["changed"] and not counts["not trustworthy"] and not counts["test overdue"]:
+        parts = [f"{counts['unchanged']} unchanged", *parts] if parts and counts["unchanged"] else parts
     if not parts:
         open_ones = lines - counts["unchanged"]
         return f"{counts['unchanged']} of {_lines(lines)} unchanged" + (f", {open_ones} not known" if open_ones else "")
