@@ -161,9 +161,9 @@ class CourseSearch:
             bound += 2.0 * wear.size * beyond + np.count_nonzero(wear) * (beyond_as_wear - beyond)
         if bound < 1.0 / (1.0 + noise.shape[1]):
             # what is too rare to be drawn is bounded by the sum over all looks
-            return bound
+            return float(bound)
         drawn = (1.0 + np.count_nonzero(self._largest(looks, noise) >= top)) / (1.0 + noise.shape[1])
-        return min(drawn, bound)
+        return float(min(drawn, bound))
 
     def _looks(self) -> Iterator["_Look"]:
         """Yield what the first test tells, the first two, and so on; each goes on from the one before.

@@ -107,7 +107,7 @@ def _along(series: Series, fixed: FloatArray, columns: FloatArray, rows: int) ->
     white = whitened(series.values.reshape(-1)[:rows], covariance, np.hstack([fixed, columns]))
     free, of_columns = white.directions[:, : fixed.shape[1]], white.directions[:, fixed.shape[1] :]
     left = of_columns - free @ np.linalg.lstsq(free, of_columns)[0]
-    lengths = np.linalg.norm(left, axis=0)
+    lengths: FloatArray = np.linalg.norm(left, axis=0)
     lengths = np.where(lengths > _ROUNDING * np.linalg.norm(of_columns, axis=0), lengths, 0.0)
     sizes = (left.T @ white.difference) / np.where(lengths > 0.0, lengths, 1.0) ** 2
     return sizes, lengths
