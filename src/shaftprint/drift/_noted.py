@@ -116,8 +116,8 @@ def _along(series: Series, fixed: FloatArray, columns: FloatArray, rows: int) ->
 def _course_column(series: Series, drift: Drift, count: int) -> FloatArray:
     best = drift.best
     growth = growth_of(best.shape, best.since, series.time_a[:count])
-    column: FloatArray = np.kron(growth, series.directions[:, series.causes.index(best.cause)])
-    return column
+    direction = series.directions[:, series.causes.index(best.cause)]
+    return np.asarray(np.kron(growth, direction), dtype=np.float64)
 
 
 def _by_now(
