@@ -63,6 +63,8 @@ TESTS: Mapping[str, Test] = {
             ("uff", ".uff"),
             ("lvm", ".lvm"),
             ("can", ".blf"),
+            ("can", ".asc"),
+            ("can", ".log"),
         ),
     ),
     "bus": Test(
