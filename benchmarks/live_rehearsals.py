@@ -142,7 +142,7 @@ def rehearsal(seed, folder):
         "word": outcome.word,
         "rule": breach,
         "reason": outcome.reason,
-        "violations": violations(ship, envelope),
+        "violations": int(violations(ship, envelope)),
         "lever": ship.device.mode == DeviceMode.LEVER,
         "readable": readable,
         "took_s": time.monotonic() - begun,
@@ -243,21 +243,22 @@ async def _play(address, path):
     await counterpart.close()
 
 
-def _run(*arguments, **options):
+def run_beside(*arguments, **options):
+    """Start this benchmark in another process."""
     return subprocess.Popen([sys.executable, "-m", "benchmarks.live_rehearsals", *arguments], text=True, **options)
 
 
 def kills(count):
     """Kill the program that plays at random points: when the ship reverts, whether the journal reads."""
     address, rng = "opc.tcp://127.0.0.1:48477", np.random.default_rng(1)
-    server = _run("--serve", address, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
+    server = run_beside("--serve", address, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
     server.stdout.readline()
     took, readable = [], 0
     try:
         for number in range(count):
             with tempfile.TemporaryDirectory() as folder:
                 path = Path(folder) / "t.nc"
-                player = _run("--play", address, str(path), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+                player = run_beside("--play", address, str(path), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
                 time.sleep(rng.uniform(6.0, 14.0))
                 os.kill(player.pid, signal.SIGKILL)
                 player.wait()

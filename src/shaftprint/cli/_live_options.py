@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import contextlib
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -10,6 +11,10 @@ import click
 
 from shaftprint.cli._terminal import answer, echo, print_findings
 from shaftprint.cli.output._json import give
+from shaftprint.late import late
+
+with late():
+    from shaftprint.live._page import LivePages
 
 if TYPE_CHECKING:
     from shaftprint.live._block import Event
@@ -35,6 +40,10 @@ plan_option = click.option(
     help="Folder of shaftprint plan: a leg ends early where its wishes are met, as predicted.",
 )
 
+page_option = click.option(
+    "--page", "port", type=click.IntRange(1, 65535), help="Port of this computer for the pages of bridge and engineer."
+)
+
 
 def recording_option(command: Callable[..., Any]) -> Callable[..., Any]:
     """Add the option ``--output`` of a recording that must not be there yet."""
@@ -56,6 +65,17 @@ def print_proof(proof: Proof) -> None:
     give("foreseen", proof.foreseen)
     if proof.refusals:
         print_findings("Not to be played", proof.refusals)
+
+
+@contextlib.contextmanager
+def shown_on_pages(port: int | None) -> Iterator[LivePages | None]:
+    """Show the test on pages of this computer, where a port is given."""
+    if port is None:
+        yield None
+        return
+    with LivePages(port) as pages:
+        echo(f"Bridge: {pages.url}   engineer: {pages.url}engineer", err=True)
+        yield pages
 
 
 def tell(event: Event) -> None:

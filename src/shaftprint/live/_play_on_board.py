@@ -12,6 +12,7 @@ from shaftprint.live._block import Event
 from shaftprint.live._counterpart import Counterpart
 from shaftprint.live._engine import LiveTest
 from shaftprint.live._outcome import Operator, Outcome
+from shaftprint.live._page import LivePages, watched
 from shaftprint.live._record import Left, LiveRecord
 from shaftprint.live._stop_rule import enough_by
 from shaftprint.live.counterparts._opcua import OpcUaCounterpart
@@ -50,6 +51,7 @@ def play_on_board(
     planned: "PlannedTest | None" = None,
     slope_rpm_per_v: float | None = None,
     told: Callable[[Event], None] = lambda event: None,
+    pages: LivePages | None = None,
 ) -> tuple[Outcome, Left]:
     """Play a test through the counterpart of an address, and write what it leaves.
 
@@ -69,6 +71,7 @@ def play_on_board(
             planned=planned,
             slope_rpm_per_v=slope_rpm_per_v,
             told=told,
+            pages=pages,
         )
     )
 
@@ -85,6 +88,7 @@ async def _played(
     planned: "PlannedTest | None",
     slope_rpm_per_v: float | None,
     told: Callable[[Event], None],
+    pages: LivePages | None,
 ) -> tuple[Outcome, Left]:
     async def asked(question: str) -> bool:
         return await asyncio.to_thread(confirm, question)
@@ -102,7 +106,7 @@ async def _played(
             record=record,
             operator=operator,
             slope_rpm_per_v=slope_rpm_per_v,
-            told=told,
+            **watched(told, pages),
             dry=dry,
             is_enough=None if planned is None else enough_by(planned),
         )

@@ -11,6 +11,7 @@ from shaftprint.errors import RequestError
 from shaftprint.live._block import Event
 from shaftprint.live._engine import LiveTest
 from shaftprint.live._outcome import Operator, Outcome
+from shaftprint.live._page import LivePages, watched
 from shaftprint.live._record import Left, LiveRecord
 from shaftprint.live._stop_rule import enough_by
 from shaftprint.live.counterparts._faults import LinkFaults, Spell
@@ -67,12 +68,14 @@ def rehearse(
     operator: Operator | None = None,
     planned: "PlannedTest | None" = None,
     told: Callable[[Event], None] = _silent,
+    pages: LivePages | None = None,
 ) -> tuple[Outcome, Left]:
     """Play a test on a simulated ship, and write what it leaves.
 
     ``path``: the recording. ``pace``: times the clock; None: as fast as it can be calculated. ``faults``: what goes
     wrong. ``tug``: the truth; like the Stan Tug where not given. ``planned``: by whose wishes legs end early. ``told``:
-    is told what happens. Raises RecordingError if the recording is there already or cannot be written.
+    is told what happens. ``pages``: show it. Raises RecordingError if the recording is there already or cannot be
+    written.
     """
     ship = simulated_ship_of(vessel, campaign, seed=seed, faults=faults or LinkFaults(), tug=tug)
     counterpart = SimulatedCounterpart(ship, pace=pace)
@@ -85,7 +88,7 @@ def rehearse(
         record=record,
         operator=operator or Operator(),
         slope_rpm_per_v=_slope(vessel, campaign, tug),
-        told=told,
+        **watched(told, pages),
         waits=pace is None,
         is_enough=None if planned is None else enough_by(planned),
     )

@@ -10,10 +10,12 @@ import click
 from shaftprint.cli._command_group import NOT_REACHED
 from shaftprint.cli._live_options import (
     fingerprint_option,
+    page_option,
     plan_option,
     print_outcome,
     print_proof,
     recording_option,
+    shown_on_pages,
     slope_option,
     tell,
 )
@@ -40,6 +42,7 @@ PASSWORD = "SHAFTPRINT_LIVE_PASSWORD"  # noqa: S105  (the name of the variable, 
 @fingerprint_option
 @slope_option
 @plan_option
+@page_option
 @click.option("--dry", is_flag=True, help="Look at the channels, record them, and write nothing to the counterpart.")
 @click.option("--user", help=f"Name of the user; the password is taken from {PASSWORD}, or asked for.")
 @click.option(
@@ -57,6 +60,7 @@ def command(
     fingerprint: Path | None,
     slope_rpm_per_v: float | None,
     place: Path | None,
+    port: int | None,
     dry: bool,
     user: str | None,
     certificate: Path | None,
@@ -83,19 +87,21 @@ def command(
         proof.expect_within()
     password = None if user is None else os.environ.get(PASSWORD) or click.prompt("Password", hide_input=True, err=True)
     access = Access(user=user, password=password, certificate=certificate, authority=authority, is_insecure=insecure)
-    outcome, left = play_on_board(
-        url,
-        trial.vessel,
-        trial.campaign,
-        envelope,
-        output,
-        access=access,
-        dry=dry,
-        planned=None if place is None else read_plan(place),
-        slope_rpm_per_v=trial.campaign.slope_rpm_per_v if slope_rpm_per_v is None else slope_rpm_per_v,
-        confirm=lambda question: click.confirm(question, err=True),
-        told=tell,
-    )
+    with shown_on_pages(port) as pages:
+        outcome, left = play_on_board(
+            url,
+            trial.vessel,
+            trial.campaign,
+            envelope,
+            output,
+            access=access,
+            dry=dry,
+            planned=None if place is None else read_plan(place),
+            slope_rpm_per_v=trial.campaign.slope_rpm_per_v if slope_rpm_per_v is None else slope_rpm_per_v,
+            confirm=lambda question: click.confirm(question, err=True),
+            told=tell,
+            pages=pages,
+        )
     print_outcome(outcome, left)
     if outcome.word != "played" and not dry:
         context.exit(NOT_REACHED)

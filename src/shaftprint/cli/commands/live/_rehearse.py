@@ -9,10 +9,12 @@ import click
 from shaftprint.cli._command_group import NOT_REACHED
 from shaftprint.cli._live_options import (
     fingerprint_option,
+    page_option,
     plan_option,
     print_outcome,
     print_proof,
     recording_option,
+    shown_on_pages,
     slope_option,
     tell,
 )
@@ -35,6 +37,7 @@ with late():
 @fingerprint_option
 @slope_option
 @plan_option
+@page_option
 @click.option("--seed", type=click.IntRange(min=0), default=1, show_default=True, help="Seed of all randomness.")
 @click.option("--pace", type=click.FloatRange(0.1, 100.0), help="Times the clock; as fast as possible without it.")
 @click.option(
@@ -54,6 +57,7 @@ def command(
     fingerprint: Path | None,
     slope_rpm_per_v: float | None,
     place: Path | None,
+    port: int | None,
     seed: int,
     pace: float | None,
     faults: tuple[str, ...],
@@ -78,17 +82,19 @@ def command(
     )
     print_proof(proof)
     proof.expect_within()
-    outcome, left = rehearse(
-        trial.vessel,
-        trial.campaign,
-        envelope,
-        output,
-        seed=seed,
-        pace=pace,
-        faults=wrong,
-        planned=None if place is None else read_plan(place),
-        told=tell,
-    )
+    with shown_on_pages(port) as pages:
+        outcome, left = rehearse(
+            trial.vessel,
+            trial.campaign,
+            envelope,
+            output,
+            seed=seed,
+            pace=pace,
+            faults=wrong,
+            planned=None if place is None else read_plan(place),
+            told=tell,
+            pages=pages,
+        )
     print_outcome(outcome, left)
     if outcome.word != "played":
         context.exit(NOT_REACHED)
