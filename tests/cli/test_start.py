@@ -1,10 +1,12 @@
 """``shaftprint start``, and the next command that each command ends with."""
 
 import os
+import re
 import shlex
 
 import pytest
 
+from shaftprint.campaign import load_campaign
 from shaftprint.cli._next import free
 from shaftprint.errors import SettingsError
 from shaftprint.settings import kind_of_file
@@ -102,6 +104,29 @@ def test_a_name_that_is_taken_gets_a_number(here):
     (here / "plan-2").mkdir()
     assert str(free("plan")) == "plan-3"
     assert str(free("log.nc")) == "log.nc"
+
+
+@pytest.mark.slow
+def test_a_campaign_that_was_begun_late_is_written_as_recorded(run, here, recording, demo):
+    """All times of the file 7.3 s too late: the file that is written has those of the recording."""
+    asked = (demo[0] / "campaign.toml").read_text(encoding="utf-8")
+    late = re.sub(
+        r"^(start_s|settled_s|stop_s|duration_s) = ([\d.]+)",
+        lambda m: f"{m[1]} = {float(m[2]) + 7.3}",
+        asked,
+        flags=re.M,
+    )
+    (here / "late.toml").write_text(late, encoding="utf-8")
+    files = (recording, "--vessel", "stan-tug-1205")
+    looked = run("inspect", *files, "--campaign", "late.toml")
+    assert "earlier than planned" in " ".join(looked.output.split())
+    assert "--campaign late.toml -o campaign-as-recorded.toml" in looked.output
+    written = run("inspect", *files, "--campaign", "late.toml", "-o", "fixed.toml")
+    assert following(written)[-1] == "fixed.toml"
+    found, planned = load_campaign(here / "fixed.toml"), load_campaign("short")
+    for one, other in zip(found.sines, planned.sines, strict=True):
+        assert one.settled_s == pytest.approx(other.settled_s, abs=0.3)
+    assert following(run("inspect", *files, "--campaign", "fixed.toml"))[0] == "identify"
 
 
 def test_a_campaign_where_a_vessel_is_asked_for_is_one_sentence(run, here):

@@ -37,6 +37,13 @@ def test_a_folder_without_recordings_is_refused(tmp_path):
         recordings_in(tmp_path, **BOTH)
 
 
+def test_a_row_says_the_class_of_its_ship_and_a_job_without_one_is_that_of_earlier_versions(listed):
+    first, second = listed("recording,ship,class\na.nc,Linge,Stan Tug 1205\nb.nc,Vecht,", line="port")
+    assert (first.stated.class_name, second.stated.class_name) == ("Stan Tug 1205", None)
+    assert "class_name" in first.settings()
+    assert "class_name" not in second.settings()
+
+
 def test_a_row_says_what_holds_for_its_recording(listed, tmp_path):
     (tmp_path / "mine.toml").touch()
     rows = ("a.nc,mine.toml,2026-03-31T09:30+02:00,1.8,9074729,Quay 1", "b.nc,,,,,")

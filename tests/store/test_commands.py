@@ -65,7 +65,10 @@ def test_numbers_have_all_digits_in_json(yard, run):
 
 
 def test_an_export_of_one_store_is_imported_into_another(yard, run):
-    run("store", "add", "result-2025", "result-2026", *STATED)
+    added = run("store", "add", "result-2025", "result-2026", *STATED, "--class", "Stan Tug 1205")
+    assert added.exit_code == 0, added.stderr
+    listed = json.loads(run("store", "list", "--json").stdout)["result"]["lines"]
+    assert [line["line"]["ship"]["class_name"] for line in listed] == ["Stan Tug 1205"]
     assert run("store", "export", "fleet.jsonl").exit_code == 0
     assert "exists already" in run("store", "export", "fleet.jsonl").stderr
     assert run("store", "export", "fleet.jsonl", "--force").exit_code == 0

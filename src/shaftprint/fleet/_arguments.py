@@ -54,6 +54,8 @@ class JobArguments(Settings):
     """Its IMO number, where the vessel file does not say it."""
     line: ShortName | None = None
     """Its shaft line, where the vessel file does not say it."""
+    class_name: ShortName | None = None
+    """What its sister ships have in common, where the vessel file does not say it."""
     only: OnlyLine | None = None
     """The only line to which the result may be put; None where fingerprint and statements say which."""
     conditions: TrialConditions = TrialConditions()
@@ -69,7 +71,7 @@ class JobArguments(Settings):
     @property
     def stated(self) -> Stated:
         """What is stated of the ship beside its fingerprint."""
-        return Stated(ship=self.ship, imo_number=self.imo, line=self.line)
+        return Stated(ship=self.ship, imo_number=self.imo, line=self.line, class_name=self.class_name)
 
     @property
     def only_line(self) -> Line | None:
@@ -79,7 +81,9 @@ class JobArguments(Settings):
 
     def settings(self) -> dict[str, Any]:
         """Return what the result depends on besides the content of the files, as JSON has it."""
-        elsewhere = {"recording", "vessel", "campaign", "sha256"} | ({"only"} if self.only is None else set())
+        elsewhere = {"recording", "vessel", "campaign", "sha256"}
+        # a job of an earlier version, which knew neither, is the same one
+        elsewhere |= {name for name in ("only", "class_name") if getattr(self, name) is None}
         return self.model_dump(mode="json", exclude=elsewhere)
 
 

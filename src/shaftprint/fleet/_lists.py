@@ -20,7 +20,7 @@ _MOST_BYTES: Final = 64 * 2**20
 _NUMBERS: Final = ("draught_m", "trim_m", "water_temperature_c", "water_density_kg_m3", "depth_m", "wind_m_s")
 _WHOLE: Final = ("imo", "seed", "starts")
 _TEXTS: Final = (
-    "recording", "vessel", "campaign", "structure", "ship", "line", "tested_at", "time_zone", "place",
+    "recording", "vessel", "campaign", "structure", "ship", "line", "class", "tested_at", "time_zone", "place",
 )  # fmt: skip
 COLUMNS: Final = (*_TEXTS, *_WHOLE, *_NUMBERS)
 """Columns that a list may have; the hyphen of an option does as well as the underscore."""
@@ -123,7 +123,7 @@ def _row(file: Path, names: list[str], row: list[str], number: int) -> dict[str,
 
 def _stated(row: Mapping[str, str], folder: Path, named: str) -> dict[str, Any]:
     """Return what a row states, numbers as numbers and paths as seen from the folder of the list."""
-    stated: dict[str, Any] = dict(row)
+    stated: dict[str, Any] = {"class_name" if name == "class" else name: cell for name, cell in row.items()}
     for name in stated.keys() & set(_NUMBERS):
         stated[name] = _number(row[name], name, named)
     for name in stated.keys() & set(_WHOLE):

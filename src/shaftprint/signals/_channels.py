@@ -58,9 +58,11 @@ def find_channel(
             f'say it with `shaftprint convert --unit "{name}={unit}"`.'
         )
     if _plain(channel.unit) != _plain(unit):
+        has_it = [one for one, other in recording.channels.items() if _plain(other.unit) == _plain(unit)]
+        other = f"{has_it[0]} has it: take that one, or " if len(has_it) == 1 else ""
         raise SignalError(
             f'{recording.path}, channel {name}: expected the unit "{unit}" for the {use}, '
-            f'found "{channel.unit}"; correct the unit and scale in the vessel file.'
+            f'found "{channel.unit}"; {other}correct the unit and scale in the vessel file.'
         )
     if channel.count == 0:
         raise SignalError(f"{recording.path}, channel {name}: expected samples, found none.")

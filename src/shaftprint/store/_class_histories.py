@@ -22,7 +22,9 @@ def class_histories(
     known = sorted({one.ship.class_name for one in tested if one.ship.class_name is not None})
     of_class = [one for one in tested if one.ship.class_name == class_name]
     if not of_class:
-        advice = meant(class_name, known) or (f" It has {', '.join(known[:12])}." if known else " It has none yet.")
+        how = "state it with --class of store add or fleet run, or as class_name of [ship] in the vessel files"
+        there = f" It has {', '.join(known[:12])}." if known else f" It has none yet: {how}."
+        advice = meant(class_name, known) or there
         raise StoreError(f"{class_name}: expected a class of ships in the store, found none.{advice}")
     wanted = [one for one in of_class if line in (None, one.position)]
     if not wanted:

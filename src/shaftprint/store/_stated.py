@@ -31,11 +31,14 @@ class Stated:
     """Which of its lines."""
     tested_at: datetime | None = None
     """When the recording began."""
+    class_name: str | None = None
+    """What its sister ships have in common."""
 
     def content(self) -> dict[str, Any]:
         """Return what was stated, for JSON."""
         at = None if self.tested_at is None else utc_iso(self.tested_at)
         fields = {"ship": self.ship, "imo_number": self.imo_number, "line": self.line, "tested_at": at}
+        fields["class_name"] = self.class_name
         return {name: value for name, value in fields.items() if value is not None}
 
 
@@ -115,7 +118,11 @@ def ship_of(conditions: Tested, stated: Stated, *, named: str) -> ShipIdentity:
         number = document.imo_number
         if stated.imo_number not in (None, number):
             raise StoreError(f"{named}: it is of the ship with IMO {number}, and --imo says {stated.imo_number}.")
-    class_name = None if document is None else document.class_name
+    class_name = stated.class_name
+    if document is not None and document.class_name is not None:
+        if class_name not in (None, document.class_name):
+            raise StoreError(f"{named}: it is of the class {document.class_name}, and --class says {class_name}.")
+        class_name = document.class_name
     for text, what in ((name, "name of a ship"), (line, "shaft line"), (class_name, "class of ships")):
         expect_short(text, what, named=named)
     return ShipIdentity(name=name, imo_number=number, class_name=class_name, line=line)

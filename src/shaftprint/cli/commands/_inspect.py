@@ -103,7 +103,8 @@ def command(
         if test is not None:
             _print_test(test)
     _print_next((recording, "--vessel", vessel), campaign, output, test)
-    if test is not None and test.refusal is not None:
+    # with the campaign as recorded what was asked for is there
+    if test is not None and test.refusal is not None and output is None:
         raise test.refusal
 
 
@@ -113,7 +114,7 @@ def _print_next(files: tuple[object, ...], campaign: str | None, output: Path | 
         print_next("new", "campaign", free("campaign.toml"), "--from", *files)
     elif output is not None:
         print_next("inspect", *files, "--campaign", output)
-    elif any(one.differences for one in test.tests):
+    elif any(one.is_found and one.differences for one in test.tests):
         print_next("inspect", *files, "--campaign", campaign, "-o", free("campaign-as-recorded.toml"))
     elif test.refusal is None:
         print_next("identify", *files, "--campaign", campaign, "-o", free("result"))

@@ -34,6 +34,7 @@ with late():
 @click.option("--ship", metavar="NAME", help="Name of the ship, where the vessel file does not say it.")
 @click.option("--imo", type=int, metavar="NUMBER", help="Its IMO number, where the vessel file does not say it.")
 @click.option("--line", metavar="NAME", help="Shaft line, such as port, where the vessel file does not say it.")
+@click.option("--class", "class_name", metavar="NAME", help="What sister ships have in common, as `sisters` takes it.")
 @click.option("--time-zone", "time_zone", metavar="ZONE", help="Zone of the loggers' clocks, where files state none.")
 @store_option
 @work_options
@@ -55,8 +56,9 @@ def command(
     """Identify the recordings of a folder or a list, and keep their fingerprints.
 
     The first line of a list names its columns: recording, and where they differ vessel, campaign, ship, imo, line,
-    tested-at, time-zone, place, draught-m and so on; options hold for rows that say nothing. What is done already is
-    not done again, so the same command goes on with a run that was ended. --processes 0 leaves the work to others.
+    class, tested-at, time-zone, place, draught-m and so on; options hold for rows that say nothing. What is done
+    already is not done again, so the same command goes on with a run that was ended. --processes 0 leaves the work to
+    others.
     """
     found = recordings_in(recordings, **facts) if recordings.is_dir() else recordings_of_list(recordings, **facts)
     with opened_store(url) as store:

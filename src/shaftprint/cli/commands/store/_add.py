@@ -31,6 +31,7 @@ SHOWN_HASH = 12
     "--imo", type=int, metavar="NUMBER", help="IMO number of the ship, where the fingerprint does not say it."
 )
 @click.option("--line", metavar="NAME", help="Shaft line, such as port, where the fingerprint does not say it.")
+@click.option("--class", "class_name", metavar="NAME", help="What sister ships have in common, as `sisters` takes it.")
 @moment_option("--tested-at", "When the recording began, where the fingerprint does not say it.")
 @zone_option("Zone of a time without an offset, such as Europe/Amsterdam.")
 def command(
@@ -40,6 +41,7 @@ def command(
     ship: str | None,
     imo: int | None,
     line: str | None,
+    class_name: str | None,
     tested_at: datetime | None,
     zone: tzinfo | None,
 ) -> None:
@@ -51,7 +53,7 @@ def command(
     """
     if tested_at is not None and len(results) > 1:
         raise click.UsageError(f"--tested-at: expected one RESULT, found {len(results)}; each test has its own time.")
-    stated = Stated(ship=ship, imo_number=imo, line=line, tested_at=tested_at)
+    stated = Stated(ship=ship, imo_number=imo, line=line, tested_at=tested_at, class_name=class_name)
     outcomes = []
     with opened_store(url) as store:
         for place in results:
