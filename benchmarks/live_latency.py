@@ -50,6 +50,8 @@ async def aborted(folder, number, rng):
     outcome = await test.run()
     record.close()
     await counterpart.close()
+    if not seen:
+        print(f"{number}: {outcome.word}, {outcome.reason}", flush=True)
     return (seen[0], outcome.is_back) if seen else None
 
 

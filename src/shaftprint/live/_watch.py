@@ -56,6 +56,8 @@ class Breach:
         unit = f" {self.unit}" if self.unit else ""
         lasting = f" for more than {self.persistence_s:g} s" if self.persistence_s else ""
         more = f"; {self.why.removesuffix('.')}" if self.why else ""
+        if math.isnan(self.limit):
+            return f"{self.rule} at {self.time_s:.2f} s: {self.channel}{more}."
         return (
             f"{self.rule} at {self.time_s:.2f} s: {self.channel} expected within {self.limit:.6g}{unit}, found "
             f"{self.value:.6g}{unit}{lasting}{more}."
