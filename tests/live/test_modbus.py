@@ -146,6 +146,8 @@ def test_registers_are_values_of_one_question(tmp_path):
 
 def test_the_device_obeys_and_refuses(tmp_path):
     async def test(counterpart, device, _):
+        # somebody before was answered
+        device.set(114, 1, 0)
         with pytest.raises(LiveError, match=r'refuses "take" for reason 3'):
             await counterpart.take()
         await counterpart.beat(65536 + 9)
@@ -154,7 +156,7 @@ def test_the_device_obeys_and_refuses(tmp_path):
         status = (await counterpart.read(1.0)).device
         assert (status.mode, status.heartbeat, status.set_point_v) == (DeviceMode.HELD, 65536 + 9, 5.125)
         await counterpart.abort(2.0)
-        assert device.writes[-1] == (203, [4, 3, 2000])
+        assert device.writes[-1] == (203, [5, 3, 2000])
         # each once, and a command's words together
         assert [at for at, _ in device.writes] == [203, 200, 203, 201, 203, 203]
         with pytest.raises(LiveError, match="which cannot"):

@@ -9,6 +9,8 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import math
+import secrets
 import time
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -37,6 +39,7 @@ _ANSWER_S: Final = 0.8
 _CYCLES: Final = 5.0
 _MISSED_S: Final = 0.5
 _MOST_FRAMES: Final = 100_000
+_NUMBERS: Final = 200
 
 
 @dataclass(kw_only=True, slots=True, eq=False)
@@ -83,7 +86,8 @@ class CanCounterpart:
         self._notifier: Any = None
         self._frames: list[Any] = []
         self._dropped = self._errors = 0
-        self._counter = self._number = self._beat = 0
+        self._counter = self._beat = 0
+        self._number = secrets.randbelow(_NUMBERS)
         self._begin_s = self._last_s = 0.0
 
     @property
@@ -255,7 +259,10 @@ class CanCounterpart:
     # ---- what goes out ----
 
     async def _command(self, word: str, *, volts: float = 0.0, ramp_s: float = 0.0) -> None:
-        self._number = self._number % 200 + 1
+        # behind the last that was answered, perhaps to somebody else
+        self._answers()
+        answered = self._last("answer") if self._sent else math.nan
+        self._number = (self._number if math.isnan(answered) else int(answered)) % _NUMBERS + 1
         self._send(word, volts, ramp_s)
         until_s = self.clock() + _ANSWER_S
         while self._last("answer") != self._number:

@@ -197,7 +197,9 @@ class ModbusCounterpart:
 
     async def _command(self, word: str, ramp_ms: int = 0) -> None:
         device = self._device()
-        self._number = self._number % 0xFFFF + 1
+        # behind the last that was answered, perhaps to somebody else
+        self._status(await self._asked())
+        self._number = self._answer[0] % 0xFFFF + 1
         await self._write(device.command, [self._number, _WORDS[word], min(ramp_ms, 0xFFFF)])
         until_s = self.clock() + _ANSWER_S
         while self._answer[0] != self._number:

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import secrets
 import time
 from collections import deque
 from dataclasses import replace
@@ -59,7 +60,8 @@ class MqttCounterpart:
         self._arrived = asyncio.Event()
         self._answers: dict[int, asyncio.Future[Answer]] = {}
         self._findings: list[str] = []
-        self._number = 0
+        # others who command the device number theirs from elsewhere on
+        self._number = secrets.randbelow(2**30)
         self._last_counter: int | None = None
         self._gone = ""
 
