@@ -153,7 +153,8 @@ async def reached(counterpart: Any) -> None:
 def send_mqtt(port: int, kind: str, lost: tuple[int, ...], stop: Event) -> None:
     """Send blocks over MQTT until told to stop."""
     device.CHANNELS = fast_channels()
-    front = {"mqtt": device.PlainFront, "sparkplug": device.SparkplugFront}[kind](Fast(drop=lost))
+    made = Fast(drop=lost)
+    front = device.PlainFront(made, channels=fast_channels()) if kind == "mqtt" else device.SparkplugFront(made)
     asyncio.run(until(stop, device.on_board(front, port)))
 
 

@@ -127,16 +127,15 @@ class Device:
 class PlainFront:
     """The device in plain blocks."""
 
-    def __init__(self, device, prefix="ship/line"):
-        self.device, self.prefix = device, prefix
+    def __init__(self, device, prefix="ship/line", channels=CHANNELS):
+        self.device, self.prefix, self.channels = device, prefix, channels
         self.wanted = [f"{prefix}/heartbeat", f"{prefix}/command"]
-        self.again_on = None
 
     def birth(self):
-        return [(f"{self.prefix}/describe", described(Description(channels=CHANNELS, abilities=ABILITIES)), True)]
+        return [(f"{self.prefix}/describe", described(Description(channels=self.channels, abilities=ABILITIES)), True)]
 
     def block(self, block):
-        return f"{self.prefix}/block", written_block(block, CHANNELS)
+        return f"{self.prefix}/block", written_block(block, self.channels)
 
     def heard(self, topic, payload):
         if topic.endswith("heartbeat"):
@@ -222,7 +221,7 @@ class SparkplugFront:
 
 
 @contextlib.asynccontextmanager
-async def on_board(front, port, **options):
+async def on_board(front, port, every_s=SPAN_S, **options):
     """Connect a device to the broker, let it send a block every 50 ms, and obey."""
     import aiomqtt  # only where MQTT is installed
 
@@ -242,7 +241,7 @@ async def on_board(front, port, **options):
 
     async def send():
         while True:
-            await asyncio.sleep(SPAN_S)
+            await asyncio.sleep(every_s)
             if front.device.is_frozen:
                 continue
             async with in_order:

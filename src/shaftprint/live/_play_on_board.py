@@ -15,6 +15,10 @@ from shaftprint.live._outcome import Operator, Outcome
 from shaftprint.live._page import LivePages, watched
 from shaftprint.live._record import Left, LiveRecord
 from shaftprint.live._stop_rule import enough_by
+from shaftprint.live.counterparts._can_bus import CanCounterpart
+from shaftprint.live.counterparts._modbus import ModbusCounterpart
+from shaftprint.live.counterparts._mqtt import PORTS as MQTT_PORTS
+from shaftprint.live.counterparts._mqtt import MqttCounterpart
 from shaftprint.live.counterparts._opcua import OpcUaCounterpart
 
 if TYPE_CHECKING:
@@ -24,17 +28,27 @@ if TYPE_CHECKING:
     from shaftprint.live.counterparts._access import Access
     from shaftprint.vessel._vessel import Vessel
 
-_SCHEMES = ("opc.tcp",)
+_SCHEMES = ("opc.tcp", *MQTT_PORTS, "modbus", "can")
 
 
-def counterpart_at(url: str, access: "Access") -> Counterpart:
+def counterpart_at(url: str, access: "Access", places: Path | None = None) -> Counterpart:
     """Return the counterpart of an address.
 
-    Raises LiveError if no protocol has that address.
+    ``places``: the file that says which registers or messages hold what. Raises LiveError if no protocol has that
+    address, or such a file is missing or in excess; SettingsError if it cannot be used.
     """
     scheme = url.partition("://")[0]
+    if (places is not None) != (scheme in ("modbus", "can")) and scheme in _SCHEMES:
+        wanted = "a file" if places is None else "no file"
+        raise LiveError(f"{scheme}: expected {wanted} that says which registers or messages hold what (--places).")
     if scheme == "opc.tcp":
         return OpcUaCounterpart(url, access=access)
+    if scheme in MQTT_PORTS:
+        return MqttCounterpart(url, access)
+    if scheme == "modbus" and places is not None:
+        return ModbusCounterpart(url, places, access)
+    if scheme == "can" and places is not None:
+        return CanCounterpart(url, places, access)
     raise LiveError(f"expected an address that begins with {', '.join(_SCHEMES)}, found {printable(scheme)}.")
 
 
@@ -47,6 +61,7 @@ def play_on_board(
     *,
     access: "Access",
     confirm: Callable[[str], bool],
+    places: Path | None = None,
     dry: bool = False,
     planned: "PlannedTest | None" = None,
     slope_rpm_per_v: float | None = None,
@@ -55,13 +70,14 @@ def play_on_board(
 ) -> tuple[Outcome, Left]:
     """Play a test through the counterpart of an address, and write what it leaves.
 
-    ``path``: the recording. ``confirm``: asks on the bridge; it may take its time. ``dry``: whether nothing is written
-    to the counterpart. ``planned``: by whose wishes legs end early. An interrupt of the program aborts the test. Raises
-    LiveError if the counterpart is not reached, RecordingError if the recording is there already or cannot be written.
+    ``path``: the recording. ``places``: of Modbus and CAN, the file that says which registers or messages hold what.
+    ``confirm``: asks on the bridge; it may take its time. ``dry``: whether nothing is written to the counterpart.
+    ``planned``: by whose wishes legs end early. An interrupt of the program aborts the test. Raises LiveError if the
+    counterpart is not reached, RecordingError if the recording is there already or cannot be written.
     """
     return asyncio.run(
         _played(
-            counterpart_at(url, access),
+            counterpart_at(url, access, places),
             vessel,
             campaign,
             envelope,

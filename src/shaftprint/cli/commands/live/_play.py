@@ -49,6 +49,9 @@ PASSWORD = "SHAFTPRINT_LIVE_PASSWORD"  # noqa: S105  (the name of the variable, 
     "--certificate", type=click.Path(path_type=Path), help="Certificate of this side with its key, PEM; encrypts."
 )
 @click.option("--authority", type=click.Path(path_type=Path), help="Certificates that vouch for the other side, PEM.")
+@click.option(
+    "--places", type=click.Path(path_type=Path), help="Which registers or messages hold what, for modbus:// and can://."
+)
 @click.option("--insecure", is_flag=True, help="Write without user and encryption, on a network nobody else is on.")
 @click.pass_context
 def command(
@@ -65,11 +68,13 @@ def command(
     user: str | None,
     certificate: Path | None,
     authority: Path | None,
+    places: Path | None,
     insecure: bool,
 ) -> None:
     """Play a test through a counterpart on board.
 
-    URL is its address, such as opc.tcp://10.0.0.5:4840. The campaign is proved against [envelope] of the vessel file;
+    URL is its address, such as opc.tcp://10.0.0.5:4840 or mqtts://10.0.0.5/prefix; it goes by opc.tcp, mqtt, mqtts,
+    sparkplug, sparkplugs, modbus or can. The campaign is proved against [envelope] of the vessel file;
     then channels, heartbeat and revert are looked at, and the bridge is asked. Ctrl-C aborts: the counterpart goes back
     to the lever. Ends with 3 where the test was refused or aborted.
     """
@@ -95,6 +100,7 @@ def command(
             envelope,
             output,
             access=access,
+            places=places,
             dry=dry,
             planned=None if place is None else read_plan(place),
             slope_rpm_per_v=trial.campaign.slope_rpm_per_v if slope_rpm_per_v is None else slope_rpm_per_v,
