@@ -258,8 +258,12 @@ async def on_board(front, port, every_s=SPAN_S, **options):
     try:
         yield client
     finally:
-        for task in tasks:
-            task.cancel()
+        # waiting for a broker may swallow it when it is cancelled (wait_for of Python 3.11)
+        for _ in range(100):
+            for task in tasks:
+                task.cancel()
+            if not (await asyncio.wait(tasks, timeout=0.05))[1]:
+                break
         await asyncio.gather(*tasks, return_exceptions=True)
         # a test may have taken its broker away
         with contextlib.suppress(aiomqtt.MqttError):

@@ -63,6 +63,9 @@ class Ship:
 def played(folder, faults):
     ship = simulated_ship_of(VESSEL, CAMPAIGN, seed=1, faults=faults, tug=TUG)
 
+    # what it compiles at its first block would look like a link that is silent
+    ship.sail()
+
     async def both(port):
         front = PlainFront(Ship(ship), channels=ship.channels)
         counterpart = counterpart_at(f"mqtt://127.0.0.1:{port}/ship/line", Access(is_insecure=True))

@@ -151,8 +151,7 @@ class MqttCounterpart:
         """Let go of the link."""
         if self._listening is not None:
             self._listening.cancel()
-            with contextlib.suppress(asyncio.CancelledError, Exception):
-                await self._listening
+            await asyncio.wait({self._listening}, timeout=SILENT_S)
         if self._client is not None:
             client, self._client = self._client, None
             with contextlib.suppress(Exception):
