@@ -5,11 +5,8 @@ import re
 from collections.abc import Mapping, Sequence
 
 from shaftprint.errors import ExportError
-from shaftprint.models.equations._calculus import postorder
+from shaftprint.models.equations._dialect import Dialect, statements
 from shaftprint.models.equations._formula import Formula
-
-_SIGNS = {"add": "({} + {})", "multiply": "({} * {})", "divide": "({} / {})"}
-_FUNCTIONS = {"absolute": "fabs", "minimum": "least", "maximum": "most"}
 
 
 def identifier(text: str) -> str:
@@ -38,27 +35,31 @@ def c_integers(values: Sequence[int]) -> str:
     return "{" + ", ".join(str(value) for value in [*values, 0]) + "}"
 
 
+def _table(node: Formula, x: str, free: int) -> tuple[list[str], str]:
+    places, values = zip(*node.points, strict=True)
+    columns = [
+        f"static const double {letter}{free}[] = {c_array(of)};" for letter, of in (("x", places), ("y", values))
+    ]
+    return columns, f"{node.operation.replace(' ', '_')}({x}, {len(places)}, x{free}, y{free})"
+
+
+C = Dialect(
+    number=c_number,
+    exponent=c_number,
+    forms={"power": "pow({}, {})", "absolute": "fabs({})", "minimum": "least({}, {})", "maximum": "most({}, {})"},
+    table=_table,
+    assignment="const double {} = {};",
+)
+
+
 def c_function(name: str, formulas: Sequence[Formula], leaves: Mapping[str, Sequence[str]]) -> str:
     """Return a function that fills ``out`` with the values of formulas, each part computed once.
 
     ``leaves``: for each kind of leaf the member of ``Values`` it stands in, and the names of its places.
     """
     used: dict[str, str] = {}
-    lines: list[str] = []
-    by_text: dict[str, str] = {}
-    names: dict[int, str] = {}
-    for node in postorder(formulas):
-        if node.operation == "number":
-            names[id(node)] = c_number(node.value) if node.value >= 0.0 else f"({c_number(node.value)})"
-        elif not node.of:
-            names[id(node)] = _leaf(node, leaves, used)
-        else:
-            text = _operation(node, [names[id(part)] for part in node.of], lines, len(by_text))
-            if text not in by_text:
-                by_text[text] = f"t{len(by_text)}"
-                lines.append(f"const double {by_text[text]} = {text};")
-            names[id(node)] = by_text[text]
-    results = [f"out[{index}] = {names[id(formula)]};" for index, formula in enumerate(formulas)]
+    lines, names = statements(formulas, lambda node: _leaf(node, leaves, used), C)
+    results = [f"out[{index}] = {result};" for index, result in enumerate(names)]
     body = [*used.values(), *lines, *results]
     if not used:
         body.insert(0, "(void)v;")
@@ -75,17 +76,3 @@ def _leaf(node: Formula, leaves: Mapping[str, Sequence[str]], used: dict[str, st
     member_text = f"v->{member}[{node.place}]" if prefixes else f"v->{member}"
     used.setdefault(name, f"const double {name} = {member_text};")
     return name
-
-
-def _operation(node: Formula, parts: list[str], lines: list[str], number: int) -> str:
-    if node.operation in _SIGNS:
-        return _SIGNS[node.operation].format(*parts)
-    if node.operation == "power":
-        return f"pow({parts[0]}, {c_number(node.value)})"
-    if node.operation in ("table", "table slope"):
-        places, values = zip(*node.points, strict=True)
-        for letter, column in (("x", places), ("y", values)):
-            lines.append(f"static const double {letter}{number}[] = {c_array(column)};")
-        function = node.operation.replace(" ", "_")
-        return f"{function}({parts[0]}, {len(places)}, x{number}, y{number})"
-    return f"{_FUNCTIONS.get(node.operation, node.operation)}({', '.join(parts)})"

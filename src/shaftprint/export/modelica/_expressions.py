@@ -4,12 +4,14 @@ import math
 import re
 from collections import Counter
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from itertools import pairwise
 from typing import Final
 
 from shaftprint.errors import ExportError
 from shaftprint.escape import modelica_identifier
 from shaftprint.models.equations._calculus import postorder
+from shaftprint.models.equations._dialect import Dialect
 from shaftprint.models.equations._formula import Formula
 
 _WORDS: Final = """
@@ -22,7 +24,9 @@ terminal assert
 """
 RESERVED: Final = frozenset(_WORDS.split())
 _CHOICES: Final = frozenset({"minimum", "maximum", "choose", "table", "table slope"})
-_FUNCTIONS: Final = frozenset({"sqrt", "exp", "log", "sin", "cos", "tanh"})
+_KNOWN: Final = frozenset(
+    {"add", "multiply", "divide", "power", "absolute", "sqrt", "exp", "log", "sin", "cos", "tanh"} | _CHOICES
+)
 
 
 def modelica_name(text: str) -> str:
@@ -80,7 +84,7 @@ class ModelicaText:
         if not node.of:
             self._texts[id(node)] = self._leaf(node)
             return
-        text = self._sum(node) or expression(node, [self._texts[id(part)] for part in node.of], is_constant=constant)
+        text = self._sum(node) or self._expression(node, constant)
         if shared:
             name = self._name(f"part_{len(self.shared) + 1}")
             self.shared.append((name, unbracketed(text), constant))
@@ -88,6 +92,13 @@ class ModelicaText:
         elif node.operation == "multiply" and node.of[0].equals(-1.0):
             self._opposites[id(node)] = self._texts[id(node.of[1])]
         self._texts[id(node)] = text
+
+    def _expression(self, node: Formula, constant: bool) -> str:
+        """Return an operation on expressions."""
+        if node.operation not in _KNOWN:
+            raise ExportError(f"export: the operation {node.operation} is not known in Modelica.")
+        dialect = OF_PARAMETERS if constant else OF_SIGNALS
+        return dialect.expression(node, [self._texts[id(part)] for part in node.of])[1]
 
     def _sum(self, node: Formula) -> str:
         """Return a sum as a difference where one of its parts is the opposite of something; else nothing."""
@@ -110,42 +121,9 @@ def unbracketed(text: str) -> str:
     return text
 
 
-def expression(node: Formula, parts: Sequence[str], *, is_constant: bool) -> str:
-    """Return an operation on expressions.
-
-    A choice between signals is one of ``if``, so that the moment at which a limit begins to act is found; where both
-    sides meet, it is told to be continuous. One between parameters is a function.
-    """
-    match node.operation:
-        case "add":
-            return f"({parts[0]} + {parts[1]})"
-        case "multiply":
-            return f"({parts[0]} * {parts[1]})"
-        case "divide":
-            return f"({parts[0]} / {parts[1]})"
-        case "power":
-            return f"({parts[0]}) ^ {modelica_number(node.value)}"
-        case "absolute":
-            return f"abs({parts[0]})"
-        case "minimum":
-            return f"min({parts[0]}, {parts[1]})" if is_constant else _smaller(parts[0], parts[1])
-        case "maximum":
-            return f"max({parts[0]}, {parts[1]})" if is_constant else _smaller(parts[1], parts[0], parts[0], parts[1])
-        case "choose":
-            return f"(if {parts[0]} <= {parts[1]} then {parts[2]} else {parts[3]})"
-        case "table" | "table slope":
-            return _table(parts[0], node.points, slope=node.operation == "table slope")
-    if node.operation not in _FUNCTIONS:
-        raise ExportError(f"export: the operation {node.operation} is not known in Modelica.")
-    return f"{node.operation}({parts[0]})"
-
-
-def _smaller(left: str, right: str, at_most: str = "", above: str = "") -> str:
-    return f"smooth(0, if {left} <= {right} then {at_most or left} else {above or right})"
-
-
-def _table(x: str, points: Sequence[tuple[float, float]], *, slope: bool) -> str:
+def _table(node: Formula, x: str, _: int) -> tuple[tuple[str, ...], str]:
     """Return a piecewise linear function, constant beyond its ends, or its slope."""
+    points, slope = node.points, node.operation == "table slope"
     (first, at_first), (_, at_last) = points[0], points[-1]
     text = modelica_number(0.0 if slope else at_last)
     for (x0, y0), (x1, y1) in reversed(list(pairwise(points))):
@@ -153,4 +131,23 @@ def _table(x: str, points: Sequence[tuple[float, float]], *, slope: bool) -> str
         inside = rise if slope else f"{modelica_number(y0)} + {rise} * ({x} - {modelica_number(x0)})"
         text = f"if {x} <= {modelica_number(x1)} then {inside} else {text}"
     text = f"if {x} <= {modelica_number(first)} then {modelica_number(0.0 if slope else at_first)} else {text}"
-    return f"({text})" if slope else f"smooth(0, {text})"
+    return (), f"({text})" if slope else f"smooth(0, {text})"
+
+
+_FORMS: Final = {"power": "({}) ^ {}", "absolute": "abs({})", "choose": "(if {} <= {} then {} else {})"}
+# A choice between signals is one of ``if``, so that the moment at which a limit begins to act is found; where both
+# sides meet, it is told to be continuous. One between parameters is a function.
+OF_PARAMETERS: Final = Dialect(
+    number=modelica_number,
+    exponent=modelica_number,
+    forms=_FORMS | {"minimum": "min({}, {})", "maximum": "max({}, {})"},
+    table=_table,
+)
+OF_SIGNALS: Final = replace(
+    OF_PARAMETERS,
+    forms=_FORMS
+    | {
+        "minimum": "smooth(0, if {0} <= {1} then {0} else {1})",
+        "maximum": "smooth(0, if {1} <= {0} then {0} else {1})",
+    },
+)
