@@ -6,7 +6,9 @@ import importlib
 import json
 import os
 import secrets
+import tomllib
 from collections.abc import Iterator
+from importlib.resources import files
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
@@ -143,3 +145,8 @@ def _sync(path: Path) -> None:
 def _expect_free(path: Path, *, overwrite: bool) -> None:
     if path.exists() and not overwrite:
         raise FileExistsError(f"{path} exists already; choose another name or delete it first.")
+
+
+def shipped_table(package: str, path: str) -> dict[str, Any]:
+    """Return the tables of a TOML file that lies in a package."""
+    return tomllib.loads(files(package).joinpath(path).read_text(encoding="utf-8"))

@@ -6,12 +6,11 @@ from pathlib import Path
 
 from shaftprint.campaign._campaign import Campaign
 from shaftprint.catalogue._own_structure import TypedName, chosen_structures
-from shaftprint.errors import StructureError
 from shaftprint.fingerprint._fingerprint import Fingerprint
 from shaftprint.fingerprint._model import structure_to_use
 from shaftprint.identify.likelihood._prior import Prior
 from shaftprint.models._structure import Structure
-from shaftprint.spelling import meant
+from shaftprint.survey._fit_options import expect_free
 from shaftprint.survey._of_vessel import default_structure, of_vessel
 from shaftprint.vessel._vessel import Vessel
 
@@ -77,8 +76,4 @@ class ShipBeforeTest:
         StructureError
             If there is no such parameter.
         """
-        free = [parameter.name for parameter in chosen.free]
-        unknown = [name for name in self.freed if name not in free]
-        if unknown:
-            expected = f"expected a free parameter, one of {', '.join(free)}.{meant(unknown[0], free)}"
-            raise StructureError(f"--free {', '.join(unknown)}: {expected}")
+        expect_free(self.freed, [parameter.name for parameter in chosen.free])

@@ -67,13 +67,7 @@ class FitOptions:
             structure.held_at(**{name: value for name, value in self.held.items() if name in structure.names})
             for structure in chosen
         )
-        anywhere = _free_names(structures)
-        unknown = [name for name in self.freed if name not in anywhere]
-        if unknown:
-            raise StructureError(
-                f"--free {', '.join(unknown)}: expected a free parameter, one of {', '.join(sorted(anywhere))}."
-                f"{meant(unknown[0], anywhere)}"
-            )
+        expect_free(self.freed, sorted(_free_names(structures)))
         return structures
 
     def settings(self, structures: Sequence[Structure]) -> SettingsOf:
@@ -104,3 +98,14 @@ def _stated(chosen: Structure, structures: Sequence[Structure], stated: Mapping[
 
 def _free_names(structures: Sequence[Structure]) -> set[str]:
     return {parameter.name for structure in structures for parameter in structure.free}
+
+
+def expect_free(freed: Sequence[str], free: Sequence[str]) -> None:
+    """Refuse to free what is no free parameter of a structure.
+
+    Raises StructureError if one of ``freed`` is none of ``free``.
+    """
+    unknown = [name for name in freed if name not in free]
+    if unknown:
+        expected = f"expected a free parameter, one of {', '.join(free)}.{meant(unknown[0], free)}"
+        raise StructureError(f"--free {', '.join(unknown)}: {expected}")

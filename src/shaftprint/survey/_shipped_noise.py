@@ -3,20 +3,18 @@
 ``benchmarks/stored_noise.py`` and ``stored_noise_beside.py`` make their rows.
 """
 
-import tomllib
 from collections.abc import Mapping
-from importlib.resources import files
 from types import MappingProxyType
 from typing import Any
 
 from shaftprint.catalogue._roles import ShipRole
+from shaftprint.files import shipped_table
 from shaftprint.identify.prediction._noise_levels import NoiseLevels, stated_noise
 from shaftprint.models._role import Role
 
 
 def _table(name: str) -> dict[str, Any]:
-    text = files("shaftprint.survey").joinpath("shipped_noise", f"{name}.toml").read_text(encoding="utf-8")
-    return tomllib.loads(text)
+    return shipped_table("shaftprint.survey", f"shipped_noise/{name}.toml")
 
 
 def _by_speed(table: Mapping[str, Any]) -> Mapping[float, NoiseLevels]:

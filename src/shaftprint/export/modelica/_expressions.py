@@ -121,7 +121,7 @@ def unbracketed(text: str) -> str:
     return text
 
 
-def _table(node: Formula, x: str, _: int) -> tuple[tuple[str, ...], str]:
+def _table(node: Formula, x: str, free: int) -> tuple[tuple[str, ...], str]:
     """Return a piecewise linear function, constant beyond its ends, or its slope."""
     points, slope = node.points, node.operation == "table slope"
     (first, at_first), (_, at_last) = points[0], points[-1]
