@@ -8,6 +8,7 @@ import pytest
 
 from shaftprint.errors import ServiceError, SettingsError
 from shaftprint.recording import Channel, write_recording
+from shaftprint.service._gather import gather
 from shaftprint.service._log import blocks, expect_lever_at_once, expect_no_deadband
 from shaftprint.service._scan import scan
 from shaftprint.service._segment import LeverLine, Segment
@@ -227,3 +228,58 @@ def test_a_channel_with_a_deadband_is_refused_and_one_of_coarse_steps_is_not():
         expect_no_deadband(channel(banded), Path("log.nc"))
     expect_no_deadband(channel(fine), Path("log.nc"))
     expect_no_deadband(channel(np.round(speed / 3.0) * 3.0), Path("log.nc"))
+
+
+MOVES_S = (40.0, 90.0, 140.0, 200.0, 260.0)
+
+
+def moved_log(path, *, times_s, missing=()):
+    """Write a log in text whose speed follows a lever that moves every minute, without some seconds."""
+    clean_s = np.arange(30_000) / 100.0
+    lever = 1000.0 + 200.0 * (np.searchsorted(MOVES_S, clean_s) % 2)
+    rng = np.random.default_rng(9)
+    speed = lever + 2.0 * rng.standard_normal(clean_s.size)
+    torque = 3.0 * (speed / 1183.8) ** 2
+    kept = np.ones(clean_s.size, dtype=bool)
+    for first, last in missing:
+        kept &= (clean_s < first) | (clean_s >= last)
+    rows = zip(times_s[kept], lever[kept], speed[kept], torque[kept], strict=True)
+    lines = [f"{t:.3f},{a:.4g},{b:.5g},{c:.5g}" for t, a, b, c in rows]
+    path.write_text("time [s],LeverSpeed [rpm],EngineSpeed [rpm],M_s [V]\n" + "\n".join(lines) + "\n")
+    return path
+
+
+def used_moves_s(found):
+    return [pytest.approx(one.move_s, abs=0.1) for one in found.segments if not one.reason]
+
+
+def test_holes_and_clock_steps_cost_the_moves_that_they_meet_and_no_other(tmp_path, vessel):
+    clean_s = np.arange(30_000) / 100.0
+    whole = gather([moved_log(tmp_path / "whole.csv", times_s=clean_s)], vessel)
+    assert used_moves_s(whole) == list(MOVES_S)
+    holes = [(95.0, 99.0), (227.0, 240.0)]
+    found = gather([moved_log(tmp_path / "holes.csv", times_s=clean_s, missing=holes)], vessel)
+    assert used_moves_s(found) == [40.0, 140.0, 200.0, 260.0]
+    assert {one.reason for one in found.segments if one.reason} == {"a channel is missing there"}
+    for step_s in (-2.37, 2.37):  # the second clock may count on from either
+        stepped_s = clean_s + step_s * (clean_s >= 145.0)
+        found = gather([moved_log(tmp_path / "step.csv", times_s=stepped_s)], vessel)
+        assert [round(one.move_s / 10.0) for one in found.segments if not one.reason] == [4, 9, 20, 26]
+
+
+def test_a_logger_that_begins_anew_costs_the_move_that_it_meets(tmp_path, vessel):
+    clean_s = np.arange(30_000) / 100.0
+    first = moved_log(tmp_path / "1.csv", times_s=clean_s, missing=[(205.0, 400.0)])
+    second = moved_log(tmp_path / "2.csv", times_s=clean_s - 206.0, missing=[(-1.0, 206.0)])
+    found = gather([first, second], vessel)
+    assert used_moves_s(found) == [40.0, 90.0, 140.0, 54.0]
+    assert [one.reason for one in found.segments if one.reason] == ["the log begins or ends there"]
+
+
+def test_memory_does_not_hold_the_hours_between_moves(tmp_path, vessel):
+    found = gather([moved_log(tmp_path / "whole.csv", times_s=np.arange(30_000) / 100.0)], vessel)
+    for one in found.segments:
+        base = one.lever_v
+        while base.base is not None:
+            base = base.base
+        assert base.nbytes < 2 * one.lever_v.nbytes

@@ -1,11 +1,12 @@
 """What a fit has reached comes back as it was, or not at all."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 from shaftprint.service._model import FREE
 from shaftprint.service._progress import Progress, Reached
-from shaftprint.time_domain._noise_model import NoiseModel
 
 
 @pytest.fixture
@@ -14,7 +15,7 @@ def kept(tmp_path):
     reached = Reached(
         theta=rng.standard_normal(len(FREE)),
         counts=rng.uniform(size=20) > 0.2,
-        noise=NoiseModel(
+        noise=SimpleNamespace(
             coefficients=rng.standard_normal((3, 2, 2)) / 7.0, covariance=np.array([[2.0, 0.3], [0.3, 1.0]])
         ),
         steps=2,

@@ -5,6 +5,7 @@ from datetime import UTC, datetime
 
 import numpy as np
 import pytest
+from tests.tug.busy_crew import BUSY
 
 from shaftprint.errors import ServiceError
 from shaftprint.fingerprint import read_fingerprint, write_fingerprint
@@ -16,8 +17,7 @@ from shaftprint.service._progress import Progress
 from shaftprint.service._score import Score, Simulated, simulated
 from shaftprint.service._segment_file import read_segments
 from shaftprint.service._vetting import shift_of_lever
-from shaftprint.tug import Tug, sail_service
-from shaftprint.tug.service._habits import Habits, lever_course
+from shaftprint.tug import sail_service
 from shaftprint.vessel import load_vessel
 
 NOW = datetime(2026, 11, 28, 12, tzinfo=UTC)
@@ -26,16 +26,6 @@ NOW = datetime(2026, 11, 28, 12, tzinfo=UTC)
 @pytest.fixture(scope="module")
 def vessel():
     return load_vessel("stan-tug-1205-service")
-
-
-def test_a_course_begins_and_ends_within_its_hours(vessel):
-    course = lever_course(Habits(), Tug(), vessel, hours=2.0, rng=np.random.default_rng(1))
-    rpm = -250.97 * (np.array(course.corner_v) - 0.04947603) - 83.467
-    assert rpm.min() >= 599.9
-    assert rpm.max() <= 1650.1
-    assert course.corner_s[-1] < 7200.0
-    assert 60 < len(course.corner_s) / 2 < 240
-    assert all(later > earlier for earlier, later in zip(course.corner_s, course.corner_s[1:], strict=False))
 
 
 def scores_of(size, rng, scatter):
@@ -83,24 +73,23 @@ def runs_of(*meet):
 
 
 def test_segments_at_a_limit_of_the_torque_do_not_count_and_stay_out():
-    counts = np.ones(11, dtype=bool)
-    left = _beside_limits(runs_of(*[False] * 3, True, *[False] * 7), counts)
+    counts = np.ones(21, dtype=bool)
+    left = _beside_limits(runs_of(*[False] * 3, True, *[False] * 17), counts)
     left = _beside_limits(runs_of(*[False] * 3, True, *[False] * (len(left) - 4)), counts)
-    assert len(left) == 9
+    assert len(left) == 19
     assert np.flatnonzero(~counts).tolist() == [3, 4]
 
 
 def test_a_crew_that_always_meets_a_limit_is_told():
-    with pytest.raises(ServiceError, match="in which no limit of the torque acts, found 7 beside 4 that meet one"):
-        _beside_limits(runs_of(*[False] * 7, *[True] * 4), np.ones(11, dtype=bool))
+    with pytest.raises(ServiceError, match="in which no limit of the torque acts, found 15 beside 4 that meet one"):
+        _beside_limits(runs_of(*[False] * 15, *[True] * 4), np.ones(19, dtype=bool))
 
 
 @pytest.fixture(scope="module")
 def worked(vessel, tmp_path_factory):
     """Return the logs of half an hour of a busy crew, and the truth."""
     folder = tmp_path_factory.mktemp("service")
-    habits = Habits(shortest_hold_s=12.0, longest_hold_s=60.0, idles_per_hour=4.0, idle_s=(40.0, 60.0), declutched=1.0)
-    return sail_service(vessel, folder, hours=0.5, seed=5, habits=habits, ending=".nc")
+    return sail_service(vessel, folder, hours=0.5, seed=5, habits=BUSY, ending=".nc")
 
 
 @pytest.mark.slow
@@ -109,7 +98,7 @@ def test_service_tells_the_truth_without_a_test(worked, vessel, tmp_path):
     found = scan(files, vessel)
     assert not found.refused
     assert found.seconds["clutch out"] > 20.0
-    assert len(found.used) > 15
+    assert len(found.used) > 20
     found.write(tmp_path / "segments.csv")
     day = fit_service(tmp_path / "segments.csv", vessel, now=NOW)
     for quantity in day.fingerprint.parameters:
@@ -126,7 +115,7 @@ def test_service_tells_the_truth_without_a_test(worked, vessel, tmp_path):
     assert lines[0].count(",") == 2 + 11 + 66
 
 
-def few_of(worked, vessel, path, *, kept=15):
+def few_of(worked, vessel, path, *, kept=18):
     """Write the first segments of the logs."""
     files, _ = worked
     found = scan(files[:1], vessel)

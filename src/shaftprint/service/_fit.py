@@ -27,8 +27,8 @@ from shaftprint.time_domain._record import Record
 from shaftprint.time_domain._simulator import Simulator
 from shaftprint.time_domain._whitening import Whitening
 
-FEWEST_SEGMENTS = 8
-"""Segments below which their scatter says nothing."""
+FEWEST_SEGMENTS = 16
+"""Segments below which the valley of gains and delays is so wide that it bends, and their scatter says nothing."""
 # Steps at most; a step below so many standard deviations is the last, and so is the second below one of them: what a
 # limit is barely met by makes the likelihood rough. One beyond asks for the noise anew, so many times at most.
 _MOST_STEPS, _LAST, _SHORT, _NOISE_ANEW, _MOST_NOISES = 12, 0.3, 1.5, 1.5, 4

@@ -65,6 +65,8 @@ class Gathered:
     """How long the ship was doing what [s]."""
     left_out: tuple[LeftOut, ...]
     """Stretches that could not be read."""
+    spans_s: Mapping[str, tuple[float, float]]
+    """From when to when each log goes, in its own seconds [s]."""
 
 
 def gather(
@@ -79,9 +81,15 @@ def gather(
     segments: list[Segment] = []
     seconds: dict[str, float] = dict.fromkeys(STATES, 0.0)
     still: list[FloatArray] = []
+    spans_s: dict[str, tuple[float, float]] = {}
     stretches = 0
     for block in blocks(logs, vessel, keep_s=KEEP_S, told=left_out.append, progress=progress):
         states = _states(block, vessel)
+        new_s = block.start_s + (block.lever_v.size - block.new) / block.rate_hz
+        spans_s[block.log] = (
+            spans_s.get(block.log, (new_s, 0.0))[0],
+            float(block.start_s + block.lever_v.size / block.rate_hz),
+        )
         for state in states[states.size - block.new // round(block.rate_hz) :]:
             seconds[STATES[state]] += 1.0
         segments += [_segment(block, move, states, vessel) for move in _moves(block, vessel)]
@@ -98,6 +106,7 @@ def gather(
         ),
         seconds={state: length for state, length in seconds.items() if length},
         left_out=tuple(left_out),
+        spans_s=spans_s,
     )
 
 
@@ -142,25 +151,25 @@ def _still(block: Block, states: NDArray[np.int8], vessel: "Vessel", number: int
     moves = moving(block.lever_v, rate, range_v=range_v(vessel)) | ~block.whole
     moved = np.concatenate([[0], np.cumsum(moves)])
     length, settle = round(MEAN_S * rate), round(APART_S * rate)
-    rows = []
     fresh = block.lever_v.size - block.new
     point = vessel.working_point
-    last_stop = -1
-    for begin in range(fresh, block.lever_v.size - length + 1, length):
-        stop = begin + length
-        before = max(begin - settle, 0)
-        seconds = states[max(states.size - int((block.lever_v.size - before) / rate), 0) :][
-            : int((stop - before) / rate)
-        ]
-        if moved[stop] != moved[before] or begin < settle or not np.all(seconds == AHEAD):
-            continue
-        number += begin != last_stop
-        last_stop = stop
-        speed = block.speed_rev_s[begin:stop]
-        square = float(np.mean((speed * SECONDS_PER_MINUTE / point.engine_speed_rpm) ** 2))
-        load = float(np.mean(block.torque_nm[begin:stop])) / point.driving_torque_nm / square
-        rows.append((float(np.mean(block.lever_v[begin:stop])), float(np.mean(speed)), load, number))
-    return np.array(rows).reshape(-1, 4), number
+    begins = np.arange(fresh, block.lever_v.size - length + 1, length)
+    stops, befores = begins + length, np.maximum(begins - settle, 0)
+    elsewhere = np.concatenate([[0], np.cumsum(states != AHEAD)])
+    first = np.maximum(states.size - ((block.lever_v.size - befores) / rate).astype(np.int64), 0)
+    last = np.minimum(first + ((stops - befores) / rate).astype(np.int64), states.size)
+    good = (moved[stops] == moved[befores]) & (begins >= settle) & (elsewhere[last] == elsewhere[first])
+    whole = slice(fresh, fresh + begins.size * length)
+    lever, speed, torque = (
+        values[whole].reshape(-1, length)[good] for values in (block.lever_v, block.speed_rev_s, block.torque_nm)
+    )
+    square = np.mean((speed * SECONDS_PER_MINUTE / point.engine_speed_rpm) ** 2, axis=1)
+    load = torque.mean(axis=1) / point.driving_torque_nm / square
+    # means that do not follow on each other are of another stretch
+    anew = np.diff(np.flatnonzero(good), prepend=-2) > 1
+    numbers = number + np.cumsum(anew)
+    rows = np.column_stack([lever.mean(axis=1), speed.mean(axis=1), load, numbers.astype(np.float64)])
+    return rows, int(numbers[-1]) if numbers.size else number
 
 
 def _segment(block: Block, move: Move, states: NDArray[np.int8], vessel: "Vessel") -> Segment:
@@ -186,14 +195,15 @@ def _segment(block: Block, move: Move, states: NDArray[np.int8], vessel: "Vessel
     }
     if reason:
         empty = frozen_float(np.zeros(0))
-        return Segment(**common, lever_v=frozen_float(block.lever_v[inside]), speed_rev_s=empty, torque_nm=empty)
+        return Segment(**common, lever_v=frozen_float(block.lever_v[inside].copy()), speed_rev_s=empty, torque_nm=empty)
     decimator = Decimator(every=every)
     speed, torque = block.speed_rev_s[fine], block.torque_nm[fine]
     orders = (1.0, *(float(order) for order in vessel.machine.torque_orders[:1]), 1.0 / vessel.gearbox.ratio)
     torque = torque - orders_in(torque, speed, block.rate_hz, orders)
     return Segment(
         **common,
-        lever_v=frozen_float(block.lever_v[fine]),
+        # a copy: a view would keep the hour around it in memory
+        lever_v=frozen_float(block.lever_v[fine].copy()),
         speed_rev_s=frozen_float(decimator.filtered(speed)),
         torque_nm=frozen_float(decimator.filtered(torque)),
     )

@@ -1,7 +1,7 @@
 """From logs to segments: which moves of the lever can be used, what they tell, and why others cannot."""
 
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -31,6 +31,8 @@ TOLD = (GAUGE_K_P.name, GAUGE_K_I.name, T_D.name, T_SP.name, TAU_DN.name, GAUGE_
 """Numbers of which the table says what each segment tells."""
 _TOO_LOUD = 3.0
 _PERCENT = 100.0
+# Segments that are simulated at most; of a longer log every second, third and so on.
+_MOST_SIMULATED = 120
 _LIMIT = "meets a limit of the torque, where noise decides how long: the fit leaves it out if it finds that too"
 
 
@@ -58,6 +60,8 @@ class Scan(Shown):
     """What the table says of each segment."""
     facts: dict[str, object]
     """What a fit has to know beside the segments."""
+    spans_s: Mapping[str, tuple[float, float]]
+    """From when to when each log goes, in its own seconds [s]."""
 
     @property
     def used(self) -> tuple[Segment, ...]:
@@ -143,10 +147,14 @@ def scan(
     except ServiceError as error:
         return Scan(
             segments=gathered.segments, line=None, seconds=seconds, left_out=left_out, found=(), refused=str(error),
-            accuracy={}, values={}, rows=(), facts={},
+            accuracy={}, values={}, rows=(), facts={}, spans_s=gathered.spans_s,
         )  # fmt: skip
     segments, found, each = _judged(gathered, line, model)
-    accuracy, values = _accuracy([one for one in each if one is not None and not one.meets_limit], model)
+    simulated_ones = [one for one in each if one is not None]
+    beside = [one for one in simulated_ones if not one.meets_limit]
+    used = sum(not one.reason for one in segments)
+    share = len(beside) / max(len(simulated_ones), 1)
+    accuracy, values = _accuracy(beside, model, used=round(share * used))
     load, load_std = _load(gathered)
     refused = " Also: ".join(one.refused for one in found if one.refused)
     return Scan(
@@ -167,6 +175,7 @@ def scan(
             "logs": [str(Path(log).name) for log in logs],
             "refused": refused,
         },
+        spans_s=gathered.spans_s,
     )
 
 
@@ -183,28 +192,35 @@ def _judged(
     usable = [one for one in gathered.segments if not one.reason]
     found = [off_the_line(gathered.still, line), lever_follows_load(gathered.still), way_on(usable)]
     each: dict[int, Score] = {}
+    loud: set[int] = set()
     if usable:
-        runs = simulated(model.records(usable, line), model, model.theta)
+        # what a long log tells is told by segments spread over it: each costs a simulation
+        every = max(-(-len(usable) // _MOST_SIMULATED), 1)
+        chosen = usable[::every]
+        runs = simulated(model.records(chosen, line), model, model.theta)
         if model.is_of_fingerprint:
             found.append(shift_of_lever(runs, model))
-        each = dict(zip(map(id, usable), scores(runs, noise_of(runs)), strict=True))
+        each = dict(zip(map(id, chosen), scores(runs, noise_of(runs)), strict=True))
         typical = float(np.median([score.level for score in each.values()]))
-        loud = {key for key, score in each.items() if score.level > _TOO_LOUD * typical}
+        if model.is_of_fingerprint:
+            loud = {key for key, score in each.items() if score.level > _TOO_LOUD * typical}
     segments = tuple(
-        replace(one, reason="speed and torque do there what no noise of this line does")
-        if model.is_of_fingerprint and id(one) in each and id(one) in loud
-        else one
+        replace(one, reason="speed and torque do there what no noise of this line does") if id(one) in loud else one
         for one in gathered.segments
     )
     kept = [each.get(id(one)) if not new.reason else None for one, new in zip(gathered.segments, segments, strict=True)]
     return segments, tuple(found), kept
 
 
-def _accuracy(each: Sequence[Score], model: ServiceModel) -> tuple[dict[str, float], dict[str, float]]:
-    """Return standard deviations of numbers and of the sum of the delays, and their values."""
+def _accuracy(each: Sequence[Score], model: ServiceModel, *, used: int) -> tuple[dict[str, float], dict[str, float]]:
+    """Return standard deviations of numbers and of the sum of the delays, and their values.
+
+    ``each``: what some segments tell. ``used``: how many there are in all.
+    """
     if len(each) < FEWEST_SEGMENTS:
         return {}, {}
-    covariance = np.linalg.inv(sums_of(each, model, model.theta).information)
+    sums = sums_of(each, model, model.theta)
+    covariance = np.linalg.inv((sums.information - sums.prior) * max(used / len(each), 1.0) + sums.prior)
     delays = np.array([float(name in (T_D.name, T_SP.name)) for name in FREE])
     accuracy = {name: float(np.sqrt(covariance[k, k])) for k, name in enumerate(FREE)}
     accuracy["delay"] = float(np.sqrt(delays @ covariance @ delays))

@@ -49,15 +49,19 @@ def orders_in(torque: FloatArray, speed_rev_s: FloatArray, rate_hz: float, order
         load / size * wave(2.0 * np.pi * order * turned) for order in dict.fromkeys(orders) for wave in (np.cos, np.sin)
     ]
     table = np.stack([*waves, *(faster * wave for wave in waves)], axis=1)
-    fast = np.stack([column - _slow(column, length) for column in (finite, *table.T)], axis=1)[good]
+    columns = np.column_stack([finite, table])
+    fast = (columns - _slow(columns, length))[good]
     shares, *_ = np.linalg.lstsq(fast[:, 1:], fast[:, 0], rcond=None)
     return np.asarray(np.where(good, table @ shares, 0.0))
 
 
 def _slow(values: FloatArray, length: int) -> FloatArray:
-    """Return a moving mean of a moving mean, ends held."""
+    """Return a moving mean of a moving mean along the first axis, ends held."""
+    size = len(values)
     for _ in range(2):
-        padded = np.concatenate([np.full(length // 2, values[0]), values, np.full(length - length // 2, values[-1])])
-        sums = np.cumsum(padded)
-        values = (sums[length:] - sums[:-length])[: values.size] / length
+        begin, end = (
+            np.repeat(values[[at]], count, axis=0) for at, count in ((0, length // 2), (-1, length - length // 2))
+        )
+        sums = np.cumsum(np.concatenate([begin, values, end]), axis=0)
+        values = (sums[length:] - sums[:-length])[:size] / length
     return np.asarray(values)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from datetime import UTC, datetime
 from pathlib import Path
 
 import click
@@ -11,14 +12,16 @@ from shaftprint.cli._command_group import NOT_REACHED
 from shaftprint.cli._options import vessel_option
 from shaftprint.cli._terminal import answer, print_findings, say
 from shaftprint.cli.output._file_to_write import expect_free
-from shaftprint.cli.output._fingerprint_file import fingerprint_at
+from shaftprint.cli.output._fingerprint_file import REPORT, fingerprint_at
 from shaftprint.cli.output._json import give
+from shaftprint.cli.output._output_folder import output_folder
 from shaftprint.cli.output._progress import no_progress_option, progress
 from shaftprint.cli.output._tables import print_tables
 from shaftprint.late import late
 from shaftprint.plain_table import Column, Table
 
 with late():
+    from shaftprint.report._service_page import render_service
     from shaftprint.service._scan import Scan, scan
     from shaftprint.service._segment_file import channel_file
     from shaftprint.vessel._vessel import load_vessel
@@ -38,7 +41,12 @@ with late():
     type=click.Path(path_type=Path),
     help="Table of segments to write (CSV); what their channels did goes beside it, for service fit.",
 )
-@click.option("--force", is_flag=True, help="Replace an existing table.")
+@click.option(
+    "--page",
+    type=click.Path(path_type=Path),
+    help="Folder for a page with every move in its place in the logs.",
+)
+@click.option("--force", is_flag=True, help="Replace an existing table or page.")
 @no_progress_option
 @click.pass_context
 def command(
@@ -48,6 +56,7 @@ def command(
     vessel: str,
     fingerprint: Path | None,
     output: Path | None,
+    page: Path | None,
     force: bool,
     no_progress: bool,
 ) -> None:
@@ -74,6 +83,10 @@ def command(
     if output is not None and found.line is not None:
         found.write(output)
         say(f"{output}: {len(found.segments)} segments, {len(found.used)} of them used.")
+    if page is not None:
+        with output_folder(page, of="service scan", force=force) as folder:
+            render_service(folder, found, vessel=installation.name, now=datetime.now(UTC))
+        say(f"{page / REPORT}: the moves in their places.")
     if found.refused:
         context.exit(NOT_REACHED)
 

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from shaftprint.campaign._lever_course import LeverCourse
 from shaftprint.choices import SERVICE_TROUBLES
 from shaftprint.errors import SettingsError
 from shaftprint.service import scan
-from shaftprint.tug import sail_service
+from shaftprint.tug import Tug, sail_service
+from shaftprint.tug.service._habits import Habits, lever_course
 from shaftprint.tug.service._troubles import TROUBLES, Channels, Load, trimmed
 from shaftprint.vessel import load_vessel
 
@@ -16,8 +16,10 @@ LINE = (-83.5, -251.0)
 
 
 def course():
-    volts = [-5.0, -5.0, -5.4, -5.4, -4.8]
-    return LeverCourse(name="made up", duration_s=300.0, offset_v=-5.0, corner_s=(0, 99, 100, 199, 200), corner_v=volts)
+    rng = np.random.default_rng(1)
+    made = lever_course(Habits(), Tug(), load_vessel("stan-tug-1205-service"), hours=300.0 / 3600.0, rng=rng)
+    corners = {"corner_s": (0.0, 99.0, 100.0, 199.0, 200.0), "corner_v": (-5.0, -5.0, -5.4, -5.4, -4.8)}
+    return made.model_copy(update=corners)
 
 
 def load(size=0.04):
@@ -79,3 +81,14 @@ def test_a_ship_that_is_trimmed_is_refused(tmp_path):
     vessel = load_vessel("stan-tug-1205-service")
     files, _ = sail_service(vessel, tmp_path / "logs", hours=0.5, seed=3, trouble="trims")
     assert "trims it against the load" in scan(files, vessel).refused
+
+
+def test_a_course_begins_and_ends_within_its_hours():
+    vessel = load_vessel("stan-tug-1205-service")
+    course = lever_course(Habits(), Tug(), vessel, hours=2.0, rng=np.random.default_rng(1))
+    rpm = -250.97 * (np.array(course.corner_v) - 0.04947603) - 83.467
+    assert rpm.min() >= 599.9
+    assert rpm.max() <= 1650.1
+    assert course.corner_s[-1] < 7200.0
+    assert 60 < len(course.corner_s) / 2 < 240
+    assert all(later > earlier for earlier, later in zip(course.corner_s, course.corner_s[1:], strict=False))
