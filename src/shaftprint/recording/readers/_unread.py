@@ -7,6 +7,14 @@ from shaftprint.recording.readers._packed import first_bytes
 _TABLE, _TO_CSV = "save the sheet as CSV", ".to_csv(...)"
 _ARCHIVE = "it is an archive: unpack it"
 _OCTAVE = "in Octave save -v7 FILE.mat"
+_IMC = (
+    "imc: in FAMOS or imc STUDIO export it as MATLAB, ASCII or MDF 4; without them the package IMCtermite gives names, "
+    "units, times and values to Python: write them as CSV"
+)
+_CATMAN = (
+    "HBM catman: export it as MATLAB, ASCII or MDF 4; without it the package apread gives values to Python, with dates "
+    "of 1970 and times that go by the length of channels: check both, and write CSV"
+)
 _SQLITE, _ZIP = b"SQLite format 3", b"PK\x03\x04"
 _BY_BYTES = {
     _SQLITE: "it is an SQLite database: export the table as CSV (sqlite3 -header -csv)",
@@ -33,6 +41,7 @@ _BY_BYTES = {
     b"ULog": "it is a PX4 log: ulog2csv of the package pyulog writes CSV",
     b"\x89MCAP": "it is a ROS log: PlotJuggler exports it as CSV",
     b"#ROSBAG": "it is a ROS log: PlotJuggler exports it as CSV",
+    b"|CF,": _IMC,
     b"RIFF": "it is a sound file: scipy.io.wavfile reads it, scipy.io.savemat writes the samples with fs",
 }
 # names of what is in an archive
@@ -47,8 +56,8 @@ _BY_ENDING = {
     (".zip",): _ARCHIVE,
     (".tdm", ".tdx"): "National Instruments' TDM: in DIAdem or LabVIEW save it as TDMS",
     (".lms", ".ldsf", ".sdf"): "Simcenter Testlab: export time data as MATLAB or as UFF 58",
-    (".raw",): "imc: in FAMOS or imc STUDIO export it as MATLAB, ASCII or MDF 4",
-    (".bin",): "HBM catman: export it as MATLAB, ASCII or MDF 4",
+    (".raw",): _IMC,
+    (".bin",): _CATMAN,
     (".pnrf", ".nrf"): "HBM Perception: export it as MATLAB, ASCII or MDF 4",
     (".psdata", ".plw", ".picolog"): "PicoScope or PicoLog: save it as CSV or MATLAB 4",
     (".wfm", ".isf"): "an oscilloscope's waveform: save it there as CSV",
