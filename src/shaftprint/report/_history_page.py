@@ -10,7 +10,7 @@ from shaftprint.drift._differ import differ
 from shaftprint.drift._finding import SizedCause
 from shaftprint.drift._words import watch_sentences
 from shaftprint.report._page import Page, write_page
-from shaftprint.report.comparison._history_tables import course_table, history_table
+from shaftprint.report.comparison._history_tables import course_table, history_table, other_course_table
 from shaftprint.report.comparison._tables import source_table
 from shaftprint.report.figures._history import history_chart
 from shaftprint.report.sections._cover import Card, Cover, State
@@ -111,6 +111,11 @@ def _sections(
                 "twenty, so that five years of quarterly tests give one false alarm in twenty ships.",
             ),
             tables=(course_table(finding, history),) if not finding.because else (),
+        ),
+        *(
+            [Section(key="others", title="Other explanations", tables=(others,), folded=True)]
+            if (others := other_course_table(finding, history)).rows
+            else []
         ),
         Section(
             key="history",

@@ -190,11 +190,17 @@ def _share(percent: float) -> str:
     return "–" if abs(percent) < SMALLEST_PERCENT else f"{plain(percent, 0)} %"
 
 
+TELLING_PERCENT = 50.0
+"""FitPercent of a perfect model below which the noise decides it, so that it says nothing of a model."""
+
+
 def fit_table(fingerprint: "Fingerprint") -> Table:
     """Return FitPercent of each output beside that of a model without error, which only the noise is in the way of."""
     quality = fingerprint.quality
     rows = tuple(
         (Symbol(name), f"{plain(value, 2)} %", f"{plain(quality.fit_ceiling[name], 2)} %")
+        if quality.fit_ceiling[name] >= TELLING_PERCENT
+        else (Symbol(name), "–", f"less than {TELLING_PERCENT:.0f} %")
         for name, value in quality.fit_percent.items()
     )
     return Table(

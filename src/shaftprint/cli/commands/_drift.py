@@ -12,7 +12,7 @@ from shaftprint.cli._command_group import CHANGED, NOT_REACHED
 from shaftprint.cli._dates import Moment, zone_option
 from shaftprint.cli._load_option import load_repeatability_option
 from shaftprint.cli._store_options import instant, opened_store, store_option
-from shaftprint.cli._terminal import answer, echo, say
+from shaftprint.cli._terminal import answer, details, echo, say
 from shaftprint.cli.output._fingerprint_file import REPORT, any_fingerprint_at
 from shaftprint.cli.output._json import give
 from shaftprint.cli.output._output_folder import force_option, output_folder
@@ -30,7 +30,7 @@ with late():
     from shaftprint.drift._words import limit_sentence, watch_sentences
     from shaftprint.fingerprint._line_fingerprint import LineFingerprint
     from shaftprint.report._history_page import render_history, sizes_of_tests
-    from shaftprint.report.comparison._history_tables import course_table, history_table
+    from shaftprint.report.comparison._history_tables import course_table, history_table, other_course_table
     from shaftprint.store._line_history import line_history
 
 
@@ -119,6 +119,8 @@ def command(
     give("finding", finding)
     _print_history(history, load)
     print_tables([] if finding.because else [course_table(finding, history)])
+    with details():
+        print_tables([] if finding.because else [other_course_table(finding, history)])
     if output is not None:
         echo(f"Report: {output / REPORT}")
     if as_exit_code and finding.because:

@@ -4,11 +4,12 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from shaftprint.digits import p_value_text, plain
+from shaftprint.drift._words import ALIKE
 from shaftprint.plain_table import Column, Table, numbers, texts
 from shaftprint.report.comparison._cause_table import odds_text, sized
 
 if TYPE_CHECKING:
-    from shaftprint.drift._drift_finding import DatedCause, WatchFinding
+    from shaftprint.drift._drift_finding import DatedCause, Drift, WatchFinding
     from shaftprint.drift._finding import SizedCause
     from shaftprint.drift._history import History
 
@@ -17,23 +18,15 @@ NOT_THERE = "–"
 
 
 def course_table(finding: "WatchFinding", history: "History") -> Table:
-    """Return the best course of each cause, of each change that was seen, else of what comes nearest.
+    """Return what was seen, wear that is expected last; of what is as likely, each; else what comes nearest.
 
     ``finding``: what was found. ``history``: the tests in which it was found.
     """
-    drifts = finding.drifts or (() if finding.nearest is None else (finding.nearest,))
-    days = [f"{test.at:%Y-%m-%d}" for test in history.tests]
+    drifts = finding.by_urgency or (() if finding.nearest is None else (finding.nearest,))
     rows = [
-        (
-            one.words,
-            _size(one),
-            f"ramp since {days[one.since]}" if one.shape == "ramp" else f"step by {days[one.since]}",
-            plain(one.score, 1),
-            odds_text(one) if place else NOT_THERE,
-            "" if place else p_value_text(drift.p_value),
-        )
+        (*cells, "" if place else p_value_text(drift.p_value))
         for drift in drifts
-        for place, one in enumerate(drift.courses)
+        for place, cells in enumerate(_courses(drift, history, seen=True))
     ]
     return Table(
         title="What has changed" if finding.drifts else "No change beyond chance; what comes nearest",
@@ -46,6 +39,44 @@ def course_table(finding: "WatchFinding", history: "History") -> Table:
         rows=tuple(rows),
         note=f"Judged together: {', '.join(finding.names)}.",
     )
+
+
+def other_course_table(finding: "WatchFinding", history: "History") -> Table:
+    """Return what else could stand for each change that was seen, with the odds against it.
+
+    ``finding``, ``history``: as for ``course_table``.
+    """
+    rows = [
+        (drift.best.cause.name if place == 0 else "", *cells)
+        for drift in finding.by_urgency
+        for place, cells in enumerate(_courses(drift, history, seen=False))
+    ]
+    return Table(
+        title="Other explanations, each instead of what was seen",
+        columns=(
+            *texts("seen", "instead"),
+            *numbers("by"),
+            *texts("course"),
+            *numbers("size / deviation", "odds against it"),
+        ),
+        rows=tuple(rows),
+    )
+
+
+def _courses(drift: "Drift", history: "History", *, seen: bool) -> list[tuple[str, ...]]:
+    """Return the cells of the courses of a change: of those that are as likely as the best one, or of the others."""
+    days = [f"{test.at:%Y-%m-%d}" for test in history.tests]
+    return [
+        (
+            one.words,
+            _size(one),
+            f"ramp since {days[one.since]}" if one.shape == "ramp" else f"step by {days[one.since]}",
+            plain(one.score, 1),
+            odds_text(one) if place else NOT_THERE,
+        )
+        for place, one in enumerate(drift.courses)
+        if (one.odds < ALIKE) == seen
+    ]
 
 
 def _size(one: "DatedCause") -> str:

@@ -12,6 +12,7 @@ from shaftprint.report.figures._step_band import step_chart
 from shaftprint.report.sections._sections import Inputs, Picture, Section
 from shaftprint.report.sections._validation import step_against_data
 from shaftprint.tables._fingerprint import (
+    TELLING_PERCENT,
     combination_table,
     expected_text,
     fit_table,
@@ -50,18 +51,21 @@ def summary_section(inputs: Inputs) -> Section:
 
 def _explained(fingerprint: "Fingerprint") -> str:
     quality = fingerprint.quality
+    # where noise is in the way of a perfect model too, a FitPercent says nothing of this one
+    telling = [name for name, ceiling in quality.fit_ceiling.items() if ceiling >= TELLING_PERCENT]
     fit = "; ".join(
-        f"{name} {plain(value, 1)} %, a perfect model {plain(quality.fit_ceiling[name], 1)} %"
-        for name, value in quality.fit_percent.items()
+        f"{name} {plain(quality.fit_percent[name], 1)} %, a perfect model {plain(quality.fit_ceiling[name], 1)} %"
+        for name in telling
     )
+    of_fit = f" FitPercent: {fit}." if fit else ""
     if quality.chi_square is None:
-        return f"The fit was not weighted by the noise, so it says nothing of the model's validity. FitPercent: {fit}."
+        return f"The fit was not weighted by the noise, so it says nothing of the model's validity.{of_fit}"
     chance = quality.p_value
     words = "explains" if chance is None or chance >= UNLIKELY else "does not explain"
     tested = "" if chance is None else f", p-value {p_value_text(chance)}"
     return (
         f"The model {words} the measured responses within their noise (chi-square {plain(quality.chi_square, 0)} for "
-        f"{quality.degrees_of_freedom} degrees of freedom{tested}). FitPercent: {fit}."
+        f"{quality.degrees_of_freedom} degrees of freedom{tested}).{of_fit}"
     )
 
 

@@ -1,9 +1,10 @@
 """The first page from a fingerprint: every answer is one rule, and a point that is not fine says what to do."""
 
+import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from shaftprint.digits import plain, unit_text
+from shaftprint.digits import plain, unit_text, with_deviation
 from shaftprint.report.sections._cover import Cover, overall
 from shaftprint.report.sections.first_page._change_answer import change_answer
 from shaftprint.report.sections.first_page._line_answers import hunting, inertia, other_contradictions, propeller
@@ -16,6 +17,10 @@ if TYPE_CHECKING:
     from shaftprint.fingerprint._fingerprint import Fingerprint
     from shaftprint.validation._validation import Validation
     from shaftprint.vessel._vessel import Vessel
+
+
+WATT = 1000.0
+"""Watts in a kilowatt."""
 
 
 def cover_of(
@@ -46,7 +51,7 @@ def cover_of(
     return Cover(
         headline=headline,
         state=state,
-        opening=_opening(fingerprint),
+        opening=_opening(fingerprint, vessel),
         cards=cards,
         known=_known(fingerprint),
         change=f"{change[0].question} {change[0].sentence}" if change else "",
@@ -56,14 +61,25 @@ def cover_of(
     )
 
 
-def _opening(fingerprint: "Fingerprint") -> str:
+def _opening(fingerprint: "Fingerprint", vessel: "Vessel | None") -> str:
     conditions = fingerprint.conditions
     speed, torque = conditions.engine_speed, conditions.shaft_torque
     return (
         f"Everything here holds at {plain(speed.value, 0)} {unit_text(speed.unit)} engine speed and "
-        f"{plain(torque.value, 0)} {unit_text(torque.unit)} shaft torque. ± is one standard deviation; where a range "
+        f"{plain(torque.value, 0)} {unit_text(torque.unit)} shaft torque{_power(fingerprint, vessel)}. "
+        "± is one standard deviation; where a range "
         "is given, the true value lies in it in 95 of 100 tests."
     )
+
+
+def _power(fingerprint: "Fingerprint", vessel: "Vessel | None") -> str:
+    """Return the power that both make at the gauge; nothing where nobody knows the speed of the shaft."""
+    if vessel is None:
+        return ""
+    speed, torque = fingerprint.conditions.engine_speed, fingerprint.conditions.shaft_torque
+    shaft_rad_s = 2.0 * math.pi * speed.value / 60.0 / vessel.gearbox.ratio
+    # the speed counts turns, and is known far better than the torque
+    return f", {with_deviation(shaft_rad_s * torque.value / WATT, shaft_rad_s * torque.std / WATT)} kW"
 
 
 def _known(fingerprint: "Fingerprint") -> str:
@@ -78,8 +94,8 @@ def _facts(fingerprint: "Fingerprint") -> list[tuple[str, str]]:
     ship = ship_text(conditions.ship)
     return [
         *([("Ship", ship)] if ship else []),
-        ("Tested", tested_text(conditions.tested_at) or "date not stated"),
-        ("Place", conditions.place or "not stated"),
+        *([("Tested", tested)] if (tested := tested_text(conditions.tested_at)) else []),
+        *([("Place", conditions.place)] if conditions.place else []),
         ("Test", conditions.campaign),
         *water_facts(conditions),
     ]

@@ -17,7 +17,7 @@ SAME_PERCENT = 0.5
 """Shares that are printed as 0 % [%]."""
 ANSWERED_ELSEWHERE = ("I_dn", "K_Q")
 """Physical values that have a question of their own."""
-NOT_TOLD = "Use the earlier value, and ask for a longer test if this number is needed."
+NOT_TOLD = "Ask for a longer test if this number is needed."
 
 
 def hunting(fingerprint: "Fingerprint") -> list[Card]:
