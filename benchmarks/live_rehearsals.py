@@ -238,6 +238,7 @@ async def _play(address, path):
     test = LiveTest(
         counterpart=counterpart, vessel=VESSEL, campaign=campaign(), envelope=ENVELOPE, record=record, alive_s=1.0
     )
+    print("begun", flush=True)
     outcome = await test.run()
     print(outcome.word, outcome.reason, flush=True)
     await counterpart.close()
@@ -258,10 +259,13 @@ def kills(count):
         for number in range(count):
             with tempfile.TemporaryDirectory() as folder:
                 path = Path(folder) / "t.nc"
-                player = run_beside("--play", address, str(path), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-                time.sleep(rng.uniform(6.0, 14.0))
+                player = run_beside("--play", address, str(path), stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
+                player.stdout.readline()
+                # alive 1 s, revert 2 s, taken over, then two legs
+                time.sleep(rng.uniform(0.5, 14.0))
                 os.kill(player.pid, signal.SIGKILL)
                 player.wait()
+                player.stdout.close()
                 killed = time.monotonic()
                 took.append(_until_lever(server, killed))
                 journal = path.with_name("t.nc.journal")

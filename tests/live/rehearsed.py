@@ -44,10 +44,12 @@ CAMPAIGN = sp.campaign.Campaign.model_validate(
 )
 
 
-def played(folder, faults=None, *, tug=TUG, seed=1, envelope=ENVELOPE, campaign=CAMPAIGN, **options):
+def played(
+    folder, faults=None, *, tug=TUG, seed=1, envelope=ENVELOPE, campaign=CAMPAIGN, plays_waveform=True, **options
+):
     """Play the test; return the outcome, the test, and the ship."""
     ship = simulated_ship_of(VESSEL, campaign, seed=seed, faults=faults or LinkFaults(), tug=tug)
-    counterpart = SimulatedCounterpart(ship)
+    counterpart = SimulatedCounterpart(ship, plays_waveform=plays_waveform)
     test = LiveTest(
         counterpart=counterpart,
         vessel=VESSEL,

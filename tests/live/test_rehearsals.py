@@ -117,6 +117,20 @@ def test_lost_and_doubled_blocks_are_named_and_leave_the_rest(tmp_path):
         assert np.flatnonzero(np.isnan(values)).tolist() == list(range(499 * 100, 500 * 100))
 
 
+@pytest.mark.slow
+def test_a_device_without_tables_gets_a_set_point_with_every_block(tmp_path):
+    outcome, _, ship = played(tmp_path, plays_waveform=False)
+    assert outcome.word == "played"
+    assert ship.device.mode is DeviceMode.LEVER
+    assert min(volts for _, volts, *_ in ship.trace) == pytest.approx(CAMPAIGN.multisines[0].extremes_v[0], abs=0.05)
+    fast = CAMPAIGN.multisines[0].model_copy(update={"harmonics": (1, 3, 25)})
+    folder = tmp_path / "fast"
+    folder.mkdir()
+    campaign = CAMPAIGN.model_copy(update={"multisines": (fast,)})
+    outcome, *_ = played(folder, plays_waveform=False, campaign=campaign)
+    assert (outcome.word, "up to 5 Hz" in outcome.reason) == ("refused", True)
+
+
 def test_a_limit_is_aborted_within_its_persistence(tmp_path):
     low = replace(ENVELOPE.bound_of(SPEED), lowest=1170.0, highest=1200.0)
     outcome, *_ = played(tmp_path, envelope=replace(ENVELOPE, bounds=(low,)))

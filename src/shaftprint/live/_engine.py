@@ -18,7 +18,16 @@ from shaftprint.live._loop import AbortingError, Loop
 from shaftprint.live._outcome import Outcome
 from shaftprint.live._replay import judged_channels
 from shaftprint.live._state import State
-from shaftprint.live._timetable import ended_early, expect_playable, played_until, rendered, shifted, state_at, test_at
+from shaftprint.live._timetable import (
+    ended_early,
+    expect_playable,
+    expect_slow,
+    played_until,
+    rendered,
+    shifted,
+    state_at,
+    test_at,
+)
 from shaftprint.live._watch import (
     MISSING_S,
     AbortRule,
@@ -126,6 +135,8 @@ class LiveTest(Loop):
                 f"{self.counterpart.name}: expected a counterpart that reverts, ramps and plays, found one "
                 "that can only be listened to; use --dry."
             )
+        if not abilities.plays_waveform:
+            expect_slow(self.campaign)
         rest = await seen_at_rest(self, self.counterpart, offset_v=self.campaign.offset_v, alive_s=self.alive_s)
         self._tell("alive", "All channels are alive, the lever stands where the campaign begins.")
         if self.dry:
@@ -166,7 +177,10 @@ class LiveTest(Loop):
         await self._put_out(rendered(self.campaign, zero_s=self._zero_s))
 
     async def _put_out(self, play: "Play") -> None:
-        await self.counterpart.play(play)
+        if self.counterpart.abilities.plays_waveform:
+            await self.counterpart.play(play)
+        else:
+            self._written = play
         self.record.campaign(self._as_played(self.campaign))
         while self._last is not None and self._last.stop_s < play.start_s:
             await self.next()
@@ -223,6 +237,7 @@ class LiveTest(Loop):
         await self._put_out(rendered(self.campaign, zero_s=self._zero_s, from_s=stop_s))
 
     async def _give_back(self) -> None:
+        self._written = None
         await self.counterpart.release()
         self._since_s = math.nan
         sight = await self.next()
@@ -244,7 +259,7 @@ class LiveTest(Loop):
             breach.sentence,
             facts={"rule": breach.rule, "channel": breach.channel, "persistence_s": breach.persistence_s},
         )
-        self._watches, self._since_s = [], math.nan
+        self._watches, self._since_s, self._written = [], math.nan, None
         try:
             await self.counterpart.abort(ABORT_RAMP_S)
         except LiveError as error:

@@ -60,6 +60,7 @@ class Loop:
         self._observer = Observer(self.vessel, self.counterpart.channels)
         self._watches: list[Watch] = []
         self._play: Play | None = None
+        self._written: Play | None = None
         self._held_v = math.nan
         self._zero_s = math.nan
         self._since_s = math.nan
@@ -96,7 +97,14 @@ class Loop:
             raise AbortingError(breach)
         if self.beats and sight.time_s - self._beaten_s >= HEARTBEAT_S - 1e-6:
             await self._beat(sight.time_s)
+        if self._written is not None and self.is_ruling:
+            await self.counterpart.write(self._value_now(self._written, sight))
         return sight
+
+    def _value_now(self, play: "Play", sight: Sight) -> float:
+        """Return the set point of the time until the next block, for a device that plays no table [V]."""
+        middle_s = sight.time_s + 0.5 * sight.block.span_s
+        return float(play.value_at(np.array([middle_s]))[0])
 
     async def _new_block(self) -> Block:
         """Return the next block that has not been there, recorded; what the link says of it is kept too."""
@@ -135,6 +143,9 @@ class Loop:
         # before the program rules, what the lever asks for
         held_v = self._held_v if self.is_ruling else block.device.set_point_v
         volts = held_v if self._play is None else float(self._play.value_at(middle).mean())
+        if self._written is not None:
+            # written late by the way to the device: what it says that it puts out is what was asked
+            volts = block.device.set_point_v
         return Expected(
             set_point_v=volts,
             is_ruling=self.is_ruling,

@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 
 PLAY_HZ = 200.0
 """Set points a second of a waveform [Hz]."""
+# A set point a block, early or late by some ten milliseconds, says nothing of faster lines [Hz].
+_WRITTEN_HZ = 5.0
 # A window of whole periods may fall short by rounding of its decimal stop time.
 _PERIOD_ROUNDING = 1e-6
 _TESTS = ("sines", "multisines", "binary_sequences", "chirps", "staircases")
@@ -35,6 +37,22 @@ def expect_playable(campaign: Campaign) -> None:
             f"campaign {campaign.name}: expected tests of the set point of the speed alone, found some of "
             f"{', '.join(others)}; play those by hand."
         )
+
+
+def expect_slow(campaign: Campaign) -> None:
+    """Refuse lines that are too fast for set points that are written one by one.
+
+    Raises LiveError if there are some.
+    """
+    hertz = [(one.name, one.frequency_hz) for one in campaign.sines]
+    hertz += [(one.name, max(one.lines) / one.length_of_period_s) for one in campaign.legs]
+    hertz += [(one.name, max(one.start_frequency_hz, one.stop_frequency_hz)) for one in campaign.chirps]
+    for name, fastest_hz in hertz:
+        if fastest_hz > _WRITTEN_HZ:
+            raise LiveError(
+                f"{name}: expected lines up to {_WRITTEN_HZ:g} Hz for a counterpart that plays no waveform, found "
+                f"{fastest_hz:g} Hz; set points come too unevenly for faster ones."
+            )
 
 
 def rendered(campaign: Campaign, *, zero_s: float, from_s: float = 0.0) -> Play:

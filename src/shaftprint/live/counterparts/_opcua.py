@@ -32,7 +32,7 @@ QUEUE: Final = 400
 _PORTS: Final = {"opc.tcp": 4840}
 _PUBLISHED_MS: Final = 50.0
 # What is asked for is answered within this time, or the link is silent; reaching it may take longer [s].
-_ANSWER_S, _CONNECT_S, _GONE_S = 0.4, 5.0, 1.0
+_ANSWER_S, _CONNECT_S, _GONE_S = 0.8, 5.0, 1.0
 # The status of a value says by these bits that others before it were dropped (OPC UA part 4, 7.39.1).
 _OVERFLOW: Final = 0x480
 

@@ -3,6 +3,7 @@
 import asyncio
 import math
 from collections import deque
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -228,7 +229,15 @@ class SimulatedCounterpart:
     abilities = Abilities(plays_waveform=True, writes_set_point=True, reverts=True, ramps=True)
     """What it can do."""
 
-    def __init__(self, ship: SimulatedShip, *, name: str = "simulated ship", pace: float | None = None) -> None:
+    def __init__(
+        self,
+        ship: SimulatedShip,
+        *,
+        name: str = "simulated ship",
+        pace: float | None = None,
+        plays_waveform: bool = True,
+    ) -> None:
+        self.abilities = replace(self.abilities, plays_waveform=plays_waveform)
         self.name = name
         """What it is called."""
         self.ship = ship
