@@ -10,6 +10,7 @@ import click
 
 from shaftprint.cli._options import OWN_FILE_HELP
 from shaftprint.cli._terminal import answer, say
+from shaftprint.cli.commands._export import FORMATS
 from shaftprint.cli.commands.formats._exported import (
     file_to_write,
     fingerprint_argument,
@@ -45,7 +46,7 @@ class Format:
     """A format: what it is, and the verb that writes it."""
 
     help: str
-    """What the command says of itself."""
+    """What the command says of itself below its one line, which is in the list of formats, and where the model is."""
     suffix: str
     """Ending of the file where none is named."""
     model: Callable[[ExportedModel, Path, bool], Paths] | None = None
@@ -73,47 +74,32 @@ def _csv(identified: Fingerprint, chosen: Structure, path: Path, force: bool) ->
 
 TABLE: Mapping[str, Format] = {
     "osp": Format(
-        help=f"""Describe the variable groups of the FMU to Open Simulation Platform.
-
-        {_PLACE} The description is written beside the FMU that `shaftprint export fmu` writes, as
-        name_OspModelDescription.xml.
-        """,
+        help="The description is written beside the FMU that `shaftprint export fmu` writes, as "
+        "name_OspModelDescription.xml.",
         suffix=".fmu",
         model=lambda model, path, force: (write_osp(model, path, overwrite=force),),
         output=f"FMU that it belongs to, which need not exist yet; {_NAMED}",
         may_be_there=True,
     ),
     "ssp": Format(
-        help=f"""Write the parameters as an SSP parameter set (.ssv).
-
-        {_PLACE} The names are those of the FMU's parameters, so that the set can be given to it in a system structure.
-        """,
+        help="The names are those of the FMU's parameters, so that the set can be given to it in a system structure.",
         suffix=".ssv",
         model=lambda model, path, force: (write_ssv(model, path, overwrite=force),),
     ),
     "modelica": Format(
-        help=f"""Write a Modelica package with limits and exact delays.
-
-        {_PLACE} The package needs no library; its block Line has inputs and outputs in rpm and N m about the working
-        point, and Step is an experiment with it.
-        """,
+        help="The package needs no library; its block Line has inputs and outputs in rpm and N m about the "
+        "working point, and Step is an experiment with it.",
         suffix=".mo",
         model=_modelica,
     ),
     "csv": Format(
-        help=f"""Write tables of parameters, combinations and the frequency response with its band.
-
-        {_PLACE} Columns are set apart by commas, numbers have points, and an empty cell is not known.
-        """,
+        help="Columns are set apart by commas, numbers have points, and an empty cell is not known.",
         suffix=".csv",
         fingerprint=_csv,
         output="Beginning of the names, as in tug.csv; " + _NAMED,
     ),
     "json": Format(
-        help=f"""Write parameters, state space and frequency response as one JSON file.
-
-        {_PLACE} The file is for programs that know nothing of shaftprint; what is not known is null.
-        """,
+        help="The file is for programs that know nothing of shaftprint; what is not known is null.",
         suffix=".model.json",
         fingerprint=lambda identified, chosen, path, force: (write_json(identified, path, of=chosen, overwrite=force),),
     ),
@@ -131,7 +117,7 @@ def format_command(name: str) -> click.Command:
             "--structure", metavar="NAME", help=f"Structure that was identified, if it is not shipped: {OWN_FILE_HELP}."
         )
         command = identified_option(output_option(force_option(_of_fingerprint(row))))
-    return click.command(name, help=row.help)(fingerprint_argument(command))
+    return click.command(name, help=f"{FORMATS[name]}\n\n{_PLACE} {row.help}")(fingerprint_argument(command))
 
 
 def _of_model(row: Format) -> Callable[..., None]:
