@@ -38,6 +38,10 @@ def test_what_has_changed_is_said_first_with_its_date(run, years, tmp_path):
     assert "between 2023-03-01 and 2024-03-01." in printed
     page = (tmp_path / "out" / "index.html").read_text(encoding="utf-8")
     assert "The ship has changed by more than chance" in page
+    # what was seen, with what to do; other explanations are folded
+    assert "Changed: proportional gain of the governor" in page
+    assert "Read the gains in the control unit." in page
+    assert page.index("What has changed") < page.index("Other explanations, each instead of what was seen")
 
 
 def test_an_unchanged_line_and_a_line_whose_governor_was_exchanged_have_no_drift(run, years):

@@ -175,6 +175,15 @@ def _by_now_text(course: DatedCause, days: Sequence[str], finding: WatchFinding)
     return f", {sign}{size} by {days[-1]}"
 
 
+def drift_sentence(drift: Drift, finding: WatchFinding, history: History) -> str:
+    """Return one change of a history with its size, course and odds, in sentences.
+
+    ``drift``: the change. ``finding``, ``history``: where it was found.
+    """
+    words = _of_drift(drift, [f"{test.at:%Y-%m-%d}" for test in history.tests], finding)
+    return f"{words[:1].upper()}{words[1:]}"
+
+
 def _of_drift(drift: Drift, days: Sequence[str], finding: WatchFinding) -> str:
     alike = [one for one in drift.courses if one.odds < ALIKE]
     rest = drift.courses[len(alike) :]

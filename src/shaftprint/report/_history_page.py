@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from shaftprint.drift._causes import ALL_CAUSES
 from shaftprint.drift._differ import differ
 from shaftprint.drift._finding import SizedCause
-from shaftprint.drift._words import watch_sentences
+from shaftprint.drift._words import drift_sentence, noted_sentences, open_sentences, watch_sentences
 from shaftprint.report._page import Page, write_page
 from shaftprint.report.comparison._history_tables import course_table, history_table, other_course_table
 from shaftprint.report.comparison._tables import source_table
@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 
 HEADLINES: Mapping[State, str] = {
     "look": "The {noun} has changed by more than chance",
+    "worn": "Worn as expected; nothing else is seen",
     "fine": "No change is seen",
     "open": "It cannot be told",
 }
@@ -50,9 +51,8 @@ def render_history(
     ``overwrite`` is false.
     """
     sizes = sizes_of_tests(history, load_repeatability=load_repeatability)
-    sentences = watch_sentences(finding, history)
     noun = history.tests[0].fingerprint.noun if history.tests else "ship"
-    state: State = "look" if finding.drifts else "open" if finding.because else "fine"
+    state = _state(finding)
     days = f"{history.tests[0].at:%Y-%m-%d} to {history.tests[-1].at:%Y-%m-%d}" if history.tests else ""
     page = Page(
         title=f"History of {title}",
@@ -63,13 +63,45 @@ def render_history(
             headline=HEADLINES[state].format(noun=noun),
             state=state,
             opening="Every cause is judged in all tests together, against an unchanged ship that is tested for years.",
-            cards=[Card(question=f"Has the {noun} changed?", state=state, sentence=" ".join(sentences))],
+            cards=_cards(finding, history, state, noun=noun),
         ),
         sections=_sections(history, finding, sizes),
         files=source_table({test.name: test.fingerprint for test in history.tests}),
         ending="± is one standard deviation throughout; intervals hold 95 %.",
     )
     return write_page(directory, page, pictures=pictures, overwrite=overwrite, progress=None)
+
+
+def _state(finding: "WatchFinding") -> State:
+    if finding.because:
+        return "open"
+    if not finding.drifts:
+        return "fine"
+    return "worn" if all(drift.best.is_expected for drift in finding.drifts) else "look"
+
+
+def _cards(finding: "WatchFinding", history: "History", state: State, *, noun: str) -> list[Card]:
+    """Return a card for each change with what to do, wear that is expected after the others, then what was noted."""
+    if not finding.drifts:
+        sentences = watch_sentences(finding, history)
+        return [Card(question=f"Has the {noun} changed?", state=state, sentence=" ".join(sentences))]
+    cards = []
+    for drift in finding.by_urgency:
+        cause, sentence = drift.best.cause, drift_sentence(drift, finding, history)
+        if drift.best.is_expected:
+            action = f"{cause.taken_off_by[:1].upper()}{cause.taken_off_by[1:]} takes it off."
+            cards.append(Card(question=f"Expected wear: {cause.name}", state="worn", sentence=sentence, action=action))
+        else:
+            action = f"{cause.told_by[:1].upper()}{cause.told_by[1:]}."
+            cards.append(Card(question=f"Changed: {cause.name}", state="look", sentence=sentence, action=action))
+    cards += [
+        Card(question="What did the work that was noted?", state="fine", sentence=sentence)
+        for sentence in noted_sentences(finding)
+    ]
+    if finding.not_judged:
+        sentence = " ".join(open_sentences(finding.not_judged))
+        cards.append(Card(question="What is not excluded?", state="open", sentence=sentence))
+    return cards
 
 
 def sizes_of_tests(history: "History", *, load_repeatability: float) -> dict[str, list[SizedCause | None]]:

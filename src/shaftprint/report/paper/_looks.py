@@ -20,6 +20,7 @@ WIDTH_MM = 210.0 - 2.0 * MARGIN_MM
 CELL_PT = 7.0
 PAPER_COLOURS = {
     "fine": "#1b6b3a",
+    "worn": "#1f5f8b",
     "look": "#8a5a00",
     "bad": "#a31515",
     "open": "#4d555c",

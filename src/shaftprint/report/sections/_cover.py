@@ -9,10 +9,11 @@ from shaftprint.plain_table import Table
 if TYPE_CHECKING:
     from shaftprint.report.sections._sketch import Sketch
 
-State: TypeAlias = Literal["fine", "look", "bad", "open"]
+State: TypeAlias = Literal["fine", "worn", "look", "bad", "open"]
 
 WORDS: dict[State, tuple[str, str]] = {
     "fine": ("✓", "Fine"),
+    "worn": ("~", "As expected"),
     "look": ("!", "Look at this"),
     "bad": ("✕", "Not fine"),
     "open": ("?", "Not known"),

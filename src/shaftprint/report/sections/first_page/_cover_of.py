@@ -67,8 +67,7 @@ def _opening(fingerprint: "Fingerprint", vessel: "Vessel | None") -> str:
     return (
         f"Everything here holds at {plain(speed.value, 0)} {unit_text(speed.unit)} engine speed and "
         f"{plain(torque.value, 0)} {unit_text(torque.unit)} shaft torque{_power(fingerprint, vessel)}. "
-        "± is one standard deviation; where a range "
-        "is given, the true value lies in it in 95 of 100 tests."
+        "± is one standard deviation; where a range is given, the true value lies in it in 95 of 100 tests."
     )
 
 
