@@ -14,6 +14,7 @@ import json
 import multiprocessing
 import random
 import resource
+import socket
 import sys
 import tempfile
 import time
@@ -36,8 +37,11 @@ from shaftprint.errors import SilentLinkError
 from shaftprint.live._block import Block, LiveChannel
 from shaftprint.live.counterparts._access import Access
 from shaftprint.live.counterparts._can_bus import CanCounterpart
+from shaftprint.live.counterparts._dialect import Description
 from shaftprint.live.counterparts._modbus import ModbusCounterpart
 from shaftprint.live.counterparts._mqtt import MqttCounterpart
+from shaftprint.live.counterparts._opcua import FOLDER, NAMESPACE, OpcUaCounterpart
+from shaftprint.live.counterparts._plain import described, written_block
 
 DOCUMENT = ROOT / "docs" / "live.md"
 BEGIN, END = "<!-- table of benchmarks/live_links.py: begin -->", "<!-- table of benchmarks/live_links.py: end -->"
@@ -152,6 +156,14 @@ async def reached(counterpart: Any) -> None:
     raise SilentLinkError("expected the other side within 30 s, found none.")
 
 
+def wait_for(port: int) -> None:
+    """Wait until somebody listens."""
+    for _ in range(600):
+        with contextlib.suppress(OSError), socket.create_connection(("127.0.0.1", port), 1.0):
+            return
+        time.sleep(0.1)
+
+
 # ---- the other side, in a process of its own ----
 
 
@@ -184,6 +196,34 @@ def send_samples(port: int, quality: int, stop: Event) -> None:
         client.publish("samples", json.dumps(content), qos=quality)
         time.sleep(max(0.0, began + number / RATE_HZ - time.monotonic()))
     client.loop_stop()
+
+
+def send_opcua(port: int, stop: Event) -> None:
+    """Write blocks for the link, and the same samples a hundred times a second for the script."""
+    from asyncua import Server, ua
+
+    async def serve() -> None:
+        server = Server()
+        await server.init()
+        server.set_endpoint(f"opc.tcp://127.0.0.1:{port}")
+        server.set_security_policy([ua.SecurityPolicyType.NoSecurity])
+        space = await server.register_namespace(NAMESPACE)
+        folder = await server.nodes.objects.add_object(space, FOLDER)
+        description = Description(channels=fast_channels(), abilities=device.ABILITIES)
+        await folder.add_variable(space, "Description", described(description).decode())
+        block = await folder.add_variable(space, "Block", b"", ua.VariantType.ByteString)
+        await folder.add_variable(space, "Heartbeat", 0, ua.VariantType.Int64)
+        script = await folder.add_variable(space, "Samples", [0.0] * 162)
+        made, began, number = Fast(), time.monotonic(), 0
+        async with server:
+            while not stop.is_set():
+                number += 1
+                await script.write_value([float(number), time.monotonic(), *[0.0] * 160])
+                if number % 5 == 0:
+                    await block.write_value(written_block(made.block(), fast_channels()), ua.VariantType.ByteString)
+                await asyncio.sleep(max(0.0, began + 0.01 * number - time.monotonic()))
+
+    asyncio.run(serve())
 
 
 def send_modbus(port: int, stop: Event) -> None:
@@ -263,6 +303,42 @@ def samples_over_paho(quality: int, seconds: float) -> Seen:
             time.sleep(2.0)
         client.loop_stop()
         seen.seconds, seen.cpu_s = time.monotonic() - began, time.process_time() - cpu
+    return seen
+
+
+def over_opcua(seconds: float) -> Seen:
+    """Listen to blocks over a real server."""
+    port = device.free_port()
+    with beside(send_opcua, port):
+        wait_for(port)
+        return asyncio.run(listen(OpcUaCounterpart(f"opc.tcp://127.0.0.1:{port}"), seconds))
+
+
+def samples_over_asyncua(seconds: float) -> Seen:
+    """Listen to a variable with the defaults of asyncua."""
+    from asyncua import Client
+
+    class Heard:
+        def datachange_notification(self, _node: Any, value: list[float], _data: Any) -> None:
+            if value[0] > 0.0:
+                seen.late_s.append(time.monotonic() - value[1])
+                seen.counters.append(int(value[0]))
+
+    async def script(port: int) -> None:
+        async with Client(f"opc.tcp://127.0.0.1:{port}") as client:
+            space = await client.get_namespace_index(NAMESPACE)
+            node = await client.nodes.objects.get_child([f"{space}:{FOLDER}", f"{space}:Samples"])
+            subscription = await client.create_subscription(100, Heard())
+            await subscription.subscribe_data_change(node)
+            began, cpu = time.monotonic(), time.process_time()
+            await asyncio.sleep(seconds)
+            seen.seconds, seen.cpu_s = time.monotonic() - began, time.process_time() - cpu
+
+    seen = Seen()
+    port = device.free_port()
+    with beside(send_opcua, port):
+        wait_for(port)
+        asyncio.run(script(port))
     return seen
 
 
@@ -389,6 +465,8 @@ def main() -> None:
         over_mqtt("sparkplug", seconds).row("MQTT 5, Sparkplug B"),
         samples_over_paho(0, min(seconds, 60.0)).row("script with paho, quality 0", "sample"),
         samples_over_paho(1, min(seconds, 60.0)).row("script with paho, quality 1", "sample"),
+        over_opcua(seconds).row("OPC UA"),
+        samples_over_asyncua(min(seconds, 60.0)).row("script with asyncua's defaults, 100 values a second", "value"),
         over_modbus(min(seconds, 120.0)).row("Modbus, 8 slow channels, 10 questions a second"),
         over_can(min(seconds, 120.0)).row("CAN, 100 messages a second"),
     ]
