@@ -13,10 +13,11 @@ improved Bonferroni inequality and applications", Biometrika 69, 1982, equation 
 """
 
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 
-from shaftprint.arrays import FloatArray
+from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.distributions import chi_square_tail, normal_cdf
 
 # Of the integral over the tail of one score: beyond eight deviations past the limit there is nothing.
@@ -112,9 +113,16 @@ def p_value_of_largest(score: float, cosines: FloatArray) -> float:
     return min(max(len(alike) * single - float(both.sum()), single), 1.0)
 
 
+@cache
+def _gauss() -> tuple[FloatArray, FloatArray]:
+    """Return nodes and weights of the rule of Gauss and Legendre, which take longer to find than to use."""
+    nodes, weights = np.polynomial.legendre.leggauss(_NODES)
+    return frozen_float(nodes), frozen_float(weights)
+
+
 def _both_beyond(limit: float, correlation: FloatArray) -> FloatArray:
     """Return the probability that two standard normal numbers are both beyond a limit in size, shape (pairs,)."""
-    nodes, weights = np.polynomial.legendre.leggauss(_NODES)
+    nodes, weights = _gauss()
     x = limit + 0.5 * _TAIL * (nodes + 1.0)
     density = np.exp(-0.5 * x**2) / np.sqrt(2.0 * np.pi) * 0.5 * _TAIL * weights
     spread = np.sqrt(np.maximum(1.0 - correlation**2, _LEAST_SPREAD))[:, None]

@@ -12,7 +12,7 @@ from shaftprint.cli._command_group import CHANGED, NOT_REACHED
 from shaftprint.cli._dates import Moment, zone_option
 from shaftprint.cli._load_option import load_repeatability_option
 from shaftprint.cli._store_options import instant, opened_store, store_option
-from shaftprint.cli._terminal import answer, details, echo, say
+from shaftprint.cli._terminal import answer, details, echo, output as spoken, say
 from shaftprint.cli.output._fingerprint_file import REPORT, any_fingerprint_at
 from shaftprint.cli.output._json import give
 from shaftprint.cli.output._output_folder import force_option, output_folder
@@ -140,6 +140,9 @@ def _print_history(history: History, load: float) -> None:
         say(f"Left out: {name}, {why}.")
     give("tests", [{"name": test.name, "at": test.at.isoformat()} for test in history.tests])
     give("left_out", history.left_out)
+    if spoken().quiet and spoken().document is None:
+        # each test against the first takes as long as the answer
+        return
     print_tables([history_table(history, sizes_of_tests(history, load_repeatability=load))])
 
 
