@@ -12,7 +12,8 @@ from shaftprint.cli._command_group import CHANGED, NOT_REACHED
 from shaftprint.cli._dates import Moment, zone_option
 from shaftprint.cli._load_option import load_repeatability_option
 from shaftprint.cli._store_options import instant, opened_store, store_option
-from shaftprint.cli._terminal import answer, details, echo, output as spoken, say
+from shaftprint.cli._terminal import answer, details, echo, say
+from shaftprint.cli._terminal import output as spoken
 from shaftprint.cli.output._fingerprint_file import REPORT, any_fingerprint_at
 from shaftprint.cli.output._json import give
 from shaftprint.cli.output._output_folder import force_option, output_folder
