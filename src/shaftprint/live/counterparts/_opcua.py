@@ -173,10 +173,18 @@ class OpcUaCounterpart:
             self._client.set_password(access.password or "")
         if access.certificate is None:
             return
+        if access.authority is None and not access.is_insecure:
+            raise LiveError(
+                f"{self.name}: expected --authority, the certificate of the server, so that no other answers in its "
+                "place, found none; --insecure goes without."
+            )
         policies = library("asyncua.crypto.security_policies", "OPC UA")
         try:
             await self._client.set_security(
-                policies.SecurityPolicyBasic256Sha256, str(access.certificate), str(access.certificate)
+                policies.SecurityPolicyBasic256Sha256,
+                str(access.certificate),
+                str(access.certificate),
+                server_certificate=None if access.authority is None else str(access.authority),
             )
         except (OSError, ValueError) as error:
             raise LiveError(

@@ -2,6 +2,7 @@
 
 import asyncio
 import contextlib
+from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
 
@@ -19,8 +20,13 @@ from shaftprint.live.counterparts._simulated import SimulatedCounterpart, Simula
 class SimulatedServer:
     """The server; it listens while its ``async with`` block runs."""
 
-    def __init__(self, ship: SimulatedShip, url: str) -> None:
-        """``ship``: what sails behind it. ``url``: where it listens, such as ``opc.tcp://127.0.0.1:48400``."""
+    def __init__(self, ship: SimulatedShip, url: str, *, certificate: Path | None = None) -> None:
+        """Say what sails and where it listens.
+
+        ``ship``: what sails behind it. ``url``: where it listens, such as ``opc.tcp://127.0.0.1:48400``.
+        ``certificate``: its own with its key; with one it answers nobody who does not sign and encrypt.
+        """
+        self._certificate = certificate
         self.ship = ship
         """What sails behind it."""
         self.url = url
@@ -39,7 +45,12 @@ class SimulatedServer:
         self._server = self._asyncua.Server()
         await self._server.init()
         self._server.set_endpoint(self.url)
-        self._server.set_security_policy([ua.SecurityPolicyType.NoSecurity])
+        policy = ua.SecurityPolicyType.NoSecurity
+        if self._certificate is not None:
+            policy = ua.SecurityPolicyType.Basic256Sha256_SignAndEncrypt
+            await self._server.load_certificate(str(self._certificate))
+            await self._server.load_private_key(str(self._certificate))
+        self._server.set_security_policy([policy])
         space = await self._server.register_namespace(NAMESPACE)
         folder = await self._server.nodes.objects.add_object(space, FOLDER)
         description = Description(channels=self.ship.channels, abilities=SimulatedCounterpart.abilities)

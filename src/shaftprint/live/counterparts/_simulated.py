@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from shaftprint.tug._stepped import SteppedTug
 
 # A revert is a short cosine, so that a lever that was moved meanwhile does not come as a jump [s].
-_REVERT_RAMP_S = 0.4
+_REVERT_RAMP_S = 0.2
 # A play that begins farther from what is put out is refused: nothing may jump at a change [V].
 _LARGEST_BUMP_V = 0.02
 _ROUNDING_S = 1e-9
