@@ -25,7 +25,7 @@ def test_heavier_motor_differs_in_its_inertia_alone(motor, heavier, run_program)
     assert "differs" in rows["J"]
     for name in ("R", "L", "K_m", "T_C"):
         assert "differs" not in rows[name]
-    assert "Has the drive changed? Yes: J" in result.output
+    assert "Has the drive changed? Yes: a higher J, by" in result.output
 
 
 def test_unseen_record_is_predicted_and_that_of_another_motor_is_not(motor, tmp_path, run_program):
