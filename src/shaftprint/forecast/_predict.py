@@ -12,6 +12,7 @@ from shaftprint.catalogue._shipped import shipped_structure
 from shaftprint.design.inputs._known_ship import ship_before_test
 from shaftprint.design.operation._expected import expected_operation, inputs_left_out
 from shaftprint.design.operation._limit_use import LimitUse, limit_uses, stated_limits
+from shaftprint.design.operation._operation import Operation
 from shaftprint.drift._visible import VisibleChange, visible_changes
 from shaftprint.errors import RequestError
 from shaftprint.forecast._planned_pairs import planned_pairs
@@ -100,7 +101,9 @@ def predict_test(
         possible=possible,
         accuracy=predict_joint_accuracy(pairs, values=values, priors=priors, combinations=possible.combinations),
         intervals=predict_joint_intervals(pairs, values=values, priors=priors),
-        limits=None if vessel is None else _limits(campaign, ship, noise.slope_rpm_per_v),
+        limits=None
+        if vessel is None
+        else tuple(limit_uses(expected_motion(campaign, ship, noise.slope_rpm_per_v), stated_limits(vessel))),
         left_out=() if vessel is None else tuple(inputs_left_out(campaign, vessel)),
     )
 
@@ -113,15 +116,18 @@ def _noise(ship: ShipBeforeTest, chosen: Structure, campaign: Campaign, progress
     return recorded_noise(ship.recording, ship.vessel, ship.recorded or campaign, chosen, campaign, progress=progress)
 
 
-def _limits(campaign: Campaign, ship: ShipBeforeTest, slope_rpm_per_v: float) -> tuple[LimitUse, ...]:
-    """Return where the campaign would leave limits; whatever structure it is for, it moves the whole closed loop."""
+def expected_motion(campaign: Campaign, ship: ShipBeforeTest, slope_rpm_per_v: float) -> Operation:
+    """Return what a campaign makes a ship do; whatever structure it is for, it moves the whole closed loop.
+
+    ``ship``: with its vessel file. ``slope_rpm_per_v``: what one volt asks for [rpm/V]. Raises DesignError if the line
+    stops or runs away.
+    """
     vessel = ship.vessel
     assert vessel is not None  # noqa: S101 - limits are asked for of a known ship
     loop = of_vessel(shipped_structure(default_structure(vessel, campaign)), vessel)
     stated = {name: value for name, value in ship.values.items() if name in loop.names}
     values = _values(loop, replace(ship, freed=(), values=stated), ship.priors)
-    operation = expected_operation(campaign, vessel, values, slope_rpm_per_v=slope_rpm_per_v)
-    return tuple(limit_uses(operation, stated_limits(vessel)))
+    return expected_operation(campaign, vessel, values, slope_rpm_per_v=slope_rpm_per_v)
 
 
 def _values(chosen: Structure, ship: ShipBeforeTest, known: Mapping[str, Prior]) -> dict[str, float]:

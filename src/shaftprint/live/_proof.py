@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shaftprint.arrays import FloatArray
-from shaftprint.catalogue._own_structure import TypedName
-from shaftprint.choices import CLOSED_LOOPS
+from shaftprint.design.operation._operation import Operation
 from shaftprint.errors import LiveError, ShaftprintError
+from shaftprint.forecast._predict import expected_motion
 from shaftprint.forecast._ship_before_test import ShipBeforeTest
 from shaftprint.forecast._simulation import SimulatedSignal, simulated_ship
 from shaftprint.live._envelope import SET_POINT, SPEED, TORQUE, Bound, Envelope
@@ -113,16 +113,63 @@ def prove(
 def _predicted(
     campaign: "Campaign", vessel: "Vessel", fingerprint: "Fingerprint | None", slope_rpm_per_v: float | None
 ) -> tuple[dict[str, tuple[FloatArray, FloatArray]], str]:
-    """Return speed and torque over time by their units, rpm and N m, with half of their bands; and what that is."""
-    ship = ShipBeforeTest(
-        first_test=fingerprint,
-        vessel=vessel,
-        slope_rpm_per_v=campaign.slope_rpm_per_v if slope_rpm_per_v is None else slope_rpm_per_v,
-        values={},
-    )
-    structure = None if fingerprint is not None else TypedName(CLOSED_LOOPS[vessel.drive])
+    """Return speed and torque over time by their units, rpm and N m, with half of their bands; and what that is.
+
+    The model of a fingerprint is linear about its working point: at several speeds the usual ship with the quadratic
+    propeller is nearer.
+    """
+    several = len({leg.level_v for leg in campaign.legs} | ({campaign.offset_v} if campaign.sines else set())) > 1
+    if fingerprint is not None and not several:
+        return _by_fingerprint(campaign, fingerprint), "99 % band of the fingerprint"
+    slope = _slope(campaign, vessel, fingerprint, slope_rpm_per_v)
+    ship = ShipBeforeTest(first_test=None, vessel=vessel, slope_rpm_per_v=slope, values={})
     try:
-        simulation = simulated_ship(ship, campaign, structure=structure, linear=True, rate_hz=_PREDICTED_HZ)
+        motion = expected_motion(campaign, ship, slope)
+    except ShaftprintError as error:
+        raise LiveError(f"the motion cannot be predicted: {error}") from None
+    every = round(motion.time_s.size / (motion.time_s[-1] * _PREDICTED_HZ)) or 1
+    torque_nm = motion.brake_torque_nm if motion.shaft_torque_nm is None else motion.shaft_torque_nm
+    found = {
+        unit: (values[::every], (_UNKNOWN_SHARE[unit] * np.abs(values - _levels(values, motion)))[::every])
+        for unit, values in (("rpm", motion.speed_rpm), ("N m", torque_nm))
+    }
+    return found, (
+        f"the usual ship of this kind; about the level of a leg the speed may swing {_UNKNOWN_SHARE['rpm']:.0%} more, "
+        f"the torque {_UNKNOWN_SHARE['N m']:.0%}"
+    )
+
+
+def _levels(values: FloatArray, motion: Operation) -> FloatArray:
+    """Return the mean of a quantity over each leg and over what lies between, at each time, shape (samples,)."""
+    levels = np.empty_like(values)
+    for inside in motion.stretches.values():
+        levels[inside] = values[inside].mean()
+    return levels
+
+
+def _slope(
+    campaign: "Campaign", vessel: "Vessel", fingerprint: "Fingerprint | None", slope_rpm_per_v: float | None
+) -> float:
+    known = (
+        slope_rpm_per_v,
+        campaign.slope_rpm_per_v,
+        vessel.sensors.set_point.slope_rpm_per_v(campaign.offset_v),
+        None if fingerprint is None else fingerprint.quantity("set-point slope").value,
+    )
+    for slope in known:
+        if slope is not None:
+            return slope
+    raise LiveError(
+        "the motion cannot be predicted: expected what one volt asks for, found it nowhere; give --rpm-per-volt, "
+        "slope_rpm_per_v in the campaign file, or a table of the lever in the vessel file."
+    )
+
+
+def _by_fingerprint(campaign: "Campaign", fingerprint: "Fingerprint") -> dict[str, tuple[FloatArray, FloatArray]]:
+    # a fingerprint says itself at what speed it is, and what one volt asks for
+    ship = ShipBeforeTest(first_test=fingerprint, vessel=None)
+    try:
+        simulation = simulated_ship(ship, campaign, structure=None, linear=True, rate_hz=_PREDICTED_HZ)
     except ShaftprintError as error:
         raise LiveError(f"the motion cannot be predicted: {error}") from None
     found: dict[str, tuple[FloatArray, FloatArray]] = {}
@@ -134,12 +181,7 @@ def _predicted(
             "the motion cannot be predicted: expected speed and shaft torque from the model, found "
             f"{', '.join(found) or 'neither'}."
         )
-    words = (
-        "99 % band of the fingerprint"
-        if fingerprint is not None
-        else "no fingerprint: the usual ship, half as much again"
-    )
-    return found, words
+    return found
 
 
 def _half_band(signal: SimulatedSignal) -> FloatArray:

@@ -87,7 +87,7 @@ def rehearse(
         envelope=envelope,
         record=record,
         operator=operator or Operator(),
-        slope_rpm_per_v=_slope(vessel, campaign, tug),
+        slope_rpm_per_v=rehearsed_slope(vessel, campaign, tug),
         **watched(told, pages),
         waits=pace is None,
         is_enough=None if planned is None else enough_by(planned),
@@ -99,7 +99,8 @@ def rehearse(
     return outcome, record.finish(outcome.campaign)
 
 
-def _slope(vessel: "Vessel", campaign: "Campaign", tug: "Tug | None") -> float:
+def rehearsed_slope(vessel: "Vessel", campaign: "Campaign", tug: "Tug | None" = None) -> float:
+    """Return what one volt asks for on the simulated ship [rpm/V]."""
     usual = with_lever_of(like_stan_tug_1205(vessel, offset_v=campaign.offset_v), vessel, campaign)
     return (tug or usual).set_point_slope_rpm_per_v
 

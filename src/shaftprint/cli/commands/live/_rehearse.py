@@ -26,7 +26,7 @@ with late():
     from shaftprint.design.files._plan_json import read_plan
     from shaftprint.live._envelope import envelope_of
     from shaftprint.live._proof import prove
-    from shaftprint.live._rehearse import faults_named, rehearse
+    from shaftprint.live._rehearse import faults_named, rehearse, rehearsed_slope
     from shaftprint.survey._trial import load_trial
 
 
@@ -78,7 +78,7 @@ def command(
         trial.vessel,
         envelope,
         fingerprint=None if fingerprint is None else fingerprint_at(fingerprint),
-        slope_rpm_per_v=slope_rpm_per_v,
+        slope_rpm_per_v=rehearsed_slope(trial.vessel, trial.campaign) if slope_rpm_per_v is None else slope_rpm_per_v,
     )
     print_proof(proof)
     proof.expect_within()
