@@ -321,3 +321,11 @@ def test_is_readable_by_anything_that_reads_json(fingerprint, path):
     content = json.loads(path.read_text(encoding="utf-8"), parse_constant=pytest.fail)
     assert content["covariance"] == [["Infinity"]]
     assert content["created"] == "2026-03-14T09:30:00Z"
+
+
+def test_a_fingerprint_is_read_from_the_folder_of_its_results(fingerprint, tmp_path):
+    write_fingerprint(fingerprint, tmp_path / "fingerprint.json")
+    assert read_fingerprint(tmp_path) == read_fingerprint(tmp_path / "fingerprint.json")
+    (tmp_path / "empty").mkdir()
+    with pytest.raises(FingerprintError, match=r"fingerprint\.json"):
+        read_fingerprint(tmp_path / "empty")

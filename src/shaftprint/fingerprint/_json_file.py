@@ -44,9 +44,17 @@ def fingerprint_document(fingerprint: LineFingerprint) -> bytes:
     return (fingerprint.model_dump_json(indent=2) + "\n").encode()
 
 
+_IN_A_FOLDER = "fingerprint.json"
+
+
 @refusing_none(FingerprintError)
 def read_fingerprint(path: str | Path) -> Fingerprint:
     """Read the fingerprint of a ship from JSON; what was written comes back equal.
+
+    Parameters
+    ----------
+    path
+        The file, or the folder in which ``identify`` has put it, as commands take it.
 
     Raises
     ------
@@ -103,7 +111,9 @@ def read_any_fingerprint(path: str | Path) -> LineFingerprint:
     Raises FingerprintError as ``read_fingerprint`` does, and PublicationError.
     """
     json_path = Path(path)
-    complete(json_path.parent)
+    complete(json_path if json_path.is_dir() else json_path.parent)
+    if json_path.is_dir():
+        json_path /= _IN_A_FOLDER
     where = "name the file, or the folder in which identify or demo has put it"
     text, content = read_json(json_path, noun="fingerprint", where=where, error=FingerprintError)
     return _fingerprint_of(text, content, named=str(json_path))
