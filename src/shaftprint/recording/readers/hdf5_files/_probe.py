@@ -1,22 +1,26 @@
 """A separate program that looks at everything in an HDF5 file that a reader would: it may hang or crash there.
 
 Damaged lengths and addresses lead HDF5's library round in circles that no alarm in Python ends, because the library
-does not come back to Python. The watchdog of ``faulthandler`` is a thread in C and ends the program all the same.
-Nothing of shaftprint is imported, so that the program starts fast.
+does not come back to Python. The system's limit of processor time ends the program all the same, and where there is
+none the watchdog of ``faulthandler``, a thread in C. Nothing of shaftprint is imported, so that it starts fast.
 """
 
 import contextlib
 import faulthandler
 import importlib
+import math
 import runpy
 import sys
+import time
 from pathlib import Path
 from typing import Any
 
 import h5py
 
 LONGEST_S = 3.0
-"""How long one object of the file may take [s]."""
+"""How long the processor may work on one object of the file [s]: a library that goes round in circles works."""
+LONGEST_WAIT_S = 60.0
+"""How long one object may take by the clock [s]: a busy computer or a slow network share is no damage."""
 MOST_ADDRESSES = 4_000_000_000
 """Most bytes of addresses, so that a damaged length is refused memory instead of slowing the computer down."""
 
@@ -40,7 +44,11 @@ def look(path: str) -> None:
 
 def _watch() -> None:
     """Begin the time of the next object."""
-    faulthandler.dump_traceback_later(LONGEST_S, exit=True)
+    faulthandler.dump_traceback_later(LONGEST_WAIT_S, exit=True)
+    with contextlib.suppress(ImportError, OSError, ValueError):
+        resource = importlib.import_module("resource")
+        _, hard = resource.getrlimit(resource.RLIMIT_CPU)
+        resource.setrlimit(resource.RLIMIT_CPU, (math.ceil(time.process_time() + LONGEST_S), hard))
 
 
 def _look_into(group: Any, depth: int) -> None:
@@ -86,6 +94,7 @@ def _limit_memory() -> None:
         # Windows has no such limits
         resource = importlib.import_module("resource")
         resource.setrlimit(resource.RLIMIT_AS, (MOST_ADDRESSES, MOST_ADDRESSES))
+        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
 
 
 if __name__ == "__main__":
