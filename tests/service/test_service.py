@@ -5,8 +5,10 @@ from datetime import UTC, datetime
 
 import numpy as np
 import pytest
+from click.testing import CliRunner
 from tests.tug.busy_crew import BUSY
 
+from shaftprint.cli import shaftprint
 from shaftprint.errors import ServiceError
 from shaftprint.fingerprint import read_fingerprint, write_fingerprint
 from shaftprint.service import fit_service, scan
@@ -148,6 +150,28 @@ def test_a_fit_that_was_stopped_goes_on_where_it_was(worked, vessel, tmp_path, m
     assert late.fingerprint == whole.fingerprint
     assert late.scores_text() == whole.scores_text()
     assert late.scores_text(at_start=True) == whole.scores_text(at_start=True)
+
+
+@pytest.mark.long
+def test_days_are_fitted_and_watched_from_the_command_line(worked, vessel, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    few_of(worked, vessel, tmp_path / "a.csv", kept=20)
+    few_of(worked, vessel, tmp_path / "b.csv", kept=30)
+
+    def run(*words):
+        return CliRunner().invoke(shaftprint, ["service", *words, "--vessel", "stan-tug-1205-service", "--no-progress"])
+
+    assert run("fit", "a.csv", "-o", "first").exit_code == 0
+    again = run("fit", "b.csv", "--fingerprint", "first", "-o", "second")
+    assert again.exit_code == 0, again.output
+    kept = {"fingerprint.json", "scores.csv", "values.json", "scores-against.csv", "values-against.json"}
+    assert kept <= {one.name for one in (tmp_path / "second").iterdir()}
+    assert not list(tmp_path.glob(".second*"))
+    words = ["service", "watch", "second", "--vessel", "stan-tug-1205-service", "--against", "first"]
+    watched = CliRunner().invoke(shaftprint, words)
+    assert watched.exit_code == 0, watched.output
+    assert "No change is seen in 1 day of service" in watched.output
+    assert "gives no alarm" in " ".join(watched.output.split())
 
 
 @pytest.mark.long

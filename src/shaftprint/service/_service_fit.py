@@ -13,7 +13,7 @@ from shaftprint.catalogue._gauge import T_SP
 from shaftprint.errors import ServiceError
 from shaftprint.notebook._shown import Shown
 from shaftprint.notebook._summary import Summary
-from shaftprint.service._day_folder import scores_text, theta_text
+from shaftprint.service._day_folder import SCORES, SCORES_AGAINST, VALUES, VALUES_AGAINST, scores_text, theta_text
 from shaftprint.service._fingerprint import fingerprint_of_service
 from shaftprint.service._fit import ServiceFit, fit_segments
 from shaftprint.service._model import FREE, ServiceModel, service_model
@@ -67,6 +67,16 @@ class ServiceDay(Shown):
     def theta_text(self, *, at_start: bool = False) -> str:
         """Return at which values the slopes were taken, as JSON."""
         return theta_text(self.model.theta if at_start else self.fit.theta)
+
+    def files(self, *, against: bool) -> dict[str, str]:
+        """Return what goes beside the fingerprint in the folder of a day, by the name of the file.
+
+        ``against``: whether days are held against the values that the fit began from, those of a fingerprint.
+        """
+        files = {SCORES: self.scores_text(), VALUES: self.theta_text()}
+        if against:
+            files |= {SCORES_AGAINST: self.scores_text(at_start=True), VALUES_AGAINST: self.theta_text(at_start=True)}
+        return files
 
 
 @refusing_none(ServiceError)

@@ -17,7 +17,6 @@ from shaftprint.late import late
 
 with late():
     from shaftprint.fingerprint._json_file import write_fingerprint
-    from shaftprint.service._day_folder import SCORES, SCORES_AGAINST, VALUES, VALUES_AGAINST
     from shaftprint.service._service_fit import fit_service
     from shaftprint.vessel._vessel import load_vessel
 
@@ -60,11 +59,8 @@ def command(
                 segments, installation, fingerprint=earlier, progress=reached, now=datetime.now(UTC)
             )  # fmt: skip
         write_fingerprint(day.fingerprint, folder / FINGERPRINT)
-        (folder / SCORES).write_text(day.scores_text(), encoding="utf-8")
-        (folder / VALUES).write_text(day.theta_text(), encoding="utf-8")
-        if earlier is not None:
-            (folder / SCORES_AGAINST).write_text(day.scores_text(at_start=True), encoding="utf-8")
-            (folder / VALUES_AGAINST).write_text(day.theta_text(at_start=True), encoding="utf-8")
+        for name, text in day.files(against=earlier is not None).items():
+            (folder / name).write_text(text, encoding="utf-8")
     reached.unlink(missing_ok=True)
     print_fingerprint(day.fingerprint)
     print_paths(output, report=False)
