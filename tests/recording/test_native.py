@@ -3,6 +3,7 @@
 import hashlib
 import shutil
 import subprocess
+import sys
 
 import h5netcdf
 import h5py
@@ -13,6 +14,7 @@ from hypothesis import strategies as st
 
 from shaftprint.errors import RecordingError
 from shaftprint.recording import Channel, RecordingWriter, read_recording, write_recording
+from shaftprint.recording.readers.hdf5_files import _probe
 
 
 def test_counts_clock_and_scale_come_back(native, counts):
@@ -250,12 +252,23 @@ def test_a_file_without_its_seal_is_read_after_a_look(native, counts):
 
 
 @pytest.mark.slow
-def test_a_heap_that_leads_round_in_circles_is_refused(native):
+def test_a_look_that_does_not_end_is_ended(tmp_path):
+    """A harmless loop stands for a library that does not come back."""
+    endless = tmp_path / "endless.py"
+    endless.write_text(
+        f"import runpy\nprobe = runpy.run_path({_probe.__file__!r})\n"
+        "probe['_watch'].__globals__.update(LONGEST_S=0.5, LONGEST_WAIT_S=20.0)\nprobe['_watch']()\nwhile True: pass\n"
+    )
+    assert subprocess.run([sys.executable, endless], check=False, stderr=subprocess.DEVNULL, timeout=60).returncode != 0
+
+
+@pytest.mark.slow
+def test_a_file_into_which_a_look_does_not_end_is_refused(native, monkeypatch, tmp_path):
     content = native.read_bytes()
-    # specification of HDF5, III.E: a collection of objects; object 1 begins 16 bytes on, its length 8 bytes further
-    heap = content.index(b"GCOL")
-    assert content[heap + 16 : heap + 18] == b"\1\0"
-    native.write_bytes(content[: heap + 24] + b"\xf0" + b"\xff" * 7 + content[heap + 32 :])
+    native.write_bytes(content[: content.rindex(b"\nshaftprint recording, SHA-256")])
+    ended = tmp_path / "ended.py"
+    ended.write_text("raise SystemExit(1)\n")
+    monkeypatch.setattr(_probe, "__file__", str(ended))
     with pytest.raises(RecordingError, match="in which HDF5's library does not come to an end; copy it again"):
         read_recording(native)
 
