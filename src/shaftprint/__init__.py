@@ -25,6 +25,7 @@ room            nouns                       verbs
 ``rehearsal``                               ``rehearse_on_tug``
 ``export``      ``ExportedModel``           ``exported_model``, ``write_fmu``, ``write_matlab``, ``write_modelica``
 ``survey``      ``Survey``                  ``run``, ``measure``, ``fit``, ``survey_of``
+``live``                                    ``envelope_of``, ``prove``, ``rehearse``, ``replayed``
 ``service``     ``Scan``, ``ServiceDay``    ``scan``, ``fit_service``
 ``bench``       ``DriveFit``                ``equipped``, ``read_records``, ``identify_drive``
 ``tables``      ``Table``                   ``parameter_table``, ``physical_table``

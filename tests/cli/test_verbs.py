@@ -64,8 +64,13 @@ VERBS = {
     "service scan": "service.scan",
     "service fit": "service.fit_service",
     "service watch": "service.watch_folders",
+    "start": "card.write_vessel",
+    "live check": "live.prove",
+    "live rehearse": "live.rehearse",
+    "live play": "live.play_on_board",
+    "live replay": "live.replayed",
 }
-GROUPS = ("export", "store", "fleet", "service")
+GROUPS = ("export", "store", "fleet", "service", "live")
 SHIP = "pt-may-underway"
 
 

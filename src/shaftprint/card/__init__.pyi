@@ -1,5 +1,5 @@
+from ._card import Card
 from ._disagreements import disagreements
+from ._write import write_vessel
 
-__all__ = [
-    "disagreements",
-]
+__all__ = ["Card", "disagreements", "write_vessel"]

@@ -12,8 +12,19 @@ from shaftprint.vessel._vessel import Vessel, load_vessel
 def write_vessel(card: Card, path: str | Path) -> Vessel:
     """Write the vessel file that follows from a card, and return what is in it.
 
-    ``card``: what stands on the ship's card. ``path``: a file that does not exist yet. Raises SettingsError if the card
-    gives no vessel, the file exists already or cannot be written; nothing is left half-written.
+    Nothing is left half-written.
+
+    Parameters
+    ----------
+    card
+        What stands on the ship's card.
+    path
+        A file that does not exist yet.
+
+    Raises
+    ------
+    SettingsError
+        If the card gives no vessel, the file exists already or cannot be written.
     """
     path = Path(path)
     text = vessel_text(card)

@@ -1,1 +1,7 @@
-__all__: list[str] = []
+from ._envelope import envelope_of
+from ._play_on_board import play_on_board
+from ._proof import prove
+from ._rehearse import rehearse
+from ._replay import replayed
+
+__all__ = ["envelope_of", "play_on_board", "prove", "rehearse", "replayed"]

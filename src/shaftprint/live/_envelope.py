@@ -68,8 +68,17 @@ class Envelope:
 def envelope_of(vessel: "Vessel", *, is_rehearsed: bool = False) -> Envelope:
     """Return the envelope that a vessel file states.
 
-    ``is_rehearsed``: whether idle and rated point do where it states none. Raises LiveError where it states none
-    otherwise.
+    Parameters
+    ----------
+    vessel
+        The vessel file.
+    is_rehearsed
+        Whether idle and rated point do where it states none.
+
+    Raises
+    ------
+    LiveError
+        If it states none, and the test is not rehearsed.
     """
     stated = vessel.envelope
     if stated is None:

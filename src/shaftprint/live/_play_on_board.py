@@ -70,10 +70,39 @@ def play_on_board(
 ) -> tuple[Outcome, Left]:
     """Play a test through the counterpart of an address, and write what it leaves.
 
-    ``path``: the recording. ``places``: of Modbus and CAN, the file that says which registers or messages hold what.
-    ``confirm``: asks on the bridge; it may take its time. ``dry``: whether nothing is written to the counterpart.
-    ``planned``: by whose wishes legs end early. An interrupt of the program aborts the test. Raises LiveError if the
-    counterpart is not reached, RecordingError if the recording is there already or cannot be written.
+    An interrupt of the program aborts the test.
+
+    Parameters
+    ----------
+    url
+        Address of the counterpart, such as ``opc.tcp://host:4840`` or ``mqtts://host/prefix``.
+    vessel, campaign, envelope
+        What is on board, what is played, and what the owner allows.
+    path
+        The recording to write.
+    access
+        User or certificate of the link.
+    confirm
+        Asks on the bridge, and returns whether yes was said; it may take its time.
+    places
+        Of Modbus and CAN, the file that says which registers or messages hold what.
+    dry
+        Whether nothing is written to the counterpart.
+    planned
+        The plan by whose requirements legs end early; none end early without it.
+    slope_rpm_per_v
+        What one volt asks for [rpm/V], where the campaign does not say it.
+    told
+        Is told each event.
+    pages
+        Show the test in a browser of this computer.
+
+    Raises
+    ------
+    LiveError
+        If the counterpart is not reached.
+    RecordingError
+        If the recording is there already or cannot be written.
     """
     return asyncio.run(
         _played(

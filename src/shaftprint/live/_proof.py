@@ -79,9 +79,19 @@ def prove(
 ) -> Proof:
     """Hold a campaign against an envelope: the waveform as it is rendered, and the predicted response with its band.
 
-    ``fingerprint``: of an earlier test of the ship; the usual ship of its kind with a wider motion without one.
-    ``slope_rpm_per_v``: what one volt asks for [rpm/V], where neither says it. Raises LiveError if the motion cannot be
-    predicted.
+    Parameters
+    ----------
+    campaign, vessel, envelope
+        What is to be played, on which ship, and what its owner allows.
+    fingerprint
+        Of an earlier test of the ship; the usual ship of its kind with a wider motion without one.
+    slope_rpm_per_v
+        What one volt asks for [rpm/V], where neither campaign nor vessel file says it.
+
+    Raises
+    ------
+    LiveError
+        If the motion cannot be predicted.
     """
     expect_playable(campaign)
     volts = rendered(campaign, zero_s=0.0).volts

@@ -72,10 +72,33 @@ def rehearse(
 ) -> tuple[Outcome, Left]:
     """Play a test on a simulated ship, and write what it leaves.
 
-    ``path``: the recording. ``pace``: times the clock; None: as fast as it can be calculated. ``faults``: what goes
-    wrong. ``tug``: the truth; like the Stan Tug where not given. ``planned``: by whose wishes legs end early. ``told``:
-    is told what happens. ``pages``: show it. Raises RecordingError if the recording is there already or cannot be
-    written.
+    Parameters
+    ----------
+    vessel, campaign, envelope
+        The ship, what is played, and what bounds it.
+    path
+        The recording to write.
+    seed
+        Of all randomness.
+    pace
+        Times the clock; as fast as it can be calculated without it.
+    faults
+        What goes wrong.
+    tug
+        The truth; like the Stan Tug where not given.
+    operator
+        Who may stop it.
+    planned
+        The plan by whose requirements legs end early.
+    told
+        Is told each event.
+    pages
+        Show the test in a browser of this computer.
+
+    Raises
+    ------
+    RecordingError
+        If the recording is there already or cannot be written.
     """
     ship = simulated_ship_of(vessel, campaign, seed=seed, faults=faults or LinkFaults(), tug=tug)
     counterpart = SimulatedCounterpart(ship, pace=pace)

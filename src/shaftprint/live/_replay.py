@@ -32,7 +32,16 @@ def replayed(
 ) -> Iterator[tuple[float, str, tuple[LineJudgement, ...]]]:
     """Yield when a period of a test has ended [s], the name of the test, and what is known of its lines then.
 
-    ``campaign``: as it was played, by the time of the recording. ``block_s``: length of the blocks [s].
+    Parameters
+    ----------
+    recording
+        Of a test, live or not.
+    vessel
+        What its channels are.
+    campaign
+        As it was played, by the time of the recording.
+    block_s
+        Length of the blocks [s].
     """
     by_name = {name: one for name, one in recording.channels.items() if not one.is_uneven}
     sensor = vessel.sensors.set_point.channel
