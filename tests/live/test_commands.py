@@ -43,7 +43,7 @@ def test_check_refuses_what_leaves_the_envelope_with_every_reason(run, files, tm
 @pytest.mark.slow
 def test_a_rehearsal_leaves_a_recording_that_says_the_same_again(run, files, tmp_path):
     recording = tmp_path / "test.nc"
-    result = run("live", "rehearse", "stan-tug-1205", files, "-o", str(recording))
+    result = run("live", "rehearse", "stan-tug-1205", files, "-o", str(recording), "-v")
     assert result.exit_code == 0, result.output
     assert "played" in result.output
     assert recording.exists()
@@ -51,11 +51,15 @@ def test_a_rehearsal_leaves_a_recording_that_says_the_same_again(run, files, tmp
     played_as = tmp_path / "test.campaign.toml"
     assert tomllib.loads(played_as.read_text(encoding="utf-8"))["name"] == "two legs"
     assert '"kind": "revert"' in (tmp_path / "test.events.jsonl").read_text(encoding="utf-8")
-    again = run("live", "replay", str(recording), "--vessel", "stan-tug-1205", "--campaign", str(played_as))
+    again = run("live", "replay", str(recording), "--vessel", "stan-tug-1205", "--campaign", str(played_as), "-v")
     assert again.exit_code == 0
     lines = [line for line in result.output.splitlines() if line.startswith("M")]
-    assert len(lines) == 6
-    assert [line for line in again.output.splitlines() if line.startswith("M")] == lines
+    # two legs in a sentence each, and their three test frequencies each
+    assert [" Hz " in line for line in lines] == [False, False, *[True] * 6]
+    # between them a replay says as each period ends
+    shown = [line for line in again.output.splitlines() if line.startswith("M")]
+    assert shown == lines
+    assert result.output.splitlines()[-1].split()[:3] == ["Next:", "shaftprint", "identify"]
 
 
 def test_a_rehearsal_with_a_fault_ends_with_three_and_its_reason(run, files, tmp_path):

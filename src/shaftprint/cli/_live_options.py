@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from shaftprint.cli._terminal import answer, echo, print_findings
+from shaftprint.cli._next import print_next
+from shaftprint.cli._terminal import answer, details, echo, print_findings
 from shaftprint.cli.output._json import give
 from shaftprint.late import late
 
@@ -85,22 +86,42 @@ def tell(event: Event) -> None:
     echo(f"{event.time_s:9.2f} s  {event.kind:<10} {event.sentence}", err=True)
 
 
-def print_lines(judgements: tuple[LineJudgement, ...]) -> None:
-    """Print what is known of each line."""
+def print_judged(judgements: tuple[LineJudgement, ...]) -> None:
+    """Print how well each leg or sine is known, and with `-v` what is known of each test frequency."""
+    of_test: dict[str, list[LineJudgement]] = {}
     for one in judgements:
-        sizes = ", ".join(
-            f"{name} {abs(value):.4g} +- {std:.2g}"
-            for name, value, std in zip(one.outputs, one.response.tolist(), one.std.tolist(), strict=True)
-        )
-        echo(f"{one.line:<8} {one.frequency_hz:8.4g} Hz  {one.periods} periods  {sizes}")
+        of_test.setdefault(one.line.partition("/")[0], []).append(one)
+    for test, lines in of_test.items():
+        words = [
+            f"{name} to {_middle([_share(one, place) for one in lines]):.1%}"
+            for place, name in enumerate(lines[0].outputs)
+        ]
+        known = f"test frequencies over {lines[0].periods} periods, each known in the middle: {', '.join(words)}"
+        echo(f"{test}: {len(lines)} {known}.")
+    with details():
+        echo("Size of each output over the set point, in the units of the channels:")
+        for one in judgements:
+            sizes = ", ".join(
+                f"{name} {abs(value):.4g} +/- {std:.2g}"
+                for name, value, std in zip(one.outputs, one.response.tolist(), one.std.tolist(), strict=True)
+            )
+            echo(f"{one.line:<8} {one.frequency_hz:8.4g} Hz  {one.periods} periods  {sizes}")
 
 
-def print_outcome(outcome: Outcome, left: Left) -> None:
-    """Print how a test ended and what it has left."""
+def _share(judgement: LineJudgement, place: int) -> float:
+    return float(judgement.std[place]) / max(abs(complex(judgement.response[place])), 1e-300)
+
+
+def _middle(shares: list[float]) -> float:
+    return sorted(shares)[len(shares) // 2]
+
+
+def print_outcome(outcome: Outcome, left: Left, *, vessel: str) -> None:
+    """Print how a test ended, what it has left and what comes next."""
     answer(f"{outcome.word}{': ' if outcome.reason else ''}{outcome.reason}")
     if not outcome.is_back:
         answer("NOTHING HAS SHOWN THAT THE LEVER RULES: take the engine to local control.")
-    print_lines(outcome.judgements)
+    print_judged(outcome.judgements)
     give("word", outcome.word)
     give("reason", outcome.reason)
     give("lever_rules", outcome.is_back)
@@ -108,3 +129,5 @@ def print_outcome(outcome: Outcome, left: Left) -> None:
     if left.campaign is not None:
         answer(f"{left.campaign}: the campaign as it was played, for shaftprint identify.")
     answer(f"{left.log}: what happened.")
+    if left.campaign is not None:
+        print_next("identify", left.recording, "--vessel", vessel, "--campaign", left.campaign)

@@ -108,6 +108,6 @@ def command(
             told=tell,
             pages=pages,
         )
-    print_outcome(outcome, left)
+    print_outcome(outcome, left, vessel=vessel)
     if outcome.word != "played" and not dry:
         context.exit(NOT_REACHED)

@@ -95,6 +95,6 @@ def command(
             told=tell,
             pages=pages,
         )
-    print_outcome(outcome, left)
+    print_outcome(outcome, left, vessel=vessel)
     if outcome.word != "played":
         context.exit(NOT_REACHED)

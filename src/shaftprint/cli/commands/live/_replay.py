@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from shaftprint.cli._live_options import print_lines
+from shaftprint.cli._live_options import print_judged
 from shaftprint.cli._options import campaign_option, vessel_option
 from shaftprint.cli._terminal import answer, details, echo
 from shaftprint.late import late
@@ -34,5 +34,5 @@ def command(recording: Path, vessel: str, campaign: str) -> None:
             last[name] = judgements
             with details():
                 echo(f"{time_s:9.2f} s  {name}: {judgements[0].periods if judgements else 0} periods")
-    print_lines(tuple(one for lines in last.values() for one in lines))
+    print_judged(tuple(one for lines in last.values() for one in lines))
     answer(f"{recording}: {len(last)} of {len(trial.campaign.excitations)} tests have whole periods.")
