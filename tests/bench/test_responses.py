@@ -87,7 +87,7 @@ def test_numbers_of_a_line_are_found_from_two_responses(drive, tmp_path):
         measured = lag(hertz) + error
         columns = (hertz, 20.0 * np.log10(np.abs(measured)), np.degrees(np.angle(measured)), std)
         paths.append(str(file_of(tmp_path, name, ("f", "gain", "phase", "std"), *columns)))
-    command = ["identify", *paths, "--drive", str(drive(POLAR)), "-o", str(tmp_path / "result"), "--no-progress"]
+    command = ["identify", *paths, "--drive", str(drive(POLAR)), "-o", str(tmp_path / "result"), "--no-progress", "-v"]
     result = CliRunner().invoke(shaftprint, command)
     assert result.exit_code == 0, result.output
     kept = json.loads((tmp_path / "result" / "fingerprint.json").read_text(encoding="utf-8"))

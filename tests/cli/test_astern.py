@@ -18,7 +18,7 @@ def sailed(invoke, tmp_path_factory):
     """A recording of the shipped ship astern and what was identified from it."""
     folder = tmp_path_factory.mktemp("astern")
     assert invoke("sail", "stan-tug-1205-astern", "short", "-o", folder / "test.nc", "--seed", 5).exit_code == 0
-    done = invoke("identify", folder / "test.nc", *FILES, "-o", folder / "result")
+    done = invoke("identify", folder / "test.nc", *FILES, "-o", folder / "result", "-v")
     assert done.exit_code == 0, done.stderr
     return folder, done.output
 

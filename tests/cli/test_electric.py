@@ -12,7 +12,7 @@ def sailed(invoke, tmp_path_factory):
     """A recording of the shipped ferry and what was identified from it."""
     folder = tmp_path_factory.mktemp("electric")
     assert invoke("sail", "e-ferry-ellen", "short", "-o", folder / "test.nc", "--seed", 5).exit_code == 0
-    done = invoke("identify", folder / "test.nc", *FILES, "-o", folder / "result")
+    done = invoke("identify", folder / "test.nc", *FILES, "-o", folder / "result", "-v")
     assert done.exit_code == 0, done.stderr
     return folder, done.output
 

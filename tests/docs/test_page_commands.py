@@ -32,13 +32,14 @@ RUN_ELSEWHERE = {
     "--starboard",
     "--service",
     "my_ship.py:my_loop",
+    "fan.toml",
 }
 # What a command calls when it begins to calculate.
 BEGINS = {
     "identify": ("run", "identify_both_lines"),
     "inspect": ("read_recording",),
     "limits": ("identify_limits",),
-    "plan": ("plan_test",),
+    "plan": ("plan_test", "plan_on_the_bench"),
     "sail": ("sail_as", "sail_both_lines", "sail_service"),
     "service": ("scan", "fit_service", "watch_folders"),
     "sensitivity": ("save_chart",),

@@ -89,7 +89,7 @@ def test_results_that_come_in_between_are_no_mixture(results, monkeypatch):
             page.write_bytes(right)
         return read_fingerprint(path)
 
-    monkeypatch.setattr("shaftprint.cli.output._fingerprint_file.read_fingerprint", read)
+    monkeypatch.setattr("shaftprint.cli.output._fingerprint_file.read_any_fingerprint", read)
     assert fingerprint_at(results) == read_fingerprint(results / "fingerprint.json")
     page.write_bytes(right.replace(sha256.encode(), b"0" * 64))
     with pytest.raises(FingerprintError, match="expected a page that shows"):

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from shaftprint.cli._next import print_next
-from shaftprint.cli._terminal import answer, details, echo, print_findings
+from shaftprint.cli._terminal import answer, details, echo, print_findings, ring
 from shaftprint.cli.output._json import give
 from shaftprint.late import late
 
@@ -81,8 +81,8 @@ def shown_on_pages(port: int | None) -> Iterator[LivePages | None]:
 
 def tell(event: Event) -> None:
     """Print an event; an abort rings."""
-    bell = "\a" if event.kind in ("abort", "alarm") else ""
-    click.echo(bell, nl=False, err=True)
+    if event.kind in ("abort", "alarm"):
+        ring()
     echo(f"{event.time_s:9.2f} s  {event.kind:<10} {event.sentence}", err=True)
 
 

@@ -125,6 +125,12 @@ def echo(line: object = "", *, err: bool = False) -> None:
         _put(text)
 
 
+def ring() -> None:
+    """Ring the bell of a terminal; a file or a pipe has none."""
+    if sys.stderr.isatty():
+        click.echo("\a", nl=False, err=True)
+
+
 def say(sentence: str, *, indent: str = "") -> None:
     """Print prose, wrapped between words; line breaks at its end leave empty lines."""
     chosen = output()
