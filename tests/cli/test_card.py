@@ -86,6 +86,7 @@ def test_the_file_inspects(run, sailed):
     assert result.output.startswith("Good enough: ")
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_the_file_identifies_what_was_sailed(run, sailed):
     """The simulated ship has the inertias of the file: 13.7955 kg m2 behind the gauge, 3.73202 * 3.82^2 before it."""

@@ -188,6 +188,7 @@ def test_a_fingerprint_of_the_quay_is_refused(run, demo, here):
     assert "expected a fingerprint of the ship underway, found one of GAUGE-CLOSED" in " ".join(result.output.split())
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_a_test_underway_tells_governor_and_engine(run, here):
     """Half an hour of dither of a ship with open propellers: its truth is inside the intervals, and stops the ship."""

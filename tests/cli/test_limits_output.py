@@ -99,6 +99,7 @@ def test_its_tables_are_readable(result):
     expect_all_readable(result[2])
 
 
+@pytest.mark.long
 def test_validate_and_simulate_take_it_too(invoke, result, recording, tmp_path):
     folder = result[0]
     validated = invoke("validate", recording, *TRIAL, "--fingerprint", folder)

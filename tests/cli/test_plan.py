@@ -93,6 +93,7 @@ def test_other_commands_take_the_campaign(planned, run):
     assert "tau_dn" in result.output
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_json_is_whole_where_the_wish_cannot_be_met(run, tmp_path):
     result = run(

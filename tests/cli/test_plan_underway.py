@@ -88,6 +88,7 @@ def test_other_speeds_are_refused_underway(invoke, tmp_path):
     assert not (tmp_path / "plan").exists()
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_a_pitch_that_is_not_planned_is_said_to_stand(invoke, tmp_path):
     options = ("--speeds", "1.0", "--limit", "set-point=0.3V", "--rpm-per-volt", "-127", "--offset", "-5")

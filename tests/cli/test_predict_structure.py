@@ -154,6 +154,7 @@ SAILED = [
 ]
 
 
+@pytest.mark.long
 @pytest.mark.slow
 @pytest.mark.parametrize(("vessel", "campaign", "seeds", "left"), SAILED)
 def test_a_recording_gives_what_was_predicted(invoke, tmp_path, vessel, campaign, seeds, left):

@@ -19,6 +19,7 @@ def test_other_kinds_of_picture(run, tmp_path, suffix, start):
     assert (tmp_path / "out" / f"OL1_n.{suffix}").read_bytes().startswith(start)
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_figures_of_the_thesis_with_measured_responses_where_it_has_them(run, recording, tmp_path):
     test = ("--recording", recording, "--vessel", "stan-tug-1205", "--campaign", "short")

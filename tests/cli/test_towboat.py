@@ -5,6 +5,7 @@ import pytest
 from shaftprint.fingerprint import read_fingerprint
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_a_towboat_is_identified_as_its_page_says(run, tmp_path):
     recording, result = tmp_path / "towboat.nc", tmp_path / "towboat"

@@ -9,6 +9,7 @@ from shaftprint.fingerprint import read_fingerprint
 TRIAL = ("--vessel", "stan-tug-1205-underway", "--campaign", "dither", "--no-progress")
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_half_an_hour_in_service(run, tmp_path):
     recording, result = tmp_path / "underway.nc", tmp_path / "result"

@@ -136,6 +136,7 @@ def test_a_governor_that_is_another_at_the_other_speed_is_refused(trial, voyage,
     assert sentence.endswith("The result of one speed is had with --leg M1 or --leg M2.")
 
 
+@pytest.mark.long
 def test_the_verdict_on_scheduled_gains_begins_with_the_speeds_and_offers_one(trial, tmp_path):
     """Gains that go with the square root of the speed, 28 % between 1.15 and 0.70 of the working speed."""
     path = tmp_path / "scheduled.nc"

@@ -27,6 +27,7 @@ def call(*arguments):
     return result.output
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_raw_log_of_a_bus_gives_the_gain_of_the_governor(tmp_path):
     """EEC1 every 20 ms, 15 % of jitter, 1 % lost, 1 % a bit: everything by the command line, as a user has it."""
@@ -63,6 +64,7 @@ def test_raw_log_of_a_bus_gives_the_gain_of_the_governor(tmp_path):
     assert gain["value"] == pytest.approx(truth["K_p"], rel=0.02)
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_the_pedal_of_a_raw_log_asks_in_place_of_a_voltage(tmp_path):
     """EEC1 with the torque and EEC2 with the pedal, 0.4 % a bit, beside gauge and pick-ups; no set point is wired."""

@@ -62,6 +62,7 @@ def test_only_what_has_changed_is_named(tested, first, later, name):
         assert f"{name} by " in words
 
 
+@pytest.mark.long
 def test_the_cause_is_named_with_its_size(tested, first):
     assert differ(first, tested(LATER, seed=32)).changes == ()
     best = differ(first, tested(FOULED, seed=32)).changes[0].best

@@ -13,6 +13,7 @@ from shaftprint.vessel import load_vessel
 pytestmark = pytest.mark.slow
 
 
+@pytest.mark.long
 def test_the_line_of_the_set_point_is_that_of_the_tug(tmp_path):
     vessel, tug = load_vessel("stan-tug-1205"), Tug.stan_tug_1205()
     campaign = load_campaign("short").model_copy(update={"staircases": ()})

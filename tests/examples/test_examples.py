@@ -110,6 +110,7 @@ def test_two_inputs(run):
     assert tied["d_c"] == pytest.approx(22.5, rel=5e-3)
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_underway(run, capsys):
     defined = run("underway.py")
@@ -121,6 +122,7 @@ def test_underway(run, capsys):
         assert estimate.std < 0.08, name
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_long_chirp(run):
     fits = run("long_chirp.py")["fits"]

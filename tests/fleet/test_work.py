@@ -35,6 +35,7 @@ def asked(store, tmp_path):
     return asked
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_jobs_give_what_identify_gives(demo, store, tmp_path, monkeypatch):
     monkeypatch.setenv("OPENBLAS_NUM_THREADS", "1")

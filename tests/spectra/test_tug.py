@@ -120,6 +120,7 @@ def test_with_noise_the_errors_are_as_large_as_stated(ship, sailed):
     assert np.mean(weighed) / 4.0 == pytest.approx(1.0, abs=0.35)
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_rack_with_noise_errs_as_much_as_stated(ship, sailed):
     vessel, campaign = ship
@@ -136,6 +137,7 @@ def test_rack_with_noise_errs_as_much_as_stated(ship, sailed):
     assert np.mean(weighed) / 6.0 == pytest.approx(1.0, abs=0.35)
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_governor_alone_is_the_pi_of_the_truth(ship, sailed):
     """With noise and steps of 1 %: ``X / e`` is ``K_p + K_i / s`` whatever the load does, within its own covariance."""
