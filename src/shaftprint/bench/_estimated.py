@@ -19,9 +19,9 @@ from shaftprint.bench._per_record import with_structures
 from shaftprint.bench._responses import ResponseFile
 from shaftprint.drive._responses import EstimatedResponse
 from shaftprint.errors import RecordingError, ResponseError
+from shaftprint.spectra._conversion import converted
 from shaftprint.spectra._frequency_response import FrequencyResponse
 from shaftprint.spectra._plain_covariance import circular_covariance
-from shaftprint.spectra._response_covariance import real_jacobian
 from shaftprint.spectra.records._arbitrary import Arbitrary
 from shaftprint.spectra.records._excitation import Excitation
 from shaftprint.spectra.records._from_arrays import response_from_arrays
@@ -110,8 +110,8 @@ def _before_the_hold(response: FrequencyResponse, rate_hz: float) -> FrequencyRe
     x: FloatArray = math.pi * response.frequency_hz / rate_hz
     hold = np.sin(x) / x * np.exp(-1j * x)
     values = response.response / hold
-    turn = real_jacobian((1.0 / hold)[:, None, None] * np.eye(response.covariance.shape[1] // 2))
-    turned = turn @ response.covariance @ np.swapaxes(turn, 1, 2)
+    turn = (1.0 / hold)[:, None, None] * np.eye(response.covariance.shape[1] // 2)
+    turned = converted(response, values, turn, inputs=response.inputs, outputs=response.outputs)
     largest = np.max(np.abs(values) * response.frequency_hz, axis=2, keepdims=True)
     rest = circular_covariance(largest / response.frequency_hz * x**2 / 3.0)
-    return replace(response, response=values, covariance=0.5 * (turned + np.swapaxes(turned, 1, 2)) + rest)
+    return replace(turned, covariance=turned.covariance + rest)
