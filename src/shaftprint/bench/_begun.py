@@ -5,7 +5,7 @@ of every output to ``x_0`` follows as to any parameter, and steady running and s
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from typing import Any
 
 from shaftprint.drive._drive import Drive
@@ -89,22 +89,7 @@ class _Moved(Flow):
     @classmethod
     def beside(cls, flow: Flow, begins: Mapping[int, Formula]) -> "_Moved":
         """Return a flow that adds to the equations of another."""
-        return cls(
-            parameters=flow.parameters,
-            inputs=flow.inputs,
-            states=flow.states,
-            rates=flow.rates,
-            running=flow.running,
-            pasts=flow.pasts,
-            samples=flow.samples,
-            times=flow.times,
-            unknowns=flow.unknowns,
-            known=flow.known,
-            kept=flow.kept,
-            diagrams=flow.diagrams,
-            opened=flow.opened,
-            begins=begins,
-        )
+        return cls(**{one.name: getattr(flow, one.name) for one in fields(Flow)}, begins=begins)
 
     def state(self, name: str) -> Formula:
         """Return a new state, or the sum that stands for it."""
