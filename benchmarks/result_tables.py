@@ -27,7 +27,7 @@ def write_between_marks(path: Path, text: str, begin_mark: str, end_mark: str, *
     ValueError
         If the document does not have both marks.
     """
-    before, after = _around(path, begin_mark, end_mark)
+    before, _, after = _around(path, begin_mark, end_mark)
     if beside:
         text = tables_beside(path, text, _name(begin_mark))
     path.write_text(f"{before}{begin_mark}\n{text.strip()}\n\n{end_mark}{after}", encoding="utf-8")
@@ -41,9 +41,8 @@ def read_between_marks(path: Path, begin_mark: str, end_mark: str) -> str:
     ValueError
         If the document does not have both marks.
     """
-    before, after = _around(path, begin_mark, end_mark)
-    whole = path.read_text(encoding="utf-8")
-    return whole_text(path, whole[len(before) + len(begin_mark) : len(whole) - len(after) - len(end_mark)])
+    _, between, _ = _around(path, begin_mark, end_mark)
+    return whole_text(path, between)
 
 
 def tables_beside(page: Path, text: str, name: str) -> str:
@@ -103,13 +102,13 @@ def read_rows(path: Path) -> list[list[str]]:
         return list(csv.reader(file, delimiter="\t"))
 
 
-def _around(path: Path, begin_mark: str, end_mark: str) -> tuple[str, str]:
+def _around(path: Path, begin_mark: str, end_mark: str) -> tuple[str, str, str]:
     whole = path.read_text(encoding="utf-8")
     before, begin, rest = whole.partition(begin_mark)
-    _, end, after = rest.partition(end_mark)
+    between, end, after = rest.partition(end_mark)
     if not begin or not end:
         raise ValueError(f"{path}: expected the marks {begin_mark!r} and {end_mark!r}, found not both.")
-    return before, after
+    return before, between, after
 
 
 def _cells(line: str) -> list[str]:
