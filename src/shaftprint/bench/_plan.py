@@ -7,7 +7,7 @@ outputs reach is simulated, and the input made smaller until all limits are kept
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import MappingProxyType
 
 import numpy as np
@@ -18,7 +18,7 @@ from shaftprint.bench._equipped import EquippedDrive
 from shaftprint.bench._fit import drive_time_settings
 from shaftprint.bench._multisine import Lines
 from shaftprint.bench._per_record import free_parameters, with_structures
-from shaftprint.bench._predict import PredictedRecords, noise_words, predict_drive, predicted_at
+from shaftprint.bench._predict import PredictedRecords, largest_noise, noise_words, predict_drive, predicted_at
 from shaftprint.bench._records import FEWEST
 from shaftprint.design.inputs._wish import Wish
 from shaftprint.drive._signals import Signal
@@ -64,9 +64,9 @@ class PlannedRecord:
     """Standard deviations that are wished for, by parameter."""
 
     @property
-    def is_enough(self) -> bool:
-        """Whether all wishes are met."""
-        return all(self.predicted.deviations[name] <= std for name, std in self.targets.items())
+    def missed(self) -> tuple[str, ...]:
+        """Parameters that would be known less well than wished for."""
+        return tuple(name for name, std in self.targets.items() if not self.predicted.deviations[name] <= std)
 
 
 @refusing_none(DesignError)
@@ -97,15 +97,13 @@ def plan_record(
     if PERIODS * lines.period < FEWEST or lines.orders.size < 2:
         raise DesignError(f"plan: expected a longer record, found {within_s:g} s at {rate_hz:g} Hz.")
     bench = _Bench.of(one, moved, lines, rate_hz=rate_hz, at=at, kept=kept, values=values, priors=priors)
-    stds = {
-        name: max((record.noise_std.get(name, 0.0) for record in (kept.records if kept else ())), default=0.0)
-        for name in one.structure.outputs
-    } | dict(noise_std)
-    free = tuple(free_parameters(one, bench.records(bench.input_of([1.0] * lines.count, 0.0))))
+    stds = largest_noise(kept) | dict(noise_std)
+    free = tuple(free_parameters(one, bench.records(bench.still)))
     targets = wish.targets({p.name: bench.values[p.name] for p in free}) if wish else {}
+    rest = bench.reached(bench.still) if bench.limited else {}
 
     def told(weights: Sequence[float]) -> tuple[float, FloatArray, dict[str, float]]:
-        moved_by = bench.within_limits(weights)
+        moved_by = bench.within_limits(weights, rest)
         deviations = predict_drive(
             one, bench.records(moved_by), noise_std=stds, kept=kept, values=bench.values, priors=priors
         )
@@ -211,15 +209,20 @@ class _Bench:
                 f"{middle:g}."
             )
         empty = cls(one=one, moved=moved, lines=lines, rate_hz=rate_hz, middle=middle, at=at, values={})
-        records = empty.records(np.zeros(PERIODS * lines.period))
+        records = empty.records(empty.still)
         known = {name: value for name, value in (kept.values if kept else {}).items() if name in one.structure.names}
         assumed = predicted_at(one, records, values=known | dict(values), priors=priors)
-        return cls(one=one, moved=moved, lines=lines, rate_hz=rate_hz, middle=middle, at=at, values=assumed)
+        return replace(empty, values=assumed)
 
-    def input_of(self, weights: Sequence[float], size: float) -> FloatArray:
-        """Return the deviation of the moved input from its middle, in its unit."""
-        fastest = None if self.moved.fastest is None else USED * self.moved.fastest / self.room
-        return size * np.tile(self.lines.shape(weights, fastest, self.rate_hz), PERIODS)
+    @property
+    def still(self) -> FloatArray:
+        """No deviation of the moved input from its middle."""
+        return np.zeros(PERIODS * self.lines.period)
+
+    @property
+    def limited(self) -> list[Signal]:
+        """Outputs that have limits."""
+        return [one for one in self.one.drive.outputs if one.lowest is not None or one.highest is not None]
 
     @property
     def room(self) -> float:
@@ -262,14 +265,15 @@ class _Bench:
             raise DesignError(f"plan: the simulation of {structure.name} runs away; state other values with --value.")
         return ends
 
-    def within_limits(self, weights: Sequence[float]) -> FloatArray:
-        """Return the largest input of a shape that keeps all limits.
+    def within_limits(self, weights: Sequence[float], rest: Mapping[str, tuple[float, float]]) -> FloatArray:
+        """Return the largest input that keeps all limits, as its deviation from the middle, in its unit.
 
-        Raises DesignError if none does.
+        ``weights``: amplitude of each octave. ``rest``: what limited outputs reach without it. Raises DesignError if
+        none does.
         """
-        size, shape = self.room, self.input_of(weights, 1.0)
-        limited = [one for one in self.one.drive.outputs if one.lowest is not None or one.highest is not None]
-        rest = self.reached(0.0 * shape) if limited else {}
+        fastest = None if self.moved.fastest is None else USED * self.moved.fastest / self.room
+        size, shape = self.room, np.tile(self.lines.shape(weights, fastest, self.rate_hz), PERIODS)
+        limited = self.limited
         for _ in range(MOST_SHRINKS if limited else 0):
             ends = self.reached(size * shape)
             excess, name = max((_excess(one, rest[one.name], ends[one.name]), one.name) for one in limited)

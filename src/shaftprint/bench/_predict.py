@@ -71,9 +71,7 @@ def predict_files(
     records = read_records(inputs, one, planned=True, hold=kept is not None and kept.inputs_hold)
     names = {parameter.name for parameter in all_parameters(one, records)}
     at = {name: value for name, value in (kept.values if kept else {}).items() if name in names} | dict(values)
-    seen = [record.noise_std for record in (kept.records if kept else ())]
-    largest = {name: max(record.get(name, 0.0) for record in seen) for name in {name for one in seen for name in one}}
-    stds = largest | dict(noise_std)
+    stds = largest_noise(kept) | dict(noise_std)
     return PredictedRecords(
         parameters=tuple(free_parameters(one, records)),
         values=predicted_at(one, records, values=at, priors=priors),
@@ -140,6 +138,12 @@ def predicted_at(
     # refuses what is in no record
     one.structure.vector({name: value for name, value in {**means, **values}.items() if name not in usual})
     return {name: values.get(name, values.get(base_name(name), value)) for name, value in (usual | means).items()}
+
+
+def largest_noise(kept: DriveFingerprint | None) -> dict[str, float]:
+    """Return the largest noise of one sample that a fingerprint has seen of each output."""
+    seen = [record.noise_std for record in (kept.records if kept else ())]
+    return {name: max(record.get(name, 0.0) for record in seen) for name in {name for one in seen for name in one}}
 
 
 def coloured_record(kept: DriveFingerprint | None, rate_hz: float) -> DriveRecord | None:

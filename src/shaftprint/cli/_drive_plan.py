@@ -66,16 +66,16 @@ def plan_on_the_bench(
                 priors=known.priors,
                 progress=steps,
             )
+        facts = _facts(planned)
         _write_input(planned, drive, folder / INPUT_FILE)
-        (folder / FACTS_FILE).write_text(json.dumps(_facts(planned), indent=1) + "\n", encoding="utf-8")
-    predicted = planned.predicted
-    missed = [one for one, std in planned.targets.items() if not predicted.deviations[one] <= std]
+        (folder / FACTS_FILE).write_text(json.dumps(facts, indent=1) + "\n", encoding="utf-8")
+    predicted, missed = planned.predicted, planned.missed
     lost = [one for one, std in predicted.deviations.items() if not np.isfinite(std)]
     words = f"The record tells too little of {', '.join(missed)}." if missed else "The record tells what is wished for."
     answer(
         words if planned.targets else f"Not told: {', '.join(lost)}." if lost else "The record tells every parameter."
     )
-    give("plan", _facts(planned))
+    give("plan", facts)
     say(
         f"{len(planned.lines_hz)} sines from {planned.lines_hz[0]:.4g} to {planned.lines_hz[-1]:.4g} Hz, which repeat "
         f"after {planned.period_s:.6g} s; put out as steps from sample to sample (inputs_hold = true in [fit])."
