@@ -8,7 +8,7 @@ import numpy as np
 from shaftprint.arrays import FloatArray
 from shaftprint.live._envelope import SET_POINT, SPEED
 from shaftprint.live._sight import Sight
-from shaftprint.live._watch import AbortRule, Breach, Expected, Rest
+from shaftprint.live._watch import AbortRule, Breach, Expected, Lasting, Rest
 
 # The logged set point may differ from what was put out by so much, and by so many deviations of it at rest.
 _LEAST_V, _SIGMAS = 0.05, 5.0
@@ -31,18 +31,13 @@ class PutOutWatch:
     """What is logged as set point is what the program has put out."""
 
     def __init__(self, rest: Rest) -> None:
-        self._rest, self._since_s = rest, math.nan
+        self._rest, self._lasting = rest, Lasting(_PUT_OUT_S)
         self._limit_v = max(_LEAST_V, _SIGMAS * rest.set_point_std_v)
 
     def look(self, sight: Sight, expected: Expected) -> Breach | None:
         """Return what is broken with this block."""
         off_v = sight.set_point_v - self._rest.set_point_offset_v - expected.set_point_v
-        if not expected.is_ruling or not abs(off_v) > self._limit_v:
-            self._since_s = math.nan
-            return None
-        if math.isnan(self._since_s):
-            self._since_s = sight.block.source_s
-        if sight.time_s - self._since_s <= _PUT_OUT_S:
+        if not self._lasting.too_long(expected.is_ruling and abs(off_v) > self._limit_v, sight):
             return None
         return Breach(
             rule=AbortRule.SET_POINT,
@@ -62,7 +57,7 @@ class FollowedWatch:
     def __init__(self, rest: Rest, slope_rpm_per_v: float, span_s: float) -> None:
         self._rest, self._slope = rest, slope_rpm_per_v
         self._asked: deque[float] = deque(maxlen=max(1, round(_LAG_S / span_s)))
-        self._since_s = math.nan
+        self._lasting = Lasting(_FOLLOWED_S)
 
     def look(self, sight: Sight, expected: Expected) -> Breach | None:
         """Return what is broken with this block."""
@@ -71,12 +66,8 @@ class FollowedWatch:
         low, high = min(self._asked), max(self._asked)
         beside = _SIGMAS * rest.speed_std_rpm + _OVERSHOOT * (high - low)
         low, high = low - beside, high + beside
-        if not expected.is_ruling or math.isnan(sight.speed_rpm) or low <= sight.speed_rpm <= high:
-            self._since_s = math.nan
-            return None
-        if math.isnan(self._since_s):
-            self._since_s = sight.block.source_s
-        if sight.time_s - self._since_s <= _FOLLOWED_S:
+        is_beside = not math.isnan(sight.speed_rpm) and not low <= sight.speed_rpm <= high
+        if not self._lasting.too_long(expected.is_ruling and is_beside, sight):
             return None
         return Breach(
             rule=AbortRule.SET_POINT,

@@ -101,7 +101,7 @@ class Watch(Protocol):
         """Return what is broken with this block; None while all is well."""
 
 
-class _Lasting:
+class Lasting:
     """How long something has been wrong."""
 
     def __init__(self, persistence_s: float) -> None:
@@ -122,7 +122,7 @@ class LimitWatch:
     """A quantity stays within its bound."""
 
     def __init__(self, bound: Bound) -> None:
-        self._bound, self._lasting = bound, _Lasting(bound.persistence_s)
+        self._bound, self._lasting = bound, Lasting(bound.persistence_s)
 
     def look(self, sight: Sight, expected: Expected) -> Breach | None:
         """Return what is broken with this block."""
@@ -148,7 +148,7 @@ class BarredWatch:
     """The speed does not stay in a barred range."""
 
     def __init__(self, envelope: Envelope) -> None:
-        self._ranges = [(one, _Lasting(envelope.barred_passage_s)) for one in envelope.barred_rpm]
+        self._ranges = [(one, Lasting(envelope.barred_passage_s)) for one in envelope.barred_rpm]
 
     def look(self, sight: Sight, expected: Expected) -> Breach | None:
         """Return what is broken with this block."""
@@ -172,8 +172,8 @@ class DataWatch:
 
     def __init__(self, needed: Sequence[str]) -> None:
         self._needed = tuple(needed)
-        self._missing = {name: _Lasting(MISSING_S) for name in needed}
-        self._stale = _Lasting(MISSING_S)
+        self._missing = {name: Lasting(MISSING_S) for name in needed}
+        self._stale = Lasting(MISSING_S)
         self._before: Sight | None = None
 
     def look(self, sight: Sight, expected: Expected) -> Breach | None:
