@@ -66,53 +66,61 @@ def leg_states(legs: Sequence[LegSamples]) -> tuple[LegState, ...]:
     """
     if not legs:
         return ()
-    for samples in legs:
-        _expect_ahead(samples)
-    speeds = [float(samples.speed_rev_s.mean()) for samples in legs]
-    squares = [(samples.speed_rev_s / speed) ** 2 for samples, speed in zip(legs, speeds, strict=True)]
-    torques = [
-        mean_load(_of_propeller(samples, speed), square, duration_s=samples.periods.duration_s)
-        for samples, speed, square in zip(legs, speeds, squares, strict=True)
-    ]
-    loads = [
-        samples.torque_nm / (torque * square) for samples, torque, square in zip(legs, torques, squares, strict=True)
-    ]
-    stds = _std_of_loads(loads, [samples.periods for samples in legs])
-    return tuple(
-        LegState(
-            name=samples.leg.name,
-            start_s=samples.periods.start_s,
-            period_s=samples.periods.period_s,
-            periods=samples.periods.periods,
-            working_point=_point(samples, speed, torque, float(load_std)),
-        )
-        for samples, speed, torque, load_std in zip(legs, speeds, torques, stds, strict=True)
-    )
+    means = [_mean_of(samples) for samples in legs]
+    return tuple(_state_of(mean, float(std)) for mean, std in zip(means, _std_of_loads(means), strict=True))
 
 
-def _point(samples: LegSamples, speed: float, torque: float, load_std: float) -> WorkingPoint:
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class _Mean:
+    """Means of a leg, and what goes with the square of its speed."""
+
+    samples: LegSamples
+    speed_rev_s: float
+    square: FloatArray
+    torque_nm: float
+
+    @property
+    def load(self) -> FloatArray:
+        """Torque over that of the mean load, shape (samples,)."""
+        return self.samples.torque_nm / (self.torque_nm * self.square)
+
+
+def _mean_of(samples: LegSamples) -> _Mean:
+    _expect_ahead(samples)
+    periods = samples.periods
+    speed = float(samples.speed_rev_s.mean())
     square = (samples.speed_rev_s / speed) ** 2
-    speed_std = _std_of_mean(samples.speed_rev_s, samples.periods.periods)
-    return WorkingPoint(
-        engine_speed_rev_s=speed,
-        shaft_torque_nm=torque,
-        engine_speed_std_rev_s=speed_std,
-        shaft_torque_std_nm=abs(torque) * float(np.hypot(load_std, 2.0 * speed_std / speed)),
-        set_point_v=float(samples.set_point_v.mean()),
-        load_std=load_std,
-        zero_share=mean_load(np.ones_like(square), square, duration_s=samples.periods.duration_s),
-    )
-
-
-def _of_propeller(samples: LegSamples, speed: float) -> FloatArray:
     of_propeller, _ = propeller_torque(
         samples.speed_rev_s / speed,
         samples.torque_nm,
         harmonics=samples.leg.lines,
-        periods=samples.periods.periods,
-        period_s=samples.periods.period_s,
+        periods=periods.periods,
+        period_s=periods.period_s,
     )
-    return of_propeller
+    torque = mean_load(of_propeller, square, duration_s=periods.duration_s)
+    return _Mean(samples=samples, speed_rev_s=speed, square=square, torque_nm=torque)
+
+
+def _state_of(mean: _Mean, load_std: float) -> LegState:
+    samples, periods = mean.samples, mean.samples.periods
+    speed_std = _std_of_mean(samples.speed_rev_s, periods.periods)
+    relative_std = float(np.hypot(load_std, 2.0 * speed_std / mean.speed_rev_s))
+    point = WorkingPoint(
+        engine_speed_rev_s=mean.speed_rev_s,
+        shaft_torque_nm=mean.torque_nm,
+        engine_speed_std_rev_s=speed_std,
+        shaft_torque_std_nm=abs(mean.torque_nm) * relative_std,
+        set_point_v=float(samples.set_point_v.mean()),
+        load_std=load_std,
+        zero_share=mean_load(np.ones_like(mean.square), mean.square, duration_s=periods.duration_s),
+    )
+    return LegState(
+        name=samples.leg.name,
+        start_s=periods.start_s,
+        period_s=periods.period_s,
+        periods=periods.periods,
+        working_point=point,
+    )
 
 
 def _expect_ahead(samples: LegSamples) -> None:
@@ -180,22 +188,21 @@ def _std_of_mean(values: FloatArray, periods: int) -> float:
     return float(np.sqrt(np.mean(np.abs(between_lines(values, periods)) ** 2)))
 
 
-def _std_of_loads(loads: Sequence[FloatArray], periods: Sequence[LegPeriods]) -> FloatArray:
+def _std_of_loads(legs: Sequence[_Mean]) -> FloatArray:
     """Return how far the mean load of each leg may be from that of the ship, from what its periods do not repeat.
 
-    ``loads``: torque over that of the mean load, shape (samples,) for each leg; shape of the result (legs,). One wander
-    goes through all of them, and each has a mean of its own.
+    Shape of the result (legs,). One wander goes through all legs, and each has a mean of its own.
     """
     means, start_s, stop_s = [], [], []
-    for load, one in zip(loads, periods, strict=True):
-        count = max(round(one.duration_s / _BLOCK_S), _FEWEST_BLOCKS)
+    for leg in legs:
+        load, periods = leg.load, leg.samples.periods
+        count = max(round(periods.duration_s / _BLOCK_S), _FEWEST_BLOCKS)
         borders = np.round(np.arange(count + 1) * load.size / count).astype(np.int64)
-        means.append(np.add.reduceat(_wander(load, one.periods), borders[:-1]) / np.diff(borders))
-        border_s = one.start_s + borders * (one.duration_s / load.size)
+        means.append(np.add.reduceat(_wander(load, periods.periods), borders[:-1]) / np.diff(borders))
+        border_s = periods.start_s + borders * (periods.duration_s / load.size)
         start_s.append(border_s[:-1])
         stop_s.append(border_s[1:])
-    counts = [part.size for part in means]
-    of_legs = np.repeat(np.eye(len(loads)), counts, axis=0)
+    of_legs = np.repeat(np.eye(len(legs)), [part.size for part in means], axis=0)
     return fit_through_wander(np.concatenate(means), of_legs, np.concatenate(start_s), np.concatenate(stop_s)).std
 
 
