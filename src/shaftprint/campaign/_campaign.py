@@ -91,6 +91,12 @@ class Campaign(Shown, Settings):
         """What moves the speed and repeats itself at a level of its own, in the order of time."""
         return tuple(one for one in self.of_input().excitations if isinstance(one, Leg))
 
+    @property
+    def levels_v(self) -> frozenset[float]:
+        """Set points about which something that repeats itself is measured [V]: of the legs, and of the sines."""
+        of_sines = {self.offset_v} if self.sines else set()
+        return frozenset({leg.level_v for leg in self.legs} | of_sines)
+
     def beside(self, leg: Leg) -> tuple[Multisine, ...]:
         """Return the multisines that move something else in the periods of a leg."""
         return tuple(one for one in self._of_further_inputs if runs_beside(one, leg))

@@ -86,8 +86,7 @@ def predict_test(
         If a recording or a slope is given without a vessel file.
     """
     alone = ship.structure(structure, campaign)
-    levels = {leg.level_v for leg in campaign.legs} | ({campaign.offset_v} if campaign.sines else set())
-    chosen = with_bend(alone) if len(levels) > 1 else alone
+    chosen = with_bend(alone) if len(campaign.levels_v) > 1 else alone
     ship.expect_free(chosen)
     noise = _noise(ship, chosen, campaign, progress)
     priors = ship.known(noise.priors)

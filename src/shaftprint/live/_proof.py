@@ -128,8 +128,7 @@ def _predicted(
     The model of a fingerprint is linear about its working point: at several speeds the usual ship with the quadratic
     propeller is nearer.
     """
-    several = len({leg.level_v for leg in campaign.legs} | ({campaign.offset_v} if campaign.sines else set())) > 1
-    if fingerprint is not None and not several:
+    if fingerprint is not None and len(campaign.levels_v) <= 1:
         return _by_fingerprint(campaign, fingerprint), "99 % band of the fingerprint"
     slope = _slope(campaign, vessel, fingerprint, slope_rpm_per_v)
     ship = ShipBeforeTest(first_test=None, vessel=vessel, slope_rpm_per_v=slope, values={})
