@@ -11,18 +11,22 @@ import click
 
 from shaftprint.cli._next import print_next
 from shaftprint.cli._terminal import answer, details, echo, print_findings, ring
+from shaftprint.cli.output._fingerprint_file import fingerprint_at
 from shaftprint.cli.output._json import give
 from shaftprint.late import late
 
 with late():
     from shaftprint.live._page import LivePages
+    from shaftprint.live._proof import prove
 
 if TYPE_CHECKING:
     from shaftprint.live._block import Event
+    from shaftprint.live._envelope import Envelope
     from shaftprint.live._judgement import LineJudgement
     from shaftprint.live._outcome import Outcome
     from shaftprint.live._proof import Proof
     from shaftprint.live._record import Left
+    from shaftprint.survey._trial import Trial
 
 slope_option = click.option(
     "--rpm-per-volt",
@@ -57,8 +61,10 @@ def recording_option(command: Callable[..., Any]) -> Callable[..., Any]:
     )(command)
 
 
-def print_proof(proof: Proof) -> None:
-    """Print what a campaign will do, and what speaks against it."""
+def proved(trial: Trial, envelope: Envelope, *, fingerprint: Path | None, slope_rpm_per_v: float | None) -> Proof:
+    """Hold a campaign against an envelope, and print what it will do and what speaks against it."""
+    known = None if fingerprint is None else fingerprint_at(fingerprint)
+    proof = prove(trial.campaign, trial.vessel, envelope, fingerprint=known, slope_rpm_per_v=slope_rpm_per_v)
     for one in proof.foreseen:
         bound = "" if one.bound is None else f"; allowed {one.bound.lowest:g} to {one.bound.highest:g} {one.unit}"
         echo(f"{one.quantity}: foreseen {one.lowest:.5g} to {one.highest:.5g} {one.unit}{bound}")
@@ -66,6 +72,7 @@ def print_proof(proof: Proof) -> None:
     give("foreseen", proof.foreseen)
     if proof.refusals:
         print_findings("Not to be played", proof.refusals)
+    return proof
 
 
 @contextlib.contextmanager

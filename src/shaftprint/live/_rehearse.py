@@ -47,10 +47,8 @@ def simulated_ship_of(
     vessel: "Vessel", campaign: "Campaign", *, seed: int, faults: LinkFaults, tug: "Tug | None" = None
 ) -> SimulatedShip:
     """Return a ship like the Stan Tug behind a device that keeps the contract, but for its faults."""
-    usual = with_lever_of(like_stan_tug_1205(vessel, offset_v=campaign.offset_v), vessel, campaign)
-    ship = SteppedTug(
-        tug or usual, vessel, first_v=campaign.offset_v, duration_s=campaign.duration_s + _BESIDE_S, seed=seed
-    )
+    truth = tug or _usual_ship(vessel, campaign)
+    ship = SteppedTug(truth, vessel, first_v=campaign.offset_v, duration_s=campaign.duration_s + _BESIDE_S, seed=seed)
     faults = replace(faults, channel=vessel.sensors.shaft_torque.channel)
     return SimulatedShip(ship, lever_v=campaign.offset_v, faults=faults)
 
@@ -100,7 +98,8 @@ def rehearse(
     RecordingError
         If the recording is there already or cannot be written.
     """
-    ship = simulated_ship_of(vessel, campaign, seed=seed, faults=faults or LinkFaults(), tug=tug)
+    truth = tug or _usual_ship(vessel, campaign)
+    ship = simulated_ship_of(vessel, campaign, seed=seed, faults=faults or LinkFaults(), tug=truth)
     counterpart = SimulatedCounterpart(ship, pace=pace)
     record = LiveRecord(path, counterpart.channels, {"vessel": vessel.name})
     test = LiveTest(
@@ -110,7 +109,7 @@ def rehearse(
         envelope=envelope,
         record=record,
         operator=operator or Operator(),
-        slope_rpm_per_v=rehearsed_slope(vessel, campaign, tug),
+        slope_rpm_per_v=truth.set_point_slope_rpm_per_v,
         **watched(told, pages),
         waits=pace is None,
         is_enough=None if planned is None else enough_by(planned),
@@ -122,10 +121,13 @@ def rehearse(
     return outcome, record.finish(outcome.campaign)
 
 
-def rehearsed_slope(vessel: "Vessel", campaign: "Campaign", tug: "Tug | None" = None) -> float:
+def rehearsed_slope(vessel: "Vessel", campaign: "Campaign") -> float:
     """Return what one volt asks for on the simulated ship [rpm/V]."""
-    usual = with_lever_of(like_stan_tug_1205(vessel, offset_v=campaign.offset_v), vessel, campaign)
-    return (tug or usual).set_point_slope_rpm_per_v
+    return _usual_ship(vessel, campaign).set_point_slope_rpm_per_v
+
+
+def _usual_ship(vessel: "Vessel", campaign: "Campaign") -> "Tug":
+    return with_lever_of(like_stan_tug_1205(vessel, offset_v=campaign.offset_v), vessel, campaign)
 
 
 def faults_named(words: Sequence[str]) -> LinkFaults:

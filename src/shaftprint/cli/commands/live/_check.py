@@ -7,15 +7,13 @@ from pathlib import Path
 import click
 
 from shaftprint.cli._command_group import NOT_REACHED
-from shaftprint.cli._live_options import fingerprint_option, print_proof, slope_option
+from shaftprint.cli._live_options import fingerprint_option, proved, slope_option
 from shaftprint.cli._options import campaign_option, vessel_option
 from shaftprint.cli._terminal import answer
-from shaftprint.cli.output._fingerprint_file import fingerprint_at
 from shaftprint.late import late
 
 with late():
     from shaftprint.live._envelope import envelope_of
-    from shaftprint.live._proof import prove
     from shaftprint.survey._trial import load_trial
 
 
@@ -34,14 +32,7 @@ def command(
     vessel file. Ends with 3 where the campaign may not be played, with every reason.
     """
     trial = load_trial(vessel, campaign)
-    proof = prove(
-        trial.campaign,
-        trial.vessel,
-        envelope_of(trial.vessel),
-        fingerprint=None if fingerprint is None else fingerprint_at(fingerprint),
-        slope_rpm_per_v=slope_rpm_per_v,
-    )
-    print_proof(proof)
+    proof = proved(trial, envelope_of(trial.vessel), fingerprint=fingerprint, slope_rpm_per_v=slope_rpm_per_v)
     if proof.refusals:
         answer(f"{trial.campaign.name} may not be played.")
         context.exit(NOT_REACHED)

@@ -13,21 +13,19 @@ from shaftprint.cli._live_options import (
     page_option,
     plan_option,
     print_outcome,
-    print_proof,
+    proved,
     recording_option,
     shown_on_pages,
     slope_option,
     tell,
 )
 from shaftprint.cli._options import campaign_option, vessel_option
-from shaftprint.cli.output._fingerprint_file import fingerprint_at
 from shaftprint.late import late
 
 with late():
     from shaftprint.design.files._plan_json import read_plan
     from shaftprint.live._envelope import envelope_of
     from shaftprint.live._play_on_board import play_on_board
-    from shaftprint.live._proof import prove
     from shaftprint.live.counterparts._access import Access
     from shaftprint.survey._trial import load_trial
 
@@ -80,14 +78,7 @@ def command(
     """
     trial = load_trial(vessel, campaign)
     envelope = envelope_of(trial.vessel, is_rehearsed=dry)
-    proof = prove(
-        trial.campaign,
-        trial.vessel,
-        envelope,
-        fingerprint=None if fingerprint is None else fingerprint_at(fingerprint),
-        slope_rpm_per_v=slope_rpm_per_v,
-    )
-    print_proof(proof)
+    proof = proved(trial, envelope, fingerprint=fingerprint, slope_rpm_per_v=slope_rpm_per_v)
     if not dry:
         proof.expect_within()
     password = None if user is None else os.environ.get(PASSWORD) or click.prompt("Password", hide_input=True, err=True)

@@ -12,20 +12,18 @@ from shaftprint.cli._live_options import (
     page_option,
     plan_option,
     print_outcome,
-    print_proof,
+    proved,
     recording_option,
     shown_on_pages,
     slope_option,
     tell,
 )
 from shaftprint.cli._terminal import echo
-from shaftprint.cli.output._fingerprint_file import fingerprint_at
 from shaftprint.late import late
 
 with late():
     from shaftprint.design.files._plan_json import read_plan
     from shaftprint.live._envelope import envelope_of
-    from shaftprint.live._proof import prove
     from shaftprint.live._rehearse import faults_named, rehearse, rehearsed_slope
     from shaftprint.survey._trial import load_trial
 
@@ -73,14 +71,8 @@ def command(
     envelope = envelope_of(trial.vessel, is_rehearsed=True)
     if not envelope.is_stated:
         echo(f"{vessel}: no [envelope]; idle speed, rated speed and rated torque are taken.", err=True)
-    proof = prove(
-        trial.campaign,
-        trial.vessel,
-        envelope,
-        fingerprint=None if fingerprint is None else fingerprint_at(fingerprint),
-        slope_rpm_per_v=rehearsed_slope(trial.vessel, trial.campaign) if slope_rpm_per_v is None else slope_rpm_per_v,
-    )
-    print_proof(proof)
+    slope = rehearsed_slope(trial.vessel, trial.campaign) if slope_rpm_per_v is None else slope_rpm_per_v
+    proof = proved(trial, envelope, fingerprint=fingerprint, slope_rpm_per_v=slope)
     proof.expect_within()
     with shown_on_pages(port) as pages:
         outcome, left = rehearse(
