@@ -7,6 +7,7 @@ import ast
 import tomllib
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import shaftprint
 
@@ -14,11 +15,16 @@ ROOT = Path(__file__).parents[2]
 SOURCE = ROOT / "src" / "shaftprint"
 
 
+def contracts() -> list[dict[str, Any]]:
+    """Return the contracts of imports."""
+    text = (ROOT / "pyproject.toml").read_text(encoding="utf-8")
+    stated: list[dict[str, Any]] = tomllib.loads(text)["tool"]["importlinter"]["contracts"]
+    return stated
+
+
 def floors() -> list[list[str]]:
     """Return the rooms and leaf modules of each layer, the highest first."""
-    text = (ROOT / "pyproject.toml").read_text(encoding="utf-8")
-    contracts = tomllib.loads(text)["tool"]["importlinter"]["contracts"]
-    (layers,) = (contract["layers"] for contract in contracts if contract["name"] == "Data flows one way")
+    (layers,) = (contract["layers"] for contract in contracts() if contract["name"] == "Data flows one way")
     return [[name.strip() for name in layer.split("|")] for layer in layers]
 
 

@@ -1,9 +1,8 @@
 """The wings of the house: parts that the core does not import, as the contracts of ``pyproject.toml`` name them."""
 
-import tomllib
 from pathlib import Path
 
-from room_diagram import ROOT, SOURCE
+from room_diagram import SOURCE, contracts
 
 WING = "Wing "
 """How the name of a contract of a wing begins."""
@@ -11,9 +10,8 @@ WING = "Wing "
 
 def wings() -> dict[str, tuple[str, tuple[str, ...]]]:
     """Return what each wing is and what is in it, by its name."""
-    settings = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
-    contracts = [one for one in settings["tool"]["importlinter"]["contracts"] if one["name"].startswith(WING)]
-    parts = [(*one["name"].removeprefix(WING).split(": ", 1), one["protected_modules"]) for one in contracts]
+    own = [one for one in contracts() if one["name"].startswith(WING)]
+    parts = [(*one["name"].removeprefix(WING).split(": ", 1), one["protected_modules"]) for one in own]
     return {
         name: (what, tuple(module.removeprefix("shaftprint.") for module in inside)) for name, what, inside in parts
     }
