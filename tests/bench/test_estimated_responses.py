@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 from scipy import signal
+from tests.bench.late_lag import DELAY_S, GAIN, TIME_S, TRUE, lag, late_lag
 
 from shaftprint.bench import equipped, read_records
 from shaftprint.bench._estimated import estimated_responses
@@ -14,53 +15,12 @@ from shaftprint.drive import load_drive
 from shaftprint.errors import RecordingError, SettingsError
 from shaftprint.time_domain import record_from_arrays
 
-GAIN, TIME_S, DELAY_S = 3.0, 0.05, 0.004
 RATE_HZ = 500.0
-LINE = """\
-name = "lag"
-
-[[inputs]]
-name = "u"
-channel = "u"
-unit = "mV"
-
-[[outputs]]
-name = "w"
-channel = "w"
-unit = "rpm"
-
-[[blocks]]
-output = "lag"
-kind = "first-order-lag"
-inputs = ["u"]
-parameters = { gain = "K", time = "T" }
-
-[[blocks]]
-output = "w"
-kind = "delay"
-inputs = ["lag"]
-parameters = { time = "t_d" }
-"""
-PARAMETERS = "".join(
-    f'\n[[parameters]]\nname = "{name}"\nunit = "{unit}"\nlower = {lower}\nupper = {upper}\nvalue = {value}\n'
-    'meaning = "of the lag"\n'
-    for name, unit, lower, upper, value in (
-        ("K", "rpm/mV", 0.1, 30.0, 1.0),
-        ("T", "s", 0.001, 1.0, 0.1),
-        ("t_d", "s", 0.0, 0.1, 0.001),
-    )
-)
-TRUE = {"K": GAIN, "T": TIME_S, "t_d": DELAY_S}
-
-
-def response(hertz):
-    s = 2j * np.pi * np.asarray(hertz)
-    return GAIN * np.exp(-DELAY_S * s) / (TIME_S * s + 1.0)
 
 
 def line_of(rows, hold=None):
     says = "" if hold is None else f"\n[fit]\ninputs_hold = {str(hold).lower()}\n"
-    return LINE + PARAMETERS + f"\n[frequency_response]\n{rows}\n" + says
+    return late_lag(channels=True) + f"\n[frequency_response]\n{rows}\n" + says
 
 
 def moved(u, every):
@@ -127,7 +87,7 @@ def test_each_sine_is_one_line_with_the_deviation_of_its_noise(tmp_path):
     hertz = np.array([1.3, 4.7, 11.0])
     one = equipped(load_drive(drive_file(tmp_path, line_of('excitation = "sine"\nsettling_s = 1.0'))))
     errors, stds = [], []
-    time, settled = np.arange(3000) / RATE_HZ, response(hertz)
+    time, settled = np.arange(3000) / RATE_HZ, lag(hertz)
     for seed in range(12):
         rng, records = np.random.default_rng(seed), []
         for number, turn in enumerate(np.exp(2j * np.pi * hertz[:, None] * time)):
@@ -135,7 +95,7 @@ def test_each_sine_is_one_line_with_the_deviation_of_its_noise(tmp_path):
             records.append(record_from_arrays(str(number), {"u": turn.imag}, {"w": w}, rate_hz=RATE_HZ))
         (file,) = estimated_responses(one, records)
         assert file.response.frequency_hz == pytest.approx(hertz, rel=1e-4)
-        errors.append(file.response.response[0, 0] - response(hertz))
+        errors.append(file.response.response[0, 0] - lag(hertz))
         stds.append(np.sqrt(np.trace(file.response.covariance, axis1=1, axis2=2)))
     # of a sine of amplitude 1 in white noise of 2500 samples: 2 sigma / sqrt(n), and a few stretches know it worse
     assert np.mean(stds, axis=0) == pytest.approx(2.0 * 0.02 / np.sqrt(2500.0), rel=0.25)
@@ -156,12 +116,12 @@ def test_what_a_computer_holds_is_taken_out(tmp_path):
     rows = 'excitation = "periodic"\nperiod_s = 1.0'
     one = equipped(load_drive(drive_file(tmp_path, line_of(rows, hold=True))))
     (file,) = estimated_responses(one, read_records([path], one))
-    off = np.abs(file.response.response[0, 0] - response(lines))
+    off = np.abs(file.response.response[0, 0] - lag(lines))
     std = np.sqrt(np.trace(file.response.covariance, axis1=1, axis2=2))
     assert file.response.frequency_hz == pytest.approx(lines)
     assert np.all(off < 2.0 * std)
     # half a sample more of delay would be 12 %
-    assert np.all(off < 0.01 * np.abs(response(lines)))
+    assert np.all(off < 0.01 * np.abs(lag(lines)))
     untold = equipped(load_drive(drive_file(tmp_path, line_of(rows))))
     steps = read_records([written(tmp_path, "steps", np.sign(u), w, rng)], untold)
     with pytest.raises(RecordingError, match="inputs_hold"):

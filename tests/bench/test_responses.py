@@ -5,6 +5,7 @@ import json
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from tests.bench.late_lag import TRUE, lag, late_lag
 
 from shaftprint.bench import equipped, read_records
 from shaftprint.bench._responses import identify_responses, read_responses
@@ -12,39 +13,7 @@ from shaftprint.cli import shaftprint
 from shaftprint.drive import load_drive
 from shaftprint.errors import RecordingError, SettingsError
 
-GAIN, TIME_S, DELAY_S = 3.0, 0.05, 0.004
-LINE = """\
-name = "lag"
-
-[[inputs]]
-name = "u"
-unit = "mV"
-
-[[outputs]]
-name = "w"
-unit = "rpm"
-
-[[blocks]]
-output = "lag"
-kind = "first-order-lag"
-inputs = ["u"]
-parameters = { gain = "K", time = "T" }
-
-[[blocks]]
-output = "w"
-kind = "delay"
-inputs = ["lag"]
-parameters = { time = "t_d" }
-"""
-PARAMETERS = "".join(
-    f'\n[[parameters]]\nname = "{name}"\nunit = "{unit}"\nlower = {lower}\nupper = {upper}\nvalue = {value}\n'
-    'meaning = "of the lag"\n'
-    for name, unit, lower, upper, value in (
-        ("K", "rpm/mV", 0.1, 30.0, 1.0),
-        ("T", "s", 0.001, 1.0, 0.1),
-        ("t_d", "s", 0.0, 0.1, 0.001),
-    )
-)
+LINE = late_lag()
 POLAR = """
 [[responses]]
 output = "w"
@@ -56,11 +25,6 @@ std = "std"
 """
 
 
-def lag(hertz):
-    s = 2j * np.pi * np.asarray(hertz)
-    return GAIN * np.exp(-DELAY_S * s) / (TIME_S * s + 1.0)
-
-
 def file_of(folder, name, titles, *columns, mark=","):
     rows = [titles, *zip(*columns, strict=True)]
     path = folder / f"{name}.csv"
@@ -70,7 +34,7 @@ def file_of(folder, name, titles, *columns, mark=","):
 
 @pytest.fixture
 def drive(tmp_path):
-    def written(rows, head=LINE + PARAMETERS):
+    def written(rows, head=LINE):
         path = tmp_path / "drive.toml"
         path.write_text(head + rows, encoding="utf-8")
         return path
@@ -92,7 +56,7 @@ def test_numbers_of_a_line_are_found_from_two_responses(drive, tmp_path):
     assert result.exit_code == 0, result.output
     kept = json.loads((tmp_path / "result" / "fingerprint.json").read_text(encoding="utf-8"))
     for one in kept["parameters"]:
-        true = {"K": GAIN, "T": TIME_S, "t_d": DELAY_S}[one["name"]]
+        true = TRUE[one["name"]]
         assert abs(one["value"] - true) < 4.0 * one["std"] < 0.05 * true
     assert [(one["name"], one["lines"]) for one in kept["responses"]] == [("sines", 15), ("sweep", 40)]
     assert kept["records"] == []
@@ -108,7 +72,7 @@ def test_more_starts_than_are_drawn_by_themselves_are_all_used(drive, tmp_path):
     found = identify_responses(one, files, rng=np.random.default_rng(3), starts=25)
     assert found.identification.settings.starts == 25
     values = {number.name: number.value for number in found.identification.parameters}
-    assert values == pytest.approx({"K": GAIN, "T": TIME_S, "t_d": DELAY_S}, rel=1e-3)
+    assert values == pytest.approx(TRUE, rel=1e-3)
 
 
 def test_columns_are_read_in_their_units(drive, tmp_path):
