@@ -101,14 +101,11 @@ class SetPointSensor(Settings):
         ``volts``: set point [V], of any shape. ``about_v``: voltage at which nothing changes, neither value nor slope
         [V].
         """
-        if self.table_rpm is None:
+        asked_rpm, rpm_per_v = self.asked_rpm(about_v), self.slope_rpm_per_v(about_v)
+        if self.table_rpm is None or asked_rpm is None or rpm_per_v is None:
             return volts
         shown, rpm = np.array(self.table_rpm).T
-        about = float(self.reading(about_v))
-        beside = _BESIDE * float(np.ptp(shown))
-        lower, middle, upper = _along(np.array([about - beside, about, about + beside]), shown, rpm)
-        rpm_per_v = (upper - lower) / (2.0 * beside) / self.slope_v
-        straight: FloatArray = about_v + (_along(self.reading(volts), shown, rpm) - middle) / rpm_per_v
+        straight: FloatArray = about_v + (_along(self.reading(volts), shown, rpm) - asked_rpm) / rpm_per_v
         return straight
 
     def covers(self, volts: float) -> bool:
