@@ -103,21 +103,6 @@ def lever_pair(text: str) -> tuple[float, float]:
     return pair
 
 
-class _Parsed(click.ParamType):  # type: ignore[type-arg]
-    """What a function makes of the text; a default in text is read too."""
-
-    def __init__(self, name: str, read: Callable[[str], Any]) -> None:
-        self.name, self._read = name, read
-
-    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        """Return what the text says."""
-        return self._read(value) if isinstance(value, str) else value
-
-
-PULSES, PAIR = _Parsed("CHANNEL=PULSES", pulses), _Parsed("READING=RPM", lever_pair)
-"""Types of the answers on a pick-up and on the lever."""
-
-
 def card_options(command: Callable[..., Any]) -> Callable[..., Any]:
     """Add what stands on a card; all of it reaches the command by the names of the fields of ``Card``."""
     for field, (option, help_text) in reversed(_PULSES.items()):
@@ -182,7 +167,7 @@ def ask_card(said: Mapping[str, Any], ask: Callable[[str, Any, Any], Any]) -> di
     if not set(_GEAR) & set(answers):
         answers["gear_ratio"] = ask("Engine speed over propeller speed, the ratio of the gearbox", _POSITIVE, None)
     if "engine_pulses" not in answers and "shaft_pulses" not in answers:
-        answers["engine_pulses"] = (ask("Pick-up on the engine, CHANNEL=PULSES a turn", PULSES, "PTM_e=1"),)
+        answers["engine_pulses"] = (ask("Pick-up on the engine, CHANNEL=PULSES a turn", pulses, "PTM_e=1"),)
     if f"{_OF_GAUGE}channel" not in answers:
         answers[f"{_OF_GAUGE}channel"] = ask("Channel of the shaft torque", click.STRING, "M_s")
     if f"{_OF_GAUGE}unit" not in answers:
@@ -193,7 +178,7 @@ def ask_card(said: Mapping[str, Any], ask: Callable[[str, Any, Any], Any]) -> di
         answers["set_point_channel"] = ask("Channel of the lever's set point", click.STRING, "U_setpoint")
     unit = answers["lever_unit"] = answers.get("lever_unit") or ask("Its unit", click.Choice(_LEVER), "V")
     if "lever_pairs" not in answers and unit != "rpm":
-        low = ask(f"A low reading of it and the engine speed that it asks for, {unit}=rpm such as 4=600", PAIR, None)
-        high = ask(f"A high reading and its engine speed, {unit}=rpm such as 20=1600", PAIR, None)
+        low = ask(f"A low reading of it and the engine speed that it asks for, {unit}=rpm such as 4=600", lever_pair, None)
+        high = ask(f"A high reading and its engine speed, {unit}=rpm such as 20=1600", lever_pair, None)
         answers["lever_pairs"] = (low, high)
     return answers
