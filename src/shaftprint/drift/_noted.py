@@ -7,7 +7,7 @@ so that few looks are counted.
 """
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -16,14 +16,13 @@ from shaftprint.distributions import normal_cdf
 from shaftprint.drift._along import whitened
 from shaftprint.drift._causes import Cause
 from shaftprint.drift._course_search import growth_of
-from shaftprint.drift._differ import UNLIKELY
+from shaftprint.drift._differ import MOST_CHANGES, UNLIKELY
 from shaftprint.drift._drift_finding import Drift, NotedChange, SizeByNow
 from shaftprint.drift._finding import SizedCause
 from shaftprint.drift._history import History
 from shaftprint.drift._series import Series, freed_by
 
 _OF_THE_PROGRAM = "program-changed"
-_MOST_CHANGES = 3
 _ROUNDING = 1e-6
 
 
@@ -44,11 +43,10 @@ def noted_changes(
     ``history``: the tests that were made, with the events. ``series``: the numbers of all tests, of which those that
     were made come first. ``drifts``: the changes that were found beside the events.
     """
-    count, size = len(history.tests), len(series.names)
-    rows = count * size
-    levels = np.kron(np.ones((count, 1)), np.eye(size))
-    freed = [_freed(history, series, event) for event in range(len(history.events))]
-    found_columns = [_course_column(series, drift, count) for drift in drifts]
+    made = _made(series, len(history.tests))
+    levels = np.kron(np.ones((len(history.tests), 1)), np.eye(len(made.names)))
+    freed = [freed_by(history, event, made.roles) for event in history.events]
+    found_columns = [_course_column(made, drift) for drift in drifts]
     steps: list[_Step] = []
     changes: dict[int, list[SizedCause]] = {}
     for event, columns in enumerate(freed):
@@ -57,7 +55,7 @@ def noted_changes(
         others = [one for other, of_other in enumerate(freed) if other != event for one in of_other.values()]
         fixed = [levels, *(column[:, None] for column in (*others, *found_columns))]
         changes[event] = []
-        for step, sized in _steps(series, np.hstack(fixed), history, event, tuple(columns), rows):
+        for step, sized in _steps(made, np.hstack(fixed), history, event, tuple(columns)):
             steps.append(step)
             changes[event].append(sized)
     explained = {step.event for step in steps}
@@ -66,16 +64,23 @@ def noted_changes(
         NotedChange(event=history.events[event], changes=tuple(of_event)) for event, of_event in changes.items()
     )
     base = np.hstack([levels, *(column[:, None] for column in left)])
-    return noted, _by_now(series, base, drifts, found_columns, steps, rows)
+    return noted, _by_now(made, base, drifts, found_columns, steps)
 
 
-def _freed(history: History, series: Series, event: int) -> dict[int, FloatArray]:
-    """Return a column for each number that an event frees, by the number's place; none where no test is on one side."""
-    return dict(freed_by(history, history.events[event], series.roles))
+def _made(series: Series, count: int) -> Series:
+    """Return the numbers of the tests that were made, without those that are still to come."""
+    rows = count * len(series.names)
+    return replace(
+        series,
+        time_a=series.time_a[:count],
+        values=series.values[:count],
+        covariance=series.covariance[:rows, :rows],
+        baseline=series.baseline[:rows],
+    )
 
 
 def _steps(
-    series: Series, fixed: FloatArray, history: History, event: int, concerned: Sequence[int], rows: int
+    series: Series, fixed: FloatArray, history: History, event: int, concerned: Sequence[int]
 ) -> Iterator[tuple[_Step, SizedCause]]:
     """Yield the steps of causes that an event made beyond chance, the clearest first."""
     after = np.array([float(test.at >= history.events[event].at) for test in history.tests])
@@ -84,11 +89,11 @@ def _steps(
         for place, direction in enumerate(series.directions.T)
         if set(np.flatnonzero(direction)) <= set(concerned) and direction.any()
     ]
-    for _ in range(_MOST_CHANGES):
+    for _ in range(MOST_CHANGES):
         if not places:
             return
         columns = np.array([np.kron(after, series.directions[:, place]) for place in places]).T
-        sizes, lengths = _along(series, fixed, columns, rows)
+        sizes, lengths = _along(series, fixed, columns)
         scores = np.where(lengths > 0.0, sizes * lengths, 0.0)
         best = int(np.argmax(np.abs(scores)))
         p_value = min(1.0, 2.0 * len(places) * float(normal_cdf(-abs(scores[best]))))
@@ -101,10 +106,9 @@ def _steps(
         fixed = np.column_stack([fixed, columns[:, best]])
 
 
-def _along(series: Series, fixed: FloatArray, columns: FloatArray, rows: int) -> tuple[FloatArray, FloatArray]:
+def _along(series: Series, fixed: FloatArray, columns: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return the size along each column beside what is fixed, and one over its deviation, 0 where it is not told."""
-    covariance = series.covariance[:rows, :rows]
-    white = whitened(series.values.reshape(-1)[:rows], covariance, np.hstack([fixed, columns]))
+    white = whitened(series.values.reshape(-1), series.covariance, np.hstack([fixed, columns]))
     free, of_columns = white.directions[:, : fixed.shape[1]], white.directions[:, fixed.shape[1] :]
     left = of_columns - free @ np.linalg.lstsq(free, of_columns)[0]
     lengths: FloatArray = np.linalg.norm(left, axis=0)
@@ -113,9 +117,9 @@ def _along(series: Series, fixed: FloatArray, columns: FloatArray, rows: int) ->
     return sizes, lengths
 
 
-def _course_column(series: Series, drift: Drift, count: int) -> FloatArray:
+def _course_column(series: Series, drift: Drift) -> FloatArray:
     best = drift.best
-    growth = growth_of(best.shape, best.since, series.time_a[:count])
+    growth = growth_of(best.shape, best.since, series.time_a)
     direction = series.directions[:, series.causes.index(best.cause)]
     return np.asarray(np.kron(growth, direction), dtype=np.float64)
 
@@ -126,7 +130,6 @@ def _by_now(
     drifts: Sequence[Drift],
     found: Sequence[FloatArray],
     steps: Sequence[_Step],
-    rows: int,
 ) -> dict[str, SizeByNow]:
     """Return the whole size of each cause that drifts at the last test, what events took off or put on counted.
 
@@ -134,14 +137,11 @@ def _by_now(
     """
     if not drifts:
         return {}
-    count = rows // len(series.names)
     columns = [*found, *(step.column for step in steps)]
     causes = [*(drift.best.cause for drift in drifts), *(step.cause for step in steps)]
-    growths = [growth_of(one.best.shape, one.best.since, series.time_a[:count])[-1] for one in drifts]
+    growths = [growth_of(one.best.shape, one.best.since, series.time_a)[-1] for one in drifts]
     growths += [1.0] * len(steps)
-    white = whitened(
-        series.values.reshape(-1)[:rows], series.covariance[:rows, :rows], np.column_stack([base, *columns])
-    )
+    white = whitened(series.values.reshape(-1), series.covariance, np.column_stack([base, *columns]))
     inverse = np.linalg.pinv(white.directions)
     sizes, covariance = inverse @ white.difference, inverse @ inverse.T
     place = base.shape[1]

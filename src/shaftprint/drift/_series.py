@@ -175,25 +175,25 @@ def _baseline(history: History, roles: "dict[str, Role | None]") -> FloatArray:
     count, size = len(history.tests), len(roles)
     columns = [np.kron(np.ones(count), unit) for unit in np.eye(size)]
     for event in history.events:
-        columns += [column for _, column in freed_by(history, event, roles)]
+        columns += freed_by(history, event, roles).values()
     return np.array(columns).reshape(len(columns), count * size).T
 
 
-def freed_by(history: History, event: Event, roles: "dict[str, Role | None]") -> list[tuple[int, FloatArray]]:
-    """Return the place of each number that may be another after an event, with its column, shape (tests * numbers,).
+def freed_by(history: History, event: Event, roles: "dict[str, Role | None]") -> dict[int, FloatArray]:
+    """Return a column for each number that may be another after an event, by its place; shape (tests * numbers,).
 
     ``history``: the tests. ``event``: what was done; nothing is free where no test is before or after it. ``roles``:
     role of each number.
     """
     after = np.array([float(test.at >= event.at) for test in history.tests])
     if not 0.0 < after.sum() < after.size:
-        return []
+        return {}
     units = np.eye(len(roles))
-    return [
-        (at, np.kron(after, units[at]))
+    return {
+        at: np.kron(after, units[at])
         for at, (name, role) in enumerate(roles.items())
         if role in EVENTS[event.kind]
         or name in event.numbers
         # another program may find any number of a drive otherwise
         or (role is None and event.kind == "program-changed")
-    ]
+    }
