@@ -25,6 +25,11 @@ class History:
     left_out: dict[str, str]
     """Why other tests are not judged, by name."""
 
+    @property
+    def days(self) -> tuple[str, ...]:
+        """On which day each test was made, in words."""
+        return tuple(f"{test.at:%Y-%m-%d}" for test in self.tests)
+
 
 def history_of(fingerprints: "Mapping[str, LineFingerprint]", events: Sequence[Event] = ()) -> History:
     """Return the tests of one line in order of time.

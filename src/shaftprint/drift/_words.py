@@ -98,7 +98,7 @@ def watch_sentences(finding: WatchFinding, history: History) -> tuple[str, ...]:
     """
     if finding.because:
         return (f"It cannot be told: {finding.because}.",)
-    days = [f"{test.at:%Y-%m-%d}" for test in history.tests]
+    days = history.days
     noted = noted_sentences(finding)
     ends = (*noted, *open_sentences(finding.not_judged))
     span = f"{len(days)} tests from {days[0]} to {days[-1]}"
@@ -180,7 +180,7 @@ def drift_sentence(drift: Drift, finding: WatchFinding, history: History) -> str
 
     ``drift``: the change. ``finding``, ``history``: where it was found.
     """
-    words = _of_drift(drift, [f"{test.at:%Y-%m-%d}" for test in history.tests], finding)
+    words = _of_drift(drift, history.days, finding)
     return f"{words[:1].upper()}{words[1:]}"
 
 

@@ -65,7 +65,7 @@ def other_course_table(finding: "WatchFinding", history: "History") -> Table:
 
 def _courses(drift: "Drift", history: "History", *, seen: bool) -> list[tuple[str, ...]]:
     """Return the cells of the courses of a change: of those that are as likely as the best one, or of the others."""
-    days = [f"{test.at:%Y-%m-%d}" for test in history.tests]
+    days = history.days
     return [
         (
             one.words,
