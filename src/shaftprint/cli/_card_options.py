@@ -178,7 +178,9 @@ def ask_card(said: Mapping[str, Any], ask: Callable[[str, Any, Any], Any]) -> di
         answers["set_point_channel"] = ask("Channel of the lever's set point", click.STRING, "U_setpoint")
     unit = answers["lever_unit"] = answers.get("lever_unit") or ask("Its unit", click.Choice(_LEVER), "V")
     if "lever_pairs" not in answers and unit != "rpm":
-        low = ask(f"A low reading of it and the engine speed that it asks for, {unit}=rpm such as 4=600", lever_pair, None)
+        low = ask(
+            f"A low reading of it and the engine speed that it asks for, {unit}=rpm such as 4=600", lever_pair, None
+        )
         high = ask(f"A high reading and its engine speed, {unit}=rpm such as 20=1600", lever_pair, None)
         answers["lever_pairs"] = (low, high)
     return answers

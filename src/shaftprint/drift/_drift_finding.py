@@ -9,6 +9,7 @@ from shaftprint.drift._dated import Event
 from shaftprint.drift._finding import SizedCause
 
 Shape: TypeAlias = Literal["step", "ramp"]
+Outcome: TypeAlias = Literal["cannot be told", "unchanged", "worn as expected", "changed"]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -81,6 +82,15 @@ class WatchFinding:
     """What the events of the history did, in their order."""
     by_now: Mapping[str, SizeByNow] = field(default_factory=dict)
     """How far each cause that drifts is at the last test, by the name of the cause."""
+
+    @property
+    def outcome(self) -> Outcome:
+        """Whether the ship has changed, in a word; wear that is expected is no change."""
+        if self.because:
+            return "cannot be told"
+        if not self.drifts:
+            return "unchanged"
+        return "worn as expected" if all(drift.best.is_expected for drift in self.drifts) else "changed"
 
     @property
     def by_urgency(self) -> tuple[Drift, ...]:

@@ -19,7 +19,7 @@ from shaftprint.report.sections._sections import Picture, Section
 if TYPE_CHECKING:
     from datetime import datetime
 
-    from shaftprint.drift._drift_finding import WatchFinding
+    from shaftprint.drift._drift_finding import Outcome, WatchFinding
     from shaftprint.drift._history import History
 
 
@@ -28,6 +28,12 @@ HEADLINES: Mapping[State, str] = {
     "worn": "Worn as expected; nothing else is seen",
     "fine": "No change is seen",
     "open": "It cannot be told",
+}
+_STATES: "Mapping[Outcome, State]" = {
+    "changed": "look",
+    "worn as expected": "worn",
+    "unchanged": "fine",
+    "cannot be told": "open",
 }
 
 
@@ -52,7 +58,7 @@ def render_history(
     """
     sizes = sizes_of_tests(history, load_repeatability=load_repeatability)
     noun = history.tests[0].fingerprint.noun if history.tests else "ship"
-    state = _state(finding)
+    state = _STATES[finding.outcome]
     days = f"{history.tests[0].at:%Y-%m-%d} to {history.tests[-1].at:%Y-%m-%d}" if history.tests else ""
     page = Page(
         title=f"History of {title}",
@@ -70,14 +76,6 @@ def render_history(
         ending="± is one standard deviation throughout; intervals hold 95 %.",
     )
     return write_page(directory, page, pictures=pictures, overwrite=overwrite, progress=None)
-
-
-def _state(finding: "WatchFinding") -> State:
-    if finding.because:
-        return "open"
-    if not finding.drifts:
-        return "fine"
-    return "worn" if all(drift.best.is_expected for drift in finding.drifts) else "look"
 
 
 def _cards(finding: "WatchFinding", history: "History", state: State, *, noun: str) -> list[Card]:

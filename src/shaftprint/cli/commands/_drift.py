@@ -38,6 +38,7 @@ with late():
 FEWEST = 2
 PERCENT = 100.0
 SEED = 1
+_EXIT_CODES = {"cannot be told": NOT_REACHED, "changed": CHANGED}
 
 
 class EventAt(click.ParamType):  # type: ignore[type-arg]
@@ -124,10 +125,8 @@ def command(
         print_tables([] if finding.because else [other_course_table(finding, history)])
     if output is not None:
         echo(f"Report: {output / REPORT}")
-    if as_exit_code and finding.because:
-        context.exit(NOT_REACHED)
-    if as_exit_code and any(not drift.best.is_expected for drift in finding.drifts):
-        context.exit(CHANGED)
+    if as_exit_code and finding.outcome in _EXIT_CODES:
+        context.exit(_EXIT_CODES[finding.outcome])
 
 
 def _of_the_line(causes: tuple[Cause, ...], history: History) -> Cause:

@@ -41,7 +41,7 @@ def judged_line(ship: dict[str, Any], line: str) -> dict[str, Any]:
     finding = watch(history, rng=np.random.default_rng(SEED))
     sizes = sizes_of_tests(history, load_repeatability=LOAD_REPEATABILITY)
     return {
-        "word": _word(finding),
+        "word": finding.outcome,
         "causes": [_cause(drift.best, history, finding) for drift in finding.by_urgency],
         "because": finding.because,
         "since": f"{history.tests[0].at:%Y-%m-%d}" if history.tests else None,
@@ -65,16 +65,8 @@ def _newest(fingerprints: "dict[str, LineFingerprint]") -> "tuple[dict[str, Line
     return {name: one for of_test in newest for name, one in of_test.items()}, len(of_recording) - len(newest)
 
 
-def _word(finding: "WatchFinding") -> str:
-    if finding.because:
-        return "cannot be told"
-    if not finding.drifts:
-        return "unchanged"
-    return "worn as expected" if all(drift.best.is_expected for drift in finding.drifts) else "changed"
-
-
 def _cause(course: "DatedCause", history: "History", finding: "WatchFinding") -> dict[str, Any]:
-    days = [f"{test.at:%Y-%m-%d}" for test in history.tests]
+    days = history.days
     now = finding.by_now.get(course.cause.name) if course.shape == "ramp" else None
     return {
         "expected": course.is_expected,
