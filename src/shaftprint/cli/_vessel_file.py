@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
-from shaftprint.cli._terminal import print_findings
+from pathlib import Path
+
+from shaftprint.cli._terminal import answer, print_findings
 from shaftprint.late import late
 
 with late():
+    from shaftprint.card._card import Card
     from shaftprint.card._disagreements import disagreements
+    from shaftprint.card._write import write_vessel
     from shaftprint.vessel._vessel import Vessel, load_vessel
 
 
@@ -29,3 +33,9 @@ def checked_vessel(file: str) -> Vessel:
     vessel = load_vessel(file)
     print_disagreements(vessel, file)
     return vessel
+
+
+def write_from_card(card: Card, path: Path) -> None:
+    """Write the vessel file that follows from a card; whether it agrees with itself is said."""
+    print_disagreements(write_vessel(card, path), str(path))
+    answer(f"{path}: a vessel file from the card; its comments say what was derived and what is usual only.")

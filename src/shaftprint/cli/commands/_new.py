@@ -13,7 +13,7 @@ from shaftprint.cli._next import plan_words, print_next
 from shaftprint.cli._options import NAMES
 from shaftprint.cli._recorded_campaign import write_recorded_campaign
 from shaftprint.cli._terminal import answer, echo
-from shaftprint.cli._vessel_file import print_disagreements
+from shaftprint.cli._vessel_file import write_from_card
 from shaftprint.cli.output._file_to_write import expect_free
 from shaftprint.errors import SettingsError
 from shaftprint.files import write_bytes
@@ -21,7 +21,6 @@ from shaftprint.late import late
 
 with late():
     from shaftprint.bench._recorded_drive import recorded_drive
-    from shaftprint.card._write import write_vessel
     from shaftprint.settings import write_template
 
 
@@ -103,8 +102,7 @@ def command(
     if recorded is not None or vessel is not None:
         raise click.UsageError("--from needs --vessel, which says what is in the recording, and --vessel --from.")
     if card is not None:
-        print_disagreements(write_vessel(card, path), str(path))
-        answer(f"{path}: a vessel file from the card; its comments say what was derived and what is usual only.")
+        write_from_card(card, path)
         has_lever = bool(card.lever.pairs) or card.lever.unit == "rpm"
         print_next(*plan_words(path, has_lever=has_lever, rated_rpm=card.rated_speed_rpm))
         return

@@ -13,14 +13,13 @@ from shaftprint.cli._card_options import ask_card, card_of, card_options
 from shaftprint.cli._lying_files import LyingFiles, lying_files
 from shaftprint.cli._next import free, plan_words, print_next
 from shaftprint.cli._terminal import answer, print_findings
-from shaftprint.cli._vessel_file import print_disagreements
+from shaftprint.cli._vessel_file import write_from_card
 from shaftprint.cli.output._fingerprint_file import fingerprint_at
 from shaftprint.errors import ShaftprintError
 from shaftprint.late import late
 
 with late():
     from shaftprint.campaign._campaign import load_campaign
-    from shaftprint.card._write import write_vessel
     from shaftprint.vessel._vessel import load_vessel
 
 
@@ -77,8 +76,7 @@ def _written(folder: Path, said: dict[str, object], *, yes: bool) -> Path:
     if card is None:
         raise click.UsageError("--yes needs the ship's card by options, such as --power-kw 221; see --help.")
     path = free(str(folder / "vessel.toml"))
-    print_disagreements(write_vessel(card, path), str(path))
-    answer(f"{path}: a vessel file from the card; its comments say what was derived and what is usual only.")
+    write_from_card(card, path)
     return path
 
 
