@@ -9,6 +9,10 @@ from pathlib import Path
 
 from shaftprint.cli._terminal import echo
 from shaftprint.cli.output._json import give
+from shaftprint.late import late
+
+with late():
+    from shaftprint.vessel._vessel import Vessel
 
 FIRST_LENGTH = "12min"
 """Length of a test that is proposed where nobody has said one."""
@@ -38,16 +42,30 @@ def free(name: str) -> Path:
     return path
 
 
-def plan_words(vessel: object, *, has_lever: bool, rated_rpm: float | None, after: object = None) -> tuple[object, ...]:
-    """Return the words of ``plan`` for a ship.
+def plan_words(vessel: object, *, has_lever: bool, rated_rpm: float | None) -> tuple[object, ...]:
+    """Return the words of ``plan`` for the first test of a ship.
 
     ``vessel``: its vessel file. ``has_lever``: whether the file says which speed the lever asks for; otherwise the
-    command leaves room for it. ``rated_rpm``: rated speed of the engine [rpm]; None where there is none. ``after``:
-    the result of a first test.
+    command leaves room for it. ``rated_rpm``: rated speed of the engine [rpm]; None where there is none.
     """
+    lever = () if has_lever else ("--rpm-per-volt", "RPM", "--offset", "VOLT")
+    return ("plan", "--vessel", vessel, *_size(rated_rpm), *lever, "-o", free("plan"))
+
+
+def plan_after(result: object, vessel: object, ship: Vessel) -> tuple[object, ...]:
+    """Return the words of ``plan`` for the next test of a ship.
+
+    ``result``: what its last test gave. ``vessel``, ``ship``: its vessel file, and what is in it.
+    """
+    return ("plan", "--vessel", vessel, "--after", result, *_size(rated_rpm_of(ship)), "-o", free("next-plan"))
+
+
+def rated_rpm_of(ship: Vessel) -> float | None:
+    """Return the rated speed of the engine [rpm]; None where there is none."""
+    return None if ship.engine is None else ship.engine.rated_speed_rpm
+
+
+def _size(rated_rpm: float | None) -> tuple[object, ...]:
     # small beside the speed, so that the line stays linear, and large beside its noise
     reach = "100rpm" if rated_rpm is None else f"{round(0.06 * rated_rpm, -1):.0f}rpm"
-    lever = () if has_lever or after is not None else ("--rpm-per-volt", "RPM", "--offset", "VOLT")
-    first = () if after is None else ("--after", after)
-    limits = ("--within", FIRST_LENGTH, "--limit", f"set-point={reach}")
-    return ("plan", "--vessel", vessel, *first, *limits, *lever, "-o", free("next-plan" if after else "plan"))
+    return ("--within", FIRST_LENGTH, "--limit", f"set-point={reach}")

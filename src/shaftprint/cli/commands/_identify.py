@@ -12,7 +12,7 @@ from shaftprint.cli._fingerprint_tables import print_found
 from shaftprint.cli._fit_options import fit_options
 from shaftprint.cli._identify_both import identify_both_lines
 from shaftprint.cli._limit_tables import print_limits, print_line
-from shaftprint.cli._next import plan_words, print_next
+from shaftprint.cli._next import plan_after, print_next
 from shaftprint.cli._options import (
     DEFAULT_HELP,
     OWN_FILE_HELP,
@@ -182,10 +182,7 @@ def _next(
         return ("inspect", *files)
     if trial.campaign.staircases or trial.campaign.chirps:
         return ("validate", *files, "--fingerprint", output)
-    engine = trial.vessel.engine
-    return plan_words(
-        vessel, has_lever=True, rated_rpm=None if engine is None else engine.rated_speed_rpm, after=output
-    )
+    return plan_after(output, vessel, trial.vessel)
 
 
 def _with_more(survey: Survey, more: str | None, *, rng: np.random.Generator, steps: Steps) -> Survey:

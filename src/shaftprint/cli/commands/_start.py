@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +9,7 @@ import click
 
 from shaftprint.cli._card_options import ask_card, card_of, card_options
 from shaftprint.cli._lying_files import LyingFiles, lying_files
-from shaftprint.cli._next import free, plan_words, print_next
+from shaftprint.cli._next import free, plan_after, plan_words, print_next, rated_rpm_of
 from shaftprint.cli._terminal import answer, print_findings
 from shaftprint.cli._vessel_file import write_from_card
 from shaftprint.cli.output._fingerprint_file import fingerprint_at
@@ -88,13 +86,11 @@ def _prompt(text: str, kind: Any, default: object) -> object:
 def _next(vessel: Path, lying: LyingFiles) -> list[tuple[object, ...]]:
     """Return the next commands, the first to be done first."""
     ship = load_vessel(vessel)
-    rated_rpm = None if ship.engine is None else ship.engine.rated_speed_rpm
-    sensor = ship.sensors.set_point
-    has_lever = sensor.volts_for(ship.working_point.engine_speed_rpm) is not None
-    plan = partial(plan_words, vessel, has_lever=has_lever, rated_rpm=rated_rpm)
     if not lying.recordings:
         if not lying.campaigns:
-            return [plan()]
+            sensor = ship.sensors.set_point
+            has_lever = sensor.volts_for(ship.working_point.engine_speed_rpm) is not None
+            return [plan_words(vessel, has_lever=has_lever, rated_rpm=rated_rpm_of(ship))]
         return [("sail", vessel, lying.campaigns[-1], "-o", free("sailed.nc"))]
     recording = lying.recordings[-1]
     files = (recording, "--vessel", vessel)
@@ -103,23 +99,17 @@ def _next(vessel: Path, lying: LyingFiles) -> list[tuple[object, ...]]:
     # a campaign that was written after the recording is that of the next test
     written = recording.stat().st_mtime
     campaign = [lying.campaigns[0], *(one for one in lying.campaigns if one.stat().st_mtime <= written)][-1]
+    of_test = (*files, "--campaign", campaign)
     if not lying.results or lying.results[-1].stat().st_mtime < recording.stat().st_mtime:
-        of_test = (*files, "--campaign", campaign)
         return [("inspect", *of_test), ("identify", *of_test, "-o", free("result"))]
-    return _after(lying.results[-1], files, campaign, plan)
-
-
-def _after(
-    result: Path, files: tuple[object, ...], campaign: Path, plan: Callable[..., tuple[object, ...]]
-) -> list[tuple[object, ...]]:
-    """Return what comes after a result."""
+    result = lying.results[-1]
     try:
         fingerprint = fingerprint_at(result)
     except ShaftprintError:
         return [("show", result)]
     if not fingerprint.verdict.trustworthy:
-        return [("inspect", *files, "--campaign", campaign)]
-    asked = load_campaign(campaign)
+        return [("inspect", *of_test)]
+    asked, plan = load_campaign(campaign), plan_after(result, vessel, ship)
     if asked.staircases or asked.chirps:
-        return [("validate", *files, "--campaign", campaign, "--fingerprint", result), plan(after=result)]
-    return [plan(after=result)]
+        return [("validate", *of_test, "--fingerprint", result), plan]
+    return [plan]

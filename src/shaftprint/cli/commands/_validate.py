@@ -10,7 +10,7 @@ from shaftprint.cli._drive_judge import validate_on_the_bench
 from shaftprint.cli._drive_options import drive_option, expect_not_given, only_recording
 from shaftprint.cli._fit_options import fit_options
 from shaftprint.cli._known_values import named_variable
-from shaftprint.cli._next import free, plan_words, print_next
+from shaftprint.cli._next import free, plan_after, print_next
 from shaftprint.cli._options import DEFAULT_HELP, OWN_FILE_HELP, campaign_option, vessel_option
 from shaftprint.cli._terminal import echo
 from shaftprint.cli._validation_tables import print_validation
@@ -189,15 +189,17 @@ def command(
         print_table(models_table(validations))
     if output is not None:
         echo(f"Figures: {output}")
-    _print_next((recording, "--vessel", vessel, "--campaign", campaign), fingerprint, trial.vessel, first)
+    _print_next(recording, vessel, campaign, fingerprint, trial.vessel, first)
 
 
-def _print_next(files: tuple[object, ...], fingerprint: Path | None, ship: Vessel, found: Validation) -> None:
+def _print_next(
+    recording: Path, vessel: str, campaign: str, fingerprint: Path | None, ship: Vessel, found: Validation
+) -> None:
     """Print the next command: what identifies, what the model lacks where it fails, or the next test."""
+    files = (recording, "--vessel", vessel, "--campaign", campaign)
     if fingerprint is None:
         print_next("identify", *files, "-o", free("result"))
     elif found.outcome == "fails":
         print_next("limits", *files)
     else:
-        rated_rpm = None if ship.engine is None else ship.engine.rated_speed_rpm
-        print_next(*plan_words(files[2], has_lever=True, rated_rpm=rated_rpm, after=fingerprint))
+        print_next(*plan_after(fingerprint, vessel, ship))
