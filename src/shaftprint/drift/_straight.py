@@ -102,7 +102,7 @@ def _model_of(tests: Sequence[Fingerprint]) -> "tuple[Structure, list[tuple[Stru
         structure = shipped_structure(tests[0].structure, {one.name for one in tests[0].parameters})
     except StructureError:
         return None
-    known = {one.name for one in tests[0].parameters} | set(tests[0].held)
+    known = set(tests[0].values)
     if known != set(structure.names):
         return None
     frequencies = [
@@ -130,7 +130,7 @@ def _shares(leg: "LegRecord", test: Fingerprint) -> tuple[float, float]:
 
 def _reference(structure: "Structure", tests: Sequence[Fingerprint]) -> FloatArray:
     """Return the mean parameters of all tests, shape (parameters,)."""
-    values = [{one.name: one.value for one in test.parameters} | test.held for test in tests]
+    values = [test.values for test in tests]
     mean: FloatArray = np.mean([[one[name] for name in structure.names] for one in values], axis=0)
     return mean
 

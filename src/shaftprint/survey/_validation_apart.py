@@ -147,7 +147,7 @@ class _Task:
 
     def _without(self, apart: Sequence[tuple[float, float]]) -> "Levels":
         values = {quantity.name: quantity.value for quantity in self.line.parameters} | self.line.held
-        linear = {quantity.name: quantity.value for quantity in self.fingerprint.parameters} | self.fingerprint.held
+        linear = self.fingerprint.values
         return levels_beside(
             linear,
             self.signals,
