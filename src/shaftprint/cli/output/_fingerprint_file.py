@@ -49,12 +49,10 @@ def any_fingerprint_at(place: Path) -> LineFingerprint:
 
     Raises FingerprintError if there is none, or the page in the folder shows another one.
     """
-    if not place.is_dir():
-        return read_any_fingerprint(place)
-    fingerprint = read_any_fingerprint(place / FINGERPRINT)
-    if not _is_shown(place):
+    fingerprint = read_any_fingerprint(place)
+    if place.is_dir() and not _is_shown(place):
         # new results may have come in between
-        fingerprint = read_any_fingerprint(place / FINGERPRINT)
+        fingerprint = read_any_fingerprint(place)
         if not _is_shown(place):
             raise FingerprintError(
                 f"{place}: expected a page that shows the fingerprint beside it, found {REPORT} of another one than "
