@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 import shaftprint
-from shaftprint.catalogue._gauge import GAUGE_K_I, GAUGE_K_P, K_Q, TAU_DN, TAU_UP, G
+from shaftprint.catalogue._gauge import K_Q
 from shaftprint.catalogue._roles import ShipRole
 from shaftprint.catalogue._shipped import shipped_structure
 from shaftprint.choices import CLOSED_LOOPS
@@ -27,7 +27,7 @@ from shaftprint.identify.likelihood._prior import PRIOR_OF, Prior
 from shaftprint.identify.uncertainty._budget import Budget
 from shaftprint.models._nyquist import is_stable
 from shaftprint.service._fit import ServiceFit
-from shaftprint.service._model import FREE, ServiceModel
+from shaftprint.service._model import FREE, OVER_TORQUE, ServiceModel
 from shaftprint.service._segment import LeverLine, Segment
 from shaftprint.service._ship_numbers import (
     GAUGE_SCALE,
@@ -49,8 +49,6 @@ if TYPE_CHECKING:
 ORDINARY_SERVICE = "ordinary service"
 """What stands in a fingerprint in place of the name of a test."""
 STRUCTURE = CLOSED_LOOPS["engine"]
-# Numbers that go with the torque over the speed of the working point.
-_OVER_TORQUE = (GAUGE_K_P.name, GAUGE_K_I.name, TAU_DN.name, TAU_UP.name, G.name)
 # A number is known well enough to this share of it; a set-point scale or a slope near nothing to this much.
 _WELL_ENOUGH, _WELL_ENOUGH_NEAR_NOTHING = 0.15, 0.1
 ASSUMPTIONS = (
@@ -82,7 +80,7 @@ def fingerprint_of_service(
     if now.tzinfo is None:
         raise ServiceError("now: expected a time with time zone, such as datetime.now(UTC), found one without.")
     structure = shipped_structure(STRUCTURE, set(FREE))
-    scale = np.array([1.0 / load[0] if name in _OVER_TORQUE else 1.0 for name in FREE])
+    scale = np.array([1.0 / load[0] if name in OVER_TORQUE else 1.0 for name in FREE])
     theta, covariance = fit.theta * scale, fit.covariance * np.outer(scale, scale)
     of_prior = {PRIOR_OF + name: change * scale for name, change in fit.of_prior.items()}
     held = {p.name: p.value for p in structure.parameters if p.name not in FREE} | {K_Q.name: 2.0}

@@ -41,6 +41,8 @@ FREE = tuple(
 """Parameters that service is asked for."""
 BESIDE = (K_Q.name, M_MAX.name, M_MIN.name, T_AW.name)
 """Parameters that each segment has for itself: its load, and the limits where it meets one."""
+OVER_TORQUE = (GAUGE_K_P.name, GAUGE_K_I.name, TAU_DN.name, TAU_UP.name, G.name)
+"""Those that go with the torque over the speed of the point at which they are normalised."""
 _SPEED_SLOPE_STD, _SCALE_STD = 0.3, 0.005
 
 
@@ -189,9 +191,7 @@ def _of_fingerprint(fingerprint: "Fingerprint", point: Normalisation, usual: Map
             f"fingerprint of {tested.vessel}: expected one of a gauge-aware structure such as GAUGE-CLOSED, found "
             f"{fingerprint.structure}, which has no {missing[0]}; leave --fingerprint out or name another."
         )
-    # gains and inertia times go with the torque over the speed of the point at which they are normalised
-    factor = torque / speed
-    scaled = dict.fromkeys((GAUGE_K_P.name, GAUGE_K_I.name, TAU_DN.name, TAU_UP.name), factor) | {G.name: factor}
+    scaled = dict.fromkeys(OVER_TORQUE, torque / speed)
     values = {name: own[name] * scaled.get(name, 1.0) for name in FREE if name in own}
     return {name: value for name, value in values.items() if name in usual and name not in (C_SET.name,)}
 

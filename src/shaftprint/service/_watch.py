@@ -23,12 +23,12 @@ import numpy as np
 
 from shaftprint.arguments import refusing_none
 from shaftprint.arrays import FloatArray
-from shaftprint.catalogue._gauge import C_SET, GAUGE_K_I, GAUGE_K_P, T_D, T_SP, TAU_DN, TAU_UP, G
+from shaftprint.catalogue._gauge import C_SET, T_D, T_SP
 from shaftprint.drift._causes import CAUSES, GAUGE, Cause, by_role
 from shaftprint.errors import ServiceError
 from shaftprint.fingerprint._fingerprint import Fingerprint
 from shaftprint.service._day_folder import Day, read_day
-from shaftprint.service._model import FREE, ServiceModel, service_model
+from shaftprint.service._model import FREE, OVER_TORQUE, ServiceModel, service_model
 
 if TYPE_CHECKING:
     from shaftprint.vessel._vessel import Vessel
@@ -42,7 +42,6 @@ _DRAWS = 200
 _FLOOR, _FLOOR_S = 0.003, 1e-3
 # Causes within these odds of the first are named with it.
 _ODDS = 3.0
-_OVER_TORQUE = (GAUGE_K_P.name, GAUGE_K_I.name, TAU_DN.name, TAU_UP.name, G.name)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -122,7 +121,7 @@ def directions(model: ServiceModel) -> dict[Cause, FloatArray]:
             found[cause] = np.array(
                 [(value if cause.is_share else 1.0) * (name in names) for name, value in zip(FREE, theta, strict=True)]
             )
-    found[GAUGE] = np.array([value * (name in _OVER_TORQUE) for name, value in zip(FREE, theta, strict=True)])
+    found[GAUGE] = np.array([value * (name in OVER_TORQUE) for name, value in zip(FREE, theta, strict=True)])
     return found
 
 
