@@ -15,6 +15,7 @@ from shaftprint.report.charts._chart import Chart, Panel, Scale
 from shaftprint.report.charts._marks import Mark, Points
 from shaftprint.report.sections._cover import Card, Cover, State
 from shaftprint.report.sections._sections import Picture, Section
+from shaftprint.tables._service import asked_table
 from shaftprint.units import SECONDS_PER_MINUTE
 
 if TYPE_CHECKING:
@@ -71,19 +72,6 @@ def _sections(found: "Scan") -> list[Section]:
         alt="Rows of marks over the minutes of each log, by whether a move is used and why it is not.",
         chart=partial(strip_chart, found),
     )
-    asked = Table(
-        title="Asked of the whole log",
-        columns=(*texts("what"), Column("found", number=True), *texts("unit", "verdict")),
-        rows=tuple(
-            (
-                one.what,
-                "–" if np.isnan(one.value) else f"{one.value:.2g}",
-                one.unit,
-                "refused" if one.refused else "nothing to tell by" if np.isnan(one.value) else "good",
-            )
-            for one in found.found
-        ),
-    )
     columns = ("log", "move_s", "swing_rpm", "from_rpm", "to_rpm", "state", "used", "reason")
     moves = Table(
         title="Moves of the lever",
@@ -98,7 +86,7 @@ def _sections(found: "Scan") -> list[Section]:
             pictures=(strip,) if found.segments else (),
             points=(*doing, *(f"Could not be read: {one}" for one in found.left_out)),
         ),
-        Section(key="asked", title="What was asked of the logs", tables=(asked,) if found.found else ()),
+        Section(key="asked", title="What was asked of the logs", tables=(asked_table(found),) if found.found else ()),
         Section(key="moves", title="Move by move", tables=(moves,) if found.rows else (), folded=True),
     ]
 

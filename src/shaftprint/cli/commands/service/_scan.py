@@ -24,6 +24,7 @@ with late():
     from shaftprint.report._service_page import render_service
     from shaftprint.service._scan import Scan, scan
     from shaftprint.service._segment_file import channel_file
+    from shaftprint.tables._service import asked_table
     from shaftprint.vessel._vessel import load_vessel
 
 
@@ -123,19 +124,5 @@ def _tables(found: Scan) -> list[Table]:
             )
         )
     if found.found:
-        tables.append(
-            Table(
-                title="Asked of the whole log",
-                columns=(Column("what"), Column("found", number=True), Column("unit"), Column("verdict")),
-                rows=tuple(
-                    (
-                        one.what,
-                        "–" if one.value != one.value else f"{one.value:.2g}",
-                        one.unit,
-                        "refused" if one.refused else "nothing to tell by" if one.value != one.value else "good",
-                    )
-                    for one in found.found
-                ),
-            )
-        )
+        tables.append(asked_table(found))
     return tables
