@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from shaftprint.service._scan import Scan
     from shaftprint.service._segment import Segment
 
-USED = "used"
+USED, OTHER = "used", "another reason"
 # A row of the strip, and the least height of it [px].
 _ROW_PX, _LEAST_PX = 18, 160
 # Reasons that have a colour of their own; the others share one.
@@ -94,10 +94,11 @@ def _sections(found: "Scan") -> list[Section]:
 def strip_chart(found: "Scan") -> Chart:
     """Return the moves of each log over its minutes, those that are used apart from those that are not."""
     logs = list(found.spans_s)
-    reasons = [reason for reason, _ in Counter(one.reason for one in found.segments if one.reason).most_common()]
+    reasons = Counter(one.reason for one in found.segments if one.reason)
+    usual = [reason for reason, _ in reasons.most_common(_MOST_REASONS)]
     marks: list[Mark] = []
-    for shade, name in enumerate([USED, *reasons[:_MOST_REASONS], "another reason"]):
-        some = [one for one in found.segments if _kind(one, reasons) == name]
+    for shade, name in enumerate([USED, *usual, OTHER]):
+        some = [one for one in found.segments if _kind(one, usual) == name]
         if some:
             marks.append(_points(found, some, logs, name, shade))
     return Chart(
@@ -112,10 +113,10 @@ def strip_chart(found: "Scan") -> Chart:
     )
 
 
-def _kind(segment: "Segment", reasons: Sequence[str]) -> str:
+def _kind(segment: "Segment", usual: Sequence[str]) -> str:
     if not segment.reason:
         return USED
-    return segment.reason if segment.reason in reasons[:_MOST_REASONS] else "another reason"
+    return segment.reason if segment.reason in usual else OTHER
 
 
 def _points(found: "Scan", some: "Sequence[Segment]", logs: Sequence[str], name: str, shade: int) -> Points:
@@ -124,6 +125,6 @@ def _points(found: "Scan", some: "Sequence[Segment]", logs: Sequence[str], name:
         y=np.array([float(logs.index(one.log)) for one in some]),
         name=name,
         shade=shade,
-        filled=not name or name == USED,
+        filled=name == USED,
         words=[f"{one.move_s:.1f} s: {one.reason or USED}" for one in some],
     )

@@ -117,7 +117,7 @@ def fingerprint_of_service(
         budget=budget,
         vessel_fields=vessel_fields(vessel),
         calibration=(),
-        quality=_quality(fit, segments),
+        quality=_quality(fit),
         verdict=_verdict(every, used=len(segments), of=of, seconds=seconds, stable=stable),
         findings=_findings(fit, segments, of, line),
     )
@@ -155,7 +155,7 @@ def _conditions(
     )
 
 
-def _quality(fit: ServiceFit, segments: Sequence[Segment]) -> Quality:
+def _quality(fit: ServiceFit) -> Quality:
     count = sum(one.count for one in fit.scores)
     met = int(np.count_nonzero(~fit.counts))
     remark = f"In {met} of {fit.counts.size} segments a limit of the torque acted; they are left out."

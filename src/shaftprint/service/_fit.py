@@ -136,7 +136,7 @@ def fit_segments(
     whitening = noise_of(runs)
     each = scores(runs, whitening)
     at_start, counts_at_start = tuple(each), frozen_bool(counts)
-    theta, number, size, before, is_last = model.theta, 0, np.inf, np.inf, False
+    theta, number, size, is_last = model.theta, 0, np.inf, False
     reached = None if progress is None else progress.reached(len(records))
     if reached is not None:
         theta, number, size, is_last = reached.theta, reached.steps, reached.size, reached.is_last

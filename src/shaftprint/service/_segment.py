@@ -66,10 +66,6 @@ class Segment:
         """Length of what is compared [s]."""
         return self.speed_rev_s.size * self.every / self.rate_hz
 
-    def swing_v(self) -> float:
-        """Return how far the lever moved in all [V]."""
-        return float(np.ptp(self.lever_v))
-
     def record(self, line: LeverLine, *, speed_rev_s: float, torque_nm: float, tau_dn: float) -> Record:
         """Return it as a record of deviations, its load without the torque that accelerates the propeller.
 
