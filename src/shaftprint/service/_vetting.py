@@ -24,7 +24,7 @@ from shaftprint.service._model import FREE, ServiceModel
 from shaftprint.service._score import Simulated
 from shaftprint.service._segment import LeverLine, Segment
 from shaftprint.time_domain._decimator import Decimator
-from shaftprint.units import SECONDS_PER_MINUTE
+from shaftprint.units import rpm_from_rev_s
 
 LATEST_S = 0.02
 """Shift of the lever's clock from which on a log is refused [s]."""
@@ -98,7 +98,7 @@ def shift_of_lever(runs: Sequence[Simulated], model: ServiceModel) -> Found:
         measured = run.record.outputs["n"]
         simulated = measured - run.residuals[:, 0] / run.weight
         kept = slice(reach, measured.size - reach)
-        size = float(np.mean((run.residuals[:, 0] - run.residuals[:, 0].mean()) ** 2))
+        size = float(run.residuals[:, 0].var())
         for place, shift in enumerate(shifts):
             left = (measured - np.roll(simulated, shift))[kept] * run.weight[kept]
             cost[place] += float(np.sum((left - left.mean()) ** 2)) / size
@@ -125,7 +125,7 @@ def _left_open_s(runs: Sequence[Simulated], model: ServiceModel) -> float:
         return 0.0
     columns = [
         (run.slopes[:, :, 0] - run.slopes[:, :, 0].mean(axis=1, keepdims=True)).reshape(len(FREE), -1)
-        / float(np.sqrt(np.mean((run.residuals[:, 0] - run.residuals[:, 0].mean()) ** 2)))
+        / float(run.residuals[:, 0].std())
         for run in runs
     ]
     late = FREE.index(T_SP.name)
@@ -144,8 +144,8 @@ def off_the_line(still: StillMeans, line: LeverLine) -> Found:
     settled = np.flatnonzero(np.diff(still.stretch, prepend=-1.0) == 0.0)
     if not settled.size:
         return Found(what=what, value=float("nan"), unit="%")
-    off = _far_rpm(still.speed_rev_s - line.speed_rev_s(still.lever_v)) > farthest_rpm(line)
-    share = float(np.mean(off[settled]))
+    off_rpm = rpm_from_rev_s(still.speed_rev_s - line.speed_rev_s(still.lever_v))
+    share = float(np.mean(np.abs(off_rpm[settled]) > farthest_rpm(line)))
     refused = ""
     if share > _OFF_SHARE:
         refused = (
@@ -171,14 +171,9 @@ def speed_is_off(segment: Segment, line: LeverLine) -> str:
     last = round(_END_S * segment.rate_hz / segment.every)
     # beyond the last sample there is the margin of the filter, and perhaps the next move
     asked = float(line.speed_rev_s(segment.lever_v[[-1 - Decimator(every=segment.every).half]])[0])
-    far = float(_far_rpm(np.asarray(np.mean(segment.speed_rev_s[-last:]) - asked)))
-    if far > farthest_rpm(line):
+    if abs(rpm_from_rev_s(float(np.mean(segment.speed_rev_s[-last:])) - asked)) > farthest_rpm(line):
         return "the speed does not come to what the lever asks for: a limit acts, or a load controller"
     return ""
-
-
-def _far_rpm(speed_rev_s: FloatArray) -> FloatArray:
-    return np.abs(speed_rev_s) * SECONDS_PER_MINUTE
 
 
 def way_on(segments: Sequence[Segment]) -> Found:
