@@ -171,7 +171,7 @@ def _read(part: "Recording", path: Path, vessel: "Vessel", *, told: Callable[[Le
     names = _names(vessel)
     lever, speed, torque = (readings.by_name[name].values for name in names)
     expect_lever_at_once(lever, rate_hz, path)
-    clock = readings.clock
+    clock, sensor = readings.clock, vessel.sensors.set_point
     whole = np.isfinite(lever) & np.isfinite(speed) & np.isfinite(torque)
     for name in names:
         for gap in readings.by_name[name].gaps:
@@ -182,23 +182,14 @@ def _read(part: "Recording", path: Path, vessel: "Vessel", *, told: Callable[[Le
         began=part.began,
         start_s=clock.start_s,
         rate_hz=rate_hz,
-        lever_v=vessel.sensors.set_point.straightened(lever, about_v=_middle_v(vessel)),
+        # without a table there is nothing to make straight, at whatever voltage
+        lever_v=sensor.straightened(lever, about_v=sensor.volts_for(vessel.working_point.engine_speed_rpm) or 0.0),
         speed_rev_s=np.nan_to_num(speed),
         torque_nm=np.nan_to_num(torque),
         whole=whole,
         new=lever.size,
         goes_on=False,
     )
-
-
-def _middle_v(vessel: "Vessel") -> float:
-    """Return the voltage about which a table of the lever is made straight [V]: that of the working point."""
-    sensor = vessel.sensors.set_point
-    if sensor.table_rpm is None:
-        return 0.0
-    shown, rpm = np.array(sensor.table_rpm).T
-    order = np.argsort(rpm)
-    return float(sensor.volts(np.interp(vessel.working_point.engine_speed_rpm, rpm[order], shown[order])))
 
 
 def _names(vessel: "Vessel") -> tuple[str, str, str]:
