@@ -25,6 +25,7 @@ from shaftprint.arguments import refusing_none
 from shaftprint.arrays import FloatArray
 from shaftprint.catalogue._gauge import C_SET, T_D, T_SP
 from shaftprint.drift._causes import CAUSES, GAUGE, Cause, by_role
+from shaftprint.drift._words import ALIKE
 from shaftprint.errors import ServiceError
 from shaftprint.fingerprint._fingerprint import Fingerprint
 from shaftprint.service._day_folder import Day, read_day
@@ -40,8 +41,6 @@ WINDOWS = (1, 2, 4, 8, 16, 32, 64)
 _DRAWS = 200
 # Share and time that a day differs by whatever its length: what was left of the errors in many simulated hours.
 _FLOOR, _FLOOR_S = 0.003, 1e-3
-# Causes within these odds of the first are named with it.
-_ODDS = 3.0
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -99,7 +98,7 @@ class Watch:
         best = self.causes[0]
         # causes are told apart by the likelihood, which is worth less where segments scatter more than they state
         wide = max(best.gain / best.z**2, 1.0)
-        alike = [one for one in self.causes[1:] if best.gain - one.gain < 2.0 * np.log(_ODDS) * wide]
+        alike = [one for one in self.causes[1:] if best.gain - one.gain < 2.0 * np.log(ALIKE) * wide]
         words = ", or ".join(_words(one) for one in (best, *alike))
         since = self.days[-best.days]
         return f"The line has changed since {since}: {words}."
