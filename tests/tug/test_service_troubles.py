@@ -34,14 +34,14 @@ def speed(course, time):
 @pytest.mark.parametrize(("name", "gain"), [("trims", 1.0), ("trims-a-little", 0.3)])
 def test_somebody_who_trims_holds_the_torque(name, gain):
     before, time = course(), np.arange(20.0, 300.0)
-    share = speed(trimmed(before, TROUBLES[name], load(), line=LINE), time) / speed(before, time) - 1.0
+    share = speed(trimmed(before, TROUBLES[name].lever, load(), line=LINE), time) / speed(before, time) - 1.0
     # behind a lag of five seconds
     seen = 0.04 / np.hypot(1.0, 5.0 * 2.0 * np.pi / 150.0)
     assert np.abs(share).max() == pytest.approx(0.5 * gain * seen, rel=0.03)
 
 
 def test_somebody_who_trims_at_moves_leaves_the_lever_alone_between_them():
-    moved = trimmed(course(), TROUBLES["trims-at-moves"], load(), line=LINE)
+    moved = trimmed(course(), TROUBLES["trims-at-moves"].lever, load(), line=LINE)
     for first, last in ((1.0, 98.0), (101.0, 198.0), (201.0, 299.0)):
         assert np.ptp(moved.voltage(np.linspace(first, last, 50))) < 1e-9
     assert abs(moved.voltage(np.array([150.0]))[0] + 5.4) > 0.01
@@ -49,7 +49,7 @@ def test_somebody_who_trims_at_moves_leaves_the_lever_alone_between_them():
 
 def test_a_load_controller_acts_at_high_torque_only():
     high = course().model_copy(update={"corner_v": (-5.0, -5.0, -6.5, -6.5, -4.8)})
-    moved = trimmed(high, TROUBLES["load-controller"], load(), line=LINE)
+    moved = trimmed(high, TROUBLES["load-controller"].lever, load(), line=LINE)
     time = np.arange(300.0)
     taken = speed(moved, time) / speed(high, time) - 1.0
     assert np.all(taken[110:190] < -0.05)

@@ -119,7 +119,7 @@ def sail_service(
             whole, before = Path(place) / "log.nc", Path(place) / "before.nc"
             if wrong.lever is not None:
                 sail(fast, course, before, tug=tug, seed=seed)
-                course = trimmed(course, wrong, _load_of(before, channels), line=_line_of(tug))
+                course = trimmed(course, wrong.lever, _load_of(before, channels), line=_line_of(tug))
             truth = sail(fast, course, whole, tug=tug, seed=seed, progress=progress)
             hidden = wrong.lever is not None and not wrong.is_logged
             with read_recording(whole) as recording, read_recording(before if hidden else whole) as lever:

@@ -57,6 +57,8 @@ class Channels:
 
 Logged = Callable[[Mapping[str, FloatArray], float, Channels], dict[str, FloatArray]]
 """Changes what is in a file: values of its channels by name, samples a second, and how they are called."""
+Trim = Callable[[LeverCourse, Load, FloatArray], FloatArray]
+"""Returns by which share of the speed the lever is moved, at some times [s], for the load of a first voyage."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -67,34 +69,32 @@ class Trouble:
     """Changes the ship."""
     crew: Callable[[Habits], Habits] | None = None
     """Changes what the crew is used to."""
-    lever: Callable[[LeverCourse, Load, FloatArray], FloatArray] | None = None
-    """Returns by which share of the speed the lever is moved, at some times [s], for the load of a first voyage."""
+    lever: Trim | None = None
+    """How the lever is moved beside what the crew does."""
     is_logged: bool = True
     """Whether the lever is logged as it was moved so; else as it was before."""
     logged: Logged | None = None
     """Changes what the logger keeps."""
 
 
-def trimmed(course: LeverCourse, trouble: Trouble, load: Load, *, line: tuple[float, float]) -> LeverCourse:
-    """Return a course whose lever is trimmed as a trouble says.
+def trimmed(course: LeverCourse, trim: Trim, load: Load, *, line: tuple[float, float]) -> LeverCourse:
+    """Return a course whose lever is trimmed.
 
-    ``course``: the course without that. ``load``: what a first voyage told. ``line``: speed at zero volts and for one
-    volt [rev/min, rev/min per V].
+    ``course``: the course without that. ``trim``: by how much. ``load``: what a first voyage told. ``line``: speed at
+    zero volts and for one volt [rev/min, rev/min per V].
     """
-    if trouble.lever is None:
-        return course
     corners = np.array(course.corner_s)
     times = np.unique(np.concatenate([corners, np.arange(0.0, course.duration_s, 1.0)]))
     # two corners closer than that are one
     times = times[np.concatenate([[True], np.diff(times) > 1e-6])]
     rpm = line[0] + line[1] * course.voltage(times)
-    rpm = rpm * (1.0 + trouble.lever(course, load, times))
+    rpm = rpm * (1.0 + trim(course, load, times))
     return course.model_copy(
         update={"corner_s": tuple(times.tolist()), "corner_v": tuple(((rpm - line[0]) / line[1]).tolist())}
     )
 
 
-def _trims(gain: float) -> Callable[[LeverCourse, Load, FloatArray], FloatArray]:
+def _trims(gain: float) -> Trim:
     """Return somebody who holds the torque: at a gain of 1 all of it."""
 
     def moved(course: LeverCourse, load: Load, times: FloatArray) -> FloatArray:
