@@ -35,7 +35,7 @@ from shaftprint.service._model import FREE, ServiceModel, service_model
 from shaftprint.service._score import noise_of, scores, simulated
 from shaftprint.service._segment_file import read_segments
 from shaftprint.service._ship_numbers import margin_numbers_of
-from shaftprint.tug import Tug, sail_service
+from shaftprint.tug import Truth, Tug, sail_service
 from shaftprint.vessel import load_vessel
 from shaftprint.vessel._vessel import Vessel
 
@@ -80,6 +80,11 @@ def drawn(seed: int, vessel: Vessel) -> Tug:
     )
 
 
+def true_numbers(truth: Truth) -> dict[str, float]:
+    """Return the true values of what service is asked for; set point and gauge are as the vessel file says."""
+    return {name: truth.normalised.get(name, float(name == "c_set")) for name in FREE}
+
+
 def sailed(seed: int, hours: float, folder: Path) -> None:
     """Sail some hours of one ship, and keep in a folder what a scan of its logs finds, beside its truth.
 
@@ -99,7 +104,7 @@ def sailed(seed: int, hours: float, folder: Path) -> None:
     kept(
         folder / "truth.json",
         lambda: {
-            **{name: truth.normalised.get(name, float(name == "c_set")) for name in FREE},
+            **true_numbers(truth),
             "refused": found.refused,
             "scan_s": scanned_s,
         },
@@ -119,7 +124,7 @@ def outcome(seed: int, hours: float, folder: Path) -> dict[str, Any]:
     records = model.records([one for one in segments if not one.reason], line)
     rng = np.random.default_rng((seed, 6))
     begin = time.process_time()
-    fit = fit_segments(records, _at(model, true * np.exp(_OLD * rng.standard_normal(true.size) * _moved())))
+    fit = fit_segments(records, model_at(model, true * np.exp(_OLD * rng.standard_normal(true.size) * _moved())))
     fitted_s = time.process_time() - begin
     begin = time.process_time()
     runs = [one for one in simulated(records, model, true) if not one.meets_limit]
@@ -161,12 +166,13 @@ def _numbers(theta: FloatArray, model: ServiceModel) -> dict[str, tuple[float, F
     return numbers | {"gain margin": margins["gain margin"]}
 
 
-def _moved() -> np.ndarray[Any, np.dtype[np.float64]]:
+def _moved() -> FloatArray:
     """Return which numbers an older fingerprint has wrong: not what the vessel file knows."""
     return np.array([float(name not in ("c_set", "t_gauge")) for name in FREE])
 
 
-def _at(model: ServiceModel, theta: np.ndarray[Any, np.dtype[np.float64]]) -> ServiceModel:
+def model_at(model: ServiceModel, theta: FloatArray) -> ServiceModel:
+    """Return a model that begins from other numbers."""
     return replace(model, values={**model.values, **dict(zip(FREE, theta.tolist(), strict=True))})
 
 
@@ -211,14 +217,19 @@ def report(outcomes: Sequence[Mapping[str, Any]]) -> str:
     return "\n".join(text)
 
 
-def main() -> None:
-    """Make what is missing, and print the table."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--seeds", type=int, default=12, help="how many ships")
+def add_options(parser: argparse.ArgumentParser, *, seeds: int) -> None:
+    """Ask which ships are sailed for how long, where outcomes are kept, and whether the table is written."""
+    parser.add_argument("--seeds", type=int, default=seeds, help="how many ships")
     parser.add_argument("--first", type=int, default=1, help="the first of them")
     parser.add_argument("--hours", type=float, default=1.0, help="hours of service of each")
     parser.add_argument("--outcomes", type=Path, required=True, help="folder in which outcomes are kept")
     parser.add_argument("--write", action="store_true", help="write the table into docs/service.md")
+
+
+def main() -> None:
+    """Make what is missing, and print the table."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    add_options(parser, seeds=12)
     options = parser.parse_args()
     options.outcomes.mkdir(parents=True, exist_ok=True)
     outcomes = []

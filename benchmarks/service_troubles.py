@@ -24,7 +24,7 @@ sys.path.insert(0, str(ROOT))
 
 from benchmarks.kept_outcomes import kept
 from benchmarks.result_tables import write_between_marks
-from benchmarks.service import VESSEL, drawn
+from benchmarks.service import VESSEL, add_options, drawn, true_numbers
 from shaftprint.choices import SERVICE_TROUBLES
 from shaftprint.errors import ShaftprintError
 from shaftprint.fingerprint import Fingerprint, read_fingerprint, write_fingerprint
@@ -40,8 +40,8 @@ BEGIN, END = (
 )
 UNDERWAY, SOUND = "quay model underway", "nothing"
 ALL = (SOUND, UNDERWAY, *SERVICE_TROUBLES)
-# Numbers of an earlier fingerprint are wrong by so much; a number that is further off than so many deviations is wrong.
-_OLD, _WRONG_STD = 0.03, 4.0
+# Numbers of an earlier fingerprint are wrong by so much.
+_OLD = 0.03
 
 
 def earlier(template: Fingerprint, true: Mapping[str, float], rng: np.random.Generator) -> Fingerprint:
@@ -76,7 +76,7 @@ def outcome(trouble: str, seed: int, hours: float, template: Fingerprint) -> dic
             tug=None if trouble == UNDERWAY else drawn(seed, vessel),
             trouble=trouble if trouble in SERVICE_TROUBLES else None,
         )  # fmt: skip
-        true = {name: truth.normalised.get(name, float(name == "c_set")) for name in FREE}
+        true = true_numbers(truth)
         old = earlier(template, true, np.random.default_rng((seed, 6)))
         said: dict[str, Any] = {"trouble": trouble, "seed": seed}
         try:
@@ -92,8 +92,7 @@ def outcome(trouble: str, seed: int, hours: float, template: Fingerprint) -> dic
             day = fit_service(Path(place) / "segments.csv", vessel, fingerprint=old, now=datetime.now(UTC))
         except ShaftprintError as error:
             return said | {"refused": str(error).replace(place, "")}
-    std = np.sqrt(np.diag(day.fit.covariance))
-    z = (day.fit.theta - np.array([true[name] for name in FREE])) / std
+    z = (day.fit.theta - np.array([true[name] for name in FREE])) / day.fit.std
     return said | {"z": dict(zip(FREE, z.tolist(), strict=True)), "trusted": day.fingerprint.verdict.trustworthy}
 
 
@@ -118,12 +117,8 @@ def report(outcomes: Sequence[Mapping[str, Any]]) -> str:
 def main() -> None:
     """Make what is missing, and print the table."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--seeds", type=int, default=3, help="how many ships")
-    parser.add_argument("--first", type=int, default=1, help="the first of them")
-    parser.add_argument("--hours", type=float, default=1.0, help="hours of service of each")
+    add_options(parser, seeds=3)
     parser.add_argument("--only", choices=ALL, action="append", help="these troubles only")
-    parser.add_argument("--outcomes", type=Path, required=True, help="folder in which outcomes are kept")
-    parser.add_argument("--write", action="store_true", help="write the table into docs/service.md")
     options = parser.parse_args()
     options.outcomes.mkdir(parents=True, exist_ok=True)
     template = options.outcomes / "template.json"

@@ -10,7 +10,6 @@ import argparse
 import json
 import sys
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -22,7 +21,7 @@ sys.path.insert(0, str(ROOT))
 
 from benchmarks.kept_outcomes import kept
 from benchmarks.result_tables import write_between_marks
-from benchmarks.service import VESSEL
+from benchmarks.service import VESSEL, model_at
 from shaftprint.arrays import FloatArray
 from shaftprint.service._day_folder import Day
 from shaftprint.service._fit import sums_of
@@ -65,7 +64,7 @@ def outcome(folder: Path) -> dict[str, Any]:
     """Return what is said of the hours of a ship, by what has changed."""
     model = service_model(load_vessel(VESSEL))
     true, hours = hours_of(folder, model)
-    model = replace(model, values={**model.values, **dict(zip(FREE, true.tolist(), strict=True))})
+    model = model_at(model, true)
     prior = sums_of([], model, true).prior
     slopes, information = hours[0]
     covariance = np.linalg.inv(information.sum(axis=0) + prior)
