@@ -12,11 +12,9 @@ from pydantic import PrivateAttr
 from shaftprint.arrays import FloatArray
 from shaftprint.campaign._lever_course import LeverCourse
 from shaftprint.tug._crew import Crew
-from shaftprint.tug._truth import Truth
 from shaftprint.tug._tug import Tug
 from shaftprint.tug.plant._disturbance import Disturbance
-from shaftprint.tug.plant._plant import advance
-from shaftprint.tug.plant._voyage import Forces, Stretch, empty_traces, ready_line, stretch_of
+from shaftprint.tug.plant._voyage import Stretch, acting, ready_line, sailed
 from shaftprint.vessel._vessel import Vessel
 
 VoltsAt: TypeAlias = Callable[[FloatArray], FloatArray]
@@ -109,37 +107,11 @@ class SteppedTug:
         channel of the log.
         """
         self._course.go_on(self.time_s, volts)
-        propeller, engine, wander = self._disturbance.next(steps)
-        motion = self._line.pitch.next(steps)
-        forces = Forces(
-            asked=self._line.demand.next(steps, wander),
-            pitch=motion,
-            machine=self._line.machine.next(steps),
-            propeller=self._line.pitch.torque_share(motion.blades, propeller),
-            engine=engine,
-        )
-        traces = empty_traces(steps)
-        line = self._line
-        advance(
-            self._step_s,
-            forces.asked,
-            forces.pitch.blades,
-            forces.machine,
-            forces.propeller,
-            forces.engine,
-            line.plant,
-            line.delay,
-            line.carried,
-            traces,
-        )
-        stretch = stretch_of(traces, forces, first=self._done, start_s=0.0, step_s=self._step_s)
+        acts = acting(self._disturbance, self._line, steps)
+        stretch = sailed(self._line, acts, steps, first=self._done, start_s=0.0, step_s=self._step_s)
         self._done += steps
         self._crew.write(cast("Any", self._log), stretch)
         return stretch, self._log.taken()
-
-    def truth(self) -> Truth:
-        """Return what was put in so far."""
-        return self._crew.truth()
 
 
 class _Log:

@@ -78,20 +78,7 @@ def voyage(
     """
     line = ready_line(tug, vessel, campaign, step_s=step_s, start_s=start_s)
     for done, acts in forced(disturbance, line, steps=steps, chunk=chunk):
-        traces = empty_traces(min(chunk, steps - done))
-        advance(
-            step_s,
-            acts.asked,
-            acts.pitch.blades,
-            acts.machine,
-            acts.propeller,
-            acts.engine,
-            line.plant,
-            line.delay,
-            line.carried,
-            traces,
-        )
-        yield stretch_of(traces, acts, first=done, start_s=start_s, step_s=step_s)
+        yield sailed(line, acts, min(chunk, steps - done), first=done, start_s=start_s, step_s=step_s)
 
 
 class Forces(NamedTuple):
@@ -172,27 +159,46 @@ def stretch_of(traces: Traces, forces: Forces, *, first: int, start_s: float, st
     )
 
 
+def sailed(line: ReadyLine, acts: Forces, count: int, *, first: int, start_s: float, step_s: float) -> Stretch:
+    """Step a line on by a number of steps, and return what really happens from a step on."""
+    traces = empty_traces(count)
+    advance(
+        step_s,
+        acts.asked,
+        acts.pitch.blades,
+        acts.machine,
+        acts.propeller,
+        acts.engine,
+        line.plant,
+        line.delay,
+        line.carried,
+        traces,
+    )
+    return stretch_of(traces, acts, first=first, start_s=start_s, step_s=step_s)
+
+
+def acting(disturbance: Disturbance, line: ReadyLine, count: int) -> Forces:
+    """Return what acts on a line in its next steps."""
+    propeller, engine, wander = disturbance.next(count)
+    motion = line.pitch.next(count)
+    return Forces(
+        asked=line.demand.next(count, wander),
+        pitch=motion,
+        machine=line.machine.next(count),
+        propeller=line.pitch.torque_share(motion.blades, propeller),
+        engine=engine,
+    )
+
+
 def forced(disturbance: Disturbance, line: ReadyLine, *, steps: int, chunk: int) -> Iterator[tuple[int, Forces]]:
     """Yield the first step of each chunk and what acts in it; the next is made while the line is stepped on."""
-
-    def acting(count: int) -> Forces:
-        propeller, engine, wander = disturbance.next(count)
-        motion = line.pitch.next(count)
-        return Forces(
-            asked=line.demand.next(count, wander),
-            pitch=motion,
-            machine=line.machine.next(count),
-            propeller=line.pitch.torque_share(motion.blades, propeller),
-            engine=engine,
-        )
-
     with ThreadPoolExecutor(max_workers=1) as ahead:
-        waiting = ahead.submit(acting, min(chunk, steps))
+        waiting = ahead.submit(acting, disturbance, line, min(chunk, steps))
         for done in range(0, steps, chunk):
             acts = waiting.result()
             left = steps - done - chunk
             if left > 0:
-                waiting = ahead.submit(acting, min(chunk, left))
+                waiting = ahead.submit(acting, disturbance, line, min(chunk, left))
             yield done, acts
 
 
