@@ -71,6 +71,11 @@ class Settings(BaseModel):
 _Model = TypeVar("_Model", bound=Settings)
 
 
+def names_twice(names: Sequence[str]) -> list[str]:
+    """Return the names that stand there more than once, in the order of letters."""
+    return sorted({name for name in names if names.count(name) > 1})
+
+
 def read_settings(path: str | Path, model_class: type[_Model]) -> _Model:
     """Read a TOML file into a model.
 

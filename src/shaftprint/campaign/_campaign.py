@@ -19,7 +19,7 @@ from shaftprint.campaign._multisine import Multisine
 from shaftprint.errors import SettingsError
 from shaftprint.notebook._shown import Shown
 from shaftprint.notebook._summary import Summary, shortened
-from shaftprint.settings import Name, Number, PositiveNumber, Settings, load_settings
+from shaftprint.settings import Name, Number, PositiveNumber, Settings, load_settings, names_twice
 
 
 class Campaign(Shown, Settings):
@@ -171,7 +171,7 @@ class Campaign(Shown, Settings):
 
     def _names_twice(self) -> list[str]:
         names = [excitation.name for excitation in self.excitations]
-        twice = sorted({name for name in names if names.count(name) > 1})
+        twice = names_twice(names)
         return [f"expected every excitation to have its own name, found {name} twice." for name in twice]
 
     def _overlaps(self) -> list[str]:

@@ -7,7 +7,7 @@ from typing import Annotated, Literal, Self, TypeAlias
 
 from pydantic import Field, model_validator
 
-from shaftprint.settings import Name, Number, Settings
+from shaftprint.settings import Name, Number, Settings, names_twice
 
 Coefficient: TypeAlias = Annotated[str | float, Field(union_mode="left_to_right")]
 """The name of a parameter of the file, or a number."""
@@ -93,7 +93,7 @@ class Block(Settings):
     @model_validator(mode="after")
     def _inputs_of_its_kind(self) -> Self:
         names = [name.removeprefix("-") for name in self.inputs]
-        twice = sorted({name for name in names if names.count(name) > 1})
+        twice = names_twice(names)
         if twice:
             raise ValueError(f"expected each signal to go in once, found {', '.join(twice)} twice.")
         if self.kind == "constant" and names:

@@ -1,6 +1,5 @@
 """The noun of the room: a drive as its file describes it."""
 
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated, Literal, Self
 
@@ -13,7 +12,7 @@ from shaftprint.drive._signals import KnownParameter, PerRecord, SearchedParamet
 from shaftprint.errors import SettingsError
 from shaftprint.notebook._shown import Shown
 from shaftprint.notebook._summary import Summary, shortened
-from shaftprint.settings import Name, PositiveNumber, Settings, read_settings
+from shaftprint.settings import Name, PositiveNumber, Settings, names_twice, read_settings
 
 
 class FitWay(Settings):
@@ -93,7 +92,7 @@ class Drive(Shown, Settings):
         errors = [
             f"expected every row of {table} to have its own name, found {', '.join(twice)} twice."
             for table, names in tables.items()
-            if (twice := _twice(names))
+            if (twice := names_twice(names))
         ]
         # a row that cannot be used is not counted by pydantic, so that a least number would be told beside it
         errors += [
@@ -144,10 +143,6 @@ class Drive(Shown, Settings):
 def _signal_words(signal: Signal) -> str:
     source = f" from {signal.channel}" if signal.channel is not None else ""
     return f"{signal.name}{source} [{signal.unit}]"
-
-
-def _twice(names: Sequence[str]) -> list[str]:
-    return sorted({name for name in names if names.count(name) > 1})
 
 
 @refusing_none(SettingsError)

@@ -4,7 +4,7 @@ from typing import Annotated, Self
 
 from pydantic import Field, model_validator
 
-from shaftprint.settings import Name, NotNegativeNumber, Number, PositiveNumber, Settings
+from shaftprint.settings import Name, NotNegativeNumber, Number, PositiveNumber, Settings, names_twice
 
 Text = Annotated[str, Field(strict=True)]
 
@@ -85,7 +85,7 @@ class PerRecord(Settings):
     @model_validator(mode="after")
     def _each_record_once(self) -> Self:
         members = [one for group in self.groups.values() for one in group]
-        twice = sorted({one for one in members if members.count(one) > 1})
+        twice = names_twice(members)
         if twice:
             raise ValueError(f"expected each record in one group, found {', '.join(twice)} in several.")
         inside = [one for one in self.values if one in members]

@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping
 
 from shaftprint.local_ids import LocalId
-from shaftprint.settings import Name, Settings
+from shaftprint.settings import Name, Settings, names_twice
 
 
 class ChannelName(Settings):
@@ -21,7 +21,7 @@ def wrong_local_ids(names: tuple[ChannelName, ...], meant: Mapping[str, str | No
     ``meant``: by channel of a sensor, ``SPEED``, ``torque``, ``set point`` or, of any quantity, None.
     """
     channels = [name.channel for name in names]
-    for channel in sorted({channel for channel in channels if channels.count(channel) > 1}):
+    for channel in names_twice(channels):
         yield f"expected one local id of {channel}, found {channels.count(channel)}."
     for channel, text in ((name.channel, name.local_id) for name in names):
         if channel not in meant:

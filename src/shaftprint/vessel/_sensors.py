@@ -10,7 +10,7 @@ from pydantic import Field, model_validator
 
 from shaftprint.arrays import FloatArray
 from shaftprint.local_ids import SPEED
-from shaftprint.settings import Name, NotNegativeNumber, Number, PositiveInteger, PositiveNumber, Settings
+from shaftprint.settings import Name, NotNegativeNumber, Number, PositiveInteger, PositiveNumber, Settings, names_twice
 from shaftprint.units import ANGLES_REV, M_S_PER_KNOT, REV_S_PER_UNIT
 from shaftprint.vessel._local_ids import ChannelName, wrong_local_ids
 from shaftprint.vessel._machine_torque import MachineTorqueSensor
@@ -365,7 +365,7 @@ class Sensors(Settings):
         channels += [sensor.channel for sensor in further if sensor is not None]
         errors = []
         for what, values in (("name", names), ("channel", channels)):
-            twice = sorted({value for value in values if values.count(value) > 1})
+            twice = names_twice(values)
             if twice:
                 errors.append(f"expected every sensor to have its own {what}, found {', '.join(twice)} twice.")
         meant: dict[str, str | None] = dict.fromkeys(channels)

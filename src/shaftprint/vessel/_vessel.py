@@ -13,7 +13,7 @@ from shaftprint.arrays import FloatArray
 from shaftprint.errors import SettingsError
 from shaftprint.notebook._shown import Shown
 from shaftprint.notebook._summary import Summary, shortened
-from shaftprint.settings import Name, PositiveNumber, Settings, load_settings
+from shaftprint.settings import Name, PositiveNumber, Settings, load_settings, names_twice
 from shaftprint.vessel._envelope import StatedEnvelope
 from shaftprint.vessel._hull import Hull
 from shaftprint.vessel._inertia import InertiaRow
@@ -122,7 +122,7 @@ class Vessel(Shown, Settings):
     @model_validator(mode="after")
     def _masses_make_a_line(self) -> Self:
         names = [row.name for row in self.inertia]
-        twice = sorted({name for name in names if names.count(name) > 1})
+        twice = names_twice(names)
         errors = []
         if twice:
             errors.append(f"expected every inertia row to have its own name, found {', '.join(twice)} twice.")

@@ -4,7 +4,7 @@ from typing import Literal, Self
 
 from pydantic import Field, model_validator
 
-from shaftprint.settings import Name, PositiveNumber, Settings
+from shaftprint.settings import Name, PositiveNumber, Settings, names_twice
 
 
 class CanChannel(Settings):
@@ -79,7 +79,7 @@ class CanMap(Settings):
     @model_validator(mode="after")
     def _sends_to_somebody_who_answers(self) -> Self:
         names = [channel.name for channel in self.channel]
-        twice = sorted({name for name in names if names.count(name) > 1})
+        twice = names_twice(names)
         if twice:
             raise ValueError(f"expected each channel once, found {', '.join(twice)} twice.")
         if self.sending is not None and self.status is None:

@@ -7,7 +7,7 @@ from typing import Annotated, Final, Literal, Self, TypeAlias
 
 from pydantic import Field, model_validator
 
-from shaftprint.settings import Name, Number, PositiveNumber, Settings
+from shaftprint.settings import Name, Number, PositiveNumber, Settings, names_twice
 
 REGISTERS: Final = {"int16": 1, "uint16": 1, "int32": 2, "uint32": 2, "float32": 2}
 """Registers of one value, by its kind."""
@@ -72,7 +72,7 @@ class ModbusMap(Settings):
     @model_validator(mode="after")
     def _fits_in_one_question(self) -> Self:
         names = [channel.name for channel in self.channel]
-        twice = sorted({name for name in names if names.count(name) > 1})
+        twice = names_twice(names)
         if twice:
             raise ValueError(f"expected each channel once, found {', '.join(twice)} twice.")
         if self.count > MOST_REGISTERS:
