@@ -10,6 +10,8 @@ REVERT_S = 1.0
 """Time after its last heartbeat within which the counterpart has gone back to the lever [s]."""
 SILENT_S = 1.0
 """Time within which a link that went silent is noticed [s]."""
+ANSWER_S = 0.8
+"""Time within which a counterpart answers a command, or the link is silent [s]."""
 ABORT_RAMP_S = 2.0
 """Length of the cosine with which a counterpart goes back to the lever's value after an abort [s]."""
 

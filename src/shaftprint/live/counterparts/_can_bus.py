@@ -11,7 +11,6 @@ import asyncio
 import contextlib
 import math
 import secrets
-import time
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Final
@@ -21,20 +20,18 @@ import numpy as np
 from shaftprint.errors import LiveError, SettingsError, SilentLinkError
 from shaftprint.escape import printable
 from shaftprint.live._block import Block, DeviceMode, DeviceStatus, LiveChannel
-from shaftprint.live._counterpart import SILENT_S, Abilities
-from shaftprint.live._play import Play
+from shaftprint.live._counterpart import ANSWER_S, SILENT_S
 from shaftprint.live.counterparts._access import Access
 from shaftprint.live.counterparts._can_map import CanMap
 from shaftprint.live.counterparts._dialect import MODES, latest_like
 from shaftprint.live.counterparts._extra import library
+from shaftprint.live.counterparts._words import WORDS, CommandedByWords
 from shaftprint.recording.readers.can._database import Database, read_database
 from shaftprint.recording.readers.can._frames import EXTENDED, pgn_of, sender_of
 from shaftprint.recording.readers.can._messages import Message, Signal, counts_of, numbers_of_counts, selected
 from shaftprint.recording.readers.can._validity import Validity
 from shaftprint.settings import read_settings
 
-_WORDS: Final = {"": 0, "take": 1, "write": 2, "abort": 3, "release": 4}
-_ANSWER_S: Final = 0.8
 # a channel is missed after so many of its cycles, at least half a second
 _CYCLES: Final = 5.0
 _MISSED_S: Final = 0.5
@@ -56,8 +53,10 @@ class _Heard:
     invalid: int = 0
 
 
-class CanCounterpart:
+class CanCounterpart(CommandedByWords):
     """A bus that is listened to."""
+
+    kind = "a CAN bus"
 
     def __init__(self, url: str, messages: str | Path, access: Access | None = None) -> None:
         """Take an address, ``can://INTERFACE/CHANNEL`` such as ``can://socketcan/can0``, and the map of messages in.
@@ -91,10 +90,9 @@ class CanCounterpart:
         self._begin_s = self._last_s = 0.0
 
     @property
-    def abilities(self) -> Abilities:
-        """What it can do: follow a set point, where the owner lets the program send."""
-        is_able = self._map.sending is not None
-        return Abilities(writes_set_point=is_able, reverts=is_able, ramps=is_able)
+    def is_commanded(self) -> bool:
+        """Whether the owner lets the program send."""
+        return self._map.sending is not None
 
     @property
     def channels(self) -> tuple[LiveChannel, ...]:
@@ -105,10 +103,6 @@ class CanCounterpart:
             )
             for one in self._heard
         )
-
-    def clock(self) -> float:
-        """Return the present time, which stamps blocks too [s]."""
-        return time.monotonic()
 
     async def connect(self) -> None:
         """Get on the bus; an adapter that can is told to acknowledge nothing where nothing is sent."""
@@ -156,25 +150,9 @@ class CanCounterpart:
         self._beat = count
         self._send("", 0.0, 0.0)
 
-    async def take(self) -> None:
-        """Take the set point over at the lever's value."""
-        await self._command("take")
-
     async def write(self, volts: float) -> None:
         """Write a set point [V of the campaign]."""
         await self._command("write", volts=volts)
-
-    async def play(self, play: Play) -> None:
-        """Refuse: no waveform goes through single messages."""
-        raise LiveError(f"{self.name}: expected a counterpart that plays {play.name}, found a CAN bus, which cannot.")
-
-    async def abort(self, ramp_s: float) -> None:
-        """Go back to the lever on a cosine."""
-        await self._command("abort", ramp_s=ramp_s)
-
-    async def release(self) -> None:
-        """Give the set point back."""
-        await self._command("release")
 
     async def close(self) -> None:
         """Get off the bus."""
@@ -258,21 +236,19 @@ class CanCounterpart:
 
     # ---- what goes out ----
 
-    async def _command(self, word: str, *, volts: float = 0.0, ramp_s: float = 0.0) -> None:
+    async def _command(self, word: str, *, ramp_s: float = 0.0, volts: float = 0.0) -> None:
         # behind the last that was answered, perhaps to somebody else
         self._answers()
         answered = self._last("answer") if self._sent else math.nan
         self._number = (self._number if math.isnan(answered) else int(answered)) % _NUMBERS + 1
         self._send(word, volts, ramp_s)
-        until_s = self.clock() + _ANSWER_S
+        until_s = self.clock() + ANSWER_S
         while self._last("answer") != self._number:
             if self.clock() > until_s:
-                raise SilentLinkError(f'{self.name}: expected an answer to "{word}" within {_ANSWER_S:g} s.')
+                raise SilentLinkError(f'{self.name}: expected an answer to "{word}" within {ANSWER_S:g} s.')
             await asyncio.sleep(0.005)
             self._answers()
-        if self._last("refused"):
-            reason = f"{self._last('refused'):g}"
-            raise LiveError(f'{self.name}: the counterpart refuses "{word}" for reason {reason} of its list.')
+        self._expect_obeyed(word, self._last("refused"))
 
     def _last(self, name: str) -> float:
         values = self._status[name].values
@@ -290,7 +266,7 @@ class CanCounterpart:
             "heartbeat": self._beat % (1 << self._sent["heartbeat"].signal.bits),
             "number": self._number,
         }
-        values |= {"word": _WORDS[word], "set_point": volts, "ramp": ramp_s}
+        values |= {"word": WORDS.get(word, 0), "set_point": volts, "ramp": ramp_s}
         data = 0
         for name, value in values.items():
             data |= _counted(self._sent[name].signal, value)

@@ -10,7 +10,6 @@ point several times: nothing is repeated here.
 from __future__ import annotations
 
 import asyncio
-import time
 from pathlib import Path
 from typing import Any, Final
 
@@ -19,26 +18,26 @@ import numpy as np
 from shaftprint.errors import LiveError, SilentLinkError
 from shaftprint.escape import printable
 from shaftprint.live._block import Block, DeviceStatus, LiveChannel
-from shaftprint.live._counterpart import SILENT_S, Abilities
-from shaftprint.live._play import Play
+from shaftprint.live._counterpart import ANSWER_S, SILENT_S
 from shaftprint.live.counterparts._access import Access, address
 from shaftprint.live.counterparts._dialect import MODES, latest_like
 from shaftprint.live.counterparts._extra import library
 from shaftprint.live.counterparts._modbus_map import REGISTERS, ModbusMap
+from shaftprint.live.counterparts._words import WORDS, CommandedByWords
 from shaftprint.settings import read_settings
 
 PORTS: Final = {"modbus": 502}
 """Usual port by the scheme of an address."""
 _TIMEOUT_S: Final = 0.4
-_ANSWER_S: Final = 0.8
-_WORDS: Final = {"take": 1, "write": 2, "abort": 3, "release": 4}
 _KEY_IS_OFF: Final = 16
 # of a device whose map has no registers for it
 _LISTENED_TO: Final = DeviceStatus(mode=MODES[0], heartbeat=0, set_point_v=float("nan"), is_enabled=False)
 
 
-class ModbusCounterpart:
+class ModbusCounterpart(CommandedByWords):
     """A device that is asked for its registers."""
+
+    kind = "Modbus"
 
     def __init__(self, url: str, registers: str | Path | ModbusMap, access: Access | None = None) -> None:
         """Take an address, ``modbus://host:502``, and the map of registers in.
@@ -59,10 +58,9 @@ class ModbusCounterpart:
         self._turn = asyncio.Lock()
 
     @property
-    def abilities(self) -> Abilities:
-        """What it can do: follow a set point, where the map says how."""
-        is_able = self._map.device is not None
-        return Abilities(writes_set_point=is_able, reverts=is_able, ramps=is_able)
+    def is_commanded(self) -> bool:
+        """Whether its map has registers for it."""
+        return self._map.device is not None
 
     @property
     def channels(self) -> tuple[LiveChannel, ...]:
@@ -73,10 +71,6 @@ class ModbusCounterpart:
             )
             for one in self._map.channel
         )
-
-    def clock(self) -> float:
-        """Return the present time, which stamps the values too [s]."""
-        return time.monotonic()
 
     async def connect(self) -> None:
         """Reach the device."""
@@ -127,28 +121,12 @@ class ModbusCounterpart:
         await self._write(self._device().heartbeat, [count & 0xFFFF])
         self._beat = count
 
-    async def take(self) -> None:
-        """Take the set point over at the lever's value."""
-        await self._command("take")
-
     async def write(self, volts: float) -> None:
         """Write a set point [V of the campaign]."""
         kind = self._convert.DATATYPE.FLOAT32
         order = self._map.word_order
         await self._write(self._device().set_point, self._convert.convert_to_registers(volts, kind, word_order=order))
         await self._command("write")
-
-    async def play(self, play: Play) -> None:
-        """Refuse: no waveform goes through registers."""
-        raise LiveError(f"{self.name}: expected a counterpart that plays {play.name}, found Modbus, which cannot.")
-
-    async def abort(self, ramp_s: float) -> None:
-        """Go back to the lever on a cosine."""
-        await self._command("abort", round(1000.0 * ramp_s))
-
-    async def release(self) -> None:
-        """Give the set point back."""
-        await self._command("release")
 
     async def close(self) -> None:
         """Let go of the link."""
@@ -195,22 +173,19 @@ class ModbusCounterpart:
             )
         return answer
 
-    async def _command(self, word: str, ramp_ms: int = 0) -> None:
+    async def _command(self, word: str, *, ramp_s: float = 0.0) -> None:
         device = self._device()
         # behind the last that was answered, perhaps to somebody else
         self._status(await self._asked())
         self._number = self._answer[0] % 0xFFFF + 1
-        await self._write(device.command, [self._number, _WORDS[word], min(ramp_ms, 0xFFFF)])
-        until_s = self.clock() + _ANSWER_S
+        await self._write(device.command, [self._number, WORDS[word], min(round(1000.0 * ramp_s), 0xFFFF)])
+        until_s = self.clock() + ANSWER_S
         while self._answer[0] != self._number:
             if self.clock() > until_s:
-                raise SilentLinkError(
-                    f'{self.name}: expected an answer to "{word}" within {_ANSWER_S:g} s, found none.'
-                )
+                raise SilentLinkError(f'{self.name}: expected an answer to "{word}" within {ANSWER_S:g} s, found none.')
             self._status(await self._asked())
             await asyncio.sleep(0.01)
-        if self._answer[1]:
-            raise LiveError(f'{self.name}: the counterpart refuses "{word}" for reason {self._answer[1]} of its list.')
+        self._expect_obeyed(word, self._answer[1])
 
     def _expect_running(self, registers: list[int], now_s: float) -> None:
         count = registers[self._map.counter - self._map.first]

@@ -19,7 +19,7 @@ from typing import Any, Final
 from shaftprint.errors import LiveError, SilentLinkError
 from shaftprint.escape import printable
 from shaftprint.live._block import Block, LiveChannel
-from shaftprint.live._counterpart import SILENT_S, Abilities
+from shaftprint.live._counterpart import ANSWER_S, SILENT_S, Abilities
 from shaftprint.live._play import Play
 from shaftprint.live.counterparts._access import Access, address
 from shaftprint.live.counterparts._dialect import Answer, Content, Description, Dialect, Gone
@@ -35,7 +35,6 @@ _MOST_BYTES: Final = 4 * 2**20
 _EXPIRES_S: Final = 1
 # the link itself is given up after one and a half of it; blocks and answers are missed long before
 _KEEPALIVE_S: Final = 2
-_ANSWER_S: Final = 0.8
 _MOST_FINDINGS: Final = 10
 
 
@@ -170,7 +169,7 @@ class MqttCounterpart:
         self._answers[number] = answer
         try:
             await self._publish(*self._dialect.command(word, number, content), qos=1)
-            said = await self._in_time(answer, f'an answer to "{word}"', _ANSWER_S)
+            said = await self._in_time(answer, f'an answer to "{word}"', ANSWER_S)
         finally:
             del self._answers[number]
         if said.refused:
@@ -180,7 +179,7 @@ class MqttCounterpart:
         if self._client is None or self._gone:
             raise SilentLinkError(f"{self.name}: {self._gone or 'not connected.'}")
         properties = _properties("PUBLISH", MessageExpiryInterval=_EXPIRES_S)
-        sent = self._client.publish(topic, payload, qos=qos, properties=properties, timeout=_ANSWER_S)
+        sent = self._client.publish(topic, payload, qos=qos, properties=properties, timeout=ANSWER_S)
         await self._in_time(sent, "the broker")
 
     async def _in_time(self, awaited: Any, what: str, timeout_s: float = SILENT_S) -> Any:

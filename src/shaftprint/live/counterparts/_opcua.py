@@ -17,7 +17,7 @@ from typing import Any, Final, TypeVar
 from shaftprint.errors import LiveError, SilentLinkError
 from shaftprint.escape import printable
 from shaftprint.live._block import Block, LiveChannel
-from shaftprint.live._counterpart import Abilities
+from shaftprint.live._counterpart import ANSWER_S, Abilities
 from shaftprint.live._play import Play
 from shaftprint.live.counterparts._access import Access, address
 from shaftprint.live.counterparts._extra import library
@@ -31,8 +31,8 @@ QUEUE: Final = 400
 """Blocks that the server keeps for the subscription: 20 s of 20 Hz."""
 _PORTS: Final = {"opc.tcp": 4840}
 _PUBLISHED_MS: Final = 50.0
-# What is asked for is answered within this time, or the link is silent; reaching it may take longer [s].
-_ANSWER_S, _CONNECT_S, _GONE_S = 0.8, 5.0, 1.0
+# Reaching it may take longer than an answer [s].
+_CONNECT_S, _GONE_S = 5.0, 1.0
 # The status of a value says by these bits that others before it were dropped (OPC UA part 4, 7.39.1).
 _OVERFLOW: Final = 0x480
 
@@ -205,7 +205,7 @@ class OpcUaCounterpart:
         if refused:
             raise LiveError(f"{self.name}: {printable(str(refused))}")
 
-    async def _answered(self, asked: Awaitable[_T], within_s: float = _ANSWER_S) -> _T:
+    async def _answered(self, asked: Awaitable[_T], within_s: float = ANSWER_S) -> _T:
         """Return an answer; raise SilentLinkError if none comes in time, LiveError if the server refuses."""
         try:
             async with asyncio.timeout(within_s):
