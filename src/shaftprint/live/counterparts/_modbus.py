@@ -46,6 +46,7 @@ class ModbusCounterpart(CommandedByWords):
         """
         _, self._host, self._port = address(url, PORTS)
         self._map = registers if isinstance(registers, ModbusMap) else read_settings(registers, ModbusMap)
+        self._asks = range(self._map.first, self._map.first + self._map.count)
         self._access = access or Access()
         self.name = f"modbus://{self._host}:{self._port}"
         self._client: Any = None
@@ -142,15 +143,15 @@ class ModbusCounterpart(CommandedByWords):
             raise LiveError(f"{self.name}: expected [device] in the map of registers to command it, found none.")
         return self._map.device
 
-    async def _asked(self) -> list[int]:
+    async def _asked(self) -> dict[int, int]:
+        """Return the registers by their numbers."""
+        count = len(self._asks)
         registers: list[int] = (
-            await self._exchanged(
-                "read_holding_registers", self._map.first, count=self._map.count, device_id=self._map.unit
-            )
+            await self._exchanged("read_holding_registers", self._asks.start, count=count, device_id=self._map.unit)
         ).registers
-        if len(registers) != self._map.count:
-            raise SilentLinkError(f"{self.name}: expected {self._map.count} registers, found {len(registers)}.")
-        return registers
+        if len(registers) != count:
+            raise SilentLinkError(f"{self.name}: expected {count} registers, found {len(registers)}.")
+        return dict(zip(self._asks, registers, strict=True))
 
     async def _write(self, first: int, values: list[int]) -> None:
         await self._exchanged("write_registers", first, values, device_id=self._map.unit)
@@ -187,8 +188,8 @@ class ModbusCounterpart(CommandedByWords):
             await asyncio.sleep(0.01)
         self._expect_obeyed(word, self._answer[1])
 
-    def _expect_running(self, registers: list[int], now_s: float) -> None:
-        count = registers[self._map.counter - self._map.first]
+    def _expect_running(self, registers: dict[int, int], now_s: float) -> None:
+        count = registers[self._map.counter]
         if count != self._last_count:
             self._last_count, self._counted_s = count, now_s
         elif now_s - self._counted_s > max(0.5, 2.0 * self._map.period_s):
@@ -197,13 +198,12 @@ class ModbusCounterpart(CommandedByWords):
                 "device answers, its program does not run."
             )
 
-    def _status(self, registers: list[int]) -> DeviceStatus:
+    def _status(self, registers: dict[int, int]) -> DeviceStatus:
         device = self._map.device
         if device is None:
             return _LISTENED_TO
         heartbeat, mode, number, refused = (
-            registers[at - self._map.first]
-            for at in (device.heartbeat_seen, device.mode, device.answer, device.answer + 1)
+            registers[at] for at in (device.heartbeat_seen, device.mode, device.answer, device.answer + 1)
         )
         self._answer = number, refused
         if mode & ~_KEY_IS_OFF >= len(MODES):
@@ -215,10 +215,9 @@ class ModbusCounterpart(CommandedByWords):
             is_enabled=not mode & _KEY_IS_OFF,
         )
 
-    def _value(self, registers: list[int], first: int, kind: str) -> float:
-        at = first - self._map.first
+    def _value(self, registers: dict[int, int], first: int, kind: str) -> float:
         value = self._convert.convert_from_registers(
-            registers[at : at + REGISTERS[kind]],
+            [registers[at] for at in range(first, first + REGISTERS[kind])],
             getattr(self._convert.DATATYPE, kind.upper()),
             word_order=self._map.word_order,
         )
