@@ -102,16 +102,15 @@ def _pieces(
 
 def _source(path: Path, pieces: Sequence[tuple[int, int]], dtype: np.dtype[Any]) -> Source:
     ends = np.cumsum([count for _, count in pieces])
+    of_samples = np.dtype(np.float64) if any(place < 0 for place, _ in pieces) else dtype
 
     def read_samples(start: int, stop: int) -> NDArray[Any]:
         first = int(np.searchsorted(ends, start, side="right"))
-        lossy = any(place < 0 for place, _ in pieces)
-        taken = np.empty(stop - start, dtype=np.float64 if lossy else dtype)
+        taken = np.empty(stop - start, dtype=of_samples)
         with path.open("rb") as file:
             done = start
-            for place, count in pieces[first:]:
-                if done >= stop:
-                    break
+            while done < stop:
+                place, count = pieces[first]
                 begin = done - (int(ends[first]) - count)
                 part = min(count - begin, stop - done)
                 if place < 0:
