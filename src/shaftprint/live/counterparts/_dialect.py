@@ -2,7 +2,9 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Protocol, TypeAlias
+from typing import Any, Final, Protocol, TypeAlias
+
+import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.live._block import Block, DeviceMode, LiveChannel
@@ -10,6 +12,8 @@ from shaftprint.live._counterpart import Abilities
 
 MODES = (DeviceMode.LEVER, DeviceMode.HELD, DeviceMode.PLAYING, DeviceMode.RAMPING)
 """Modes by the numbers that stand for them on the wire."""
+DTYPES: Final[Mapping[str, np.dtype[Any]]] = {"int16": np.dtype("<i2"), "float64": np.dtype("<f8")}
+"""How samples stand on the wire, by the type that their channel says."""
 MOST_CHANNELS = 64
 """Channels of one counterpart."""
 MOST_SAMPLES = 1_000_000

@@ -17,12 +17,20 @@ import numpy as np
 from shaftprint.escape import printable
 from shaftprint.live._block import Block, DeviceStatus, LiveChannel
 from shaftprint.live._counterpart import Abilities
-from shaftprint.live.counterparts._dialect import MODES, MOST_CHANNELS, MOST_SAMPLES, Answer, Content, Description, Said
+from shaftprint.live.counterparts._dialect import (
+    DTYPES,
+    MODES,
+    MOST_CHANNELS,
+    MOST_SAMPLES,
+    Answer,
+    Content,
+    Description,
+    Said,
+)
 
 _HEAD: Final = struct.Struct("<4sBBBBQddqd")
 _MAGIC: Final = b"SPLB"
 _VERSION: Final = 1
-_DTYPES: Final[dict[str, np.dtype[Any]]] = {"int16": np.dtype("<i2"), "float64": np.dtype("<f8")}
 
 
 @dataclass(kw_only=True, slots=True)
@@ -81,10 +89,10 @@ def described(description: Description) -> bytes:
 def written_block(block: Block, channels: tuple[LiveChannel, ...]) -> bytes:
     """Return a block as a message."""
     parts = [
-        np.ascontiguousarray(block.samples.get(channel.name, ()), _DTYPES[channel.dtype]).tobytes()
+        np.ascontiguousarray(block.samples.get(channel.name, ()), DTYPES[channel.dtype]).tobytes()
         for channel in channels
     ]
-    counts = [len(part) // _DTYPES[channel.dtype].itemsize for part, channel in zip(parts, channels, strict=True)]
+    counts = [len(part) // DTYPES[channel.dtype].itemsize for part, channel in zip(parts, channels, strict=True)]
     device = block.device
     head = _HEAD.pack(
         _MAGIC,
@@ -115,12 +123,12 @@ def read_block(payload: bytes, channels: tuple[LiveChannel, ...], received_s: fl
         raise ValueError(f"expected a block of at most 60 s at a finite time, found {span_s:g} s at {source_s:g} s")
     at = _HEAD.size + 4 * number
     counts = struct.unpack_from(f"<{number}I", payload, _HEAD.size) if at <= len(payload) else ()
-    sizes = [count * _DTYPES[channel.dtype].itemsize for count, channel in zip(counts, channels, strict=False)]
+    sizes = [count * DTYPES[channel.dtype].itemsize for count, channel in zip(counts, channels, strict=False)]
     if sum(counts) > MOST_SAMPLES or at + sum(sizes) != len(payload):
         raise ValueError(f"expected as many samples in a block as its head says, found {len(payload)} bytes")
     samples = {}
     for channel, count in zip(channels, counts, strict=True):
-        samples[channel.name] = np.frombuffer(payload, _DTYPES[channel.dtype], count, at)
+        samples[channel.name] = np.frombuffer(payload, DTYPES[channel.dtype], count, at)
         at += samples[channel.name].nbytes
     device = DeviceStatus(mode=MODES[mode], heartbeat=heartbeat, set_point_v=volts, is_enabled=bool(enabled))
     return Block(
@@ -141,8 +149,8 @@ def _description(content: dict[str, Any]) -> Description:
 
 
 def _channel(row: Any) -> LiveChannel:
-    if not isinstance(row, dict) or row.get("dtype", "float64") not in _DTYPES:
-        raise ValueError(f"expected channels of {' or '.join(_DTYPES)}, found another")
+    if not isinstance(row, dict) or row.get("dtype", "float64") not in DTYPES:
+        raise ValueError(f"expected channels of {' or '.join(DTYPES)}, found another")
     rate_hz, scale, offset = row.get("rate_hz"), row.get("scale", 1.0), row.get("offset", 0.0)
     if not (_is_number(rate_hz) and _is_number(scale) and _is_number(offset)):
         raise ValueError("expected numbers for rate, scale and offset of channels, found something else")

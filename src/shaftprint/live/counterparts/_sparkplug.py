@@ -12,17 +12,27 @@ A device says in its birth ``Channels/1/Name``, ``/Unit``, ``/Rate``, ``/Scale``
 
 import math
 from dataclasses import dataclass, field
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 
 from shaftprint.escape import printable
 from shaftprint.live._block import Block, DeviceMode, DeviceStatus, LiveChannel
 from shaftprint.live._counterpart import Abilities
-from shaftprint.live.counterparts._dialect import MOST_CHANNELS, MOST_SAMPLES, Answer, Content, Description, Gone, Said
+from shaftprint.live.counterparts._dialect import (
+    DTYPES,
+    MOST_CHANNELS,
+    MOST_SAMPLES,
+    Answer,
+    Content,
+    Description,
+    Gone,
+    Said,
+)
 from shaftprint.live.counterparts._sparkplug_payload import (
     BOOLEAN,
     DOUBLE,
+    DOUBLE_ARRAY,
     INT64,
     STRING,
     Metric,
@@ -33,9 +43,7 @@ from shaftprint.live.counterparts._sparkplug_payload import (
 )
 
 _NUMBERS: Final = 256
-_DOUBLES: Final = 31
 _MOST_NAMES: Final = 10_000
-_TYPES: Final[dict[str, np.dtype[Any]]] = {"int16": np.dtype(np.int16), "float64": np.dtype(np.float64)}
 
 
 @dataclass(kw_only=True, slots=True)
@@ -79,7 +87,9 @@ class SparkplugDialect:
             Metric(name="Command/Word", kind=STRING, value=word),
             Metric(name="Command/Number", kind=INT64, value=number),
             *(
-                Metric(name=f"Command/{name}", kind=_DOUBLES if isinstance(value, np.ndarray) else DOUBLE, value=value)
+                Metric(
+                    name=f"Command/{name}", kind=DOUBLE_ARRAY if isinstance(value, np.ndarray) else DOUBLE, value=value
+                )
                 for name, value in content.items()
             ),
         )
@@ -159,7 +169,7 @@ class SparkplugDialect:
         for number, channel in enumerate(self._channels, start=1):
             values = names.get(f"Channels/{number}/Samples")
             if isinstance(values, np.ndarray):
-                samples[channel.name] = values.astype(_TYPES[channel.dtype])
+                samples[channel.name] = values.astype(DTYPES[channel.dtype])
                 most += values.size
         span_s = _number(names, "Block/Span")
         if most > MOST_SAMPLES or not 0.0 <= span_s <= 60.0:
@@ -191,8 +201,8 @@ def _description(names: dict[str, Value]) -> Description:
         if f"{at}/Name" not in names:
             break
         kind = _words(names, f"{at}/Type") or "float64"
-        if kind not in _TYPES:
-            raise ValueError(f"expected channels of {' or '.join(_TYPES)}, found another")
+        if kind not in DTYPES:
+            raise ValueError(f"expected channels of {' or '.join(DTYPES)}, found another")
         channels.append(
             LiveChannel(
                 name=_words(names, f"{at}/Name"),

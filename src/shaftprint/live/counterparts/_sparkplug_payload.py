@@ -5,7 +5,7 @@ Fields that are not known are skipped, as protocol buffers want it; what is cut 
 """
 
 import struct
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Final, TypeAlias
 
@@ -21,6 +21,7 @@ DOUBLE: Final = 10
 BOOLEAN: Final = 11
 STRING: Final = 12
 FLOAT_ARRAY: Final = 30
+DOUBLE_ARRAY: Final = 31
 """Types of values, as the specification numbers them."""
 _SIGNED_BITS: Final = {1: 8, 2: 16, 3: 32, INT64: 64}
 _ARRAYS: Final = {
@@ -33,7 +34,7 @@ _ARRAYS: Final = {
     28: "<u4",
     29: "<u8",
     FLOAT_ARRAY: "<f4",
-    31: "<f8",
+    DOUBLE_ARRAY: "<f8",
 }
 _MOST_METRICS: Final = 10_000
 _VARINT, _FIXED_64, _BYTES, _FIXED_32 = 0, 1, 2, 5
@@ -236,5 +237,5 @@ def _varint_field(number: int, value: int) -> bytes:
     return _varint(number << 3 | _VARINT) + _varint(value)
 
 
-def _bytes_field(number: int, content: bytes | Sequence[int]) -> bytes:
-    return _varint(number << 3 | _BYTES) + _varint(len(content)) + bytes(content)
+def _bytes_field(number: int, content: bytes) -> bytes:
+    return _varint(number << 3 | _BYTES) + _varint(len(content)) + content
