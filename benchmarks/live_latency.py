@@ -14,8 +14,9 @@ import tempfile
 from pathlib import Path
 
 import numpy as np
+from tests.live.rehearsed import ENVELOPE, VESSEL
 
-from benchmarks.live_rehearsals import ENVELOPE, VESSEL, campaign, run_beside
+from benchmarks.live_rehearsals import campaign, run_beside
 from shaftprint.live._engine import LiveTest
 from shaftprint.live._outcome import Operator
 from shaftprint.live._record import LiveRecord

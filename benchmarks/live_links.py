@@ -31,7 +31,7 @@ sys.path.insert(0, str(ROOT))
 
 from tests.live import mqtt_device as device
 
-from benchmarks.result_tables import write_between_marks
+from benchmarks.result_tables import bars, write_between_marks
 from benchmarks.timing import print_table
 from shaftprint.errors import SilentLinkError
 from shaftprint.live._block import Block, LiveChannel
@@ -270,13 +270,17 @@ def a_broker() -> Any:
         yield running
 
 
+def behind(kind: str, port: int) -> MqttCounterpart:
+    """Return the counterpart of the tests' device behind a broker."""
+    path = {"mqtt": "ship/line", "sparkplug": "ship/line/device"}[kind]
+    return MqttCounterpart(f"{kind}://127.0.0.1:{port}/{path}", Access(is_insecure=True))
+
+
 def over_mqtt(kind: str, seconds: float, lost: tuple[int, ...] = ()) -> Seen:
     """Listen to blocks over a real broker."""
-    path = {"mqtt": "ship/line", "sparkplug": "ship/line/device"}[kind]
     with a_broker() as (_, port), beside(send_mqtt, port, kind, lost):
         time.sleep(3.0)
-        counterpart = MqttCounterpart(f"{kind}://127.0.0.1:{port}/{path}", Access(is_insecure=True))
-        return asyncio.run(listen(counterpart, seconds))
+        return asyncio.run(listen(behind(kind, port), seconds))
 
 
 def samples_over_paho(quality: int, seconds: float) -> Seen:
@@ -412,8 +416,7 @@ def silences(runs: int) -> list[list[str]]:
                 time.sleep(3.0)
                 number = other.pid if what.startswith("device") else process.pid
                 act = {"stopped": signal.SIGSTOP, "killed": signal.SIGKILL}[what.split()[1]]
-                counterpart = MqttCounterpart(f"mqtt://127.0.0.1:{port}/ship/line", Access(is_insecure=True))
-                late.append(asyncio.run(noticed(counterpart, lambda: os.kill(number, act))))  # noqa: B023
+                late.append(asyncio.run(noticed(behind("mqtt", port), lambda: os.kill(number, act))))  # noqa: B023
                 with contextlib.suppress(ProcessLookupError):
                     os.kill(number, signal.SIGCONT)
         rows.append([f"MQTT, {what}", f"{runs}", f"{min(late):.2f}", f"{max(late):.2f}"])
@@ -435,11 +438,10 @@ def injected(runs: int) -> list[list[str]]:
 
 async def _named(kind: str, lost: tuple[int, ...]) -> set[int]:
     """Return the blocks that a run misses, by their counter."""
-    path = {"mqtt": "ship/line", "sparkplug": "ship/line/device"}[kind]
     front = {"mqtt": device.PlainFront, "sparkplug": device.SparkplugFront}[kind](device.Device(drop=lost))
-    with tempfile.TemporaryDirectory() as folder, device.broker(Path(folder)) as (_, port):
+    with a_broker() as (_, port):
         async with device.on_board(front, port):
-            counterpart = MqttCounterpart(f"{kind}://127.0.0.1:{port}/{path}", Access(is_insecure=True))
+            counterpart = behind(kind, port)
             await counterpart.connect()
             came: list[int] = []
             while not came or came[-1] < 41:
@@ -471,23 +473,19 @@ def main() -> None:
         over_can(min(seconds, 120.0)).row("CAN, 100 messages a second"),
     ]
     print_table("Links", HEAD, rows)
-    tables = [_table(HEAD, rows)]
+    tables = [bars([HEAD, *rows])]
     if options.silent:
         head = ["silent", "runs", "noticed after, at least [s]", "at most [s]"]
         found = silences(options.silent)
         print_table("Silence", head, found)
-        tables.append(_table(head, found))
+        tables.append(bars([head, *found]))
     if options.lost:
         head = ["lost blocks over", "runs", "exactly those named"]
         found = injected(options.lost)
         print_table("Lost blocks", head, found)
-        tables.append(_table(head, found))
+        tables.append(bars([head, *found]))
     if options.write:
         write_between_marks(DOCUMENT, "\n\n".join(tables), BEGIN, END)
-
-
-def _table(head: list[str], rows: list[list[str]]) -> str:
-    return "\n".join([f"| {' | '.join(head)} |", "|---" * len(head) + "|", *(f"| {' | '.join(row)} |" for row in rows)])
 
 
 if __name__ == "__main__":

@@ -20,11 +20,12 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+from tests.live.rehearsed import ENVELOPE, TUG, VESSEL, leg
 
 import shaftprint as sp
 from shaftprint.live._block import DeviceMode
 from shaftprint.live._engine import LiveTest
-from shaftprint.live._envelope import SPEED, TORQUE, envelope_of
+from shaftprint.live._envelope import SPEED, TORQUE
 from shaftprint.live._record import LiveRecord
 from shaftprint.live._rehearse import simulated_ship_of
 from shaftprint.live.counterparts._access import Access
@@ -33,32 +34,21 @@ from shaftprint.live.counterparts._opcua import OpcUaCounterpart
 from shaftprint.live.counterparts._opcua_server import SimulatedServer
 from shaftprint.live.counterparts._simulated import SimulatedCounterpart
 
-VESSEL = sp.vessel.load_vessel("stan-tug-1205")
-TUG = sp.tug.like_stan_tug_1205(VESSEL, offset_v=-5.0)
-ENVELOPE = envelope_of(VESSEL, is_rehearsed=True)
 # A limit may last this long before a rule has seen it, and the ramp back takes its time [s].
 SEEN_S = 0.5
 HANGS_S = 120.0
 
 
-def campaign(*, period_s=2.0, periods=3):
-    """Two legs of a few periods at two speeds."""
-    first = 3.0 + 1.0 + periods * period_s + 0.1
-    second = first + 3.0 + 1.0 + periods * period_s + 0.1
-    lines = {"harmonics": (1, 3, 5), "amplitudes_v": (0.2, 0.2, 0.1), "phases_rad": (0.0, 1.0, 2.0)}
+def campaign():
+    """Two legs of three periods at two speeds."""
+    first = 3.0 + 1.0 + 3 * 2.0 + 0.1
+    second = first + 3.0 + 1.0 + 3 * 2.0 + 0.1
     legs = (
-        {"name": "M1", "level_v": -5.0, "start_s": 3.0, "settled_s": 4.0, "stop_s": first, "period_s": period_s},
-        {
-            "name": "M2",
-            "level_v": -4.6,
-            "start_s": first + 3.0,
-            "settled_s": first + 4.0,
-            "stop_s": second,
-            "period_s": period_s,
-        },
+        leg("M1", level_v=-5.0, start_s=3.0, settled_s=4.0, stop_s=first, period_s=2.0),
+        leg("M2", level_v=-4.6, start_s=first + 3.0, settled_s=first + 4.0, stop_s=second, period_s=2.0),
     )
     content = {"name": "two legs", "duration_s": second + 4.0, "offset_v": -5.0, "ramp_s": 2.0}
-    return sp.campaign.Campaign.model_validate({**content, "multisines": tuple({**leg, **lines} for leg in legs)})
+    return sp.campaign.Campaign.model_validate({**content, "multisines": legs})
 
 
 def drawn(rng):

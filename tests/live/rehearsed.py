@@ -1,7 +1,6 @@
 """A short test on a simulated ship, in the same program, for all tests of the room."""
 
 import asyncio
-from dataclasses import replace
 
 import shaftprint as sp
 from shaftprint.live._engine import LiveTest
@@ -12,7 +11,7 @@ from shaftprint.live.counterparts._faults import LinkFaults
 from shaftprint.live.counterparts._simulated import SimulatedCounterpart
 
 VESSEL = sp.vessel.load_vessel("stan-tug-1205")
-TUG = replace(sp.tug.like_stan_tug_1205(VESSEL, offset_v=-5.0))
+TUG = sp.tug.like_stan_tug_1205(VESSEL, offset_v=-5.0)
 ENVELOPE = envelope_of(VESSEL, is_rehearsed=True)
 
 

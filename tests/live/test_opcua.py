@@ -3,11 +3,11 @@
 import asyncio
 import importlib
 import logging
-import socket
 from datetime import UTC, datetime, timedelta
 
 import numpy as np
 import pytest
+from tests.live.mqtt_device import free_port
 from tests.live.rehearsed import CAMPAIGN, ENVELOPE, TUG, VESSEL, leg
 
 from shaftprint.errors import LiveError, SilentLinkError
@@ -28,9 +28,10 @@ pytestmark = [pytest.mark.slow, pytest.mark.filterwarnings("ignore::ResourceWarn
 
 ONE_LEG = CAMPAIGN.model_copy(
     update={
-        "multisines": tuple(
-            type(CAMPAIGN.multisines[0]).model_validate(one)
-            for one in (leg("M1", level_v=-4.9, start_s=1.5, settled_s=2.0, stop_s=4.1, period_s=1.0),)
+        "multisines": (
+            type(CAMPAIGN.multisines[0]).model_validate(
+                leg("M1", level_v=-4.9, start_s=1.5, settled_s=2.0, stop_s=4.1, period_s=1.0)
+            ),
         ),
         "ramp_s": 0.5,
         "duration_s": 5.0,
@@ -46,9 +47,7 @@ def _quiet():
 
 
 def free_address():
-    with socket.socket() as taken:
-        taken.bind(("127.0.0.1", 0))
-        return f"opc.tcp://127.0.0.1:{taken.getsockname()[1]}"
+    return f"opc.tcp://127.0.0.1:{free_port()}"
 
 
 def with_server(work, *, faults=None, is_insecure=True):
