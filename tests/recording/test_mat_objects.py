@@ -63,13 +63,13 @@ def test_a_table_and_a_duration(save):
         assert (set(recording.channels), recording.channel("u").rate_hz) == ({"u"}, 2000.0)
 
 
-def _series(data, times=(), start=0.0, step=0.0, unit="", clock="seconds"):
+def _series(data, times=(), start=0.0, step=0.0, unit="", clock="seconds", length=None):
     """Return what MATLAB keeps of a timeseries: times, or the first of them and their step."""
     opaque = importlib.import_module("matio.utils.matclass").MatlabOpaque
     column = np.array(times, dtype=np.float64).reshape(-1, 1)
     of_time = {
         "Units": clock, "Time_": np.empty((0, 0)), "Start_": start, "Increment_": step,
-        "Length": float(max(np.shape(data))),
+        "Length": float(max(np.shape(data)) if length is None else length),
     }  # fmt: skip
     properties = {
         "Name": "measured", "Data_": data, "Time_": column, "IsTimeFirst_": data.ndim == 2,
@@ -97,6 +97,15 @@ def test_time_series_have_the_times_that_they_keep_or_count(save):
         }
         for name, values in (("M_s", TORQUE), ("n 2", 2.0 * TORQUE), ("X 2", 2.0 * TORQUE)):
             assert np.array_equal(recording.channel(name).values(0, COUNT), values)
+
+
+@pytest.mark.parametrize("length", [2.0 * COUNT, np.nan, np.inf])
+def test_a_length_that_the_samples_do_not_have_costs_that_series_alone(save, length):
+    torque = TORQUE.reshape(-1, 1)
+    path = save(M_s=_series(torque, step=0.01), X=_series(torque, step=0.01, length=length))
+    with read_recording(path) as recording:
+        assert set(recording.channels) == {"M_s"}
+        assert any("a time series without" in words for words in recording.left_out.values())
 
 
 def test_without_the_library_the_remedy_is_that_of_the_class(save, monkeypatch):

@@ -76,7 +76,9 @@ def _keep_series(name: str, series: Mapping[str, Any], variables: MatVariables) 
     times = next((one for one in map(_numbers, (series.get("Time_"), of_time.get("Time_"))) if one.size), None)
     if times is None:
         start, step, length = (_numbers(of_time.get(key)) for key in ("Start_", "Increment_", "Length"))
-        times = start[0] + step[0] * np.arange(int(length[0])) if start.size and step.size and length.size else None
+        # a length that the samples do not have may be any number
+        is_whole = bool(start.size and step.size and length.size and length[0] in data.shape)
+        times = start[0] + step[0] * np.arange(int(length[0])) if is_whole else None
     if times is None or times.size < 2 or data.dtype.kind not in _NUMBERS or times.size not in data.shape:
         variables.left_out[name] = "expected a time for each sample, found a time series without."
         return
