@@ -91,6 +91,16 @@ def planned(folder, *options, text=FAN):
 
 
 @pytest.mark.slow
+def test_a_channel_whose_name_would_be_two_columns_is_refused_and_nothing_is_left(tmp_path):
+    text = FAN.replace('channel = "voltage"', 'channel = "voltage, set"')
+    assert text != FAN
+    result = planned(tmp_path, "--within", "30s", "--rate", "100", "--noise", "n=0.5", text=text)
+    assert result.exit_code == 1
+    assert 'expected titles without the delimiter ",", found "voltage, set [V]"' in result.output
+    assert not (tmp_path / "plan").exists()
+
+
+@pytest.mark.slow
 def test_a_planned_input_keeps_the_limits_and_tells_what_is_promised(tmp_path):
     result = planned(tmp_path, "--within", "30s", "--rate", "100", "--noise", "n=0.5", "--wish", "T=5%")
     assert result.exit_code == 0, result.output

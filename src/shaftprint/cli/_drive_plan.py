@@ -24,8 +24,9 @@ with late():
     from shaftprint.catalogue._own_structure import TypedName
     from shaftprint.design.inputs._wish import Wish
     from shaftprint.drive._drive import Drive, load_drive
-    from shaftprint.escape import csv_cell
     from shaftprint.forecast._ship_before_test import ShipBeforeTest
+    from shaftprint.recording._from_arrays import Samples, channel_of
+    from shaftprint.recording.writers._csv import write_csv
     from shaftprint.tables._drive import drive_prediction_table, planned_signal_table
 
 INPUT_FILE, FACTS_FILE = "input.csv", "plan.json"
@@ -92,12 +93,20 @@ def plan_on_the_bench(
 
 
 def _write_input(planned: PlannedRecord, drive: Drive, path: Path) -> None:
-    titles = ["time [s]", *(f"{one.channel or one.name} [{one.unit}]" for one in drive.inputs)]
-    columns = [np.arange(len(planned.inputs[drive.inputs[0].name])) / planned.rate_hz]
-    columns += [planned.inputs[one.name] for one in drive.inputs]
-    rows = (",".join(f"{value:.10g}" for value in row) for row in zip(*columns, strict=True))
-    text = "\n".join([",".join(csv_cell(title) for title in titles), *rows, ""])
-    path.write_text(text, encoding="utf-8", newline="\n")
+    write_csv(
+        path,
+        [
+            channel_of(
+                Samples(
+                    name=one.channel or one.name,
+                    unit=one.unit,
+                    values=planned.inputs[one.name],
+                    rate_hz=planned.rate_hz,
+                )
+            )
+            for one in drive.inputs
+        ],
+    )
 
 
 def _facts(planned: PlannedRecord) -> dict[str, object]:

@@ -14,7 +14,7 @@ from shaftprint.errors import ExactStepsError
 from shaftprint.forecast._inputs import Inputs, Point, campaign_inputs, file_inputs, point_of
 from shaftprint.forecast._ship_before_test import ShipBeforeTest
 from shaftprint.forecast._simulated_model import SimulatedModel, simulated_model
-from shaftprint.recording._channel import Channel
+from shaftprint.recording._from_arrays import Samples, channel_of
 from shaftprint.recording.writers._csv import write_csv
 from shaftprint.simulation._simulate import simulate
 from shaftprint.simulation._simulate_exactly import simulate_exactly
@@ -263,15 +263,8 @@ def write_simulation(path: Path, simulation: Simulation, *, overwrite: bool) -> 
         if signal.std is not None:
             columns.append((f"{signal.title} std", signal.unit, signal.std))
     rate_hz = (time_s.size - 1) / float(time_s[-1] - time_s[0])
-    write_csv(path, [_channel(*column, rate_hz, float(time_s[0])) for column in columns], overwrite=overwrite)
-
-
-def _channel(title: str, unit: str, values: FloatArray, rate_hz: float, start_s: float) -> Channel:
-    return Channel(
-        name=title,
-        unit=unit,
-        rate_hz=rate_hz,
-        start_s=start_s,
-        count=values.size,
-        source=lambda start, stop: values[start:stop],
-    )
+    channels = [
+        channel_of(Samples(name=title, unit=unit, values=values, rate_hz=rate_hz, start_s=float(time_s[0])))
+        for title, unit, values in columns
+    ]
+    write_csv(path, channels, overwrite=overwrite)

@@ -60,15 +60,21 @@ def recording_from_arrays(
                 f"{path}, channel {item.name}: expected a unique name and a vector of real numbers, "
                 f"found {values.dtype} of shape {values.shape}."
             )
-        channels[item.name] = Channel(
-            name=item.name,
-            unit=item.unit,
-            rate_hz=item.rate_hz,
-            start_s=item.start_s,
-            count=values.size,
-            source=_source(values.astype(np.float64)),
-        )
+        channels[item.name] = channel_of(item)
     return Recording(path=path, sha256=sha256_of(path), format=format, channels=channels, began=began)
+
+
+def channel_of(samples: Samples) -> Channel:
+    """Return a channel whose samples are in memory; it keeps a copy of them."""
+    values = np.asarray(samples.values).astype(np.float64)
+    return Channel(
+        name=samples.name,
+        unit=samples.unit,
+        rate_hz=samples.rate_hz,
+        start_s=samples.start_s,
+        count=values.size,
+        source=_source(values),
+    )
 
 
 def _source(values: NDArray[np.float64]) -> Source:
