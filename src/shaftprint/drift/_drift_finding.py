@@ -26,6 +26,11 @@ class DatedCause(SizedCause):
         """Whether it is wear that goes on with every ship and that work in a dock takes off, as fouling is."""
         return self.shape == "ramp" and self.cause.taken_off_by != "" and self.size * self.cause.wears > 0.0
 
+    @property
+    def to_do(self) -> str:
+        """What to do about it, in words: what takes expected wear off, or what tells another cause better."""
+        return f"{self.cause.taken_off_by} takes it off" if self.is_expected else self.cause.told_by
+
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Drift:

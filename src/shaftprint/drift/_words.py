@@ -112,7 +112,7 @@ def watch_sentences(finding: WatchFinding, history: History) -> tuple[str, ...]:
     for drift in others:
         beside = "As expected, beside it" if drift.best.is_expected else "Beside it"
         sentences.append(f"{beside} {_of_drift(drift, days, finding)}")
-    return (*sentences, *ends, *_to_do(finding))
+    return (*sentences, *ends, _to_do(finding))
 
 
 def noted_sentences(finding: WatchFinding) -> tuple[str, ...]:
@@ -129,12 +129,10 @@ def _of_noted(noted: NotedChange) -> str:
     return f"Since {what}, as noted: {named}."
 
 
-def _to_do(finding: WatchFinding) -> tuple[str, ...]:
+def _to_do(finding: WatchFinding) -> str:
     """Return what to do about the changes, those of one kind once."""
-    real = [drift.best.cause.told_by for drift in finding.by_urgency if not drift.best.is_expected]
-    worn = [f"{drift.best.cause.taken_off_by} takes it off" for drift in finding.drifts if drift.best.is_expected]
-    ways = "; ".join(dict.fromkeys((*real, *worn)))
-    return (f"What to do: {ways}.",)
+    ways = "; ".join(dict.fromkeys(drift.best.to_do for drift in finding.by_urgency))
+    return f"What to do: {ways}."
 
 
 def limit_sentence(finding: WatchFinding, cause: Cause, limit: float, history: History) -> str:

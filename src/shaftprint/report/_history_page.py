@@ -85,13 +85,11 @@ def _cards(finding: "WatchFinding", history: "History", state: State, *, noun: s
         return [Card(question=f"Has the {noun} changed?", state=state, sentence=" ".join(sentences))]
     cards = []
     for drift in finding.by_urgency:
-        cause, sentence = drift.best.cause, drift_sentence(drift, finding, history)
-        if drift.best.is_expected:
-            action = f"{cause.taken_off_by[:1].upper()}{cause.taken_off_by[1:]} takes it off."
-            cards.append(Card(question=f"Expected wear: {cause.name}", state="worn", sentence=sentence, action=action))
-        else:
-            action = f"{cause.told_by[:1].upper()}{cause.told_by[1:]}."
-            cards.append(Card(question=f"Changed: {cause.name}", state="look", sentence=sentence, action=action))
+        best, sentence = drift.best, drift_sentence(drift, finding, history)
+        question = f"{'Expected wear' if best.is_expected else 'Changed'}: {best.cause.name}"
+        action = f"{best.to_do[:1].upper()}{best.to_do[1:]}."
+        mark: State = "worn" if best.is_expected else "look"
+        cards.append(Card(question=question, state=mark, sentence=sentence, action=action))
     cards += [
         Card(question="What did the work that was noted?", state="fine", sentence=sentence)
         for sentence in noted_sentences(finding)
