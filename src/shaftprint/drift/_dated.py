@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from datetime import datetime
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from shaftprint.catalogue._roles import ShipRole
 from shaftprint.errors import FingerprintError
@@ -19,6 +19,8 @@ _TORQUES = (
     ShipRole.TORQUE, ShipRole.INERTIA_DOWNSTREAM, ShipRole.INERTIA_UPSTREAM, ShipRole.INERTIA,
     ShipRole.PROPORTIONAL_GAIN, ShipRole.INTEGRAL_GAIN,
 )  # fmt: skip
+PROGRAM_CHANGED: Final = "program-changed"
+"""Nothing was done to the ship: another version of the program has identified it."""
 EVENTS: dict[str, "tuple[Role, ...]"] = {
     "docking": (ShipRole.TORQUE, ShipRole.INERTIA_DOWNSTREAM, ShipRole.INERTIA),
     "propeller-polished": (ShipRole.TORQUE,),
@@ -26,7 +28,7 @@ EVENTS: dict[str, "tuple[Role, ...]"] = {
     "governor-changed": _GOVERNOR,
     "injectors-changed": (ShipRole.PROPORTIONAL_GAIN, ShipRole.INTEGRAL_GAIN, ShipRole.LOOP_DELAY),
     "gauge-calibrated": _TORQUES,
-    "program-changed": (*_GOVERNOR, *_TORQUES),
+    PROGRAM_CHANGED: (*_GOVERNOR, *_TORQUES),
     "other": (),
 }
 """What may be done to a ship, and the numbers that may be others after it, by their roles; of ``other`` those that are

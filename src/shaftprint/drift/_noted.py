@@ -16,13 +16,13 @@ from shaftprint.distributions import normal_cdf
 from shaftprint.drift._along import whitened
 from shaftprint.drift._causes import Cause
 from shaftprint.drift._course_search import growth_of
+from shaftprint.drift._dated import PROGRAM_CHANGED
 from shaftprint.drift._differ import MOST_CHANGES, UNLIKELY
 from shaftprint.drift._drift_finding import Drift, NotedChange, SizeByNow
 from shaftprint.drift._finding import SizedCause
 from shaftprint.drift._history import History
 from shaftprint.drift._series import Series, freed_by
 
-_OF_THE_PROGRAM = "program-changed"
 _ROUNDING = 1e-6
 
 
@@ -50,7 +50,7 @@ def noted_changes(
     steps: list[_Step] = []
     changes: dict[int, list[SizedCause]] = {}
     for event, columns in enumerate(freed):
-        if not columns or history.events[event].kind == _OF_THE_PROGRAM:
+        if not columns or history.events[event].kind == PROGRAM_CHANGED:
             continue
         others = [one for other, of_other in enumerate(freed) if other != event for one in of_other.values()]
         fixed = [levels, *(column[:, None] for column in (*others, *found_columns))]

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Sequence
 from itertools import combinations, pairwise
 from typing import TYPE_CHECKING, Final
 
-from shaftprint.drift._dated import DatedTest, Event
+from shaftprint.drift._dated import PROGRAM_CHANGED, DatedTest, Event
 
 if TYPE_CHECKING:
     from shaftprint.fingerprint._line_fingerprint import LineFingerprint
@@ -30,10 +30,10 @@ def program_epochs(
     epochs = []
     for before, after in pairwise(tests):
         versions = before.fingerprint.shaftprint_version, after.fingerprint.shaftprint_version
-        stated = any(one.kind == "program-changed" and before.at < one.at <= after.at for one in events)
+        stated = any(one.kind == PROGRAM_CHANGED and before.at < one.at <= after.at for one in events)
         if versions[0] != versions[1] and frozenset(versions) not in shown and not stated:
             note = f"shaftprint {versions[0]} before, {versions[1]} from then on"
-            epochs.append(Event(kind="program-changed", at=after.at, note=note))
+            epochs.append(Event(kind=PROGRAM_CHANGED, at=after.at, note=note))
     return tuple(epochs)
 
 

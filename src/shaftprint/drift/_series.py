@@ -9,7 +9,7 @@ import numpy as np
 from shaftprint.arrays import BoolArray, FloatArray
 from shaftprint.catalogue._roles import ShipRole
 from shaftprint.drift._causes import GAUGE_SCALE, Cause
-from shaftprint.drift._dated import EVENTS, Event
+from shaftprint.drift._dated import EVENTS, PROGRAM_CHANGED, Event
 from shaftprint.drift._doubts import judged_in
 from shaftprint.drift._history import SECONDS_PER_YEAR, History
 from shaftprint.drift._pair import directions_of, not_judged, weighing
@@ -195,5 +195,5 @@ def freed_by(history: History, event: Event, roles: "dict[str, Role | None]") ->
         if role in EVENTS[event.kind]
         or name in event.numbers
         # another program may find any number of a drive otherwise
-        or (role is None and event.kind == "program-changed")
+        or (role is None and event.kind == PROGRAM_CHANGED)
     }
