@@ -144,6 +144,31 @@ def test_the_table_goes_out_value_by_value_and_its_last_is_held():
     assert sent[-1] == pytest.approx(5.1)
 
 
+def test_a_table_goes_on_until_the_next_one_begins():
+    controller = Controller()
+    controller.play(SINE)
+    # its second of 50 cycles ends now
+    first = controller.memory["cycle_count"] - 49
+    controller.run(0.1, play=False)
+    controller.load([5000] * 100)
+    now = controller.memory["cycle_count"]
+    sent = controller.run(1.6, play=True, start_cycle=now + 26)
+    assert sent[:25] == pytest.approx([value / 1000 for value in SINE[now + 1 - first : now + 26 - first]], abs=1e-9)
+    assert sent[-1] == 5.0
+
+
+def test_a_new_test_begins_with_nothing_of_an_earlier_one():
+    controller = Controller()
+    controller.play(SINE)
+    controller.run(3.0, play=False, release=True)
+    controller.run(0.1, release=False, take=False)
+    assert set(controller.run(1.0, take=True)) == {LEVER_V}
+    controller.load([5100] * 100)
+    start = controller.memory["cycle_count"] + 26
+    assert set(controller.run(0.5, play=True, start_cycle=start)) == {LEVER_V}
+    assert controller.run(1.0)[-1] == pytest.approx(5.1)
+
+
 def test_a_silent_program_is_answered_with_the_lever_within_a_second():
     controller = Controller()
     controller.play([5400] * 3000)
