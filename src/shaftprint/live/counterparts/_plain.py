@@ -9,6 +9,7 @@ channels (a byte each), counter (8 bytes), start and span [s] (double), last hea
 import json
 import math
 import struct
+import sys
 from dataclasses import asdict, dataclass
 from typing import Any, Final, TypeGuard
 
@@ -149,11 +150,14 @@ def _description(content: dict[str, Any]) -> Description:
 
 
 def _channel(row: Any) -> LiveChannel:
-    if not isinstance(row, dict) or row.get("dtype", "float64") not in DTYPES:
+    # a list is no key of a table
+    if not isinstance(row, dict) or str(row.get("dtype", "float64")) not in DTYPES:
         raise ValueError(f"expected channels of {' or '.join(DTYPES)}, found another")
     rate_hz, scale, offset = row.get("rate_hz"), row.get("scale", 1.0), row.get("offset", 0.0)
     if not (_is_number(rate_hz) and _is_number(scale) and _is_number(offset)):
         raise ValueError("expected numbers for rate, scale and offset of channels, found something else")
+    if not (rate_hz > 0.0 and scale != 0.0):
+        raise ValueError(f"expected a positive rate and a scale of channels, found {rate_hz:g} and {scale:g}")
     return LiveChannel(
         name=_words(row, "name"),
         unit=_words(row, "unit"),
@@ -166,7 +170,8 @@ def _channel(row: Any) -> LiveChannel:
 
 
 def _is_number(value: Any) -> TypeGuard[float]:
-    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
+    # a whole number of JSON may be larger than any float
+    return isinstance(value, int | float) and not isinstance(value, bool) and abs(value) <= sys.float_info.max
 
 
 def _words(row: dict[str, Any], name: str) -> str:
