@@ -5,6 +5,7 @@ import pytest
 
 import shaftprint as sp
 from shaftprint.errors import RecordingError
+from shaftprint.recording import _journal as journal_file
 from shaftprint.recording._journal import JournalWriter, read_journal
 
 CHANNELS = [
@@ -80,3 +81,28 @@ def test_a_journal_is_not_written_over_another(tmp_path):
     path = written(tmp_path / "test.journal")
     with pytest.raises(RecordingError, match="cannot be written"):
         JournalWriter(path, {"channels": CHANNELS})
+
+
+@pytest.mark.parametrize(
+    "wrong", [{"name": ["U"]}, {"unit": None}, {"rate_hz": 10**400}, {"dtype": ["int16"]}, {"scale": "much"}]
+)
+def test_a_head_of_other_kinds_of_values_is_refused(tmp_path, wrong):
+    path = tmp_path / "test.journal"
+    with JournalWriter(path, {"channels": [CHANNELS[0] | wrong]}) as journal:
+        journal.block(1, 5.0, 0.1, [np.zeros(10, dtype=np.int16)])
+    with pytest.raises(RecordingError, match=r"test\.journal: expected channels"):
+        sp.recording.read_recording(path)
+
+
+def test_what_follows_a_torn_block_is_looked_at_a_few_times_only(tmp_path, monkeypatch):
+    looked = []
+    check = journal_file.zlib.crc32
+    path = written(tmp_path / "test.journal")
+    whole = path.read_bytes()
+    # entries that say that they are long, one in the other, none of which is whole
+    start = b"\x00BLK\x02" + (4000).to_bytes(4, "little") + bytes(4)
+    path.write_bytes(whole[:-20] + start * 1000)
+    monkeypatch.setattr(journal_file.zlib, "crc32", lambda content: (looked.append(len(content)), check(content))[1])
+    with pytest.raises(RecordingError, match="expected whole blocks, found damage"):
+        read_journal(path)
+    assert sum(looked) < 20 * len(start * 1000) + len(whole)

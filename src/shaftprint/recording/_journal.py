@@ -8,6 +8,7 @@ channels are.
 import json
 import math
 import os
+import re
 import struct
 import zlib
 from collections.abc import Iterator, Mapping
@@ -36,6 +37,8 @@ _COUNT = struct.Struct("<I")
 _SYNC_EVERY = 20
 # A length that no block has; what says so is damage.
 _LONGEST = 1 << 28
+# Behind a torn entry bytes are looked at so many times.
+_MOST_LOOKS = 16
 _LONGEST_S = 60.0
 
 
@@ -157,12 +160,20 @@ def read_journal(path: Path) -> Journal:
 def _goes_on(file: BinaryIO, end: int) -> bool:
     """Return whether a whole entry stands behind what is damaged."""
     file.seek(end)
-    rest = file.read()
-    place = rest.find(WORD, 1)
-    while place >= 0:
-        if next(_entries(file, end + place), None) is not None:
+    rest = memoryview(file.read())
+    looked, most = 0, _MOST_LOOKS * len(rest)
+    for found in re.finditer(re.escape(WORD), rest[1:]):
+        start = 1 + found.start()
+        if start + RECORD.size > len(rest):
+            return False
+        _, _, length, check = RECORD.unpack_from(rest, start)
+        content = rest[start + RECORD.size : start + RECORD.size + length]
+        if length > _LONGEST or len(content) < length:
+            continue
+        looked += length
+        # what says so often that an entry begins is no torn one
+        if looked > most or zlib.crc32(content) == check:
             return True
-        place = rest.find(WORD, place + 1)
     return False
 
 
@@ -189,12 +200,19 @@ def _head(path: Path, content: bytes) -> tuple[Mapping[str, Any], tuple[int, ...
         channels = head["channels"]
         sizes = tuple(np.dtype({"int16": "i2", "float64": "f8"}[one["dtype"]]).itemsize for one in channels)
         numbers = [float(one[key]) for one in channels for key in ("rate_hz", "scale", "offset")]
-        names = {str(one["name"]) for one in channels}
-    except (KeyError, TypeError, ValueError, RecursionError) as error:
+        names = {_text(one["name"]) for one in channels}
+        _ = [_text(one["unit"]) for one in channels]
+    except (KeyError, TypeError, ValueError, OverflowError, RecursionError) as error:
         raise RecordingError(f"{path}: expected channels in the head of the journal, found a fault: {error}.") from None
     if not sizes or len(names) != len(sizes) or not np.isfinite(numbers).all():
         raise RecordingError(f"{path}: expected channels of other names with numbers in the head, found others.")
     return head, sizes
+
+
+def _text(value: object) -> str:
+    if not isinstance(value, str):
+        raise TypeError("a name or unit that is no text")
+    return value
 
 
 def _event(content: bytes) -> Mapping[str, Any]:
