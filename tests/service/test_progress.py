@@ -48,3 +48,11 @@ def test_a_damaged_file_begins_anew(kept, text):
     progress, _ = kept
     progress.path.write_text(text)
     assert progress.reached(20) is None
+
+
+def test_a_count_that_is_no_number_begins_anew(kept):
+    progress, _ = kept
+    text = progress.path.read_text(encoding="utf-8")
+    assert '"steps": 2' in text
+    progress.path.write_text(text.replace('"steps": 2', '"steps": Infinity'))
+    assert progress.reached(20) is None

@@ -72,6 +72,8 @@ def test_what_has_changed_is_named_with_the_day_on_which_it_did(model, names, sh
     assert found.is_alarm
     assert found.headline.startswith(f"The line has changed since day 4: {cause}, by ")
     assert found.causes[0].size == pytest.approx(share, abs=4.0 * found.causes[0].std)
+    # the headline says the size of the table
+    assert f"by {abs(100.0 * found.causes[0].size):.2g} +/- " in found.headline
     assert found.first in ("day 4", "day 5", "day 6")
 
 

@@ -11,6 +11,7 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import ServiceError
+from shaftprint.escape import csv_cell
 from shaftprint.files import reason
 from shaftprint.fingerprint._fingerprint import Fingerprint
 from shaftprint.fingerprint._json_file import read_fingerprint
@@ -50,7 +51,12 @@ def scores_text(segments: Sequence[Segment], scores: Sequence[Score]) -> str:
     for segment, score in zip(segments, scores, strict=True):
         numbers = [*score.slope.tolist(), *(float(score.information[i, j]) for i, j in _PAIRS)]
         table.writerow(
-            [Path(segment.log).name, f"{segment.move_s:.2f}", f"{score.level:.6g}", *(f"{x:.9g}" for x in numbers)]
+            [
+                csv_cell(Path(segment.log).name),
+                f"{segment.move_s:.2f}",
+                f"{score.level:.6g}",
+                *(f"{x:.9g}" for x in numbers),
+            ]
         )
     return text.getvalue()
 

@@ -62,7 +62,7 @@ class Progress:
                 size=float(told["size"]),
                 is_last=bool(told["is_last"]),
             )
-        except (OSError, UnicodeDecodeError, ValueError, TypeError, KeyError):
+        except (OSError, ValueError, TypeError, KeyError, OverflowError, RecursionError):
             return None
         fits = reached.theta.shape == (len(FREE),) and reached.counts.shape == (segments,)
         return reached if fits and reached.noise.covariance.shape == (2, 2) else None

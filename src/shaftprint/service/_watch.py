@@ -105,7 +105,7 @@ class Watch:
 
 
 def _words(one: Along) -> str:
-    size, std = (one.cause.in_unit(x) for x in one.cause.stated(one.size, one.std))
+    size, std = (one.cause.in_unit(x) for x in (one.size, one.std))
     return f"{one.cause.more if size > 0.0 else one.cause.less}, by {abs(size):.2g} +/- {std:.1g} {one.cause.unit}"
 
 
@@ -179,10 +179,15 @@ def _propeller(days: Sequence[Day], fingerprint: Fingerprint) -> str:
 def prior_information(covariance: FloatArray) -> FloatArray:
     """Return the inverse covariance of the fingerprint's error, shape (numbers, numbers).
 
-    ``covariance``: that of the fingerprint at the model's working point, shape (numbers, numbers).
+    ``covariance``: that of the fingerprint at the model's working point, shape (numbers, numbers). Raises ServiceError
+    if a number has no deviation.
     """
     size = np.sqrt(np.diag(covariance))
-    size = np.where(size > 0.0, size, 1.0)
+    if not np.all(size > 0.0):
+        raise ServiceError(
+            "service watch: expected a fingerprint whose numbers have deviations, found one that was held; identify it "
+            "with all of them free."
+        )
     scaled = np.linalg.inv(covariance / np.outer(size, size))
     return np.asarray(scaled / np.outer(size, size), dtype=np.float64)
 

@@ -51,7 +51,9 @@ def command(
     """
     installation = load_vessel(vessel)
     earlier = None if fingerprint is None else fingerprint_at(fingerprint)
-    reached = output.with_name(f".{output.name}.fit.json")
+    # the name of "." is that of the folder
+    place = output.resolve()
+    reached = place.parent / f".{place.name}.fit.json"
     with output_folder(output, of="service", force=force) as folder:
         with progress(hidden=no_progress) as steps:
             steps.begin("Fitting")
