@@ -55,12 +55,13 @@ def _of(path: Path) -> Iterator[tuple[str, Path]]:
         if (path / _plan_json.PLAN).is_file() and campaign.is_file():
             yield "campaigns", campaign
         return
-    if path.suffix == _SETTINGS:
+    ending = path.suffix.lower()
+    if ending == _SETTINGS:
         kind = kind_of_file(path)
         yield f"{kind}s" if kind in ("vessel", "campaign") else "others", path
-    elif path.suffix not in _NO_RECORDING and _is_recording(path):
+    elif ending not in _NO_RECORDING and _is_recording(path):
         yield "recordings", path
-    elif not path.name.endswith(_TRUTH):
+    elif not path.name.lower().endswith(_TRUTH):
         yield "others", path
 
 

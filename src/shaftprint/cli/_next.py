@@ -60,9 +60,9 @@ def plan_after(result: object, vessel: object, ship: Vessel) -> tuple[object, ..
     return ("plan", "--vessel", vessel, "--after", result, *_size(rated_rpm_of(ship)), "-o", free("next-plan"))
 
 
-def rated_rpm_of(ship: Vessel) -> float | None:
-    """Return the rated speed of the engine [rpm]; None where there is none."""
-    return None if ship.engine is None else ship.engine.rated_speed_rpm
+def rated_rpm_of(ship: Vessel) -> float:
+    """Return the rated speed of what drives a ship, its engine or its motor [rpm]."""
+    return ship.machine.rated_speed_rpm
 
 
 def _size(rated_rpm: float | None) -> tuple[object, ...]:
