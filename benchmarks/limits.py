@@ -22,6 +22,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from tests.tug.ideal_signals import simulate_signals
 
 from benchmarks.kept_outcomes import kept
 from benchmarks.nonlinear_fit import with_wide_gauge
@@ -30,7 +31,7 @@ from shaftprint.campaign import Campaign, load_campaign, setpoint
 from shaftprint.limits import Kind, identify_limits
 from shaftprint.recording import read_recording
 from shaftprint.signals import prepare_signals
-from shaftprint.tug import Noise, Truth, Tug, sail, simulate_signals
+from shaftprint.tug import Noise, Truth, Tug, sail
 from shaftprint.vessel import Vessel, load_vessel
 
 VESSEL = with_wide_gauge(load_vessel("stan-tug-1205"))

@@ -5,13 +5,14 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from tests.tug.ideal_signals import simulate_signals
 
 from shaftprint.campaign import Campaign, load_campaign
 from shaftprint.design import expected_operation, limit_uses, limits_from_vessel, recorded_operation
 from shaftprint.design.operation._limit_use import stated_limits
 from shaftprint.design.operation._operation import Operation
 from shaftprint.errors import DesignError
-from shaftprint.tug import Tug, like_stan_tug_1205, normalised_truth, simulate_signals
+from shaftprint.tug import Tug, like_stan_tug_1205, normalised_truth
 from shaftprint.vessel import load_vessel
 
 N_0, TORQUE = 1183.8, 1725.0 / (3.82 * 0.97)

@@ -5,6 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from tests.made_signals import made_channels
+from tests.tug.ideal_signals import simulate_signals
+from tests.tug.linearised import linearised_response
 
 from shaftprint.campaign import Campaign
 from shaftprint.catalogue import structure
@@ -12,7 +14,7 @@ from shaftprint.identify import identify
 from shaftprint.recording import read_recording
 from shaftprint.signals import SetPointCalibration, Signals, WorkingPoint, prepare_signals
 from shaftprint.spectra import estimate_response
-from shaftprint.tug import Noise, Tug, linearised_response, sail, simulate_signals
+from shaftprint.tug import Noise, Tug, sail
 
 FREQUENCIES_HZ = (0.02, 0.05, 0.1, 0.2, 0.35, 0.6, 0.9, 1.3, 1.9, 3.0)
 # 0.2 % of the speed: the square of the propeller law is 1e-6 of the torque there

@@ -10,11 +10,12 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 from tests.files_of_pitch import write_pitch_files
+from tests.tug.linearised import linearised_response
 
 from shaftprint.campaign import load_campaign
 from shaftprint.catalogue import structure
 from shaftprint.cli import shaftprint
-from shaftprint.tug import Sailing, Tug, linearised_response, normalised_truth, sail
+from shaftprint.tug import Sailing, Tug, normalised_truth, sail
 from shaftprint.vessel import load_vessel
 
 RPM = -250.97 * (-6.66 - 0.04947603299199) - 83.467

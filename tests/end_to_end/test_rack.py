@@ -2,13 +2,14 @@
 
 import numpy as np
 import pytest
+from tests.tug.linearised import linearised_response
 
 from shaftprint.recording import read_recording
 from shaftprint.signals import prepare_signals
 from shaftprint.spectra import estimate_spectra
 from shaftprint.spectra._line_responses import measured
 from shaftprint.spectra._open_loop import governor_and_engine
-from shaftprint.tug import Noise, Tug, linearised_response, sail
+from shaftprint.tug import Noise, Tug, sail
 from shaftprint.vessel import Vessel, load_vessel
 
 QUIET = Noise().without(process=True, measurement=True, faults=True)

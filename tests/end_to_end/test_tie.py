@@ -8,10 +8,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from tests.tug.linearised import linearised_response
 
 from shaftprint.catalogue import structure
 from shaftprint.propeller import wageningen_b
-from shaftprint.tug import Coupling, Tug, like_stan_tug_1205, linearised_response, normalised_truth
+from shaftprint.tug import Coupling, Tug, like_stan_tug_1205, normalised_truth
 from shaftprint.tug._shaft_machine import ShaftMachineTruth
 from shaftprint.vessel import load_vessel
 

@@ -2,10 +2,11 @@
 
 import numpy as np
 import pytest
+from tests.tug.linearised import linearised_response
 
 from shaftprint.catalogue import KnownPropeller, structure, with_known_propeller
 from shaftprint.propeller import ka4_70_in_19a
-from shaftprint.tug import Sailing, Tug, linearised_response, normalised_truth
+from shaftprint.tug import Sailing, Tug, normalised_truth
 
 OMEGA_RAD_S = np.geomspace(0.01, 10.0, 100)
 SHIPS = {

@@ -2,11 +2,12 @@
 
 import numpy as np
 import pytest
+from tests.tug.ideal_signals import simulate_signals
 
 from shaftprint.campaign import load_campaign
 from shaftprint.catalogue import AHEAD_S, limited_governor
 from shaftprint.simulation import simulate
-from shaftprint.tug import Tug, simulate_signals
+from shaftprint.tug import Tug
 
 RATE = 200.0
 TRUE = {"K_p": 5.7, "K_i": 4.27, "t_d": 0.0703, "omega_n": 10.3, "zeta": 0.47, "t_sp": 0.0518}

@@ -5,6 +5,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from tests.tug.ideal_signals import simulate_signals
 
 from shaftprint.campaign import Campaign
 from shaftprint.catalogue import limited_governor
@@ -16,7 +17,7 @@ from shaftprint.limits._numbers import _doubt, doubt_of_governor
 from shaftprint.limits.prediction._noise_colour import ORDER, innovations
 from shaftprint.spectra import Harmonics
 from shaftprint.time_domain.nonlinear._drive import jumps_in, with_jumps
-from shaftprint.tug import Tug, simulate_signals
+from shaftprint.tug import Tug
 
 
 def test_a_jump_lies_where_it_is_between_two_samples():

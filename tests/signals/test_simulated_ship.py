@@ -2,11 +2,12 @@
 
 import numpy as np
 import pytest
+from tests.tug.ideal_signals import simulate_signals
 
 from shaftprint.campaign import Campaign
 from shaftprint.recording import read_recording
 from shaftprint.signals import inspect_channels, prepare_signals
-from shaftprint.tug import Noise, Tug, read_truth, sail, simulate_signals, truth_path
+from shaftprint.tug import Noise, Tug, read_truth, sail, truth_path
 
 
 @pytest.fixture(scope="module")

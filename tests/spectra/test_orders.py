@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from tests.tug.linearised import linearised_response
 
 from shaftprint.campaign import Campaign, Sine, Staircase
 from shaftprint.identify import planned_response
@@ -15,7 +16,7 @@ from shaftprint.spectra.orders._gears import with_measured_gears
 from shaftprint.spectra.orders._order_fit import fit_orders
 from shaftprint.spectra.orders._order_waves import order_bands, turns_of
 from shaftprint.survey import STAN_TUG_NOISE
-from shaftprint.tug import Tug, linearised_response, sail
+from shaftprint.tug import Tug, sail
 from shaftprint.vessel import Vessel, load_vessel
 
 RATE_HZ, SPEED_REV_S = 100.0, 20.0

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from numba import njit
 from scipy.signal import firwin, oaconvolve
+from tests.tug.ideal_signals import simulate_signals
 
 from shaftprint.campaign import Campaign, load_campaign
 from shaftprint.catalogue import structure
@@ -23,7 +24,7 @@ from shaftprint.identify import (
 from shaftprint.spectra import FrequencyResponse
 from shaftprint.time_domain import identify_chirp, record_from_arrays, spectrum_of, spectrum_term
 from shaftprint.time_domain._bands import bands_of
-from shaftprint.tug import Tug, simulate_signals
+from shaftprint.tug import Tug
 from shaftprint.vessel import load_vessel
 
 TRUTH = {"tau_n": 0.39, "K_p": 1.8, "K_i": 4.3, "t_d": 0.12, "omega_n": 9.0, "zeta": 1.2}

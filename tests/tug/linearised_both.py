@@ -4,9 +4,9 @@ from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike
+from tests.tug.linearised import linearised_response
 
 from shaftprint.arrays import ComplexArray
-from shaftprint.tug._linearise import linearised_response
 from shaftprint.tug._shared_water import SharedWater
 from shaftprint.tug._tug import Tug
 from shaftprint.vessel import Vessel

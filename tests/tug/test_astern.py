@@ -7,10 +7,11 @@ from typing import Any
 
 import numpy as np
 import pytest
+from tests.tug.ideal_signals import simulate_signals
 
 from shaftprint.errors import SettingsError
 from shaftprint.recording import read_recording
-from shaftprint.tug import Coupling, Noise, Sailing, Tug, build_plant, normalised_truth, sail, simulate_signals
+from shaftprint.tug import Coupling, Noise, Sailing, Tug, build_plant, normalised_truth, sail
 from shaftprint.tug.plant._physics import equilibrium
 from shaftprint.vessel import SpeedSensor, Vessel, load_vessel
 

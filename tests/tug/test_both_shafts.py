@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from tests.tug.linearised import linearised_response
 from tests.tug.linearised_both import linearised_both
 
 from shaftprint.campaign import CampaignOfBoth
@@ -13,7 +14,7 @@ from shaftprint.campaign._both_shafts import load_campaign_of_both
 from shaftprint.catalogue import structure
 from shaftprint.errors import SettingsError
 from shaftprint.recording import read_recording
-from shaftprint.tug import Noise, Sailing, Tug, linearised_response, normalised_truth, sail
+from shaftprint.tug import Noise, Sailing, Tug, normalised_truth, sail
 from shaftprint.tug._sail_both import sail_both
 from shaftprint.tug._shared_water import SharedWater
 from shaftprint.tug.plant._both_lines import sea_and_own, voyage_of_both

@@ -7,10 +7,11 @@ from typing import Any
 
 import numpy as np
 import pytest
+from tests.tug.ideal_signals import simulate_signals
 
 from shaftprint.errors import SettingsError
 from shaftprint.recording import read_recording
-from shaftprint.tug import Noise, Tug, sail, simulate_signals
+from shaftprint.tug import Noise, Tug, sail
 from shaftprint.tug.plant._voyage import Stretch
 from shaftprint.tug.sensors._bus import Bus
 from shaftprint.tug.sensors._control_unit import ControlUnit

@@ -6,18 +6,11 @@ from typing import Any
 
 import numpy as np
 import pytest
+from tests.tug.ideal_signals import simulate_signals
+from tests.tug.linearised import linearised_response
 
 from shaftprint.errors import SettingsError
-from shaftprint.tug import (
-    Coupling,
-    Tug,
-    build_plant,
-    derivatives,
-    like_stan_tug_1205,
-    linearised_response,
-    normalised_truth,
-    simulate_signals,
-)
+from shaftprint.tug import Coupling, Tug, build_plant, derivatives, like_stan_tug_1205, normalised_truth
 from shaftprint.tug.plant._disturbance import Disturbance
 from shaftprint.tug.plant._physics import equilibrium
 from shaftprint.tug.plant._plant import ENGINE, SPEED, TWIST

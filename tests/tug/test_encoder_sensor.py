@@ -2,10 +2,11 @@
 
 import numpy as np
 import pytest
+from tests.tug.ideal_signals import simulate_signals
 
 from shaftprint.errors import SettingsError
 from shaftprint.recording import read_recording
-from shaftprint.tug import Tug, sail, simulate_signals
+from shaftprint.tug import Tug, sail
 from shaftprint.vessel import Vessel
 
 

@@ -15,7 +15,8 @@ import sys
 import numpy as np
 from shaftprint.campaign import Campaign
 from shaftprint.recording import read_recording
-from shaftprint.tug import Noise, Sailing, Tug, sail, simulate_signals
+from shaftprint.tug import Noise, Sailing, Tug, sail
+from tests.tug.ideal_signals import simulate_signals
 from shaftprint.vessel import load_vessel
 
 folder = sys.argv[1]

@@ -6,17 +6,11 @@ from typing import Any
 
 import numpy as np
 import pytest
+from tests.tug.ideal_signals import simulate_signals
+from tests.tug.linearised import linearised_response
 
 from shaftprint.errors import SettingsError
-from shaftprint.tug import (
-    Noise,
-    Tug,
-    build_plant,
-    like_stan_tug_1205,
-    linearised_response,
-    normalised_truth,
-    simulate_signals,
-)
+from shaftprint.tug import Noise, Tug, build_plant, like_stan_tug_1205, normalised_truth
 from shaftprint.tug.plant._plant import torque_limits
 from shaftprint.tug.sensors._gauge import shaft_orders
 from shaftprint.vessel import Vessel, load_vessel

@@ -6,9 +6,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+from tests.tug.ideal_signals import simulate_signals
 
 from shaftprint.campaign import Sine, load_campaign
-from shaftprint.tug import Noise, Tug, simulate_signals
+from shaftprint.tug import Noise, Tug
 from shaftprint.tug.plant._disturbance import Disturbance
 from shaftprint.vessel import Vessel
 

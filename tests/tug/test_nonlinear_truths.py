@@ -6,9 +6,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+from tests.tug.ideal_signals import simulate_signals
 
 from shaftprint.errors import SettingsError
-from shaftprint.tug import Tug, read_truth, sail, simulate_signals, truth_path
+from shaftprint.tug import Tug, read_truth, sail, truth_path
 from shaftprint.vessel import Vessel
 
 Make = Callable[..., Any]

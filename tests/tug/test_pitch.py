@@ -4,10 +4,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from tests.tug.ideal_signals import simulate_signals
+from tests.tug.linearised import linearised_response
 
 from shaftprint.errors import SettingsError
 from shaftprint.propeller import ka4_70_in_19a, wageningen_b
-from shaftprint.tug import like_stan_tug_1205, linearised_response, normalised_truth, simulate_signals
+from shaftprint.tug import like_stan_tug_1205, normalised_truth
 from shaftprint.tug._pitch_actuation import PitchActuation
 from shaftprint.tug._pitch_series import steepened, torque_over_pitch
 from shaftprint.tug.plant._pitch import PitchActuator

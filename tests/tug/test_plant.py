@@ -6,9 +6,11 @@ from typing import Any
 
 import numpy as np
 import pytest
+from tests.tug.ideal_signals import simulate_signals
+from tests.tug.linearised import linearised_response
 
 from shaftprint.errors import SettingsError
-from shaftprint.tug import Tug, build_plant, linearised_response, simulate_signals
+from shaftprint.tug import Tug, build_plant
 from shaftprint.tug.plant._demand import Demand
 from shaftprint.tug.plant._disturbance import Disturbance
 from shaftprint.tug.plant._plant import interpolation_weights, torque_limits

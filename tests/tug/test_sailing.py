@@ -7,21 +7,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+from tests.tug.ideal_signals import simulate_signals
+from tests.tug.linearised import linearised_response
 
 from shaftprint.campaign import Campaign
 from shaftprint.errors import SettingsError
 from shaftprint.propeller import ka4_70_in_19a, sail_steadily
-from shaftprint.tug import (
-    Noise,
-    Sailing,
-    Tug,
-    build_plant,
-    derivatives,
-    linearised_response,
-    normalised_truth,
-    sail,
-    simulate_signals,
-)
+from shaftprint.tug import Noise, Sailing, Tug, build_plant, derivatives, normalised_truth, sail
 from shaftprint.tug.plant._physics import equilibrium, working_point
 from shaftprint.tug.plant._plant import RACK, SPEED, WAY
 from shaftprint.vessel import Vessel

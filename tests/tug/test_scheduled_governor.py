@@ -6,10 +6,11 @@ from typing import Any
 
 import numpy as np
 import pytest
+from tests.tug.ideal_signals import simulate_signals
 
 from shaftprint.campaign import setpoint
 from shaftprint.errors import SettingsError
-from shaftprint.tug import Tug, sail, simulate_signals
+from shaftprint.tug import Tug, sail
 from shaftprint.vessel import Vessel
 
 Make = Callable[..., Any]

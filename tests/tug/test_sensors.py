@@ -7,9 +7,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+from tests.tug.ideal_signals import simulate_signals
 
 from shaftprint.recording import read_recording
-from shaftprint.tug import Noise, Truth, Tug, sail, simulate_signals
+from shaftprint.tug import Noise, Truth, Tug, sail
 from shaftprint.tug.sensors._faults import draw_dropouts, draw_times
 from shaftprint.tug.sensors._gauge import shaft_orders
 from shaftprint.vessel import Vessel

@@ -4,9 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from tests.tug.ideal_signals import simulate_signals
+from tests.tug.linearised import linearised_response
 
 from shaftprint.errors import SettingsError
-from shaftprint.tug import Tug, build_plant, like_stan_tug_1205, linearised_response, normalised_truth, simulate_signals
+from shaftprint.tug import Tug, build_plant, like_stan_tug_1205, normalised_truth
 from shaftprint.tug._shaft_machine import ShaftMachineTruth
 from shaftprint.vessel import load_vessel
 

@@ -7,8 +7,9 @@ from typing import Any
 
 import numpy as np
 import pytest
+from tests.tug.ideal_signals import simulate_signals
 
-from shaftprint.tug import Tug, build_plant, sail, simulate_signals
+from shaftprint.tug import Tug, build_plant, sail
 from shaftprint.tug.plant._demand import Demand
 from shaftprint.tug.plant._plant import torque_limits
 from shaftprint.vessel import OperatingLimits, Vessel

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from tests.tug.ideal_signals import simulate_signals
 
 from shaftprint.campaign import load_campaign, setpoint
 from shaftprint.catalogue import structure
@@ -11,7 +12,7 @@ from shaftprint.errors import ValidationError
 from shaftprint.identify import Prior, Settings, identify
 from shaftprint.signals import Gap
 from shaftprint.spectra import estimate_response
-from shaftprint.tug import Noise, Tug, simulate_signals
+from shaftprint.tug import Noise, Tug
 from shaftprint.validation import ValidationSettings, validate
 from shaftprint.validation._model import model_of
 from shaftprint.validation._prediction import linear_prediction, simulated_prediction

@@ -1,7 +1,5 @@
 from ._coupling import Coupling
-from ._ideal import simulate_signals
 from ._like_stan_tug import like_stan_tug_1205
-from ._linearise import linearised_response
 from ._noise import Noise
 from ._sail import sail
 from ._sailing import Sailing
@@ -23,11 +21,9 @@ __all__ = [
     "derivatives",
     "governor_rack",
     "like_stan_tug_1205",
-    "linearised_response",
     "normalised_truth",
     "read_truth",
     "sail",
     "sail_service",
-    "simulate_signals",
     "truth_path",
 ]

@@ -6,12 +6,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from shaftprint.arrays import BoolArray, FloatArray, frozen_bool, frozen_float
-from shaftprint.campaign._campaign import Campaign
+from shaftprint.campaign import Campaign
 from shaftprint.tug._tug import Tug
 from shaftprint.tug.plant._demand import demanded_speed, helm_voltage
 from shaftprint.tug.plant._disturbance import Disturbance
 from shaftprint.tug.plant._voyage import Stretch, voyage
-from shaftprint.vessel._vessel import Vessel
+from shaftprint.vessel import Vessel
 
 _CHUNK = 1 << 17
 

@@ -25,7 +25,7 @@ from shaftprint.tug.plant._plant import (
     derivatives,
 )
 from shaftprint.units import rpm_from_rev_s
-from shaftprint.vessel._vessel import Vessel
+from shaftprint.vessel import Vessel
 
 # Places in the vector that is perturbed: nine states, the demand in the ECU, the rack given a delay ago, the pitch, the
 # disturbance of the propeller's torque, the torque of an electric machine on the gearbox.
