@@ -55,6 +55,15 @@ def test_a_window_of_exactly_one_period_is_accepted():
     assert sine.window_stop_s == pytest.approx(0.3)
 
 
+def test_a_stop_that_a_sum_makes_later_than_the_end_by_its_rounding_is_accepted():
+    # 0.1 + 6 * 0.1 is a little more than 0.7 in binary numbers
+    stairs = Staircase(name="St1", levels_v=(-4.0, -5.0, -6.0, -5.0, -4.0, -5.0), dwell_s=0.1, start_s=0.1)
+    later = Sine(name="S", frequency_hz=10.0, amplitude_v=1.0, start_s=0.7, settled_s=0.8, stop_s=1.0)
+    assert stairs.stop_s > 0.7
+    assert _campaign(duration_s=0.7, sines=(), staircases=(stairs,)).duration_s == 0.7
+    assert _campaign(duration_s=1.0, sines=(later,), staircases=(stairs,)).sines == (later,)
+
+
 def test_overlaps_are_refused_with_both_names():
     stairs = Staircase(name="St1", levels_v=(-3.0, -4.0), dwell_s=10.0, start_s=40.0)
     with pytest.raises(ValidationError, match="St1 to start after S1 has stopped at 50 s, found a start at 40 s"):

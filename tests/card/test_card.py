@@ -52,6 +52,7 @@ def test_torque_at_the_quay_is_that_of_the_series(ship):
     vessel = ship(engine_speed_rpm=1183.8)
     assert vessel.working_point.shaft_torque_nm == pytest.approx(1956.2, abs=0.1)
     assert vessel.propeller.torque_coefficient == pytest.approx(0.0560555, rel=1e-4)
+    assert vessel.torque_coefficient_std == pytest.approx(0.15 * 0.0560555, rel=1e-4)
     # measured were 1725 N m, 88.2 %: within the 15 % that the file states
     assert load_vessel("stan-tug-1205").working_point.shaft_torque_nm == pytest.approx(0.882 * 1956.2, rel=1e-3)
 
@@ -73,6 +74,7 @@ def test_measured_torque_is_kept(ship):
     """The effective K_Q of the Stan Tug in its shipped file: 0.04943."""
     vessel = ship(engine_speed_rpm=1183.8, shaft_torque_nm=1725.0)
     assert vessel.working_point.shaft_torque_nm == 1725.0
+    assert vessel.torque_coefficient_std is None
     assert vessel.propeller.torque_coefficient == pytest.approx(0.04943, abs=5e-6)
 
 

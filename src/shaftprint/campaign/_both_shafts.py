@@ -10,7 +10,7 @@ from pydantic import model_validator
 
 from shaftprint.arguments import refusing_none
 from shaftprint.campaign._campaign import Campaign
-from shaftprint.campaign._excitation import Excitation
+from shaftprint.campaign._excitation import ROUNDING_S, Excitation
 from shaftprint.campaign._multisine import Multisine
 from shaftprint.errors import SettingsError
 from shaftprint.notebook._shown import Shown
@@ -85,7 +85,7 @@ class CampaignOfBoth(Shown, Settings):
 
     def _at_the_same_time(self) -> list[tuple[Excitation, Excitation]]:
         pairs = product(self.port.excitations, self.starboard.excitations)
-        return [(p, s) for p, s in pairs if p.start_s < s.stop_s and s.start_s < p.stop_s]
+        return [(p, s) for p, s in pairs if p.start_s < s.stop_s - ROUNDING_S and s.start_s < p.stop_s - ROUNDING_S]
 
     def _not_in_turn(self) -> Iterator[str]:
         for port, starboard in self._at_the_same_time():
@@ -99,8 +99,8 @@ class CampaignOfBoth(Shown, Settings):
             for move, test in product(mover.moves, other.excitations):
                 if (
                     abs(move.to_v - move.from_v) > _NOTHING_V
-                    and move.start_s < test.stop_s
-                    and test.start_s < move.stop_s
+                    and move.start_s < test.stop_s - ROUNDING_S
+                    and test.start_s < move.stop_s - ROUNDING_S
                 ):
                     yield (
                         f"expected the other side to stand still during {side}.{test.name}, found it on its way from "

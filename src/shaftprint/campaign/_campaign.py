@@ -11,7 +11,7 @@ from pydantic import Field, model_validator
 from shaftprint.arguments import refusing_none
 from shaftprint.campaign._beside import faults_beside, runs_beside
 from shaftprint.campaign._binary_sequence import BinarySequence
-from shaftprint.campaign._excitation import Excitation
+from shaftprint.campaign._excitation import ROUNDING_S, Excitation
 from shaftprint.campaign._excitations import SPEED_SET_POINT, Chirp, Sine, Staircase
 from shaftprint.campaign._leg import Leg
 from shaftprint.campaign._moves import Move, faults_of, moves_of
@@ -179,7 +179,7 @@ class Campaign(Shown, Settings):
             f"expected {later.name} to start after {earlier.name} has stopped at {earlier.stop_s:g} s, "
             f"found a start at {later.start_s:g} s."
             for earlier, later in pairwise(one for one in self.excitations if one not in self._of_further_inputs)
-            if later.start_s < earlier.stop_s
+            if later.start_s < earlier.stop_s - ROUNDING_S
         ]
 
     def _too_late(self) -> list[str]:
@@ -187,7 +187,7 @@ class Campaign(Shown, Settings):
             f"expected {excitation.name} to stop within duration_s = {self.duration_s:g}, "
             f"found a stop at {excitation.stop_s:g} s."
             for excitation in self.excitations
-            if excitation.stop_s > self.duration_s
+            if excitation.stop_s > self.duration_s + ROUNDING_S
         ]
 
     def _too_fast(self) -> list[str]:

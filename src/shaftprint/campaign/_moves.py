@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from shaftprint.campaign._excitation import ROUNDING_S
 from shaftprint.campaign._leg import Leg
 
 if TYPE_CHECKING:
@@ -15,7 +16,6 @@ if TYPE_CHECKING:
 
 # A move smaller than this is the rounding of a voltage [V].
 _NOTHING_V = 1e-9
-_ROUNDING_S = 1e-9
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -45,7 +45,7 @@ class Move:
     @property
     def fits(self) -> bool:
         """Whether there is time for it."""
-        return self.start_s >= self.free_s[0] - _ROUNDING_S and self.stop_s <= self.free_s[1] + _ROUNDING_S
+        return self.start_s >= self.free_s[0] - ROUNDING_S and self.stop_s <= self.free_s[1] + ROUNDING_S
 
 
 def moves_of(

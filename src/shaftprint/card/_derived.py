@@ -34,6 +34,8 @@ _BRONZE_KG_M3 = 7600.0
 _BLADE_INERTIA, _BLADE_INERTIA_STD = 0.7 * 0.25 * math.pi * 0.028 * 0.275**2, 0.4
 _WATER_STD = 0.3
 _FULL_SCALE_SHARE = 1.5
+# Of a torque by a propeller series at zero advance, and by the propeller law through rated power.
+_SERIES_STD, _LAW_STD = 0.15, 0.25
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -102,22 +104,25 @@ def working_torque(card: Card) -> Derived:
     )
     if card.is_underway or series is None:
         share = (speed_rpm / card.rated_speed_rpm) ** 2
-        return Derived(
-            value=rated_torque_nm(card) * ratio * EFFICIENCY * share,
-            origin="propeller law through rated power, +/- 25 %",
+        return _within(
+            rated_torque_nm(card) * ratio * EFFICIENCY * share, _LAW_STD, "propeller law through rated power"
         )
-    return Derived(
-        value=series.torque_coefficient * _force_m(card, speed_rpm, ratio),
-        origin=f"{series.name} at zero advance, +/- 15 %",
+    return _within(
+        series.torque_coefficient * _force_m(card, speed_rpm, ratio), _SERIES_STD, f"{series.name} at zero advance"
     )
+
+
+def _within(value: float, share: float, origin: str) -> Derived:
+    return Derived(value=value, origin=f"{origin}, +/- {100.0 * share:.0f} %", std=share * value)
 
 
 def torque_coefficient(card: Card) -> Derived:
     """Return ``K_Q = M_s / (rho n^2 D^5)`` of the working point."""
-    ratio = gear_ratio(card).value
+    torque, force_m = working_torque(card), _force_m(card, working_speed(card).value, gear_ratio(card).value)
     return Derived(
-        value=working_torque(card).value / _force_m(card, working_speed(card).value, ratio),
+        value=torque.value / force_m,
         origin="of the working point below, as uncertain as its torque",
+        std=None if torque.std is None else torque.std / force_m,
     )
 
 

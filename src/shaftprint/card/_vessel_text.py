@@ -76,6 +76,7 @@ def _gearbox(card: Card) -> Iterable[str]:
 
 
 def _propeller(card: Card) -> Iterable[str]:
+    coefficient = torque_coefficient(card)
     usual = "" if card.area_ratio is not None else f"usual {'in a nozzle' if card.in_nozzle else 'without nozzle'}"
     return (
         "[propeller]",
@@ -83,7 +84,8 @@ def _propeller(card: Card) -> Iterable[str]:
         f"pitch_ratio = {_number(card.pitch_ratio)}",
         f"blades = {card.blades}",
         _line("area_ratio", Derived(value=card.usual_area_ratio, origin=f"{usual}, +/- 0.1" if usual else "")),
-        _line("torque_coefficient", torque_coefficient(card)),
+        _line("torque_coefficient", coefficient),
+        *([] if coefficient.std is None else [f"torque_coefficient_std = {_rounded(coefficient.std)}"]),
         f"series = {toml_string(card.series)}",
     )
 

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 from shaftprint.identify.fit._estimate import Estimate
 from shaftprint.reasons import Reason
 from shaftprint.signals._scale_reasons import scale_reasons
-from shaftprint.signals.levels._speed_scale import ScaleEvidence
+from shaftprint.signals.levels._speed_scale import ScaleEvidence, load_over_expected
 
 if TYPE_CHECKING:
     from shaftprint.campaign._campaign import Campaign
@@ -55,15 +55,15 @@ def contradictions(
     nearer_to_it = apart < abs(inertia.log) and apart < ALIKE * math.hypot(inertia.std, coefficient.std)
     if not nearer_to_it:
         return ()
-    torque = signals.working_point.shaft_torque_nm / vessel.working_point.driving_torque_nm
+    torque = load_over_expected(signals.working_point, vessel)
     return (
         Reason(
             kind="gauge scale",
             where=vessel.sensors.shaft_torque.channel,
             sentence=(
-                f"The scale of the torque gauge is in doubt: mean torque, K_Q and I_dn are {_written(torque)}, "
-                f"{_written(math.exp(coefficient.log))} and {_written(math.exp(inertia.log))} times what the vessel "
-                "file expects; "
+                "The scale of the torque gauge is in doubt: torque over the square of the speed, K_Q and I_dn are "
+                f"{_written(torque)}, {_written(math.exp(coefficient.log))} and {_written(math.exp(inertia.log))} "
+                "times what the vessel file expects; "
                 f"check scale_nm_per_unit of {vessel.sensors.shaft_torque.channel}. Another propeller changes both "
                 "too, fouling K_Q alone."
             ),

@@ -219,7 +219,7 @@ def _other_direction(quantity: Estimate, vessel: "Vessel | None") -> str:
         return ""
     propeller, found_astern = vessel.propeller, not vessel.working_point.is_astern
     other = propeller.astern_torque_coefficient if found_astern else propeller.torque_coefficient
-    other_std = propeller.astern_torque_coefficient_std if found_astern else None
+    other_std = propeller.astern_torque_coefficient_std if found_astern else propeller.torque_coefficient_std
     if other is None or abs(quantity.value - other) > SURPRISING * float(np.hypot(quantity.std, other_std or 0.0)):
         return ""
     way = "astern" if found_astern else "ahead"

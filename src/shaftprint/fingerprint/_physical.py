@@ -179,7 +179,7 @@ def _torque_coefficient(
         direct={source: value * share for source, share in shares.items() if share},
         # the vessel file states that of zero advance
         expected=None if vessel.is_underway else vessel.torque_coefficient,
-        expected_std=vessel.propeller.astern_torque_coefficient_std if vessel.working_point.is_astern else None,
+        expected_std=vessel.torque_coefficient_std,
     )
 
 

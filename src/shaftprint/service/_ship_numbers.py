@@ -167,7 +167,9 @@ def physical_numbers_of(
             meaning="torque coefficient of the propeller, mean of the service",
             role=ShipRole.TORQUE,
             direct=direct,
-            expected=None if vessel.torque_coefficient is None else (vessel.torque_coefficient, np.nan),
+            expected=None
+            if vessel.torque_coefficient is None
+            else (vessel.torque_coefficient, vessel.torque_coefficient_std or np.nan),
         )
     )
     return numbers

@@ -246,10 +246,12 @@ class Propeller(Settings):
     """Expanded blade area over disc area ``A_E / A_0``."""
     torque_coefficient: PositiveNumber
     """Effective ``K_Q`` at zero advance, turning ahead: ``M_s0 eta_R / (rho n_s0^2 D^5)``."""
+    torque_coefficient_std: NotNegativeNumber | None = None
+    """Its standard deviation; None where it is not stated."""
     astern_torque_coefficient: PositiveNumber | None = None
     """The same of a shaft that turns astern, positive too; a test astern needs it."""
     astern_torque_coefficient_std: NotNegativeNumber | None = None
-    """Standard deviation of that; None where it is not stated."""
+    """Its standard deviation; None where it is not stated."""
     relative_rotative_efficiency: PositiveNumber = 1.0
     """``eta_R``, open-water torque over torque behind the ship."""
     series: Name | None = None

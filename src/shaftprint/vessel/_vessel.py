@@ -175,6 +175,13 @@ class Vessel(Shown, Settings):
         astern = self.propeller.astern_torque_coefficient
         return astern if self.working_point.is_astern and astern is not None else self.propeller.torque_coefficient
 
+    @property
+    def torque_coefficient_std(self) -> float | None:
+        """Standard deviation of that coefficient; None where it is not stated."""
+        propeller, is_astern = self.propeller, self.working_point.is_astern
+        has_own = is_astern and propeller.astern_torque_coefficient is not None
+        return propeller.astern_torque_coefficient_std if has_own else propeller.torque_coefficient_std
+
     def driving_torque_nm(self, reading: ArrayLike) -> FloatArray:
         """Return the shaft torque [N m] of readings of the gauge, positive as it drives the propeller the way it turns.
 

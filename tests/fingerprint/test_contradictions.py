@@ -1,0 +1,54 @@
+"""What a test contradicts of the vessel file, against what was stated of it."""
+
+from types import SimpleNamespace
+
+import pytest
+
+from shaftprint.campaign import load_campaign
+from shaftprint.fingerprint._contradictions import contradictions
+from shaftprint.identify import Estimate
+from shaftprint.signals import WorkingPoint
+from shaftprint.units import rev_s_from_rpm
+from shaftprint.vessel import load_vessel
+
+CAMPAIGN = load_campaign("12min")
+TUG = load_vessel("stan-tug-1205")
+
+
+def _numbers(factor, vessel):
+    """Torque coefficient and inertia behind the gauge, both so many times what the file expects."""
+    coefficient, inertia = vessel.torque_coefficient, 17.0
+    return (
+        Estimate(
+            name="K_Q", unit="-", value=factor * coefficient, std=0.01 * coefficient,
+            expected=coefficient, expected_std=vessel.torque_coefficient_std,
+        ),
+        Estimate(
+            name="I_dn", unit="kg m2", value=factor * inertia, std=0.015 * inertia, expected=inertia, expected_std=6.0
+        ),
+    )  # fmt: skip
+
+
+def _reasons(factor, vessel):
+    # 1.15 times the speed of the working point: by the law of the propeller 1.15^2 of its torque
+    point = WorkingPoint(
+        engine_speed_rev_s=1.15 * rev_s_from_rpm(vessel.working_point.engine_speed_rpm),
+        shaft_torque_nm=factor * 1.15**2 * vessel.working_point.shaft_torque_nm,
+        engine_speed_std_rev_s=0.0,
+        shaft_torque_std_nm=0.0,
+        set_point_v=-5.7,
+        load_std=0.0,
+    )
+    signals = SimpleNamespace(working_point=point, levels_rpm=(), legs=())
+    return contradictions(_numbers(factor, vessel), signals, vessel, CAMPAIGN)
+
+
+def test_a_gauge_that_shows_too_little_is_told_by_the_torque_over_the_square_of_the_speed():
+    (reason,) = _reasons(0.9, TUG)
+    assert "torque over the square of the speed, K_Q and I_dn are 0.90, 0.90 and 0.90 times" in reason.sentence
+
+
+@pytest.mark.parametrize(("factor", "doubts"), [(0.9, 0), (1.12, 0), (2.0, 1)])
+def test_a_coefficient_of_a_propeller_series_contradicts_nothing_within_what_it_is_known_to(factor, doubts):
+    propeller = TUG.propeller.model_copy(update={"torque_coefficient_std": 0.15 * TUG.propeller.torque_coefficient})
+    assert len(_reasons(factor, TUG.model_copy(update={"propeller": propeller}))) == doubts
