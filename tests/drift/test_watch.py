@@ -11,8 +11,7 @@ from tests.known_fits import TRUTH, fitted, taken
 from shaftprint.drift import differ, history_of, watch
 from shaftprint.drift._causes import CAUSES
 from shaftprint.drift._dated import Event
-from shaftprint.drift._time_to_limit import time_to_limit
-from shaftprint.drift._words import limit_sentence, watch_sentences
+from shaftprint.drift._words import limit_sentence, time_to_limit, watch_sentences
 from shaftprint.errors import FingerprintError
 from shaftprint.identify import Settings
 from shaftprint.reasons import Reason

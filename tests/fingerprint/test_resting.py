@@ -3,7 +3,7 @@
 import numpy as np
 
 from shaftprint.catalogue import structure
-from shaftprint.fingerprint._resting import resting_on
+from shaftprint.fingerprint._assumptions import resting_on
 from shaftprint.identify import Prior, Settings, identify, profile_intervals
 from shaftprint.spectra import FrequencyResponse
 

@@ -9,7 +9,7 @@ import scipy
 from shaftprint.errors import RecordingError
 from shaftprint.files import written_whole
 from shaftprint.recording._channel import Channel
-from shaftprint.recording.writers._mat_names import expect_matlab_names
+from shaftprint.recording.writers._mat_v73 import expect_matlab_names
 from shaftprint.recording.writers._refused import told_as_refused
 from shaftprint.recording.writers._shared_clock import on_one_clock
 

@@ -10,9 +10,9 @@ from shaftprint.campaign import Multisine
 from shaftprint.errors import SignalError
 from shaftprint.signals import Gap
 from shaftprint.signals._gaps import Coverage
+from shaftprint.signals._leg_steady_state import repeated_periods
 from shaftprint.signals.levels._leg_periods import leg_periods
 from shaftprint.signals.levels._leg_state import LegSamples, calibration_of_legs, leg_states
-from shaftprint.signals.levels._repeated_periods import repeated_periods
 
 RATE_HZ = 50.0
 LEG = Multisine(

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from shaftprint.spectra.lines._cross_term import without_cross_term
+from shaftprint.spectra._line_responses import without_cross_term
 
 PLACES = {"speed": 1, "torque": 2}
 

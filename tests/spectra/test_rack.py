@@ -12,7 +12,7 @@ from shaftprint.spectra import ExactBin, FrequencyResponse, estimate_response, e
 from shaftprint.spectra._line_responses import measured
 from shaftprint.spectra._open_loop import governor_and_engine
 from shaftprint.spectra.lines._line_fit import WindowSamples
-from shaftprint.spectra.lines._message_times import times_of_values
+from shaftprint.spectra.lines._message_line import times_of_values
 from shaftprint.spectra.lines._sine_fit import WholePeriodSine
 from shaftprint.spectra.lines._windows import Window
 

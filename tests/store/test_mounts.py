@@ -6,7 +6,7 @@ import pytest
 
 from shaftprint.errors import StoreError
 from shaftprint.store import create_store
-from shaftprint.store._mounts import network_file_system
+from shaftprint.store.database._database import network_file_system
 
 # as /proc/self/mountinfo gives it (Linux, Documentation/filesystems/proc.rst, 3.5)
 MOUNTS = """\

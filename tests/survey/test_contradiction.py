@@ -6,7 +6,7 @@ import pytest
 from shaftprint.identify import Prior, Settings, identify, identify_jointly
 from shaftprint.models import FirstOrderLag, Gain, Parameter, Structure
 from shaftprint.spectra import FrequencyResponse
-from shaftprint.survey._contradiction import contradiction
+from shaftprint.survey._everything import contradiction
 
 S = 2j * np.pi * np.array([0.05, 0.1, 0.2, 0.5, 1.0])
 LINE = Structure(

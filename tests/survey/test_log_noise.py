@@ -6,7 +6,7 @@ import pytest
 from shaftprint.errors import IdentificationError
 from shaftprint.identify.prediction._noise_levels import stated_noise
 from shaftprint.spectra._line_responses import NOT_MEASURED_STD
-from shaftprint.survey._log_noise import with_log
+from shaftprint.survey._assumed_noise import with_log
 from shaftprint.survey._shipped_noise import STAN_TUG_NOISE_UNDERWAY
 
 

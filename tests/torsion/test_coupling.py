@@ -8,7 +8,7 @@ import pytest
 from shaftprint.errors import StructureError
 from shaftprint.torsion import modes, torsional_line
 from shaftprint.torsion._coupling import line_coupling
-from shaftprint.torsion._forced_response import forced_response
+from shaftprint.torsion._two_masses import forced_response
 from shaftprint.vessel import InertiaRow
 from shaftprint.vessel._links import ShaftLink
 

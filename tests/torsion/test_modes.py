@@ -9,7 +9,7 @@ import pytest
 
 from shaftprint.errors import SettingsError, StructureError
 from shaftprint.torsion import modes, torsional_line
-from shaftprint.torsion._forced_response import forced_response
+from shaftprint.torsion._two_masses import forced_response
 
 
 def without_losses(line):

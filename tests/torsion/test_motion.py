@@ -11,7 +11,7 @@ from tests.torsion.viscous_damper import best_damper_nm_s_rad
 
 from shaftprint.errors import StructureError
 from shaftprint.torsion import modes
-from shaftprint.torsion._forced_response import forced_response
+from shaftprint.torsion._two_masses import forced_response
 
 CYLINDERS = tuple(f"Cylinder {number}" for number in range(1, 7))
 SHARED = dict.fromkeys(CYLINDERS, 1.0 / 6.0)

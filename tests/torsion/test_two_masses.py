@@ -9,8 +9,7 @@ from scipy.signal import TransferFunction, freqresp
 from shaftprint.catalogue import two_mass_line
 from shaftprint.models import check_structure
 from shaftprint.torsion import modes
-from shaftprint.torsion._forced_response import forced_response
-from shaftprint.torsion._two_masses import two_masses
+from shaftprint.torsion._two_masses import forced_response, two_masses
 
 CYLINDERS = tuple(f"Cylinder {number}" for number in range(1, 7))
 

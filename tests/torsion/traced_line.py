@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.errors import StructureError
 from shaftprint.torsion._line import TorsionalLine
-from shaftprint.torsion._state_space import state_space
+from shaftprint.torsion._modes import state_space
 
 NO_IMPULSE: Mapping[str, float] = {}
 # Largest difference between two steps of a uniform grid, as a share of the step: rounding of sums of steps.

@@ -4,7 +4,7 @@ import pytest
 from shaftprint.catalogue import structure
 from shaftprint.errors import ValidationError
 from shaftprint.validation._prediction import add_quadratic_torque, linear_prediction, simulated_prediction
-from shaftprint.validation.measures._low_pass import low_pass
+from shaftprint.validation._run import low_pass
 
 RATE_HZ = 100.0
 TIME = np.arange(0.0, 100.0, 1.0 / RATE_HZ)

@@ -1,13 +1,18 @@
 """What two tests say about a change of the ship, in sentences: what, by how much, and with which odds."""
 
+import math
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from datetime import datetime, timedelta
 
+from shaftprint.arguments import refusing_none
 from shaftprint.digits import p_value_text, plain_letters, stated
+from shaftprint.distributions import NORMAL_95
 from shaftprint.drift._causes import Cause
 from shaftprint.drift._drift_finding import DatedCause, Drift, NotedChange, WatchFinding
 from shaftprint.drift._finding import Finding, ShipChange, SizedCause
-from shaftprint.drift._history import History
-from shaftprint.drift._time_to_limit import time_to_limit
+from shaftprint.drift._history import SECONDS_PER_YEAR, History
+from shaftprint.errors import FingerprintError
 
 # Causes whose likelihoods differ by less than this factor are named together.
 ALIKE = 3.0
@@ -189,3 +194,45 @@ def _of_drift(drift: Drift, days: Sequence[str], finding: WatchFinding) -> str:
     odds = f" Odds {odds_text(rest[0].odds)} against {rest[0].words}." if rest else ""
     told = "" if len(alike) == 1 else f" These tests hardly tell them apart: {ways_text(one.cause for one in alike)}."
     return f"{named}.{odds}{told}"
+
+
+# Later than that nobody plans.
+_MOST_YEARS = 100.0
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class TimeToLimit:
+    """When a change that goes on reaches a limit."""
+
+    at: datetime | None
+    """When, if it goes on as it did; None for later than a hundred years."""
+    earliest: datetime | None
+    """Beginning of the 95 % interval of that time; None for later than a hundred years."""
+    latest: datetime | None
+    """Its end; None where the slope may be too small to tell."""
+
+
+@refusing_none(FingerprintError)
+def time_to_limit(course: DatedCause, limit: float, history: History) -> TimeToLimit:
+    """Return when a ramp reaches a limit.
+
+    ``course``: the ramp. ``limit``: size of the cause that it must not pass, of either sign: a share, or a time [s].
+    ``history``: the tests in which it was found. Raises FingerprintError if it is a step, or the limit is zero or no
+    share above -1.
+    """
+    if course.shape != "ramp":
+        raise FingerprintError(f"{course.cause.name}: expected a ramp, found a step; it goes on to no limit.")
+    share = course.cause.is_share
+    if limit == 0.0 or not math.isfinite(limit) or (share and abs(limit) >= 1.0):
+        raise FingerprintError(f"{course.cause.name}: expected a limit above zero and below 100 %, found {limit:g}.")
+    wanted = math.copysign(abs(limit), course.size)
+    way, slope = (math.log1p(wanted), math.log1p(course.size)) if share else (wanted, course.size)
+    std = course.std / (1.0 + course.size) if share else course.std
+    begin = history.tests[course.since].at
+    slopes = (slope, slope + math.copysign(NORMAL_95 * std, slope), slope - math.copysign(NORMAL_95 * std, slope))
+    at, earliest, latest = (_reached(begin, way / one) if one * way > 0.0 else None for one in slopes)
+    return TimeToLimit(at=at, earliest=earliest, latest=latest)
+
+
+def _reached(begin: datetime, years: float) -> datetime | None:
+    return begin + timedelta(seconds=years * SECONDS_PER_YEAR) if years < _MOST_YEARS else None

@@ -14,6 +14,7 @@ from typing import Final, Literal
 import numpy as np
 
 from shaftprint.arguments import refusing_none
+from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.errors import ExportError
 from shaftprint.escape import printable
 from shaftprint.export._c_text import identifier
@@ -26,7 +27,6 @@ from shaftprint.export._fmu_description import (
 )
 from shaftprint.export._fmu_equations import FmuEquations
 from shaftprint.export._fmu_program import FmuProgram, fmu_program, largest_pole
-from shaftprint.export._fmu_samples import posterior_deviations
 from shaftprint.export._fmu_variables import Variable, variables
 from shaftprint.export._model import ExportedModel
 from shaftprint.files import written_whole
@@ -272,3 +272,45 @@ def _late_outputs(ready: FmuProgram, model: ExportedModel) -> tuple[str, ...]:
     delays_s = evaluate(ready.lateness, leaves)
     names = ready.program.outputs
     return tuple(model.signal(name).name for name, late in zip(names, delays_s, strict=True) if float(late) > 0.0)
+
+
+MOST_TRIES = 1000
+
+
+def posterior_deviations(model: ExportedModel, samples: int, rng: np.random.Generator) -> FloatArray:
+    """Return what samples of the parameters differ by from the estimate, the estimate first: zeros.
+
+    ``samples``: how many. ``rng``: where they are drawn from: a normal distribution, cut off at the bounds of the
+    parameters. Returns shape (1 + samples, parameters). Raises ExportError if the covariance is not known, or hardly a
+    sample keeps to the bounds.
+    """
+    deviations = np.zeros((1 + samples, len(model.structure.parameters)))
+    if not samples:
+        return frozen_float(deviations)
+    if not model.uncertain:
+        raise ExportError("FMU of posterior samples: expected parameters with a covariance, found none.")
+    places = [model.structure.names.index(name) for name in model.uncertain]
+    chosen = [model.structure.parameters[index] for index in places]
+    estimate = model.values[places]
+    lower = np.minimum([p.lower for p in chosen], estimate)
+    upper = np.maximum([p.upper for p in chosen], estimate)
+    root = _root(model.covariance_matrix)
+    row = 0
+    for _ in range(MOST_TRIES * samples):
+        step = root @ rng.standard_normal(len(places))
+        if np.all((estimate + step >= lower) & (estimate + step <= upper)):
+            row += 1
+            deviations[row, places] = step
+            if row == samples:
+                return frozen_float(deviations)
+    raise ExportError(
+        f"FMU of posterior samples: expected {samples} samples within the bounds of {', '.join(model.uncertain)}, "
+        f"found {row} in {MOST_TRIES * samples}: the parameters are too uncertain for samples."
+    )
+
+
+def _root(covariance: FloatArray) -> FloatArray:
+    """Return a matrix whose product with its transpose is the covariance, which may be singular."""
+    scale = np.sqrt(np.diag(covariance))
+    values, vectors = np.linalg.eigh(covariance / np.outer(scale, scale))
+    return np.asarray(scale[:, None] * vectors * np.sqrt(np.maximum(values, 0.0)))

@@ -3,17 +3,19 @@
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from shaftprint.catalogue._roles import ShipRole
 from shaftprint.digits import stated
-from shaftprint.fingerprint._resting import resting_on
+from shaftprint.identify.fit._identification import Identification
 from shaftprint.identify.judgement._clock_drift import unseen_drift
 from shaftprint.identify.judgement._phrases import listed
+from shaftprint.identify.search._conditional_minimum import Conditional
+from shaftprint.identify.uncertainty._profile import Interval
 from shaftprint.models._combination import Combination
 from shaftprint.units import MILLI
 
 if TYPE_CHECKING:
-    from shaftprint.identify.fit._identification import Identification
-    from shaftprint.identify.uncertainty._profile import Interval
     from shaftprint.vessel._vessel import Vessel
 
 PERCENT = 100.0
@@ -115,3 +117,37 @@ def _widths(identification: "Identification") -> str:
     ]
     parts = [f"{MILLI * late_s:.2g} ms for {what}" for late_s, what in widths if late_s > LEAST_S]
     return f"count {listed(parts)} beside their intervals; " if parts else ""
+
+
+# Starts of the search beside the optimum: with one number held elsewhere the best branch may be another.
+_STARTS = 8
+
+
+def resting_on(
+    identification: Identification,
+    margins: Sequence[Combination],
+    intervals: Mapping[str, Interval],
+    *,
+    name: str,
+    at: Sequence[float],
+) -> tuple[str, ...]:
+    """Return the names of the numbers that leave their 95 % intervals where one parameter is held at another value.
+
+    ``identification``: the fit. ``margins``: its margins as numbers. ``intervals``: the intervals of parameters,
+    combinations and margins, by name. ``name``: a free parameter. ``at``: the values at which it is held; those beyond
+    its bounds are taken at them.
+    """
+    objective = identification.objective
+    place = [p.name for p in objective.free_parameters].index(name)
+    held = np.clip(np.array(at), objective.lower[place], objective.upper[place])
+    optimum = identification.values[list(objective.free)]
+    moved, _ = Conditional.of(objective, place).lowest(held, optimum[np.newaxis], starts=_STARTS)
+    named = objective.named(objective.complete(moved))
+    with np.errstate(all="ignore"):
+        values = {p.name: named[p.name] for p in objective.free_parameters if p.name != name}
+        values |= {one.name: np.asarray(one.of(named)) for one in (*objective.combinations, *margins)}
+    return tuple(
+        number
+        for number, there in values.items()
+        if number in intervals and np.any((there < intervals[number].lower) | (there > intervals[number].upper))
+    )

@@ -1,15 +1,17 @@
 """Putting a whole set of files into a folder, with one rename as the moment at which they count."""
 
 import contextlib
+import errno
+import os
 import shutil
-from collections.abc import Collection, Iterator
+import sys
+from collections.abc import Collection, Iterable, Iterator
 from pathlib import Path, PurePosixPath
 
 from shaftprint.errors import PublicationError
 from shaftprint.files import naming
 from shaftprint.publication._journal import CONTROL_NAMES, JOURNAL, STAGING, Journal, expect_inside, read_journal
 from shaftprint.publication._lock import locked
-from shaftprint.publication._sync import sync_files, sync_folders
 
 
 @contextlib.contextmanager
@@ -168,3 +170,30 @@ def _not_completed(folder: Path, error: OSError) -> PublicationError:
         f"({error.strerror or error}); close what has it open or make the folder writable, then run "
         f"shaftprint show {folder}, which puts all in place."
     )
+
+
+# Some network disks sync their folders themselves and refuse to be asked.
+_NOT_NEEDED = (errno.EINVAL, errno.ENOTSUP)
+
+
+def sync_files(paths: Iterable[Path]) -> None:
+    """Wait until the content of files is on the disk."""
+    for path in paths:
+        # Windows syncs only what is open for writing
+        with path.open("r+b") as file:
+            os.fsync(file.fileno())
+
+
+def sync_folders(paths: Iterable[Path]) -> None:
+    """Wait until the names in folders are on the disk; Windows writes them with the files."""
+    if sys.platform == "win32":
+        return
+    for path in paths:
+        descriptor = os.open(path, os.O_RDONLY)
+        try:
+            os.fsync(descriptor)
+        except OSError as error:
+            if error.errno not in _NOT_NEEDED:
+                raise
+        finally:
+            os.close(descriptor)

@@ -13,13 +13,13 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.catalogue._limited import limited
+from shaftprint.distributions import chi_square_tail
 from shaftprint.fingerprint._fingerprint import Fingerprint
 from shaftprint.identify.fit._estimate import Estimate
 from shaftprint.identify.fit._identification import Identification
 from shaftprint.identify.likelihood._prior import Prior
 from shaftprint.limits._identify_limits import expect_engine, identify_limits
 from shaftprint.limits._limit_fit import LimitFit
-from shaftprint.survey._contradiction import contradiction
 from shaftprint.survey._fits import priors_of
 from shaftprint.survey._limits import with_levels_beside
 from shaftprint.survey._line_with_limits import expect_limitable
@@ -153,3 +153,34 @@ def _priors(survey: Survey, model: LimitedModel, limits: LimitFit) -> Mapping[st
     stated = {one.name: Prior(one.value, one.std) for one in limits.numbers if one.name in model.names}
     known = dict(survey.identification.settings.priors)
     return priors_of(model.structure, survey.vessel, survey.signals, known) | stated
+
+
+DISAGREE_BELOW = 0.01
+"""Below this p-value the records of a joint fit contradict its sines, as for a fit that is refused."""
+_NAMED = 3
+
+
+def contradiction(sines: Identification, joint: Identification) -> str:
+    """Return in words how a joint fit contradicts the sines that are part of it; empty where it does not.
+
+    What the sines, and what was known before, lose at the parameters of the joint fit is at most chi-square distributed
+    with as many degrees of freedom as they have parameters, if all records are of one line: twice the difference of
+    their costs (S. S. Wilks, The large-sample distribution of the likelihood ratio for testing composite hypotheses,
+    Annals of Mathematical Statistics 9, 1938). The steps may move the sines along what these do not know, and nowhere
+    else.
+
+    ``sines``: fit to the sines alone. ``joint``: fit to sines and records together, of the same line with limits.
+    """
+    of_joint = {estimate.name: estimate.value for estimate in joint.parameters}
+    moved = np.array([of_joint.get(estimate.name, estimate.value) for estimate in sines.parameters])
+    residuals, _ = sines.objective.residuals(moved[None])
+    lost = max(float(np.sum(residuals**2)) - 2.0 * sines.cost, 0.0)
+    if chi_square_tail(lost, len(moved)) >= DISAGREE_BELOW:
+        return ""
+    far = sorted(sines.parameters, key=lambda one: -abs(of_joint.get(one.name, one.value) - one.value) / one.std)
+    named = ", ".join(f"{one.name} {one.value:.3g} and {of_joint[one.name]:.3g}" for one in far[:_NAMED])
+    return (
+        f"The fit of everything was not used: its steps and sweeps contradict the sines (p below {DISAGREE_BELOW:g}), "
+        f"which alone and with them give {named}. Line and levels are those of the sines with the limits beside them; "
+        "something acts in the large moves that no limit describes, or the line was another one during them."
+    )

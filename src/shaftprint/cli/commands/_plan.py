@@ -13,29 +13,34 @@ from shaftprint.choices import SET_POINT_RATE_HZ, STATED_LIMITS
 from shaftprint.cli._command_group import NOT_REACHED
 from shaftprint.cli._drive_options import drive_option, expect_not_given, is_given
 from shaftprint.cli._drive_plan import plan_on_the_bench
-from shaftprint.cli._known_values import by_name, known_options, named_value
+from shaftprint.cli._known_values import by_name, named_value
 from shaftprint.cli._next import free, print_next
 from shaftprint.cli._options import DEFAULT_HELP, OWN_FILE_HELP, vessel_option
 from shaftprint.cli._plan_options import limit_of, seconds_of, shares_of, wish_from, wish_of
-from shaftprint.cli._plan_tables import print_planned_test
+from shaftprint.cli._ship_options import known_options
+from shaftprint.cli._terminal import answer, echo, print_findings
 from shaftprint.cli._vessel_file import checked_vessel
-from shaftprint.cli.output._fingerprint_file import fingerprint_at
+from shaftprint.cli.output._fingerprint_file import REPORT, fingerprint_at
+from shaftprint.cli.output._json import give
 from shaftprint.cli.output._progress import Steps
 from shaftprint.cli.output._results_options import Results, results_options
+from shaftprint.cli.output._tables import print_tables
 from shaftprint.late import late
 
 with late():
     from shaftprint.catalogue._own_structure import TypedName
-    from shaftprint.design.files import _plan_folder
+    from shaftprint.design.files import _plan_folder, _plan_json, _set_point_files
     from shaftprint.design.files._plan_folder import write_plan_files
     from shaftprint.design.inputs._stated_limits import StatedLimit
     from shaftprint.design.inputs._wish import Wish
     from shaftprint.design.planned_test._planned_test import PlannedTest
     from shaftprint.design.planning._from_knowledge import plan_test
+    from shaftprint.design.views._abort_card import abort_card
     from shaftprint.forecast._knowledge import knowledge_of
     from shaftprint.forecast._ship_before_test import ShipBeforeTest
     from shaftprint.rehearsal._rehearse import rehearse_on_tug
     from shaftprint.report.plan._plan_page import render_plan
+    from shaftprint.tables._plan import abort_table, planned_leg_table, predicted_number_table, wish_table
     from shaftprint.vessel._vessel import Vessel
 
 
@@ -221,3 +226,29 @@ def _rehearsed(planned: PlannedTest, vessel: Vessel, count: int, seed: int, step
     if count == 0:
         return planned
     return replace(planned, rehearsal=rehearse_on_tug(planned, vessel, count=count, first_seed=seed, progress=steps))
+
+
+def print_planned_test(planned: PlannedTest, folder: Path) -> None:
+    """Print what a planned test reaches.
+
+    ``planned``: the test. ``folder``: where its files are.
+    """
+    first, *others = planned.sentences
+    answer(first)
+    echo()
+    card = abort_card(planned)
+    print_tables([wish_table(planned)])
+    print_findings("What to know of it", [*others, f"Planned with the {planned.noise_source}."])
+    print_tables([predicted_number_table(planned), planned_leg_table(planned), abort_table(card)])
+    give("duration_s", planned.campaign.duration_s)
+    give("rehearsed", planned.rehearsal is not None)
+    give("met", planned.plan.is_enough)
+    give("predicted", list(planned.plan.promised.values()))
+    give("wished_std", planned.plan.targets)
+    give("remedies", planned.remedies)
+    give("card", card)
+    echo(f"Page:      {folder / REPORT}")
+    echo(f"Campaign:  {folder / _plan_folder.CAMPAIGN}")
+    files = (_set_point_files.CSV, _set_point_files.GENERATOR, _set_point_files.MAT)
+    echo(f"Set point: {', '.join(str(folder / name) for name in files)}")
+    echo(f"Plan:      {folder / _plan_json.PLAN}")

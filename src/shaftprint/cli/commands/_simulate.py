@@ -2,33 +2,38 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from pathlib import Path
 
 import click
 
 from shaftprint.choices import CRASH_STOP
-from shaftprint.cli._known_values import by_name, named_value, rpm_per_volt_option
+from shaftprint.cli._known_values import by_name, named_value
 from shaftprint.cli._options import LIMITED_HELP, NAMES, OWN_FILE_HELP
-from shaftprint.cli._simulation_tables import print_simulation
-from shaftprint.cli._terminal import answer
+from shaftprint.cli._ship_options import rpm_per_volt_option
+from shaftprint.cli._terminal import answer, say
 from shaftprint.cli._vessel_file import checked_vessel
 from shaftprint.cli.commands._inertia import picture
 from shaftprint.cli.output._file_to_write import expect_free, expect_no_input
 from shaftprint.cli.output._fingerprint_file import fingerprint_at, fingerprint_file
 from shaftprint.cli.output._progress import no_progress_option, progress
+from shaftprint.cli.output._tables import print_table
+from shaftprint.digits import rounded, unit_text, with_deviation
 from shaftprint.files import written_whole
 from shaftprint.late import late
+from shaftprint.plain_table import MEANING, Table, numbers, texts
 
 with late():
     import numpy as np
 
+    from shaftprint.arrays import FloatArray
     from shaftprint.campaign._campaign import load_campaign
     from shaftprint.catalogue._own_structure import TypedName
     from shaftprint.forecast import _crash_stop
     from shaftprint.forecast._crash_stop import LeverMove, crash_stop
     from shaftprint.forecast._ship_before_test import ShipBeforeTest
-    from shaftprint.forecast._simulation import simulated_ship, write_simulation
+    from shaftprint.forecast._simulation import Simulation, simulated_ship, write_simulation
     from shaftprint.report.charts._pictures import save_chart
     from shaftprint.report.figures._simulation import simulation_chart
     from shaftprint.vessel import _vessel
@@ -207,3 +212,62 @@ def _expect_only_a_lever(*others: object) -> None:
         raise click.UsageError(
             f"{CRASH_STOP} is moved by --lever alone, without --campaign, --input, --rpm-per-volt, --linear or --hold."
         )
+
+
+VALUE_DIGITS, RANGE_DIGITS, STD_DIGITS = 6, 5, 2
+# Of the largest value: less is what rounding leaves of zero.
+NOTHING = 1e-12
+
+
+def print_simulation(simulation: Simulation) -> None:
+    """Print the parameters with where they come from, the range of every signal, and what a reader must know."""
+    model, time_s = simulation.run.model, simulation.time_s
+    structure = model.structure
+    std = dict(zip(model.uncertain, np.sqrt(np.diag(model.covariance)), strict=True))
+    std |= dict.fromkeys(model.not_known, math.inf)
+    values = [
+        (p.name, _value(value, std.get(p.name)), unit_text(p.unit), origin, p.meaning)
+        for p, value, origin in zip(structure.parameters, model.values, model.origins, strict=True)
+        if not (p.held and value == 0.0 and origin != "--set")
+    ]
+    print_table(
+        Table(
+            title=f"{structure.name}: {structure.title}",
+            columns=(*texts("parameter"), *numbers("value"), *texts("unit", "from"), MEANING),
+            rows=tuple(values),
+        )
+    )
+    ranges = [
+        (
+            signal.title,
+            signal.unit,
+            *(rounded(end, RANGE_DIGITS) for end in _ends(signal.values)),
+            "" if signal.std is None else rounded(float(signal.std.max()), STD_DIGITS),
+        )
+        for signal in simulation.signals
+    ]
+    print_table(
+        Table(
+            title=f"From {time_s[0]:g} to {time_s[-1]:g} s",
+            columns=(*texts("signal", "unit"), *numbers("lowest", "highest", "largest std")),
+            rows=tuple(ranges),
+        )
+    )
+    if model.uncertain:
+        say("The standard deviations hold the covariance of the parameters, not noise, weather or load.")
+    if model.not_known:
+        pronoun = "it" if len(model.not_known) == 1 else "them"
+        say(f"The test said nothing of {', '.join(model.not_known)}: the band leaves {pronoun} out.")
+    for sentence in simulation.remarks:
+        say(sentence)
+
+
+def _ends(values: FloatArray) -> tuple[float, float]:
+    """Return the smallest and the largest value, without what rounding leaves of zero."""
+    ends = (float(values.min()), float(values.max()))
+    nothing = NOTHING * max(map(abs, ends))
+    return tuple(0.0 if abs(end) < nothing else end for end in ends)  # type: ignore[return-value]
+
+
+def _value(value: float, std: float | None) -> str:
+    return rounded(value, VALUE_DIGITS) if std is None else with_deviation(value, std)

@@ -12,12 +12,12 @@ from shaftprint.cli._fit_options import fit_options
 from shaftprint.cli._known_values import named_variable
 from shaftprint.cli._next import free, plan_after, print_next
 from shaftprint.cli._options import DEFAULT_HELP, OWN_FILE_HELP, campaign_option, vessel_option
-from shaftprint.cli._terminal import echo
-from shaftprint.cli._validation_tables import print_validation
+from shaftprint.cli._terminal import echo, print_findings
 from shaftprint.cli.output._fingerprint_file import fingerprint_at
+from shaftprint.cli.output._json import give
 from shaftprint.cli.output._output_folder import force_option, output_folder
 from shaftprint.cli.output._progress import no_progress_option, progress
-from shaftprint.cli.output._tables import print_table
+from shaftprint.cli.output._tables import print_table, print_tables
 from shaftprint.late import late
 
 with late():
@@ -33,7 +33,7 @@ with late():
     from shaftprint.survey._survey import settings_by_name
     from shaftprint.survey._trial import load_trial
     from shaftprint.survey._validate import Asked, validate_fingerprint
-    from shaftprint.tables._validation import models_table
+    from shaftprint.tables._validation import excerpt_name, misfit_table, models_table, step_number_table
     from shaftprint.validation._foreign import ForeignModel
     from shaftprint.validation._model import identified_model
     from shaftprint.validation._thesis_models import thesis_models
@@ -203,3 +203,11 @@ def _print_next(
         print_next("limits", *files)
     else:
         print_next(*plan_after(fingerprint, vessel, ship))
+
+
+def print_validation(validation: Validation) -> None:
+    """Print the verdict, every excerpt, the numbers of every step, and how it was found."""
+    give("misfits", {excerpt_name(c): c.misfits for c in validation.comparisons})
+    print_findings(f"Validation: {validation.headline}", validation.sentences, is_answer=True)
+    print_tables([misfit_table(validation), step_number_table(validation)])
+    print_findings("How this was found", validation.findings)

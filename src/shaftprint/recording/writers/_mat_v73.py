@@ -1,6 +1,7 @@
 """MATLAB files of version 7.3: HDF5 behind a MATLAB header of 512 bytes."""
 
 import contextlib
+import re
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
@@ -8,11 +9,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from shaftprint.errors import RecordingError
 from shaftprint.files import written_whole
 from shaftprint.recording._channel import Channel
 from shaftprint.recording._container import CHUNK_SAMPLES
 from shaftprint.recording._hdf5_output import Hdf5Output
-from shaftprint.recording.writers._mat_names import expect_matlab_names
 from shaftprint.recording.writers._refused import told_as_refused
 from shaftprint.recording.writers._shared_clock import on_one_clock
 
@@ -94,3 +95,22 @@ def _write_text(file: Any, name: str, text: str) -> None:
 
 def _mark(dataset: Any, kind: str) -> None:
     dataset.attrs["MATLAB_class"] = np.bytes_(kind)
+
+
+_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,57}")
+"""A MATLAB name has at most 63 characters, of which ``_unit`` takes five."""
+
+_TAKEN = ("sample_rate_hz", "start_s", "time", "t", "fs")
+
+
+def expect_matlab_names(path: Path, names: Iterable[str]) -> None:
+    """Refuse names that MATLAB or the reader would not take as those of channels.
+
+    Raises RecordingError if a name cannot be a MATLAB variable or means the clock.
+    """
+    for name in names:
+        if not _NAME.fullmatch(name) or name in _TAKEN:
+            raise RecordingError(
+                f'{path}: expected a channel name that MATLAB takes (letter, then letters, digits, "_"; '
+                f'not {", ".join(_TAKEN)}), found "{name}".'
+            )

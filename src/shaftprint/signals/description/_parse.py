@@ -5,11 +5,10 @@ from itertools import pairwise
 
 import numpy as np
 
+from shaftprint.arrays import FloatArray
 from shaftprint.signals.description._course import Course
-from shaftprint.signals.description._holds import stairs_from
 from shaftprint.signals.description._pieces import Piece, Stairs, Straight, Wave
 from shaftprint.signals.description._repeats import repeated_from
-from shaftprint.signals.description._straights import SHORTEST_S, straight_from
 from shaftprint.signals.description._waves import wave_from
 
 # A repetition has to explain so many times as much as a wave, and a wave as a straight line.
@@ -162,3 +161,118 @@ def _meeting_s(course: Course, before: Piece, after: Piece, border_s: float) -> 
     k = int(crossings[np.argmin(np.abs(time[crossings] - border_s))])
     share = difference[k] / (difference[k] - difference[k + 1])
     return float(time[k] + share * (time[k + 1] - time[k]))
+
+
+# The shortest straight piece [s]; by how much one is tried longer than the one before it.
+SHORTEST_S, _GROWTH = 0.4, 1.2
+# Residual of a straight piece: standard deviations of noise, and share of all motion.
+_STDS, _SHARE = 3.0, 0.0015
+
+
+def straight_from(course: Course, first: int, stop: int) -> Straight | None:
+    """Return the longest straight piece that begins at a sample; None where there is none."""
+    shortest = max(round(SHORTEST_S * course.rate_hz), 8)
+    tolerance = _STDS * course.noise_v + _SHARE * course.range_v
+    if stop - first < shortest:
+        return None
+    best, count, step = 0, shortest, 0
+    while True:
+        count = min(count, stop - first)
+        if not _is_straight(course.values_v[first : first + count], tolerance):
+            break
+        best = count
+        if count == stop - first:
+            break
+        count = max(round(count * _GROWTH), count + 1)
+    if not best:
+        return None
+    # between the longest that fits and the shortest that does not, by halves
+    step = max(count - best, 1) // 2
+    while step:
+        if best + step <= stop - first and _is_straight(course.values_v[first : first + best + step], tolerance):
+            best += step
+        step //= 2
+    time = course.times(first, first + best)
+    middle_s = 0.5 * float(time[0] + time[-1])
+    slope, middle = np.polyfit(time - middle_s, course.values_v[first : first + best], 1)
+    level = abs(slope) * best / course.rate_hz <= course.flat_v
+    return Straight(
+        begin_s=float(time[0]),
+        end_s=float(time[-1]) + 1.0 / course.rate_hz,
+        middle_s=middle_s,
+        middle_v=float(middle),
+        slope_v_per_s=0.0 if level else float(slope),
+    )
+
+
+def _is_straight(values: FloatArray, tolerance_v: float) -> bool:
+    """Return whether values lie on a line, their last quarter too."""
+    place = np.arange(values.size) - 0.5 * (values.size - 1)
+    slope = float(place @ values) / float(place @ place)
+    residual = values - values.mean() - slope * place
+    tail = residual[-max(values.size // 4, 4) :]
+    return float(np.sqrt(np.mean(residual**2))) <= tolerance_v and abs(float(tail.mean())) <= tolerance_v
+
+
+# What stands for less is no level; what takes longer is no jump [s].
+_SHORTEST_S, _LONGEST_JUMP_S = 0.08, 0.06
+_JUMP_SHARE = 0.02
+
+
+def stairs_from(course: Course, first: int, stop: int) -> Stairs | None:
+    """Return the levels from a sample on, as long as the set point only stands and jumps; None without a jump.
+
+    ``course``: the set point. ``first``, ``stop``: sample to begin with, and the one that is not looked at any more.
+    """
+    shortest = max(round(_SHORTEST_S * course.rate_hz), 3)
+    across = max(round(_LONGEST_JUMP_S * course.rate_hz), 2)
+    smallest_v = max(10.0 * course.noise_v, _JUMP_SHARE * course.range_v, 2.0 * course.flat_v)
+    values = course.values_v
+    levels: list[float] = []
+    borders: list[float] = []
+    place = first
+    while place < stop:
+        hold = _hold(course, place, min(place + across, stop), stop, shortest)
+        if hold is None:
+            break
+        begin, end, level = hold
+        if levels:
+            if abs(level - levels[-1]) < smallest_v:
+                break
+            middle = 0.5 * (level + levels[-1])
+            window = values[place - 1 : begin + 1] > middle
+            change = np.flatnonzero(window[1:] != window[:-1])
+            k = place - 1 + (int(change[0]) if change.size else 0)
+            step = values[k + 1] - values[k]
+            share = (middle - values[k]) / step if step else 0.5
+            borders.append(float(course.start_s + (k + share) / course.rate_hz))
+        levels.append(level)
+        place = end
+    if len(levels) < 2:
+        return None
+    return Stairs(
+        begin_s=course.start_s + first / course.rate_hz,
+        end_s=course.start_s + place / course.rate_hz,
+        jumps_s=tuple(borders),
+        levels_v=tuple(levels),
+    )
+
+
+def _hold(course: Course, first: int, latest: int, stop: int, shortest: int) -> tuple[int, int, float] | None:
+    """Return the hold that begins between two samples, as begin, end and level; None where none does."""
+    values = course.values_v
+    for begin in range(first, min(latest, stop - shortest) + 1):
+        part = values[begin : begin + shortest]
+        if part.max() - part.min() > 2.0 * course.flat_v:
+            continue
+        level = float(np.median(part))
+        end = begin + shortest
+        while end < stop:
+            ahead = values[end : min(end + 4096, stop)]
+            away = np.flatnonzero(np.abs(ahead - level) > course.flat_v)
+            if away.size:
+                end += int(away[0])
+                break
+            end += ahead.size
+        return begin, end, float(np.median(values[begin : max(end - 2, begin + 1)]))
+    return None

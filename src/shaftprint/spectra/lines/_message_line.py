@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shaftprint.arrays import ComplexArray
+from shaftprint.arrays import ComplexArray, FloatArray
+from shaftprint.sender_cycle import times_of_course
 from shaftprint.spectra.lines._line_fit import LineFit, SineMethod, WindowSamples, cut_window, cut_window_at
-from shaftprint.spectra.lines._message_times import times_of_values
 from shaftprint.spectra.lines._modulation import without_modulation
 from shaftprint.spectra.lines._noise import ShaftRelation, line_noise
 from shaftprint.spectra.lines._signal_to_noise import NEIGHBOUR_BINS, LineVariances, line_variances
@@ -193,3 +193,16 @@ def _with_steps(variance: float, messages: MessageWindow, fit: LineFit, amplitud
     turns = fit.samples.time_s * fit.samples.window.frequency_hz
     phases = np.unique(np.round(turns * _PHASES) % _PHASES).size
     return max(variance, white / messages.count) + distortion + float(undithered[0]) * white / phases
+
+
+def times_of_values(fit: LineFit) -> FloatArray | None:
+    """Return when the values of messages were taken, where that is not at their stamps.
+
+    ``fit``: the line, fitted at the times of the stamps, of one channel. Returns times since the start of the window
+    [s], shape (messages,); None where the stamps are those of the values, the sender keeps no cycle, or the line is too
+    slow or too weak to tell.
+    """
+    time_s = fit.samples.time_s
+    omega_rad_s = 2.0 * np.pi * fit.samples.window.frequency_hz
+    slope = (1j * omega_rad_s * fit.amplitude[0, 0] * np.exp(1j * omega_rad_s * time_s)).real
+    return times_of_course(time_s, fit.residual[0], slope, rate_hz=fit.samples.rate_hz)

@@ -2,7 +2,9 @@
 
 import contextlib
 import os
+import re
 import sqlite3
+import sys
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,13 +12,11 @@ from typing import Any, Final
 
 import sqlalchemy as sa
 
-from shaftprint.errors import StoreError
-from shaftprint.store._mounts import network_file_system
+from shaftprint.errors import DatabaseError, StoreError
 from shaftprint.store.database._hashes import Hashes
 from shaftprint.store.database._ledger import Ledger
 from shaftprint.store.database._location import Location
 from shaftprint.store.database._reader import Reader
-from shaftprint.store.database._refusals import refusals_in_words
 from shaftprint.store.database._writer import Writer
 
 # Writers of PostgreSQL wait for each other, as those of SQLite do: two that add the same ship at one time are in order.
@@ -207,3 +207,104 @@ def _server(location: Location) -> sa.Engine:
         raise StoreError(
             'PostgreSQL: expected the package psycopg, found none; pip install "shaftprint[store]".'
         ) from None
+
+
+NETWORK: Final = frozenset(
+    {
+        "nfs",
+        "nfs4",
+        "cifs",
+        "smb",
+        "smb2",
+        "smb3",
+        "smbfs",
+        "ncpfs",
+        "afs",
+        "fuse.sshfs",
+        "fuse.rclone",
+        "fuse.smbnetfs",
+    }
+)
+"""Types of file systems that lie on another computer, as Linux names them."""
+_MOUNTS = Path("/proc/self/mountinfo")
+_OCTAL = re.compile(r"\\([0-7]{3})")
+
+
+def network_file_system(path: Path, *, mounts: str | None = None) -> str | None:
+    """Return what kind of network file system a path lies on; None for a disk of this computer.
+
+    ``path``: a file, which need not be there. ``mounts``: table of mounts as Linux gives it in
+    ``/proc/self/mountinfo``; None for that of this computer, where it has one.
+    """
+    for text in (str(path), str(path.resolve())):
+        if re.match(r"[\\/]{2}(?![?.][\\/])[^\\/]", text) or re.match(r"[\\/]{2}\?[\\/]UNC[\\/]", text, re.IGNORECASE):
+            return "a UNC path"
+    if mounts is None:
+        mounts = _MOUNTS.read_text(encoding="utf-8", errors="surrogateescape") if sys.platform == "linux" else ""
+    kind = _type_at(path.resolve(), mounts)
+    return kind if kind in NETWORK else None
+
+
+def _type_at(path: Path, mounts: str) -> str:
+    """Return the type of the file system at the longest mount point above a path; a later one covers an earlier."""
+    longest, found = -1, ""
+    for line in mounts.splitlines():
+        # ID, parent, device, root, mount point, options, other fields, a hyphen, type, source, options
+        left, hyphen, right = line.partition(" - ")
+        fields = left.split(" ")
+        if not hyphen or len(fields) <= 4:
+            continue
+        point = Path(_OCTAL.sub(lambda code: chr(int(code[1], 8)), fields[4]))
+        if path.is_relative_to(point) and len(point.parts) >= longest:
+            longest, found = len(point.parts), right.split(" ", 1)[0]
+    return found
+
+
+_DAMAGED: Final = "it is damaged; put a backup in its place, and see with shaftprint store check what is wrong"
+_BUSY: Final = "another program has been writing to it for more than {busy_s:g} s; try again when it has ended"
+# What SQLite says, in the order in which it is looked for, and what it means to a user.
+_SAID: Final = {
+    "database is locked": _BUSY,
+    "database table is locked": "another program is writing to it; try again when it has ended",
+    "disk is full": "the disk is full; make room and do it again, for nothing was written",
+    "not a database": "expected a store of fingerprints, found a file of another kind; name another file",
+    "malformed": _DAMAGED,
+    "could not decode": _DAMAGED,
+    "disk i/o error": "the disk does not take or give its data; check the disk and the free space",
+    "readonly database": "it may be read only; check the permissions of the file and of its folder",
+    "unable to open": "it cannot be opened; check that it is there, and the permissions of the file and of its folder",
+    "no such table": "expected a store of fingerprints, found another database; name another file",
+    "no such column": "expected a store of fingerprints, found another database; name another file",
+    # PostgreSQL
+    "lock timeout": _BUSY,
+    "no space left": "the disk of the server is full; make room and do it again, for nothing was written",
+    "permission denied": "the user has no permission for it; ask whoever keeps the server",
+    "read-only transaction": "the server may be read only; ask whoever keeps it",
+}
+_LONGEST: Final = 300
+
+
+@contextlib.contextmanager
+def refusals_in_words(location: Location, *, busy_s: float) -> Iterator[None]:
+    """Turn what a database refuses into one sentence, without a password."""
+    try:
+        yield
+    except (sa.exc.SQLAlchemyError, sqlite3.Error, OverflowError, UnicodeError) as error:
+        original = getattr(error, "orig", None) or error
+        if isinstance(original, OverflowError | UnicodeEncodeError):
+            # of what was to be written, not of what is there: neither another try nor a backup would help
+            raise StoreError(
+                f"{location.shown}: expected times, numbers and letters that a database keeps, found others "
+                f"({original}); correct the record; the store is as it was."
+            ) from None
+        raise DatabaseError(f"{location.shown}: {_in_words(original, location, busy_s)}.") from None
+
+
+def _in_words(error: BaseException, location: Location, busy_s: float) -> str:
+    said = " ".join(str(error).split())
+    for sign, words in _SAID.items():
+        if sign in said.lower():
+            return words.format(busy_s=busy_s)
+    if isinstance(error, UnicodeError):
+        return _DAMAGED
+    return f"the database refuses: {location.redacted(said)[:_LONGEST].rstrip('.')}"
