@@ -7,12 +7,12 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.design.inputs._assumed_ship import AssumedShip
-from shaftprint.design.inputs._noise_of_line import noise_of_line
 from shaftprint.design.plan._band import HELD, Band
 from shaftprint.design.plan._plan import Plan, noise_freedom
 from shaftprint.distributions import deviations_passed
 from shaftprint.errors import DesignError
 from shaftprint.identify.prediction._accuracy import predict_joint_deviations
+from shaftprint.identify.prediction._noise_of_line import noise_of_line
 from shaftprint.identify.prediction._planned_response import planned_lines
 from shaftprint.models._nyquist import stable_rows
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from shaftprint.catalogue import structure
-from shaftprint.design.inputs._noise_of_line import noise_of_line
 from shaftprint.identify import NoiseLevels
+from shaftprint.identify.prediction._noise_of_line import noise_of_line
 from shaftprint.survey import STAN_TUG_NOISE_AT_SPEEDS
 from shaftprint.survey._shipped_noise import STAN_TUG_LINE
 from shaftprint.tug import Tug, normalised_truth
