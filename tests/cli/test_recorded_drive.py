@@ -1,5 +1,6 @@
 """A drive file that a recording begins, and options that say what a recording does not."""
 
+import h5py
 import numpy as np
 import pytest
 from click.testing import CliRunner
@@ -53,6 +54,18 @@ def test_one_channel_begins_no_drive(tmp_path):
     assert said.exit_code == 1
     assert "expected an input and an output on one clock, found u" in said.output
     assert not (tmp_path / "mine.toml").exists()
+
+
+def test_a_channel_without_a_number_is_not_in_the_file(tmp_path):
+    path = tmp_path / "log.h5"
+    with h5py.File(path, "w") as file:
+        for name, values in {"a": np.full(30, np.nan), "b": np.arange(30) % 5, "c": np.arange(30) % 7}.items():
+            file.create_dataset(name, data=values.astype(float)).attrs["sample_rate_hz"] = 10.0
+    said = _said("new", "drive", "--from", path, "-o", tmp_path / "mine.toml")
+    assert said.exit_code == 0, said.output
+    drive = load_drive(tmp_path / "mine.toml")
+    assert {one.channel for one in (*drive.inputs, *drive.outputs)} == {"b", "c"}
+    assert "without a number, and not in the file: a." in said.output
 
 
 @pytest.mark.slow

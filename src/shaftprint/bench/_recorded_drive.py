@@ -32,7 +32,7 @@ class RecordedDrive:
     moved: str
     """The one that is taken for the input, by a guess."""
     left_out: tuple[str, ...]
-    """Channels on other clocks."""
+    """Channels on other clocks, or without a number."""
 
 
 def recorded_drive(recording: Path) -> RecordedDrive:
@@ -44,15 +44,16 @@ def recorded_drive(recording: Path) -> RecordedDrive:
     """
     with read_recording(recording) as opened:
         channels = list(opened.channels.values())
-        first = channels[0]
+        begun = {one.name: one.values(0, min(one.count, _MOST_SAMPLES)) for one in channels}
+        values = {name: one for name, one in begun.items() if np.isfinite(one).any()}
+        first = next((one for one in channels if one.name in values), channels[0])
         clock = (first.rate_hz, first.start_s, first.count)
-        alike = [one for one in channels if (one.rate_hz, one.start_s, one.count) == clock]
+        alike = [one for one in channels if one.name in values and (one.rate_hz, one.start_s, one.count) == clock]
         if len(alike) < 2:
             raise RecordingError(
                 f"{recording}: expected an input and an output on one clock, found {', '.join(opened.channels)}; put "
                 "them into one file with `shaftprint convert` or `shaftprint merge`."
             )
-        values = {one.name: one.values(0, min(one.count, _MOST_SAMPLES)) for one in alike}
         moved = next((one for one in alike if _is_named_as_input(one.name)), None)
         moved = moved or max(alike, key=lambda one: _still(values[one.name]))
         return RecordedDrive(
@@ -70,11 +71,8 @@ def _is_named_as_input(name: str) -> bool:
 
 def _still(values: FloatArray) -> float:
     """Return the share of samples that are as the one before: an input is put out in steps."""
-    return (
-        float(np.mean(np.diff(values) == 0.0))
-        if values.size > 1 and np.ptp(values[np.isfinite(values)]) > 0.0
-        else -1.0
-    )
+    numbers = values[np.isfinite(values)]
+    return float(np.mean(np.diff(values) == 0.0)) if numbers.size > 1 and np.ptp(numbers) > 0.0 else -1.0
 
 
 def _text(recording: Path, moved: Channel, outputs: list[Channel], values: dict[str, FloatArray]) -> str:

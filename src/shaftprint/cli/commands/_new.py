@@ -93,7 +93,7 @@ def command(
         write_bytes(path, drive.text.encode(), noun="drive file", error=SettingsError)
         answer(f"{path}: {len(drive.channels)} channels of {recorded}; {drive.moved} as the input, by a guess.")
         if drive.left_out:
-            echo(f"On other clocks, and not in the file: {', '.join(drive.left_out)}.")
+            echo(f"On other clocks or without a number, and not in the file: {', '.join(drive.left_out)}.")
         return
     if recorded is not None and vessel is not None:
         if kind != "campaign" or test is not None or card is not None:

@@ -23,6 +23,7 @@ from shaftprint.recording.readers._hints import rate_hint
 from shaftprint.recording.readers._library_output import quiet, remarks
 from shaftprint.recording.readers._mdf_frames import frames_of, holds_frames, holds_no_values, is_bus_logging
 from shaftprint.recording.readers._mdf_records import MdfRecords, expect_in_record
+from shaftprint.recording.readers._mdf_unfinished import FINISHED_HERE, bytes_to_read
 from shaftprint.recording.readers._mdf_values import by_formula, is_worked_out_here, numbers_of, unit_of
 from shaftprint.recording.readers._opened import Opened
 from shaftprint.recording.readers.can._channels import Decoded, decoded
@@ -63,7 +64,7 @@ def read(path: Path, **hints: object) -> Recording:
     asammdf = library(path, "asammdf", NAME)
     _close_in_silence(asammdf)
     _expect_version(path)
-    handle = path.open("rb")
+    handle, is_finished_here = bytes_to_read(path)
     try:
         with told_as_damage(path, NAME) as said:
             file = asammdf.MDF(handle, process_bus_logging=False)
@@ -78,6 +79,7 @@ def read(path: Path, **hints: object) -> Recording:
         with told_as_damage(path, NAME):
             gathered = _gather(path, file, opened, rate, database, closing)
             gathered.left_out.update(remarks(said, "asammdf"))
+            gathered.remarks.extend([FINISHED_HERE] * is_finished_here)
             return gathered.recording_from_its_zero(f"{NAME} {file.version}", opened.close, _date(file))
     except BaseException:
         opened.close()
