@@ -16,6 +16,7 @@ from shaftprint import drive as drive
 from shaftprint import errors as errors
 from shaftprint import escape as escape
 from shaftprint import export as export
+from shaftprint import file_kinds as file_kinds
 from shaftprint import files as files
 from shaftprint import fingerprint as fingerprint
 from shaftprint import fleet as fleet

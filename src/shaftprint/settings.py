@@ -6,7 +6,7 @@ A settings file carries the unit of every number in its key: ``frequency_hz``, `
 import difflib
 import re
 import tomllib
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from importlib.resources import as_file, files
 from importlib.resources.abc import Traversable
 from pathlib import Path
@@ -16,6 +16,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from pydantic_core import ErrorDetails
 
 from shaftprint.errors import SettingsError
+from shaftprint.file_kinds import kind_of
 from shaftprint.files import reason, written_whole
 from shaftprint.notebook._shown import field_words
 from shaftprint.publication._publish import complete
@@ -34,14 +35,6 @@ _UNIT = re.compile(r"_(rad_s|rev_s|kg_m2|kg_m3|k?hz|mhz|rpm|deg|rad|rev|k?nm|k?w
 
 # A number with a decimal comma, as it stands in a line of its own.
 _COMMA = re.compile(r"\s*([\w.\"-]+)\s*=\s*([+-]?\d+),(\d+(?:[eE][+-]?\d+)?)\s*(?:#.*)?$")
-
-# Tables and keys that only one kind of file has, by what the kind is called.
-_KEYS_OF_KIND: Mapping[str, frozenset[str]] = {
-    "vessel": frozenset(("engine", "motor", "gearbox", "propeller", "working_point", "inertia", "sensors", "logger")),
-    "campaign": frozenset(("offset_v", "duration_s", "sines", "multisines", "chirps", "staircases", "legs", "ramps")),
-    "conditions": frozenset(("draught_m", "trim_m", "water_temperature_c", "depth_m", "wind_m_s")),
-    "drive": frozenset(("inputs", "outputs", "structure", "known", "fit")),
-}
 
 # What pydantic expects, in the words of somebody who fills in a file.
 _EXPECTED = {
@@ -107,21 +100,6 @@ def read_settings(path: str | Path, model_class: type[_Model]) -> _Model:
                 f"where a {kind} file is asked for."
             ) from None
         raise SettingsError(_describe_all(path, error, model_class, content)) from None
-
-
-def kind_of(keys: Iterable[str]) -> str | None:
-    """Return what kind of settings file has such keys: vessel, campaign, conditions or drive; None where none has."""
-    counts = {kind: len(own.intersection(keys)) for kind, own in _KEYS_OF_KIND.items()}
-    kind = max(counts, key=lambda name: counts[name])
-    return kind if counts[kind] > 0 else None
-
-
-def kind_of_file(path: Path) -> str | None:
-    """Return what kind of settings file a TOML file is; None where it is none, or cannot be read."""
-    try:
-        return kind_of(_content(path))
-    except SettingsError:
-        return None
 
 
 def _content(path: Path) -> dict[str, Any]:

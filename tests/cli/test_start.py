@@ -9,7 +9,7 @@ import pytest
 from shaftprint.campaign import load_campaign
 from shaftprint.cli._next import free
 from shaftprint.errors import SettingsError
-from shaftprint.settings import kind_of_file
+from shaftprint.file_kinds import kind_of_file
 from shaftprint.vessel import load_vessel
 
 CARD = (

@@ -15,6 +15,7 @@ pytest.importorskip("starlette", reason="pages need starlette")
 pytest.importorskip("sqlalchemy", reason="a store needs SQLAlchemy")
 
 from benchmarks.store_documents import document
+from tests.web.test_windows import recorded
 
 from shaftprint import __version__
 from shaftprint.store import (
@@ -28,6 +29,7 @@ from shaftprint.store import (
     refuse,
     renew,
 )
+from shaftprint.web._kept import Kept, Making, Upload
 
 pytestmark = pytest.mark.slow
 NOW = datetime(2026, 11, 24, 12, tzinfo=UTC)
@@ -106,6 +108,24 @@ def server(store):
     running.kill()
 
 
+@pytest.fixture
+def windows(server):
+    """Give the address of the windows of an upload that was looked at."""
+    number, kept = "00000000000000aa", Kept.at(server.folder / "state" / "server.db")
+    folder = server.folder / "state" / "recordings" / number
+    if not folder.exists():
+        folder.mkdir()
+        (folder / "log.nc").write_bytes(b"no recording")
+        line = {"imo": ADA, "ship": "Ada of a long name that no table has room for", "line": "port"}
+        kept.put_upload(
+            Upload(id=number, name="log.nc", size=12, sha256="ab" * 32, person="x", at=NOW.isoformat(), **line)
+        )
+        key, args = f"windows {number} stan-tug-1205 short", {"answer": recorded()}
+        kept.put_making(Making(key=key, kind="windows", args=args, state="done", sentence=""))
+    kept.close()
+    return f"{server.address}/recordings/{number}/windows?vessel=stan-tug-1205&campaign=short"
+
+
 def paths_of(page, server):
     page.goto(f"{server.address}/ships/{ADA}/port")
     shas = page.eval_on_selector_all("a[href^='/trials/']", "links => links.map(one => one.getAttribute('href'))")
@@ -118,6 +138,8 @@ def paths_of(page, server):
         "/jobs",
         "/jobs/1",
         "/upload",
+        "/recordings/00000000000000aa",
+        "/recordings/00000000000000aa/windows?vessel=stan-tug-1205&campaign=short",
         "/audit",
         "/nothing",
     )
@@ -125,6 +147,7 @@ def paths_of(page, server):
 
 @pytest.mark.parametrize("width", [375, 1440])
 @pytest.mark.parametrize("look", ["light", "dark"])
+@pytest.mark.usefixtures("windows")
 def test_pages_fit_and_can_be_read(browser, server, width, look):
     context = browser.new_context(viewport={"width": width, "height": 900}, color_scheme=look)
     page, requests, messages = context.new_page(), [], []
@@ -167,6 +190,70 @@ def test_pages_work_with_the_keyboard_and_without_scripts(browser, server):
     page.wait_for_url("**#events")
     assert page.get_by_role("cell", name="by hand").is_visible()
     context.close()
+
+
+def by_mouse(page, handle, seconds):
+    """Drag a handle by so many seconds of a recording of 100 s."""
+    box, wide = page.locator(handle).bounding_box(), page.locator(".course").bounding_box()["width"]
+    x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+    page.mouse.move(x, y)
+    page.mouse.down()
+    page.mouse.move(x + 5.0, y)
+    page.mouse.move(x + seconds / 100.0 * wide, y)
+    page.mouse.up()
+
+
+def file_of(page):
+    """Return the campaign file that the page shows, once the server has told it."""
+    page.locator(".course[data-state=shown]").wait_for()
+    return page.locator("#text").inner_text()
+
+
+def test_windows_moved_by_mouse_and_by_keys_give_the_same_campaign(browser, windows):
+    page = browser.new_page(viewport={"width": 1280, "height": 900})
+    texts = []
+    page.goto(windows)
+    as_it_was = file_of(page)
+    assert "settled_s = 24.0" in as_it_was
+    # the whole first test 1.2 s later, its window to end 3 s earlier; the second left out
+    by_mouse(page, '[data-test="0"] [data-part="later"]', 1.2)
+    by_mouse(page, '.lane [data-test="0"] [data-part="to"]', -3.0)
+    page.get_by_label("use S2").click()
+    texts.append(file_of(page))
+    page.goto(windows)
+    file_of(page)
+    page.locator('.lane [data-test="0"] [data-part="later"]').focus()
+    for key in ("Shift+ArrowRight", "ArrowRight", "ArrowRight"):
+        page.keyboard.press(key)
+    page.keyboard.press("Tab")
+    page.keyboard.press("Tab")
+    for _ in range(3):
+        page.keyboard.press("Shift+ArrowLeft")
+    page.keyboard.press("ArrowDown")
+    page.keyboard.press("Space")
+    texts.append(file_of(page))
+    assert texts[0] == texts[1]
+    assert tuple(
+        line for line in texts[0].splitlines() if line.partition(" ")[0] in ("start_s", "settled_s", "stop_s")
+    ) == ("start_s = 21.2", "settled_s = 25.2", "stop_s = 38.2")
+    assert "S2" not in texts[0]
+    # what cannot be is not written: a window of less than a period, before its test, before the recording
+    page.keyboard.press("Space")
+    page.keyboard.press("ArrowUp")
+    for key in ("PageDown", "PageDown"):
+        page.keyboard.press(key)
+    assert page.locator('[data-row="0"] [data-shown]').inner_text() == "25.2 to 28.2"
+    # taken back and taken in again, it is the campaign that it was
+    page.keyboard.press("Home")
+    page.locator('.lane [data-test="0"] [data-part="later"]').focus()
+    page.keyboard.press("Home")
+    page.wait_for_function("(text) => document.getElementById('text').innerText === text", arg=as_it_was)
+    page.get_by_role("button", name="Keep it for this line").click()
+    page.wait_for_url("**#identify")
+    assert (
+        page.locator("form[action='/jobs'] select[name=campaign] option:checked").inner_text().startswith("log-by-eye")
+    )
+    page.close()
 
 
 def test_an_open_page_shows_a_job_that_goes_on_after_the_server_was_killed(browser, server, store):

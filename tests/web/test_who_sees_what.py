@@ -79,6 +79,8 @@ class Rule:
 
 READ = Role.READER
 SHIP, SHA, JOB, UPLOAD = "/ships/{ship}/port", "{sha}", "/jobs/{job}", "/recordings/{upload}"
+FILES = {"vessel": "stan-tug-1205", "campaign": "short"}
+WINDOWS = "/windows?vessel=stan-tug-1205&campaign=short"
 
 # What every address does; one that is not here fails the first test below.
 RULES = {
@@ -115,6 +117,14 @@ RULES = {
     ("PUT", "/api/v1/recordings/{name}"): Rule(Role.TESTER, "/api/v1/recordings/a.nc?line={ship}/port", good=(201,)),
     ("GET", "/recordings/{id}"): Rule(READ, UPLOAD),
     ("POST", "/recordings/{id}/look"): Rule(Role.TESTER, UPLOAD + "/look", good=(303, 202)),
+    ("GET", "/recordings/{id}/windows"): Rule(READ, UPLOAD + WINDOWS),
+    ("POST", "/recordings/{id}/windows"): Rule(
+        Role.TESTER, UPLOAD + "/windows", fields=tuple(FILES.items()), good=(303, 202)
+    ),
+    # nobody has looked at them yet
+    ("POST", "/recordings/{id}/windows/campaign"): Rule(
+        Role.TESTER, UPLOAD + "/windows/campaign", fields=tuple(FILES.items()), good=(409,)
+    ),
     ("GET", "/folders"): Rule(Role.TESTER, "/folders", False, all_ships=True),
     ("GET", "/folders/{number}/{inside:path}"): Rule(Role.TESTER, "/folders/0/", False, all_ships=True),
     ("GET", "/audit"): Rule(Role.OWNER, "/audit", False),

@@ -12,8 +12,8 @@ from shaftprint.late import late
 
 with late():
     from shaftprint.design.files import _plan_folder, _plan_json
+    from shaftprint.file_kinds import kind_of_file
     from shaftprint.recording.readers import _all
-    from shaftprint.settings import kind_of_file
 
 _MOST_FILES = 500
 # Bytes of a text in which somebody notes something; a test is longer in any format.

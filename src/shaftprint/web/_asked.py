@@ -21,7 +21,7 @@ API: Final = "/api/v1"
 """Where the twins of pages are, as JSON."""
 LARGEST_FORM: Final = 64 * 1024
 """Bytes of the largest form."""
-_MOST_FIELDS: Final = 60
+_MOST_FIELDS: Final = 1000
 _T = TypeVar("_T")
 
 

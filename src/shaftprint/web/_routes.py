@@ -26,6 +26,7 @@ from shaftprint.web.pages._ships import ships
 from shaftprint.web.pages._sign_in import session, sign_in, sign_in_form, sign_out
 from shaftprint.web.pages._static import static
 from shaftprint.web.pages._trial import fingerprint_document, trial
+from shaftprint.web.pages._windows import choose, look_at_windows, windows
 
 ADDRESSES: Final = (
     Address(path="/", answer=ships),
@@ -50,6 +51,9 @@ ADDRESSES: Final = (
             streams=True, twin=False),
     Address(path="/recordings/{id}", answer=recording),
     Address(path="/recordings/{id}/look", answer=look, method="POST", least=Role.TESTER),
+    Address(path="/recordings/{id}/windows", answer=windows),
+    Address(path="/recordings/{id}/windows", answer=look_at_windows, method="POST", least=Role.TESTER),
+    Address(path="/recordings/{id}/windows/campaign", answer=choose, method="POST", least=Role.TESTER),
     Address(path="/folders", answer=folder, least=Role.TESTER),
     Address(path="/folders/{number}/{inside:path}", answer=folder, least=Role.TESTER),
     Address(path="/audit", answer=audit, least=Role.OWNER),

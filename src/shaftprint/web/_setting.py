@@ -25,6 +25,7 @@ TEMPLATES = (
     "job.html.j2",
     "upload.html.j2",
     "recording.html.j2",
+    "windows.html.j2",
     "folder.html.j2",
     "audit.html.j2",
     "sign-in.html.j2",

@@ -17,6 +17,7 @@ from shaftprint.web.calculator._limits import limit_memory
 from shaftprint.web.calculator._line import judged_line
 from shaftprint.web.calculator._reported import reported
 from shaftprint.web.calculator._submitted import submitted
+from shaftprint.web.calculator._windows import chosen_campaign, windows
 
 KINDS: Final[Mapping[str, Callable[..., dict[str, Any]]]] = {
     "line": judged_line,
@@ -24,6 +25,8 @@ KINDS: Final[Mapping[str, Callable[..., dict[str, Any]]]] = {
     "compare": compared,
     "submit": submitted,
     "inspect": inspected,
+    "windows": windows,
+    "chosen": chosen_campaign,
     "report": reported,
 }
 _NICE: Final = 5

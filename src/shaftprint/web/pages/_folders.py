@@ -5,6 +5,7 @@ from pathlib import Path, PurePosixPath
 from typing import Final
 from urllib.parse import quote
 
+from shaftprint.file_kinds import kind_of_file
 from shaftprint.web._asked import Asked, NotThere, Shown
 from shaftprint.web._upload import SETTINGS
 from shaftprint.web.access._person import Role
@@ -106,7 +107,11 @@ def _is_listed(path: Path) -> bool:
 def _file(place: Place) -> Shown:
     beside = sorted(place.path.parent.glob(f"*{SETTINGS}"))[:MOST]
     settings = [
-        {"value": f"folder:{place.number}:{place.inside.parent / one.name}", "words": one.name}
+        {
+            "value": f"folder:{place.number}:{place.inside.parent / one.name}",
+            "words": one.name,
+            "kind": kind_of_file(one),
+        }
         for one in beside
         if one.is_file() and not one.is_symlink() and _is_listed(one)
     ]

@@ -27,6 +27,7 @@ from shaftprint.web.pages._recordings import (
     expect_own,
     line_of,
     moment_of,
+    path_of,
     upload_called,
 )
 
@@ -184,8 +185,8 @@ async def new_job(asked: Asked) -> Moved:
     """Ask for the fingerprint of a recording."""
     fields = asked.fields
     recording, line = await asked.read(_source, asked, fields)
-    vessel = await asked.read(_settings, asked, fields.get("vessel", ""), VESSELS)
-    campaign = await asked.read(_settings, asked, fields.get("campaign", ""), CAMPAIGNS)
+    vessel = await asked.read(settings_file, asked, fields.get("vessel", ""), VESSELS)
+    campaign = await asked.read(settings_file, asked, fields.get("campaign", ""), CAMPAIGNS)
     # none is that of vessel and campaign
     structure = fields.get("structure") or None
     if structure is not None and structure not in STRUCTURES:
@@ -225,7 +226,7 @@ def _source(asked: Asked, fields: dict[str, str]) -> tuple[str, Line]:
         line = Line(ship=Ship(name=one.ship, imo_number=one.imo), position=one.line)
         # what it was called when it was uploaded may be another ship's name by now
         expect_own(asked, line.ship)
-        return str((asked.service.recordings / one.id / one.name).absolute()), line
+        return str(path_of(asked, one).absolute()), line
     if kind == "folder":
         number, _, inside = rest.partition(":")
         place = place_of(asked, number, inside)
@@ -235,7 +236,7 @@ def _source(asked: Asked, fields: dict[str, str]) -> tuple[str, Line]:
     raise HTTPException(400, "Expected a recording that was uploaded, or one of an allowed folder, found none.")
 
 
-def _settings(asked: Asked, chosen: str, shipped: tuple[str, ...]) -> str:
+def settings_file(asked: Asked, chosen: str, shipped: tuple[str, ...]) -> str:
     """Return the path of a settings file, or the name of one that comes with the program."""
     if chosen in shipped:
         return chosen
@@ -243,7 +244,7 @@ def _settings(asked: Asked, chosen: str, shipped: tuple[str, ...]) -> str:
         _, number, inside = (*chosen.split(":", 2), "", "")[:3]
         return str(place_of(asked, number, inside).path)
     one = upload_called(asked, chosen)
-    return str((asked.service.recordings / one.id / one.name).absolute())
+    return str(path_of(asked, one).absolute())
 
 
 def _facts(fields: dict[str, str], now: datetime) -> dict[str, Any]:

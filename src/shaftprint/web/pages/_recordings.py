@@ -3,11 +3,13 @@
 from collections.abc import AsyncIterator
 from dataclasses import asdict
 from datetime import datetime
+from pathlib import Path
 from typing import Any, Final
 
 from starlette.exceptions import HTTPException
 from starlette.responses import Response
 
+from shaftprint.file_kinds import kind_of_file
 from shaftprint.store._nouns import Line, Ship
 from shaftprint.store._overview import namesakes
 from shaftprint.web._asked import Asked, Moved, NotThere, Shown, ship_word
@@ -59,6 +61,10 @@ STRUCTURES: Final = (
     "GAUGE-COMBINATOR",
     "GAUGE-HYBRID",
 )
+KINDS: Final = ("vessel", "campaign")
+"""Kinds of settings files that a job takes."""
+MOST_SHOWN: Final = 64 * 1024
+"""Letters of a settings file that its page shows."""
 _LONGEST_WORD: Final = 100
 _MOST_CHOICES: Final = 500
 
@@ -97,8 +103,21 @@ def _words(line: Line) -> str:
     return f"{line.ship.name}{number}, {line.position}"
 
 
+def _is_settings(one: Upload) -> bool:
+    return one.name.lower().endswith(SETTINGS)
+
+
+def path_of(asked: Asked, one: Upload) -> Path:
+    """Return where an upload lies."""
+    return asked.service.recordings / one.id / one.name
+
+
+def _kind(asked: Asked, one: Upload) -> str | None:
+    return kind_of_file(path_of(asked, one))
+
+
 def _content(one: Upload) -> dict[str, Any]:
-    return asdict(one) | {"address": f"/recordings/{one.id}", "settings": one.name.lower().endswith(SETTINGS)}
+    return asdict(one) | {"address": f"/recordings/{one.id}", "settings": _is_settings(one)}
 
 
 async def upload(asked: Asked) -> Moved:
@@ -107,14 +126,14 @@ async def upload(asked: Asked) -> Moved:
     await form.read_fields()
     asked.check_token(asked.request.headers.get("x-csrf-token") or form.fields.get("token", ""))
     line = await asked.read(line_of, asked, form.fields)
-    return await _taken(asked, form.file(), form.file_name, line)
+    return await taken(asked, form.file(), form.file_name, line)
 
 
 async def put_recording(asked: Asked) -> Moved:
     """Take a file that is the whole body of a request."""
     asked.check_token(asked.request.headers.get("x-csrf-token", ""))
     line = await asked.read(line_of, asked, dict(asked.request.query_params))
-    return await _taken(asked, aiter(asked.request.stream()), asked.named("name"), line)
+    return await taken(asked, aiter(asked.request.stream()), asked.named("name"), line)
 
 
 def line_of(asked: Asked, fields: dict[str, str]) -> Line:
@@ -188,7 +207,8 @@ def is_imo_number(text: str) -> bool:
     return sum(factor * int(digit) for factor, digit in zip(range(7, 1, -1), text, strict=False)) % 10 == int(text[-1])
 
 
-async def _taken(asked: Asked, pieces: AsyncIterator[bytes], name: str, line: Line) -> Moved:
+async def taken(asked: Asked, pieces: AsyncIterator[bytes], name: str, line: Line) -> Moved:
+    """Take a file for a line, and say where its page is."""
     plain, most = checked_name(name), asked.service.serving.most_upload
     announced = asked.request.headers.get("content-length", "")
     length = int(announced) if announced.isascii() and announced.isdecimal() and len(announced) < 19 else None
@@ -238,34 +258,43 @@ def _recording(asked: Asked) -> Shown:
         other for other in uploads_of(asked) if (other.imo or other.ship, other.line) == (one.imo or one.ship, one.line)
     ]
     settings = [
-        {"value": other.id, "words": f"{other.name}, uploaded {other.at[:10]}"}
+        {"value": other.id, "words": f"{other.name}, uploaded {other.at[:10]}", "kind": _kind(asked, other)}
         for other in same
-        if other.name.endswith(SETTINGS)
+        if _is_settings(other)
     ]
+    text = path_of(asked, one).read_text(encoding="utf-8", errors="replace") if _is_settings(one) else None
     return Shown(
         template="recording.html.j2",
         title=one.name,
-        data={"upload": _content(one), "inspection": inside},
+        data={
+            "upload": _content(one),
+            "inspection": inside,
+            "file": None if text is None else {"kind": _kind(asked, one), "text": text[:MOST_SHOWN]},
+        },
         drawn={
-            "choices": choices_of(settings),
+            "choices": choices_of(settings, {kind: asked.query(kind) for kind in KINDS}),
             "source": f"upload:{one.id}",
             "back": f"/recordings/{one.id}",
         },
     )
 
 
-def choices_of(settings: list[dict[str, str]]) -> dict[str, Any]:
-    """Return what may be chosen in the form of a job."""
+def choices_of(settings: list[dict[str, str | None]], chosen: dict[str, str] | None = None) -> dict[str, Any]:
+    """Return what may be chosen in the form of a job.
+
+    ``settings``: files, each with what kind it is; one of no known kind stands in both lists. ``chosen``: what is
+    chosen already.
+    """
     shipped = {"vessel": VESSELS, "campaign": CAMPAIGNS}
-    chosen = {
-        # files that are called so first
+    offered: dict[str, Any] = {
         kind: [
-            *sorted(settings, key=lambda one: kind not in one["words"].lower()),
+            # the newest first; a damaged one is offered for both, and its refusal says what is wrong
+            *(one for one in settings if one["kind"] in (kind, None)),
             *({"value": one, "words": f"{one} (comes with shaftprint)"} for one in names),
         ]
         for kind, names in shipped.items()
     }
-    return chosen | {"structures": STRUCTURES}
+    return offered | {"structures": STRUCTURES, "chosen": dict.fromkeys(KINDS, "") | (chosen or {})}
 
 
 async def look(asked: Asked) -> Moved | Response:
@@ -275,7 +304,7 @@ async def look(asked: Asked) -> Moved | Response:
     key = f"inspect {one.id}"
     there = asked.service.kept.making(key)
     if there is None or there.state == "refused":
-        path = str(asked.service.recordings / one.id / one.name)
+        path = str(path_of(asked, one))
         asked.service.kept.put_making(
             Making(key=key, kind="inspect", args={"path": path}, state="waiting", sentence="")
         )

@@ -5,7 +5,13 @@ from starlette.responses import Response
 from shaftprint.markup._environment import style_sheet, template_text
 from shaftprint.web._asked import Asked, NotThere
 
-_KINDS = {"page.css": "text/css", "web.css": "text/css", "web.js": "text/javascript", "icon.svg": "image/svg+xml"}
+_KINDS = {
+    "page.css": "text/css",
+    "web.css": "text/css",
+    "web.js": "text/javascript",
+    "windows.js": "text/javascript",
+    "icon.svg": "image/svg+xml",
+}
 _ROOM = "shaftprint.web"
 
 
