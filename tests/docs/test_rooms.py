@@ -74,8 +74,8 @@ def test_files_that_the_house_names_are_there():
 
 # comes with pydantic and jinja2
 PULLED_IN = {"pydantic_core", "markupsafe"}
-# loaded when somebody asks for a PDF or a foreign model: a sentence says which extra to take
-ON_REQUEST = {"report/paper reportlab", "validation fmpy"}
+# loaded when somebody asks for a PDF: a sentence says which extra to take
+ON_REQUEST = {"report/paper reportlab"}
 
 
 def test_the_core_needs_no_extra():
