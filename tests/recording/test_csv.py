@@ -118,6 +118,16 @@ def test_hints_settle_what_the_file_leaves_open(tmp_path):
         ("time [s],\n0,\n1,\n", "line 1: expected a channel besides the time, found none"),
         ("0 1 2\n", "line 1: expected titles .* above 3 columns of numbers, found none"),
         ("a word\n", "found none of them in"),
+        # a list of channels ends above the rows; names for so many are not printed
+        (
+            "%Log%\nChannel : RPM\nLog : 7\n" + "".join(f"0.{k},{','.join('7' * 29)}\n" for k in range(5)),
+            r'line 4: expected titles .* above 30 columns of numbers, found none; .*"time \[s\],u,y,\.\.\."\), a name '
+            r"for each of the 30\.$",
+        ),
+        (
+            "time [s],a [V]\n" + "".join(f"{0.3 * (k % 20) + 0.01 * (k % 3 == 1):.2f},{k}\n" for k in range(120)),
+            "expected ascending times, found one that goes back by 5.71 s before row 21",
+        ),
     ],
 )
 def test_a_file_that_cannot_be_used_is_explained(tmp_path, text, expected):

@@ -83,3 +83,27 @@ def test_a_format_that_is_not_read_says_which_export_is(tmp_path, name, content,
     path.write_bytes(content)
     with pytest.raises(RecordingError, match=f"expected one of the formats .*, found none of them; {remedy}"):
         read_recording(path)
+
+
+@pytest.mark.parametrize("ending", [".txt", ".log"])
+@pytest.mark.parametrize(
+    ("lines", "words"),
+    [
+        ("server 2021\n$HDMTW,12.6,C*1A\n$HDVTG,189.1,T,,M,8.4,N,15.5,K*49\n", "sentences of NMEA 0183"),
+        ("!AIVDM,1,1,,B,3:16dn0PBkPfhv,0*1A\n!AIVDM,1,1,,B,402Fha1vAj>kP0,0*4B\n", "sentences of NMEA 0183"),
+        (
+            "# raw\n2020-07-04-02:46:30.484,2,127245,172,255,8,fc,f8,ff,7f,a4,fe,ff,ff\n"
+            "2020-07-04-02:46:30.534,2,127250,172,255,8,ff,51,9c,ff,7f,55,06,fc\n",
+            "messages of NMEA 2000 in the form of canboat",
+        ),
+        (
+            "# sample\n  can0  09F8027F   [8]  00 FC FF FF 00 00 FF FF\n  can0  09F8017F   [2]  E8 AC\n",
+            "frames of a CAN bus without times: log it with candump -l",
+        ),
+    ],
+)
+def test_a_log_that_is_no_table_is_named(tmp_path, ending, lines, words):
+    path = tmp_path / f"log{ending}"
+    path.write_text(40 * lines)
+    with pytest.raises(RecordingError, match=words):
+        read_recording(path)

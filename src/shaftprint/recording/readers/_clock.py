@@ -236,7 +236,9 @@ def _holes(path: Path, name: str, count: int, read: Times, step: float) -> tuple
     if rows.size == 0:
         return ()
     if rows.size > _MOST_HOLES + _MOST_HOLES_SHARE * count or not np.all(np.isfinite(jumps)):
-        raise _not_uniform(path, name, step, float(jumps[0]), int(rows[0]))
+        # a time that goes back is the cause, a step that is a little long is not
+        worst = int(np.argmax(jumps < 0.0))
+        raise _not_uniform(path, name, step, float(jumps[worst]), int(rows[worst]))
     edges = np.array([0, *rows.tolist(), count])
     longest = int(np.argmax(np.diff(edges)))
     begin, end = int(edges[longest]), int(edges[longest + 1])
@@ -273,6 +275,11 @@ def _odd_steps(count: int, read: Times, step: float) -> tuple[IntArray, FloatArr
 
 
 def _not_uniform(path: Path, name: str, step: float, jump: float, row: int) -> RecordingError:
+    if jump < 0.0:
+        return RecordingError(
+            f"{path}, {name}: expected ascending times, found one that goes back by {-jump:g} s before row {row + 1}, "
+            "as where a logger begins again; cut the file there."
+        )
     return RecordingError(
         f"{path}, {name}: expected a step of {step:g} s, found {jump:g} s before row {row + 1}; "
         "resample the file or cut it there."

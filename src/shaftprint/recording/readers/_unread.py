@@ -1,9 +1,12 @@
 """How a file of a format that no reader knows becomes one that is read: which export of which program."""
 
+import re
 from pathlib import Path
 
 from shaftprint.recording.readers._packed import first_bytes
 
+# So many of the first letters are looked at, and so many lines have to be alike.
+_SEEN, _FEWEST_LINES = 4000, 2
 _TABLE, _TO_CSV = "save the sheet as CSV", ".to_csv(...)"
 _ARCHIVE = "it is an archive: unpack it"
 _OCTAVE = "in Octave save -v7 FILE.mat"
@@ -15,6 +18,17 @@ _CATMAN = (
     "HBM catman: export it as MATLAB, ASCII or MDF 4; without it the package apread gives values to Python, with dates "
     "of 1970 and times that go by the length of channels: check both, and write CSV"
 )
+_NMEA_0183 = rb"[$!][A-Z]{4,5},[^\r\n]*\*[0-9A-F]{2}"
+_CANBOAT = rb"\d{4}-\d\d-\d\d[-T ][\d:.,]+Z?,\d,\d{5,6},\d+,\d+,\d+,[0-9a-fA-F]{2}[,\r\n]"
+_FRAMES_WITHOUT_TIMES = rb"(?:\w*can\d+ +|<0x)[0-9a-fA-F]{3,8}>? +\[\d\] +[0-9a-fA-F]{2}"
+_OF_LINES = {
+    _NMEA_0183: "sentences of NMEA 0183, which come about once a second and are not read: log the NMEA 2000 bus itself "
+    "(candump -l, BLF, ASC, TRC), or write the values as CSV with a column of times",
+    _CANBOAT: "messages of NMEA 2000 in the form of canboat, which is not read: log the bus with candump -l, or write "
+    "the values as CSV with a column of times (analyzer -json says them)",
+    _FRAMES_WITHOUT_TIMES: "frames of a CAN bus without times: log it with candump -l",
+}
+"""What lines of text begin as, and what they are."""
 _SQLITE, _ZIP = b"SQLite format 3", b"PK\x03\x04"
 _BY_BYTES = {
     _SQLITE: "it is an SQLite database: export the table as CSV (sqlite3 -header -csv)",
@@ -88,7 +102,21 @@ def remedy(path: Path) -> str:
     for mark, words in _BY_BYTES.items():
         if begin.startswith(mark):
             return words
+    of_lines = what_lines_are(begin)
+    if of_lines:
+        return f"it holds {of_lines}"
     return by_ending or "export it as CSV, MATLAB or MDF 4 from the program that wrote it"
+
+
+def what_lines_are(begin: bytes) -> str:
+    """Return what a text is that is no table, and what to do; empty where its first lines do not show it.
+
+    ``begin``: first bytes of the file.
+    """
+    for pattern, words in _OF_LINES.items():
+        if len(re.findall(rb"(?m)^[ \t]*" + pattern, begin[:_SEEN])) >= _FEWEST_LINES:
+            return words
+    return ""
 
 
 def _every_second_is_nul(begin: bytes) -> bool:

@@ -22,6 +22,7 @@ from shaftprint.recording.readers._gather import reasons_in_words
 from shaftprint.recording.readers._hints import rate_hint
 from shaftprint.recording.readers._packed import CANNOT_BE_UNPACKED, damaged_gzip, first_bytes, open_unpacked
 from shaftprint.recording.readers._time_scale import TimeScale, expect_time_unit, time_scale
+from shaftprint.recording.readers._unread import what_lines_are
 from shaftprint.recording.readers.can._log import begins_as_log
 from shaftprint.recording.readers.csv._dates import dates, has_offset, is_date
 from shaftprint.recording.readers.csv._edge_list import edge_channels
@@ -83,6 +84,9 @@ def read(path: Path, **hints: object) -> Recording:
             f"{path}: expected columns of values, found the frames of a CAN bus, as python-can writes them into a CSV "
             "file; make a log of them, can_logconvert FILE log.blf, and give that with its DBC file (--dbc)."
         )
+    lines = what_lines_are(first_bytes(path) or b"")
+    if lines:
+        raise RecordingError(f"{path}: expected columns of values, found {lines}.")
     texts = ("columns", "delimiter", "decimal", "encoding", "time_unit")
     rate_hz = rate_hint(path, hints, dict.fromkeys(texts, str))
     time_unit = expect_time_unit(path, hints.get("time_unit"))

@@ -31,6 +31,8 @@ _COUNTERS = (
     "id", "rn", "scan", "stepcount", "step", "count", "counter", "zeile", "unnamed: 0",
 )  # fmt: skip
 _SHOWN = 80
+# An example of names for as many columns as this names each.
+_MOST_NAMED = 12
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -223,15 +225,18 @@ def _expect_titles(path: Path, lines: Sequence[str], table: Table, titles: Seque
         return
     place = next((place for place in range(table.first, len(lines)) if lines[place].strip()), table.first)
     shown = "; ".join(split_row(lines[place], table.delimiter))[:_SHOWN] if lines else ""
-    example = ",".join(["time [s]", *"uyzabcdefghijklmnopqrstvwx"[: table.width - 1]])
-    if not titles or all(is_number(title) for title in titles):
+    few = table.width <= _MOST_NAMED
+    example = ",".join(["time [s]", *("uyzabcdefgh"[: table.width - 1] if few else ("u", "y", "..."))])
+    how = f'pass columns= (--columns "{example}"){"" if few else f", a name for each of the {table.width}"}'
+    # one field above several is a line of text, such as the end of a list of channels
+    if len(titles) < min(table.width - 1, 2) or all(is_number(title) for title in titles):
         raise RecordingError(
-            f'{path}, line 1: expected titles such as "time [s];M_s [N m]" above {table.width} columns of numbers, '
-            f'found none; pass columns= (--columns "{example}").'
+            f'{path}, line {1 if not titles else place + 1}: expected titles such as "time [s];M_s [N m]" above '
+            f"{table.width} columns of numbers, found none; {how}."
         )
     raise RecordingError(
         f"{path}, line {place + 1}: expected {len(titles)} fields, as many as titles, found {table.width} in "
-        f'"{shown}"; is a decimal comma taken for a delimiter? Else name the columns, columns= (--columns "{example}").'
+        f'"{shown}"; is a decimal comma taken for a delimiter? Else {how}.'
     )
 
 
