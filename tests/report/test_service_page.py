@@ -42,7 +42,7 @@ def test_moves_stand_at_their_minutes_in_the_row_of_their_log():
 def test_the_page_says_what_was_seen_and_keeps_names_of_files_harmless(tmp_path):
     now = datetime(2026, 11, 28, tzinfo=UTC)
     page = render_service(tmp_path / "page", made_up(), vessel="Meander", now=now).read_text(encoding="utf-8")
-    assert "1 useful moves of the lever in 2 hours" in page
+    assert "1 useful move of the lever in 2 hours" in page
     assert "a channel is missing there" in page
     assert "&lt;b&gt;.nc" in page
     assert "<b>.nc" not in page

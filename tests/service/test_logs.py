@@ -6,9 +6,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from shaftprint.errors import ServiceError, SettingsError
+import shaftprint.vessel
+from shaftprint.errors import RecordingError, ServiceError, SettingsError
 from shaftprint.recording import Channel, write_recording
-from shaftprint.service._gather import gather
+from shaftprint.service._gather import StillMeans, gather, lever_line
 from shaftprint.service._log import blocks, expect_lever_at_once, expect_no_deadband
 from shaftprint.service._scan import scan
 from shaftprint.service._segment import LeverLine, Segment
@@ -16,6 +17,8 @@ from shaftprint.service._segment_file import read_segments, write_segments
 from shaftprint.service._states import STATES, state_of_seconds
 from shaftprint.tug import sail_service
 from shaftprint.vessel import load_vessel
+
+VESSEL_FILES = Path(shaftprint.vessel.__file__).parent / "shipped"
 
 
 @pytest.fixture(scope="module")
@@ -50,6 +53,13 @@ def log(path, *, seconds, rate_hz, start_s=0.0, held=1):
     return path
 
 
+def constant(name, rate_hz, count):
+    """Return a channel that stands still."""
+    return Channel(
+        name=name, unit="V", rate_hz=rate_hz, start_s=0.0, count=count, source=lambda start, stop: np.ones(stop - start)
+    )
+
+
 def test_files_that_follow_on_each_other_are_one(tmp_path, vessel):
     files = [log(tmp_path / f"{k}.nc", seconds=100.0, rate_hz=100.0, start_s=100.0 * k) for k in (0, 1, 3)]
     first, second, third = blocks(files, vessel, keep_s=30.0, told=pytest.fail)
@@ -73,8 +83,54 @@ def test_a_historian_that_keeps_its_last_value_is_refused(tmp_path, vessel):
 def test_a_lever_that_never_moves_gives_no_line_but_an_answer(tmp_path, vessel):
     found = scan([log(tmp_path / "still.nc", seconds=300.0, rate_hz=100.0)], vessel)
     assert found.line is None
-    assert "at several speeds ahead" in found.headline
+    assert found.headline.startswith("Your logger saw 0 useful moves of the lever in 5 minutes, but nothing may be")
+    assert "with the ship ahead, found 1; give more logs" in found.headline
     assert found.seconds == {"ahead": 300.0}
+
+
+def test_a_lever_that_stands_at_one_speed_only_is_asked_for_others():
+    still = StillMeans(
+        lever_v=np.full(20, -5.0),
+        speed_rev_s=np.full(20, 20.0),
+        load=np.ones(20),
+        stretch=np.repeat(np.arange(10.0), 2),
+    )
+    with pytest.raises(ServiceError, match=r"found 10 between 1200 and 1200 rpm; give logs of hours in which"):
+        lever_line(still)
+
+
+def test_one_file_of_a_week_that_cannot_be_used_costs_no_other(tmp_path, vessel):
+    files = [log(tmp_path / f"{k}.nc", seconds=100.0, rate_hz=100.0, start_s=100.0 * k) for k in (0, 2)]
+    other = tmp_path / "1.nc"
+    write_recording(other, [constant("Ballast", 100.0, 10_000)])
+    told = []
+    seen = list(blocks([files[0], other, files[1]], vessel, keep_s=30.0, told=told.append))
+    assert [one.log for one in seen] == [str(file) for file in files]
+    assert [one.goes_on for one in seen] == [False, False]
+    assert [one.log for one in told] == [str(other)]
+    assert 'expected a channel "EngineSpeed"' in told[0].reason
+    left_out = scan([*files, other], vessel).left_out
+    assert len(left_out) == 1
+    assert left_out[0].count(str(other)) == 1
+    with pytest.raises(ServiceError, match=r"Nothing of the logs can be used\. .*1\.nc: expected a channel"):
+        scan([other, other], vessel)
+    with pytest.raises(RecordingError, match=r"lost\.nc: expected a log, found no such file"):
+        scan([files[0], tmp_path / "lost.nc"], vessel)
+
+
+def test_a_log_of_which_nothing_can_be_read_is_refused_with_the_reason(tmp_path, vessel):
+    text = (VESSEL_FILES / "stan_tug_1205_service.toml").read_text(encoding="utf-8")
+    begin, end = text.index("[sensors.set_point]"), text.index("[logger]")
+    pulses = '[sensors.set_point]\nchannel = "Pulse"\nunit = "%"\nv_per_unit = 0.1\nv_at_zero = 0.0\n\n'
+    file = tmp_path / "pulses.toml"
+    file.write_text(text[:begin] + pulses + text[end:], encoding="utf-8")
+    rng = np.random.default_rng(3)
+    times = np.cumsum(rng.uniform(0.02, 0.03, 2000))
+    rows = np.column_stack([times, np.linspace(1e4, 2e4, 2000), 1183.8 + rng.standard_normal(2000), 3.45 + times])
+    head = "time [s],Pulse [%],EngineSpeed [rpm],M_s [V]"
+    np.savetxt(tmp_path / "a.csv", rows, delimiter=",", header=head, comments="", fmt="%.4f")
+    with pytest.raises(ServiceError, match=r"Nothing .*a\.csv: .*Pulse: .* at most 101 %, .* 1e\+04 to"):
+        scan([tmp_path / "a.csv"], load_vessel(str(file)))
 
 
 def test_no_logs_are_refused(vessel):

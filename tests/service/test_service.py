@@ -174,6 +174,16 @@ def test_days_are_fitted_and_watched_from_the_command_line(worked, vessel, tmp_p
     assert "gives no alarm" in " ".join(watched.output.split())
 
 
+def test_a_folder_for_the_page_that_cannot_be_is_refused_before_a_log_is_read(tmp_path):
+    (tmp_path / "log.nc").write_bytes(b"no log at all")
+    (tmp_path / "page").write_text("a file", encoding="utf-8")
+    words = ["service", "scan", str(tmp_path / "log.nc"), "--vessel", "stan-tug-1205-service", "--no-progress"]
+    refused = CliRunner().invoke(shaftprint, [*words, "--page", str(tmp_path / "page")])
+    assert refused.exit_code == 1
+    assert "expected a folder for the results, found a file" in refused.output
+    assert "log.nc" not in refused.output
+
+
 @pytest.mark.long
 def test_the_same_day_twice_is_known_better_and_is_the_same(worked, vessel, tmp_path):
     for name in ("a", "b"):

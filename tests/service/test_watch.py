@@ -1,6 +1,7 @@
 """Days that were made up: what has changed is named, and what has not gives no alarm."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -54,6 +55,67 @@ def fingerprint_error(model, rng):
     """Return the covariance of a fingerprint of one day, and an error of that size."""
     covariance = np.linalg.inv(SEGMENTS * information(model))
     return covariance, np.linalg.cholesky(covariance) @ rng.standard_normal(len(FREE))
+
+
+def test_a_fingerprint_at_another_load_keeps_its_deviations_in_newton_metres(model):
+    vessel = load_vessel("stan-tug-1205-service")
+    load = 0.8
+    std = 0.1 * np.ones(len(FREE))
+    at_load = SimpleNamespace(
+        structure="GAUGE-CLOSED", held={}, covariance=np.diag(std**2),
+        parameters=[SimpleNamespace(name=name, value=0.0 if name == "g" else 2.0) for name in FREE],
+        conditions=SimpleNamespace(
+            vessel="a tug",
+            shaft_torque=SimpleNamespace(value=load * vessel.working_point.driving_torque_nm),
+            engine_speed=SimpleNamespace(value=vessel.working_point.engine_speed_rpm),
+        ),
+    )  # fmt: skip
+    at_point = service_model(vessel, at_load)
+    deviations = dict(zip(FREE, np.sqrt(np.diag(at_point.covariance)), strict=True))
+    # the same newton metres are less of the larger torque; g has no value whose ratio would tell it
+    for name in ("K_p", "K_i", "tau_dn", "tau_up", "g"):
+        assert deviations[name] == pytest.approx(0.1 * load)
+    for name in ("omega_n", "zeta", "t_d", "t_sp", "t_gauge", "c_set"):
+        assert deviations[name] == pytest.approx(0.1)
+    assert at_point.values["K_p"] == pytest.approx(2.0 * load)
+
+
+def test_the_deviation_of_a_change_is_that_of_the_scatter_of_segments(model):
+    rng = np.random.default_rng(5)
+    covariance, error = fingerprint_error(model, rng)
+    made = [
+        replace(day, slopes=3.0 * day.slopes)
+        for day in days(replace(model, prior_std={**model.prior_std, "c_set": 1e-9}), rng, count=3, error=0.0 * error)
+    ]
+    rest = [k for k, name in enumerate(FREE) if name != "c_set"]
+    found = watch_days(made, replace(model, prior_std={**model.prior_std, "c_set": 1e-9}), covariance)
+    one = next(one for one in found.causes if one.cause.name == "inertia behind the gauge")
+    # by hand: g = H e + H v s + noise, e of that covariance, s since the last days
+    h = information(model)[np.ix_(rest, rest)]
+    v = (model.theta * (np.array(FREE) == "tau_dn"))[rest]
+    prior = np.linalg.inv(covariance[np.ix_(rest, rest)])
+    normal = np.zeros((len(rest) + 1, len(rest) + 1))
+    slopes = [day.slopes[:, rest] for day in made]
+    right = np.zeros(len(rest) + 1)
+    design = []
+    for number, own in enumerate(slopes):
+        after = float(number >= len(made) - one.days)
+        block = np.column_stack([np.eye(len(rest)), after * v])
+        normal += SEGMENTS * block.T @ h @ block
+        right += block.T @ own.sum(axis=0)
+        design.append(block)
+    normal[:-1, :-1] += prior
+    inverse = np.linalg.inv(normal)
+    solution = inverse @ right
+    assert one.size == pytest.approx(solution[-1], rel=1e-6)
+    row = inverse[-1]
+    variance = row[:-1] @ prior @ row[:-1]
+    for own, block in zip(slopes, design, strict=True):
+        left = own - (h @ block @ solution)
+        variance += np.sum((left @ block @ row) ** 2)
+        # what a day differs by however long it is
+        variance += (0.003 * SEGMENTS * row @ block.T @ h @ v) ** 2
+    assert one.std == pytest.approx(np.sqrt(variance), rel=1e-6)
 
 
 @pytest.mark.parametrize(

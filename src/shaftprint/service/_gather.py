@@ -239,10 +239,14 @@ def lever_line(still: StillMeans) -> LeverLine:
         [[x[still.stretch == k].mean() for x in (still.lever_v, still.speed_rev_s)] for k in numbers]
     ).reshape(-1, 2)
     weight = np.array([np.sum(still.stretch == k) for k in numbers], dtype=np.float64)
-    if levels.shape[0] < _FEWEST or np.ptp(levels[:, 1]) < _LEAST_RANGE * levels[:, 1].mean():
+    needed = f"lever: expected {_FEWEST} or more stretches of {APART_S + MEAN_S:g} s and more where it stands still"
+    if levels.shape[0] < _FEWEST:
+        raise ServiceError(f"{needed} with the ship ahead, found {levels.shape[0]}; give more logs.")
+    if np.ptp(levels[:, 1]) < _LEAST_RANGE * levels[:, 1].mean():
+        low, high = (SECONDS_PER_MINUTE * float(of(levels[:, 1])) for of in (np.min, np.max))
         raise ServiceError(
-            f"lever: expected {_FEWEST} or more stretches of {APART_S + MEAN_S:g} s and more where it stands still, at "
-            f"several speeds ahead, found {levels.shape[0]}; give more logs."
+            f"{needed} at several speeds ahead, found {levels.shape[0]} between {low:.0f} and {high:.0f} rpm; give "
+            "logs of hours in which the speed was changed."
         )
     keep = np.ones(weight.size, dtype=np.bool_)
     for _ in range(3):

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shaftprint.arrays import BoolArray, FloatArray
-from shaftprint.errors import ServiceError, ShaftprintError
+from shaftprint.errors import RecordingError, ServiceError, ShaftprintError, SignalError
 from shaftprint.memory import give_back_memory
 from shaftprint.recording._cut import cut
 from shaftprint.recording._read import read_recording
@@ -99,31 +99,62 @@ def blocks(
 
     ``logs``: files, in order of time. ``vessel``: says which channel carries what. ``keep_s``: how much of a block
     comes again with the one that follows on it [s]. ``told``: is told of every stretch that cannot be read.
-    ``progress``: is told the share that is done, 0 to 1. Raises ServiceError if there is no file, or a file is too slow
-    for what a governor does; RecordingError if a file cannot be read at all.
+    ``progress``: is told the share that is done, 0 to 1. Raises ServiceError if there is no file, nothing of any can be
+    used, or one is too slow for what a governor does; RecordingError if a file is not there.
     """
     if not logs:
         raise ServiceError("service: expected at least one log, found none; name the logger's files in order of time.")
+    paths = [Path(log) for log in logs]
+    for path in paths:
+        if not path.exists():
+            raise RecordingError(f"{path}: expected a log, found no such file; correct its name.")
     before: Block | None = None
-    for number, path in enumerate(map(Path, logs)):
-        with read_recording(path) as recording:
-            for part, last in _parts(recording, vessel):
-                block = _read(part, path, vessel, told=told)
-                if before is not None:
-                    follows = block is not None and _follows(before, block)
-                    yield replace(before, goes_on=follows)
-                    if block is not None and follows:
-                        block = _joined(before, block, keep_s)
-                before = block
-                if progress is not None and last:
-                    progress((number + 1) / len(logs))
+    problems: list[LeftOut] = []
+    is_any = False
+
+    def tell(one: LeftOut) -> None:
+        problems.append(one)
+        told(one)
+
+    for number, path in enumerate(paths):
+        for block in _of_file(path, vessel, told=tell, alone=len(paths) == 1):
+            is_any = is_any or block is not None
+            if before is not None:
+                follows = block is not None and _follows(before, block)
+                yield replace(before, goes_on=follows)
+                if block is not None and follows:
+                    block = _joined(before, block, keep_s)
+            before = block
+        if progress is not None:
+            progress((number + 1) / len(paths))
         give_back_memory()
     if before is not None:
         yield before
+    if not is_any:
+        first = problems[0]
+        words = first.reason if first.reason.startswith(first.log) else f"{first.log}: {first.reason}"
+        raise ServiceError(f"Nothing of the log{'s' if len(paths) > 1 else ''} can be used. {words}")
 
 
-def _parts(recording: "Recording", vessel: "Vessel") -> Iterator[tuple["Recording", bool]]:
-    """Yield a recording in parts of an hour, and whether each is the last."""
+def _of_file(path: Path, vessel: "Vessel", *, told: Callable[[LeftOut], None], alone: bool) -> Iterator[Block | None]:
+    """Yield a file in blocks of an hour, None for one that cannot be read, and for a file that cannot.
+
+    ``alone``: whether it is the only one, so that what is wrong with it is the answer; of a week, one file that cannot
+    be read costs no other. Raises RecordingError or SignalError if it is alone and cannot be read.
+    """
+    try:
+        with read_recording(path) as recording:
+            for part in _parts(recording, vessel):
+                yield _read(part, path, vessel, told=told)
+    except (RecordingError, SignalError) as error:
+        if alone:
+            raise
+        told(LeftOut(log=str(path), seconds=0.0, reason=str(error)))
+        yield None
+
+
+def _parts(recording: "Recording", vessel: "Vessel") -> Iterator["Recording"]:
+    """Yield a recording in parts of an hour."""
     channels = logger_channels(find_sources(recording, vessel)[0])
     first = max(channel.start_s for channel in channels)
     stop = min(channel.start_s + channel.duration_s for channel in channels)
@@ -131,7 +162,7 @@ def _parts(recording: "Recording", vessel: "Vessel") -> Iterator[tuple["Recordin
     for k in range(count):
         at = None if k == 0 else first + k * _BLOCK_S
         to = None if k == count - 1 else first + (k + 1) * _BLOCK_S
-        yield (recording if at is None and to is None else cut(recording, from_s=at, to_s=to)), k == count - 1
+        yield recording if at is None and to is None else cut(recording, from_s=at, to_s=to)
 
 
 def grid_hz(rates_hz: Sequence[float], path: Path) -> float:

@@ -142,7 +142,7 @@ def service_model(vessel: "Vessel", fingerprint: "Fingerprint | None" = None) ->
         engine_speed_rev_s=speed,
         shaft_torque_nm=torque,
         is_of_fingerprint=fingerprint is not None,
-        covariance=None if fingerprint is None else _covariance(fingerprint, values),
+        covariance=None if fingerprint is None else _covariance(fingerprint, point),
     )
 
 
@@ -182,8 +182,6 @@ def _of_fingerprint(fingerprint: "Fingerprint", point: Normalisation, usual: Map
     Raises ServiceError if it is of a structure with other numbers.
     """
     tested = fingerprint.conditions
-    torque = tested.shaft_torque.value / point.shaft_torque_nm
-    speed = tested.engine_speed.value / SECONDS_PER_MINUTE / point.engine_speed_rev_s
     own = {quantity.name: quantity.value for quantity in fingerprint.parameters} | fingerprint.held
     missing = [name for name in (GAUGE_K_P.name, GAUGE_K_I.name, T_D.name, TAU_DN.name) if name not in own]
     if missing:
@@ -191,19 +189,23 @@ def _of_fingerprint(fingerprint: "Fingerprint", point: Normalisation, usual: Map
             f"fingerprint of {tested.vessel}: expected one of a gauge-aware structure such as GAUGE-CLOSED, found "
             f"{fingerprint.structure}, which has no {missing[0]}; leave --fingerprint out or name another."
         )
-    scaled = dict.fromkeys(OVER_TORQUE, torque / speed)
-    values = {name: own[name] * scaled.get(name, 1.0) for name in FREE if name in own}
+    scale = _scale(fingerprint, point)
+    values = {name: own[name] * factor for name, factor in zip(FREE, scale, strict=True) if name in own}
     return {name: value for name, value in values.items() if name in usual and name not in (C_SET.name,)}
 
 
-def _covariance(fingerprint: "Fingerprint", values: Mapping[str, float]) -> FloatArray | None:
+def _scale(fingerprint: "Fingerprint", point: Normalisation) -> FloatArray:
+    """Return by what each free parameter is multiplied from the point of a test to another, shape (free,)."""
+    tested = fingerprint.conditions
+    torque = tested.shaft_torque.value / point.shaft_torque_nm
+    speed = tested.engine_speed.value / SECONDS_PER_MINUTE / point.engine_speed_rev_s
+    return np.array([torque / speed if name in OVER_TORQUE else 1.0 for name in FREE])
+
+
+def _covariance(fingerprint: "Fingerprint", point: Normalisation) -> FloatArray | None:
     """Return the covariance of the free parameters at the working point of the vessel file; None where some are not."""
-    own = {one.name: (k, one.value) for k, one in enumerate(fingerprint.parameters)}
+    own = {one.name: k for k, one in enumerate(fingerprint.parameters)}
     if fingerprint.covariance is None or any(name not in own for name in FREE):
         return None
-    places = [own[name][0] for name in FREE]
-    # gains and inertia times go with the torque of the point; the scale of the set point begins at one
-    scale = np.array(
-        [values[name] / own[name][1] if own[name][1] and name not in (G.name, C_SET.name) else 1.0 for name in FREE]
-    )
+    places, scale = [own[name] for name in FREE], _scale(fingerprint, point)
     return np.asarray(np.array(fingerprint.covariance)[np.ix_(places, places)] * np.outer(scale, scale))

@@ -71,8 +71,10 @@ class Scan(Shown):
     @property
     def headline(self) -> str:
         """What the logger saw, and what it would tell, in one sentence."""
-        hours = f"{sum(self.seconds.values()) / 3600.0:.3g}"
-        saw = f"Your logger saw {len(self.used)} useful moves of the lever in {hours} hour{'' if hours == '1' else 's'}"
+        saw = (
+            f"Your logger saw {len(self.used)} useful move{'' if len(self.used) == 1 else 's'} of the lever in "
+            f"{_how_long(sum(self.seconds.values()))}"
+        )
         if self.refused:
             return f"{saw}, but nothing may be fitted to them: {self.refused}"
         if not self.accuracy:
@@ -140,7 +142,10 @@ def scan(
     """
     model = service_model(vessel, fingerprint)
     gathered = gather(logs, vessel, progress=progress)
-    left_out = tuple(f"{one.log}, {one.seconds:.0f} s: {one.reason}" for one in gathered.left_out)
+    left_out = tuple(
+        one.reason if one.reason.startswith(one.log) else f"{one.log}, {one.seconds:.0f} s: {one.reason}"
+        for one in gathered.left_out
+    )
     seconds = dict(gathered.seconds)
     try:
         line = lever_line(gathered.still)
@@ -226,6 +231,14 @@ def _accuracy(each: Sequence[Score], model: ServiceModel, *, used: int) -> tuple
     accuracy["delay"] = float(np.sqrt(delays @ covariance @ delays))
     values = dict(zip(FREE, model.theta.tolist(), strict=True))
     return accuracy, values | {"delay": values[T_D.name] + values[T_SP.name]}
+
+
+def _how_long(seconds: float) -> str:
+    """Return a length of time as one says it."""
+    if seconds >= 3300.0:
+        hours = f"{seconds / 3600.0:.3g}"
+        return f"{hours} hour{'' if hours == '1' else 's'}"
+    return f"{seconds / 60.0:.0f} minutes" if seconds >= 120.0 else f"{seconds:.0f} seconds"
 
 
 def _load(gathered: Gathered) -> tuple[float, float]:

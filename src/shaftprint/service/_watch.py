@@ -14,8 +14,9 @@ A change counts that began one, two, four ... days ago. Whoever looks every day 
 largest score of an unchanged line passes as often in a year as is asked for, drawn with the curvature of these days.
 """
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections import deque
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -213,10 +214,10 @@ def watch_days(
     series = _Series.of(days, model, covariance, np.stack(list(causes.values())))
     limit = _limit(series, a_year, np.random.default_rng(seed))
     first = None
-    for upto in range(1, len(days) + 1):
-        scores = series.scores(upto)
+    scores: dict[int, list[tuple[float, float, float]]] = {}
+    for day, scores in zip(days, series.scores(), strict=True):
         if first is None and max(abs(size / std) for one in scores.values() for size, std, _ in one) > limit:
-            first = days[upto - 1].name
+            first = day.name
     found = [
         max(
             (
@@ -237,15 +238,57 @@ def watch_days(
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class _Sums:
+    """What days tell together, so that more of them cost no more: sums over days and over their segments.
+
+    A pair of slope ``g`` and curvature ``H`` of each segment enters as ``sum (g v - s^T H v)^2``, for which these are
+    enough whatever ``v`` and ``s``.
+    """
+
+    slope: FloatArray
+    """Sum of the slopes, shape (free,)."""
+    information: FloatArray
+    """Sum of the curvature, shape (free, free)."""
+    slopes: FloatArray
+    """Sum over segments of ``g g^T``, shape (free, free)."""
+    mixed: FloatArray
+    """Sum over segments of ``g vec(H)^T``, shape (free, free^2)."""
+    curvatures: FloatArray
+    """Sum over segments of ``vec(H) vec(H)^T``, shape (free^2, free^2)."""
+    of_days: FloatArray
+    """The same of the days, shape (free^2, free^2)."""
+
+    @classmethod
+    def of(cls, slopes: FloatArray, each: FloatArray, information: FloatArray) -> "_Sums":
+        """Return the sums of one day: slopes (segments, free), curvature of each, and of all of them."""
+        flat, total = each.reshape(len(each), -1), information.reshape(-1)
+        return cls(
+            slope=slopes.sum(axis=0), information=information, slopes=slopes.T @ slopes, mixed=slopes.T @ flat,
+            curvatures=flat.T @ flat, of_days=np.outer(total, total),
+        )  # fmt: skip
+
+    def changed(self, by: "_Sums", sign: float) -> "_Sums":
+        """Return these sums with those of other days added or taken off."""
+        parts = {one.name: getattr(self, one.name) + sign * getattr(by, one.name) for one in fields(self)}
+        return _Sums(**parts)
+
+    def scatter(self, seen: FloatArray, change: FloatArray) -> float:
+        """Return the sum over segments of ``(g s - a^T H s)^2`` for ``s`` seen and ``a`` a change."""
+        outer = np.outer(change, seen).reshape(-1)
+        return float(seen @ self.slopes @ seen - 2.0 * (seen @ self.mixed @ outer) + outer @ self.curvatures @ outer)
+
+    def per_day(self, seen: FloatArray, direction: FloatArray) -> float:
+        """Return the sum over days of ``(s^T H v)^2``."""
+        outer = np.outer(seen, direction).reshape(-1)
+        return float(outer @ self.of_days @ outer)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class _Series:
     """Days as sums, with what each segment adds."""
 
-    slopes: list[FloatArray]
-    """Slopes of the segments of each day, shape (segments, free)."""
-    each: list[FloatArray]
-    """Their curvature, shape (segments, free, free)."""
-    information: FloatArray
-    """Curvature of each day, shape (days, free, free)."""
+    days: list[_Sums]
+    """What each day tells."""
     prior: FloatArray
     """Inverse covariance of the error of the fingerprint, shape (free, free)."""
     directions: FloatArray
@@ -258,51 +301,62 @@ class _Series:
         """Return days with the scale of the lever projected out of each."""
         scale = FREE.index(C_SET.name)
         rest = np.arange(len(FREE)) != scale
-        slopes, each, information = [], [], []
+        sums = []
         for day in days:
             total = day.information.sum(axis=0)
             share = total[:, scale] / (total[scale, scale] + 1.0 / model.prior_std[C_SET.name] ** 2)
-            slopes.append((day.slopes - np.outer(day.slopes[:, scale], share))[:, rest])
+            slopes = (day.slopes - np.outer(day.slopes[:, scale], share))[:, rest]
             own = day.information - share[None, :, None] * day.information[:, scale][:, None, :]
-            each.append(own[:, rest][:, :, rest])
-            information.append((total - np.outer(share, total[scale]))[np.ix_(rest, rest)])
+            information = (total - np.outer(share, total[scale]))[np.ix_(rest, rest)]
+            sums.append(_Sums.of(slopes, own[:, rest][:, :, rest], information))
         times = [FREE.index(name) for name in (T_D.name, T_SP.name)]
         is_time = np.array([bool(one[times].any()) and np.count_nonzero(one) == 1 for one in moved])
         return cls(
-            slopes=slopes,
-            each=each,
-            information=np.array(information),
+            days=sums,
             prior=prior_information(covariance[np.ix_(rest, rest)]),
             directions=moved[:, rest],
             floor=np.where(is_time, _FLOOR_S, _FLOOR),
         )
 
-    def scores(self, upto: int) -> dict[int, list[tuple[float, float, float]]]:
-        """Return size, deviation and gain of likelihood along each cause, by how many days ago it began."""
-        own: FloatArray = np.linalg.inv(self.prior + self.information[:upto].sum(axis=0)).astype(np.float64)
-        sums = [one.sum(axis=0) for one in self.slopes[:upto]]
-        error: FloatArray = own @ np.sum(sums, axis=0)
-        found = {}
-        for window in _windows(upto):
-            begin = upto - window
-            after = self.information[begin:upto].sum(axis=0)
-            sizes = []
-            for k, direction in enumerate(self.directions):
-                beside = own @ (after @ direction)
-                curvature = float(direction @ after @ direction - (after @ direction) @ beside)
-                seen = [(direction if day >= begin else 0.0) - beside for day in range(upto)]
-                score = float(sum(one @ two for one, two in zip(sums, seen, strict=True)))
-                size = score / curvature
-                scatter, per_day = float(beside @ self.prior @ beside), 0.0
-                for day in range(upto):
-                    change = error - size * beside + (size * direction if day >= begin else 0.0)
-                    left = self.slopes[day] - self.each[day] @ change
-                    scatter += float(np.sum((left @ seen[day]) ** 2))
-                    per_day += float(seen[day] @ self.information[day] @ direction) ** 2
-                variance = max(scatter, curvature) + self.floor[k] ** 2 * per_day
-                sizes.append((size, float(np.sqrt(variance)) / curvature, score**2 / curvature))
-            found[window] = sizes
-        return found
+    @property
+    def usual(self) -> FloatArray:
+        """Mean curvature of a day, shape (free, free)."""
+        return np.asarray(np.mean([one.information for one in self.days], axis=0))
+
+    def scores(self) -> Iterator[dict[int, list[tuple[float, float, float]]]]:
+        """Yield for each day size, deviation and gain of likelihood along each cause, by how many days ago it began."""
+        free = len(self.prior)
+        nothing = _Sums.of(np.zeros((1, free)), np.zeros((1, free, free)), np.zeros((free, free)))
+        # sums up to each of the days at which a change may have begun
+        upto: deque[_Sums] = deque([nothing], maxlen=max(WINDOWS) + 1)
+        for number, day in enumerate(self.days, start=1):
+            upto.append(upto[-1].changed(day, 1.0))
+            own: FloatArray = np.linalg.inv(self.prior + upto[-1].information).astype(np.float64)
+            yield {
+                window: self._along(upto[-1 - window], upto[-1].changed(upto[-1 - window], -1.0), own)
+                for window in _windows(number)
+            }
+
+    def _along(self, before: _Sums, after: _Sums, own: FloatArray) -> list[tuple[float, float, float]]:
+        """Return size, deviation and gain of a change between two parts of the days, along each cause."""
+        error = own @ (before.slope + after.slope)
+        sizes = []
+        for k, direction in enumerate(self.directions):
+            beside = own @ (after.information @ direction)
+            curvature = float(direction @ after.information @ direction - (after.information @ direction) @ beside)
+            score = float(after.slope @ direction - (before.slope + after.slope) @ beside)
+            size = score / curvature
+            left = error - size * beside
+            variance = float(beside @ self.prior @ beside)
+            per_day = 0.0
+            for part, moved, seen in (
+                (before, left, -beside), (after, left + size * direction, direction - beside),
+            ):  # fmt: skip
+                variance += part.scatter(seen, moved)
+                per_day += part.per_day(seen, direction)
+            variance = max(variance, curvature) + self.floor[k] ** 2 * per_day
+            sizes.append((size, float(np.sqrt(variance)) / curvature, score**2 / curvature))
+        return sizes
 
 
 def _windows(upto: int) -> list[int]:
@@ -312,7 +366,7 @@ def _windows(upto: int) -> list[int]:
 
 def _limit(series: _Series, a_year: float, rng: np.random.Generator) -> float:
     """Return the score that an unchanged line passes so often in a year, drawn with days such as these."""
-    usual = series.information.mean(axis=0)
+    usual = series.usual
     root = np.linalg.cholesky(usual + 1e-12 * np.diag(np.diag(usual)))
     free = len(usual)
     error = np.linalg.cholesky(np.linalg.inv(series.prior)) @ rng.standard_normal((free, _DRAWS))

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shaftprint.arrays import BoolArray, FloatArray
+from shaftprint.errors import SignalError
 from shaftprint.recording._messages import Messages, messages_of, stamped_values
 from shaftprint.signals._gaps import Gap
 from shaftprint.signals.conditioning._condition import Reading
@@ -38,11 +39,19 @@ def read_messages(
     """Return the messages of a channel that hold a value, with the holes between them.
 
     ``channel``: a channel with ``stamps``. ``lowest``, ``highest``: smallest and largest value [unit]: what is beyond
-    says that there is none. ``wrong``: which messages do not count beside those, shape (messages,).
+    says that there is none. ``wrong``: which messages do not count beside those, shape (messages,). Raises SignalError
+    if all numbers are beyond.
     """
     time_s, values = stamped_values(channel, count=channel.count)
     # written so that what is not a number counts as missing
     is_value = (values >= lowest) & (values <= highest) & np.isfinite(values)
+    numbers = values[np.isfinite(values)]
+    if numbers.size and not is_value.any():
+        allowed = f"at most {highest:g}" if lowest == -np.inf else f"{lowest:g} to {highest:g}"
+        raise SignalError(
+            f"channel {channel.name}: expected values of {allowed} {channel.unit}, found {numbers.min():.4g} to "
+            f"{numbers.max():.4g}; correct the unit or the scale of the channel in the vessel file."
+        )
     if wrong is not None:
         is_value &= ~wrong
     values, time_s = values[is_value], time_s[is_value]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections import Counter
 from datetime import UTC, datetime
 from pathlib import Path
@@ -71,22 +72,26 @@ def command(
     if output is not None:
         expect_free(output, force=force)
         expect_free(channel_file(output), force=force)
-    installation = load_vessel(vessel)
-    earlier = None if fingerprint is None else fingerprint_at(fingerprint)
-    with progress(hidden=no_progress) as steps:
-        steps.begin("Reading", total=1.0)
-        found = scan(logs, installation, fingerprint=earlier, progress=steps.reach)
+    # a folder that cannot be written is refused before a week of logs is read
+    place = contextlib.nullcontext() if page is None else output_folder(page, of="service scan", force=force)
+    with place as folder:
+        installation = load_vessel(vessel)
+        earlier = None if fingerprint is None else fingerprint_at(fingerprint)
+        with progress(hidden=no_progress) as steps:
+            steps.begin("Reading", total=1.0)
+            found = scan(logs, installation, fingerprint=earlier, progress=steps.reach)
+        if output is not None and found.line is not None:
+            found.write(output)
+        if folder is not None:
+            render_service(folder, found, vessel=installation.name, now=datetime.now(UTC))
     answer(found.headline)
     give("scan", _as_given(found))
     print_tables(_tables(found))
     if found.left_out:
         print_findings("Could not be read", found.left_out)
     if output is not None and found.line is not None:
-        found.write(output)
         say(f"{output}: {len(found.segments)} segments, {len(found.used)} of them used.")
     if page is not None:
-        with output_folder(page, of="service scan", force=force) as folder:
-            render_service(folder, found, vessel=installation.name, now=datetime.now(UTC))
         say(f"{page / REPORT}: the moves in their places.")
     if found.refused:
         context.exit(NOT_REACHED)
