@@ -126,7 +126,7 @@ def gauge_core() -> Structure:
 
     ``n / M_s = sensor exp(s t_gauge) (T_filter s + 1) / (tau_dn s + k_q)``.
     """
-    core = Shaft((TAU_DN,), K_Q) * Inverse(_torque_sensor()) * _speed_sensor()
+    core = Shaft((TAU_DN,), K_Q) * Inverse(torque_sensor()) * speed_sensor()
     return Structure(name="GAUGE-CORE", title="gauge-aware core propulsion", input="M_s", outputs={"n": core})
 
 
@@ -137,7 +137,7 @@ def gauge_open() -> Structure:
     of the set point and the pick-up enter through ``e``, so the measured ratio is
     ``(M_s / n_set) / (1 - n / n_set)``.
     """
-    speed, torque, _ = _measured(_rigid_shaft(), _rigid_load(), _governor(), _engine(V_ONE))
+    speed, torque, _ = _measured(rigid_shaft(), rigid_load(), diesel_governor(), diesel())
     error = 1.0 - speed
     return Structure(
         name="GAUGE-OPEN",
@@ -154,7 +154,7 @@ def gauge_closed() -> Structure:
     ``n = c_set sensor exp(-s t_sp) L / (1 + L)`` with ``L = v C exp(-s t_d) F / ((tau_up + tau_dn) s + k_q - g)``, and
     ``M_s = (tau_dn s + k_q) exp(-s t_gauge) / (T_filter s + 1) n`` without the speed sensor.
     """
-    speed, torque, _ = _measured(_rigid_shaft(), _rigid_load(), _governor(), _engine(V_ONE))
+    speed, torque, _ = _measured(rigid_shaft(), rigid_load(), diesel_governor(), diesel())
     return Structure(
         name="GAUGE-CLOSED",
         title="gauge-aware closed loop",
@@ -170,9 +170,9 @@ def gauge_inflow() -> Structure:
     ``M_p = (tau_w s + k_q + kappa tau_i s / (tau_i s + 1)) n``: the slipstream follows the propeller late, so that a
     fast change of speed meets more torque than a slow one. ``tau_dn`` holds the water too while ``tau_w`` is held at 0.
     """
-    load = _rigid_load() + EntrainedWater(TAU_W) + DynamicInflow(KAPPA, TAU_I)
+    load = rigid_load() + EntrainedWater(TAU_W) + DynamicInflow(KAPPA, TAU_I)
     shaft = Inverse(load + Inertia(TAU_UP) - Gain(G))
-    speed, torque, _ = _measured(shaft, load, _governor(), _engine(V_ONE))
+    speed, torque, _ = _measured(shaft, load, diesel_governor(), diesel())
     return Structure(
         name="GAUGE-INFLOW",
         title="gauge-aware closed loop with dynamic inflow",
@@ -188,7 +188,7 @@ def gauge_ecu() -> Structure:
     ``X = C exp(-s t_rack) / (1 + L) c_set exp(-s t_sp)``: it shows the governor without the engine, so that ``v`` is
     found.
     """
-    speed, torque, rack = _measured(_rigid_shaft(), _rigid_load(), _governor(), _engine(V))
+    speed, torque, rack = _measured(rigid_shaft(), rigid_load(), diesel_governor(), diesel(V))
     return Structure(
         name="GAUGE-ECU",
         title="gauge-aware closed loop with the fuel rack logged",
@@ -212,12 +212,12 @@ def governor() -> Structure:
     ``X = C exp(-s t_rack) (c_set exp(-s t_sp) n_set - n)``: the set point reaches it late, the speed does not. Engine
     and line are not in it; a fit takes the speed that was measured.
     """
-    rack = _governor() * Delay(T_RACK)
+    rack = diesel_governor() * Delay(T_RACK)
     return Structure(
         name="GOVERNOR",
         title="governor alone, fuel rack logged",
         inputs=("n_set", "n"),
-        outputs={"X": {"n_set": rack * Delay(T_SP) * Gain(C_SET), "n": -rack}},
+        outputs={"X": {"n_set": rack * set_point(), "n": -rack}},
     )
 
 
@@ -226,13 +226,13 @@ def engine() -> Structure:
 
     ``n = v exp(-s (t_d - t_rack)) F / ((tau_up + tau_dn) s + k_q - g) X``: no feedback is in it, and no set point.
     """
-    drive = _engine(V) * Inverse(Delay(T_RACK))
-    speed = drive * _rigid_shaft()
+    drive = diesel(V) * Inverse(Delay(T_RACK))
+    speed = drive * rigid_shaft()
     return Structure(
         name="ENGINE",
         title="engine and line, fuel rack logged",
         input="X",
-        outputs={"n": speed * _speed_sensor(), "M_s": speed * _rigid_load() * _torque_sensor()},
+        outputs={"n": speed * speed_sensor(), "M_s": speed * rigid_load() * torque_sensor()},
     )
 
 
@@ -244,9 +244,7 @@ def gauge_motor() -> Structure:
     and O. N. Smogeli, "Torque and power control of electrically driven marine propellers", Control Engineering Practice
     17, 2009).
     """
-    speed, torque, _ = _measured(
-        Shaft((TAU_DN, TAU_UP), K_Q), _rigid_load(), PIGovernor(MOTOR_K_P, MOTOR_K_I), _motor()
-    )
+    speed, torque, _ = _measured(Shaft((TAU_DN, TAU_UP), K_Q), rigid_load(), PIGovernor(MOTOR_K_P, MOTOR_K_I), _motor())
     return Structure(
         name="GAUGE-MOTOR",
         title="gauge-aware closed loop of an electric motor",
@@ -280,14 +278,14 @@ def _elastic(name: str, *, on_engine: bool) -> Structure:
     """Return the elastic line with the speed of the engine or that of the shaft measured."""
     end = RationalBlock(engine_end, (TAU_UP, TAU_M, TAU_DN, K_Q, G, K_C, D_C))
     follows = RationalBlock(shaft_end, (TAU_M, TAU_DN, K_Q, K_C, D_C))
-    engine, _ = _speed_and_rack(end, _governor(), _engine(V_ONE))
+    engine, _ = _speed_and_rack(end, diesel_governor(), diesel())
     shaft = engine * follows
     shown, where = (engine, ", pick-up on the engine") if on_engine else (shaft, "")
     return Structure(
         name=name,
         title=f"gauge-aware closed loop with an elastic coupling{where}",
         input="n_set",
-        outputs={"n": shown * _speed_sensor(), "M_s": shaft * _rigid_load() * _torque_sensor()},
+        outputs={"n": shown * speed_sensor(), "M_s": shaft * rigid_load() * torque_sensor()},
         combinations=(*gauge_combinations(), coupling_mode()),
     )
 
@@ -298,7 +296,7 @@ def gauge_governor() -> Structure:
         name="GAUGE-GOVERNOR",
         title="governor and engine of the gauge-aware closed loop",
         input="e",
-        outputs={"M_b": _governor() * _engine(V_ONE)},
+        outputs={"M_b": diesel_governor() * diesel()},
     )
 
 
@@ -311,16 +309,16 @@ def gauge_line() -> Structure:
         name="GAUGE-LINE",
         title="line of the gauge-aware closed loop",
         input="M_b",
-        outputs={"M_s": _rigid_shaft() * _rigid_load()},
+        outputs={"M_s": rigid_shaft() * rigid_load()},
     )
 
 
-def _governor() -> Expression:
+def diesel_governor() -> Expression:
     """Return ``X / e`` of a diesel's governor."""
     return PIGovernor(GAUGE_K_P, GAUGE_K_I)
 
 
-def _engine(v: Parameter) -> Expression:
+def diesel(v: Parameter = V_ONE) -> Expression:
     """Return ``M_b / X`` of a diesel, without the slope of its torque with speed."""
     return Gain(v) * Delay(T_D) * SecondOrderLag(GAUGE_OMEGA_N, GAUGE_ZETA)
 
@@ -330,21 +328,28 @@ def _motor() -> Expression:
     return Delay(T_CONVERTER) * FirstOrderLag(T_M)
 
 
-def _rigid_shaft() -> Expression:
+def rigid_shaft() -> Expression:
     """Return ``n / M_b`` of one rigid body."""
     return Shaft((TAU_DN, TAU_UP), K_Q, G)
 
 
-def _rigid_load() -> Expression:
+def rigid_load() -> Expression:
     """Return ``M_s / n`` of the body downstream of the gauge."""
     return TorqueBalance(TAU_DN, K_Q)
 
 
-def _speed_sensor() -> Expression:
+def set_point(scale: Parameter = C_SET) -> Expression:
+    """Return what the set point makes of that which was recorded: its latency and its scale."""
+    return Delay(T_SP) * Gain(scale)
+
+
+def speed_sensor() -> Expression:
+    """Return what the pick-up shows of the speed."""
     return AveragingSensor(T_AVERAGE, T_HOLD, T_PICKUP)
 
 
-def _torque_sensor() -> Expression:
+def torque_sensor() -> Expression:
+    """Return what the telemetry shows of the torque at the gauge."""
     return Delay(T_GAUGE) * FirstOrderLag(T_FILTER)
 
 
@@ -356,12 +361,12 @@ def _measured(
     It is that of ``n / M_b`` and ``M_s / n`` of a line, ``X / e`` of its governor and ``M_b / X`` of what drives it.
     """
     speed, given = _speed_and_rack(shaft, rack, drive)
-    return speed * _speed_sensor(), speed * load * _torque_sensor(), given * Delay(T_RACK)
+    return speed * speed_sensor(), speed * load * torque_sensor(), given * Delay(T_RACK)
 
 
 def _speed_and_rack(shaft: Expression, rack: Expression, drive: Expression) -> tuple[Expression, Expression]:
     """Return the speed that the governor feels and the rack that it gives, from ``n_set``, before any sensor."""
     loop = rack * drive * shaft
     left_of_error = Sensitivity(loop)
-    set_point = Delay(T_SP) * Gain(C_SET)
-    return loop * left_of_error * set_point, rack * left_of_error * set_point
+    asked = set_point()
+    return loop * left_of_error * asked, rack * left_of_error * asked

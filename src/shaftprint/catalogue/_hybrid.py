@@ -11,36 +11,31 @@ that the engine itself gives, ``1 - c_m s_m`` of the whole.
 """
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 from shaftprint.arrays import FloatArray
 from shaftprint.catalogue._gauge import (
     C_SET,
     GAUGE_K_I,
     GAUGE_K_P,
-    GAUGE_OMEGA_N,
-    GAUGE_ZETA,
     K_Q,
-    T_AVERAGE,
-    T_D,
-    T_FILTER,
-    T_GAUGE,
-    T_HOLD,
-    T_PICKUP,
     T_SP,
     TAU_DN,
     TAU_UP,
-    V_ONE,
     G,
+    diesel,
+    rigid_load,
+    speed_sensor,
+    torque_sensor,
 )
 from shaftprint.catalogue._gauge_combinations import RESET_TIME, TOTAL_DELAY
 from shaftprint.catalogue._roles import ShipRole
-from shaftprint.models._blocks import FirstOrderLag, Gain, PIGovernor, SecondOrderLag
+from shaftprint.models._blocks import Gain, PIGovernor
 from shaftprint.models._combination import Combination
-from shaftprint.models._delays import AveragingSensor, Delay
+from shaftprint.models._delays import Delay
 from shaftprint.models._expression import Sensitivity
 from shaftprint.models._own_blocks import RationalBlock
 from shaftprint.models._parameter import Parameter
-from shaftprint.models._shaft_blocks import TorqueBalance
 from shaftprint.models._structure import Structure
 
 SHARE = Parameter(
@@ -61,22 +56,14 @@ C_M = Parameter(
     "torque of the electric machine over that which its converter shows",
     role=ShipRole.MACHINE_SCALE,
 )
-OWN_K_P = Parameter(
-    "K_p",
-    "-",
-    GAUGE_K_P.lower,
-    GAUGE_K_P.upper,
-    GAUGE_K_P.value,
-    "proportional gain of the governor, over the torque of the engine alone",
+OWN_K_P = replace(
+    GAUGE_K_P,
+    meaning="proportional gain of the governor, over the torque of the engine alone",
     role=ShipRole.OWN_PROPORTIONAL_GAIN,
 )
-OWN_K_I = Parameter(
-    "K_i",
-    "1/s",
-    GAUGE_K_I.lower,
-    GAUGE_K_I.upper,
-    GAUGE_K_I.value,
-    "integral gain of the governor, over the torque of the engine alone",
+OWN_K_I = replace(
+    GAUGE_K_I,
+    meaning="integral gain of the governor, over the torque of the engine alone",
     role=ShipRole.OWN_INTEGRAL_GAIN,
 )
 
@@ -90,21 +77,17 @@ def gauge_hybrid() -> Structure:
     the machine stands still it is GAUGE-CLOSED.
     """
     shaft = RationalBlock(_shaft, (TAU_DN, TAU_UP, K_Q, G, C_M, SHARE))
-    engine = (
-        RationalBlock(_of_engine, (C_M, SHARE)) * Gain(V_ONE) * Delay(T_D) * SecondOrderLag(GAUGE_OMEGA_N, GAUGE_ZETA)
-    )
+    engine = RationalBlock(_of_engine, (C_M, SHARE)) * diesel()
     loop = PIGovernor(OWN_K_P, OWN_K_I) * engine * shaft
     left_of_error = Sensitivity(loop)
     moved = {"n_set": Delay(T_SP) * Gain(C_SET) * loop * left_of_error, "M_m": Gain(C_M) * shaft * left_of_error}
-    sensor = AveragingSensor(T_AVERAGE, T_HOLD, T_PICKUP)
-    gauge = Delay(T_GAUGE) * FirstOrderLag(T_FILTER)
     return Structure(
         name="GAUGE-HYBRID",
         title="gauge-aware closed loop with an electric machine on the gearbox",
         inputs=tuple(moved),
         outputs={
-            "n": {name: speed * sensor for name, speed in moved.items()},
-            "M_s": {name: speed * TorqueBalance(TAU_DN, K_Q) * gauge for name, speed in moved.items()},
+            "n": {name: speed * speed_sensor() for name, speed in moved.items()},
+            "M_s": {name: speed * rigid_load() * torque_sensor() for name, speed in moved.items()},
         },
         combinations=_combinations(),
     )

@@ -18,10 +18,10 @@ from collections.abc import Callable, Mapping
 from typing import Any, TypeAlias
 
 from shaftprint.catalogue._actuation import ENGINE, MOTOR, Actuation
-from shaftprint.catalogue._gauge import C_SET, K_Q, T_AVERAGE, T_FILTER, T_GAUGE, T_HOLD, T_PICKUP, T_SP, TAU_DN, TAU_UP
+from shaftprint.catalogue._gauge import C_SET, K_Q, T_SP, TAU_DN, TAU_UP, speed_sensor, torque_sensor
 from shaftprint.errors import StructureError
-from shaftprint.models._blocks import FirstOrderLag, Gain
-from shaftprint.models._delays import AveragingSensor, Delay
+from shaftprint.models._blocks import Gain
+from shaftprint.models._delays import Delay
 from shaftprint.models._diagram import Diagram
 from shaftprint.models._parameter import Parameter
 from shaftprint.models._structure import Structure
@@ -96,8 +96,8 @@ def limited(
         + ", ".join(("quadratic propeller", *limits)),
         input="n_set",
         outputs={
-            "n": demand * ports["n"] * Delay(T_SP) * AveragingSensor(T_AVERAGE, T_HOLD, T_PICKUP),
-            "M_s": demand * ports["M_s"] * Delay(T_SP) * Delay(T_GAUGE) * FirstOrderLag(T_FILTER),
+            "n": demand * ports["n"] * Delay(T_SP) * speed_sensor(),
+            "M_s": demand * ports["M_s"] * Delay(T_SP) * torque_sensor(),
             **rack,
         },
         combinations=actuation.combinations,

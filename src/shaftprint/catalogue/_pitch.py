@@ -26,32 +26,22 @@ from typing import NamedTuple
 
 from shaftprint.catalogue._gauge import (
     C_SET,
-    GAUGE_K_I,
-    GAUGE_K_P,
-    GAUGE_OMEGA_N,
-    GAUGE_ZETA,
-    K_Q,
-    T_AVERAGE,
-    T_D,
-    T_FILTER,
-    T_GAUGE,
-    T_HOLD,
-    T_PICKUP,
-    T_SP,
-    TAU_DN,
-    TAU_UP,
-    V_ONE,
-    G,
+    diesel,
+    diesel_governor,
+    rigid_load,
+    rigid_shaft,
+    set_point,
+    speed_sensor,
+    torque_sensor,
 )
 from shaftprint.catalogue._gauge_combinations import gauge_combinations
 from shaftprint.catalogue._roles import ShipRole
 from shaftprint.catalogue._sailing import TAU_TH, Q
-from shaftprint.models._blocks import FirstOrderLag, Gain, PIGovernor, SecondOrderLag
+from shaftprint.models._blocks import FirstOrderLag, Gain
 from shaftprint.models._combination import Combination
-from shaftprint.models._delays import AveragingSensor, Delay
+from shaftprint.models._delays import Delay
 from shaftprint.models._expression import Constant, Expression, Sensitivity
 from shaftprint.models._parameter import Parameter
-from shaftprint.models._shaft_blocks import Shaft, TorqueBalance
 from shaftprint.models._structure import Structure
 
 T_TH = Parameter(
@@ -93,7 +83,7 @@ def pitched_with_rack() -> Structure:
     part = gauge_pitch().of_input("theta_set")
     paths = dict(zip([output for output, _ in part.channels], part.paths, strict=True))
     speed, torque = paths["n"], paths["M_s"]
-    rack = -(PIGovernor(GAUGE_K_P, GAUGE_K_I) * speed)
+    rack = -(diesel_governor() * speed)
     return replace(part, name="PITCH-RACK", outputs={"n": speed, "M_s": torque, "X": rack})
 
 
@@ -175,21 +165,18 @@ class _Line(NamedTuple):
 
 def _line(pitch: Expression, set_point_scale: Parameter) -> _Line:
     """Return the line of a pitch over what asks for it."""
-    shaft = Shaft((TAU_DN, TAU_UP), K_Q, G)
-    drive = PIGovernor(GAUGE_K_P, GAUGE_K_I) * Gain(V_ONE) * Delay(T_D) * SecondOrderLag(GAUGE_OMEGA_N, GAUGE_ZETA)
-    loop = drive * shaft
+    shaft = rigid_shaft()
+    loop = diesel_governor() * diesel() * shaft
     left_of_error = Sensitivity(loop)
     forced = Gain(Q) * pitch * Delay(T_BLADE)
     return _Line(
         forced=forced,
-        speed_by_set_point=loop * left_of_error * Delay(T_SP) * Gain(set_point_scale),
+        speed_by_set_point=loop * left_of_error * set_point(set_point_scale),
         speed_by_pitch=-(forced * shaft * left_of_error),
     )
 
 
-_LOAD = TorqueBalance(TAU_DN, K_Q)
-_SPEED_SENSOR = AveragingSensor(T_AVERAGE, T_HOLD, T_PICKUP)
-_TORQUE_SENSOR = Delay(T_GAUGE) * FirstOrderLag(T_FILTER)
+_LOAD, _SPEED_SENSOR, _TORQUE_SENSOR = rigid_load(), speed_sensor(), torque_sensor()
 _PITCH_LAG = Combination(
     name="t_th + tau_th",
     unit="s",

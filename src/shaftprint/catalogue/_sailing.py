@@ -9,29 +9,21 @@ they are the gauge-aware structures.
 """
 
 from shaftprint.catalogue._gauge import (
-    C_SET,
-    GAUGE_K_I,
-    GAUGE_K_P,
-    GAUGE_OMEGA_N,
-    GAUGE_ZETA,
     K_Q,
-    T_AVERAGE,
-    T_D,
-    T_FILTER,
-    T_GAUGE,
-    T_HOLD,
-    T_PICKUP,
-    T_SP,
     TAU_DN,
     TAU_UP,
-    V_ONE,
     G,
+    diesel,
+    diesel_governor,
+    set_point,
+    speed_sensor,
+    torque_sensor,
 )
 from shaftprint.catalogue._roles import ShipRole
 from shaftprint.catalogue._sailing_blocks import PitchSpeed, SailingShaft, SailingSpeed, SailingTorque
-from shaftprint.models._blocks import FirstOrderLag, Gain, PIGovernor, SecondOrderLag
+from shaftprint.models._blocks import FirstOrderLag, Gain
 from shaftprint.models._combination import Combination
-from shaftprint.models._delays import AveragingSensor, Delay
+from shaftprint.models._delays import Delay
 from shaftprint.models._expression import Expression, Inverse, Sensitivity
 from shaftprint.models._parameter import Parameter
 from shaftprint.models._shaft_blocks import Inertia
@@ -73,7 +65,7 @@ def free_core() -> Structure:
     and Stapersma (Ocean Engineering 143, 2017, 50-65) write it with the whole inertia; the gauge sees what comes
     after it.
     """
-    core = SailingShaft((TAU_DN,), _torque()) * Inverse(_torque_sensor()) * _speed_sensor()
+    core = SailingShaft((TAU_DN,), _torque()) * Inverse(torque_sensor()) * speed_sensor()
     return Structure(
         name="FREE-CORE",
         title="core propulsion of a free-sailing ship",
@@ -88,12 +80,12 @@ def free_ship() -> Structure:
 
     ``v_s / n = sigma (2 - a) exp(-s t_log) / (tau_u s + e - a)`` in addition to what FREE-CORE shows.
     """
-    core = SailingShaft((TAU_DN,), _torque()) * Inverse(_torque_sensor())
+    core = SailingShaft((TAU_DN,), _torque()) * Inverse(torque_sensor())
     return Structure(
         name="FREE-SHIP",
         title="core propulsion of a free-sailing ship with its speed logged",
         input="M_s",
-        outputs={"n": core * _speed_sensor(), "v_s": core * SailingSpeed(A, E, TAU_U, SIGMA) * Delay(T_LOG)},
+        outputs={"n": core * speed_sensor(), "v_s": core * SailingSpeed(A, E, TAU_U, SIGMA) * Delay(T_LOG)},
         combinations=(*_combinations(), *_ship_combinations()),
     )
 
@@ -105,7 +97,7 @@ def free_closed() -> Structure:
         name="FREE-CLOSED",
         title="closed loop of a free-sailing ship",
         input="n_set",
-        outputs={"n": speed * _speed_sensor(), "M_s": torque * _torque_sensor()},
+        outputs={"n": speed * speed_sensor(), "M_s": torque * torque_sensor()},
         combinations=_combinations(),
     )
 
@@ -120,7 +112,7 @@ def free_log() -> Structure:
         name="FREE-LOG",
         title="closed loop of a free-sailing ship with its speed logged",
         input="n_set",
-        outputs={"n": speed * _speed_sensor(), "M_s": torque * _torque_sensor(), "v_s": ship * Delay(T_LOG)},
+        outputs={"n": speed * speed_sensor(), "M_s": torque * torque_sensor(), "v_s": ship * Delay(T_LOG)},
         combinations=(*_combinations(), *_ship_combinations()),
     )
 
@@ -132,7 +124,7 @@ def sailing_with_rack() -> Structure:
         name="FREE-RACK",
         title="closed loop of a free-sailing ship with its fuel rack",
         input="n_set",
-        outputs={"n": speed * _speed_sensor(), "M_s": torque * _torque_sensor(), "X": rack},
+        outputs={"n": speed * speed_sensor(), "M_s": torque * torque_sensor(), "X": rack},
         combinations=_combinations(),
     )
 
@@ -147,12 +139,12 @@ def free_pitch() -> Structure:
     """
     load = Inertia(TAU_DN) + _torque()
     shaft = SailingShaft((TAU_DN, TAU_UP), _torque(), G)
-    loop = _drive() * shaft
+    loop = diesel_governor() * diesel() * shaft
     left_of_error = Sensitivity(loop)
     pitch = FirstOrderLag(TAU_TH)
     pitch_ship = PitchSpeed(P, A, E, TAU_U, SIGMA)
     pitch_torque = 0.5 * Gain(K_Q_HELD) * (Gain(Q) + Gain(B) * pitch_ship)
-    by_set_point = loop * left_of_error * _set_point()
+    by_set_point = loop * left_of_error * set_point()
     by_pitch = -(pitch * pitch_torque * shaft * left_of_error)
     ship = SailingSpeed(A, E, TAU_U, SIGMA)
     return Structure(
@@ -160,10 +152,10 @@ def free_pitch() -> Structure:
         title="closed loop of a free-sailing ship with controllable pitch",
         inputs=("n_set", "theta_set"),
         outputs={
-            "n": {"n_set": by_set_point * _speed_sensor(), "theta_set": by_pitch * _speed_sensor()},
+            "n": {"n_set": by_set_point * speed_sensor(), "theta_set": by_pitch * speed_sensor()},
             "M_s": {
-                "n_set": by_set_point * load * _torque_sensor(),
-                "theta_set": (by_pitch * load + pitch * pitch_torque) * _torque_sensor(),
+                "n_set": by_set_point * load * torque_sensor(),
+                "theta_set": (by_pitch * load + pitch * pitch_torque) * torque_sensor(),
             },
             "v_s": {
                 "n_set": by_set_point * ship * Delay(T_LOG),
@@ -185,32 +177,15 @@ def free_pitch() -> Structure:
 
 def _governed() -> tuple[Expression, Expression, Expression, Expression]:
     """Return ``n``, ``M_s``, the speed of the ship and the rack from ``n_set``, without sensors."""
-    loop = _drive() * SailingShaft((TAU_DN, TAU_UP), _torque(), G)
-    error = Sensitivity(loop) * _set_point()
+    loop = diesel_governor() * diesel() * SailingShaft((TAU_DN, TAU_UP), _torque(), G)
+    error = Sensitivity(loop) * set_point()
     speed = loop * error
     ship = speed * SailingSpeed(A, E, TAU_U, SIGMA)
-    return speed, speed * (Inertia(TAU_DN) + _torque()), ship, PIGovernor(GAUGE_K_P, GAUGE_K_I) * error
+    return speed, speed * (Inertia(TAU_DN) + _torque()), ship, diesel_governor() * error
 
 
 def _torque() -> SailingTorque:
     return SailingTorque(K_Q_HELD, A, B, E, TAU_U, SIGMA)
-
-
-def _drive() -> Expression:
-    """Return ``M_b / e`` of governor and engine at constant speed."""
-    return PIGovernor(GAUGE_K_P, GAUGE_K_I) * Gain(V_ONE) * Delay(T_D) * SecondOrderLag(GAUGE_OMEGA_N, GAUGE_ZETA)
-
-
-def _set_point() -> Expression:
-    return Delay(T_SP) * Gain(C_SET)
-
-
-def _speed_sensor() -> Expression:
-    return AveragingSensor(T_AVERAGE, T_HOLD, T_PICKUP)
-
-
-def _torque_sensor() -> Expression:
-    return Delay(T_GAUGE) * FirstOrderLag(T_FILTER)
 
 
 def _combinations() -> tuple[Combination, ...]:
