@@ -2,12 +2,12 @@
 
 import numpy as np
 import pytest
+from tests.measured_outputs import measured
 from tests.tug.linearised import linearised_response
 
 from shaftprint.recording import read_recording
 from shaftprint.signals import prepare_signals
 from shaftprint.spectra import estimate_spectra
-from shaftprint.spectra._line_responses import measured
 from shaftprint.spectra._open_loop import governor_and_engine
 from shaftprint.tug import Noise, Tug, sail
 from shaftprint.vessel import Vessel, load_vessel

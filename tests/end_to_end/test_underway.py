@@ -6,6 +6,7 @@ included, and the dither 2 % of the speed.
 
 import numpy as np
 import pytest
+from tests.measured_outputs import measured
 
 from shaftprint.campaign import load_campaign
 from shaftprint.catalogue import KnownPropeller, structure, with_known_propeller
@@ -14,7 +15,6 @@ from shaftprint.propeller import ka4_70_in_19a
 from shaftprint.recording import read_recording
 from shaftprint.signals import prepare_signals
 from shaftprint.spectra import estimate_spectra, plant_from_closed_loop
-from shaftprint.spectra._line_responses import measured
 from shaftprint.tug import Sailing, Tug, sail
 from shaftprint.vessel import Vessel, load_vessel
 

@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
+from tests.identify.one_objective import build_objective
 
 from shaftprint.catalogue import structure
 from shaftprint.identify import MaximumLikelihood, Prior, Settings, Unweighted, identify
 from shaftprint.identify.fit._covariance import estimate_covariance
-from shaftprint.identify.likelihood._build_objective import build_objective
 from shaftprint.identify.search._levenberg_marquardt import descend
 from shaftprint.models import Constant, Gain, Parameter, Structure
 

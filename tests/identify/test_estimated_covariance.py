@@ -5,11 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import scipy.stats
+from tests.identify.one_objective import build_objective
 
 from shaftprint.catalogue import structure
 from shaftprint.identify import MaximumLikelihood, Prior, Settings, identify, refit
 from shaftprint.identify.fit._covariance import estimate_covariance
-from shaftprint.identify.likelihood._build_objective import build_objective
 
 REPEATS = 2000
 # Real degrees of freedom of the thirteen lines, as a campaign of the thesis' length gives them: few for slow lines.

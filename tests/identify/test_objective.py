@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
+from tests.identify.one_objective import build_objective
 
 from shaftprint.catalogue import structure
 from shaftprint.errors import IdentificationError
 from shaftprint.identify import MaximumLikelihood, Prior, Settings, Unweighted, identify
-from shaftprint.identify.likelihood._build_objective import build_objective
 
 NOTHING = {"priors": {}, "regularisation": {}}
 

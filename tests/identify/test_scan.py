@@ -1,6 +1,7 @@
 """Cost along one parameter: against brute force, against hand-derived optima, and the many optima of a pure delay."""
 
 import itertools
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -9,7 +10,7 @@ import scipy.optimize
 from shaftprint.catalogue import structure
 from shaftprint.errors import IdentificationError
 from shaftprint.identify import MaximumLikelihood, Prior, Settings, Unweighted, identify, scan
-from shaftprint.identify.fit._scan import scan_response
+from shaftprint.identify.search._starts import Draw
 from shaftprint.models import Delay, Gain, Parameter, PIGovernor, Structure
 from shaftprint.spectra import FrequencyResponse
 
@@ -28,6 +29,21 @@ SNR_DB = np.array(
     ]
 )
 LAGGED = {"K_p": 1.8, "K_i": 4.3, "t_d": 0.12, "omega_n": 9.0, "zeta": 1.2}
+
+
+class Middle(Draw):
+    """The middle of the box as the only start."""
+
+    __slots__ = ()
+
+    def starts(self, lower, upper, count, rng):
+        return np.tile(0.5 * (lower + upper), (count, 1))
+
+
+def scan_response(structure, response, parameter, *, settings=None, grid=None):
+    """The lowest cost along a parameter of a structure before any fit: nothing is drawn."""
+    once = replace(settings or Settings(), starts=1, draw=Middle(), stability="ignored")
+    return scan(identify(structure, response, rng=np.random.default_rng(0), settings=once), parameter, grid=grid)
 
 
 def lowest_of_ol3(response, weights):

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 import scipy
 from tests.made_signals import with_channels
+from tests.measured_outputs import measured
+from tests.spectra.legs_by_speed import estimate_legs
 from tests.spectra.test_legs import CAMPAIGN, HARMONICS, PERIOD_S, made_leg, speed_over_set_point
 
 from shaftprint.signals import MessageSignal
-from shaftprint.spectra._leg_spectra import estimate_legs
-from shaftprint.spectra._line_responses import measured
 
 GAIN, MEAN = 3.0, 0.42
 

@@ -6,11 +6,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from tests.made_signals import made_channels, with_channels
+from tests.spectra.legs_by_speed import estimate_legs
 
 from shaftprint.campaign import Campaign, Multisine
 from shaftprint.signals import LegState, SetPointCalibration, Signals, WorkingPoint
 from shaftprint.signals._orders import TrackedOrder
-from shaftprint.spectra._leg_spectra import estimate_legs
 from shaftprint.spectra.legs._leg_lines import leg_freedom
 from shaftprint.spectra.lines._noise import LineNoise
 

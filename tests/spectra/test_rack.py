@@ -5,11 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from tests.made_signals import with_channels
+from tests.measured_outputs import measured
 
 from shaftprint.errors import ResponseError
 from shaftprint.signals import Gap, MessageSignal
 from shaftprint.spectra import ExactBin, FrequencyResponse, estimate_response, estimate_spectra, open_loop
-from shaftprint.spectra._line_responses import measured
 from shaftprint.spectra._open_loop import governor_and_engine
 from shaftprint.spectra.lines._line_fit import WindowSamples
 from shaftprint.spectra.lines._message_line import times_of_values

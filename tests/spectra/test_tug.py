@@ -6,13 +6,13 @@ from functools import lru_cache
 import numpy as np
 import pytest
 from tests.made_signals import made_channels
+from tests.measured_outputs import measured
 from tests.tug.ideal_signals import simulate_signals
 from tests.tug.linearised import linearised_response
 
 from shaftprint.campaign import load_campaign
 from shaftprint.signals import MessageSignal
 from shaftprint.spectra import estimate_spectra, open_loop
-from shaftprint.spectra._line_responses import measured
 from shaftprint.spectra._open_loop import governor_and_engine
 from shaftprint.tug import Tug
 from shaftprint.vessel import load_vessel

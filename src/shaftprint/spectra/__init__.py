@@ -13,8 +13,8 @@ signal-to-noise ratio       dB      local, 20 DFT bins on each side; overall rat
 load drift ``delta``        -       propeller load of a window over that at the working point, minus 1
 =========================== ======= ==================================================================
 
-`estimate_spectra` gives all of it for sines and `estimate_legs` for legs, `estimate_response` the response alone,
-`open_loop` and `governor_and_engine` its open-loop forms.
+`estimate_spectra` gives all of it for sines and `estimate_inputs_of_legs` for legs, `estimate_response` the response
+alone, `open_loop` and `governor_and_engine` its open-loop forms.
 
 For drives that are no ships `response_from_arrays` makes a response from plain time series, in the units of the arrays,
 `plant_from_closed_loop` takes a plant out of its loop, and `FrequencyResponse` holds what another program has measured.

@@ -44,39 +44,18 @@ _HIGHEST_SHARE_OF_RATE = 0.45
 
 
 @refusing_none(ResponseError)
-def estimate_legs(signals: "Signals", campaign: "Campaign") -> dict[str, Spectra]:
+def estimate_inputs_of_legs(signals: "Signals", campaign: "Campaign") -> dict[str, dict[str, Spectra]]:
     """Measure every leg of a campaign that the recording holds, each about its own working point.
 
     Set point and speed are divided by the mean speed ``n_0`` of the leg, the torque by ``M_0`` (see ``LegState``). The
-    load of each line is 1 by definition. A leg that was cut off gives a result of its whole periods.
-
-    ``signals``: the prepared recording. ``campaign``: what was asked of the ship; only its legs are used. Returns
-    response, signal-to-noise ratios and remarks of each leg by its name, in order of time. Raises ResponseError if a
-    channel holds values that are not numbers or does not move, or the set point of a leg stands still.
-    """
-    return {name: by_input[SPEED] for name, by_input in estimate_inputs_of_legs(signals, campaign).items()}
-
-
-@refusing_none(ResponseError)
-def estimate_inputs_of_legs(signals: "Signals", campaign: "Campaign") -> dict[str, dict[str, Spectra]]:
-    """Measure every leg of a campaign as ``estimate_legs`` does, and what was moved beside the speed in its periods.
-
-    Two inputs that have lines of their own in the same periods are told apart line by line, as if each had been moved
+    load of each line is 1 by definition. A leg that was cut off gives a result of its whole periods. What was moved
+    beside the speed in the same periods has lines of its own and is told apart line by line, as if each had been moved
     alone: what is nonlinear in both falls between the lines where all harmonics are odd.
 
-    Parameters
-    ----------
-    signals, campaign
-        As of ``estimate_legs``.
-
-    Returns
-    -------
-    Of each leg by its name, in order of time, what its inputs show by their symbols, that of the speed first.
-
-    Raises
-    ------
-    ResponseError
-        As ``estimate_legs``, or if the vessel file names no sensor of what was moved.
+    ``signals``: the prepared recording. ``campaign``: what was asked of the ship; only its legs are used. Returns of
+    each leg by its name, in order of time, response, signal-to-noise ratios and remarks of its inputs by their symbols,
+    that of the speed first. Raises ResponseError if a channel holds values that are not numbers or does not move, the
+    set point of a leg stands still, or the vessel file names no sensor of what was moved.
     """
     by_name = {leg.name: leg for leg in campaign.legs}
     found, of_speed = {}, []

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shaftprint.arrays import BoolArray, ComplexArray, FloatArray
+from shaftprint.arrays import ComplexArray, FloatArray
 from shaftprint.spectra._frequency_response import FrequencyResponse
 from shaftprint.spectra._response_covariance import response_of_line, weight_factor, with_common_error
 from shaftprint.spectra.lines._line_measurement import LineMeasurement
@@ -20,19 +20,6 @@ below a tenth of it, so that it has no weight for that output. Its correlation w
 
 _SPEED_AND_TORQUE = 2
 _ROUNDING = 1e-15
-
-
-def measured(response: FrequencyResponse) -> BoolArray:
-    """Return which outputs were measured at which lines.
-
-    A line may show speed and torque and be too fast for the percent torque on the CAN bus. The value that the response
-    holds there says nothing; its standard deviation is `NOT_MEASURED_STD`.
-
-    ``response``: a response of one input. Returns True where the response was measured, shape (outputs, lines).
-    """
-    variance = np.diagonal(response.covariance, axis1=1, axis2=2)[:, : len(response.outputs)]
-    is_measured: BoolArray = variance.T < 0.5 * NOT_MEASURED_STD**2
-    return is_measured
 
 
 def outputs_of(signals: "Signals", channels: Sequence[str]) -> tuple[str, ...]:

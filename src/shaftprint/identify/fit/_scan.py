@@ -6,8 +6,7 @@ delay held, the gains of an open loop are a linear problem that needs no search,
 Stability is not asked: the curve is that of the data.
 """
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -15,15 +14,10 @@ from numpy.typing import ArrayLike
 from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.errors import IdentificationError
 from shaftprint.identify.fit._identification import Identification
-from shaftprint.identify.fit._identify import identify
 from shaftprint.identify.likelihood._objective import Objective
 from shaftprint.identify.search._conditional_minimum import Conditional
 from shaftprint.identify.search._levenberg_marquardt import descend
-from shaftprint.identify.search._settings import Settings
-from shaftprint.identify.search._starts import Draw
 from shaftprint.models._parameter import Parameter
-from shaftprint.models._structure import Structure
-from shaftprint.spectra._frequency_response import FrequencyResponse
 
 FIRST_POINTS = 65
 # Halvings of an interval of the first grid.
@@ -126,37 +120,6 @@ def scan(identification: Identification, parameter: str, *, grid: ArrayLike | No
         closed_form=tuple(names[i] for i in conditional.closed),
         minima=_minima(conditional, at, theta, cost),
     )
-
-
-def scan_response(
-    structure: Structure,
-    response: FrequencyResponse,
-    parameter: str,
-    *,
-    settings: Settings | None = None,
-    lines: Sequence[str] | None = None,
-    grid: ArrayLike | None = None,
-    starts: int = 8,
-) -> Scan:
-    """Return the lowest cost along a parameter of a structure, before any fit.
-
-    ``structure``, ``response``, ``settings``, ``lines``: the problem, as in ``identify``. ``parameter``, ``grid``,
-    ``starts``: as in ``scan``. Raises IdentificationError if structure and response do not fit together, the parameter
-    is not free or a value lies outside its bounds.
-    """
-    once = replace(settings or Settings(), starts=1, draw=_Middle(), stability="ignored")
-    # nothing is drawn: the only start is the middle of the box
-    one = identify(structure, response, rng=np.random.default_rng(0), settings=once, lines=lines)
-    return scan(one, parameter, grid=grid, starts=starts)
-
-
-class _Middle(Draw):
-    """The middle of the box as the only start."""
-
-    __slots__ = ()
-
-    def starts(self, lower: FloatArray, upper: FloatArray, count: int, rng: np.random.Generator) -> FloatArray:
-        return np.tile(0.5 * (lower + upper), (count, 1))
 
 
 def _free_names(objective: Objective) -> tuple[str, ...]:

@@ -24,21 +24,6 @@ Source: TypeAlias = tuple[Structure, FrequencyResponse] | Term
 _NAMED = 3
 
 
-def build_objective(
-    structure: Structure,
-    response: FrequencyResponse,
-    *,
-    weighting: Weighting,
-    priors: Mapping[str, Prior],
-    regularisation: Mapping[str, Prior],
-    lines: Sequence[str] | None = None,
-) -> Objective:
-    """Return the fit problem of one structure and one response, see ``build_joint_objective``."""
-    return build_joint_objective(
-        [(structure, response)], weighting=weighting, priors=priors, regularisation=regularisation, lines=lines
-    )
-
-
 def build_joint_objective(
     parts: Sequence[Source],
     *,
