@@ -237,12 +237,13 @@ class FromStart(Simulator):
         wanted: Sequence[str],
         *,
         initial: FloatArray | None = None,
+        of_states: bool = False,
     ) -> Trace:
         """Return the outputs at every sample of the drive, and their derivatives."""
         states = initial
         if states is None and self.known is not None:
             states = self.rest(structure, values, record)
-        return self.inner(structure, values, record, wanted, initial=states)
+        return self.inner(structure, values, record, wanted, initial=states, of_states=of_states)
 
     def rest(self, structure: Structure, values: FloatArray, record: Record) -> FloatArray:
         """Return the states at the first sample of the drive, shape (states,)."""

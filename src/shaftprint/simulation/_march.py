@@ -87,11 +87,16 @@ class March:
             given=initial is not None,
         )
 
-    def run(self, inputs: FloatArray, wanted: tuple[str, ...]) -> tuple[FloatArray, FloatArray]:
+    def run(
+        self, inputs: FloatArray, wanted: tuple[str, ...], *, of_states: bool = False
+    ) -> tuple[FloatArray, FloatArray]:
         """Return the outputs, shape (samples, outputs), and their derivatives, shape (samples, outputs, wanted).
 
-        ``inputs``: inputs at the samples, shape (samples, inputs).
+        ``inputs``: inputs at the samples, shape (samples, inputs). ``of_states``: whether derivatives to the states at
+        the start stand behind those to parameters.
         """
+        states = len(self.built.program.states) if of_states else 0
+        columns = [*wanted, *range(states)]
         moved = self.built.shifts_depend_on(wanted) or bool(np.any(self.shift_s != 0.0))
         every = 1 if moved else self.parts
         table = np.ascontiguousarray(np.concatenate([inputs, np.repeat(inputs[-1:], self._after, axis=0)]))
@@ -99,11 +104,11 @@ class March:
         count = len(self.built.program.signals)
         samples = inputs.shape[0]
         y = np.empty((nodes, count), dtype=np.result_type(self.constants, self.delay_s, float))
-        if not wanted:
+        if not columns:
             self.built.kernels.advance(*self._arguments(table, every), y)
-        slopes = np.empty((samples, count, len(wanted)))
-        for first in range(0, len(wanted), LANES):
-            lanes = [self._lane(name, inputs[0]) for name in wanted[first : first + LANES]]
+        slopes = np.empty((samples, count, len(columns)))
+        for first in range(0, len(columns), LANES):
+            lanes = [self._lane(column, inputs[0]) for column in columns[first : first + LANES]]
             y_slopes = np.empty((nodes, count, LANES))
             rows = np.zeros((lanes[0].kernel.size, LANES))
             rows[:, : len(lanes)] = np.stack([lane.kernel for lane in lanes], axis=1)
@@ -163,19 +168,23 @@ class March:
         """Return the samples of an output."""
         return Shift(self.shift_s[output].item() / self.step_s, samples, self.parts)
 
-    def _lane(self, name: str, inputs: FloatArray) -> "Lane":
-        """Return the derivatives to one parameter of all that the run starts from."""
+    def _lane(self, column: str | int, inputs: FloatArray) -> "Lane":
+        """Return the derivatives of all that the run starts from, to a parameter by its name or a state by its place."""
         values = np.asarray(self.values.real, dtype=np.float64)
-        constants, delays, shifts, _ = self.built.constant_slopes(values, self.step_s, name)
-        index = self.built.program.parameters.index(name)
-        steady = self.built.steady.slopes(self.start, values, inputs, index, held=self.given)
+        if isinstance(column, str):
+            constants, delays, shifts, _ = self.built.constant_slopes(values, self.step_s, column)
+            index = self.built.program.parameters.index(column)
+            steady = self.built.steady.slopes(self.start, values, inputs, index, held=self.given)
+        else:
+            constants, delays, shifts = (np.zeros(one.size) for one in (self.constants, self.delay_s, self.shift_s))
+            steady = self.built.steady.state_slopes(self.start, values, inputs, column)
         parts = (steady.states, steady.pasts, steady.drifts, steady.samples, constants, steady.lates, delays)
         return Lane(kernel=np.concatenate(parts), shifts=shifts, outputs=steady.outputs)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Lane:
-    """Derivatives to one parameter of all that a run starts from."""
+    """Derivatives to one parameter or state of all that a run starts from."""
 
     kernel: FloatArray
     """Of states, pasts, drifts, samples, constants, signals and delays, one after the other."""

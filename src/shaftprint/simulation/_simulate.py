@@ -25,7 +25,8 @@ class Trace(Shown):
     outputs: Mapping[str, FloatArray]
     """Each output, shape (samples,)."""
     derivatives: Mapping[str, FloatArray]
-    """Derivatives of each output to the wanted parameters, shape (wanted, samples)."""
+    """Derivatives of each output to the wanted parameters, and to states at the start behind them where those are
+    wanted, shape (wanted, samples)."""
 
 
 @refusing_none(StructureError)
@@ -39,6 +40,7 @@ def simulate(
     hold: bool = False,
     longest_step_s: float = 5e-3,
     initial: ArrayLike | None = None,
+    of_states: bool = False,
 ) -> Trace:
     """Simulate a structure, linear or not, with exact delays.
 
@@ -62,6 +64,8 @@ def simulate(
         has faster small signals than that can follow.
     initial
         States at the start, shape (states,), see ``equilibrium``; steady running at the first inputs if not given.
+    of_states
+        Whether derivatives to the states at the start are wanted too.
 
     Raises
     ------
@@ -78,7 +82,7 @@ def simulate(
     built = build(structure, held_zeros(structure, real, tuple(wanted)))
     states = None if initial is None else np.asarray(initial, dtype=np.float64)
     march = March.planned(built, vector, table[0], interval, longest_step_s, hold=hold, initial=states)
-    outputs, slopes = march.run(table, tuple(wanted))
+    outputs, slopes = march.run(table, tuple(wanted), of_states=of_states)
     names = built.program.outputs
     return Trace(
         time_s=frozen_float(time),

@@ -1,6 +1,6 @@
 """Steady running: states and pasts that stay as they are."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -70,7 +70,7 @@ class SteadyEquations:
         self._shown = [*lates, *(late.drift for late in program.pasts), *program.signals]
         self._show = plain_function(self._shown)
         self._show_slopes: Plain | None = None
-        self._moved: dict[int, Plain] = {}
+        self._moved: dict[tuple[str, int], Plain] = {}
 
     def solve(self, values: FloatArray, inputs: FloatArray, states: FloatArray | None = None) -> Steady:
         """Return steady running at constant inputs, or what belongs to given states.
@@ -104,12 +104,22 @@ class SteadyEquations:
 
         ``parameter``: place of the parameter. ``held``: whether the states were given.
         """
+        return self._slopes(steady, values, inputs, ("parameter", parameter), held=held)
+
+    def state_slopes(self, steady: Steady, values: FloatArray, inputs: FloatArray, state: int) -> Steady:
+        """Return the derivatives to a given state, by its place, of what belongs to given states."""
+        slopes = self._slopes(steady, values, inputs, ("state", state), held=True)
+        return replace(slopes, states=np.eye(len(self.program.states))[state])
+
+    def _slopes(
+        self, steady: Steady, values: FloatArray, inputs: FloatArray, leaf: tuple[str, int], *, held: bool
+    ) -> Steady:
         count = len(self._formulas)
-        if parameter not in self._moved:
-            to = Formula("parameter", place=parameter)
-            self._moved[parameter] = plain_function([*derivatives(self._formulas, to), *derivatives(self._shown, to)])
+        if leaf not in self._moved:
+            to = Formula(leaf[0], place=leaf[1])
+            self._moved[leaf] = plain_function([*derivatives(self._formulas, to), *derivatives(self._shown, to)])
         arguments = (values, inputs, steady.states, steady.pasts, steady.samples)
-        moved = self._call(self._moved[parameter], *arguments)
+        moved = self._call(self._moved[leaf], *arguments)
         change = np.zeros(count)
         rows = slice(len(self._still), None) if held else slice(None)
         if np.any(moved[:count][rows]):

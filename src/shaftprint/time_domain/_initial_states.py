@@ -7,7 +7,7 @@ without offset and drift, their covariance is ``(E E^T)^-1 + D C D^T`` with ``D 
 whose variables separate, 1973).
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -22,13 +22,9 @@ from shaftprint.time_domain._record import Record
 
 # Most steps towards initial states, and the share of what they leave of a record below which what one does is nothing:
 # the first is exact where the outputs depend on them linearly, and what the last leaves is projected out with them.
-STATE_STEPS, SMALL_STEP = 4, 1e-4
-# From this step on they are near, and effects stay as they are: each costs a simulation.
-NEAR = 2
+STATE_STEPS, SMALL_STEP = 8, 1e-4
 # Times that a step is halved before none is found to help.
 HALVINGS = 8
-# Change of a state over which its effect is taken.
-STATE_CHANGE = 1e-3
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -59,29 +55,24 @@ def best_states(
     data: FloatArray,
     first: FloatArray,
 ) -> tuple[FloatArray, FloatArray] | None:
-    """Return the states that explain a record best, and their effects; None where the simulation runs away.
+    """Return the states that explain a record best, and the simulation from there; None where the simulation runs away.
 
-    ``simulated``: from states, shape (states,), to outputs, shape (1, samples, outputs); None where the simulation runs
-    away. ``whitened``: from rows of outputs, shape (rows, samples, outputs), to whitened ones without offset and drift,
-    shape (rows, length). ``data``: measured outputs, whitened and without offset and drift, shape (length,). ``first``:
-    states to begin with, shape (states,).
+    ``simulated``: from states, shape (states,), to outputs, their derivatives to parameters and behind them those to
+    the states, shape (1 + parameters + states, samples, outputs); None where the simulation runs away. ``whitened``:
+    from rows of outputs, shape (rows, samples, outputs), to whitened ones without offset and drift, shape (rows,
+    length). ``data``: measured outputs, whitened and without offset and drift, shape (length,). ``first``: states to
+    begin with, shape (states,).
     """
-    runs = effects_of(simulated, first)
-    if runs is None:
+    states, run = first, simulated(first)
+    if run is None:
         return None
-    states, (run, effects) = first, runs
 
     def left_by(run: FloatArray) -> FloatArray:
-        return np.asarray(data - whitened(run[None])[0])
+        return np.asarray(data - whitened(run[:1])[0])
 
     left = left_by(run)
-    for step in range(STATE_STEPS):
-        if 0 < step < NEAR:
-            runs = effects_of(simulated, states, run)
-            if runs is None:
-                return None
-            effects = runs[1]
-        moves = whitened(effects).T
+    for _ in range(STATE_STEPS):
+        moves = whitened(run[run.shape[0] - states.size :]).T
         change: FloatArray = np.linalg.lstsq(moves, left, rcond=1e-9)[0].astype(np.float64)
         if np.linalg.norm(moves @ change) <= SMALL_STEP * np.linalg.norm(left):
             # what it leaves is projected out with the effects
@@ -91,7 +82,7 @@ def best_states(
         if nearer is None:
             break
         states, run, left = nearer
-    return states, effects
+    return states, run
 
 
 def _nearer(
@@ -102,7 +93,7 @@ def _nearer(
     change: FloatArray,
     left: FloatArray,
 ) -> tuple[FloatArray, FloatArray, FloatArray] | None:
-    """Return states that leave less of a record than before, their outputs and what they leave; None if none does.
+    """Return states that leave less of a record than before, the simulation from them and what they leave, or None.
 
     A step that is right for small changes may be far too long where a limit acts, or the loop is hardly damped: it is
     halved until it helps.
@@ -110,28 +101,29 @@ def _nearer(
     for _ in range(HALVINGS):
         run = simulated(states + change)
         if run is not None:
-            still_left = left_by(run[0])
+            still_left = left_by(run)
             if still_left @ still_left < left @ left:
-                return states + change, run[0], still_left
+                return states + change, run, still_left
         change = 0.5 * change
     return None
 
 
-def effects_of(
-    simulated: Callable[[FloatArray], FloatArray | None], states: FloatArray, run: FloatArray | None = None
-) -> tuple[FloatArray, FloatArray] | None:
-    """Return the outputs from some states, and what one unit of each state adds; None where a simulation runs away.
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class KnownStates:
+    """The best states at some parameters, from which those at parameters near by follow to first order."""
 
-    ``simulated``: from states, shape (states,), to outputs, shape (1, samples, outputs); None where the simulation runs
-    away. ``states``: the states, shape (states,). ``run``: their outputs, where they are known, shape (samples,
-    outputs). Returns outputs of shape (samples, outputs), and effects of shape (states, samples, outputs).
-    """
-    steps = STATE_CHANGE * np.eye(states.size)
-    moved = [simulated(states) if run is None else run[None], *(simulated(states + step) for step in steps)]
-    if any(one is None for one in moved):
-        return None
-    runs = np.concatenate([one for one in moved if one is not None])
-    return runs[0], (runs[1:] - runs[0]) / STATE_CHANGE
+    cost: float
+    """Square sum that is left there."""
+    own: FloatArray
+    """All parameters of the structure, shape (parameters,)."""
+    values: FloatArray
+    """The states, shape (states,)."""
+    slopes: FloatArray
+    """Their derivatives to the free parameters, shape (states, free)."""
+
+    def at(self, own: FloatArray, free: Sequence[int]) -> FloatArray:
+        """Return the states at other parameters to first order, shape (states,)."""
+        return np.asarray(self.values + self.slopes @ (own - self.own)[list(free)])
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

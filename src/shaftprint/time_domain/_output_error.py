@@ -6,19 +6,19 @@ System Identification: Theory for the User, second edition, sections 4.2 and 7.4
 a record are QR-reduced to ``1 + free`` columns: 50 starts of a long record fit into memory.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from shaftprint.arrays import BoolArray, FloatArray, frozen_float
+from shaftprint.arrays import BoolArray, FloatArray, IntArray, frozen_float
 from shaftprint.errors import IdentificationError
 from shaftprint.identify.fit._estimate import Estimate
 from shaftprint.identify.likelihood._line_test import LineTest
 from shaftprint.identify.likelihood._term import Repeats, TermTest, WhitenedTerm
 from shaftprint.time_domain._assumed import shortened
 from shaftprint.time_domain._flexible_model import FlexibleModel
-from shaftprint.time_domain._initial_states import InitialStates, best_states, effects_of, spread_of, state_estimates
+from shaftprint.time_domain._initial_states import InitialStates, KnownStates, best_states, spread_of, state_estimates
 from shaftprint.time_domain._input_response import excited
 from shaftprint.time_domain._moving_load import load_columns, with_quadratic_torque, without_quadratic_torque
 from shaftprint.time_domain._noise_model import LONGEST_S
@@ -105,19 +105,38 @@ class OutputError(WhitenedTerm):
 
     def table(self, theta: FloatArray, repeats: Repeats | None = None) -> FloatArray:
         """Return QR-reduced residuals and derivatives, a simulation a start, shape (starts, 1 + free, 1 + free)."""
+        return self._table(theta, repeats, [None] * theta.shape[0], np.arange(theta.shape[0]))
+
+    def following(self, starts: int) -> Callable[[FloatArray, IntArray], FloatArray]:
+        """Return ``table`` for one descent: states at the start follow those where each of the starts was lowest."""
+        known: list[KnownStates | None] = [None] * starts
+        return lambda theta, rows: self._table(theta, None, known, rows)
+
+    def _table(
+        self, theta: FloatArray, repeats: Repeats | None, known: list[KnownStates | None], rows: IntArray
+    ) -> FloatArray:
         table = np.zeros((theta.shape[0], self.row_count, self.row_count))
         values = self.complete(theta)
 
         def fill(start: int) -> None:
             data = repeats.data(start) if isinstance(repeats, RecordRepeats) else self.measured
-            rows = self._rows(values[start], data)
-            if rows is None:
+            before, own = known[rows[start]], values[start]
+            run = self._run(own, data, first=None if before is None else before.at(own, self.free))
+            if run is None:
                 table[start, 0, 0] = np.sqrt(2.0 * AWAY * max(self.null_cost, 1.0))
-            else:
-                table[start] = qr_reduced(rows[0])
+                return
+            left = self._projected(run[1], run[0], data)[0]
+            table[start] = qr_reduced(left)
+            if run[0] is not None and (before is None or left[0] @ left[0] < before.cost):
+                known[rows[start]] = self._known(run[0], run[1][1:], float(left[0] @ left[0]))
 
         in_parallel(fill, theta.shape[0])
         return table
+
+    def _known(self, start: InitialStates, slopes: FloatArray, cost: float) -> KnownStates:
+        moves, along = (without(self._white(rows), self.drifts) for rows in (start.effects, slopes))
+        follow = -np.linalg.lstsq(moves.T, along.T, rcond=1e-9)[0]
+        return KnownStates(cost=cost, own=start.own, values=start.values, slopes=follow)
 
     def evaluable(self, theta: FloatArray) -> BoolArray:
         """Return whether the simulation of each start stays within bounds, shape (starts,)."""
@@ -188,8 +207,8 @@ class OutputError(WhitenedTerm):
         None of them where a simulation runs away.
         """
         first = self.simulator.rest(self.structure, values, self.record)
-        effects = effects_of(lambda states: self._simulated(values, (), states), first)
-        return np.zeros((0, self.record.samples, len(self._names))) if effects is None else effects[1]
+        run = self._simulated(values, (), first, of_states=True)
+        return np.zeros((0, self.record.samples, len(self._names))) if run is None else run[1:]
 
     def redrawn(self, values: FloatArray, count: int, rng: np.random.Generator) -> RecordRepeats:
         """Return repeats with noise of the same colour."""
@@ -221,16 +240,8 @@ class OutputError(WhitenedTerm):
 
         None where the simulation runs away.
         """
-        rows_and_basis = self._rows(values, self.measured)
-        return None if rows_and_basis is None else rows_and_basis[0]
-
-    def _rows(self, values: FloatArray, data: FloatArray) -> tuple[FloatArray, FloatArray] | None:
-        """Return whitened residuals with their derivatives, and the orthonormal basis beside which they are.
-
-        None where the simulation runs away.
-        """
-        run = self._run(values, data)
-        return None if run is None else self._projected(run[1], run[0], data)
+        run = self._run(values, self.measured)
+        return None if run is None else self._projected(run[1], run[0], self.measured)[0]
 
     def _projected(
         self, simulated: FloatArray, start: InitialStates | None, data: FloatArray
@@ -264,28 +275,28 @@ class OutputError(WhitenedTerm):
         return run
 
     def _run(
-        self, values: FloatArray, data: FloatArray, wanted: Sequence[str] = ()
+        self, values: FloatArray, data: FloatArray, wanted: Sequence[str] = (), *, first: FloatArray | None = None
     ) -> tuple[InitialStates | None, FloatArray] | None:
-        """Return initial states where they are estimated, and the simulation from them; None where it runs away."""
-        start = self._start(values, data) if self.initial_states else None
-        if self.initial_states and start is None:
-            return None
-        free = [self.structure.names[column] for column in self.free]
-        simulated = self._simulated(values, wanted or free, None if start is None else start.values)
-        return None if simulated is None else (start, simulated)
+        """Return initial states where they are estimated, and the simulation from them; None where it runs away.
 
-    def _start(self, values: FloatArray, data: FloatArray) -> InitialStates | None:
-        """Return the best states at the start; None where the simulation runs away."""
+        ``first``: states near the best ones, shape (states,); those of steady running if not given.
+        """
+        names = wanted or [self.structure.names[column] for column in self.free]
+        if not self.initial_states:
+            simulated = self._simulated(values, names)
+            return None if simulated is None else (None, simulated)
         estimate = best_states(
-            lambda states: self._simulated(values, (), states),
+            lambda states: self._simulated(values, names, states, of_states=True),
             lambda rows: without(self._white(rows), self.drifts),
             data=without(data, self.drifts),
-            first=self.simulator.rest(self.structure, values, self.record),
+            first=self.simulator.rest(self.structure, values, self.record) if first is None else first,
         )
         if estimate is None:
             return None
-        states, effects = estimate
-        return InitialStates(structure=self.structure, record=self.record, own=values, values=states, effects=effects)
+        states, run = estimate
+        simulated, effects = run[: 1 + len(names)], run[1 + len(names) :]
+        start = InitialStates(structure=self.structure, record=self.record, own=values, values=states, effects=effects)
+        return start, simulated
 
     def _completed(self, simulated: FloatArray, start: InitialStates | None) -> FloatArray:
         """Return a simulation with its best offset and drift as the record shows it, shape (samples, outputs)."""
@@ -351,9 +362,11 @@ class OutputError(WhitenedTerm):
         return without_quadratic_torque(values[None], self._names, self.record.load)[0] if self.moving_load else values
 
     def _simulated(
-        self, values: FloatArray, wanted: Sequence[str], initial: FloatArray | None = None
+        self, values: FloatArray, wanted: Sequence[str], initial: FloatArray | None = None, *, of_states: bool = False
     ) -> FloatArray | None:
-        simulated = on_record(self.simulator, self.structure, values, self.record, wanted, initial=initial)
+        simulated = on_record(
+            self.simulator, self.structure, values, self.record, wanted, initial=initial, of_states=of_states
+        )
         if simulated is None or not self.moving_load:
             return simulated
         return without_quadratic_torque(simulated, self._names, self.record.load)

@@ -32,12 +32,13 @@ class Simulator(Protocol):
         wanted: Sequence[str],
         *,
         initial: FloatArray | None = None,
+        of_states: bool = False,
     ) -> Trace:
         """Return the outputs at every sample of the drive, and their derivatives.
 
         ``values``: values of the structure's parameters, shape (parameters,). ``wanted``: names of the parameters whose
         derivatives are wanted. ``initial``: states at the first sample of the drive, shape (states,); steady running if
-        not given.
+        not given. ``of_states``: whether derivatives to these are wanted too, behind the others.
         """
 
     def rest(self, structure: Structure, values: FloatArray, record: Record) -> FloatArray:
@@ -59,6 +60,7 @@ class ExactDelays:
         wanted: Sequence[str],
         *,
         initial: FloatArray | None = None,
+        of_states: bool = False,
     ) -> Trace:
         """Return the outputs at every sample of the drive, and their derivatives."""
         inputs = {name: record.drive[name] for name in structure.inputs}
@@ -71,6 +73,7 @@ class ExactDelays:
             hold=record.hold,
             longest_step_s=self.longest_step_s,
             initial=initial,
+            of_states=of_states,
         )
 
     def rest(self, structure: Structure, values: FloatArray, record: Record) -> FloatArray:
@@ -100,18 +103,21 @@ def on_record(
     wanted: Sequence[str],
     *,
     initial: FloatArray | None = None,
+    of_states: bool = False,
 ) -> FloatArray | None:
     """Return a simulation through the record's filter, shape (1 + wanted, samples, outputs); None where it runs away.
 
-    A third of the parameter sets between the bounds of a closed loop are unstable.
+    A third of the parameter sets between the bounds of a closed loop are unstable. ``of_states``: whether derivatives
+    to the states at the start stand behind those to the wanted parameters.
     """
     with np.errstate(all="ignore"):
         try:
-            fine = simulator(structure, values, record, wanted, initial=initial)
+            fine = simulator(structure, values, record, wanted, initial=initial, of_states=of_states)
         except StructureError:
             # at the model's own values it was found to work: here there is no steady running to start from
             return None
-        simulated = np.empty((1 + len(wanted), record.samples, len(structure.outputs)))
+        slopes = next(iter(fine.derivatives.values())).shape[0]
+        simulated = np.empty((1 + slopes, record.samples, len(structure.outputs)))
         for column, name in enumerate(structure.outputs):
             simulated[0, :, column] = record.decimator.thinned(fine.outputs[name][:, None])[:, 0]
             simulated[1:, :, column] = record.decimator.thinned(fine.derivatives[name].T).T

@@ -6,6 +6,7 @@ parameters of one name are one parameter.
 A prior ``mean +/- std`` of a parameter is one more row, ``(theta - mean) / std``.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -136,6 +137,19 @@ class Objective(Shown):
         """Return the same as ``residuals``: every start has the same problem."""
         return self.residuals(theta)
 
+    def following(self, starts: int) -> Callable[[FloatArray, IntArray], tuple[FloatArray, FloatArray]]:
+        """Return ``of_starts`` for one descent of so many starts: see ``Term.following``."""
+        tables = [term.following(starts) for term in self.terms]
+
+        def residuals(theta: FloatArray, rows: IntArray) -> tuple[FloatArray, FloatArray]:
+            parts = [
+                self._spread(term, table(theta[:, term.columns], rows), theta)
+                for term, table in zip(self.terms, tables, strict=True)
+            ]
+            return self._with_priors(parts, theta, self.prior_rows[:, 1])
+
+        return residuals
+
     def residuals(self, theta: FloatArray, redrawn: Redrawn | None = None) -> tuple[FloatArray, FloatArray]:
         """Return weighted residuals and their derivatives for many parameter sets.
 
@@ -143,8 +157,14 @@ class Objective(Shown):
         shape (starts, rows), and Jacobian, shape (starts, free, rows); rows term by term, those of the priors last.
         """
         parts = [self._part(i, theta, redrawn) for i in range(len(self.terms))]
+        return self._with_priors(parts, theta, self.prior_rows[:, 1] if redrawn is None else redrawn.prior_means)
+
+    def _with_priors(
+        self, parts: list[FloatArray], theta: FloatArray, means: FloatArray
+    ) -> tuple[FloatArray, FloatArray]:
+        """Return residuals and Jacobian from those of the terms and the rows of the priors."""
         if self.prior_rows.size:
-            parts.append(self._prior_part(theta, self.prior_rows[:, 1] if redrawn is None else redrawn.prior_means))
+            parts = [*parts, self._prior_part(theta, means)]
         table = parts[0] if len(parts) == 1 else np.concatenate(parts, axis=2)
         return table[:, 0], table[:, 1:]
 
@@ -174,9 +194,13 @@ class Objective(Shown):
         """Return residuals of one term and below them their derivatives to all free parameters."""
         term = self.terms[number]
         repeats = None if redrawn is None else redrawn.repeats[number]
+        return self._spread(term, term.table(theta[:, term.columns], repeats), theta)
+
+    @staticmethod
+    def _spread(term: Term, part: FloatArray, theta: FloatArray) -> FloatArray:
+        """Return a term's residuals and derivatives with a row for every free parameter."""
         if term.columns == tuple(range(theta.shape[1])):
-            return term.table(theta, repeats)
-        part = term.table(theta[:, term.columns], repeats)
+            return part
         table = np.zeros((theta.shape[0], 1 + theta.shape[1], part.shape[2]))
         table[:, [0, *(1 + column for column in term.columns)]] = part
         return table

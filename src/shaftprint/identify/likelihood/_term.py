@@ -6,7 +6,7 @@ and whatever another room makes.
 """
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Self
 
@@ -134,6 +134,13 @@ class Term(ABC):
         ``theta``: free parameters of this term, shape (starts, free). ``repeats``: other data for each start, from
         ``redrawn``.
         """
+
+    def following(self, starts: int) -> Callable[[FloatArray, IntArray], FloatArray]:
+        """Return ``table`` for one descent of so many starts, from their parameters and numbers.
+
+        What a term finds beside the parameters it may look for near where it was before.
+        """
+        return lambda theta, rows: self.table(theta)
 
     @abstractmethod
     def evaluable(self, theta: FloatArray) -> BoolArray:

@@ -53,7 +53,7 @@ def polish(objective: Objective, theta: FloatArray, settings: Settings) -> Desce
     """
     allowed = stable_models(objective) if settings.stability == "during" else None
     return descend(
-        objective.of_starts,
+        objective.following(1),
         theta[None, :],
         objective.lower,
         objective.upper,
@@ -104,7 +104,7 @@ def _evaluable(
 
 def _descended(objective: Objective, start: FloatArray, settings: Settings, allowed: Allowed | None) -> Descent:
     return descend(
-        objective.of_starts,
+        objective.following(start.shape[0]),
         start,
         objective.lower,
         objective.upper,
