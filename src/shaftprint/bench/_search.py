@@ -20,7 +20,7 @@ from shaftprint.bench._equipped import EquippedDrive
 from shaftprint.bench._per_record import free_parameters, own_names, with_structures
 from shaftprint.catalogue._drives import DRIVES
 from shaftprint.identify.fit._identification import Cluster, Identification
-from shaftprint.identify.fit._identify import identify_jointly
+from shaftprint.identify.fit._identify import Optima, searched_optima
 from shaftprint.identify.fit._optima import optima_of
 from shaftprint.identify.likelihood._prior import Prior
 from shaftprint.identify.search._settings import Settings
@@ -182,7 +182,7 @@ class _White:
         if not theta.size:
             return []
         fit = self._fit(len(theta), theta, nothing)
-        self._released = fit.values[list(fit.objective.free)].copy()
+        self._released = fit.winner.values[list(fit.objective.free)].copy()
         self._released[self.friction] = 0.0
         return [self._released]
 
@@ -220,14 +220,15 @@ class _White:
 
     def _fit(
         self, count: int, theta: FloatArray | None, priors: Mapping[str, Prior] = MappingProxyType({})
-    ) -> Identification:
+    ) -> Optima:
         settings = replace(
             self.settings,
             starts=count,
             draw=self.settings.draw if theta is None else GivenStarts(theta),
+            leader_tolerance=self.settings.tolerance,
             priors={**self.settings.priors, **priors},
         )
-        return identify_jointly(self.terms, rng=self.rng, settings=settings)
+        return searched_optima(self.terms, rng=self.rng, settings=settings)
 
 
 def _friction_names(one: EquippedDrive) -> set[str]:

@@ -18,7 +18,7 @@ from shaftprint.arrays import FloatArray
 from shaftprint.catalogue._roles import ShipRole
 from shaftprint.errors import IdentificationError
 from shaftprint.identify.fit._identification import Identification
-from shaftprint.identify.fit._identify import identify_jointly
+from shaftprint.identify.fit._identify import identify_jointly, searched_optima
 from shaftprint.identify.fit._sensor import with_sensor
 from shaftprint.identify.likelihood._load_factors import with_load
 from shaftprint.identify.likelihood._term import Term
@@ -34,6 +34,9 @@ from shaftprint.time_domain._record import Record
 from shaftprint.time_domain._record_fit import RecordFit
 from shaftprint.time_domain._simulator import ExactDelays, Simulator
 from shaftprint.time_domain._whitening import Whitening
+
+# Share of the cost that a round may leave undone: its optimum gives the noise of the next, on which no digit of it rests.
+OF_A_ROUND = 1e-8
 
 Source: TypeAlias = tuple[Structure, Record | FrequencyResponse] | Term
 Part: TypeAlias = tuple[Structure, FrequencyResponse] | Term
@@ -176,7 +179,8 @@ def identify_in_time(
     first = _start(parts, rng, chosen, start)
     for _ in range(how.rounds):
         parts = [_renewed(part, first, how) for part in parts]
-        first = _values(identify_jointly(parts, rng=rng, settings=_from(parts, first, replace(chosen, starts=1))))
+        rough = replace(chosen, starts=1, leader_tolerance=max(chosen.leader_tolerance, OF_A_ROUND))
+        first = _searched(parts, rng, _from(parts, first, rough))
     return _with_states(identify_jointly(parts, rng=rng, settings=_from(parts, first, chosen)))
 
 
@@ -229,14 +233,22 @@ def _start(
         return dict(start)
     responses = [part for part in parts if not isinstance(part, OutputError)]
     if not responses:
-        return _values(identify_jointly(parts, rng=rng, settings=settings))
+        return _searched(parts, rng, settings)
     names = {p.name for structure in map(_structure, responses) for p in structure.free}
     narrower = replace(
         settings,
         priors={name: prior for name, prior in settings.priors.items() if name in names},
         regularisation={name: prior for name, prior in settings.regularisation.items() if name in names},
     )
-    return _values(identify_jointly(responses, rng=rng, settings=narrower))
+    return _searched(responses, rng, narrower)
+
+
+def _searched(parts: Sequence[Part], rng: np.random.Generator, settings: Settings) -> dict[str, float]:
+    """Return the best free parameters by name; nobody asks how good they are."""
+    optima = searched_optima(parts, rng=rng, settings=settings)
+    named = zip(optima.objective.names, optima.winner.values.tolist(), strict=True)
+    free = {p.name for p in optima.objective.free_parameters}
+    return {name: value for name, value in named if name in free}
 
 
 def _values(fit: Identification) -> dict[str, float]:

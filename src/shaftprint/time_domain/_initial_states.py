@@ -23,6 +23,9 @@ from shaftprint.time_domain._record import Record
 # Most steps towards initial states, and the share of what they leave of a record below which what one does is nothing:
 # the first is exact where the outputs depend on them linearly, and what the last leaves is projected out with them.
 STATE_STEPS, SMALL_STEP = 8, 1e-4
+# A step that gains less than this share of what was left is the last: where friction holds and lets go what is left is
+# rough, and has no end.
+WORTH = 1e-3
 # Times that a step is halved before none is found to help.
 HALVINGS = 8
 
@@ -81,7 +84,10 @@ def best_states(
         nearer = _nearer(simulated, left_by, states=states, change=change, left=left)
         if nearer is None:
             break
+        before = left @ left
         states, run, left = nearer
+        if before - left @ left < WORTH * before:
+            break
     return states, run
 
 

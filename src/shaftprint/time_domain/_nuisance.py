@@ -67,12 +67,14 @@ def without(rows: FloatArray, basis: FloatArray) -> FloatArray:
     return np.asarray(rows - (rows @ basis.T) @ basis)
 
 
-def left_of(rows: FloatArray, basis: FloatArray) -> FloatArray:
+def left_of(rows: FloatArray, basis: FloatArray, *, least: float = LEAST_SHARE) -> FloatArray:
     """Return rows, shape (rows, length), without what lies in an orthonormal basis; nothing where rounding is left.
+
+    ``least``: share of a row that must be left, lest it be nothing.
 
     An angle that is integrated and its offset are one constant: what rounding leaves of the one beside the other is a
     direction of its own, another with every parameter set, and no cost that takes it out is smooth.
     """
     left = without(rows, basis)
-    own = np.linalg.norm(left, axis=1) > LEAST_SHARE * np.linalg.norm(rows, axis=1)
+    own = np.linalg.norm(left, axis=1) > least * np.linalg.norm(rows, axis=1)
     return np.asarray(left * own[:, None])

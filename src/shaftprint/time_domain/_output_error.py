@@ -27,7 +27,7 @@ from shaftprint.time_domain._record import Record
 from shaftprint.time_domain._record_fit import RecordFit, record_fit
 from shaftprint.time_domain._record_repeats import RecordRepeats
 from shaftprint.time_domain._simulator import Simulator, in_parallel, on_record
-from shaftprint.time_domain._span import Span, qr_reduced
+from shaftprint.time_domain._span import INDEPENDENT, Span, qr_reduced
 from shaftprint.time_domain._whitening import Whitening
 
 # Cost of a simulation that runs away, over that of no model at all.
@@ -287,7 +287,8 @@ class OutputError(WhitenedTerm):
             return None if simulated is None else (None, simulated)
         estimate = best_states(
             lambda states: self._simulated(values, names, states, of_states=True),
-            lambda rows: without(self._white(rows), self.drifts),
+            # a state that is nearly one with an offset would be moved for ever
+            lambda rows: left_of(self._white(rows), self.drifts, least=INDEPENDENT),
             data=without(data, self.drifts),
             first=self.simulator.rest(self.structure, values, self.record) if first is None else first,
         )

@@ -1,6 +1,7 @@
 """The verb of the room: fit a structure to a frequency response."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -121,12 +122,26 @@ def identify_jointly(
     return _identified(pairs, rng, settings or Settings(), None)
 
 
-def _identified(
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Optima:
+    """Where a search ended, not assessed."""
+
+    objective: Objective
+    """The problem."""
+    clusters: tuple[Cluster, ...]
+    """Optima of the search, lowest cost first."""
+    winner: Cluster
+    """The lowest that is stable."""
+
+
+def searched_optima(
     pairs: Sequence[Source],
+    *,
     rng: np.random.Generator,
     settings: Settings,
-    lines: Sequence[str] | None,
-) -> Identification:
+    lines: Sequence[str] | None = None,
+) -> Optima:
+    """Return the optima that ``identify_jointly`` finds, for a search that only goes on from there."""
     _expect_right_kinds(pairs, rng)
     objective = build_joint_objective(
         [pair if isinstance(pair, Term) else (with_sensor(*pair), pair[1]) for pair in pairs],
@@ -138,6 +153,17 @@ def _identified(
     descent = search(objective, settings, rng)
     sharp = bool(descent.converged[np.argmin(descent.cost)])
     clusters, winner = _judged(objective, _clustered(objective, descent, settings), settings, sharp=sharp)
+    return Optima(objective=objective, clusters=clusters, winner=winner)
+
+
+def _identified(
+    pairs: Sequence[Source],
+    rng: np.random.Generator,
+    settings: Settings,
+    lines: Sequence[str] | None,
+) -> Identification:
+    optima = searched_optima(pairs, rng=rng, settings=settings, lines=lines)
+    objective, winner = optima.objective, optima.winner
     parts_and_tests = [term.assessed(winner.values, number) for number, term in enumerate(objective.terms)]
     return Identification(
         parts=tuple(part for part, _ in parts_and_tests),
@@ -147,7 +173,7 @@ def _identified(
         covariance=frozen_float(estimate_covariance(objective, winner.values[list(objective.free)])),
         cost=winner.cost,
         fit_test=tested_fit(objective, winner.values, [test for _, test in parts_and_tests]),
-        clusters=clusters,
+        clusters=optima.clusters,
     )
 
 

@@ -19,7 +19,6 @@ from shaftprint.identify.search._settings import Settings
 from shaftprint.identify.search._stability_border import border_minimum, stable_models
 from shaftprint.identify.search._starts import LatinHypercube
 
-POLISH_TOLERANCE = 1e-14
 # Standard deviations below this share of their values are those of hardly any noise.
 HARDLY_ANY_NOISE = 1e-4
 FIRST_FLOOR, FLOOR_STEP = 0.1, 0.1
@@ -47,7 +46,7 @@ def search(objective: Objective, settings: Settings, rng: np.random.Generator) -
 
 
 def polish(objective: Objective, theta: FloatArray, settings: Settings) -> Descent:
-    """Return an optimum to the last digit; from a stable model a stable one, where that is asked for in the search.
+    """Return an optimum to the last digit that settings ask for; from a stable model a stable one, where that is asked for in the search.
 
     ``theta``: free parameters near it, shape (free,).
     """
@@ -57,7 +56,7 @@ def polish(objective: Objective, theta: FloatArray, settings: Settings) -> Desce
         theta[None, :],
         objective.lower,
         objective.upper,
-        tolerance=POLISH_TOLERANCE,
+        tolerance=settings.leader_tolerance,
         max_iterations=settings.max_iterations,
         allowed=allowed,
     )
@@ -110,7 +109,7 @@ def _descended(objective: Objective, start: FloatArray, settings: Settings, allo
         objective.upper,
         tolerance=settings.tolerance,
         max_iterations=settings.max_iterations,
-        leader_tolerance=POLISH_TOLERANCE,
+        leader_tolerance=settings.leader_tolerance,
         allowed=allowed,
     )
 

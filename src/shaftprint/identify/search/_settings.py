@@ -30,6 +30,8 @@ class Settings:
     """Limit of iterations of each start."""
     tolerance: float = 1e-5
     """Share of the cost below which a further gain is not worth a step (0.001 %)."""
+    leader_tolerance: float = 1e-14
+    """The same for the lowest start, which goes to the last digit; a search for places to start from needs none."""
     stability: Stability = "after"
     """Whether an unstable model may win: sorted out ``after`` the search, kept out ``during`` it, or ``ignored``."""
 
@@ -42,10 +44,10 @@ class Settings:
         for name, prior in (*self.priors.items(), *self.regularisation.items()):
             if not isinstance(prior, Prior):
                 raise IdentificationError(f"prior of {name}: expected Prior(mean, std), found {prior!r}.")
-        if self.starts < 1 or self.max_iterations < 1 or not self.tolerance > 0.0:
+        if self.starts < 1 or self.max_iterations < 1 or not min(self.tolerance, self.leader_tolerance) > 0.0:
             raise IdentificationError(
-                f"search settings: expected positive starts, iterations and tolerance, found {self.starts}, "
-                f"{self.max_iterations} and {self.tolerance}."
+                f"search settings: expected positive starts, iterations and tolerances, found {self.starts}, "
+                f"{self.max_iterations}, {self.tolerance} and {self.leader_tolerance}."
             )
         if self.stability not in get_args(Stability):
             raise IdentificationError(
