@@ -17,7 +17,7 @@ from shaftprint.models import (
     clip,
     table,
 )
-from shaftprint.simulation import simulate
+from shaftprint.simulation import equilibrium, simulate
 
 TIME = np.arange(0.0, 20.0, 0.01)
 TRUTH = {"tau_up": 1.016, "tau_dn": 0.32, "K_p": 5.7, "K_i": 4.27, "t_d": 0.0703, "omega_n": 10.3, "zeta": 0.47}
@@ -204,3 +204,22 @@ def test_a_late_mean_of_a_speed_away_from_the_working_point_starts_where_it_stay
     still = {name: np.full(time_s.size, 0.02 if name == "n_set" else 0.0) for name in ship.inputs}
     found = simulate(ship, ship.vector({}), time_s, still)
     assert found.outputs["n"] == pytest.approx(np.full(time_s.size, 0.02), abs=1e-9)
+
+
+@pytest.mark.parametrize("held", [False, True])
+def test_derivatives_to_the_states_at_the_start_are_differences(held):
+    """A loop with a delay, whose past stands as it does at the start, and an actuator of second order."""
+    line = structure("CL4")
+    values, n_set = line.vector({"tau_n": 0.33, "t_d": 0.116}), 0.1 * np.sin(3.0 * TIME)
+    rest = equilibrium(line, values, {"n_set": 0.02}).states
+
+    def run(states, **options):
+        return simulate(line, values, TIME, {"n_set": n_set}, hold=held, initial=states, **options)
+
+    exact = run(rest, wanted=["K_p"], of_states=True)
+    assert exact.derivatives["n"].shape == (1 + rest.size, TIME.size)
+    np.testing.assert_array_equal(exact.derivatives["n"][0], run(rest, wanted=["K_p"]).derivatives["n"][0])
+    for place, step in enumerate(1e-5 * np.eye(rest.size)):
+        for output in ("n", "M_s"):
+            slope = (run(rest + step).outputs[output] - run(rest - step).outputs[output]) / 2e-5
+            assert exact.derivatives[output][1 + place] == pytest.approx(slope, abs=1e-7)

@@ -40,7 +40,7 @@ class Recursion:
     From ``y_{i+1} = a y_i + k ((1 - a) u_i + (1 - (1 - a) T / h) (u_{i+1} - u_i))`` with ``a = exp(-h / T)``.
     """
 
-    def __call__(self, structure, values, record, wanted, *, initial=None):
+    def __call__(self, structure, values, record, wanted, *, initial=None, of_states=False):
         named = structure.named(values)
         k, t, h = float(named["k"]), float(named["T"]), 1.0 / record.drive_rate_hz
         if t < 0.06:
@@ -64,6 +64,8 @@ class Recursion:
             "T": run(da * y[:-1] + k * (db0 * u[:-1] + db1 * u[1:]), 0.0),
         }
         rows = np.array([slopes[name] for name in wanted]).reshape(-1, u.size)
+        if of_states:
+            rows = np.concatenate([rows, a ** np.arange(u.size)[None]])
         return Trace(time_s=record.drive_time_s, outputs={"y": y}, derivatives={"y": rows})
 
     def rest(self, structure, values, record):
@@ -476,3 +478,29 @@ def test_wrong_requests_are_refused(lag):
         TimeSettings(drift_degree=-2)
     with pytest.raises(IdentificationError, match="runs away"):
         with_noise_at(output_error(lag, record, settings=STAND_IN), np.array([1.0, 0.055]))
+
+
+def test_states_follow_those_near_by_in_one_simulation(lag, monkeypatch):
+    """A descent begins with two simulations: at rest, and from the states that this gives; each step takes one."""
+    whole = make_record(12, count=400)
+    moving = {name: values[57:] for name, values in (*whole.inputs.items(), *whole.outputs.items())}
+    cut = record_from_arrays("cut", {"u": moving["u"]}, {"y": moving["y"]}, rate_hz=RATE)
+    term = output_error(lag, cut, settings=replace(STAND_IN, initial_states=True))
+    runs = []
+    monkeypatch.setattr(Recursion, "__call__", counted(Recursion.__call__, runs))
+    table = term.following(2)
+    places = [np.array([1.2, 0.9]) + step * np.array([1.0, -1.0]) for step in (0.0, 2e-3, 4e-3, 6e-3)]
+    followed = [table(place[None], np.array([1]))[0] for place in places]
+    assert len(runs) <= 2 + 3
+    alone = term.table(np.array(places))
+    for one, other in zip(followed, alone, strict=True):
+        assert one[0] @ one[0] == pytest.approx(other[0] @ other[0], rel=1e-7)
+        np.testing.assert_allclose(one[1:] @ one[0], other[1:] @ other[0], rtol=1e-3)
+
+
+def counted(verb, runs):
+    def call(*arguments, **options):
+        runs.append(options)
+        return verb(*arguments, **options)
+
+    return call

@@ -21,8 +21,9 @@ def test_states_of_a_loop_that_bends_do_not_run_away():
     time, truth = np.linspace(0.5, 1.5, 40), 0.3
 
     def simulated(states):
-        return np.arctan(4.0 * states[0] * time)[None, :, None]
+        bent = 4.0 * states[0] * time
+        return np.array([np.arctan(bent), 4.0 * time / (1.0 + bent**2)])[:, :, None]
 
-    data = simulated(np.array([truth])).ravel() + 1e-3 * np.cos(40.0 * time)
+    data = simulated(np.array([truth]))[0].ravel() + 1e-3 * np.cos(40.0 * time)
     states, _ = best_states(simulated, lambda rows: rows[:, :, 0], data=data, first=np.array([1.5]))
     assert states == pytest.approx([truth], abs=0.02)

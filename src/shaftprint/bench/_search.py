@@ -218,9 +218,7 @@ class _White:
         """Return the starts at which no simulation runs away."""
         return np.asarray(theta[np.all([term.evaluable(theta[:, term.columns]) for term in self.terms], axis=0)])
 
-    def _fit(
-        self, count: int, theta: FloatArray | None, priors: Mapping[str, Prior] = MappingProxyType({})
-    ) -> Optima:
+    def _fit(self, count: int, theta: FloatArray | None, priors: Mapping[str, Prior] = MappingProxyType({})) -> Optima:
         settings = replace(
             self.settings,
             starts=count,

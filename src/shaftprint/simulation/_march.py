@@ -169,7 +169,7 @@ class March:
         return Shift(self.shift_s[output].item() / self.step_s, samples, self.parts)
 
     def _lane(self, column: str | int, inputs: FloatArray) -> "Lane":
-        """Return the derivatives of all that the run starts from, to a parameter by its name or a state by its place."""
+        """Return the derivatives of all that the run starts from to a parameter, by name, or a state, by its place."""
         values = np.asarray(self.values.real, dtype=np.float64)
         if isinstance(column, str):
             constants, delays, shifts, _ = self.built.constant_slopes(values, self.step_s, column)

@@ -77,7 +77,11 @@ def _lagged(record: Record, rows: FloatArray) -> FloatArray:
     lagged = [rows]
     for lag_s in np.geomspace(2.0 / rate, max(LONGEST_SHARE * record.samples, 4.0) / rate, LAGS):
         pole = np.exp(-1.0 / (rate * lag_s))
-        lagged.append(scipy.signal.lfilter([1.0 - pole], [1.0, -pole], rows, zi=pole * rows[:, :1])[0])
+        driven = (1.0 - pole) * rows
+        driven[:, 0] = rows[:, 0]
+        # the recursion as a system of equations: the package of filters takes a second to load
+        bands = np.array([np.ones(rows.shape[1]), np.full(rows.shape[1], -pole)])
+        lagged.append(scipy.linalg.solve_banded((1, 0), bands, driven.T).T)
     return np.concatenate(lagged)
 
 

@@ -35,7 +35,7 @@ from shaftprint.time_domain._record_fit import RecordFit
 from shaftprint.time_domain._simulator import ExactDelays, Simulator
 from shaftprint.time_domain._whitening import Whitening
 
-# Share of the cost that a round may leave undone: its optimum gives the noise of the next, on which no digit of it rests.
+# Share of the cost that a round may leave undone: its optimum gives the noise of the next, and no digit rests on it.
 OF_A_ROUND = 1e-8
 
 Source: TypeAlias = tuple[Structure, Record | FrequencyResponse] | Term

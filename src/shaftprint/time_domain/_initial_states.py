@@ -9,6 +9,7 @@ whose variables separate, 1973).
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Self
 
 import numpy as np
 
@@ -23,6 +24,8 @@ from shaftprint.time_domain._record import Record
 # Most steps towards initial states, and the share of what they leave of a record below which what one does is nothing:
 # the first is exact where the outputs depend on them linearly, and what the last leaves is projected out with them.
 STATE_STEPS, SMALL_STEP = 8, 1e-4
+# The same share for states that began near by: a descent that comes to its end brings them there with it.
+NEAR_STEP = 1e-2
 # A step that gains less than this share of what was left is the last: where friction holds and lets go what is left is
 # rough, and has no end.
 WORTH = 1e-3
@@ -57,6 +60,7 @@ def best_states(
     *,
     data: FloatArray,
     first: FloatArray,
+    near: bool = False,
 ) -> tuple[FloatArray, FloatArray] | None:
     """Return the states that explain a record best, and the simulation from there; None where the simulation runs away.
 
@@ -64,7 +68,7 @@ def best_states(
     the states, shape (1 + parameters + states, samples, outputs); None where the simulation runs away. ``whitened``:
     from rows of outputs, shape (rows, samples, outputs), to whitened ones without offset and drift, shape (rows,
     length). ``data``: measured outputs, whitened and without offset and drift, shape (length,). ``first``: states to
-    begin with, shape (states,).
+    begin with, shape (states,). ``near``: whether these are near the best ones.
     """
     states, run = first, simulated(first)
     if run is None:
@@ -77,7 +81,7 @@ def best_states(
     for _ in range(STATE_STEPS):
         moves = whitened(run[run.shape[0] - states.size :]).T
         change: FloatArray = np.linalg.lstsq(moves, left, rcond=1e-9)[0].astype(np.float64)
-        if np.linalg.norm(moves @ change) <= SMALL_STEP * np.linalg.norm(left):
+        if np.linalg.norm(moves @ change) <= (NEAR_STEP if near else SMALL_STEP) * np.linalg.norm(left):
             # what it leaves is projected out with the effects
             states = states + change
             break
@@ -126,6 +130,12 @@ class KnownStates:
     """The states, shape (states,)."""
     slopes: FloatArray
     """Their derivatives to the free parameters, shape (states, free)."""
+
+    @classmethod
+    def of(cls, start: InitialStates, cost: float, effects: FloatArray, slopes: FloatArray) -> Self:
+        """Return those of a start from whitened effects and derivatives, shape (states or free, length)."""
+        follow = -np.linalg.lstsq(effects.T, slopes.T, rcond=1e-9)[0]
+        return cls(cost=cost, own=start.own, values=start.values, slopes=np.asarray(follow, dtype=np.float64))
 
     def at(self, own: FloatArray, free: Sequence[int]) -> FloatArray:
         """Return the states at other parameters to first order, shape (states,)."""

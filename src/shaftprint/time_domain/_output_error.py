@@ -128,23 +128,20 @@ class OutputError(WhitenedTerm):
             left = self._projected(run[1], run[0], data)[0]
             table[start] = qr_reduced(left)
             if run[0] is not None and (before is None or left[0] @ left[0] < before.cost):
-                known[rows[start]] = self._known(run[0], run[1][1:], float(left[0] @ left[0]))
+                along = (without(self._white(one), self.drifts) for one in (run[0].effects, run[1][1:]))
+                known[rows[start]] = KnownStates.of(run[0], float(left[0] @ left[0]), *along)
 
         in_parallel(fill, theta.shape[0])
         return table
 
-    def _known(self, start: InitialStates, slopes: FloatArray, cost: float) -> KnownStates:
-        moves, along = (without(self._white(rows), self.drifts) for rows in (start.effects, slopes))
-        follow = -np.linalg.lstsq(moves.T, along.T, rcond=1e-9)[0]
-        return KnownStates(cost=cost, own=start.own, values=start.values, slopes=follow)
-
     def evaluable(self, theta: FloatArray) -> BoolArray:
         """Return whether the simulation of each start stays within bounds, shape (starts,)."""
         finite = np.zeros(theta.shape[0], dtype=np.bool_)
-        values = self.complete(theta)
+        values, names = self.complete(theta), [self.structure.names[column] for column in self.free]
 
         def fill(start: int) -> None:
-            finite[start] = self._simulated(values[start], ()) is not None
+            # with derivatives, as a search will ask for them: a kernel less is compiled
+            finite[start] = self._simulated(values[start], names) is not None
 
         in_parallel(fill, theta.shape[0])
         return finite
@@ -202,12 +199,9 @@ class OutputError(WhitenedTerm):
         return states, self._offsets(start, simulated[0], slopes=slopes, covariance=within)
 
     def start_effects(self, values: FloatArray) -> FloatArray:
-        """Return what a small change of each state at the start does, shape (states, samples, outputs).
-
-        None of them where a simulation runs away.
-        """
+        """Return what each state at the start does, shape (states, samples, outputs); none where it runs away."""
         first = self.simulator.rest(self.structure, values, self.record)
-        run = self._simulated(values, (), first, of_states=True)
+        run = self._simulated(values, (), first)
         return np.zeros((0, self.record.samples, len(self._names))) if run is None else run[1:]
 
     def redrawn(self, values: FloatArray, count: int, rng: np.random.Generator) -> RecordRepeats:
@@ -236,10 +230,7 @@ class OutputError(WhitenedTerm):
         return self._compared(self._outputs()) - self._compared(self.model(values))
 
     def rows(self, values: FloatArray) -> FloatArray | None:
-        """Return whitened residuals and their derivatives, shape (1 + free, used samples * outputs).
-
-        None where the simulation runs away.
-        """
+        """Return whitened residuals and derivatives, shape (1 + free, used samples * outputs); None if it runs away."""
         run = self._run(values, self.measured)
         return None if run is None else self._projected(run[1], run[0], self.measured)[0]
 
@@ -286,11 +277,12 @@ class OutputError(WhitenedTerm):
             simulated = self._simulated(values, names)
             return None if simulated is None else (None, simulated)
         estimate = best_states(
-            lambda states: self._simulated(values, names, states, of_states=True),
+            lambda states: self._simulated(values, names, states),
             # a state that is nearly one with an offset would be moved for ever
             lambda rows: left_of(self._white(rows), self.drifts, least=INDEPENDENT),
             data=without(data, self.drifts),
             first=self.simulator.rest(self.structure, values, self.record) if first is None else first,
+            near=first is not None,
         )
         if estimate is None:
             return None
@@ -363,11 +355,10 @@ class OutputError(WhitenedTerm):
         return without_quadratic_torque(values[None], self._names, self.record.load)[0] if self.moving_load else values
 
     def _simulated(
-        self, values: FloatArray, wanted: Sequence[str], initial: FloatArray | None = None, *, of_states: bool = False
+        self, values: FloatArray, wanted: Sequence[str], initial: FloatArray | None = None
     ) -> FloatArray | None:
-        simulated = on_record(
-            self.simulator, self.structure, values, self.record, wanted, initial=initial, of_states=of_states
-        )
+        """Return outputs and derivatives, those to the states at the start too where these are given."""
+        simulated = on_record(self.simulator, self.structure, values, self.record, wanted, initial=initial)
         if simulated is None or not self.moving_load:
             return simulated
         return without_quadratic_torque(simulated, self._names, self.record.load)

@@ -103,16 +103,15 @@ def on_record(
     wanted: Sequence[str],
     *,
     initial: FloatArray | None = None,
-    of_states: bool = False,
 ) -> FloatArray | None:
     """Return a simulation through the record's filter, shape (1 + wanted, samples, outputs); None where it runs away.
 
-    A third of the parameter sets between the bounds of a closed loop are unstable. ``of_states``: whether derivatives
-    to the states at the start stand behind those to the wanted parameters.
+    A third of the parameter sets between the bounds of a closed loop are unstable. ``initial``: states at the
+    start, if not steady running; derivatives to them stand behind those to the wanted parameters.
     """
     with np.errstate(all="ignore"):
         try:
-            fine = simulator(structure, values, record, wanted, initial=initial, of_states=of_states)
+            fine = simulator(structure, values, record, wanted, initial=initial, of_states=initial is not None)
         except StructureError:
             # at the model's own values it was found to work: here there is no steady running to start from
             return None

@@ -46,7 +46,7 @@ def search(objective: Objective, settings: Settings, rng: np.random.Generator) -
 
 
 def polish(objective: Objective, theta: FloatArray, settings: Settings) -> Descent:
-    """Return an optimum to the last digit that settings ask for; from a stable model a stable one, where that is asked for in the search.
+    """Return an optimum as exactly as the leader is asked for; a stable one where that is asked for.
 
     ``theta``: free parameters near it, shape (free,).
     """

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.optimize import minimize_scalar
+import scipy
 
 from shaftprint.arrays import ComplexArray, FloatArray
 from shaftprint.errors import ResponseError
@@ -98,7 +98,7 @@ def _frequency(samples: FloatArray, rate_hz: float) -> float:
         return float(np.sum((centred - columns @ np.linalg.lstsq(columns, centred, rcond=None)[0]) ** 2))
 
     bounds = (max(first - 1.0, 0.25), min(first + 1.0, 0.5 * centred.size))
-    best = minimize_scalar(left, bounds=bounds, method="bounded", options={"xatol": 1e-5})
+    best = scipy.optimize.minimize_scalar(left, bounds=bounds, method="bounded", options={"xatol": 1e-5})
     found: float = best.x * rate_hz / centred.size
     return found
 
