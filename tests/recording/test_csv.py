@@ -93,7 +93,7 @@ def test_hints_settle_what_the_file_leaves_open(tmp_path):
             "column time: expected a step of 1 s, found 2 s before row 4",
         ),
         ("time [s],a [V]\n0,1\n1,2\n9,3\n10,4\n", "expected a step of 1 s, found 8 s before row 3"),
-        ("time [s],a [V]\n0,1\n1,2\nnan,3\n3,4\n4,4\n5,5\n", "found nan s before row 3"),
+        ("time [s],a [V]\n0,1\n1,2\nnan,3\n3,4\n4,4\n5,5\n", "expected a time in each row, found none in row 3"),
         ("time [s],a [V]\n2,1\n1,2\n0,2\n", "expected ascending times, found a step of -1 s"),
         ("time [s],a [V]\n0,1\n", "expected at least 2 rows of times, found 1"),
         ("time [s],a [V]\n", "expected at least 2 rows of times, found 0"),
@@ -118,6 +118,10 @@ def test_hints_settle_what_the_file_leaves_open(tmp_path):
         ("time [s],\n0,\n1,\n", "line 1: expected a channel besides the time, found none"),
         ("0 1 2\n", "line 1: expected titles .* above 3 columns of numbers, found none"),
         ("a word\n", "found none of them in"),
+        (
+            "time [s],a [V]\n" + "".join(f"{0.1 * k:.1f},{k}\n" for k in range(60)) + 6 * ",7\n",
+            r"column time: expected a time in each row, found none in row 61; leave out rows without a time\.$",
+        ),
         # a list of channels ends above the rows; names for so many are not printed
         (
             "%Log%\nChannel : RPM\nLog : 7\n" + "".join(f"0.{k},{','.join('7' * 29)}\n" for k in range(5)),
@@ -241,3 +245,15 @@ def test_channels_on_different_clocks_are_not_written_side_by_side(native, tmp_p
             write_csv(tmp_path / "out.csv", recording.channels.values())
         with pytest.raises(RecordingError, match="expected at least one channel to write, found none"):
             write_csv(tmp_path / "out.csv", [])
+
+
+@pytest.mark.parametrize("rows", [60, 20_000])
+def test_rows_of_separators_alone_at_the_end_are_left_out(tmp_path, rows):
+    path = _file(
+        tmp_path, "Zeit [s];a [V];b [V]\n" + "".join(f"{k // 10},{k % 10};{k},5;\n" for k in range(rows)) + 9 * ";;\n"
+    )
+    with read_recording(path) as recording:
+        channel = recording.channel("a")
+        assert (channel.count, channel.rate_hz) == (rows, pytest.approx(10.0))
+        assert channel.values(rows - 1, rows) == pytest.approx([rows - 0.5])
+        assert any("9 rows at the end without any value" in remark for remark in recording.remarks)

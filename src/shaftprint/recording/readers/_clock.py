@@ -236,8 +236,8 @@ def _holes(path: Path, name: str, count: int, read: Times, step: float) -> tuple
     if rows.size == 0:
         return ()
     if rows.size > _MOST_HOLES + _MOST_HOLES_SHARE * count or not np.all(np.isfinite(jumps)):
-        # a time that goes back is the cause, a step that is a little long is not
-        worst = int(np.argmax(jumps < 0.0))
+        # a time that is missing or goes back is the cause, a step that is a little long is not
+        worst = int(np.argmax(np.where(np.isfinite(jumps), jumps < 0.0, 2)))
         raise _not_uniform(path, name, step, float(jumps[worst]), int(rows[worst]))
     edges = np.array([0, *rows.tolist(), count])
     longest = int(np.argmax(np.diff(edges)))
@@ -275,6 +275,10 @@ def _odd_steps(count: int, read: Times, step: float) -> tuple[IntArray, FloatArr
 
 
 def _not_uniform(path: Path, name: str, step: float, jump: float, row: int) -> RecordingError:
+    if not np.isfinite(jump):
+        return RecordingError(
+            f"{path}, {name}: expected a time in each row, found none in row {row + 1}; leave out rows without a time."
+        )
     if jump < 0.0:
         return RecordingError(
             f"{path}, {name}: expected ascending times, found one that goes back by {-jump:g} s before row {row + 1}, "
