@@ -46,7 +46,7 @@ AFTER_S = 5.0
 BEFORE_S = 1.0
 
 
-def limited_model(line: LineWithLimits, *, used: Sequence[str] = ()) -> "Model":
+def limited_model(line: LineWithLimits) -> "Model":
     """Return the model of a line with its limits, for a validation."""
     model = model_with_limits(line)
     lost = ~np.isfinite(np.diag(model.covariance))
@@ -55,7 +55,6 @@ def limited_model(line: LineWithLimits, *, used: Sequence[str] = ()) -> "Model":
         structure=model.structure,
         values=model.values,
         covariance=frozen_float(np.where(lost[:, None] | lost[None, :], 0.0, model.covariance)),
-        used=tuple(used),
         not_known=model.not_known,
     )
 

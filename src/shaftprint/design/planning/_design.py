@@ -89,17 +89,16 @@ def design_campaign(
     return best_plan(brief, effort or Effort(), rng)
 
 
-def best_plan(brief: Brief, effort: Effort, rng: np.random.Generator, start: FloatArray | None = None) -> Plan:
-    """Return the best plan of several random starts, or that of one start.
+def best_plan(brief: Brief, effort: Effort, rng: np.random.Generator) -> Plan:
+    """Return the best plan of several random starts.
 
     The full scale of the gauge is looked for only where a plan that knows nothing of it would pass it: on most ships
     engine and governor keep the torque far below, and their plans are the same with it and without. How much is kept
     free at crests follows from how many samples may be cut off: where crests are long, or orders large, it is more.
     """
     table = brief.ship.draws(effort.peak_draws, rng)
-    starts = None if start is None else [start]
     free = brief.without_gauge()
-    plan, found = _best_of_starts(free, effort, rng, table, starts)
+    plan, found = _best_of_starts(free, effort, rng, table)
     if free.bounds == brief.bounds:
         return plan
     for crest in CRESTS:
@@ -109,16 +108,16 @@ def best_plan(brief: Brief, effort: Effort, rng: np.random.Generator, start: Flo
         if is_enough and not any(peaks.uses[FULL_SCALE] == max(peaks.uses.values()) for peaks in plan.peaks):
             break
         if is_enough or crest == CRESTS[-1]:
-            plan, _ = _best_of_starts(higher, effort, rng, table, starts)
+            plan, _ = _best_of_starts(higher, effort, rng, table)
             if is_shown(plan, table):
                 break
     return plan
 
 
 def _best_of_starts(
-    brief: Brief, effort: Effort, rng: np.random.Generator, table: FloatArray, starts: Sequence[FloatArray] | None
+    brief: Brief, effort: Effort, rng: np.random.Generator, table: FloatArray
 ) -> tuple[Plan, list[ComplexArray]]:
-    """Return the best plan of some starts, random ones where there are none, and the amplitudes that it was made of.
+    """Return the best plan of random starts, and the amplitudes that it was made of.
 
     ``table``: possible ships, the assumed one first, shape (rows, parameters).
     """
@@ -130,7 +129,7 @@ def _best_of_starts(
         criterion=criterion,
         power=effort.powers[-1],
     )
-    begun = [random_start(problem, rng) for _ in range(effort.restarts)] if starts is None else starts
+    begun = [random_start(problem, rng) for _ in range(effort.restarts)]
     found = [problem.split(search(problem, one, effort, share_held=SHARE_HELD)[1]) for one in begun]
     # the search holds few ships and a smooth norm; which start was best is seen when all peaks have been looked at
     plans = [(plan_of_lines(brief, amplitudes, table), amplitudes) for amplitudes in found]

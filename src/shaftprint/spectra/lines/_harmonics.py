@@ -43,13 +43,13 @@ class Harmonics:
             object.__setattr__(self, name, frozen_float(getattr(self, name)))
 
 
-def collect_harmonics(measurements: Sequence["LineMeasurement"], *, speed: str, torque: str = "M_s") -> Harmonics:
+def collect_harmonics(measurements: Sequence["LineMeasurement"], *, speed: str) -> Harmonics:
     """Collect the harmonics of one speed channel and the torque.
 
-    ``measurements``: one entry a line. ``speed``, ``torque``: names of the two channels. Returns the harmonics of all
+    ``measurements``: one entry a line. ``speed``: name of its channel. Returns the harmonics of all
     lines.
     """
-    chosen = [(line, line.places(speed, torque)) for line in measurements]
+    chosen = [(line, line.places(speed, "M_s")) for line in measurements]
     amplitude = np.stack([np.abs(line.harmonic[:, places]).T for line, places in chosen])
     variance = np.stack([line.harmonic_variance[:, places].T for line, places in chosen])
     fundamental = np.stack([np.abs(line.amplitude[places]) for line, places in chosen])

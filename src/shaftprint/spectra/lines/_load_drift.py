@@ -32,16 +32,16 @@ class LoadDrift:
         object.__setattr__(self, "delta", frozen_float(self.delta))
 
 
-def load_drift(measurements: Sequence["LineMeasurement"], *, speed: str, torque: str = "M_s") -> LoadDrift:
+def load_drift(measurements: Sequence["LineMeasurement"], *, speed: str) -> LoadDrift:
     """Find the relative propeller load of each window.
 
-    ``measurements``: one entry a line, normalised with the working point. ``speed``, ``torque``: names of the two
-    channels. Returns the drift.
+    ``measurements``: one entry a line, normalised with the working point. ``speed``: name of its
+    channel. Returns the drift.
     """
     square = np.array(
         [line.of(line.mean, speed) ** 2 + 0.5 * np.abs(line.of(line.amplitude, speed)) ** 2 for line in measurements]
     )
-    delta = np.array([line.of(line.mean, torque) for line in measurements]) / square - 1.0
+    delta = np.array([line.of(line.mean, "M_s") for line in measurements]) / square - 1.0
     return LoadDrift(
         delta=delta,
         standard_deviation=float(np.std(delta, ddof=1)) if delta.size > 1 else 0.0,
