@@ -118,7 +118,7 @@ def test_the_band_below_a_fit_is_that_of_the_model_in_deviations_of_the_data(fit
     size = np.abs(fit.response.response[0, 0, fit.fitted])
     unit = (fit.response.response[0, 0, fit.fitted] / size).view(np.float64).reshape(-1, 2)
     std = np.sqrt(np.einsum("li,lij,lj->l", unit, fit.response.covariance[fit.fitted], unit))
-    band = mark(panel, "band of the model, along", Band)
+    band = mark(panel, "model band, magnitude", Band)
     np.testing.assert_allclose(band.upper, half * size / std, rtol=1e-6)
 
 

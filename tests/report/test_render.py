@@ -193,7 +193,8 @@ def test_the_summary_comes_before_a_folded_appendix(page):
     assert "vessel file 17.0 ± 1.6" in text[places[4] :]
     assert "The governed line is stable" in page.text
     assert "+/-" not in page.text
-    folded = page.all("details")
+    # tables that a phone folds are open without its script
+    folded = [attributes for attributes in page.all("details") if attributes.get("class") != "fold"]
     assert len(folded) >= 8
     assert not [attributes for attributes in folded if "open" in attributes]
 
@@ -206,7 +207,9 @@ def test_what_was_assumed_is_named(page, fingerprint):
 @pytest.mark.slow
 def test_truth_stands_beside_the_estimate(page):
     """tau_dn is true at 0.32 and found there; k_q is not 9."""
-    rows = [row for row in page.rows if len(row) > 4 and row[4] in ("yes", "no")]
+    rows = [
+        row for row in page.rows if len(row) > 4 and row[4] in ("yes", "no") and row[3] != "–" and "±" not in row[3]
+    ]
     row = next(row for row in rows if row[0] == "τdn")
     assert (float(row[3]), row[4]) == (0.32, "yes")
     row = next(row for row in rows if row[0] == "kq")

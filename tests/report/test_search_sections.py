@@ -1,5 +1,6 @@
 """Verdict, search and comparison in the report: what they say and show."""
 
+import re
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -37,14 +38,15 @@ def test_the_table_of_numbers_says_what_the_verdict_says(fingerprint):
     """One rule for what is known: a number may be used where the verdict trusts it, and else the verdict says why."""
     verdict = fingerprint.verdict
     (table,) = number_section(SimpleNamespace(fingerprint=fingerprint)).tables
-    told = {str(row[0]): row[-1] for row in table.rows}
+    told = {str(row[0]): row[-2] for row in table.rows}
     assert {name for name, words in told.items() if words == "yes"} == {*verdict.trusted} - {"n_0", "M_s0"}
     doubted = {name for name in verdict.not_trusted if name in told}
     assert doubted
-    assert all(told[name] == f"no: {verdict.not_trusted[name]}" for name in doubted)
+    footnotes = dict(re.findall(r"(\(\d+\)) ([^;]+?)(?=; \(|\. ±)", table.note))
+    assert all(footnotes[told[name].removeprefix("no ")] == verdict.not_trusted[name] for name in doubted)
     refused = fingerprint.model_copy(update={"verdict": replace(verdict, trustworthy=False)})
     (table,) = number_section(SimpleNamespace(fingerprint=refused)).tables
-    assert {row[-1] for row in table.rows} == {"no"}
+    assert {row[-2] for row in table.rows} == {"no"}
 
 
 def test_a_fit_that_is_not_trustworthy_says_so_in_the_heading(fingerprint):

@@ -68,7 +68,7 @@ def test_fit_table_without_a_likelihood(fingerprint, identification):
 
 def test_expected_values():
     assert expected_text(Estimate(name="I", unit="kg m2", value=1.0, std=0.1)) == "–"
-    assert expected_text(Estimate(name="I", unit="kg m2", value=1.0, std=0.1, expected=0.04943)) == "0.04943"
+    assert expected_text(Estimate(name="K_Q", unit="-", value=0.0491, std=0.0012, expected=0.04943)) == "0.0494"
 
 
 def test_tables_of_the_signals(signals, spectra):

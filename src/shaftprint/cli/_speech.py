@@ -1,13 +1,20 @@
-"""How a command speaks: the options ``--json``, ``--verbose`` and ``--quiet``, which every command has."""
+"""How a command speaks: the options ``--json``, ``--xlsx``, ``--verbose`` and ``--quiet``, which every command has."""
+
+from __future__ import annotations
 
 from collections.abc import Callable
 from functools import wraps
+from pathlib import Path
 from typing import Any
 
 import click
 
 from shaftprint.cli._terminal import Document, output
 from shaftprint.errors import RequestError
+from shaftprint.late import late
+
+with late():
+    from shaftprint.cli.output._workbook import workbook_at
 
 
 def _as_json(context: click.Context, parameter: click.Parameter, chosen: bool) -> None:
@@ -23,6 +30,11 @@ def _quiet(context: click.Context, parameter: click.Parameter, chosen: bool) -> 
     output().quiet = chosen
 
 
+def _as_workbook(context: click.Context, parameter: click.Parameter, chosen: Path | None) -> None:
+    if chosen is not None:
+        output().workbook = workbook_at(chosen)
+
+
 def _options() -> list[click.Option]:
     return [
         click.Option(
@@ -31,6 +43,14 @@ def _options() -> list[click.Option]:
             expose_value=False,
             callback=_as_json,
             help="Print answer, findings, tables and numbers with all digits as one JSON object.",
+        ),
+        click.Option(
+            ["--xlsx"],
+            type=click.Path(path_type=Path),
+            metavar="FILE",
+            expose_value=False,
+            callback=_as_workbook,
+            help="Write tables, and numbers with all digits, into a workbook too, those of the details as well.",
         ),
         click.Option(
             ["-v", "--verbose"],

@@ -13,11 +13,14 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from shaftprint.escape import printable, terminal_line
+
+if TYPE_CHECKING:
+    from shaftprint.cli.output._workbook import Workbook
 
 WIDTH_OF_PROSE, WIDTH_OF_TABLES = 100, 200
 """Width of sentences and of tables that go into a file or a pipe; a terminal has its own [letters]."""
@@ -55,6 +58,8 @@ class Output:
     """Whether what is printed now is a detail, see ``details``."""
     document: Document | None = None
     """Where everything goes instead of the terminal; None without ``--json``."""
+    workbook: "Workbook | None" = None
+    """Where tables and numbers go as well; None without ``--xlsx``."""
 
     @property
     def answers_only(self) -> bool:
@@ -85,7 +90,7 @@ def details() -> Iterator[None]:
 def is_detailed() -> bool:
     """Return whether details are wanted."""
     chosen = output()
-    return chosen.document is not None or (chosen.verbose and not chosen.quiet)
+    return chosen.document is not None or chosen.workbook is not None or (chosen.verbose and not chosen.quiet)
 
 
 def width(*, without_terminal: int) -> int:
@@ -187,8 +192,11 @@ def _with_letters_of_the_stream(line: str) -> str:
 
 
 def print_document() -> None:
-    """Print the JSON object of a command that has ended, where it was asked for."""
-    document = output().document
+    """Print the JSON object of a command that has ended, and write its workbook, where they were asked for."""
+    chosen = output()
+    if chosen.workbook is not None:
+        chosen.workbook.write()
+    document = chosen.document
     if document is not None:
         _put(json.dumps(asdict(document), ensure_ascii=True, allow_nan=False, indent=1))
 

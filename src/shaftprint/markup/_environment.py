@@ -17,6 +17,8 @@ if TYPE_CHECKING:
 TABLE: Final = "table.html.j2"
 """Template of a table; on a phone each row becomes a card."""
 SHEET = "page.css"
+# As many cells are more than a screen of a phone, where each is a line.
+MANY_CELLS = 80
 
 
 def environment(templates: Mapping[str, str]) -> Environment:
@@ -37,10 +39,14 @@ def environment(templates: Mapping[str, str]) -> Environment:
     return made
 
 
-def shown_table(made: Environment, table: "Table") -> Markup:
-    """Return a table as HTML."""
+def shown_table(made: Environment, table: "Table", *, folds: bool = False) -> Markup:
+    """Return a table as HTML.
+
+    ``folds``: whether the page has a script that folds a long table on a phone.
+    """
+    long = folds and len(table.rows) * len(table.columns) >= MANY_CELLS
     # the template escapes what it is given
-    return Markup(made.get_template(TABLE).render(table=table))  # noqa: S704
+    return Markup(made.get_template(TABLE).render(table=table, long=long))  # noqa: S704
 
 
 def style_sheet() -> str:

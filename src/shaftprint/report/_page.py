@@ -142,7 +142,7 @@ def _html(page: Page, charts: Mapping[str, ChartFiles], scripts: Sequence[str], 
         first_chart=charts[names[0]] if names else None,
         scripts=scripts,
         empty_sheets=empty_sheets,
-        shown=partial(shown_table, filled),
+        shown=partial(shown_table, filled, folds=True),
         drawn=lambda picture: _shown(chart_template, picture=picture, chart=charts[picture.name]),
         # The style sheet is ours and holds nothing of the user's.
         style=Markup(style),  # noqa: S704

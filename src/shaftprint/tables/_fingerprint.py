@@ -4,7 +4,7 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from shaftprint.digits import fine_unit, interval, p_value_text, plain, rounded, to_digit_of, unit_text, with_deviation
+from shaftprint.digits import fine_unit, interval, p_value_text, plain, to_digit_of, unit_text, with_deviation
 from shaftprint.distributions import NORMAL_95
 from shaftprint.plain_table import MEANING, Column, Symbol, Table, numbers, texts
 
@@ -132,14 +132,14 @@ def _truth_cells(quantity: "Estimate", truth: Mapping[str, float], factor: float
 
 
 def expected_text(quantity: "Estimate", factor: float = 1.0) -> str:
-    """Return the value of the vessel file with its standard deviation, where there are such.
+    """Return the value of the vessel file with its standard deviation, or to the digit of the measured one.
 
     ``factor``: what the number is multiplied by for its unit.
     """
     if quantity.expected is None:
         return "–"
     if not quantity.expected_std:
-        return rounded(factor * quantity.expected)
+        return to_digit_of(factor * quantity.expected, factor * _std_of_digits(quantity))
     return with_deviation(factor * quantity.expected, factor * quantity.expected_std)
 
 

@@ -213,7 +213,7 @@ def test_the_contents_stay_in_view_and_open_what_they_lead_to(visit, pages, widt
         found.wait_for(
             "Math.abs(document.getElementById('quality').closest('details').getBoundingClientRect().top) < 80"
         )
-        assert page.locator("details[open]").count() == 1
+        assert page.locator("#appendix > details[open]").count() == 1
         if width < 1000:
             assert page.locator("#contents").is_hidden()
         page.locator("nav .up").click()

@@ -25,10 +25,12 @@ MOST_NUMBERS = 10_000
 
 
 def give(name: str, noun: object) -> None:
-    """Give a noun with all digits to the JSON document, where there is one; nothing is printed."""
-    document = output().document
-    if document is not None:
-        document.result[name] = as_json(noun)
+    """Give a noun with all digits to the JSON document and the workbook, where there are such; nothing is printed."""
+    chosen = output()
+    if chosen.workbook is not None:
+        chosen.workbook.nouns[name] = noun
+    if chosen.document is not None:
+        chosen.document.result[name] = as_json(noun)
 
 
 def as_json(noun: object) -> object:

@@ -21,6 +21,8 @@ def print_tables(tables: Sequence[Table]) -> None:
 def print_table(table: Table, *, noted: bool = True) -> None:
     """Print a table with its title and, where it is ``noted``, its note; as wide as the terminal at the most."""
     chosen = output()
+    if chosen.workbook is not None:
+        chosen.workbook.tables.append(table)
     if chosen.document is not None:
         chosen.document.tables.append(table_json(table))
         return

@@ -56,17 +56,17 @@ def _remainder(identification: "Identification", curve: Curve, channel: int, col
     halves = _model_halves(curve, channel, omega / (2.0 * np.pi))
     for shade, (name, values, std, half) in enumerate(
         (
-            ("along the response (magnitude)", turned.real, points.radial_std, halves[0]),
-            ("across the response (phase)", turned.imag, points.turning_std, halves[1]),
+            ("magnitude", turned.real, points.radial_std, halves[0]),
+            ("phase", turned.imag, points.turning_std, halves[1]),
         ),
         start=2,
     ):
         normalised, around = values[fitted] / std[fitted], half / std[fitted]
         if np.isfinite(around).all():
-            text = f"band of the model, {name}"
+            text = f"model band, {name}"
             marks.append(Band(x=omega, lower=-around, upper=around, name=text, shade=shade))
         words = [line for line, is_shown in zip(data.lines, fitted, strict=True) if is_shown]
-        marks.append(Points(x=omega, y=normalised, name=f"residual {name}", shade=shade, words=words))
+        marks.append(Points(x=omega, y=normalised, name=f"residual, {name}", shade=shade, words=words))
         largest = max(largest, ROOM * float(np.abs(normalised).max()))
     title = "residual over its std [-]" if channel == 0 else ""
     return Panel(marks=marks, x=frequency_scale(span), y=Scale(title=title, span=(-largest, largest)))

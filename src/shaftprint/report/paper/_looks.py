@@ -16,6 +16,7 @@ from shaftprint.escape import printable
 from shaftprint.markup._html import sentence_html
 
 MARGIN_MM = 14.0
+HEIGHT_MM = 297.0
 WIDTH_MM = 210.0 - 2.0 * MARGIN_MM
 CELL_PT = 7.0
 PAPER_COLOURS = {

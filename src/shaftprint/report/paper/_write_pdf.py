@@ -11,13 +11,13 @@ from typing import TYPE_CHECKING, Any
 
 from reportlab.lib.pagesizes import A4
 from reportlab.lib.units import mm
-from reportlab.platypus import Image, KeepTogether, ListFlowable, PageBreak, SimpleDocTemplate, Spacer
+from reportlab.platypus import Image, KeepInFrame, KeepTogether, ListFlowable, PageBreak, SimpleDocTemplate, Spacer
 from reportlab.platypus import Table as Grid
 
 from shaftprint.escape import printable
 from shaftprint.markup._html import cell_html
 from shaftprint.report.charts._pictures import draw
-from shaftprint.report.paper._looks import CELL_PT, MARGIN_MM, PAPER_COLOURS, WIDTH_MM, Looks, make_looks
+from shaftprint.report.paper._looks import CELL_PT, HEIGHT_MM, MARGIN_MM, PAPER_COLOURS, WIDTH_MM, Looks, make_looks
 from shaftprint.report.paper._sketch_drawing import sketch_drawing
 
 if TYPE_CHECKING:
@@ -25,12 +25,18 @@ if TYPE_CHECKING:
     from shaftprint.report.sections._cover import Card, Cover
     from shaftprint.report.sections._sections import Picture, Section
 
-# Two of them and the budget are a sheet. They are drawn larger than they are printed: letters of 6 pt.
+# Two of them and the budget are a sheet; a Bode diagram has rows of 40 mm at least, titles and legend beside them. All
+# are drawn larger than they are printed: letters of 6 pt.
 HIGHEST_PICTURE_MM = 60.0
+BODE_ROW_MM = 54.0
 SHRUNK = 0.75
 MM_A_PX = 0.19
+# What ReportLab leaves free within the margins, above and below.
+FRAME_PT = 14.0
 CARDS_A_ROW = 3
 FEWEST_LETTERS, MOST_LETTERS = 7, 34
+# So many letters of a table stand beside each other on a sheet.
+ACROSS_LETTERS = 116
 
 
 def write_pdf(
@@ -44,7 +50,9 @@ def write_pdf(
     looks = make_looks()
     story: list[Any] = [looks.paragraph(title, "title"), looks.paragraph(subtitle, "text")]
     if cover is not None:
-        story += [*_first_page(cover, looks), PageBreak()]
+        # nothing of page one is spilled over to the next: what is too long for a sheet is set smaller
+        sheet = (WIDTH_MM * mm, (HEIGHT_MM - 2.0 * MARGIN_MM) * mm - FRAME_PT)
+        story = [KeepInFrame(*sheet, [*story, *_first_page(cover, looks)], mode="shrink"), PageBreak()]
     for section in sections:
         if not section.folded:
             story += _section(section, looks)
@@ -102,7 +110,9 @@ def _cards(cards: "Sequence[Card]", looks: Looks) -> Any:
         )
         for place, colour in enumerate(PAPER_COLOURS[card.state] for card in cards)
     ]
-    grid.setStyle([("VALIGN", (0, 0), (-1, -1), "TOP"), *lines])
+    # the last card has what is left of its row
+    last = ((len(cards) - 1) % CARDS_A_ROW, -1)
+    grid.setStyle([("VALIGN", (0, 0), (-1, -1), "TOP"), ("SPAN", last, (-1, -1)), *lines])
     return grid
 
 
@@ -118,17 +128,14 @@ def _section(section: "Section", looks: Looks) -> list[Any]:
     if section.points:
         points = [looks.paragraph(text, "text") for text in section.points]
         story.append(ListFlowable(points, bulletType="bullet", start="•", leftIndent=10))
-    for table in section.tables:
-        story += _table(table, looks)
+    story += [KeepTogether(_table(table, looks)) for table in section.tables]
     return story + [part for picture in section.pictures for part in _picture(picture, looks)]
 
 
 def _table(table: "Table", looks: Looks) -> list[Any]:
     heading = [looks.marked(cell_html(column.heading, table), "column") for column in table.columns]
     rows = [[looks.marked(cell_html(type(cell)(printable(cell)), table), "cell") for cell in row] for row in table.rows]
-    letters = [
-        _letters(column.heading, [row[place] for row in table.rows]) for place, column in enumerate(table.columns)
-    ]
+    letters = _letters(table)
     widths = [WIDTH_MM * mm * count / sum(letters) for count in letters]
     grid = Grid([heading, *rows], colWidths=widths, repeatRows=1)
     grid.setStyle(
@@ -145,15 +152,23 @@ def _table(table: "Table", looks: Looks) -> list[Any]:
     return [looks.paragraph(table.title, "question"), grid, *note]
 
 
-def _letters(heading: str, cells: Sequence[str]) -> int:
-    """Return how wide a column is, in letters: as its longest cell or the longest word of its heading."""
-    return min(MOST_LETTERS, max(FEWEST_LETTERS, *map(len, heading.split()), *map(len, cells)))
+def _letters(table: "Table") -> list[int]:
+    """Return how wide the columns are, in letters: as the longest cell or word of the heading, the widest held back."""
+    wanted = [
+        max(FEWEST_LETTERS, *map(len, column.heading.split()), *(len(row[place]) for row in table.rows))
+        for place, column in enumerate(table.columns)
+    ]
+    most = MOST_LETTERS
+    while most > FEWEST_LETTERS and sum(min(most, one) for one in wanted) > ACROSS_LETTERS:
+        most -= 1
+    return [min(most, one) for one in wanted]
 
 
 def _picture(picture: "Picture", looks: Looks) -> list[Any]:
     content = io.BytesIO()
     chart = picture.chart()
-    height_mm = min(HIGHEST_PICTURE_MM, MM_A_PX * chart.height_px)
+    is_bode = chart.panels[0].x.log
+    height_mm = BODE_ROW_MM * chart.rows if is_bode else min(HIGHEST_PICTURE_MM, MM_A_PX * chart.height_px)
     # ten millimetres are a centimetre
     figure = draw(chart, size_cm=(WIDTH_MM / SHRUNK / 10.0, height_mm / SHRUNK / 10.0))
     figure.savefig(content, format="png", dpi=200)

@@ -4,7 +4,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from shaftprint.digits import unit_text, with_deviation
-from shaftprint.plain_table import Column
+from shaftprint.plain_table import MEANING, Column
 from shaftprint.report.sections._sections import Inputs, Section
 from shaftprint.tables._fingerprint import budget_table, quantity_table
 
@@ -50,20 +50,27 @@ def number_section(inputs: Inputs) -> Section:
     groups = (fingerprint.parameters, fingerprint.combinations, fingerprint.physical, fingerprint.margins)
     quantities = [quantity for group in groups for quantity in group]
     table = quantity_table("Identified numbers", quantities)
-    usable = tuple(_usable(fingerprint, quantity.name) for quantity in quantities)
-    # the appendix has the meaning, which the last column tells, and the differences
-    kept = [place for place, column in enumerate(table.columns[:-1]) if column.heading != "difference"]
-    rows = tuple((*(row[i] for i in kept), words) for row, words in zip(table.rows, usable, strict=True))
-    columns = (*(table.columns[i] for i in kept), Column("may be used"))
-    return Section(key="numbers", title="What was identified", tables=(replace(table, columns=columns, rows=rows),))
+    doubts = list(dict.fromkeys(fingerprint.verdict.not_trusted.values())) if fingerprint.verdict.trustworthy else []
+    usable = tuple(_usable(fingerprint, quantity.name, doubts) for quantity in quantities)
+    # the appendix has the differences; a unit stands with its value, which leaves room for the meaning
+    kept = [place for place, column in enumerate(table.columns[:-2]) if place > 1 and column.heading != "difference"]
+    rows = tuple(
+        (row[0], f"{row[1]} {row[-2]}".strip(), *(row[i] for i in kept), words, row[-1])
+        for row, words in zip(table.rows, usable, strict=True)
+    )
+    columns = (*table.columns[:2], *(table.columns[i] for i in kept), Column("usable"), MEANING)
+    listed = "; ".join(f"({number}) {doubt}" for number, doubt in enumerate(doubts, start=1))
+    note = f"Not to be used: {listed}. {table.note}" if doubts else table.note
+    shown = replace(table, columns=columns, rows=rows, note=note)
+    return Section(key="numbers", title="What was identified", tables=(shown,))
 
 
-def _usable(fingerprint: "Fingerprint", name: str) -> str:
+def _usable(fingerprint: "Fingerprint", name: str, doubts: list[str]) -> str:
     verdict = fingerprint.verdict
     if not verdict.trustworthy:
         return "no"
     doubt = verdict.not_trusted.get(name)
-    return f"no: {doubt}" if doubt else "yes"
+    return f"no ({doubts.index(doubt) + 1})" if doubt else "yes"
 
 
 def budget_section(inputs: Inputs) -> list[Section]:

@@ -4,6 +4,7 @@ from shaftprint.report.sections._changes import change_section
 from shaftprint.report.sections._engineer import budget_section, folded, number_section, verdict_section
 from shaftprint.report.sections._inertia import inertia_section
 from shaftprint.report.sections._legs import leg_section
+from shaftprint.report.sections._meanings import explained, meanings_of
 from shaftprint.report.sections._measurement import response_section, signal_section, time_section
 from shaftprint.report.sections._models import (
     explanation_section,
@@ -21,14 +22,19 @@ from shaftprint.report.sections._validation import validation_section
 
 def page_sections(inputs: Inputs) -> list[Section]:
     """Return the sections that a survey fills: the engineer's summary, then the appendix, which is folded."""
-    return [*_engineer_sections(inputs), *map(folded, _appendix_sections(inputs))]
+    return _explained(inputs, [*_engineer_sections(inputs), *map(folded, _appendix_sections(inputs))])
 
 
 def thesis_sections(inputs: Inputs) -> list[Section]:
     """Return the sections of the page on the thesis' way; nothing where it was not tried."""
     if inputs.thesis is None:
         return []
-    return [*thesis_section(inputs), *explanation_section(inputs), *structure_section(inputs)]
+    return _explained(inputs, [*thesis_section(inputs), *explanation_section(inputs), *structure_section(inputs)])
+
+
+def _explained(inputs: Inputs, sections: list[Section]) -> list[Section]:
+    meanings = meanings_of(inputs)
+    return [explained(section, meanings) for section in sections]
 
 
 def _engineer_sections(inputs: Inputs) -> list[Section]:

@@ -2,7 +2,8 @@
 
 from typing import TYPE_CHECKING
 
-from shaftprint.digits import p_value_text, plain, unit_text, with_deviation
+from shaftprint.digits import plain, unit_text, with_deviation
+from shaftprint.identify.judgement._phrases import probability
 from shaftprint.report._curve import Curve
 from shaftprint.report.figures._covariance import correlation_chart
 from shaftprint.report.figures._fit import fit_chart
@@ -62,7 +63,7 @@ def _explained(fingerprint: "Fingerprint") -> str:
         return f"The fit was not weighted by the noise, so it says nothing of the model's validity.{of_fit}"
     chance = quality.p_value
     words = "explains" if chance is None or chance >= UNLIKELY else "does not explain"
-    tested = "" if chance is None else f", p-value {p_value_text(chance)}"
+    tested = "" if chance is None else f", {probability(chance)}"
     return (
         f"The model {words} the measured responses within their noise (chi-square {plain(quality.chi_square, 0)} for "
         f"{quality.degrees_of_freedom} degrees of freedom{tested}).{of_fit}"

@@ -29,9 +29,11 @@
     },
   };
   const { layoutOf, fitted, keyOf } = window.shaftprintLayout;
-  // Width of a sheet between its margins, and how high panels are on it, of their height on a screen.
+  // Width of a sheet between its margins, and how high panels are on it, of their height on a screen: a Bode diagram,
+  // over a logarithmic frequency, is read off on paper too, and has rows of 40 mm at least.
   const PAPER_PX = 688;
   const PAPER_SHARE = 0.45;
+  const BODE_SHARE = 0.7;
   const root = document.documentElement;
   const charts = new Map();
   const darkScreen = window.matchMedia("(prefers-color-scheme: dark)");
@@ -91,8 +93,9 @@
   const screen = (place) => ({ width: place.clientWidth, height: place.clientHeight });
 
   function paper({ place, chart }) {
-    const saved = (1 - PAPER_SHARE) * chart.heights.reduce((a, b) => a + b);
-    return { width: PAPER_PX, height: parseFloat(place.style.getPropertyValue("--height")) - saved, share: PAPER_SHARE };
+    const share = chart.panels[0].x.log ? BODE_SHARE : PAPER_SHARE;
+    const saved = (1 - share) * chart.heights.reduce((a, b) => a + b);
+    return { width: PAPER_PX, height: parseFloat(place.style.getPropertyValue("--height")) - saved, share };
   }
 
   function draw(name, shade = look(), size = screen(charts.get(name).place)) {

@@ -25,6 +25,16 @@
     say();
   }
 
+  // Long tables are folded on a phone, where each cell is a line, and open on paper.
+  function prepareTables() {
+    const tables = [...document.querySelectorAll(".fold")];
+    if (!window.matchMedia("(max-width: 40rem)").matches) return;
+    const fold = () => tables.forEach((table) => { table.open = false; });
+    fold();
+    window.addEventListener("beforeprint", () => tables.forEach((table) => { table.open = true; }));
+    window.addEventListener("afterprint", fold);
+  }
+
   // A link to a folded section opens it; the menu of a narrow screen closes once it has been used.
   function prepareContents() {
     const parts = [...document.querySelectorAll("details")];
@@ -60,6 +70,7 @@
     // All of the page is read, and plotly's script has not run yet.
     if (document.readyState !== "interactive") return;
     prepareLook();
+    prepareTables();
     prepareContents();
   });
 })();

@@ -1,0 +1,62 @@
+"""What the symbols of a table mean, beside them: one place for all tables of a report."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from shaftprint.plain_table import MEANING, Symbol, Table
+
+if TYPE_CHECKING:
+    from shaftprint.report.sections._sections import Inputs, Section
+
+CHANNELS = {
+    "n": "engine speed",
+    "M_s": "shaft torque",
+    "n_set": "set point of the engine speed",
+    "e": "set point of the engine speed less engine speed",
+    "X": "fuel rack",
+    "v_s": "speed of the ship",
+    "theta": "pitch",
+    "M_m": "torque of the electric machine",
+}
+
+
+def meanings_of(inputs: "Inputs") -> dict[str, str]:
+    """Return what parameters, numbers and channels of a report are, by their symbols."""
+    fingerprint = inputs.fingerprint
+    fits = (*inputs.fits.values(), inputs.identification)
+    return {
+        **CHANNELS,
+        **{parameter.name: parameter.meaning for fit in fits for parameter in fit.structure.parameters},
+        **{
+            quantity.name: quantity.meaning
+            for group in (fingerprint.parameters, fingerprint.combinations, fingerprint.physical, fingerprint.margins)
+            for quantity in group
+        },
+    }
+
+
+def explained(section: "Section", meanings: Mapping[str, str]) -> "Section":
+    """Return a section whose tables say what their symbols mean."""
+    return replace(section, tables=[_explained(table, meanings) for table in section.tables])
+
+
+def _explained(table: Table, meanings: Mapping[str, str]) -> Table:
+    """Return a table with a column of meanings where one holds symbols and none says what they are."""
+    if MEANING in table.columns:
+        return table
+    words = [next((_meaning(cell, meanings) for cell in row if isinstance(cell, Symbol)), "") for row in table.rows]
+    heads = [
+        f"{column.heading}: {meaning}"
+        for column in table.columns
+        if isinstance(column.heading, Symbol) and (meaning := _meaning(column.heading, meanings))
+    ]
+    note = f"{table.note} {'; '.join(heads)}." if heads else table.note
+    if not any(words):
+        return replace(table, note=note.strip())
+    rows = tuple((*row, meaning) for row, meaning in zip(table.rows, words, strict=True))
+    return replace(table, columns=(*table.columns, MEANING), rows=rows, note=note.strip())
+
+
+def _meaning(symbol: str, meanings: Mapping[str, str]) -> str:
+    return meanings.get(symbol.partition(" [")[0], "")
