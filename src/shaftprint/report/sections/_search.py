@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from shaftprint.identify.fit._identification import Identification
     from shaftprint.identify.fit._optima import Optimum
 
-MOST_OPTIMA = 8
+MOST_OPTIMA = 6
 
 
 def search_section(inputs: Inputs) -> Section:
