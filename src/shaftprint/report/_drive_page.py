@@ -12,6 +12,7 @@ from shaftprint.fingerprint._json_file import fingerprint_sha256
 from shaftprint.forecast._simulation import SimulatedSignal
 from shaftprint.plain_table import Table, texts
 from shaftprint.report._page import Page, write_page
+from shaftprint.report.figures._left import left_chart, outside
 from shaftprint.report.figures._simulation import simulation_chart
 from shaftprint.report.sections._sections import Picture, Section, picture_name
 from shaftprint.tables._drive import drive_assumed_table, drive_record_table, drive_response_table
@@ -21,6 +22,9 @@ from shaftprint.time_domain._record_fit import RecordFit
 if TYPE_CHECKING:
     from shaftprint.bench._fit import DriveFit
     from shaftprint.report.charts._chart import Chart
+
+# So many of the correlations of a right model lie outside the band.
+BY_CHANCE = 0.05
 
 
 @refusing_none(ReportError)
@@ -46,7 +50,13 @@ def render_drive(
         subtitle=f"Structure {fingerprint.structure}, {_counted(fingerprint)}",
         created=fingerprint.created,
         version=fingerprint.shaftprint_version,
-        sections=(_verdict(fingerprint), _numbers(fingerprint), _records(fit, fingerprint), _assumed(fingerprint)),
+        sections=(
+            _verdict(fingerprint),
+            _numbers(fingerprint),
+            _records(fit, fingerprint),
+            *_left(fit),
+            _assumed(fingerprint),
+        ),
         files=_files(fingerprint),
         ending=(
             f"shaftprint {fingerprint.shaftprint_version}, fingerprint schema {fingerprint.schema_version}. ± is one "
@@ -59,7 +69,8 @@ def render_drive(
 
 def _counted(fingerprint: DriveFingerprint) -> str:
     responses = len(fingerprint.responses)
-    return f"{responses} frequency responses" if responses else f"{len(fingerprint.records)} records"
+    count, noun = (responses, "frequency response") if responses else (len(fingerprint.records), "record")
+    return f"{count} {noun}{'' if count == 1 else 's'}"
 
 
 def _verdict(fingerprint: DriveFingerprint) -> Section:
@@ -89,6 +100,33 @@ def _records(fit: "DriveFit", fingerprint: DriveFingerprint) -> Section:
     if fingerprint.responses:
         return Section(key="records", title="Frequency responses", tables=(drive_response_table(fingerprint),))
     return Section(key="records", title="Records", tables=(drive_record_table(fingerprint),), pictures=drawn)
+
+
+def _left(fit: "DriveFit") -> list[Section]:
+    """Return what the model leaves of each record; nothing where frequency responses were fitted."""
+    parts = [part for part in fit.identification.parts if isinstance(part, RecordFit)]
+    counts = [outside(part) for part in parts]
+    told = [
+        f"Record {part.record.name}: {beyond} of {count} correlations lie outside, of which chance makes about "
+        f"{BY_CHANCE * count:.0f}."
+        for part, (beyond, count) in zip(parts, counts, strict=True)
+    ]
+    pictures = [
+        Picture(
+            name=picture_name("left", str(number), part.record.name),
+            caption=f"{part.record.name}: residuals, their autocorrelation, and their correlation with what inputs did "
+            "before. Within the band lie 95 % of what a right model leaves.",
+            alt=f"Residuals of each output over time and their correlations over the lag, record {part.record.name}.",
+            chart=partial(left_chart, part),
+        )
+        for number, part in enumerate(parts, start=1)
+    ]
+    opening = (
+        "Residuals are whitened: divided by the noise of their frequency. With themselves they are correlated where "
+        "the noise is another than assumed; with an input where the model lacks something that the input moves."
+    )
+    section = Section(key="left", title="What the model leaves", paragraphs=(opening,), points=told, pictures=pictures)
+    return [section] if parts else []
 
 
 def _chart(part: RecordFit, fingerprint: DriveFingerprint) -> "Chart":

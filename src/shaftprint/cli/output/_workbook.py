@@ -55,26 +55,25 @@ class Workbook:
     def write(self) -> None:
         """Write the file, whole or not at all."""
         sheets = [*self._fingerprints(), *((table.title, *_split(table)) for table in self.tables if table.rows)]
-        with written_whole(self.path) as part:
-            # a text is a text, whatever it looks like
-            options = {"strings_to_formulas": False, "strings_to_urls": False, "strings_to_numbers": False}
-            with xlsxwriter.Workbook(str(part), options) as book:
-                names = _names([title for title, _, _ in sheets])
-                notes = {table.title: table.note for table in self.tables}
-                contents = [
-                    (name, title, notes.get(title, "")) for name, (title, _, _) in zip(names, sheets, strict=True)
-                ]
-                _fill(book, "Contents", texts("sheet", "table", "note"), contents)
-                for name, (_, columns, rows) in zip(names, sheets, strict=True):
-                    _fill(book, name, columns, rows)
+        notes = {table.title: table.note for table in self.tables}
+        names = _names([title for title, _, _ in sheets])
+        contents: list[Sequence[Value]] = [
+            (name, title, notes.get(title, "")) for name, (title, _, _) in zip(names, sheets, strict=True)
+        ]
+        # a text is a text, whatever it looks like
+        options = {"strings_to_formulas": False, "strings_to_urls": False, "strings_to_numbers": False}
+        with written_whole(self.path) as part, xlsxwriter.Workbook(str(part), options) as book:
+            _fill(book, "Contents", texts("sheet", "table", "note"), contents)
+            for name, (_, columns, rows) in zip(names, sheets, strict=True):
+                _fill(book, name, columns, rows)
 
-    def _fingerprints(self) -> Iterator[tuple[str, tuple[Column, ...], list[Sequence[Value]]]]:
+    def _fingerprints(self) -> Iterator[tuple[str, tuple[Column, ...], Sequence[Sequence[Value]]]]:
         """Return numbers and sources of each fingerprint that the command gives."""
         for name, noun in self.nouns.items():
             if isinstance(noun, _line_fingerprint.LineFingerprint):
                 yield f"Numbers of {name}", NUMBER_COLUMNS, list(_numbers(noun))
-                rows = [(source.name, source.role, source.sha256) for source in noun.sources]
-                yield f"Sources of {name}", texts("file", "what it is", "SHA-256"), rows
+                sources: list[Sequence[Value]] = [(one.name, one.role, one.sha256) for one in noun.sources]
+                yield f"Sources of {name}", texts("file", "what it is", "SHA-256"), sources
 
 
 NUMBER_COLUMNS = (
