@@ -13,14 +13,11 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
 from shaftprint.escape import printable, terminal_line
-
-if TYPE_CHECKING:
-    from shaftprint.cli.output._workbook import Workbook
 
 WIDTH_OF_PROSE, WIDTH_OF_TABLES = 100, 200
 """Width of sentences and of tables that go into a file or a pipe; a terminal has its own [letters]."""
@@ -58,8 +55,8 @@ class Output:
     """Whether what is printed now is a detail, see ``details``."""
     document: Document | None = None
     """Where everything goes instead of the terminal; None without ``--json``."""
-    workbook: "Workbook | None" = None
-    """Where tables and numbers go as well; None without ``--xlsx``."""
+    workbook: Any = None
+    """Where tables and numbers go as well, see ``output/_workbook.py``; None without ``--xlsx``."""
 
     @property
     def answers_only(self) -> bool:

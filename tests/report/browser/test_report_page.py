@@ -182,6 +182,26 @@ def test_dragging_zooms_all_panels_and_a_double_click_shows_all(opened):
     opened.wait_for(f"Math.abs(document.getElementById('plot-fit')._fullLayout.xaxis.range[0] - {before[0]}) < 1e-6")
 
 
+def test_a_cursor_stands_at_one_frequency_in_all_charts_over_frequency(opened):
+    """The middle of the first panel, 1 : 1 in its other row and column, and at the same place of the residuals."""
+    opened.show("residuals")
+    place = opened.show("fit")
+    box = place.locator(".drag.nsewdrag").first.bounding_box()
+    opened.page.mouse.move(box["x"] + 0.4 * box["width"], box["y"] + 0.5 * box["height"])
+    opened.wait_for("document.querySelectorAll('#plot-residuals .cursor').length === 2")
+    assert opened.page.locator("#plot-fit .cursor").count() == 6
+    low, high = opened.axis("fit")
+    first, last = opened.axis("residuals")
+    wanted = (low + 0.4 * (high - low) - first) / (last - first)
+    share = opened.page.evaluate(
+        "(p => (p.querySelector('.cursor').offsetLeft - p._fullLayout.xaxis._offset) / p._fullLayout.xaxis._length)"
+        "(document.getElementById('plot-residuals'))"
+    )
+    assert share == pytest.approx(wanted, abs=0.01)
+    opened.page.mouse.move(2, 2)
+    opened.wait_for("document.querySelectorAll('.cursor').length === 0")
+
+
 def test_the_keyboard_moves_and_zooms(opened):
     place = opened.show("validation_st1_staircase_210")
     name = "validation_st1_staircase_210"

@@ -220,6 +220,42 @@
     };
   }
 
+  // ---- one cursor for all charts over the same quantity
+
+  const clearCursors = () => document.querySelectorAll(".cursor").forEach((line) => line.remove());
+
+  function showCursors(title, value) {
+    clearCursors();
+    for (const { place, chart } of charts.values()) {
+      const full = place.dataset.state === "drawn" && place._fullLayout;
+      (full ? chart.panels : []).forEach((panel, index) => {
+        const [x, y] = [full[keyOf("x", index)], full[keyOf("y", index)]];
+        const at = x.c2p(value);
+        if (panel.x.title !== title || panel.x.names.length || !(at >= 0 && at <= x._length)) return;
+        const line = document.createElement("div");
+        line.className = "cursor";
+        Object.assign(line.style, { left: `${x._offset + at}px`, top: `${y._offset}px`, height: `${y._length}px` });
+        place.append(line);
+      });
+    }
+  }
+
+  function followPointer(place, name) {
+    place.addEventListener("mousemove", (event) => {
+      const full = place._fullLayout;
+      if (!full || event.buttons) return clearCursors();
+      const box = place.getBoundingClientRect();
+      const [left, top] = [event.clientX - box.left, event.clientY - box.top];
+      const isOver = (axis, at) => at >= axis._offset && at <= axis._offset + axis._length;
+      const index = charts.get(name).chart.panels.findIndex((_, one) => (
+        isOver(full[keyOf("x", one)], left) && isOver(full[keyOf("y", one)], top)));
+      if (index < 0) return clearCursors();
+      const x = full[keyOf("x", index)];
+      return showCursors(charts.get(name).chart.panels[index].x.title, x.p2c(left - x._offset));
+    });
+    place.addEventListener("mouseleave", clearCursors);
+  }
+
   function button(words, label, act) {
     const made = document.createElement("button");
     made.type = "button";
@@ -234,6 +270,7 @@
   function prepare(place) {
     const name = place.dataset.plot;
     const keys = actions(place, name);
+    followPointer(place, name);
     place.addEventListener("keydown", (event) => {
       const act = keys[event.key];
       if (!act || event.target !== place || event.ctrlKey || event.metaKey || event.altKey) return;
