@@ -46,6 +46,14 @@ def test_an_inertia_is_held_against_both_deviations(fingerprint, value, state):
     assert answers(found)[INERTIA].state == state
 
 
+def test_a_torque_coefficient_says_what_it_means_for_power(fingerprint):
+    """0.0525 for 0.05 is 5 % more at one speed; 4 % measured and 3 % in the file are 1.05 times 5 % together."""
+    found = with_physical(fingerprint, "K_Q", value=0.0525, std=0.0021, expected=0.05, expected_std=0.0015)
+    told = answers(found)["Does the propeller take the torque that it should?"].sentence
+    assert "0.0525 ± 0.0021, in the vessel file 0.0500 ± 0.0015." in told
+    assert told.endswith("5.0 ± 5.2 % more torque and power, and about as much more fuel.")
+
+
 @pytest.mark.parametrize(
     ("zero", "std", "state"), [(0.3, 0.2, "fine"), (-5.0, 0.5, "look"), (1.0, 3.0, "open"), (-1.9, 0.5, "open")]
 )

@@ -37,6 +37,8 @@ CARDS_A_ROW = 3
 FEWEST_LETTERS, MOST_LETTERS = 7, 34
 # So many letters of a table stand beside each other on a sheet.
 ACROSS_LETTERS = 116
+# What a word in bold needs beyond its letters.
+BOLD_LETTERS = 2
 
 
 def write_pdf(
@@ -155,7 +157,11 @@ def _table(table: "Table", looks: Looks) -> list[Any]:
 def _letters(table: "Table") -> list[int]:
     """Return how wide the columns are, in letters: as the longest cell or word of the heading, the widest held back."""
     wanted = [
-        max(FEWEST_LETTERS, *map(len, column.heading.split()), *(len(row[place]) for row in table.rows))
+        max(
+            FEWEST_LETTERS,
+            *(len(word) + BOLD_LETTERS for word in column.heading.split()),
+            *(len(row[place]) for row in table.rows),
+        )
         for place, column in enumerate(table.columns)
     ]
     most = MOST_LETTERS

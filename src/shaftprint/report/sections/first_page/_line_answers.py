@@ -1,20 +1,19 @@
 """The questions of the superintendent about the line: hunting, inertia, propeller, other contradictions."""
 
+import math
 from typing import TYPE_CHECKING
 
 from shaftprint.digits import plain, unit_text, with_deviation
 from shaftprint.report.sections._cover import Card, State
 from shaftprint.report.sections.first_page._doubts import FAR, TOO_FAR, deviations_apart, doubt_of, is_off
-from shaftprint.report.sections.first_page._number_table import expected_shown, shown
-from shaftprint.tables._fingerprint import expected_text
+from shaftprint.report.sections.first_page._number_table import shown
+from shaftprint.tables._fingerprint import expected_text, value_text
 
 if TYPE_CHECKING:
     from shaftprint.fingerprint._fingerprint import Fingerprint
     from shaftprint.identify.fit._estimate import Estimate
 
 PERCENT = 100.0
-SAME_PERCENT = 0.5
-"""Shares that are printed as 0 % [%]."""
 ANSWERED_ELSEWHERE = ("I_dn", "K_Q")
 """Physical values that have a question of their own."""
 NOT_TOLD = "Ask for a longer test if this number is needed."
@@ -86,12 +85,10 @@ def propeller(fingerprint: "Fingerprint") -> list[Card]:
         return []
     (quantity,) = coefficients
     question = "Does the propeller take the torque that it should?"
-    share = PERCENT * (quantity.value / (quantity.expected or quantity.value) - 1.0)
-    value, _ = shown(quantity)
-    beside = f"{plain(abs(share), 0)} % {'below' if share < 0.0 else 'above'}"
-    if abs(share) < SAME_PERCENT:
-        beside = "the same as"
-    words = f"Its torque coefficient is {value}, {beside} the {expected_shown(quantity)} of the vessel file."
+    words = (
+        f"Its torque coefficient is {value_text(quantity)}, in the vessel file {expected_text(quantity)}."
+        f"{_power_for_speed(quantity)}"
+    )
     doubt = doubt_of(fingerprint, "K_Q")
     if doubt or not quantity.std < float("inf"):
         return [Card(question=question, state="open", sentence=f"{doubt} {words}".strip(), action=NOT_TOLD)]
@@ -108,6 +105,18 @@ def propeller(fingerprint: "Fingerprint") -> list[Card]:
             ),
         )
     ]
+
+
+def _power_for_speed(quantity: "Estimate") -> str:
+    """Return what another torque coefficient means: torque and power at one speed go with it, and fuel with power."""
+    expected = quantity.expected
+    if not expected or not quantity.value or not math.isfinite(quantity.std):
+        return ""
+    ratio = quantity.value / expected
+    std = abs(ratio) * math.hypot(quantity.std / quantity.value, (quantity.expected_std or 0.0) / expected)
+    apart = with_deviation(PERCENT * abs(ratio - 1.0), PERCENT * std)
+    way = "less" if ratio < 1.0 else "more"
+    return f" At one speed of the shaft that is {apart} % {way} torque and power, and about as much {way} fuel."
 
 
 def other_contradictions(fingerprint: "Fingerprint") -> list[Card]:
