@@ -171,7 +171,13 @@ def test_the_campaign_of_the_page_on_both_shafts_is_one():
 def test_the_users_of_the_page_on_the_server_can_be_read(tmp_path):
     users = pytest.importorskip("shaftprint.web.access._users")
     password = pytest.importorskip("shaftprint.web.access._password")
-    ((_, text),) = (block for block in blocks("docs/serve.md") if block[0] == "toml")
+    alerts, text = (text for kind, text in blocks("docs/serve.md") if kind == "toml")
+    (tmp_path / "alerts.toml").write_text(alerts, encoding="utf-8")
+    (tmp_path / "alerts.toml").chmod(0o600)
+    assert (
+        pytest.importorskip("shaftprint.web._alerts").read_alerts(tmp_path / "alerts.toml").pages
+        == "https://yard.example"
+    )
     hashed = password.hashed("twelve letters")
     (tmp_path / "users.toml").write_text(text.replace("$argon2id$...", hashed), encoding="utf-8")
     (anna,) = users.read_users(tmp_path / "users.toml").values()

@@ -28,6 +28,9 @@ def test_a_drive_has_a_page_with_its_history(made, monkeypatch):
     assert judged["word"] == "changed"
     assert judged["causes"][0]["words"] == "a higher J"
     assert {one["name"] for one in judged["strips"]} == set(TRUTH)
+    # the first test, from which the others are counted, is drawn at its place
+    firsts = {(one["points"][0]["at"][:10], one["points"][0]["value"]) for one in judged["strips"]}
+    assert firsts == {(content["tests"][-1]["at"][:10], 0.0)}
     test = browser.get(f"/api/v1/fingerprints/{content['tests'][0]['sha256']}")
     assert test.json["drive"] == "bench motor"
     # two tests beside each other, by the process beside the server

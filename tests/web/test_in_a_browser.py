@@ -140,6 +140,7 @@ def paths_of(page, server):
         "/upload",
         "/recordings/00000000000000aa",
         "/recordings/00000000000000aa/windows?vessel=stan-tug-1205&campaign=short",
+        "/kiosk",
         "/audit",
         "/nothing",
     )
@@ -190,6 +191,30 @@ def test_pages_work_with_the_keyboard_and_without_scripts(browser, server):
     page.wait_for_url("**#events")
     assert page.get_by_role("cell", name="by hand").is_visible()
     context.close()
+
+
+def test_tables_are_sorted_and_rows_have_addresses(browser, server):
+    page = browser.new_page()
+    page.goto(f"{server.address}/ships/{ADA}/port")
+    table = page.locator("table", has_text="Tests, the newest first")
+    days = table.locator("tbody th")
+    head = table.locator("thead th").first
+    button = head.get_by_role("button")
+    first = [text[:10] for text in days.all_inner_texts()]
+    assert first == ["2026-03-01", "2025-03-01", "2024-03-01"]
+    button.focus()
+    page.keyboard.press("Enter")
+    assert [text[:10] for text in days.all_inner_texts()] == sorted(first)
+    assert head.get_attribute("aria-sort") == "ascending"
+    button.click()
+    assert [text[:10] for text in days.all_inner_texts()] == first
+    link = table.get_by_role("link", name="Link to the row of 2025-03-01")
+    link.focus()
+    page.keyboard.press("Enter")
+    page.wait_for_url("**#row-2025-03-01")
+    page.reload()
+    assert table.locator("tr.asked th").inner_text().startswith("2025-03-01")
+    page.close()
 
 
 def by_mouse(page, handle, seconds):

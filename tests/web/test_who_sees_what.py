@@ -86,6 +86,8 @@ WINDOWS = "/windows?vessel=stan-tug-1205&campaign=short"
 RULES = {
     ("GET", "/"): Rule(READ, "/", False),
     ("GET", "/api/v1/ships"): Rule(READ, "/api/v1/ships", False),
+    ("GET", "/kiosk"): Rule(READ, "/kiosk", False),
+    ("GET", "/api/v1/openapi.json"): Rule(READ, "/api/v1/openapi.json", False),
     ("GET", "/ships/{ship}/{line}"): Rule(READ, SHIP),
     ("POST", "/ships/{ship}/{line}/events"): Rule(
         Role.TESTER, SHIP + "/events", fields=tuple(EVENT.items()), good=(303, 201)

@@ -63,6 +63,7 @@ async def _judge_new(service: "Service") -> None:
             found = _nothing(str(refused))
         summary = {name: found[name] for name in _SUMMARY}
         service.kept.put_finding(_key(one), one.state, summary, found)
+        service.alerting.wake()
 
 
 def _key(one: LineNow) -> str:

@@ -76,7 +76,9 @@ async def _answered(address: Address, asked: Asked) -> Response:
                 asked.request.scope[STREAMS] = True
             if address.streams and TOKEN_HEAD in asked.request.headers:
                 asked.check_token(asked.request.headers[TOKEN_HEAD])
-        return answer_of(asked, await address.answer(asked))
+        said = await address.answer(asked)
+        # a long table is written beside what others ask
+        return await asked.read(answer_of, asked, said) if asked.query("as") else answer_of(asked, said)
     except HTTPException as refused:
         sentence = NOT_THERE if refused.status_code == 404 else str(refused.detail)
         response = refusal(sentence, refused.status_code, api=asked.is_api, asked=asked)

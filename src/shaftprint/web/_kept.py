@@ -27,6 +27,8 @@ create table if not exists making(key text primary key, kind text not null, args
   sentence text not null);
 create table if not exists job(id integer primary key, imo integer, ship text not null, line text not null,
   name text not null, person text not null, at text not null, args text not null);
+create table if not exists told(line text not null, way text not null, mark text not null, at text not null,
+  primary key(line, way));
 create table if not exists ended(session text primary key, at text not null);
 """  # noqa: E501
 _JOBS: Final = "select id, imo, ship, line, name, person, at, args from job"
@@ -211,6 +213,19 @@ class Kept:
         """Keep where something that is made stands."""
         row = (one.key, one.kind, json.dumps(one.args), one.state, one.sentence)
         self._write("insert or replace into making values(?, ?, ?, ?, ?)", *row)
+
+    def told(self, way: str) -> dict[str, str]:
+        """Return which change of each line was told in a way, by the line."""
+        with self._rows("select line, mark from told where way = ?", way) as rows:
+            return dict(rows)
+
+    def put_told(self, line: str, way: str, mark: str, at: str) -> None:
+        """Keep that a change of a line was told."""
+        self._write("insert or replace into told values(?, ?, ?, ?)", line, way, mark, at)
+
+    def forget_told(self, line: str, way: str) -> None:
+        """Forget what was told of a line: it is not changed any more."""
+        self._write("delete from told where line = ? and way = ?", line, way)
 
     def ended(self) -> dict[str, None]:
         """Return the sessions that were ended."""

@@ -1,7 +1,7 @@
-"""A form with a file, read as it comes: fields first, then the file in pieces; nothing is put aside on the way.
+"""A form with files, read as it comes: fields first, then each file in pieces; nothing is put aside on the way.
 
 Libraries put the file into a temporary folder first, and read it from there once more. The form of the upload page has
-its file last, so that all fields are known when it begins (RFC 7578).
+its files last, so that all fields are known when it begins (RFC 7578).
 """
 
 import re
@@ -16,6 +16,9 @@ _BOUNDARY: Final = re.compile(
 )
 _NAME: Final = re.compile(rb'[;\s]name="([^"]*)"', re.IGNORECASE)
 _FILE_NAME: Final = re.compile(rb'[;\s]filename="([^"]*)"', re.IGNORECASE)
+_LINE, _LAST = b"\r\n", b"--"
+MOST_FILES: Final = 20
+"""Files of one form."""
 _MOST_HEAD, _MOST_FIELD, _MOST_FIELDS = 4096, 8192, 40
 
 
@@ -62,9 +65,18 @@ class FormWithFile:
         """
         while True:
             found = self._kept.find(self.boundary)
+            if found >= 0 and len(self._kept) < found + len(self.boundary) + len(_LINE):
+                # what follows says whether it is a boundary
+                await self._more()
+                continue
+            if found >= 0 and self._kept[found + len(self.boundary) :][: len(_LINE)] not in (_LINE, _LAST):
+                piece, self._kept = self._kept[: found + 1], self._kept[found + 1 :]
+                yield piece
+                continue
             if found >= 0:
-                if found:
-                    yield self._kept[:found]
+                piece, self._kept = self._kept[:found], self._kept[found:]
+                if piece:
+                    yield piece
                 return
             # the boundary may have begun at the end of what is there
             safe = len(self._kept) - len(self.boundary) + 1
@@ -72,6 +84,23 @@ class FormWithFile:
                 piece, self._kept = self._kept[:safe], self._kept[safe:]
                 yield piece
             await self._more()
+
+    async def files(self) -> AsyncIterator[tuple[str, AsyncIterator[bytes]]]:
+        """Give the name of each file and its pieces, which have to be read before the next one is asked for.
+
+        Raises HTTPException if they are too many, or something else comes between them.
+        """
+        for _ in range(MOST_FILES):
+            yield self.file_name, self.file()
+            await self._until(self.boundary, most=0)
+            head = await self._until(b"\r\n\r\n", most=_MOST_HEAD)
+            if head.startswith(b"--"):
+                return
+            found = _FILE_NAME.search(head)
+            if found is None:
+                raise HTTPException(400, "Expected nothing but files behind the first file, found a field.")
+            self.file_name = found[1].decode("utf-8", "replace")
+        raise HTTPException(400, f"Expected at most {MOST_FILES} files, found more.")
 
     async def _until(self, mark: bytes, *, most: int) -> bytes:
         while (found := self._kept.find(mark)) < 0:

@@ -5,11 +5,12 @@ from typing import Final
 from starlette.applications import Starlette
 from starlette.exceptions import HTTPException
 from starlette.requests import Request
-from starlette.responses import Response
+from starlette.responses import JSONResponse, Response
 from starlette.routing import Route
 
-from shaftprint.web._asked import API
+from shaftprint.web._asked import API, Asked
 from shaftprint.web._endpoint import NOT_THERE, Address, endpoint, twin_of
+from shaftprint.web._openapi import openapi_of
 from shaftprint.web._service import Service
 from shaftprint.web._setting import refusal
 from shaftprint.web.access._person import Role
@@ -18,6 +19,7 @@ from shaftprint.web.pages._classes import sister_class
 from shaftprint.web.pages._compare import compare
 from shaftprint.web.pages._folders import folder
 from shaftprint.web.pages._jobs import job, job_events, jobs, new_job, retry_job
+from shaftprint.web.pages._kiosk import kiosk
 from shaftprint.web.pages._line import line, new_event, withdraw
 from shaftprint.web.pages._number import give_number
 from shaftprint.web.pages._recordings import look, put_recording, recording, upload, upload_form
@@ -28,8 +30,15 @@ from shaftprint.web.pages._static import static
 from shaftprint.web.pages._trial import fingerprint_document, trial
 from shaftprint.web.pages._windows import choose, look_at_windows, windows
 
+
+async def openapi(asked: Asked) -> Response:
+    """Return this description."""
+    return JSONResponse(openapi_of(ADDRESSES))
+
+
 ADDRESSES: Final = (
     Address(path="/", answer=ships),
+    Address(path="/kiosk", answer=kiosk),
     Address(path="/ships/{ship}/{line}", answer=line),
     Address(path="/ships/{ship}/{line}/events", answer=new_event, method="POST", least=Role.TESTER),
     Address(path="/ships/{ship}/{line}/events/withdrawn", answer=withdraw, method="POST", least=Role.OWNER),
@@ -60,6 +69,7 @@ ADDRESSES: Final = (
     Address(path="/sign-in", answer=sign_in_form, least=None, twin=False),
     Address(path="/sign-in", answer=sign_in, method="POST", least=None, twin=False),
     Address(path="/sign-out", answer=sign_out, method="POST", least=None),
+    Address(path=f"{API}/openapi.json", answer=openapi, twin=False),
     Address(path=f"{API}/session", answer=session, least=None, twin=False),
     Address(path=f"{API}/session", answer=sign_in, method="POST", least=None, twin=False),
     Address(path="/static/{name}", answer=static, least=None, twin=False),

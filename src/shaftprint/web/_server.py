@@ -16,6 +16,7 @@ from shaftprint.web._guard import Guard
 from shaftprint.web._routes import application
 from shaftprint.web._service import Service, utc_now
 from shaftprint.web._settings import Serving
+from shaftprint.web._telling import keep_alerting
 from shaftprint.web._workers import keep_workers
 
 _THREADS: Final = 4
@@ -112,7 +113,7 @@ async def _tell(server: uvicorn.Server, serving: Serving, begun: Callable[[str],
 
 @contextlib.asynccontextmanager
 async def _beside(service: Service) -> AsyncIterator[None]:
-    tasks = [asyncio.create_task(work(service)) for work in (keep_judging, keep_making, keep_workers)]
+    tasks = [asyncio.create_task(work(service)) for work in (keep_judging, keep_making, keep_workers, keep_alerting)]
     try:
         yield
     finally:

@@ -13,6 +13,7 @@ from typing import Self
 from shaftprint.errors import ServerError
 from shaftprint.files import reason
 from shaftprint.store._store import Store, open_store
+from shaftprint.web._alerts import Alerts, read_alerts
 from shaftprint.web._kept import Kept
 from shaftprint.web._lines import Lines
 from shaftprint.web._settings import Serving
@@ -55,6 +56,10 @@ class Service:
     """What is calculated beside them."""
     now: Callable[[], datetime] = utc_now
     """The present time."""
+    alerts: Alerts | None = None
+    """Who is told of changes; None where nobody is."""
+    alerting: Waking = field(default_factory=Waking)
+    """Wakes what tells of changes."""
     judging: Waking = field(default_factory=Waking)
     """Wakes what judges lines."""
     making: Waking = field(default_factory=Waking)
@@ -64,8 +69,8 @@ class Service:
     def begun(cls, serving: Serving, *, now: Callable[[], datetime] = utc_now) -> Self:
         """Return what a server has that is set up.
 
-        Raises ServerError if the users, a folder or the server's own folder cannot be used; StoreError if the store
-        cannot be used.
+        Raises ServerError if the users, the alerts, a folder or the server's own folder cannot be used; StoreError if
+        the store cannot be used.
         """
         _expect_there(serving)
         users = None
@@ -73,6 +78,7 @@ class Service:
             if not read_users(serving.users):
                 raise ServerError(f"{serving.users}: expected one user at least, found none.")
             users = Users(path=serving.users)
+        alerts = None if serving.alerts is None else read_alerts(serving.alerts)
         store = open_store(serving.store)
         try:
             key = _prepared(serving.state)
@@ -91,6 +97,7 @@ class Service:
             desk=Calculator(store=serving.store, most_memory=serving.most_memory, scratch=_scratch(serving) / "desk"),
             bench=Calculator(store=serving.store, most_memory=serving.most_memory, scratch=_scratch(serving) / "bench"),
             now=now,
+            alerts=alerts,
         )
 
     @property

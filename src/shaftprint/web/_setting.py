@@ -1,8 +1,11 @@
 """Pages are set: templates filled, heads of answers written. What a program asks for is JSON of the same content."""
 
 import json
+import re
 from functools import cache
-from typing import Any
+from html import unescape
+from typing import Any, Final
+from urllib.parse import urlencode
 
 from jinja2 import Environment
 from starlette.responses import RedirectResponse, Response
@@ -10,6 +13,7 @@ from starlette.responses import RedirectResponse, Response
 from shaftprint.markup._environment import environment, shown_table, template_text
 from shaftprint.plain_table import Column, Symbol, Table
 from shaftprint.web._asked import Asked, Moved, Shown
+from shaftprint.web._page_tables import file_of_tables
 from shaftprint.web.access._person import Role
 
 TEMPLATES = (
@@ -24,6 +28,8 @@ TEMPLATES = (
     "jobs.html.j2",
     "job.html.j2",
     "upload.html.j2",
+    "files.html.j2",
+    "kiosk.html.j2",
     "recording.html.j2",
     "windows.html.j2",
     "folder.html.j2",
@@ -32,6 +38,8 @@ TEMPLATES = (
     "refused.html.j2",
 )
 _ROOM = "shaftprint.web"
+_CAPTION: Final = re.compile(r"<caption>(.*?)</caption>", re.DOTALL)
+_TAG: Final = re.compile(r"<[^>]*>")
 
 
 @cache
@@ -63,6 +71,9 @@ def answer_of(asked: Asked, said: Shown | Moved | Response) -> Response:
         return _json(said.data, said.status)
     if isinstance(said, Moved):
         return RedirectResponse(said.to, status_code=303)
+    if asked.query("as") and asked.request.method == "GET":
+        kind, number = asked.query("as"), asked.query("table")
+        return file_of_tables(page_of(asked, said), kind=kind, number=number, name=said.title)
     return Response(page_of(asked, said), status_code=said.status, media_type="text/html")
 
 
@@ -72,7 +83,7 @@ def page_of(asked: Asked | None, said: Shown) -> str:
     ``asked``: the request; None where nobody signed in. ``said``: what it says.
     """
     person = None if asked is None else asked.person
-    return (
+    page = (
         _environment()
         .get_template(said.template)
         .render(
@@ -91,6 +102,19 @@ def page_of(asked: Asked | None, said: Shown) -> str:
             path="" if asked is None else asked.request.url.path,
         )
     )
+    return page if asked is None or asked.request.method != "GET" else _with_files(page, asked)
+
+
+def _with_files(page: str, asked: Asked) -> str:
+    """Return a page with links to its tables as files, where it has any."""
+    titles = [unescape(_TAG.sub("", one)) for one in _CAPTION.findall(page)]
+    if not titles:
+        return page
+    query = [(name, value) for name, value in asked.request.query_params.items() if name not in ("as", "table")]
+    links = [urlencode([*query, ("as", "csv"), ("table", str(at))]) for at in range(1, len(titles) + 1)]
+    said = {"tables": list(zip(titles, links, strict=True)), "book": urlencode([*query, ("as", "xlsx")])}
+    head, end, tail = page.rpartition("</main>")
+    return head + _environment().get_template("files.html.j2").render(**said) + end + tail
 
 
 def refusal(sentence: str, status: int, *, api: bool, asked: Asked | None = None) -> Response:

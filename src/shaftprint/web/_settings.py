@@ -47,6 +47,8 @@ class Serving:
     """Where it listens."""
     users: Path | None = None
     """File of users; None where nobody signs in."""
+    alerts: Path | None = None
+    """File that says who is told of changes; None where nobody is."""
     folders: tuple[Path, ...] = ()
     """Folders whose recordings may be used where they lie."""
     hosts: tuple[str, ...] = ()

@@ -44,6 +44,9 @@ _MEGABYTE: Final = 2**20
     help="Folder whose recordings may be identified where they lie. May be repeated.",
 )  # fmt: skip
 @click.option(
+    "--alerts", type=click.Path(path_type=Path), help="File that says who is told, by mail or webhook, of a change."
+)
+@click.option(
     "--host", "hosts", multiple=True, metavar="NAME", help="A name by which browsers reach it. May be repeated."
 )
 @click.option("--workers", type=click.IntRange(0, 64), default=1, show_default=True, help="Processes that identify.")
@@ -68,6 +71,7 @@ def command(
     ships: tuple[str, ...],
     state: Path,
     folders: tuple[Path, ...],
+    alerts: Path | None,
     hosts: tuple[str, ...],
     workers: int,
     certificate: Path | None,
@@ -92,6 +96,7 @@ def command(
         listen=listen_at(listen),
         users=users,
         folders=folders,
+        alerts=alerts,
         hosts=hosts,
         certificate=None if certificate is None or key is None else (certificate, key),
         behind_tls=behind_tls,

@@ -88,18 +88,23 @@ def _courses(finding: "WatchFinding", history: "History") -> dict[str, Any] | No
 
 def _strip(name: str, column: "list[SizedCause | None]", history: "History") -> dict[str, Any]:
     """Return a cause test by test against the first one, in per cent or milliseconds."""
+    first = history.tests[0].at.isoformat()
     there = [(test, one) for test, one in zip(history.tests, column, strict=True) if one is not None]
     cause = there[0][1].cause
     return {
         "name": name,
         "unit": cause.unit,
         "points": [
-            {
-                "at": test.at.isoformat(),
-                "value": cause.in_unit(one.size),
-                "low": cause.in_unit(one.size - NORMAL_95 * one.std),
-                "high": cause.in_unit(one.size + NORMAL_95 * one.std),
-            }
-            for test, one in there
+            # from which all others are counted
+            {"at": first, "value": 0.0, "low": None, "high": None},
+            *(
+                {
+                    "at": test.at.isoformat(),
+                    "value": cause.in_unit(one.size),
+                    "low": cause.in_unit(one.size - NORMAL_95 * one.std),
+                    "high": cause.in_unit(one.size + NORMAL_95 * one.std),
+                }
+                for test, one in there
+            ),
         ],
     }

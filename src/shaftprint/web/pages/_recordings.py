@@ -5,6 +5,7 @@ from dataclasses import asdict
 from datetime import datetime
 from pathlib import Path
 from typing import Any, Final
+from urllib.parse import quote
 
 from starlette.exceptions import HTTPException
 from starlette.responses import Response
@@ -14,7 +15,7 @@ from shaftprint.store._nouns import Line, Ship
 from shaftprint.store._overview import namesakes
 from shaftprint.web._asked import Asked, Moved, NotThere, Shown, ship_word
 from shaftprint.web._kept import Making, Upload
-from shaftprint.web._multipart import form_with_file
+from shaftprint.web._multipart import MOST_FILES, form_with_file
 from shaftprint.web._setting import answer_of
 from shaftprint.web._upload import SETTINGS, Taken, checked_name, expect_room, is_number, take
 from shaftprint.web.access._person import Role, is_like_a_number
@@ -121,12 +122,23 @@ def _content(one: Upload) -> dict[str, Any]:
 
 
 async def upload(asked: Asked) -> Moved:
-    """Take a file from a form."""
+    """Take the files of a form."""
     form = form_with_file(asked.request.headers.get("content-type", ""), aiter(asked.request.stream()))
     await form.read_fields()
     asked.check_token(asked.request.headers.get("x-csrf-token") or form.fields.get("token", ""))
     line = await asked.read(line_of, asked, form.fields)
-    return await taken(asked, form.file(), form.file_name, line)
+    kept: list[Moved] = []
+    try:
+        async for name, pieces in form.files():
+            kept.append(await taken(asked, pieces, name, line, of=MOST_FILES))
+    except HTTPException as refused:
+        names = ", ".join(one.data["name"] for one in kept)
+        detail = f"{refused.detail} Kept before it: {names}." if names else refused.detail
+        raise HTTPException(refused.status_code, detail) from None
+    if len(kept) == 1:
+        return kept[0]
+    chosen = quote(form.fields.get("line", ""), safe="")
+    return Moved(to=f"/upload?line={chosen}#there", data={"uploads": [one.data for one in kept]}, status=201)
 
 
 async def put_recording(asked: Asked) -> Moved:
@@ -207,12 +219,12 @@ def is_imo_number(text: str) -> bool:
     return sum(factor * int(digit) for factor, digit in zip(range(7, 1, -1), text, strict=False)) % 10 == int(text[-1])
 
 
-async def taken(asked: Asked, pieces: AsyncIterator[bytes], name: str, line: Line) -> Moved:
-    """Take a file for a line, and say where its page is."""
+async def taken(asked: Asked, pieces: AsyncIterator[bytes], name: str, line: Line, *, of: int = 1) -> Moved:
+    """Take a file for a line, and say where its page is; ``of``: how many files its request may have."""
     plain, most = checked_name(name), asked.service.serving.most_upload
     announced = asked.request.headers.get("content-length", "")
     length = int(announced) if announced.isascii() and announced.isdecimal() and len(announced) < 19 else None
-    expect_room(asked.service.recordings, most=most + 64 * 1024, length=length)
+    expect_room(asked.service.recordings, most=of * most + 64 * 1024, length=length)
     found: Taken = await take(pieces, asked.service.recordings, plain, most=most, length=None)
     one = Upload(
         id=found.id,

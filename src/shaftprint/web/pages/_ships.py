@@ -6,10 +6,12 @@ from urllib.parse import quote
 
 from shaftprint.store._overview import LineNow
 from shaftprint.web._asked import Asked, Shown, line_address, line_key
-from shaftprint.web._standing import WORDS, Standing, standing_of
+from shaftprint.web._standing import WORDS, Look, Standing, standing_of
 
 MOST_ROWS: Final = 100
 """Lines on one page."""
+MOST_IN_FILE: Final = 5_000
+"""Lines in one file."""
 
 
 async def ships(asked: Asked) -> Shown:
@@ -25,26 +27,20 @@ class _Row:
 
 def _ships(asked: Asked) -> Shown:
     rows = rows_of(asked)
-    counts = {word: sum(row.standing.kind == word for row in rows) for word in WORDS}
+    counts = _counts(rows)
     kind, sought = asked.query("kind"), asked.query("q").strip()
     chosen = [row for row in rows if (not kind or row.standing.kind == kind) and _matches(row.line, sought)]
-    # those that need somebody first, among them the clearest change, then the newest test
-    chosen.sort(
-        key=lambda row: (
-            WORDS.index(row.standing.kind),
-            -row.standing.clearness,
-            -(row.line.tested_at or asked.service.now()).timestamp(),
-        )
-    )
-    pages = max(1, -(-len(chosen) // MOST_ROWS))
+    # a file of the table has all of them
+    most = MOST_IN_FILE if asked.query("as") else MOST_ROWS
+    pages = max(1, -(-len(chosen) // most))
     page = min(max(1, int(text) if (text := asked.query("page", "1")).isdecimal() and len(text) < 7 else 1), pages)
-    shown = chosen[(page - 1) * MOST_ROWS : page * MOST_ROWS]
+    shown = chosen[(page - 1) * most : page * most]
     return Shown(
         template="ships.html.j2",
         title="Ships",
         data={
-            "headline": _headline(counts, len(rows)),
-            "lines": [_content(row) for row in shown],
+            "headline": headline_of(rows),
+            "lines": [content_of(row) for row in shown],
             "counts": {word: count for word, count in counts.items() if count},
             "found": len(chosen),
             "page": page,
@@ -54,6 +50,7 @@ def _ships(asked: Asked) -> Shown:
             "kind": kind,
             "q": sought,
             "all": len(rows),
+            "look": look_of(rows),
             "links": {
                 "previous": _link(kind, sought, page - 1) if page > 1 else "",
                 "next": _link(kind, sought, page + 1) if page < pages else "",
@@ -63,10 +60,13 @@ def _ships(asked: Asked) -> Shown:
 
 
 def rows_of(asked: Asked) -> list[_Row]:
-    """Return the lines that somebody sees, each with how it stands."""
+    """Return the lines that somebody sees, each with how it stands.
+
+    Those that need somebody come first, among them the clearest change, then the newest test.
+    """
     found, now = asked.service.kept.summaries(), asked.service.now()
     overdue = asked.service.serving.overdue_days
-    return [
+    rows = [
         _Row(
             line=one,
             standing=standing_of(
@@ -76,9 +76,33 @@ def rows_of(asked: Asked) -> list[_Row]:
         for one in asked.service.lines.now()
         if asked.person.sees(one.line.ship)
     ]
+    return sorted(
+        rows,
+        key=lambda row: (
+            WORDS.index(row.standing.kind),
+            -row.standing.clearness,
+            -(row.line.tested_at or now).timestamp(),
+        ),
+    )
 
 
-def _headline(counts: dict[str, int], lines: int) -> str:
+def _counts(rows: list[_Row]) -> dict[str, int]:
+    return {word: sum(row.standing.kind == word for row in rows) for word in WORDS}
+
+
+def look_of(rows: list[_Row]) -> Look:
+    """Return how a page sets what is said of all lines together."""
+    counts = _counts(rows)
+    if counts["not trustworthy"]:
+        return "bad"
+    if counts["changed"] or counts["test overdue"]:
+        return "look"
+    return "fine" if counts["unchanged"] else "open"
+
+
+def headline_of(rows: list[_Row]) -> str:
+    """Return how all lines stand, in one sentence."""
+    counts, lines = _counts(rows), len(rows)
     if not lines:
         return "No ship is here yet"
     said = {
@@ -107,7 +131,8 @@ def _matches(line: LineNow, sought: str) -> bool:
     return all(part in words for part in sought.lower().split())
 
 
-def _content(row: _Row) -> dict[str, Any]:
+def content_of(row: _Row) -> dict[str, Any]:
+    """Return a line and how it stands, for JSON."""
     ship, line, standing = row.line.line.ship, row.line, row.standing
     return {
         "ship": ship.name,

@@ -9,6 +9,7 @@ _KINDS = {
     "page.css": "text/css",
     "web.css": "text/css",
     "web.js": "text/javascript",
+    "tables.js": "text/javascript",
     "windows.js": "text/javascript",
     "icon.svg": "image/svg+xml",
 }
