@@ -18,6 +18,7 @@ import socket
 import sys
 import tempfile
 import time
+from array import array
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from multiprocessing.synchronize import Event
@@ -80,17 +81,21 @@ class Fast(device.Device):
 class Seen:
     """What a listener saw."""
 
-    late_s: list[float] = field(default_factory=list)
-    counters: list[int] = field(default_factory=list)
+    late_s: array = field(default_factory=lambda: array("d"))
+    counters: array = field(default_factory=lambda: array("q"))
     findings: list[str] = field(default_factory=list)
-    memory: list[tuple[float, float]] = field(default_factory=list)
+    memory: array = field(default_factory=lambda: array("d"))
     cpu_s: float = 0.0
     seconds: float = 0.0
 
     @property
     def own_mb(self) -> float:
-        """What these notes take [MB]: a place in a list and a number each."""
-        return (sys.getsizeof(self.late_s) + sys.getsizeof(self.counters) + (24 + 28) * len(self.counters)) / 2**20
+        """What these notes take [MB], each a number of eight bytes."""
+        return 8 * (len(self.late_s) + len(self.counters) + len(self.memory)) / 2**20
+
+    def note(self, now_s: float) -> None:
+        """Note the memory of this process without that of the notes."""
+        self.memory.extend((now_s, resident_mb() - self.own_mb))
 
     @property
     def lost(self) -> int:
@@ -100,7 +105,8 @@ class Seen:
     @property
     def slope_mb_h(self) -> float:
         """Slope of the memory after the first quarter [MB/h]."""
-        rows = np.array(self.memory[len(self.memory) // 4 :])
+        rows = np.array(self.memory).reshape(-1, 2)
+        rows = rows[len(rows) // 4 :]
         return float(np.polyfit(rows[:, 0], rows[:, 1], 1)[0] * 3600.0) if len(rows) > 2 else float("nan")
 
     def row(self, name: str, unit: str = "block") -> list[str]:
@@ -138,7 +144,7 @@ async def listen(counterpart: Any, seconds: float, *, is_asked: bool = False) ->
             seen.counters.append(block.counter)
             seen.findings += block.findings
             if now >= next_s:
-                seen.memory.append((now, resident_mb() - seen.own_mb))
+                seen.note(now)
                 next_s = now + 2.0
     finally:
         seen.seconds, seen.cpu_s = time.monotonic() - began, time.process_time() - cpu
@@ -303,7 +309,7 @@ def samples_over_paho(quality: int, seconds: float) -> Seen:
         began, cpu = time.monotonic(), time.process_time()
         client.loop_start()
         while time.monotonic() - began < seconds:
-            seen.memory.append((time.monotonic(), resident_mb() - seen.own_mb))
+            seen.note(time.monotonic())
             time.sleep(2.0)
         client.loop_stop()
         seen.seconds, seen.cpu_s = time.monotonic() - began, time.process_time() - cpu

@@ -1,7 +1,8 @@
 """Rehearsals of a live test with random faults: is the envelope kept, does anything hang, is every reason named.
 
 ``python -m benchmarks.live_rehearsals --count 200``; with ``--kills 50`` the program that plays against a server is
-killed at random points, and with ``--lost 100`` blocks are lost at random and counted by what is said of them.
+killed at random points, with ``--stops 50`` stopped with its link open, and with ``--lost 100`` blocks are lost at
+random and counted by what is said of them.
 """
 
 import argparse
@@ -244,48 +245,69 @@ def run_beside(*arguments, **options):
     return subprocess.Popen([sys.executable, "-m", "benchmarks.live_rehearsals", *arguments], text=True, **options)
 
 
-def kills(count):
-    """Kill the program that plays at random points: when the ship reverts, whether the journal reads."""
-    address, rng = "opc.tcp://127.0.0.1:48477", np.random.default_rng(1)
-    server = run_beside("--serve", address, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
-    server.stdout.readline()
+def kills(count, *, stops=False):
+    """Kill the program that plays, at random points: when the lever rules again, and whether the journal reads.
+
+    ``stops``: it is stopped while it rules, and its link stays open: the heartbeat alone is missing.
+    """
+    address, rng = f"opc.tcp://127.0.0.1:{48478 if stops else 48477}", np.random.default_rng(1)
+    what, first_s = ("heartbeats stopped", 5.0) if stops else ("kills", 0.5)
     took, readable = [], 0
-    try:
-        for number in range(count):
-            with tempfile.TemporaryDirectory() as folder:
-                path = Path(folder) / "t.nc"
+    with tempfile.TemporaryDirectory() as folder:
+        # a file: a pipe that nobody empties stops who writes into it
+        with (Path(folder) / "said").open("w") as says:
+            server = run_beside("--serve", address, stdout=says, stderr=subprocess.DEVNULL)
+        said = (Path(folder) / "said").open()
+        try:
+            while not _lines(said):
+                time.sleep(0.5)
+            while len(took) < count:
+                path = Path(folder) / f"{rng.integers(10**12)}.nc"
                 player = run_beside("--play", address, str(path), stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
                 player.stdout.readline()
                 # alive 1 s, revert 2 s, taken over, then two legs
-                time.sleep(rng.uniform(0.5, 14.0))
-                os.kill(player.pid, signal.SIGKILL)
+                time.sleep(rng.uniform(first_s, 14.0))
+                _lines(said)
+                os.kill(player.pid, signal.SIGSTOP if stops else signal.SIGKILL)
+                after_s = _until_lever(said, time.monotonic())
+                player.kill()
                 player.wait()
                 player.stdout.close()
-                killed = time.monotonic()
-                took.append(_until_lever(server, killed))
-                journal = path.with_name("t.nc.journal")
-                if journal.exists():
+                if stops and not after_s:
+                    print("it did not rule yet", flush=True)
+                    continue
+                took.append(after_s)
+                journal = path.with_name(path.name + ".journal")
+                is_there = journal.exists()
+                if is_there:
                     with sp.recording.read_recording(journal) as recording:
-                        readable += recording.channel("M_s").count > 0
-                else:
-                    readable += 1
-                print(f"{number}: lever after {took[-1]:.2f} s", flush=True)
-    finally:
-        server.kill()
-        server.wait()
-    print(f"{count} kills: lever after at most {max(took):.2f} s; journals that read: {readable}")
+                        is_there = recording.channel("M_s").count > 0
+                readable += is_there
+                print(f"{len(took)}: lever after {after_s:.2f} s, journal {'reads' if is_there else 'not'}", flush=True)
+        finally:
+            server.kill()
+            server.wait()
+            said.close()
+    ruled = sum(one > 0.0 for one in took)
+    print(f"{count} {what}, {ruled} while it ruled: lever after at most {max(took):.2f} s; journals read: {readable}")
 
 
-def _until_lever(server, killed):
+def _lines(said):
+    """Return what a server has said since the last time."""
+    return [json.loads(line) for line in said.read().splitlines() if line.startswith("{")]
+
+
+def _until_lever(said, killed):
     """Return how long after a kill the lever ruled [s]; 0 where it did already."""
     last = 0.0
     while time.monotonic() - killed < 5.0:
-        said = json.loads(server.stdout.readline())
-        if "time_s" not in said or said["time_s"] < killed:
-            continue
-        if said["mode"] == DeviceMode.LEVER:
-            return last
-        last = said["time_s"] - killed
+        time.sleep(0.1)
+        for one in _lines(said):
+            if one.get("time_s", 0.0) < killed:
+                continue
+            if one["mode"] == DeviceMode.LEVER:
+                return last
+            last = one["time_s"] - killed
     return math.inf
 
 
@@ -298,6 +320,7 @@ def main():
     parser.add_argument("--kept", type=Path, default=Path("build/live_rehearsals.jsonl"))
     parser.add_argument("--lost", type=int, default=0)
     parser.add_argument("--kills", type=int, default=0)
+    parser.add_argument("--stops", type=int, default=0)
     parser.add_argument("--serve")
     parser.add_argument("--play", nargs=2)
     asked = parser.parse_args()
@@ -313,6 +336,8 @@ def main():
             lost_blocks(asked.lost)
         if asked.kills:
             kills(asked.kills)
+        if asked.stops:
+            kills(asked.stops, stops=True)
 
 
 if __name__ == "__main__":

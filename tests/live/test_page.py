@@ -7,6 +7,7 @@ from types import SimpleNamespace
 import pytest
 
 from shaftprint.live._block import DeviceMode, Event
+from shaftprint.live._outcome import Ask, Operator
 from shaftprint.live._page import LivePages
 from shaftprint.live._state import State
 
@@ -66,3 +67,34 @@ def test_pages_are_for_this_computer_and_take_nothing_in():
             answer.read()
             connection.close()
             assert answer.status == status
+
+
+@pytest.mark.filterwarnings("ignore::ResourceWarning")
+def test_the_engineer_asks_with_the_word_of_the_address_and_nobody_else_does():
+    operator = Operator()
+
+    def posted(pages, path, word=None, host=None):
+        address = pages.url.removeprefix("http://").rstrip("/")
+        connection = http.client.HTTPConnection(address, timeout=5.0)
+        headers = {"Host": host or address} | ({} if word is None else {"X-Word": word})
+        connection.request("POST", path, headers=headers)
+        status = connection.getresponse().status
+        connection.close()
+        return status
+
+    with LivePages(0, operator) as pages:
+        word = pages.url_of_engineer.partition("#")[2]
+        assert len(word) > 20
+        connection, answer = asked(pages, "/engineer")
+        # who reads the page does not read the word
+        assert word not in answer.read().decode()
+        connection.close()
+        refused = [posted(pages, "/ask/skip"), posted(pages, "/ask/skip", "x" * len(word))]
+        refused += [posted(pages, "/ask/skip", word, "elsewhere.example:80"), posted(pages, "/ask/abort", word)]
+        assert refused == [403] * 4
+        assert not operator.asks
+        assert [posted(pages, "/ask/hold", word), posted(pages, "/ask/go%20on", word)] == [204, 204]
+        assert list(operator.asks) == [Ask.HOLD, Ask.GO_ON]
+    with LivePages(0) as pages:
+        assert "#" not in pages.url_of_engineer
+        assert posted(pages, "/ask/skip", "") == 403

@@ -1,7 +1,9 @@
 """What repeats itself at a level of its own: the contract of multisines and binary sequences."""
 
 import math
+import re
 from abc import abstractmethod
+from collections.abc import Collection
 from typing import Self
 
 import numpy as np
@@ -17,6 +19,19 @@ FEWEST_PERIODS = 2
 _PERIOD_ROUNDING = 1e-9
 # So many values in a period of the fastest line miss its crest by less than a per cent.
 _VALUES_A_PERIOD = 24
+
+_AGAIN = re.compile(r"-([2-9]|[1-9]\d+)$")
+
+
+def first_name(name: str) -> str:
+    """Return the name of a test that was played first under it: ``M1`` of ``M1-2``."""
+    return _AGAIN.sub("", name)
+
+
+def name_again(name: str, names: Collection[str]) -> str:
+    """Return the name of a test that is played once more: ``M1-2`` of ``M1``, or the next that is not among others."""
+    first = first_name(name)
+    return next(again for number in range(2, len(names) + 3) if (again := f"{first}-{number}") not in names)
 
 
 class Leg(Settings):

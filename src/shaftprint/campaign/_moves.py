@@ -69,12 +69,8 @@ def moves_of(
     for before, after in pairwise((None, *tests, None)):
         if not isinstance(before, Leg) and not isinstance(after, Leg):
             continue
-        from_v = _value(before, before.stop_s) if isinstance(before, Leg) else offset_v
-        to_v = _value(after, after.start_s) if isinstance(after, Leg) else offset_v
-        volts = abs(to_v - from_v)
-        length_s = 0.0
-        if volts >= _NOTHING_V and (ramp_s is not None or ramp_v_per_s is not None):
-            length_s = ramp_s if ramp_s is not None else volts / (ramp_v_per_s or 1.0)
+        from_v, to_v = ends_of_move(before, after, offset_v=offset_v)
+        length_s = length_of_move_s(abs(to_v - from_v), ramp_s=ramp_s, ramp_v_per_s=ramp_v_per_s)
         begin_s = 0.0 if before is None else before.stop_s
         end_s = duration_s if after is None else after.start_s
         start_s = end_s - length_s if isinstance(after, Leg) else begin_s
@@ -89,6 +85,20 @@ def moves_of(
             )
         )
     return tuple(moves)
+
+
+def ends_of_move(before: "Excitation | None", after: "Excitation | None", *, offset_v: float) -> tuple[float, float]:
+    """Return where the set point stands after one test and where it goes to for the next [V]; the offset without."""
+    from_v = _value(before, before.stop_s) if isinstance(before, Leg) else offset_v
+    to_v = _value(after, after.start_s) if isinstance(after, Leg) else offset_v
+    return from_v, to_v
+
+
+def length_of_move_s(volts: float, *, ramp_s: float | None, ramp_v_per_s: float | None) -> float:
+    """Return how long the ramp over so many volts takes [s]; 0 where it is none, or jumps."""
+    if volts < _NOTHING_V or (ramp_s is None and ramp_v_per_s is None):
+        return 0.0
+    return ramp_s if ramp_s is not None else volts / (ramp_v_per_s or 1.0)
 
 
 def faults_of(moves: "Sequence[Move]", *, ramp_s: float | None, ramp_v_per_s: float | None) -> list[str]:

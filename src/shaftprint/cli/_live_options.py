@@ -3,30 +3,41 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Callable, Iterator
+import os
+import sys
+import threading
+from collections.abc import Callable, Iterator, Mapping
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from shaftprint.cli._next import print_next
+from shaftprint.cli._plan_options import seconds_of
 from shaftprint.cli._terminal import answer, details, echo, print_findings, ring
 from shaftprint.cli.output._fingerprint_file import fingerprint_at
 from shaftprint.cli.output._json import give
+from shaftprint.escape import printable
 from shaftprint.late import late
 
 with late():
+    from shaftprint.live._outcome import Ask
     from shaftprint.live._page import LivePages
     from shaftprint.live._proof import prove
 
 if TYPE_CHECKING:
+    from shaftprint.campaign._campaign import Campaign
     from shaftprint.live._block import Event
     from shaftprint.live._envelope import Envelope
     from shaftprint.live._judgement import LineJudgement
-    from shaftprint.live._outcome import Outcome
+    from shaftprint.live._outcome import Operator, Outcome
     from shaftprint.live._proof import Proof
     from shaftprint.live._record import Left
     from shaftprint.survey._trial import Trial
+
+KEYS: Mapping[str, str] = {"h": "hold", "g": "go on", "s": "skip", "r": "repeat"}
+"""What a key asks for while a test is played."""
 
 slope_option = click.option(
     "--rpm-per-volt",
@@ -45,6 +56,14 @@ plan_option = click.option(
     help="Folder of shaftprint plan: a leg ends early where its wishes are met, as predicted.",
 )
 
+within_option = click.option(
+    "--within",
+    "within_s",
+    metavar="TIME",
+    type=seconds_of,
+    help="Longest time that legs go on and come again for the wishes of --plan; as long as the campaign without it.",
+)
+
 page_option = click.option(
     "--page", "port", type=click.IntRange(1, 65535), help="Port of this computer for the pages of bridge and engineer."
 )
@@ -61,10 +80,16 @@ def recording_option(command: Callable[..., Any]) -> Callable[..., Any]:
     )(command)
 
 
-def proved(trial: Trial, envelope: Envelope, *, fingerprint: Path | None, slope_rpm_per_v: float | None) -> Proof:
-    """Hold a campaign against an envelope, and print what it will do and what speaks against it."""
+def prover(
+    trial: Trial, envelope: Envelope, *, fingerprint: Path | None, slope_rpm_per_v: float | None
+) -> Callable[[Campaign], Proof]:
+    """Return what holds a campaign of a ship against its envelope, before the test and where it is changed in it."""
     known = None if fingerprint is None else fingerprint_at(fingerprint)
-    proof = prove(trial.campaign, trial.vessel, envelope, fingerprint=known, slope_rpm_per_v=slope_rpm_per_v)
+    return partial(prove, vessel=trial.vessel, envelope=envelope, fingerprint=known, slope_rpm_per_v=slope_rpm_per_v)
+
+
+def proved(proof: Proof) -> Proof:
+    """Print what a campaign will do, and what speaks against it."""
     for one in proof.foreseen:
         bound = "" if one.bound is None else f"; allowed {one.bound.lowest:g} to {one.bound.highest:g} {one.unit}"
         echo(f"{one.quantity}: foreseen {one.lowest:.5g} to {one.highest:.5g} {one.unit}{bound}")
@@ -76,13 +101,13 @@ def proved(trial: Trial, envelope: Envelope, *, fingerprint: Path | None, slope_
 
 
 @contextlib.contextmanager
-def shown_on_pages(port: int | None) -> Iterator[LivePages | None]:
+def shown_on_pages(port: int | None, operator: Operator) -> Iterator[LivePages | None]:
     """Show the test on pages of this computer, where a port is given."""
     if port is None:
         yield None
         return
-    with LivePages(port) as pages:
-        echo(f"Bridge: {pages.url}   engineer: {pages.url}engineer", err=True)
+    with LivePages(port, operator) as pages:
+        echo(f"Bridge: {pages.url}   engineer: {pages.url_of_engineer}", err=True)
         yield pages
 
 
@@ -91,6 +116,31 @@ def tell(event: Event) -> None:
     if event.kind in ("abort", "alarm"):
         ring()
     echo(f"{event.time_s:9.2f} s  {event.kind:<10} {event.sentence}", err=True)
+
+
+def tell_and_listen(operator: Operator) -> Callable[[Event], None]:
+    """Return what prints events, and takes keys from the terminal once something is played."""
+    listens = [sys.stdin.isatty()]
+
+    def told(event: Event) -> None:
+        tell(event)
+        if event.kind == "state" and event.sentence == "armed" and listens[0]:
+            listens[0] = False
+            keys = ", ".join(f"{key} {ask}" for key, ask in KEYS.items())
+            echo(f"Keys, each with Enter: {keys}; Ctrl-C aborts.", err=True)
+            threading.Thread(target=take_keys, args=(sys.stdin.fileno(), operator), daemon=True).start()
+
+    return told
+
+
+def take_keys(file: int, operator: Operator) -> None:
+    """Take keys until there are none any more; read past the buffer, which would be locked when the program ends."""
+    while said := os.read(file, 256):
+        for key in said.decode(errors="replace").split():
+            if key in KEYS:
+                operator.asks.append(Ask(KEYS[key]))
+            else:
+                echo(f"{printable(key)}: expected one of {', '.join(KEYS)}; nothing was changed.", err=True)
 
 
 def print_judged(judgements: tuple[LineJudgement, ...]) -> None:

@@ -1,7 +1,9 @@
 """Who watches a live test, and how it ended."""
 
+from collections import deque
 from collections.abc import Awaitable, Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from enum import StrEnum
 from typing import TYPE_CHECKING
 
 from shaftprint.live._judgement import LineJudgement
@@ -15,14 +17,25 @@ async def _agrees(question: str) -> bool:
     return True
 
 
+class Ask(StrEnum):
+    """What the operator may ask for while a test is played."""
+
+    HOLD = "hold"
+    GO_ON = "go on"
+    SKIP = "skip"
+    REPEAT = "repeat"
+
+
 @dataclass(kw_only=True)
 class Operator:
-    """Who watches the test: agrees to it, and stops it at any time."""
+    """Who watches the test: agrees to it, changes its course, and stops it at any time."""
 
     confirm: Callable[[str], Awaitable[bool]] = _agrees
     """Asks on the bridge."""
     stops: str = ""
     """Why the operator wants the test aborted; empty while he does not. It may be set from any thread."""
+    asks: deque[Ask] = field(default_factory=deque)
+    """What is asked for and not done yet. It may be added to from any thread."""
 
 
 @dataclass(frozen=True, kw_only=True)

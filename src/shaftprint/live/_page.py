@@ -1,10 +1,14 @@
 """Two pages of a running test, for this computer alone: one large word for the bridge, all else for the engineer.
 
-Server-sent events carry what is shown. Nothing is taken in: who wants to stop does it at the program, or at the lever.
+Server-sent events carry what is shown. Taken in is what an operator may ask for, of the page that was opened with the
+address that the program has printed: it holds a word that no other page and no other user of this computer has. Who
+wants to stop does it at the program, or at the lever.
 """
 
+import hmac
 import json
 import math
+import secrets
 import threading
 from collections.abc import Callable
 from http import HTTPStatus
@@ -12,17 +16,20 @@ from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from importlib.resources import files
 from types import TracebackType
 from typing import Any, Self
+from urllib.parse import unquote
 
 from shaftprint.errors import ServerError
 from shaftprint.files import reason
 from shaftprint.live._block import Event
 from shaftprint.live._loop import Loop
+from shaftprint.live._outcome import Ask, Operator
 from shaftprint.live._sight import Sight
 from shaftprint.live._state import State
 
 HERE = "127.0.0.1"
 _EVERY_S = 0.25
 _MOST_EVENTS = 50
+_WORD = "X-Word"
 _HOSTS = ("127.0.0.1", "localhost")
 _PAGES = {"/": "bridge.html", "/engineer": "engineer.html"}
 _HEADERS = {
@@ -48,8 +55,9 @@ _ALARM = "TAKE LOCAL CONTROL"
 class LivePages:
     """The pages; they are there while the ``with`` block runs, and ask nobody else for anything."""
 
-    def __init__(self, port: int) -> None:
-        """``port``: of this computer; 0 for any. Raises ServerError if it is taken."""
+    def __init__(self, port: int, operator: Operator | None = None) -> None:
+        """Take a port of this computer, 0 for any; ``operator``: who asks on the page. Raises ServerError if taken."""
+        self._operator, self._word = operator, secrets.token_urlsafe(16)
         self._shown: dict[str, Any] = {"word": _WORDS[State.IDLE], "events": []}
         self._lock = threading.Lock()
         self._ends = threading.Event()
@@ -66,6 +74,20 @@ class LivePages:
     def url(self) -> str:
         """Address of the page for the bridge."""
         return f"http://{HERE}:{self._server.server_port}/"
+
+    @property
+    def url_of_engineer(self) -> str:
+        """Address of the page for the engineer, with the word that lets it ask."""
+        return f"{self.url}engineer" + ("" if self._operator is None else f"#{self._word}")
+
+    def take(self, ask: str, word: str) -> bool:
+        """Ask for something, where the word is the right one; return whether it was taken."""
+        if self._operator is None or not hmac.compare_digest(word.encode(), self._word.encode()):
+            return False
+        if ask not in set(Ask):
+            return False
+        self._operator.asks.append(Ask(ask))
+        return True
 
     @property
     def has_ended(self) -> bool:
@@ -88,7 +110,12 @@ class LivePages:
 
     def show(self, test: Loop, sight: Sight) -> None:
         """Take what a block shows."""
-        numbers = {"set point [V]": sight.set_point_v, "speed [rpm]": sight.speed_rpm, "torque [N m]": sight.torque_nm}
+        numbers = {
+            "set point [V]": sight.set_point_v,
+            "speed [rpm]": sight.speed_rpm,
+            "torque [N m]": sight.torque_nm,
+            "time left [s]": getattr(test, "left_s", math.nan),
+        }
         with self._lock:
             self._shown |= {
                 "word": _ALARM if self._shown["word"] == _ALARM and test.state is State.ABORT else _WORDS[test.state],
@@ -102,6 +129,8 @@ class LivePages:
         with self._lock:
             events = [*self._shown["events"], f"{event.time_s:.1f} s  {event.kind}: {event.sentence}"]
             self._shown["events"] = events[-_MOST_EVENTS:]
+            if event.kind == "known":
+                self._shown["known"] = event.sentence
             if event.kind in ("abort", "alarm"):
                 self._shown["reason"] = event.sentence
             if event.kind == "alarm":
@@ -140,6 +169,13 @@ def _handler_of(pages: LivePages) -> type[BaseHTTPRequestHandler]:
                 self.wfile.write(page)
             else:
                 self.send_error(HTTPStatus.NOT_FOUND)
+
+        def do_POST(self) -> None:
+            """Take what is asked for on the page; no other page can send its header."""
+            host, asked = self.headers.get("Host", "").rpartition(":")[0], self.path.removeprefix("/ask/")
+            is_right = host in _HOSTS and pages.take(unquote(asked), self.headers.get(_WORD, ""))
+            self.send_response(HTTPStatus.NO_CONTENT if is_right else HTTPStatus.FORBIDDEN)
+            self.end_headers()
 
         def _head(self, kind: str, length: int | None = None) -> None:
             self.send_response(HTTPStatus.OK)

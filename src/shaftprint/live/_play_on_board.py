@@ -2,7 +2,7 @@
 
 import asyncio
 import signal
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -14,7 +14,7 @@ from shaftprint.live._engine import LiveTest
 from shaftprint.live._outcome import Operator, Outcome
 from shaftprint.live._page import LivePages, watched
 from shaftprint.live._record import Left, LiveRecord
-from shaftprint.live._stop_rule import enough_by
+from shaftprint.live._stop_rule import advice_by
 from shaftprint.live.counterparts._can_bus import CanCounterpart
 from shaftprint.live.counterparts._modbus import ModbusCounterpart
 from shaftprint.live.counterparts._mqtt import PORTS as MQTT_PORTS
@@ -61,9 +61,12 @@ def play_on_board(
     *,
     access: "Access",
     confirm: Callable[[str], bool],
+    operator: Operator | None = None,
     places: Path | None = None,
     dry: bool = False,
     planned: "PlannedTest | None" = None,
+    proves: "Callable[[Campaign], Sequence[str]] | None" = None,
+    most_s: float | None = None,
     slope_rpm_per_v: float | None = None,
     told: Callable[[Event], None] = lambda event: None,
     pages: LivePages | None = None,
@@ -84,14 +87,20 @@ def play_on_board(
         User or certificate of the link.
     confirm
         Asks on the bridge, and returns whether yes was said; it may take its time.
+    operator
+        Who may hold it, skip and repeat legs, and stop it.
     places
         Of Modbus and CAN, the file that says which registers or messages hold what.
     dry
         Whether nothing is written to the counterpart.
     planned
-        The plan by whose requirements legs end early; none end early without it.
+        The plan by whose wishes legs end early, go on and come again; all is played as it stands without it.
+    proves
+        Says why a changed campaign may not be played; nothing is changed without it but that it is held.
+    most_s
+        Longest time that is played by what is known [s]; that of the campaign where not given.
     slope_rpm_per_v
-        What one volt asks for [rpm/V], where the campaign does not say it.
+        What one volt asks for [rpm/V], as the proof takes it; the speed is not held against the set point without it.
     told
         Is told each event.
     pages
@@ -112,8 +121,11 @@ def play_on_board(
             envelope,
             path,
             confirm=confirm,
+            operator=operator or Operator(),
             dry=dry,
             planned=planned,
+            proves=proves,
+            most_s=most_s,
             slope_rpm_per_v=slope_rpm_per_v,
             told=told,
             pages=pages,
@@ -129,8 +141,11 @@ async def _played(
     path: Path,
     *,
     confirm: Callable[[str], bool],
+    operator: Operator,
     dry: bool,
     planned: "PlannedTest | None",
+    proves: "Callable[[Campaign], Sequence[str]] | None",
+    most_s: float | None,
     slope_rpm_per_v: float | None,
     told: Callable[[Event], None],
     pages: LivePages | None,
@@ -138,7 +153,7 @@ async def _played(
     async def asked(question: str) -> bool:
         return await asyncio.to_thread(confirm, question)
 
-    operator = Operator(confirm=asked)
+    operator.confirm = asked
     before = signal.signal(signal.SIGINT, lambda number, frame: setattr(operator, "stops", "interrupted"))
     try:
         await counterpart.connect()
@@ -153,7 +168,9 @@ async def _played(
             slope_rpm_per_v=slope_rpm_per_v,
             **watched(told, pages),
             dry=dry,
-            is_enough=None if planned is None else enough_by(planned),
+            advises=None if planned is None else advice_by(planned),
+            proves=proves,
+            most_s=most_s,
         )
         try:
             outcome = await test.run()

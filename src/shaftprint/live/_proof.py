@@ -59,6 +59,8 @@ class Proof:
     """Why it may not be played, a sentence each; none where it may."""
     band: str
     """How well the motion is known, in words."""
+    slope_rpm_per_v: float | None
+    """What one volt asks for [rpm/V], by which the speed is held against the set point; None where nothing says it."""
 
     def expect_within(self) -> None:
         """Refuse a campaign that leaves the envelope.
@@ -102,7 +104,8 @@ def prove(
         highest=float(volts.max()),
         bound=envelope.bound_of(SET_POINT),
     )
-    predicted, band = _predicted(campaign, vessel, fingerprint, slope_rpm_per_v)
+    slope = _slope(campaign, vessel, fingerprint, slope_rpm_per_v)
+    predicted, band = _predicted(campaign, vessel, fingerprint, slope)
     speed, torque = predicted["rpm"], predicted["N m"]
     foreseen = (
         set_point,
@@ -117,11 +120,11 @@ def prove(
         )
     refusals += _barred(speed[0], envelope)
     refusals += _amplitudes(campaign, torque, envelope)
-    return Proof(foreseen=foreseen, refusals=tuple(refusals), band=band)
+    return Proof(foreseen=foreseen, refusals=tuple(refusals), band=band, slope_rpm_per_v=slope)
 
 
 def _predicted(
-    campaign: "Campaign", vessel: "Vessel", fingerprint: "Fingerprint | None", slope_rpm_per_v: float | None
+    campaign: "Campaign", vessel: "Vessel", fingerprint: "Fingerprint | None", slope: float | None
 ) -> tuple[dict[str, tuple[FloatArray, FloatArray]], str]:
     """Return speed and torque over time by their units, rpm and N m, with half of their bands; and what that is.
 
@@ -130,7 +133,11 @@ def _predicted(
     """
     if fingerprint is not None and len(campaign.levels_v) <= 1:
         return _by_fingerprint(campaign, fingerprint), "99 % band of the fingerprint"
-    slope = _slope(campaign, vessel, fingerprint, slope_rpm_per_v)
+    if slope is None:
+        raise LiveError(
+            "the motion cannot be predicted: expected what one volt asks for, found it nowhere; give --rpm-per-volt, "
+            "slope_rpm_per_v in the campaign file, or a table of the lever in the vessel file."
+        )
     ship = ShipBeforeTest(first_test=None, vessel=vessel, slope_rpm_per_v=slope, values={})
     try:
         motion = expected_motion(campaign, ship, slope)
@@ -158,20 +165,15 @@ def _levels(values: FloatArray, motion: Operation) -> FloatArray:
 
 def _slope(
     campaign: "Campaign", vessel: "Vessel", fingerprint: "Fingerprint | None", slope_rpm_per_v: float | None
-) -> float:
+) -> float | None:
+    """Return what one volt asks for [rpm/V], by who knows it best; None where nobody does."""
     known = (
         slope_rpm_per_v,
         campaign.slope_rpm_per_v,
         vessel.sensors.set_point.slope_rpm_per_v(campaign.offset_v),
         None if fingerprint is None else fingerprint.quantity("set-point slope").value,
     )
-    for slope in known:
-        if slope is not None:
-            return slope
-    raise LiveError(
-        "the motion cannot be predicted: expected what one volt asks for, found it nowhere; give --rpm-per-volt, "
-        "slope_rpm_per_v in the campaign file, or a table of the lever in the vessel file."
-    )
+    return next((slope for slope in known if slope is not None), None)
 
 
 def _by_fingerprint(campaign: "Campaign", fingerprint: "Fingerprint") -> dict[str, tuple[FloatArray, FloatArray]]:

@@ -13,7 +13,7 @@ from shaftprint.live._engine import LiveTest
 from shaftprint.live._outcome import Operator, Outcome
 from shaftprint.live._page import LivePages, watched
 from shaftprint.live._record import Left, LiveRecord
-from shaftprint.live._stop_rule import enough_by
+from shaftprint.live._stop_rule import advice_by
 from shaftprint.live.counterparts._faults import LinkFaults, Spell
 from shaftprint.live.counterparts._simulated import SimulatedCounterpart, SimulatedShip
 from shaftprint.tug._like_stan_tug import like_stan_tug_1205, with_lever_of
@@ -65,6 +65,8 @@ def rehearse(
     tug: "Tug | None" = None,
     operator: Operator | None = None,
     planned: "PlannedTest | None" = None,
+    proves: "Callable[[Campaign], Sequence[str]] | None" = None,
+    most_s: float | None = None,
     told: Callable[[Event], None] = _silent,
     pages: LivePages | None = None,
 ) -> tuple[Outcome, Left]:
@@ -87,7 +89,11 @@ def rehearse(
     operator
         Who may stop it.
     planned
-        The plan by whose requirements legs end early.
+        The plan by whose wishes legs end early, go on and come again.
+    proves
+        Says why a changed campaign may not be played; nothing is changed without it but that it is held.
+    most_s
+        Longest time that is played by what is known [s]; that of the campaign where not given.
     told
         Is told each event.
     pages
@@ -112,7 +118,9 @@ def rehearse(
         slope_rpm_per_v=truth.set_point_slope_rpm_per_v,
         **watched(told, pages),
         waits=pace is None,
-        is_enough=None if planned is None else enough_by(planned),
+        advises=None if planned is None else advice_by(planned),
+        proves=proves,
+        most_s=most_s,
     )
     try:
         outcome = asyncio.run(test.run())

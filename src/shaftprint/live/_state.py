@@ -21,11 +21,11 @@ class State(StrEnum):
 _MAY_FOLLOW = {
     State.IDLE: {State.ARMED},
     State.ARMED: {State.RAMP_IN, State.IDLE},
-    State.RAMP_IN: {State.SETTLE, State.LEG, State.HOLD},
-    State.SETTLE: {State.LEG, State.HOLD},
+    State.RAMP_IN: {State.SETTLE, State.LEG, State.RAMP_OUT, State.HOLD},
+    State.SETTLE: {State.LEG, State.RAMP_IN, State.RAMP_OUT, State.HOLD},
     State.LEG: {State.SETTLE, State.RAMP_IN, State.RAMP_OUT, State.HOLD},
     State.RAMP_OUT: {State.IDLE, State.HOLD},
-    State.HOLD: {State.RAMP_IN, State.RAMP_OUT, State.IDLE},
+    State.HOLD: {State.RAMP_IN, State.SETTLE, State.LEG, State.RAMP_OUT},
     State.ABORT: {State.IDLE},
 }
 """Besides, an abort may follow everything."""

@@ -83,7 +83,7 @@ def state_at(campaign: Campaign, time_s: float) -> State:
 
 def shifted(campaign: Campaign, by_s: float) -> Campaign:
     """Return a campaign that begins later, as it stands in a recording that began before it."""
-    tests = {section: tuple(_moved(one, by_s) for one in getattr(campaign, section)) for section in _TESTS}
+    tests = {section: tuple(moved(one, by_s) for one in getattr(campaign, section)) for section in _TESTS}
     return campaign.model_copy(update=tests | {"duration_s": campaign.duration_s + by_s})
 
 
@@ -102,27 +102,6 @@ def played_until(campaign: Campaign, time_s: float) -> Campaign | None:
     return campaign.model_copy(update=tests | {"duration_s": min(campaign.duration_s, time_s)})
 
 
-def ended_early(campaign: Campaign, name: str, stop_s: float) -> Campaign:
-    """Return a campaign in which one test stops early, and the others follow as much sooner.
-
-    ``name``: the test. ``stop_s``: when it stops, by the campaign's time [s].
-    """
-    (test,) = (one for one in campaign.excitations if one.name == name)
-    sooner_s = test.stop_s - stop_s
-    tests = {
-        section: tuple(
-            one.model_copy(update={"stop_s": stop_s})
-            if one.name == name
-            else _moved(one, -sooner_s)
-            if one.start_s >= test.stop_s
-            else one
-            for one in getattr(campaign, section)
-        )
-        for section in _TESTS
-    }
-    return campaign.model_copy(update=tests | {"duration_s": campaign.duration_s - sooner_s})
-
-
 def period_s(test: Excitation | Leg) -> float | None:
     """Return the period of a test [s]; None of one that does not repeat itself."""
     if isinstance(test, Sine):
@@ -130,7 +109,8 @@ def period_s(test: Excitation | Leg) -> float | None:
     return test.length_of_period_s if isinstance(test, Leg) else None
 
 
-def _moved(test: Any, by_s: float) -> Any:
+def moved(test: Any, by_s: float) -> Any:
+    """Return a test that begins later [s]."""
     times = {name: getattr(test, name) + by_s for name in ("start_s", "settled_s", "stop_s") if name in _fields(test)}
     return test.model_copy(update=times)
 
@@ -141,15 +121,20 @@ def _fields(test: Any) -> set[str]:
 
 def _until(test: Any, time_s: float) -> Any:
     """Return what of a test was played until a time, None where that is too little."""
-    if test.stop_s <= time_s:
+    length_s = period_s(test)
+    if length_s is None and test.stop_s <= time_s:
         return test
     if isinstance(test, Chirp):
         return None
     if isinstance(test, Staircase):
         whole = math.floor((time_s - test.start_s) / test.dwell_s)
         return test.model_copy(update={"levels_v": test.levels_v[:whole]}) if whole else None
-    length_s = period_s(test)
-    periods = math.floor((time_s - test.settled_s) / length_s + _PERIOD_ROUNDING) if length_s else 0
-    if length_s is None or periods < (FEWEST_PERIODS if isinstance(test, Leg) else 1):
+    if length_s is None:
         return None
+    stop_s = min(test.stop_s, time_s)
+    periods = math.floor((stop_s - test.settled_s) / length_s + _PERIOD_ROUNDING)
+    if periods < (FEWEST_PERIODS if isinstance(test, Leg) else 1):
+        return None
+    if test.stop_s <= time_s:
+        return test
     return test.model_copy(update={"stop_s": min(test.settled_s + periods * length_s + _PERIOD_ROUNDING, time_s)})

@@ -12,6 +12,7 @@ from pydantic import PrivateAttr
 from shaftprint.arrays import FloatArray
 from shaftprint.campaign._lever_course import LeverCourse
 from shaftprint.tug._crew import Crew
+from shaftprint.tug._truth import Truth
 from shaftprint.tug._tug import Tug
 from shaftprint.tug.plant._disturbance import Disturbance
 from shaftprint.tug.plant._voyage import Stretch, acting, ready_line, sailed
@@ -99,6 +100,11 @@ class SteppedTug:
     def time_s(self) -> float:
         """Time that it has sailed [s]."""
         return self._done * self._step_s
+
+    @property
+    def truth(self) -> Truth:
+        """What was put into its log so far."""
+        return self._crew.truth()
 
     def step(self, steps: int, volts: VoltsAt) -> tuple[Stretch, dict[str, NDArray[np.int16]]]:
         """Sail on by a number of samples.

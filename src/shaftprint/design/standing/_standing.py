@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shaftprint.arrays import FloatArray, frozen_float
+from shaftprint.campaign._leg import first_name
 from shaftprint.design.inputs._assumed_ship import AssumedShip, ship_of_fit
 from shaftprint.design.motion._bounds import bounds_of_leg
 from shaftprint.design.motion._motion import motion, motion_noise
@@ -132,7 +133,8 @@ def standing_of(
     looked at. Raises DesignError if nothing of the plan was recorded, or the fit is of another structure.
     """
     plan, names = test.plan, tuple(f"M{number}" for number in range(1, len(test.plan.legs) + 1))
-    counts = tuple(recorded.get(name, 0) for name in names)
+    # what was played again counts with what it repeats
+    counts = tuple(sum(many for one, many in recorded.items() if first_name(one) == name) for name in names)
     if not any(counts):
         raise DesignError(f"plan {test.name}: expected a leg such as {names[0]} in the recording, found none.")
     ship = updated_ship(plan, fit)
@@ -204,19 +206,19 @@ def _remaining(test: PlannedTest, sailed: Sequence[SailedLeg], more: Sequence[in
 def _cost(leg: "Leg", name: str, sailed: Sequence[SailedLeg]) -> FloatArray:
     """Return by what factor the covariance of each line counts larger, as it is estimated; 1 of what was not sailed."""
     factors = {
-        line: factor
+        line.rpartition("/")[2]: factor
         for one in sailed
-        if one.name == name
+        if first_name(one.name) == name
         for line, factor in zip(one.response.lines, one.response.weight_factors.tolist(), strict=True)
     }
-    return np.array([factors.get(f"{name}/{harmonic}", 1.0) for harmonic in leg.harmonics])
+    return np.array([factors.get(str(harmonic), 1.0) for harmonic in leg.harmonics])
 
 
 def _noise_ratio(plan: Plan, names: Sequence[str], sailed: Sequence[SailedLeg], recorded: Mapping[str, int]) -> float:
     """Return the median, over the used lines, of the measured covariance of the errors over that of the plan."""
     ratios: list[float] = []
     for one in sailed:
-        place = names.index(one.name)
+        place = names.index(first_name(one.name))
         leg, response = plan.legs[place], one.response
         planned = planned_lines(
             leg.frequency_hz,

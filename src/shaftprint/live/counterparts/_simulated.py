@@ -18,6 +18,7 @@ from shaftprint.live.counterparts._faults import LinkFaults
 
 if TYPE_CHECKING:
     from shaftprint.tug._stepped import SteppedTug
+    from shaftprint.tug._truth import Truth
 
 # A revert is a short cosine, so that a lever that was moved meanwhile does not come as a jump [s].
 _REVERT_RAMP_S = 0.2
@@ -160,6 +161,11 @@ class SimulatedShip:
     def time_s(self) -> float:
         """Present time of the device's clock, without its fault [s]."""
         return self._ship.time_s
+
+    @property
+    def truth(self) -> "Truth":
+        """What was put into its samples so far."""
+        return self._ship.truth
 
     @property
     def channels(self) -> tuple[LiveChannel, ...]:

@@ -7,7 +7,7 @@ from pathlib import Path
 import click
 
 from shaftprint.cli._command_group import NOT_REACHED
-from shaftprint.cli._live_options import fingerprint_option, proved, slope_option
+from shaftprint.cli._live_options import fingerprint_option, proved, prover, slope_option
 from shaftprint.cli._options import campaign_option, vessel_option
 from shaftprint.cli._terminal import answer
 from shaftprint.late import late
@@ -32,7 +32,8 @@ def command(
     vessel file. Ends with 3 where the campaign may not be played, with every reason.
     """
     trial = load_trial(vessel, campaign)
-    proof = proved(trial, envelope_of(trial.vessel), fingerprint=fingerprint, slope_rpm_per_v=slope_rpm_per_v)
+    proves = prover(trial, envelope_of(trial.vessel), fingerprint=fingerprint, slope_rpm_per_v=slope_rpm_per_v)
+    proof = proved(proves(trial.campaign))
     if proof.refusals:
         answer(f"{trial.campaign.name} may not be played.")
         context.exit(NOT_REACHED)

@@ -14,10 +14,12 @@ from shaftprint.cli._live_options import (
     plan_option,
     print_outcome,
     proved,
+    prover,
     recording_option,
     shown_on_pages,
     slope_option,
-    tell,
+    tell_and_listen,
+    within_option,
 )
 from shaftprint.cli._options import campaign_option, vessel_option
 from shaftprint.late import late
@@ -25,6 +27,7 @@ from shaftprint.late import late
 with late():
     from shaftprint.design.files._plan_json import read_plan
     from shaftprint.live._envelope import envelope_of
+    from shaftprint.live._outcome import Operator
     from shaftprint.live._play_on_board import play_on_board
     from shaftprint.live.counterparts._access import Access
     from shaftprint.survey._trial import load_trial
@@ -40,6 +43,7 @@ PASSWORD = "SHAFTPRINT_LIVE_PASSWORD"  # noqa: S105  (the name of the variable, 
 @fingerprint_option
 @slope_option
 @plan_option
+@within_option
 @page_option
 @click.option("--dry", is_flag=True, help="Look at the channels, record them, and write nothing to the counterpart.")
 @click.option("--user", help=f"Name of the user; the password is taken from {PASSWORD}, or asked for.")
@@ -61,6 +65,7 @@ def command(
     fingerprint: Path | None,
     slope_rpm_per_v: float | None,
     place: Path | None,
+    within_s: float | None,
     port: int | None,
     dry: bool,
     user: str | None,
@@ -78,12 +83,13 @@ def command(
     """
     trial = load_trial(vessel, campaign)
     envelope = envelope_of(trial.vessel, is_rehearsed=dry)
-    proof = proved(trial, envelope, fingerprint=fingerprint, slope_rpm_per_v=slope_rpm_per_v)
+    proves = prover(trial, envelope, fingerprint=fingerprint, slope_rpm_per_v=slope_rpm_per_v)
+    proof, operator = proved(proves(trial.campaign)), Operator()
     if not dry:
         proof.expect_within()
     password = None if user is None else os.environ.get(PASSWORD) or click.prompt("Password", hide_input=True, err=True)
     access = Access(user=user, password=password, certificate=certificate, authority=authority, is_insecure=insecure)
-    with shown_on_pages(port) as pages:
+    with shown_on_pages(port, operator) as pages:
         outcome, left = play_on_board(
             url,
             trial.vessel,
@@ -94,9 +100,12 @@ def command(
             places=places,
             dry=dry,
             planned=None if place is None else read_plan(place),
-            slope_rpm_per_v=trial.campaign.slope_rpm_per_v if slope_rpm_per_v is None else slope_rpm_per_v,
+            slope_rpm_per_v=proof.slope_rpm_per_v,
             confirm=lambda question: click.confirm(question, err=True),
-            told=tell,
+            proves=lambda changed: proves(changed).refusals,
+            most_s=within_s,
+            operator=operator,
+            told=tell_and_listen(operator),
             pages=pages,
         )
     print_outcome(outcome, left, vessel=vessel)

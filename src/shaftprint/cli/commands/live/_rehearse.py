@@ -13,10 +13,12 @@ from shaftprint.cli._live_options import (
     plan_option,
     print_outcome,
     proved,
+    prover,
     recording_option,
     shown_on_pages,
     slope_option,
-    tell,
+    tell_and_listen,
+    within_option,
 )
 from shaftprint.cli._terminal import echo
 from shaftprint.late import late
@@ -24,6 +26,7 @@ from shaftprint.late import late
 with late():
     from shaftprint.design.files._plan_json import read_plan
     from shaftprint.live._envelope import envelope_of
+    from shaftprint.live._outcome import Operator
     from shaftprint.live._rehearse import faults_named, rehearse, rehearsed_slope
     from shaftprint.survey._trial import load_trial
 
@@ -35,6 +38,7 @@ with late():
 @fingerprint_option
 @slope_option
 @plan_option
+@within_option
 @page_option
 @click.option("--seed", type=click.IntRange(min=0), default=1, show_default=True, help="Seed of all randomness.")
 @click.option("--pace", type=click.FloatRange(0.1, 100.0), help="Times the clock; as fast as possible without it.")
@@ -55,6 +59,7 @@ def command(
     fingerprint: Path | None,
     slope_rpm_per_v: float | None,
     place: Path | None,
+    within_s: float | None,
     port: int | None,
     seed: int,
     pace: float | None,
@@ -72,9 +77,9 @@ def command(
     if not envelope.is_stated:
         echo(f"{vessel}: no [envelope]; idle speed, rated speed and rated torque are taken.", err=True)
     slope = rehearsed_slope(trial.vessel, trial.campaign) if slope_rpm_per_v is None else slope_rpm_per_v
-    proof = proved(trial, envelope, fingerprint=fingerprint, slope_rpm_per_v=slope)
-    proof.expect_within()
-    with shown_on_pages(port) as pages:
+    proves, operator = prover(trial, envelope, fingerprint=fingerprint, slope_rpm_per_v=slope), Operator()
+    proved(proves(trial.campaign)).expect_within()
+    with shown_on_pages(port, operator) as pages:
         outcome, left = rehearse(
             trial.vessel,
             trial.campaign,
@@ -84,7 +89,10 @@ def command(
             pace=pace,
             faults=wrong,
             planned=None if place is None else read_plan(place),
-            told=tell,
+            proves=lambda changed: proves(changed).refusals,
+            most_s=within_s,
+            operator=operator,
+            told=tell_and_listen(operator),
             pages=pages,
         )
     print_outcome(outcome, left, vessel=vessel)

@@ -1,0 +1,172 @@
+"""What is to come is changed while a test is played: by what is known, and by the operator."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from tests.live.rehearsed import CAMPAIGN, ENVELOPE, VESSEL, played
+
+import shaftprint as sp
+from shaftprint.campaign._leg import first_name, name_again
+from shaftprint.live._block import DeviceMode
+from shaftprint.live._changes import Advice, begun_until, by_information, followed_by
+from shaftprint.live._outcome import Ask
+
+# Ramps of 2 s; M1 from 3 to 17.1 s with 4 periods of 3 s from 5 s on, M2 from 20 to 31.1 s with 3 from 22 s on.
+M1, M2 = CAMPAIGN.legs
+
+
+def may(campaign):
+    """Prove nothing: whatever is proposed may be played."""
+    return ()
+
+
+def changed(advice, leg=M1, *, played=2, soonest=3, most_s=CAMPAIGN.duration_s):
+    return by_information(CAMPAIGN, leg, advice, played=played, soonest=soonest, fewest=2, most_s=most_s, like=CAMPAIGN)
+
+
+def told(test, kind):
+    return [event.sentence for event in test.record.events if event.kind == kind]
+
+
+def asks_at(times):
+    """Ask for things at times of the campaign [s]."""
+    left = dict(times)
+
+    def shown(test, sight):
+        for at_s in [one for one in left if test.campaign_s >= one]:
+            test.operator.asks.append(left.pop(at_s))
+
+    return shown
+
+
+def volts_of(ship):
+    return np.array([row[:2] for row in ship.trace])
+
+
+def test_names_of_what_is_played_again():
+    assert [first_name(one) for one in ("M1", "M1-2", "M1-12", "low-1", "low-speed")] == (
+        ["M1", "M1", "M1", "low-1", "low-speed"]
+    )
+    assert name_again("M1", {"M1", "M2"}) == "M1-2"
+    assert name_again("M1-2", {"M1", "M1-2"}) == "M1-3"
+
+
+def test_a_leg_ends_where_nothing_more_is_wished_of_it_and_the_next_follows_for_longer():
+    after = changed(Advice(more={"M1": 0, "M2": 4}, recorded={"M1": 2}))
+    first, second = after.legs
+    # three periods can be reached: 5 + 9 s; then the ramp of 2 s
+    assert first.stop_s == pytest.approx(14.0)
+    assert (second.start_s, second.periods) == (pytest.approx(16.0), 4)
+    # as much time passes at the end as before: 36 - 31.1 s
+    assert after.duration_s - second.stop_s == pytest.approx(4.9)
+    # where all is known already each leg to come begins as it was asked for, or with two more than the fewest periods
+    enough = changed(Advice(more={"M1": 0, "M2": 0}, recorded={"M1": 2}))
+    assert [leg.periods for leg in enough.legs] == [3, 3]
+
+
+def test_a_leg_goes_on_as_far_as_the_time_allows():
+    advice = Advice(more={"M1": 9, "M2": 2}, recorded={"M1": 3})
+    assert changed(advice, played=2) is None
+    after = changed(advice, played=3, soonest=4)
+    # twelve periods of M1 are wished; within 36 s there is room for 5: 5 + 15 + 2 + 2 + 6 + 4.9
+    assert [leg.periods for leg in after.legs] == [5, 2]
+    assert after.duration_s <= CAMPAIGN.duration_s
+    assert [leg.periods for leg in changed(advice, played=3, soonest=4, most_s=80.0).legs] == [12, 3]
+
+
+def test_the_last_leg_is_followed_by_one_that_tells_more_where_there_is_time():
+    advice = Advice(more={"M1": 3, "M2": 0}, recorded={"M1": 4, "M2": 2})
+    after = changed(advice, M2, played=2, soonest=3, most_s=60.0)
+    assert [(leg.name, leg.periods, leg.level_v) for leg in after.legs] == (
+        [("M1", 4, -5.0), ("M2", 3, -4.6), ("M1-2", 3, -5.0)]
+    )
+    # without the time for two periods of it the test ends
+    after = changed(advice, M2, played=2, soonest=3)
+    assert [leg.name for leg in after.legs] == ["M1", "M2"]
+
+
+def test_legs_follow_by_what_they_tell():
+    third = M2.model_copy(update={"name": "M3", "start_s": 35.0, "settled_s": 37.0, "stop_s": 46.1, "level_v": -5.4})
+    three = CAMPAIGN.model_copy(update={"multisines": (*CAMPAIGN.multisines, third), "duration_s": 52.0})
+    advice = Advice(more={"M1": 0, "M2": 2, "M3": 5}, recorded={"M1": 3})
+    after = by_information(three, M1, advice, played=3, soonest=4, fewest=2, most_s=60.0, like=three)
+    assert [(leg.name, leg.periods) for leg in after.legs] == [("M1", 4), ("M3", 5), ("M2", 3)]
+    # what was made can be loaded
+    sp.campaign.Campaign.model_validate(after.model_dump(exclude_none=True))
+
+
+def test_a_ramp_that_is_under_way_goes_on_to_its_leg():
+    begun, to_come = begun_until(CAMPAIGN, 18.5)
+    assert [one.name for one in begun] == ["M1", "M2"]
+    assert (begun[1].start_s, begun[1].stop_s, to_come) == (20.0, 20.0, ())
+    begun, to_come = begun_until(CAMPAIGN, 17.5)
+    assert ([one.name for one in begun], [one.name for one in to_come]) == (["M1"], ["M2"])
+    after = followed_by(CAMPAIGN, begun, to_come, from_s=18.0, like=CAMPAIGN)
+    assert after.legs[1].start_s == pytest.approx(20.0)
+
+
+@pytest.mark.slow
+def test_what_is_known_changes_the_legs_and_leaves_the_campaign_as_it_was_played(tmp_path):
+    async def advises(test):
+        return Advice(more={"M1": 0, "M2": 1}, recorded={"M1": 2, "M2": 2})
+
+    outcome, test, ship = played(tmp_path, advises=advises, proves=may, fewest_periods=2, waits=True)
+    assert (outcome.word, ship.device.mode) == ("played", DeviceMode.LEVER)
+    first, second = outcome.campaign.multisines
+    # two periods are known at 11 s of the campaign; the change needs a second, so that the third ends at 14 s
+    assert first.stop_s - first.start_s == pytest.approx(11.0)
+    assert second.start_s - first.stop_s == pytest.approx(2.0)
+    assert (first.periods, second.periods) == (3, 3)
+    left = test.record.finish(outcome.campaign)
+    with sp.recording.read_recording(left.recording) as recording:
+        found = sp.signals.find_tests(recording, VESSEL, sp.campaign.load_campaign(left.campaign))
+        assert [abs(one.later_s) < 0.01 for one in found] == [True, True]
+
+
+@pytest.mark.slow
+def test_nothing_is_played_that_was_not_proved(tmp_path):
+    async def advises(test):
+        return Advice(more={"M1": 0, "M2": 1}, recorded={"M1": 2, "M2": 2})
+
+    def refuses(campaign):
+        return ("engine speed: it would leave the envelope.",)
+
+    outcome, test, _ = played(tmp_path, advises=advises, proves=refuses, fewest_periods=2, waits=True)
+    assert outcome.word == "played"
+    assert [leg.periods for leg in outcome.campaign.multisines] == [4, 3]
+    assert "would leave the envelope" in told(test, "not done")[0]
+
+
+@pytest.mark.slow
+def test_the_operator_holds_skips_and_repeats(tmp_path):
+    # held in M1's third period, which leaves two whole ones; after the hold there are two of it to come, and M2
+    asks = {11.5: Ask.HOLD, 16.0: Ask.REPEAT, 17.0: Ask.GO_ON, 30.0: Ask.SKIP}
+    outcome, test, ship = played(tmp_path, proves=may, shown=asks_at(asks), waits=True)
+    assert (outcome.word, ship.device.mode) == ("played", DeviceMode.LEVER)
+    states = told(test, "state")
+    assert states[3:6] == ["leg", "hold", "ramp in"]
+    assert '"repeat" has no meaning while the test holds' in told(test, "not done")[0]
+    # cut a second after it was asked for; M2 was skipped while its ramp was under way or its first period ran
+    zero_s = outcome.campaign.legs[0].start_s - 3.0
+    assert outcome.campaign.legs[0].stop_s - zero_s == pytest.approx(12.5, abs=0.11)
+    assert [(leg.name, leg.periods) for leg in outcome.campaign.legs] == [("M1", 2), ("M1-2", 2)]
+    # what was judged is what was played
+    assert {one.line.partition("/")[0] for one in outcome.judgements} == {"M1", "M1-2"}
+    # the set point stands still in the hold, and jumps nowhere
+    volts = volts_of(ship)
+    held = volts[(volts[:, 0] > zero_s + 13.0) & (volts[:, 0] < zero_s + 17.0), 1]
+    assert np.ptp(held) < 1e-9
+    assert np.abs(np.diff(volts[:, 1])).max() < 0.2
+
+
+@pytest.mark.slow
+def test_a_leg_is_played_again_after_itself_and_a_hold_ends_with_the_time_of_the_program(tmp_path):
+    outcome, *_ = played(tmp_path, proves=may, shown=asks_at({8.0: Ask.REPEAT, 22.0: Ask.SKIP}), waits=True)
+    assert [(leg.name, leg.periods) for leg in outcome.campaign.legs] == [("M1", 4), ("M2", 3)]
+    folder = tmp_path / "held"
+    folder.mkdir()
+    short = replace(ENVELOPE, longest_s=20.0)
+    outcome, _, ship = played(folder, proves=may, shown=asks_at({9.0: Ask.HOLD}), envelope=short)
+    assert (outcome.word, ship.device.mode) == ("aborted", DeviceMode.LEVER)
+    assert "may not rule for longer" in outcome.reason
