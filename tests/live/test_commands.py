@@ -98,3 +98,27 @@ def test_what_was_shown_live_is_what_the_recording_gives(tmp_path):
     for live, later in zip(outcome.judgements, offline, strict=True):
         assert np.allclose(later.response, live.response, rtol=1e-12, atol=0.0)
         assert np.allclose(later.std, live.std, rtol=1e-9, atol=0.0)
+
+
+@pytest.mark.slow
+def test_the_fit_of_the_journal_is_that_of_the_recording(tmp_path):
+    outcome, test, _ = played(tmp_path)
+    trial = sp.survey.Trial(vessel=VESSEL, campaign=outcome.campaign)
+
+    def known(path):
+        """What is fitted to the legs of a journal while a test runs, or to what has become of it."""
+        chosen = sp.catalogue.structure("GAUGE-CLOSED")
+        with sp.recording.read_recording(path) as recording:
+            measurement = sp.survey.measure(recording, trial)
+        (fit,) = sp.survey.fit(
+            [chosen], measurement, settings={chosen.name: sp.identify.Settings()}, rng=np.random.default_rng(1)
+        )
+        return [leg.spectra.response for leg in measurement.legs], fit
+
+    shown, of_journal = known(test.record.journal_path)
+    later, of_file = known(test.record.finish(outcome.campaign).recording)
+    for live, offline in zip(shown, later, strict=True):
+        assert np.allclose(offline.response, live.response, rtol=1e-12, atol=0.0)
+        assert np.allclose(offline.covariance, live.covariance, rtol=1e-12, atol=0.0)
+    assert np.allclose(of_file.values, of_journal.values, rtol=1e-12, atol=0.0)
+    assert np.allclose(of_file.covariance, of_journal.covariance, rtol=1e-12, atol=0.0)

@@ -118,6 +118,24 @@ def test_lost_and_doubled_blocks_are_named_and_leave_the_rest(tmp_path):
 
 
 @pytest.mark.slow
+def test_across_lost_blocks_there_is_no_speed_and_no_oscillation(tmp_path):
+    shown = []
+    # four in a row, again and again: the pulses before and after a hole are no interval
+    lost = tuple(first + k for first in (420, 470, 520, 570) for k in range(4))
+    outcome, _, ship = played(
+        tmp_path, LinkFaults(lost=lost), shown=lambda _, sight: shown.append((sight.block.counter, sight.speed_rpm))
+    )
+    assert (outcome.word, outcome.reason) == ("played", "")
+    known = [(counter, rpm) for counter, rpm in shown if counter > 410 and math.isfinite(rpm)]
+    # the shaft turns in less than three blocks, and its speed is there again a turn later
+    assert len(known) > 300
+    truth = np.array([row[2] for row in ship.trace])
+    for counter, rpm in known:
+        near = truth[counter - 5 : counter]
+        assert near.min() * 0.98 < rpm < near.max() * 1.02
+
+
+@pytest.mark.slow
 def test_a_device_without_tables_gets_a_set_point_with_every_block(tmp_path):
     outcome, _, ship = played(tmp_path, plays_waveform=False)
     assert outcome.word == "played"

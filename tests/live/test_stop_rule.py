@@ -45,7 +45,14 @@ def test_wishes_that_are_met_end_both_legs_and_those_that_are_not_end_none(tmp_p
     periods = {}
     for name, share in (("modest", 0.9), ("never", 1e-6)):
         test = planned(Wish(relative={"K_p": share}))
-        outcome, left = rehearse(VESSEL, test.campaign, ENVELOPE, tmp_path / f"{name}.nc", planned=test)
+        outcome, left = rehearse(
+            VESSEL,
+            test.campaign,
+            ENVELOPE,
+            tmp_path / f"{name}.nc",
+            planned=test,
+            proves=lambda changed: sp.live.prove(changed, VESSEL, ENVELOPE).refusals,
+        )
         assert outcome.word == "played"
         periods[name] = [leg.periods for leg in sp.campaign.load_campaign(left.campaign).legs]
     whole = [leg.periods for leg in planned(Wish()).campaign.legs]

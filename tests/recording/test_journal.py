@@ -106,3 +106,11 @@ def test_what_follows_a_torn_block_is_looked_at_a_few_times_only(tmp_path, monke
     with pytest.raises(RecordingError, match="expected whole blocks, found damage"):
         read_journal(path)
     assert sum(looked) < 20 * len(start * 1000) + len(whole)
+
+
+@pytest.mark.parametrize("rate_hz", [1e12, 50.0, 0.0, -100.0])
+def test_a_rate_that_is_not_that_of_the_samples_is_refused(tmp_path, monkeypatch, rate_hz):
+    monkeypatch.setitem(CHANNELS[0], "rate_hz", rate_hz)
+    path = written(tmp_path / "test.journal", (1, 2, 9))
+    with pytest.raises(RecordingError, match=r"samples of channel U in 0\.3 s by its rate of .* Hz, found 30"):
+        sp.recording.read_recording(path)

@@ -7,7 +7,6 @@ import os
 import sys
 import threading
 from collections.abc import Callable, Iterator, Mapping
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -85,7 +84,11 @@ def prover(
 ) -> Callable[[Campaign], Proof]:
     """Return what holds a campaign of a ship against its envelope, before the test and where it is changed in it."""
     known = None if fingerprint is None else fingerprint_at(fingerprint)
-    return partial(prove, vessel=trial.vessel, envelope=envelope, fingerprint=known, slope_rpm_per_v=slope_rpm_per_v)
+
+    def proof_of(campaign: Campaign) -> Proof:
+        return prove(campaign, trial.vessel, envelope, fingerprint=known, slope_rpm_per_v=slope_rpm_per_v)
+
+    return proof_of
 
 
 def proved(proof: Proof) -> Proof:

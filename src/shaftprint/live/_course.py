@@ -155,7 +155,7 @@ class Course(Loop):
 
     async def _take_advice(self, leg: Periodic, judge: LineJudge) -> None:
         """Change what is to come where that is known to tell more, or enough is known."""
-        if self.advises is None or judge.periods < self.fewest_periods:
+        if self.advises is None or not self.fewest_periods <= judge.periods < leg.periods:
             return
         advice = await self.advises(self)
         if advice is None:

@@ -83,6 +83,9 @@ class LiveTest(Course):
             # an interrupt or a fault of the program: no heartbeat any more, so that the lever rules within a second
             self.beats = False
             raise
+        if self.dry:
+            # nothing was taken over, and nothing is written
+            return self._outcome("refused", breach.sentence, breach, back=await self._let_go())
         is_back = await self._abort(breach)
         word = "aborted" if not math.isnan(self._zero_s) else "refused"
         return self._outcome(word, breach.sentence, breach, back=is_back)

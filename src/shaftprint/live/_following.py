@@ -14,15 +14,18 @@ from shaftprint.live._watch import AbortRule, Breach, Expected, Lasting, Rest
 _LEAST_V, _SIGMAS = 0.05, 5.0
 _PUT_OUT_S, _FOLLOWED_S = 0.5, 2.0
 # What the speed may lag behind [s], and by how much of what was asked in that time it may overshoot.
-_LAG_S, _OVERSHOOT = 3.0, 1.0
+_BEHIND_S, _OVERSHOOT = 3.0, 1.0
 # Growth from period to period that is no longer noise, over three windows of this length [s].
 _GROWTH, _WINDOW_S, _EVERY_S = 1.05, 2.0, 0.5
 _ABOVE_NOISE = 5.0
 # A swing that has grown to this share of the speed, and stays there, has met a limit that keeps it from growing on.
 _LARGE = 0.03
-# What was asked is taken out of the speed by its values of the last seconds: lags of so many blocks.
-_LAGS = (0, 2, 4, 7, 10, 15, 20, 30)
+# What was asked is taken out of the speed by its values of the last seconds: so far apart, as a lightly damped line
+# answers for so long [s].
+_LAG_S, _LONGEST_LAG_S = 0.1, 3.0
 _FIT_S = 12.0
+# Of a window with holes so much has to be there.
+_LEAST_SHARE = 0.5
 # A response to a step looks like growth for as long as it moves from one window to the next.
 _IN_A_ROW = 6
 
@@ -56,7 +59,7 @@ class FollowedWatch:
 
     def __init__(self, rest: Rest, slope_rpm_per_v: float, span_s: float) -> None:
         self._rest, self._slope = rest, slope_rpm_per_v
-        self._asked: deque[float] = deque(maxlen=max(1, round(_LAG_S / span_s)))
+        self._asked: deque[float] = deque(maxlen=max(1, round(_BEHIND_S / span_s)))
         self._lasting = Lasting(_FOLLOWED_S)
 
     def look(self, sight: Sight, expected: Expected) -> Breach | None:
@@ -86,18 +89,23 @@ class OscillationWatch:
 
     def __init__(self, rest: Rest, span_s: float) -> None:
         self._noise_rpm, self._span_s = rest.speed_std_rpm, span_s
-        count = round(_FIT_S / span_s) + max(_LAGS)
+        steps = round(_LONGEST_LAG_S / _LAG_S) + 1
+        self._lags = sorted({round(_LAG_S * step / span_s) for step in range(steps)})
+        count = round(_FIT_S / span_s) + self._lags[-1]
         self._speed: deque[float] = deque(maxlen=count)
         self._asked: deque[float] = deque(maxlen=count)
         self._every = max(1, round(_EVERY_S / span_s))
         self._blocks = self._growing = 0
+        self._counter: int | None = None
 
     def look(self, sight: Sight, expected: Expected) -> Breach | None:
         """Return what is broken with this block."""
-        if math.isnan(sight.speed_rpm):
-            self._speed.clear()
-            self._asked.clear()
-            return None
+        if self._counter is not None:
+            # lost blocks and what has no speed are holes, over which nothing is followed
+            lost = min(sight.block.counter - self._counter - 1, self._speed.maxlen or 0)
+            self._speed.extend([math.nan] * lost)
+            self._asked.extend([math.nan] * lost)
+        self._counter = sight.block.counter
         self._speed.append(sight.speed_rpm)
         self._asked.append(expected.set_point_v)
         self._blocks += 1
@@ -123,15 +131,21 @@ class OscillationWatch:
     def _unasked(self) -> tuple[float, float, float]:
         """Return growth a period, size [rpm] and frequency [Hz] of what the set point does not explain."""
         asked, speed = np.array(self._asked), np.array(self._speed)
-        first = max(_LAGS)
-        columns = [asked[first - lag : asked.size - lag] for lag in _LAGS]
+        first = self._lags[-1]
+        columns = [asked[first - lag : asked.size - lag] for lag in self._lags]
         columns += [np.ones(speed.size - first), np.linspace(-1.0, 1.0, speed.size - first)]
         basis = np.stack(columns, axis=1)
-        followed, *_ = np.linalg.lstsq(basis, speed[first:], rcond=1e-6)
-        rest: FloatArray = speed[first:] - basis @ followed
+        rest: FloatArray = speed[first:].copy()
+        there = np.isfinite(rest) & np.isfinite(basis).all(axis=1)
         window = round(_WINDOW_S / self._span_s)
-        sizes = [float(np.std(rest[rest.size - (k + 1) * window : rest.size - k * window])) for k in (2, 1, 0)]
-        last = rest[-window * 2 :] - rest[-window * 2 :].mean()
+        parts = [slice(rest.size - (k + 1) * window, rest.size - k * window) for k in (2, 1, 0)]
+        if min(float(there[part].mean()) for part in parts) < _LEAST_SHARE:
+            return 0.0, 0.0, 0.0
+        followed, *_ = np.linalg.lstsq(basis[there], rest[there], rcond=1e-6)
+        rest[there] -= basis[there] @ followed
+        sizes = [float(np.std(rest[part][there[part]])) for part in parts]
+        last = np.where(there, rest, 0.0)[-window * 2 :]
+        last = last - last.mean()
         spectrum = np.abs(np.fft.rfft(last * np.hanning(last.size)))
         hertz = max(1, int(np.argmax(spectrum))) / (last.size * self._span_s)
         if min(sizes) <= 0.0:

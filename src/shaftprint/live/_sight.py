@@ -60,6 +60,7 @@ class Observer:
         turn_s = 60.0 * vessel.gearbox.ratio / vessel.working_point.engine_speed_rpm
         torque = self._by_name.get(sensors.shaft_torque.channel)
         self._tail: FloatArray = np.empty(0)
+        self._counter: int | None = None
         self._turn_samples = 1 if torque is None else max(1, round(turn_s * torque.rate_hz))
 
     @property
@@ -74,6 +75,12 @@ class Observer:
     def see(self, block: Block) -> Sight:
         """Return what a block shows."""
         sensors = self._vessel.sensors
+        if self._counter is not None and block.counter != self._counter + 1:
+            # across lost blocks there is neither an interval between pulses nor a turn of the shaft
+            self._tail = np.empty(0)
+            if self._pulses is not None:
+                self._pulses.begin_anew()
+        self._counter = block.counter
         values = {name: block.values(channel) for name, channel in self._by_name.items()}
         set_point = sensors.set_point.volts(values.get(sensors.set_point.channel, np.empty(0)))
         torque = self._vessel.driving_torque_nm(values.get(sensors.shaft_torque.channel, np.empty(0)))
@@ -106,6 +113,11 @@ class _Pulses:
         self._edges: deque[float] = deque(maxlen=self._per_turn + _INTERVALS)
         self._levels: FloatArray = np.empty(0)
         self._last: float | None = None
+
+    def begin_anew(self) -> None:
+        """Forget the pulses so far: what lies between them and the next is not known."""
+        self._edges.clear()
+        self._last = None
 
     def speed_rev_s(self, start_s: float, volts: FloatArray, rate_hz: float) -> float:
         """Return the speed after more samples [rev/s]; not a number before the first turns."""

@@ -10,6 +10,7 @@ one, and a queue of one drops blocks without a word. What overflows nevertheless
 
 import asyncio
 import contextlib
+from collections import deque
 from collections.abc import Awaitable
 from dataclasses import replace
 from typing import Any, Final, TypeVar
@@ -55,7 +56,9 @@ class OpcUaCounterpart:
         self._subscription: Any = None
         self._folder: Any = None
         self._space = 0
-        self._blocks: asyncio.Queue[Block | str] = asyncio.Queue()
+        # more than this nobody reads in time: the oldest go first, as in the queue of the server
+        self._blocks: deque[Block | str] = deque(maxlen=QUEUE)
+        self._arrived = asyncio.Event()
         self._dialect = PlainDialect(prefix="")
         self._channels: tuple[LiveChannel, ...] = ()
         self._abilities = Abilities()
@@ -103,9 +106,12 @@ class OpcUaCounterpart:
         """Return the next block; raise SilentLinkError if none comes in time."""
         try:
             async with asyncio.timeout(timeout_s):
-                said = await self._blocks.get()
+                while not self._blocks:
+                    self._arrived.clear()
+                    await self._arrived.wait()
         except TimeoutError:
             raise SilentLinkError(f"{self.name}: expected a block within {timeout_s:g} s, found none.") from None
+        said = self._blocks.popleft()
         if isinstance(said, str):
             raise LiveError(f"{self.name}: {said}.")
         return said
@@ -133,10 +139,12 @@ class OpcUaCounterpart:
 
     async def abort(self, ramp_s: float) -> None:
         """Go back to the lever on a cosine."""
+        self._expect_writer()
         await self._call("Abort", float(ramp_s))
 
     async def release(self) -> None:
         """Give the set point back to the lever now."""
+        self._expect_writer()
         await self._call("Release")
 
     async def close(self) -> None:
@@ -159,11 +167,15 @@ class OpcUaCounterpart:
         try:
             block = read_block(bytes(payload), self._channels, self.clock())
         except (ValueError, TypeError) as error:
-            self._blocks.put_nowait(printable(str(error)))
+            self._put(printable(str(error)))
             return
         if overflowed:
             block = replace(block, findings=("the queue of the server has overflowed: blocks before this were lost",))
-        self._blocks.put_nowait(block)
+        self._put(block)
+
+    def _put(self, said: Block | str) -> None:
+        self._blocks.append(said)
+        self._arrived.set()
 
     async def _secure(self) -> None:
         """Say who asks, and encrypt where there is a certificate."""
@@ -197,7 +209,7 @@ class OpcUaCounterpart:
         return await node.read_value()
 
     def _expect_writer(self) -> None:
-        """Refuse to write where anybody could; giving the set point back is always allowed."""
+        """Refuse to write where anybody could."""
         self._access.expect_writer(self.name, is_encrypted=self._access.certificate is not None)
 
     async def _call(self, name: str, *arguments: Any) -> None:

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shaftprint.errors import RecordingError
+from shaftprint.escape import printable
 from shaftprint.recording._channel import Channel, ClockJump, Source
 from shaftprint.recording._journal import MARK, Journal, JournalBlock, read_journal
 from shaftprint.recording._recording import Recording, sha256_of
@@ -17,6 +18,8 @@ NAME = "shaftprint journal of a live test"
 
 # Blocks of one clock follow each other within this share of a block.
 _SAME_CLOCK = 0.5
+# A clock that is far off is off by a per cent; this is another rate.
+_SAME_RATE = 0.1
 # More lost time than this is a counter that began again [s].
 _MOST_LOST_S = 3600.0
 
@@ -55,6 +58,7 @@ def read(path: Path, **hints: object) -> Recording:
 def _channel(path: Path, journal: Journal, number: int, stated: Mapping[str, Any]) -> Channel:
     """Return one channel; where blocks were lost its samples are not numbers, and it is no longer counts."""
     rate_hz = float(stated["rate_hz"])
+    _expect_rate(path, journal.blocks, number, str(stated["name"]), rate_hz)
     pieces, jumps = _pieces(journal.blocks, number, rate_hz)
     dtype = np.dtype(stated["dtype"])
     lossless = all(place >= 0 for place, _ in pieces)
@@ -73,6 +77,18 @@ def _channel(path: Path, journal: Journal, number: int, stated: Mapping[str, Any
         source=source if counts else _scaled(source, scale, offset),
         clock_jumps=tuple(jumps),
     )
+
+
+def _expect_rate(path: Path, blocks: Sequence[JournalBlock], number: int, name: str, rate_hz: float) -> None:
+    """Refuse a rate that is not that of the samples: times, and samples that were lost, would be made up by it."""
+    span_s, count = sum(one.span_s for one in blocks), sum(one.places[number][1] for one in blocks)
+    expected = rate_hz * span_s
+    # a slow channel may begin late, and has a sample now and then
+    if not rate_hz > 0.0 or (count and abs(count - expected) > max(2.0, _SAME_RATE * expected)):
+        raise RecordingError(
+            f"{path}: expected about {expected:.6g} samples of channel {printable(name)} in {span_s:.6g} s by its rate "
+            f"of {rate_hz:g} Hz, found {count}; is the head of the journal damaged?"
+        )
 
 
 def _pieces(
