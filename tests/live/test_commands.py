@@ -72,6 +72,10 @@ def test_a_rehearsal_with_a_fault_ends_with_three_and_its_reason(run, files, tmp
     wrong = run("live", "rehearse", "stan-tug-1205", files, "-o", str(tmp_path / "u.nc"), "--fault", "rust@5")
     assert wrong.exit_code == 2
     assert "expected frozen, silent" in wrong.output
+    both = run(
+        "live", "rehearse", "stan-tug-1205", files, "-o", str(tmp_path / "v.nc"), "--pace", "1", "--over", "mqtt"
+    )
+    assert (both.exit_code, "expected one of --pace and --over" in " ".join(both.output.split())) == (2, True)
 
 
 def test_keys_ask_and_others_are_named(capsys):

@@ -10,12 +10,12 @@ pytest.importorskip("aiomqtt", reason='MQTT needs "shaftprint[mqtt]"')
 from tests.live.mqtt_device import PlainFront, broker, mosquitto, on_board
 from tests.live.rehearsed import CAMPAIGN, ENVELOPE, TUG, VESSEL
 
+import shaftprint as sp
 from shaftprint.errors import LiveError
 from shaftprint.live._engine import LiveTest
-from shaftprint.live._play import Play
 from shaftprint.live._play_on_board import counterpart_at
 from shaftprint.live._record import LiveRecord
-from shaftprint.live._rehearse import simulated_ship_of
+from shaftprint.live._rehearse import rehearse, simulated_ship_of
 from shaftprint.live.counterparts._access import Access
 from shaftprint.live.counterparts._faults import LinkFaults, Spell
 
@@ -30,28 +30,14 @@ class Ship:
     is_frozen, drop, twice = False, (), ()
 
     def __init__(self, ship):
-        self.ship, self.device = ship, ship.device
+        self.ship = ship
 
     def beat(self, count):
-        if not self.ship.faults.deaf.holds(self.ship.time_s):
-            self.device.hear(count, self.ship.time_s)
+        self.ship.hear(count)
 
     def obey(self, word, content):
-        now_s = self.ship.time_s
         try:
-            if word == "take":
-                self.device.take(now_s)
-            elif word == "write":
-                self.device.write(content["volts"])
-            elif word == "play":
-                volts = np.array(content["volts"])
-                self.device.play(
-                    Play(name="", start_s=content["start_s"], rate_hz=content["rate_hz"], volts=volts), now_s
-                )
-            elif word == "abort":
-                self.device.abort(content["ramp_s"], now_s)
-            else:
-                self.device.release()
+            self.ship.obey(word, content)
         except LiveError as error:
             return str(error)
         return ""
@@ -109,3 +95,14 @@ def test_a_heartbeat_that_is_not_heard_ends_it(tmp_path):
     assert outcome.word == "aborted", outcome
     assert ship.trace[-1][4] == "lever"
     assert abs(ship.trace[-1][1] - CAMPAIGN.offset_v) < 1e-9
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("over", ["mqtt", "opcua"])
+def test_a_rehearsal_goes_over_a_real_server(tmp_path, over):
+    pytest.importorskip("asyncua", reason='OPC UA needs "shaftprint[opcua]"')
+    outcome, left = rehearse(VESSEL, CAMPAIGN, ENVELOPE, tmp_path / "test.nc", over=over)
+    assert (outcome.word, outcome.reason, outcome.is_back) == ("played", "", True)
+    with sp.recording.read_recording(left.recording) as recording:
+        found = sp.signals.find_tests(recording, VESSEL, sp.campaign.load_campaign(left.campaign))
+        assert [abs(one.later_s) < 0.01 for one in found] == [True, True]

@@ -4,13 +4,16 @@ import asyncio
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from shaftprint.errors import RequestError
 from shaftprint.live._block import Event
+from shaftprint.live._counterpart import Counterpart
 from shaftprint.live._engine import LiveTest
 from shaftprint.live._outcome import Operator, Outcome
+from shaftprint.live._over import ship_over
 from shaftprint.live._page import LivePages, watched
 from shaftprint.live._record import Left, LiveRecord
 from shaftprint.live._stop_rule import advice_by
@@ -61,6 +64,7 @@ def rehearse(
     *,
     seed: int = 1,
     pace: float | None = None,
+    over: str | None = None,
     faults: LinkFaults | None = None,
     tug: "Tug | None" = None,
     operator: Operator | None = None,
@@ -82,6 +86,8 @@ def rehearse(
         Of all randomness.
     pace
         Times the clock; as fast as it can be calculated without it.
+    over
+        Server behind which the ship sails in the time of the clock, ``opcua`` or ``mqtt``; in this process without.
     faults
         What goes wrong.
     tug
@@ -105,27 +111,36 @@ def rehearse(
         If the recording is there already or cannot be written.
     """
     truth = tug or _usual_ship(vessel, campaign)
-    ship = simulated_ship_of(vessel, campaign, seed=seed, faults=faults or LinkFaults(), tug=truth)
-    counterpart = SimulatedCounterpart(ship, pace=pace)
-    record = LiveRecord(path, counterpart.channels, {"vessel": vessel.name})
-    test = LiveTest(
-        counterpart=counterpart,
-        vessel=vessel,
-        campaign=campaign,
-        envelope=envelope,
-        record=record,
-        operator=operator or Operator(),
-        slope_rpm_per_v=truth.set_point_slope_rpm_per_v,
-        **watched(told, pages),
-        waits=pace is None,
-        advises=None if planned is None else advice_by(planned),
-        proves=proves,
-        most_s=most_s,
-    )
-    try:
-        outcome = asyncio.run(test.run())
-    finally:
-        record.close()
+    make = partial(simulated_ship_of, vessel, campaign, seed=seed, faults=faults or LinkFaults(), tug=truth)
+
+    async def played(counterpart: Counterpart) -> tuple[Outcome, LiveRecord]:
+        await counterpart.connect()
+        record = LiveRecord(path, counterpart.channels, {"vessel": vessel.name})
+        test = LiveTest(
+            counterpart=counterpart,
+            vessel=vessel,
+            campaign=campaign,
+            envelope=envelope,
+            record=record,
+            operator=operator or Operator(),
+            slope_rpm_per_v=truth.set_point_slope_rpm_per_v,
+            **watched(told, pages),
+            waits=pace is None and over is None,
+            advises=None if planned is None else advice_by(planned),
+            proves=proves,
+            most_s=most_s,
+        )
+        try:
+            return await test.run(), record
+        finally:
+            record.close()
+            await counterpart.close()
+
+    if over is None:
+        outcome, record = asyncio.run(played(SimulatedCounterpart(make(), pace=pace)))
+    else:
+        with ship_over(over, make) as reached:
+            outcome, record = asyncio.run(played(reached))
     return outcome, record.finish(outcome.campaign)
 
 

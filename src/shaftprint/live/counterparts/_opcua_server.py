@@ -2,19 +2,26 @@
 
 import asyncio
 import contextlib
+from collections.abc import Mapping
 from pathlib import Path
 from types import TracebackType
-from typing import Any, Self
-
-import numpy as np
+from typing import Any, Final, Self
 
 from shaftprint.errors import LiveError
-from shaftprint.live._play import Play
 from shaftprint.live.counterparts._dialect import Description
 from shaftprint.live.counterparts._extra import library
 from shaftprint.live.counterparts._opcua import FOLDER, NAMESPACE
 from shaftprint.live.counterparts._plain import described, written_block
 from shaftprint.live.counterparts._simulated import SimulatedCounterpart, SimulatedShip
+
+# Methods, and what their arguments are.
+_WORDS: Final[Mapping[str, tuple[str, ...]]] = {
+    "Take": (),
+    "Write": ("volts",),
+    "Play": ("name", "start_s", "rate_hz", "volts"),
+    "Abort": ("ramp_s",),
+    "Release": (),
+}
 
 
 class SimulatedServer:
@@ -59,13 +66,8 @@ class SimulatedServer:
         self._heartbeat = await folder.add_variable(space, "Heartbeat", 0, ua.VariantType.Int64)
         await self._heartbeat.set_writable()
         double, text = ua.VariantType.Double, ua.VariantType.String
-        for name, kinds in {
-            "Take": [],
-            "Write": [double],
-            "Play": [text, double, double, double],
-            "Abort": [double],
-            "Release": [],
-        }.items():
+        for name, words in _WORDS.items():
+            kinds = [text if word == "name" else double for word in words]
             await folder.add_method(space, name, methods.uamethod(self._method(name)), kinds, [text])
         await self._server.start()
         self._sailing = asyncio.create_task(self._sail())
@@ -86,41 +88,26 @@ class SimulatedServer:
         loop = asyncio.get_running_loop()
         begun_s = loop.time() - self.ship.time_s
         while True:
-            if not self.is_frozen:
-                count = await self._heartbeat.read_value()
-                self.ship.device.hear(int(count), self.ship.time_s)
+            if not self._is_silent:
+                self.ship.hear(int(await self._heartbeat.read_value()))
             for block in self.ship.sail():
-                if not self.is_frozen:
+                if not self._is_silent:
                     await self._block.write_value(written_block(block, self.ship.channels))
             await asyncio.sleep(max(0.0, begun_s + self.ship.time_s - loop.time()))
 
+    @property
+    def _is_silent(self) -> bool:
+        return self.is_frozen or self.ship.is_silent
+
     def _method(self, name: str) -> Any:
         async def called(parent: Any, *arguments: Any) -> str:
-            while self.is_frozen:
+            while self._is_silent:
                 await asyncio.sleep(0.05)
             self.heard.append((name, asyncio.get_running_loop().time()))
             try:
-                self._act(name, arguments)
+                self.ship.obey(name.lower(), dict(zip(_WORDS[name], arguments, strict=True)))
             except LiveError as refusal:
                 return str(refusal)
             return ""
 
         return called
-
-    def _act(self, name: str, arguments: tuple[Any, ...]) -> None:
-        device, now_s = self.ship.device, self.ship.time_s
-        match name:
-            case "Take":
-                device.take(now_s)
-            case "Write":
-                device.write(float(arguments[0]))
-            case "Play":
-                title, start_s, rate_hz, volts = arguments
-                device.play(
-                    Play(name=str(title), start_s=start_s, rate_hz=rate_hz, volts=np.asarray(volts, dtype=np.float64)),
-                    now_s,
-                )
-            case "Abort":
-                device.abort(float(arguments[0]), now_s)
-            case _:
-                device.release()

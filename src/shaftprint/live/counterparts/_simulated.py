@@ -3,6 +3,7 @@
 import asyncio
 import math
 from collections import deque
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -185,6 +186,34 @@ class SimulatedShip:
             for one in self._ship.channels
         )
 
+    @property
+    def is_silent(self) -> bool:
+        """Whether nothing goes over its link."""
+        return self.faults.frozen.holds(self.time_s) or self.faults.silent.holds(self.time_s)
+
+    def hear(self, count: int) -> None:
+        """Take a heartbeat, where it is not deaf."""
+        if not self.faults.deaf.holds(self.time_s):
+            self.device.hear(count, self.time_s)
+
+    def obey(self, word: str, content: Mapping[str, Any]) -> None:
+        """Do what a command says; raises LiveError with the reason where the device refuses it."""
+        device, now_s = self.device, self.time_s
+        match word:
+            case "take":
+                device.take(now_s)
+            case "write":
+                device.write(float(content["volts"]))
+            case "play":
+                start_s, rate_hz = float(content["start_s"]), float(content["rate_hz"])
+                volts = np.asarray(content["volts"], dtype=np.float64)
+                name = str(content.get("name", "what is played"))
+                device.play(Play(name=name, start_s=start_s, rate_hz=rate_hz, volts=volts), now_s)
+            case "abort":
+                device.abort(float(content["ramp_s"]), now_s)
+            case _:
+                device.release()
+
     def sail(self) -> list[Block]:
         """Sail on by one block; return what is sent of it: nothing where it is lost, two where it is doubled."""
         device, faults, time_s = self.device, self.faults, self.time_s
@@ -263,7 +292,7 @@ class SimulatedCounterpart:
     async def read(self, timeout_s: float) -> Block:
         """Return the next block; raise SilentLinkError if none comes in time, while the ship sails on."""
         begin_s = self.ship.time_s
-        while not self._waiting or self._hangs():
+        while not self._waiting or self.ship.is_silent:
             if self.ship.time_s - begin_s >= timeout_s - _ROUNDING_S:
                 raise SilentLinkError(f"{self.name}: expected a block within {timeout_s:g} s, found none.")
             silent = self.ship.faults.silent.holds(self.ship.time_s)
@@ -276,8 +305,7 @@ class SimulatedCounterpart:
     async def beat(self, count: int) -> None:
         """Send the heartbeat."""
         self._expect_link()
-        if not self.ship.faults.deaf.holds(self.ship.time_s):
-            self.ship.device.hear(count, self.ship.time_s)
+        self.ship.hear(count)
 
     async def take(self) -> None:
         """Take the set point over."""
@@ -311,12 +339,8 @@ class SimulatedCounterpart:
         """Return the present time of the ship [s]."""
         return self.ship.time_s
 
-    def _hangs(self) -> bool:
-        faults, now_s = self.ship.faults, self.ship.time_s
-        return faults.frozen.holds(now_s) or faults.silent.holds(now_s)
-
     def _expect_link(self) -> None:
-        if self._hangs():
+        if self.ship.is_silent:
             raise SilentLinkError(f"{self.name}: expected an answer, found none.")
 
     async def _keep_pace(self) -> None:

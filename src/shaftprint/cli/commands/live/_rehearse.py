@@ -43,6 +43,11 @@ with late():
 @click.option("--seed", type=click.IntRange(min=0), default=1, show_default=True, help="Seed of all randomness.")
 @click.option("--pace", type=click.FloatRange(0.1, 100.0), help="Times the clock; as fast as possible without it.")
 @click.option(
+    "--over",
+    type=click.Choice(["opcua", "mqtt"]),
+    help="Behind a real server on this computer, by the clock; MQTT needs the broker mosquitto.",
+)
+@click.option(
     "--fault",
     "faults",
     multiple=True,
@@ -63,14 +68,19 @@ def command(
     port: int | None,
     seed: int,
     pace: float | None,
+    over: str | None,
     faults: tuple[str, ...],
 ) -> None:
-    """Play a test on a simulated ship, as fast as it can be calculated or by the clock.
+    """Play a test on a simulated ship, as fast as it can be calculated, by the clock, or behind a real server.
 
     VESSEL and CAMPAIGN are files, or names of shipped ones. Without [envelope] in the vessel file idle speed, rated
     speed and rated torque bound the rehearsal; on board the file has to state it. Ends with 3 where the test was
     refused or aborted.
     """
+    if over is not None and pace is not None:
+        raise click.UsageError(
+            "expected one of --pace and --over, found both: over a server a ship sails by the clock."
+        )
     trial = load_trial(vessel, campaign)
     wrong = faults_named(faults)
     envelope = envelope_of(trial.vessel, is_rehearsed=True)
@@ -87,6 +97,7 @@ def command(
             output,
             seed=seed,
             pace=pace,
+            over=over,
             faults=wrong,
             planned=None if place is None else read_plan(place),
             proves=lambda changed: proves(changed).refusals,
