@@ -1,9 +1,13 @@
 """Noise of short records: white stays white at the frequencies of the inputs, whatever the structure leaves there."""
 
+import subprocess
+import sys
+
 import numpy as np
 import pytest
 
 from shaftprint.time_domain import record_from_arrays
+from shaftprint.time_domain._flexible_directions import LAGS, _lagged
 from shaftprint.time_domain._input_response import noise_of
 from shaftprint.time_domain._noise_model import estimate_noise
 
@@ -34,3 +38,34 @@ def test_what_a_structure_leaves_of_its_input_is_no_noise(kind):
     left = 10.0 * moved / moved.std()
     density = np.mean([found(INPUTS[kind], left + rng.standard_normal(SAMPLES)) for _ in range(12)], axis=0)
     assert density == pytest.approx(np.ones(5), abs=0.35)
+
+
+def test_rows_behind_a_lag_follow_its_recursion():
+    """Ten samples a second; each lag begins as if its input had always been so."""
+    rows = np.random.default_rng(3).standard_normal((2, 60))
+    record = record_from_arrays("r", {"u": rows[0]}, {"y": rows[1]}, rate_hz=10.0)
+    itself, *behind = np.split(_lagged(record, rows), 1 + LAGS)
+    np.testing.assert_array_equal(itself, rows)
+    # the quickest lag takes two samples
+    pole, by_hand = np.exp(-0.5), rows.copy()
+    for k in range(1, 60):
+        by_hand[:, k] = pole * by_hand[:, k - 1] + (1.0 - pole) * rows[:, k]
+    np.testing.assert_allclose(behind[0], by_hand, rtol=1e-12, atol=1e-14)
+
+
+@pytest.mark.slow
+def test_a_fit_of_a_drive_loads_neither_filters_nor_statistics_nor_minimisers():
+    """Each of them takes as long to load as a fit of a short record."""
+    script = (
+        "import sys\n"
+        "import numpy as np\n"
+        "from shaftprint.bench import identify_drive\n"
+        "from shaftprint.time_domain import record_from_arrays\n"
+        "from shaftprint.time_domain._flexible_directions import small_and_large\n"
+        "moves = np.sin(np.arange(400) / 9.0)\n"
+        "record = record_from_arrays('r', {'u': moves}, {'y': moves}, rate_hz=10.0)\n"
+        "print(small_and_large(record, moves[:, None]).shape[1:])\n"
+        "print({'scipy.signal', 'scipy.stats', 'scipy.optimize', 'matplotlib', 'pandas'} & set(sys.modules))\n"
+    )
+    found = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
+    assert found.stdout == "(400, 1)\nset()\n"
