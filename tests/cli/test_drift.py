@@ -97,9 +97,8 @@ def test_what_cannot_be_is_refused_in_a_sentence(run, years, arguments, message)
 def test_a_test_without_its_time_is_refused_with_what_to_do(run, years):
     result = run("drift", *years(tested_at=None))
     assert result.exit_code == 1
-    assert (
-        "expected when the test was made, with time zone, found nothing; identify it again with --tested-at"
-        in " ".join(result.stderr.split())
+    assert "expected when the test was made, with time zone, found nothing; make it again with --tested-at" in " ".join(
+        result.stderr.split()
     )
 
 

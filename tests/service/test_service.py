@@ -8,7 +8,9 @@ import pytest
 from click.testing import CliRunner
 from tests.tug.busy_crew import BUSY
 
+from shaftprint.campaign import TrialConditions
 from shaftprint.cli import shaftprint
+from shaftprint.drift._shared_errors import shared_errors
 from shaftprint.errors import ServiceError
 from shaftprint.fingerprint import read_fingerprint, write_fingerprint
 from shaftprint.service import fit_service, scan
@@ -102,7 +104,18 @@ def test_service_tells_the_truth_without_a_test(worked, vessel, tmp_path):
     assert found.seconds["clutch out"] > 20.0
     assert len(found.used) > 20
     found.write(tmp_path / "segments.csv")
-    day = fit_service(tmp_path / "segments.csv", vessel, now=NOW)
+    water = TrialConditions(draught_m=2.1, water_density_kg_m3=1000.0)
+    at = datetime(2026, 11, 27, 8, tzinfo=UTC)
+    day = fit_service(tmp_path / "segments.csv", vessel, tested_at=at, conditions=water, now=NOW)
+    made = day.fingerprint
+    assert (made.conditions.tested_at, made.conditions.draught_m) == (at, 2.1)
+    # lighter water: a larger coefficient takes the same torque
+    load = made.conditions.shaft_torque.value / vessel.working_point.driving_torque_nm
+    assert made.quantity("K_Q").value == pytest.approx(1.025 * load * 0.04943, rel=2e-3)
+    # kg m2 of a drawing, to 2 % by the vessel file, do not hang on the scale of the gauge, which is known to 2 % too
+    assert made.quantity("I_up").std < 0.025 * made.quantity("I_up").value
+    # of two such days the errors of the file are one: nothing of them is left in the difference
+    assert {"TVC", "gauge scale", "prior of g", "prior of c_set"} <= set(shared_errors(made, made).common)
     for quantity in day.fingerprint.parameters:
         expected = truth.normalised.get(quantity.name, {"c_set": 1.0, "t_gauge": 0.0}.get(quantity.name))
         assert abs(quantity.value - expected) < 4.0 * quantity.std, quantity.name

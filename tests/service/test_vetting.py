@@ -7,7 +7,7 @@ import pytest
 
 from shaftprint.service._gather import StillMeans, lever_line
 from shaftprint.service._segment import LeverLine, Segment
-from shaftprint.service._vetting import lever_follows_load, off_the_line, speed_is_off, way_on
+from shaftprint.service._vetting import lever_follows_load, off_the_line, speed_is_off, torque_is_held, way_on
 
 
 def still(gain, *, count=600, seed=3):
@@ -92,6 +92,22 @@ def test_a_load_controller_behind_the_lever_shows_where_it_stands_still(held_sha
     found = off_the_line(StillMeans(lever_v=lever, speed_rev_s=speed, load=speed, stretch=np.zeros(200)), LINE)
     assert found.value == pytest.approx(100.0 * held_share, abs=1.0)
     assert bool(found.refused) == is_refused
+
+
+@pytest.mark.parametrize(("most", "is_refused"), [(1.3, True), (9.0, False)])
+def test_what_holds_the_torque_shows_in_the_speed_at_high_torques(most, is_refused):
+    rng = np.random.default_rng(8)
+    count = 400
+    asked = rng.uniform(650.0, 1500.0, count)
+    load = 1.0 + 0.05 * rng.standard_normal(count)
+    # a lever that bends by 40 rpm, and a speed of which the torque allows what the load of the moment does
+    lever = asked + 40.0 * (asked / 1000.0) ** 2
+    speed = np.minimum(asked, 1183.8 * np.sqrt(most / load)) + rng.standard_normal(count)
+    means = StillMeans(lever_v=lever, speed_rev_s=speed / 60.0, load=load, stretch=np.repeat(np.arange(count / 2), 2))
+    found = torque_is_held(means, speed_rev_s=1183.8 / 60.0)
+    assert bool(found.refused) is is_refused
+    assert ("a load controller or a limit behind the lever" in found.refused) is is_refused
+    assert found.value > 15.0 if is_refused else found.value == pytest.approx(1.0, abs=0.3)
 
 
 @pytest.mark.parametrize(("rpm", "is_off"), [(5.0, False), (40.0, True)])

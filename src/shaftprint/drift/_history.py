@@ -58,7 +58,7 @@ def history_of(fingerprints: "Mapping[str, LineFingerprint]", events: Sequence[E
         if at is None or at.tzinfo is None:
             raise FingerprintError(
                 f"{name}: expected when the test was made, with time zone, found "
-                f"{'nothing' if at is None else at.isoformat()}; identify it again with --tested-at."
+                f"{'nothing' if at is None else at.isoformat()}; make it again with --tested-at."
             )
         recording = fingerprint.recording_sha256 or name
         if recording in recordings:

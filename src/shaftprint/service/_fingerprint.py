@@ -12,15 +12,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 import shaftprint
-from shaftprint.catalogue._gauge import K_Q
+from shaftprint.arrays import FloatArray
+from shaftprint.catalogue._gauge import K_Q, TAU_UP
 from shaftprint.catalogue._roles import ShipRole
 from shaftprint.catalogue._shipped import shipped_structure
 from shaftprint.choices import CLOSED_LOOPS
 from shaftprint.errors import ServiceError
-from shaftprint.fingerprint._conditions import Conditions, ShipIdentity
+from shaftprint.fingerprint._conditions import WATER, Conditions, ShipIdentity
 from shaftprint.fingerprint._fingerprint import Fingerprint, Quality
 from shaftprint.fingerprint._sources import source_of
-from shaftprint.fingerprint._vessel_fields import vessel_fields
+from shaftprint.fingerprint._vessel_fields import TVC, vessel_fields
 from shaftprint.identify.fit._estimate import Estimate
 from shaftprint.identify.judgement._verdict import Verdict
 from shaftprint.identify.likelihood._prior import PRIOR_OF, Prior
@@ -44,6 +45,7 @@ from shaftprint.service._ship_numbers import (
 from shaftprint.units import SECONDS_PER_MINUTE
 
 if TYPE_CHECKING:
+    from shaftprint.campaign._trial_conditions import TrialConditions
     from shaftprint.vessel._vessel import Vessel
 
 ORDINARY_SERVICE = "ordinary service"
@@ -69,33 +71,41 @@ def fingerprint_of_service(
     load: tuple[float, float],
     tables: Sequence[Path],
     now: datetime,
+    tested_at: datetime | None = None,
+    trial: "TrialConditions | None" = None,
 ) -> Fingerprint:
     """Return the fingerprint of a line from its service.
 
     ``fit``, ``model``: the fit, normalised at the working point of the vessel file, and its model. ``vessel``: the
     installation. ``line``: what the lever asks for. ``segments``, ``of``: the segments that were fitted, and how many
     moves there were. ``load``: mean load over that of the working point, and its standard deviation. ``tables``: the
-    tables of segments. ``now``: time of making, with time zone. Raises ServiceError if ``now`` has no time zone.
+    tables of segments. ``now``: time of making, with time zone. ``tested_at``: when the first log began, where that is
+    known. ``trial``: draught and water, where somebody states them. Raises ServiceError if ``now`` has no time zone.
     """
     if now.tzinfo is None:
         raise ServiceError("now: expected a time with time zone, such as datetime.now(UTC), found one without.")
+    in_water = vessel
+    if trial is not None and trial.water_density_kg_m3 is not None:
+        in_water = vessel.model_copy(update={"water_density_kg_m3": trial.water_density_kg_m3})
     structure = shipped_structure(STRUCTURE, set(FREE))
     scale = np.array([1.0 / load[0] if name in OVER_TORQUE else 1.0 for name in FREE])
     theta, covariance = fit.theta * scale, fit.covariance * np.outer(scale, scale)
-    of_prior = {PRIOR_OF + name: change * scale for name, change in fit.of_prior.items()}
+    of_prior = _of_prior(fit, model, scale)
     held = {p.name: p.value for p in structure.parameters if p.name not in FREE} | {K_Q.name: 2.0}
     torque_nm = load[0] * model.shaft_torque_nm
     parameters = parameter_numbers(structure, theta)
     combinations = combination_numbers(structure, theta, held)
-    physical = physical_numbers_of(structure, theta, model, vessel, torque_nm=torque_nm, load_std=load[1] / load[0])
+    physical = physical_numbers_of(structure, theta, model, in_water, torque_nm=torque_nm, load_std=load[1] / load[0])
     margins = margin_numbers_of(structure, theta, held)
     numbers = [*parameters, *combinations, *physical, *margins]
     budget = Budget(
-        sources=(SERVICE, *of_prior, GAUGE_SCALE, GAUGE_ZERO),
+        sources=tuple(dict.fromkeys((SERVICE, *of_prior, GAUGE_SCALE, GAUGE_ZERO))),
         rows=tuple(budget_row(one, covariance, of_prior) for one in numbers),
     )
     groups = {"parameters": parameters, "combinations": combinations, "physical": physical, "margins": margins}
-    quantities = {kind: tuple(quantity_of(one, covariance) for one in group) for kind, group in groups.items()}
+    quantities = {
+        kind: tuple(quantity_of(one, covariance, of_prior) for one in group) for kind, group in groups.items()
+    }
     stable = is_stable(structure, structure.vector(dict(zip(FREE, theta.tolist(), strict=True)) | held))
     every = [one for group in quantities.values() for one in group]
     seconds = sum(one.seconds for one in segments)
@@ -103,7 +113,15 @@ def fingerprint_of_service(
         shaftprint_version=shaftprint.__version__,
         created=now,
         sources=tuple(source_of("recording", table) for table in tables),
-        conditions=_conditions(vessel, model, line, torque_nm=torque_nm, torque_std_nm=load[1] * model.shaft_torque_nm),
+        conditions=_conditions(
+            vessel,
+            model,
+            line,
+            torque_nm=torque_nm,
+            torque_std_nm=load[1] * model.shaft_torque_nm,
+            tested_at=tested_at,
+            trial=trial,
+        ),
         structure=STRUCTURE,
         held=held,
         priors={
@@ -123,13 +141,39 @@ def fingerprint_of_service(
     )
 
 
+def _of_prior(fit: ServiceFit, model: ServiceModel, scale: FloatArray) -> dict[str, FloatArray]:
+    """Return what the numbers change for one deviation of what was known beforehand, by the source of its error.
+
+    The inertia ahead of the gauge is the vessel file's, by the name that it has in tests: in a history of tests and
+    days its error is one. Over the torque of the point it hangs on the gauge too, which a stated inertia does not.
+    """
+    changes: dict[str, FloatArray] = {}
+    for name, change in fit.of_prior.items():
+        if name == TAU_UP.name:
+            changes[TVC] = change * scale * np.sqrt(1.0 - model.gauge_share**2)
+            changes[GAUGE_SCALE] = -change * scale * model.gauge_share
+        else:
+            changes[PRIOR_OF + name] = change * scale
+    return changes
+
+
 def _conditions(
-    vessel: "Vessel", model: ServiceModel, line: LeverLine, *, torque_nm: float, torque_std_nm: float
+    vessel: "Vessel",
+    model: ServiceModel,
+    line: LeverLine,
+    *,
+    torque_nm: float,
+    torque_std_nm: float,
+    tested_at: datetime | None,
+    trial: "TrialConditions | None",
 ) -> Conditions:
     at_v = line.middle_v + (model.engine_speed_rev_s - line.middle_rev_s) / line.slope_rev_s_per_v
     return Conditions(
         vessel=vessel.name,
         campaign=ORDINARY_SERVICE,
+        tested_at=tested_at,
+        place=None if trial is None else trial.place,
+        **({} if trial is None else {name: getattr(trial, name) for name in WATER}),
         ship=None if vessel.ship is None else ShipIdentity(**vessel.ship.model_dump()),
         engine_speed=Estimate(
             name="n_0",

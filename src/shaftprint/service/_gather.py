@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from datetime import datetime, timedelta
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -67,6 +68,8 @@ class Gathered:
     """Stretches that could not be read."""
     spans_s: Mapping[str, tuple[float, float]]
     """From when to when each log goes, in its own seconds [s]."""
+    began: datetime | None
+    """When the first of them began; None where it does not say."""
 
 
 def gather(
@@ -82,8 +85,10 @@ def gather(
     seconds: dict[str, float] = dict.fromkeys(STATES, 0.0)
     still: list[FloatArray] = []
     spans_s: dict[str, tuple[float, float]] = {}
-    stretches = 0
+    stretches, began = 0, None
     for block in blocks(logs, vessel, keep_s=KEEP_S, told=left_out.append, progress=progress):
+        if not spans_s and block.began is not None:
+            began = block.began + timedelta(seconds=block.start_s)
         states = _states(block, vessel)
         new_s = block.start_s + (block.lever_v.size - block.new) / block.rate_hz
         spans_s[block.log] = (
@@ -107,6 +112,7 @@ def gather(
         seconds={state: length for state, length in seconds.items() if length},
         left_out=tuple(left_out),
         spans_s=spans_s,
+        began=began,
     )
 
 

@@ -64,6 +64,9 @@ class ServiceModel:
     """Shaft torque of the working point [N m]."""
     is_of_fingerprint: bool
     """Whether the values are those of a fingerprint, against which a log can be held."""
+    gauge_share: float = 0.0
+    """Which share of the deviation of the inertia ahead of the gauge, as it is known beforehand, is that of the gauge's
+    scale: kg m2 are known, and the torque by which they are divided is measured."""
     covariance: FloatArray | None = None
     """Covariance of the free parameters by that fingerprint, shape (free, free); None where it has others."""
 
@@ -122,11 +125,13 @@ def service_model(vessel: "Vessel", fingerprint: "Fingerprint | None" = None) ->
         C_SET.name: _SCALE_STD,
         T_GAUGE.name: vessel.sensors.shaft_torque.latency_std,
     }
+    gauge_share = 0.0
     stated = stated_by_vessel(ShipRole.INERTIA_UPSTREAM, vessel)
     if stated is not None:
         values[TAU_UP.name] = point.inertia_time_s(stated[0])
         share = np.hypot(stated[1] / stated[0], vessel.sensors.shaft_torque.scale_std)
         prior_std[TAU_UP.name] = float(values[TAU_UP.name] * share)
+        gauge_share = float(vessel.sensors.shaft_torque.scale_std / share)
     downstream = stated_by_vessel(ShipRole.INERTIA_DOWNSTREAM, vessel)
     if downstream is not None:
         values[TAU_DN.name] = point.inertia_time_s(downstream[0])
@@ -142,6 +147,7 @@ def service_model(vessel: "Vessel", fingerprint: "Fingerprint | None" = None) ->
         engine_speed_rev_s=speed,
         shaft_torque_nm=torque,
         is_of_fingerprint=fingerprint is not None,
+        gauge_share=gauge_share,
         covariance=None if fingerprint is None else _covariance(fingerprint, point),
     )
 

@@ -20,7 +20,15 @@ from shaftprint.service._model import FREE, ServiceModel, service_model
 from shaftprint.service._score import Score, noise_of, scores, simulated
 from shaftprint.service._segment import LeverLine, Segment
 from shaftprint.service._segment_file import USED, write_segments
-from shaftprint.service._vetting import Found, lever_follows_load, off_the_line, shift_of_lever, speed_is_off, way_on
+from shaftprint.service._vetting import (
+    Found,
+    lever_follows_load,
+    off_the_line,
+    shift_of_lever,
+    speed_is_off,
+    torque_is_held,
+    way_on,
+)
 from shaftprint.units import rpm_from_rev_s
 
 if TYPE_CHECKING:
@@ -179,6 +187,7 @@ def scan(
             "seconds": seconds,
             "logs": [str(Path(log).name) for log in logs],
             "refused": refused,
+            "began": None if gathered.began is None else gathered.began.isoformat(),
         },
         spans_s=gathered.spans_s,
     )
@@ -195,7 +204,9 @@ def _judged(
         ),
     )
     usable = [one for one in gathered.segments if not one.reason]
-    found = [off_the_line(gathered.still, line), lever_follows_load(gathered.still), way_on(usable)]
+    still = gathered.still
+    held = torque_is_held(still, speed_rev_s=model.engine_speed_rev_s)
+    found = [off_the_line(still, line), held, lever_follows_load(still), way_on(usable)]
     each: dict[int, Score] = {}
     loud: set[int] = set()
     if usable:

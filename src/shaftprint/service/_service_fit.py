@@ -22,6 +22,7 @@ from shaftprint.service._segment import LeverLine, Segment
 from shaftprint.service._segment_file import read_segments
 
 if TYPE_CHECKING:
+    from shaftprint.campaign._trial_conditions import TrialConditions
     from shaftprint.fingerprint._fingerprint import Fingerprint
     from shaftprint.vessel._vessel import Vessel
 
@@ -86,6 +87,8 @@ def fit_service(
     *,
     fingerprint: "Fingerprint | None" = None,
     progress: str | Path | None = None,
+    tested_at: datetime | None = None,
+    conditions: "TrialConditions | None" = None,
     now: datetime,
 ) -> ServiceDay:
     """Fit a line to the segments of tables that ``Scan.write`` wrote, as edited since.
@@ -101,6 +104,10 @@ def fit_service(
     progress
         File that keeps what each step has reached. A fit that was stopped goes on from there and ends with the same
         numbers to the last bit. Delete it when the result is written.
+    tested_at
+        When the service began, with time zone; by default as the first log says.
+    conditions
+        Draught and water, where somebody states them.
     now
         Time of making, with time zone.
 
@@ -117,7 +124,7 @@ def fit_service(
     given = tuple(one for segments, *_ in days for one in segments if not one.reason)
     records = [
         record
-        for segments, line, _ in days
+        for segments, line, *_ in days
         for record in model.records([one for one in segments if not one.reason], line)
     ]
     kept = None if progress is None else progress_of(Path(progress), paths, model)
@@ -137,15 +144,19 @@ def fit_service(
         line=days[0][1],
         segments=used,
         of=sum(len(segments) for segments, *_ in days),
-        load=_mean_load([load for *_, load in days]),
+        load=_mean_load([load for _, _, load, _ in days]),
         tables=paths,
         now=now,
+        tested_at=tested_at or days[0][3],
+        trial=conditions,
     )
     return ServiceDay(given=given, segments=used, model=model, fit=fit, fingerprint=made)
 
 
-def _of_table(path: Path, vessel: "Vessel") -> tuple[tuple[Segment, ...], LeverLine, tuple[float, float]]:
-    """Return the segments of a table, the line of the lever, and mean load with its standard deviation.
+def _of_table(
+    path: Path, vessel: "Vessel"
+) -> tuple[tuple[Segment, ...], LeverLine, tuple[float, float], datetime | None]:
+    """Return the segments of a table, the line of the lever, mean load with its standard deviation, and its beginning.
 
     Raises ServiceError if the table cannot be used.
     """
@@ -158,7 +169,23 @@ def _of_table(path: Path, vessel: "Vessel") -> tuple[tuple[Segment, ...], LeverL
             f"{path}: expected segments of {vessel.name}, found some of {facts.get('vessel')}; name the vessel file "
             "with which the logs were scanned."
         )
-    return segments, line, (float(str(facts["load"])), float(str(facts["load_std"])))
+    began = facts.get("began")
+    return (
+        segments,
+        line,
+        (float(str(facts["load"])), float(str(facts["load_std"]))),
+        None if not isinstance(began, str) else _moment(began, path),
+    )
+
+
+def _moment(text: str, path: Path) -> datetime:
+    """Return a date and time of the facts beside a table. Raises ServiceError if it is none."""
+    try:
+        return datetime.fromisoformat(text)
+    except ValueError:
+        raise ServiceError(
+            f"{path}: expected when its first log began, found {text[:40]!r}; scan the logs again."
+        ) from None
 
 
 def _mean_load(loads: Sequence[tuple[float, float]]) -> tuple[float, float]:

@@ -179,23 +179,25 @@ def budget_row(
     number: ShipNumber, covariance: FloatArray, of_prior: Mapping[str, FloatArray] = MappingProxyType({})
 ) -> BudgetRow:
     """Return the variance of a number by source."""
-    further = {name: change**2 for name, change in number.direct.items() if name != SERVICE}
-    priors = {name: float(number.slope @ change) ** 2 for name, change in of_prior.items()}
-    own = float(number.slope @ covariance @ number.slope) - sum(priors.values())
+    priors = {name: float(number.slope @ change) for name, change in of_prior.items()}
+    own = float(number.slope @ covariance @ number.slope) - sum(change**2 for change in priors.values())
     own = max(own, 0.0) + number.direct.get(SERVICE, 0.0) ** 2
-    return BudgetRow(
-        name=number.name, unit=number.unit, value=number.value, variances={SERVICE: own} | priors | further
-    )
+    # the scale of the gauge moves a number in two ways, which add up with their signs
+    sources = dict.fromkeys((*priors, *(name for name in number.direct if name != SERVICE)))
+    further = {name: (priors.get(name, 0.0) + number.direct.get(name, 0.0)) ** 2 for name in sources}
+    return BudgetRow(name=number.name, unit=number.unit, value=number.value, variances={SERVICE: own} | further)
 
 
-def quantity_of(number: ShipNumber, covariance: FloatArray) -> Estimate:
+def quantity_of(
+    number: ShipNumber, covariance: FloatArray, of_prior: Mapping[str, FloatArray] = MappingProxyType({})
+) -> Estimate:
     """Return a number as a fingerprint keeps it."""
     expected, expected_std = number.expected or (None, None)
     return Estimate(
         name=number.name,
         unit=number.unit,
         value=number.value,
-        std=budget_row(number, covariance).std,
+        std=budget_row(number, covariance, of_prior).std,
         meaning=number.meaning,
         role=number.role,
         expected=expected,
@@ -220,8 +222,13 @@ def joint_of(
     for source in (SERVICE, GAUGE_ZERO):
         change = np.array([one.direct.get(source, 0.0) for one in chosen])
         own = own + np.outer(change, change)
-    loadings = {name: tuple((slopes @ change).tolist()) for name, change in of_prior.items()}
-    loadings[GAUGE_SCALE] = tuple(one.direct.get(GAUGE_SCALE, 0.0) for one in chosen)
+    nothing = np.zeros(covariance.shape[0])
+    loadings = {
+        name: tuple(
+            (slopes @ of_prior.get(name, nothing) + np.array([one.direct.get(name, 0.0) for one in chosen])).tolist()
+        )
+        for name in dict.fromkeys((*of_prior, GAUGE_SCALE))
+    }
     return JointNumbers(
         names=tuple(one.name for one in chosen),
         own_covariance=tuple(tuple(row) for row in (0.5 * (own + own.T)).tolist()),

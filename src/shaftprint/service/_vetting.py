@@ -6,7 +6,7 @@ closed-loop dynamic-stochastic systems, Technometrics 16, 1974). So each of thes
 
 - does the still lever follow the load of some seconds before?
 - by which shift of the lever does the log agree best with an earlier fingerprint?
-- does the speed follow the lever wherever it stands still?
+- does the speed follow the lever wherever it stands still, and where the torque is high too?
 - does the torque go with the square of the speed across moves, as it does at the quay?
 
 Somebody who trims against the load only when he moves the lever anyway is seen by none of them.
@@ -42,6 +42,9 @@ _WAY, _WAY_STD, _LEAST_MOVE = 0.1, 4.0, 0.08
 # Where the lever stands still the speed is what it asks for, within so much and so many deviations of its line [rpm];
 # elsewhere less than this share of the time. After a move that takes so long, and a mean over so much of the end.
 _OFF_RPM, _OFF_STD, _OFF_SHARE, _SETTLED_S, _END_S = 20.0, 6.0, 0.1, 15.0, 5.0
+# Where the torque is high the speed of a still lever scatters by less than this, and than so many times what it does at
+# lower torques; sound lines stay below 2 rpm and twice. Means that are needed at either.
+_HELD_RPM, _HELD_TIMES, _FEWEST_HELD = 5.0, 4.0, 10
 _BEFORE_SAMPLES, _AFTER_S, _UNTIL_S = 40, 4.0, 9.0
 
 
@@ -154,6 +157,44 @@ def off_the_line(still: StillMeans, line: LeverLine) -> Found:
             "between it and the governor; log the demand that the control unit takes."
         )
     return Found(what=what, value=100.0 * share, unit="%", refused=refused)
+
+
+def torque_is_held(still: StillMeans, *, speed_rev_s: float) -> Found:
+    """Return by how much the speed scatters where the torque is high, beside what the lever asks for there [rpm].
+
+    A governor holds it as well as at low torques, whatever bend the lever has; what holds the torque does not.
+
+    ``still``: means of lever, speed and load where the lever stands still. ``speed_rev_s``: engine speed of the working
+    point [rev/s].
+    """
+    what = "scatter of the speed at high torques, of a still lever"
+    settled = np.flatnonzero(np.diff(still.stretch, prepend=-1.0) == 0.0)
+    torque = still.load[settled] * (still.speed_rev_s[settled] / speed_rev_s) ** 2
+    if settled.size < 2 * _FEWEST_HELD:
+        return Found(what=what, value=float("nan"), unit="rpm")
+    order = np.argsort(torque)
+    # of the higher part the highest tells: a limit that is seldom met is met there
+    low, high = order[: settled.size // 2], order[-max(settled.size // 10, _FEWEST_HELD) :]
+    lever, speed = still.lever_v[settled], rpm_from_rev_s(still.speed_rev_s[settled])
+    scatter = [_beside_a_curve(lever[part], speed[part]) for part in (low, high)]
+    refused = ""
+    if scatter[1] > max(_HELD_TIMES * scatter[0], _HELD_RPM):
+        refused = (
+            f"where the torque is high, about {float(np.median(torque[high])):.0%} of the working point's, the speed "
+            f"is not what the lever asks for: it scatters by {scatter[1]:.0f} rpm, at lower torques by "
+            f"{scatter[0]:.1f} rpm; a load controller or a limit behind the lever holds the torque there: log the "
+            "demand that the control unit takes, or use hours without it."
+        )
+    return Found(what=what, value=scatter[1], unit="rpm", refused=refused)
+
+
+def _beside_a_curve(lever_v: FloatArray, speed_rpm: FloatArray) -> float:
+    """Return the standard deviation of speeds about a parabola over the lever [rpm]."""
+    span = float(np.ptp(lever_v)) or 1.0
+    x = (lever_v - lever_v.mean()) / span
+    columns = np.column_stack([np.ones(x.size), x, x**2])
+    left = speed_rpm - columns @ np.linalg.lstsq(columns, speed_rpm, rcond=None)[0]
+    return float(np.sqrt(left @ left / max(x.size - columns.shape[1], 1)))
 
 
 def farthest_rpm(line: LeverLine) -> float:

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import click
 
+from shaftprint.cli._dates import Moment
 from shaftprint.cli._fingerprint_tables import print_fingerprint
 from shaftprint.cli._options import vessel_option
 from shaftprint.cli._results import print_paths
@@ -16,6 +17,7 @@ from shaftprint.cli.output._progress import no_progress_option, progress
 from shaftprint.late import late
 
 with late():
+    from shaftprint.campaign._trial_conditions import load_trial_conditions
     from shaftprint.fingerprint._json_file import write_fingerprint
     from shaftprint.service._service_fit import fit_service
     from shaftprint.vessel._vessel import load_vessel
@@ -30,6 +32,18 @@ with late():
     help="One of an earlier test or of other days to begin from; none of its numbers counts.",
 )
 @click.option(
+    "--tested-at",
+    type=Moment(),
+    metavar="DATE",
+    help="When the service began, such as 2026-03-31T09:30+02:00; by default as the first log says.",
+)
+@click.option(
+    "--conditions",
+    type=click.Path(path_type=Path),
+    metavar="FILE",
+    help="Draught and water of these days; `shaftprint new conditions` writes such a file.",
+)
+@click.option(
     "-o",
     "--output",
     required=True,
@@ -39,7 +53,15 @@ with late():
 @force_option
 @no_progress_option
 def command(
-    segments: tuple[Path, ...], *, vessel: str, fingerprint: Path | None, output: Path, force: bool, no_progress: bool
+    segments: tuple[Path, ...],
+    *,
+    vessel: str,
+    fingerprint: Path | None,
+    tested_at: datetime | None,
+    conditions: Path | None,
+    output: Path,
+    force: bool,
+    no_progress: bool,
 ) -> None:
     """Identify the fingerprint from the moves that a scan has found.
 
@@ -51,6 +73,7 @@ def command(
     """
     installation = load_vessel(vessel)
     earlier = None if fingerprint is None else fingerprint_at(fingerprint)
+    stated = None if conditions is None else load_trial_conditions(conditions)
     # the name of "." is that of the folder
     place = output.resolve()
     reached = place.parent / f".{place.name}.fit.json"
@@ -58,7 +81,8 @@ def command(
         with progress(hidden=no_progress) as steps:
             steps.begin("Fitting")
             day = fit_service(
-                segments, installation, fingerprint=earlier, progress=reached, now=datetime.now(UTC)
+                segments, installation, fingerprint=earlier, progress=reached, tested_at=tested_at, conditions=stated,
+                now=datetime.now(UTC),
             )  # fmt: skip
         write_fingerprint(day.fingerprint, folder / FINGERPRINT)
         for name, text in day.files(against=earlier is not None).items():
