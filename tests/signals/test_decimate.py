@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 from scipy.signal import freqz, upfirdn
 
 from shaftprint.errors import SignalError
-from shaftprint.signals.conditioning._decimate import SampleGrid, decimated, filter_grid, low_pass_taps
+from shaftprint.signals.conditioning._decimate import SampleGrid, decimated, low_pass_taps
 
 RNG = np.random.default_rng(8)
 SIGNAL = RNG.standard_normal(5000)
@@ -62,15 +62,18 @@ def test_constant_stays_beyond_both_ends():
     assert found == pytest.approx(np.full(60, 3.5), rel=1e-14)
 
 
-def test_compiled_and_plain_kernels_agree():
-    taps = low_pass_taps(10.0, 16)
+@pytest.mark.parametrize(("first", "step"), [(100.97, 10.0), (100.0, 10.0), (100.25, 7.5), (101.0, 1.0)])
+def test_an_instant_is_the_sum_of_samples_and_taps_around_it(first, step):
+    grid = SampleGrid(first=first, step=step, count=9)
+    found = decimated([SIGNAL[:1000]], grid, channel="X")
+    taps = low_pass_taps(step, 1 if grid.on_samples else 512)
     half = (taps.shape[1] - 1) // 2
-    found, plain = np.zeros(30), np.zeros(30)
-    held = SIGNAL[:400]
-    done = filter_grid(held, 0, taps, half, 100.97, 10.0, 0, found)
-    assert filter_grid.py_func(held, 0, taps, half, 100.97, 10.0, 0, plain) == done
-    assert 10 < done < 30
-    assert plain == pytest.approx(found, abs=1e-12)
+    padded = np.pad(SIGNAL[:1000], 200, mode="edge")
+    for value, place in zip(found, first + step * np.arange(9), strict=True):
+        nearest = round(place * len(taps))
+        begin = 200 + nearest // len(taps) - half
+        row = taps[nearest % len(taps)]
+        assert value == pytest.approx(padded[begin : begin + row.size] @ row, abs=1e-12)
 
 
 def test_grid_finer_than_the_samples():

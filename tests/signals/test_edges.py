@@ -4,7 +4,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from shaftprint.errors import SignalError
-from shaftprint.signals.pulses._edges import PulseLevels, find_edges, pulse_levels, scan_edges
+from shaftprint.signals.pulses._edges import PulseLevels, find_edges, pulse_levels
 
 LEVELS = PulseLevels(low=0.0, high=1000.0, noise=1.0, duty=0.1)
 
@@ -43,15 +43,11 @@ def test_cut_into_blocks_does_not_matter(cut, size, seed):
     assert whole.size == 30
 
 
-def test_compiled_and_plain_kernel_agree():
+def test_a_pulse_that_begins_in_one_block_and_ends_in_another_has_its_edge():
     counts = trapezoids(np.array([40.2, 100.7]), count=150)
-    compiled, plain = np.empty(76), np.empty(76)
-    states = [np.array([0.0, np.inf, 0.0]) for _ in range(2)]
-    assert scan_edges(counts, 0, 1.0, 300.0, 500.0, 700.0, states[0], compiled) == 2
-    assert scan_edges.py_func(counts, 0, 1.0, 300.0, 500.0, 700.0, states[1], plain) == 2
-    assert plain[:2] == pytest.approx([40.2, 100.7], abs=1e-9)
-    assert np.array_equal(compiled[:2], plain[:2])
-    assert np.array_equal(states[0], states[1])
+    for size in (1, 40, 41, 150):
+        blocks = [counts[first : first + size] for first in range(0, 150, size)]
+        assert find_edges(blocks, LEVELS) == pytest.approx([40.2, 100.7], abs=1e-9)
 
 
 def test_ripple_around_the_middle_makes_one_edge():

@@ -12,7 +12,6 @@ from shaftprint.signals.conditioning._outliers import (
     fault_limits,
     flagged,
     mark_holds,
-    mark_spikes,
     sample_codes,
 )
 
@@ -38,21 +37,20 @@ def test_marks_are_those_of_the_plain_identifier(dtype, half, sigmas, floor):
     assert np.array_equal(codes == SPIKE, expected)
 
 
-def test_compiled_and_plain_kernels_agree():
+def test_runs_of_equal_samples_are_held_from_the_shortest_on():
     rng = np.random.default_rng(4)
-    values = rng.standard_t(2, 400)
-    marks = [np.zeros(396, dtype=np.uint8) for _ in range(2)]
-    mark_spikes(values, 2, 0.5, 3.0 * 1.4826, marks[0])
-    mark_spikes.py_func(values, 2, 0.5, 3.0 * 1.4826, marks[1])
-    assert marks[0].sum() > 5
-    assert np.array_equal(marks[0], marks[1])
     repeated = np.repeat(rng.standard_normal(40), rng.integers(1, 8, 40))
-    holds = [np.zeros(repeated.size - 10, dtype=np.uint8) for _ in range(2)]
-    mark_holds(repeated, 5, 4, holds[0])
-    mark_holds.py_func(repeated, 5, 4, holds[1])
+    holds = np.zeros(repeated.size - 10, dtype=np.uint8)
+    mark_holds(repeated, 5, 4, holds)
     lengths = np.array([np.sum(repeated == value) for value in repeated])
-    assert np.array_equal(holds[0] == HOLD, (lengths >= 4)[5:-5])
-    assert np.array_equal(holds[0], holds[1])
+    assert np.array_equal(holds == HOLD, (lengths >= 4)[5:-5])
+
+
+def test_spikes_at_both_ends_of_16_bits_are_found():
+    values = np.full(60, -32768, dtype=np.int16)
+    values[30] = 32767
+    codes = sample_codes(values, FaultLimits(floor=60_000.0))
+    assert np.flatnonzero(codes == SPIKE).tolist() == [25]
 
 
 LIMITS = FaultLimits(floor=400.0, hold_samples=12, lowest=-3000.0, highest=3000.0)

@@ -3,7 +3,7 @@ import pytest
 from scipy.interpolate import CubicSpline
 
 from shaftprint.signals import spline_speed
-from shaftprint.signals.pulses._speed import sample_slopes, solve_slopes
+from shaftprint.signals.pulses._speed import knot_slopes
 
 
 def test_constant_speed_is_constant():
@@ -57,18 +57,18 @@ def test_missing_knot_changes_little():
     assert np.abs(whole - holed).max() < 2e-3
 
 
-def test_compiled_and_plain_kernels_agree():
+@pytest.mark.parametrize("knots", [3, 4, 5, 12, 33])
+def test_the_second_derivative_is_continuous_and_at_both_ends_that_of_the_next_knot(knots):
     rng = np.random.default_rng(2)
-    time = np.cumsum(rng.uniform(0.04, 0.06, 12))
-    angle = np.arange(12.0)
-    slope, plain = np.empty(12), np.empty(12)
-    solve_slopes(time, angle, slope)
-    solve_slopes.py_func(time, angle, plain)
-    assert plain == pytest.approx(slope, rel=1e-13)
-    out, plain_out = np.empty(200), np.empty(200)
-    sample_slopes(time, angle, slope, 0.0, 0.004, out)
-    sample_slopes.py_func(time, angle, slope, 0.0, 0.004, plain_out)
-    assert plain_out == pytest.approx(out, rel=1e-13)
+    time = np.cumsum(rng.uniform(0.04, 0.06, knots))
+    angle = np.cumsum(rng.uniform(0.5, 1.5, knots))
+    slope = knot_slopes(time, angle)
+    width, chord = np.diff(time), np.diff(angle) / np.diff(time)
+    begin = (6.0 * chord - 4.0 * slope[:-1] - 2.0 * slope[1:]) / width
+    end = (-6.0 * chord + 2.0 * slope[:-1] + 4.0 * slope[1:]) / width
+    size = np.abs(begin).max()
+    assert begin[1:] == pytest.approx(end[:-1], abs=1e-11 * size)
+    assert [begin[0], end[-1]] == pytest.approx([end[0], begin[-1]], abs=1e-11 * size)
     # beyond the ends the speed is held
-    assert out[0] == slope[0]
-    assert out[-1] == slope[-1]
+    out = spline_speed(time, angle, start_s=0.0, step_s=1.0, count=int(time[-1]) + 3)
+    assert [out[0], out[-1]] == [slope[0], slope[-1]]

@@ -14,7 +14,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shaftprint.arrays import FloatArray
-from shaftprint.kernels._compiled import compiled
 from shaftprint.signals._channels import Counts, spots
 
 if TYPE_CHECKING:
@@ -34,9 +33,6 @@ _SIGMAS = 3.0
 # the load at full speed is twice that of the working point, and so is its noise.
 _FLOOR, _QUANTILE = 5.0, 0.99
 _LEAST_STEPS = 4.0
-
-# Samples that are compared together: they stay in the fastest cache.
-_STRIP = 1024
 
 # Shorter than any dropout, longer than noise of a few counts stands still.
 _HOLD_SAMPLES = 10
@@ -117,12 +113,8 @@ def sample_codes(values: Counts, limits: FaultLimits) -> NDArray[np.uint8]:
     """Return the code of every sample but the margins, shape (values.size - 2 margin,)."""
     margin, half = limits.margin, limits.half_window
     codes = np.zeros(values.size - 2 * margin, dtype=np.uint8)
-    inner: NDArray[Any] = values[margin - half : values.size - margin + half]
-    floor: np.floating[Any] = np.float64(limits.floor)
-    if values.dtype == np.int16:
-        # exact, and twice as many values go through the processor at a time
-        inner, floor = inner.astype(np.float32), np.float32(np.floor(floor))
-    mark_spikes(inner, half, floor, limits.sigmas * SIGMA_PER_MAD, codes)
+    inner: Counts = values[margin - half : values.size - margin + half]
+    mark_spikes(inner, half, limits.floor, limits.sigmas * SIGMA_PER_MAD, codes)
     if limits.hold_samples:
         mark_holds(values, margin, limits.hold_samples, codes)
     if np.isfinite(limits.lowest) or np.isfinite(limits.highest):
@@ -133,60 +125,46 @@ def sample_codes(values: Counts, limits: FaultLimits) -> NDArray[np.uint8]:
     return codes
 
 
-@compiled(nogil=True)
-def mark_spikes(values, half: int, floor, mads: float, codes) -> None:  # type: ignore[no-untyped-def]
+def mark_spikes(values: Counts, half: int, floor: float, mads: float, codes: NDArray[np.uint8]) -> None:
     """Mark samples further from the median of their window than the floor and so many MADs.
 
-    Nearly all samples are let go by counting alone: if more than half of the window lies above
-    ``value - floor`` so does the median, and the same below.
+    Nearly all samples are let go unsorted: where the values of more than half of a window, the sample among them, lie
+    within the floor of each other, so does the median.
     """
-    window = 2 * half + 1
-    one, none = np.float32(1), np.float32(0)
-    above = np.empty(_STRIP, dtype=np.float32)
-    below = np.empty(_STRIP, dtype=np.float32)
-    ordered = np.empty(window, dtype=values.dtype)
-    for first in range(0, codes.size, _STRIP):
-        length = min(_STRIP, codes.size - first)
-        centre = values[first + half : first + half + length]
-        above[:] = none
-        below[:] = none
-        for j in range(window):
-            neighbour = values[first + j : first + j + length]
-            # written without branches: the compiler then compares sixteen samples at a time
-            for i in range(length):
-                difference = neighbour[i] - centre[i]
-                above[i] += one if difference >= -floor else none
-                below[i] += one if difference <= floor else none
-        for i in range(length):
-            if above[i] > half and below[i] > half:
-                continue
-            for j in range(window):
-                other = values[first + i + j]
-                k = j
-                while k > 0 and ordered[k - 1] > other:
-                    ordered[k] = ordered[k - 1]
-                    k -= 1
-                ordered[k] = other
-            median = ordered[half]
-            distance = abs(centre[i] - median)
-            near = 0
-            for j in range(window):
-                if abs(ordered[j] - median) * mads < distance:
-                    near += 1
-            if near > half:
-                codes[first + i] = SPIKE
+    highest, lowest = (_over(extreme, values, half + 1) for extreme in (np.maximum, np.minimum))
+    span: NDArray[Any] = highest - lowest
+    if values.dtype == np.int16:
+        # a difference of two numbers of 16 bits is one of 16 bits without a sign
+        span, floor = span.view(np.uint16), min(np.floor(floor), 65535.0)
+    is_near = _over(np.logical_or, span <= span.dtype.type(floor), half + 1)
+    looked = np.flatnonzero(~is_near)
+    if not looked.size:
+        return
+    windows = np.lib.stride_tricks.sliding_window_view(values, 2 * half + 1)[looked].astype(np.float64)
+    median = np.partition(windows, half, axis=1)[:, half]
+    distance = np.abs(windows[:, half] - median)
+    nearer = np.abs(windows - median[:, np.newaxis]) * mads < distance[:, np.newaxis]
+    codes[looked[(distance > floor) & (nearer.sum(axis=1) > half)]] = SPIKE
 
 
-@compiled(nogil=True)
-def mark_holds(values, margin: int, shortest: int, codes) -> None:  # type: ignore[no-untyped-def]
+def mark_holds(values: Counts, margin: int, shortest: int, codes: NDArray[np.uint8]) -> None:
     """Mark samples that belong to a run of at least ``shortest`` equal ones."""
-    begin = 0
-    for k in range(1, values.size + 1):
-        if k == values.size or values[k] != values[begin]:
-            if k - begin >= shortest:
-                for i in range(max(begin, margin), min(k, values.size - margin)):
-                    codes[i - margin] = HOLD
-            begin = k
+    if values.size < shortest:
+        return
+    begins = _over(np.logical_and, values[1:] == values[:-1], shortest - 1)
+    if begins.any():
+        is_held = _over(np.logical_or, np.pad(begins, shortest - 1), shortest)
+        codes[is_held[margin : values.size - margin]] = HOLD
+
+
+def _over(combined: np.ufunc, values: NDArray[Any], width: int) -> NDArray[Any]:
+    """Return what an operation makes of so many neighbours, where one may count twice, shape (values - width + 1,)."""
+    reach = 1
+    while reach < width:
+        step = min(reach, width - reach)
+        values = combined(values[:-step], values[step:])
+        reach += step
+    return values
 
 
 def _distances(values: FloatArray) -> FloatArray:

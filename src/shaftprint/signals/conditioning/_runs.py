@@ -7,7 +7,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shaftprint.arrays import FloatArray, IntArray
-from shaftprint.kernels._compiled import compiled
 
 if TYPE_CHECKING:
     from shaftprint.recording._channel import Channel
@@ -15,7 +14,7 @@ if TYPE_CHECKING:
 # Runs that are shorter make nothing late that a fit would see.
 _SHORTEST_S = 0.002
 # The size of a change is noted in one stretch of 4096 samples in 64, wherever the blocks are cut.
-_LOOKED_BITS, _LOOKED_EVERY = 12, 64
+_LOOKED, _APART = 4096, 64 * 4096
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -46,7 +45,7 @@ class RunTally:
         self._channel = channel
         self._shortest = max(2, round(_SHORTEST_S * channel.rate_hz))
         # last sample, start of its run, runs that have ended
-        self._state = np.array([np.nan, 0.0, 0.0])
+        self._state = (np.nan, 0, 0)
         self._seen = 0
         self._long: list[FloatArray] = []
         self._changes: list[FloatArray] = []
@@ -57,7 +56,7 @@ class RunTally:
         return Runs(
             channel=self._channel,
             samples=self._seen,
-            count=int(self._state[2]),
+            count=self._state[2],
             lengths=long[0].astype(np.int64),
             jumps=long[1],
             values=long[2],
@@ -71,38 +70,24 @@ class RunTally:
             self._add(counts[self._seen - start :])
         return counts
 
-    def _add(self, counts: NDArray[Any]) -> None:
-        values = counts if counts.dtype == np.int16 else np.ascontiguousarray(counts, dtype=np.float64)
-        long = np.empty((3, values.size // self._shortest + 2))
-        changes = np.empty(values.size)
-        found, looked = count_runs(values, self._seen, self._shortest, self._state, long, changes)
-        self._long.append(long[:, :found].copy())
-        self._changes.append(changes[:looked].copy())
+    def _add(self, values: NDArray[Any]) -> None:
+        if not values.size:
+            return
+        last, begin, ended = self._state
+        # one that is no number is equal to none and ends no run that counts
+        padded = np.concatenate([[last], values])
+        differs, known = padded[1:] != padded[:-1], ~np.isnan(padded)
+        counts = differs & known[1:] & known[:-1]
+        ends = np.flatnonzero(differs)
+        lengths = np.diff(ends, prepend=begin - self._seen)
+        long = np.flatnonzero(lengths >= self._shortest)
+        long = long[counts[ends[long]]]
+        after, before = padded[ends[long] + 1], padded[ends[long]]
+        self._long.append(np.array([lengths[long], np.abs(after - before), before]))
+        for first in range(self._seen & -_APART, self._seen + values.size, _APART):
+            looked = slice(max(first - self._seen, 0), max(first + _LOOKED - self._seen, 0))
+            where = np.flatnonzero(counts[looked]) + looked.start
+            self._changes.append(np.abs(padded[where + 1] - padded[where]))
+        begin = self._seen + int(ends[-1]) if ends.size else begin
+        self._state = float(padded[-1]), begin, ended + int(np.count_nonzero(counts))
         self._seen += values.size
-
-
-@compiled(nogil=True)
-def count_runs(values, first: int, shortest: int, state, long, changes) -> tuple[int, int]:  # type: ignore[no-untyped-def]
-    """Go on counting with the next samples; return how many runs were long, and how many changes were noted.
-
-    ``first`` is the number of the first sample; one that is no number is equal to none and ends no run that counts.
-    """
-    last, begin, ended = state[0], state[1], state[2]
-    found, looked = 0, 0
-    for k in range(values.size):
-        value = float(values[k])
-        if value != last:
-            here = first + k
-            change = abs(value - last)
-            if change > 0.0:
-                if here - begin >= shortest:
-                    long[0, found], long[1, found], long[2, found] = here - begin, change, last
-                    found += 1
-                if (here >> _LOOKED_BITS) % _LOOKED_EVERY == 0:
-                    changes[looked] = change
-                    looked += 1
-                ended += 1.0
-            begin = here
-            last = value
-    state[0], state[1], state[2] = last, begin, ended
-    return found, looked

@@ -18,7 +18,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from shaftprint.arrays import BoolArray, FloatArray, IntArray
-from shaftprint.kernels._compiled import compiled
 
 # Rate at which torque and speed are compared [Hz]: faster, the shaft twists.
 _RATE_HZ = 20.0
@@ -26,6 +25,8 @@ _RATE_HZ = 20.0
 _PART_S = 10.0
 # Times in which a slipstream follows [s].
 _LAGS_S = (0.2, 0.8)
+# Share of a value that a lag keeps of it and no number shows.
+_FORGOTTEN = 1e-17
 # Of the autoregression of the noise, and rounds in which it and the fit improve each other.
 _ORDER, _ROUNDS = 20, 3
 # Pieces on either side whose noise counts as that of a piece.
@@ -178,20 +179,18 @@ def _lags(values: FloatArray, rate_hz: float) -> list[FloatArray]:
     lags = []
     for time_s in _LAGS_S:
         share = -np.expm1(-1.0 / (rate_hz * time_s))
-        behind = np.empty(values.size)
-        _follow(values - values[0], share, behind)
-        lags.append(values[0] + behind)
+        lags.append(values[0] + _followed(values - values[0], share))
     return lags
 
 
-# scipy.signal has it as well, and takes a second to load
-@compiled(nogil=True)
-def _follow(values, share: float, behind) -> None:  # type: ignore[no-untyped-def]
-    """Write values behind a lag of first order that was at 0 before them."""
-    keep, last = 1.0 - share, 0.0
-    for k in range(values.size):
-        last = share * values[k] + keep * last
-        behind[k] = last
+def _followed(values: FloatArray, share: float) -> FloatArray:
+    """Return values behind a lag of first order that was at 0 before them."""
+    # scipy.signal has it as well, and takes a second to load
+    behind, reach = share * values, 1
+    while reach < values.size and (1.0 - share) ** reach > _FORGOTTEN:
+        behind[reach:] += (1.0 - share) ** reach * behind[:-reach]
+        reach *= 2
+    return behind
 
 
 def _motion(set_point: FloatArray, speed: FloatArray, rate_hz: float) -> FloatArray:

@@ -2,13 +2,12 @@
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from shaftprint.arrays import FloatArray
+from shaftprint.arrays import BoolArray, FloatArray, IntArray
 from shaftprint.errors import SignalError
-from shaftprint.kernels._compiled import compiled
 from shaftprint.signals._channels import Counts, spots
 
 if TYPE_CHECKING:
@@ -79,49 +78,76 @@ def find_edges(samples: Iterable[Counts], levels: PulseLevels) -> FloatArray:
     sign = 1.0 if levels.high > levels.low else -1.0
     low, high = sign * levels.low, sign * levels.high
     arm, middle, fire = (low + share * (high - low) for share in (_ARM, _EDGE, _FIRE))
-    state = np.array([0.0, np.inf, 0.0])
+    before = _Before(is_armed=False, sample=np.inf, crossing=0.0)
     positions = []
     first = 0
     for block in samples:
-        edges = np.empty(block.size // 2 + 1)
-        count = scan_edges(block, first, sign, arm, middle, fire, state, edges)
-        positions.append(edges[:count].copy())
+        if block.size:
+            edges, before = _scanned(block if sign > 0.0 else -1.0 * block, first, (arm, middle, fire), before)
+            positions.append(edges)
         first += block.size
     return np.concatenate(positions) if positions else np.empty(0)
 
 
-@compiled(nogil=True)
-def scan_edges(  # type: ignore[no-untyped-def]
-    counts, first: int, sign: float, arm: float, middle: float, fire: float, state, edges
-) -> int:
-    """Write the edges of one block to ``edges`` and return their number.
+class _Before(NamedTuple):
+    """What the samples before a block leave."""
 
-    ``state`` is carried from block to block: armed or not, the last sample, and the last crossing
-    of the middle.
+    is_armed: bool
+    """Whether the channel has been low, and not high since."""
+    sample: float
+    """The last one."""
+    crossing: float
+    """Where the channel last crossed the middle upwards [samples]."""
+
+
+def _scanned(
+    counts: Counts, first: int, levels: tuple[float, float, float], before: _Before
+) -> tuple[FloatArray, _Before]:
+    """Return the edges that begin in one block, and what it leaves to the next.
+
+    ``first``: number of its first sample. ``levels``: where a pulse is armed, crosses the middle, and fires.
     """
-    armed = state[0] != 0.0
-    previous = state[1]
-    crossing = state[2]
-    count = 0
-    for k in range(counts.size):
-        value = sign * counts[k]
-        if armed:
-            if previous < middle <= value:
-                crossing = first + k - 1 + (middle - previous) / (value - previous)
-            if value >= fire:
-                edges[count] = crossing
-                count += 1
-                armed = False
-            elif np.isnan(value):
-                # a pulse that began before a gap must not be timed behind it
-                armed = False
-        elif value <= arm:
-            armed = True
-        previous = value
-    state[0] = 1.0 if armed else 0.0
-    state[1] = previous
-    state[2] = crossing
-    return count
+    arm, middle, fire = levels
+    is_low, is_above, is_high = _at_most(counts, arm), ~_below(counts, middle), ~_below(counts, fire)
+    missing = np.empty(0, dtype=np.int64)
+    if counts.dtype != np.int16:
+        is_number = ~np.isnan(counts)
+        is_above, is_high, missing = is_above & is_number, is_high & is_number, np.flatnonzero(~is_number)
+    highs = np.flatnonzero(_begins(is_high))
+    # the place of the last low sample before each pulse, and before the end; -1 where it was in an earlier block
+    ends = np.append(highs, counts.size)
+    low = _last_before(ends, np.flatnonzero(_begins(is_low[::-1])[::-1]), -1 if before.is_armed else -2)
+    # a pulse that began before a gap must not be timed behind it
+    is_armed = low > np.maximum(np.append(-2, highs), _last_before(ends, missing, -2))
+    crossed = np.flatnonzero(_begins(is_above))
+    previous = np.where(crossed > 0, counts[crossed - 1], before.sample).astype(np.float64)
+    crossed, previous = crossed[previous < middle], previous[previous < middle]
+    rise = counts[crossed].astype(np.float64) - previous
+    crossing = np.append(before.crossing, first + crossed - 1 + (middle - previous) / rise)
+    # a pulse may cross the middle and fire within one sample
+    edges = crossing[np.searchsorted(crossed, highs[is_armed[:-1]], side="right")]
+    return edges, _Before(is_armed=bool(is_armed[-1]), sample=float(counts[-1]), crossing=float(crossing[-1]))
+
+
+def _at_most(counts: Counts, level: float) -> BoolArray:
+    """Return where counts are at most a level; whole numbers are compared as such, many times faster."""
+    return np.asarray(counts <= (np.int16(np.floor(level)) if counts.dtype == np.int16 else level))
+
+
+def _below(counts: Counts, level: float) -> BoolArray:
+    return np.asarray(counts < (np.int16(np.ceil(level)) if counts.dtype == np.int16 else level))
+
+
+def _begins(mask: BoolArray) -> BoolArray:
+    """Return where runs of true values begin."""
+    begins = mask.copy()
+    begins[1:] &= ~mask[:-1]
+    return begins
+
+
+def _last_before(places: IntArray, of: IntArray, none: int) -> IntArray:
+    """Return the last of some places before each of others, all ascending; ``none`` where there is none."""
+    return np.append(none, of)[np.searchsorted(of, places)]
 
 
 def _swings_evenly(stretches: Sequence[Counts], low: float, high: float, uneven_share: float) -> bool:

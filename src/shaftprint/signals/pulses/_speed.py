@@ -10,7 +10,6 @@ from collections.abc import Iterator
 import numpy as np
 
 from shaftprint.arrays import FloatArray
-from shaftprint.kernels._compiled import compiled
 
 
 def spline_speed(time_s: FloatArray, angle_rev: FloatArray, *, start_s: float, step_s: float, count: int) -> FloatArray:
@@ -25,70 +24,70 @@ def spline_speed(time_s: FloatArray, angle_rev: FloatArray, *, start_s: float, s
     start_s, step_s, count
         The grid. Before the first and after the last pulse the speed there is held.
     """
-    slope = np.empty(time_s.size)
-    solve_slopes(time_s, angle_rev, slope)
-    speed = np.empty(count)
-    sample_slopes(time_s, angle_rev, slope, start_s, step_s, speed)
-    return speed
+    slope = knot_slopes(time_s, angle_rev)
+    return sampled_slopes(time_s, angle_rev, slope, start_s + step_s * np.arange(count))
 
 
 def spline_speeds(
     time_s: FloatArray, angle_rev: FloatArray, *, start_s: float, step_s: float, count: int, block: int
 ) -> Iterator[FloatArray]:
     """Yield the speed on a uniform grid [rev/s] in blocks, as ``spline_speed`` gives it."""
-    slope = np.empty(time_s.size)
-    solve_slopes(time_s, angle_rev, slope)
+    slope = knot_slopes(time_s, angle_rev)
     for first in range(0, count, block):
-        speed = np.empty(min(block, count - first))
-        begin_s = start_s + first * step_s
-        # from the knot before the block on
-        knots = slice(min(max(int(np.searchsorted(time_s, begin_s)) - 1, 0), time_s.size - 2), None)
-        sample_slopes(time_s[knots], angle_rev[knots], slope[knots], begin_s, step_s, speed)
-        yield speed
+        instants = np.arange(min(block, count - first))
+        yield sampled_slopes(time_s, angle_rev, slope, start_s + first * step_s + step_s * instants)
 
 
-@compiled(nogil=True)
-def solve_slopes(x, y, slope) -> None:  # type: ignore[no-untyped-def]
-    """Write the slope of the spline at each knot, by elimination in the tridiagonal equations.
+def knot_slopes(x: FloatArray, y: FloatArray) -> FloatArray:
+    """Return the slope of the spline at each knot, shape (knots,).
 
     At both ends the second derivative is that of the next knot.
     """
-    last = x.size - 1
-    upper = np.empty(x.size)
-    upper[0] = 1.0
-    slope[0] = 2.0 * (y[1] - y[0]) / (x[1] - x[0])
-    for k in range(1, last):
-        before = 1.0 / (x[k] - x[k - 1])
-        after = 1.0 / (x[k + 1] - x[k])
-        right = 3.0 * ((y[k] - y[k - 1]) * before * before + (y[k + 1] - y[k]) * after * after)
-        pivot = 2.0 * (before + after) - before * upper[k - 1]
-        upper[k] = after / pivot
-        slope[k] = (right - before * slope[k - 1]) / pivot
-    right = 2.0 * (y[last] - y[last - 1]) / (x[last] - x[last - 1])
-    slope[last] = (right - slope[last - 1]) / (1.0 - upper[last - 1])
-    for k in range(last - 1, -1, -1):
-        slope[k] -= upper[k] * slope[k + 1]
+    inverse = 1.0 / np.diff(x)
+    chord = np.diff(y) * inverse
+    before, after = inverse[:-1], inverse[1:]
+    return _solved(
+        np.concatenate([[0.0], before, [1.0]]),
+        np.concatenate([[1.0], 2.0 * (before + after), [1.0]]),
+        np.concatenate([[1.0], after, [0.0]]),
+        np.concatenate([[2.0 * chord[0]], 3.0 * (chord[:-1] * before + chord[1:] * after), [2.0 * chord[-1]]]),
+    )
 
 
-@compiled(nogil=True)
-def sample_slopes(x, y, slope, start: float, step: float, out) -> None:  # type: ignore[no-untyped-def]
-    """Write the derivative of the spline on a uniform grid."""
-    last = x.size - 1
-    k = 0
-    for j in range(out.size):
-        position = start + j * step
-        if position <= x[0]:
-            out[j] = slope[0]
-        elif position >= x[last]:
-            out[j] = slope[last]
-        else:
-            while x[k + 1] < position:
-                k += 1
-            width = x[k + 1] - x[k]
-            u = (position - x[k]) / width
-            chord = (y[k + 1] - y[k]) / width
-            out[j] = (
-                6.0 * u * (1.0 - u) * chord
-                + (1.0 - u) * (1.0 - 3.0 * u) * slope[k]
-                + u * (3.0 * u - 2.0) * slope[k + 1]
-            )
+def _solved(lower: FloatArray, diagonal: FloatArray, upper: FloatArray, right: FloatArray) -> FloatArray:
+    """Return the solution of tridiagonal equations by cyclic reduction; ``lower[0]`` and ``upper[-1]`` are 0.
+
+    Each row takes its unknown out of both neighbours, every second row at a time, as none of them has to be exchanged
+    with another: the diagonal rules.
+    """
+    if diagonal.size == 1:
+        return right / diagonal
+    rows = np.array([lower, diagonal, upper, right])
+    even, odd = rows[:, ::2], rows[:, 1::2]
+    count, between = even.shape[1], odd.shape[1]
+    ahead, behind = even[2, :between] / odd[1], even[0, 1:] / odd[1, : count - 1]
+    left = np.array([np.zeros(count), even[1], np.zeros(count), even[3]])
+    left[1:, :between] -= ahead * odd[[0, 2, 3]]
+    left[[0, 1, 3], 1:] -= behind * odd[[0, 2, 3], : count - 1]
+    solution = np.empty(diagonal.size)
+    solution[::2] = _solved(*left)
+    following = np.zeros(between)
+    following[: count - 1] = solution[2::2]
+    solution[1::2] = (odd[3] - odd[0] * solution[: 2 * between : 2] - odd[2] * following) / odd[1]
+    return solution
+
+
+def sampled_slopes(x: FloatArray, y: FloatArray, slope: FloatArray, position: FloatArray) -> FloatArray:
+    """Return the derivative of the spline at ascending positions; beyond its ends it is held."""
+    k = np.clip(np.searchsorted(x, position) - 1, 0, x.size - 2)
+    if not k.size:
+        return np.empty(0)
+    knots = slice(int(k[0]), int(k[-1]) + 2)
+    x, slope = x[knots], slope[knots]
+    width = np.diff(x)
+    chord = np.diff(y[knots]) / width
+    k -= k[0]
+    u = np.clip((position - x[k]) / width[k], 0.0, 1.0)
+    return np.asarray(
+        6.0 * u * (1.0 - u) * chord[k] + (1.0 - u) * (1.0 - 3.0 * u) * slope[k] + u * (3.0 * u - 2.0) * slope[k + 1]
+    )
