@@ -140,6 +140,15 @@ def test_a_late_import_is_made_when_it_is_used(tmp_path):
     assert found.stdout == "6 1 0.5 7\n"
 
 
+def test_signals_spectra_and_fits_are_made_without_a_compiler():
+    """It takes a second and 110 MB to start, more than a verdict on a short test takes besides."""
+    files = SOURCE.rglob("*.py")
+    rooms = {path.relative_to(SOURCE).parts[0] for path in files if "import compiled\n" in path.read_text("utf-8")}
+    assert rooms == {"limits", "recording", "simulation", "time_domain", "tug"}
+    readers = (SOURCE / "recording").rglob("*.py")
+    assert [path.parent.name for path in readers if "import compiled\n" in path.read_text("utf-8")] == ["csv"]
+
+
 def test_the_help_of_a_command_loads_its_options_and_no_more():
     script = (
         "import sys\n"

@@ -1,3 +1,5 @@
+import tracemalloc
+
 import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline
@@ -72,3 +74,13 @@ def test_the_second_derivative_is_continuous_and_at_both_ends_that_of_the_next_k
     # beyond the ends the speed is held
     out = spline_speed(time, angle, start_s=0.0, step_s=1.0, count=int(time[-1]) + 3)
     assert [out[0], out[-1]] == [slope[0], slope[-1]]
+
+
+def test_a_long_grid_needs_hardly_more_memory_than_the_speed_itself():
+    time = np.linspace(0.0, 1000.0, 2000)
+    tracemalloc.start()
+    speed = spline_speed(time, 2.0 * time, start_s=0.0, step_s=0.001, count=1_000_000)
+    _, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert speed == pytest.approx(np.full(1_000_000, 2.0))
+    assert peak < 1.5 * speed.nbytes

@@ -1,12 +1,14 @@
 """A torque gauge whose gain changes within a test, and a set point whose amplitude does: made-up legs and sines."""
 
+import tracemalloc
+
 import numpy as np
 import pytest
 from scipy.signal import lfilter
 
 from shaftprint.campaign import Campaign
 from shaftprint.signals.levels._set_point_steadiness import Amplitudes, change_of, expect_steady_set_point
-from shaftprint.signals.levels._steadiness import expect_steady_gauge
+from shaftprint.signals.levels._steadiness import expect_steady_gauge, loads_of
 
 RATE_HZ, PERIOD_S = 50.0, 20.0
 HARMONICS = (1, 3, 7, 13, 21, 31, 43)
@@ -203,3 +205,23 @@ def test_scatter_that_grows_with_the_frequency_is_no_change_of_the_amplitude(siz
             )
         )
     assert sum(one is not None for one in found) == named
+
+
+def test_loads_in_windows_are_means_and_hold_three_signals_at_most():
+    count = 400_000
+    torque = np.repeat([1.0, 3.0], count // 2)
+    begin_s, end_s = np.array([0.0, 10.0, 3990.0]), np.array([10.0, 20.0, 4000.0])
+    tracemalloc.start()
+    loads = loads_of(
+        begin_s,
+        end_s,
+        speed_rev_s=np.full(count, 5.0),
+        torque_nm=torque,
+        inertia_s=0.1,
+        rate_hz=100.0,
+        start_s=0.0,
+    )
+    _, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert loads.load == pytest.approx(np.array([0.5, 0.5, 1.5]) / np.mean([0.5, 0.5, 1.5]), rel=1e-9)
+    assert peak < 3.1 * torque.nbytes

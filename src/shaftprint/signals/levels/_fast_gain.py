@@ -153,12 +153,15 @@ def _terms(
     """Return the terms of the torque, the same of the motion that the set point makes, and the torque."""
     rate = rate_hz / step
     relative = speed / speed.mean()
-    first = np.gradient(relative) * rate_hz
-    second = np.gradient(first) * rate_hz
-    derivatives = [_means(of, step) for of in (first, second, np.gradient(second) * rate_hz)]
-    square = _means(relative**2, step)
+    square, moved = _means(relative**2, step), _means(relative, step)
+    derivatives = []
+    for _ in range(_OF_GAIN):
+        # each is as long as the recording: one is kept at a time
+        relative = np.gradient(relative)
+        relative *= rate_hz
+        derivatives.append(_means(relative, step))
     columns = np.column_stack([*derivatives, square, *_lags(square, rate)])
-    motion = _motion(_means(set_point, step), _means(relative, step), rate)
+    motion = _motion(_means(set_point, step), moved, rate)
     of_motion = [np.gradient(motion) * rate]
     for _ in range(_OF_GAIN - 1):
         of_motion.append(np.gradient(of_motion[-1]) * rate)

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Literal, TypeAlias
 
 import numpy as np
 
-from shaftprint.arrays import BoolArray, FloatArray
+from shaftprint.arrays import BoolArray, FloatArray, IntArray
 from shaftprint.reasons import Reason
 from shaftprint.signals._gaps import EVERYTHING, Coverage
 from shaftprint.signals.levels._fast_gain import FastGains, fast_gains
@@ -218,15 +218,22 @@ def loads_of(
     accelerates it is no load. ``rate_hz``, ``start_s``: the grid.
     """
     first, stop = (np.round((of - start_s) * rate_hz).astype(int) for of in (begin_s, end_s))
-    speed, torque = speed_rev_s / speed_rev_s.mean(), torque_nm / torque_nm.mean()
     length = np.maximum(stop - first, 1)
-    square, mean = (
-        (of[stop] - of[first]) / length for of in (np.append(0.0, np.cumsum(values)) for values in (speed**2, torque))
+    mean = _sums(torque_nm / torque_nm.mean(), first, stop) / length
+    speed = speed_rev_s / speed_rev_s.mean()
+    square = _sums(speed**2, first, stop) / length
+    at_first, at_stop = (
+        0.5 * (speed[np.minimum(place, speed.size - 1)] + speed[np.maximum(place - 1, 0)]) for place in (first, stop)
     )
-    at = np.append(speed[:1], 0.5 * (speed[1:] + speed[:-1]))
-    at = np.append(at, speed[-1:])
-    load = (mean - inertia_s * (at[stop] - at[first]) * rate_hz / length) / square
+    load = (mean - inertia_s * (at_stop - at_first) * rate_hz / length) / square
     return Loads(start_s=begin_s, stop_s=end_s, load=load / load.mean(), square=square / square.mean())
+
+
+def _sums(values: FloatArray, first: IntArray, stop: IntArray) -> FloatArray:
+    """Return the sums of values from some places to others, shape (places,); the values are used up."""
+    total = np.cumsum(values, out=values)
+    before, last = (np.where(place > 0, total[place - 1], 0.0) for place in (first, stop))
+    return np.asarray(last - before)
 
 
 def _courses(border_s: FloatArray) -> _Courses:

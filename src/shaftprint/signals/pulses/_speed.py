@@ -11,6 +11,9 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 
+# Instants that are calculated together: few enough for the processor's cache.
+_TOGETHER = 16_384
+
 
 def spline_speed(time_s: FloatArray, angle_rev: FloatArray, *, start_s: float, step_s: float, count: int) -> FloatArray:
     """Return the speed on a uniform grid [rev/s], shape (count,).
@@ -25,7 +28,11 @@ def spline_speed(time_s: FloatArray, angle_rev: FloatArray, *, start_s: float, s
         The grid. Before the first and after the last pulse the speed there is held.
     """
     slope = knot_slopes(time_s, angle_rev)
-    return sampled_slopes(time_s, angle_rev, slope, start_s + step_s * np.arange(count))
+    speed = np.empty(count)
+    for first in range(0, count, _TOGETHER):
+        instants = np.arange(first, min(first + _TOGETHER, count))
+        speed[instants] = sampled_slopes(time_s, angle_rev, slope, start_s + step_s * instants)
+    return speed
 
 
 def spline_speeds(
