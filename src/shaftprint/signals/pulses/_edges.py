@@ -83,7 +83,8 @@ def find_edges(samples: Iterable[Counts], levels: PulseLevels) -> FloatArray:
     first = 0
     for block in samples:
         if block.size:
-            edges, before = _scanned(block if sign > 0.0 else -1.0 * block, first, (arm, middle, fire), before)
+            upright: Counts = block if sign > 0.0 else -block.astype(np.float64)
+            edges, before = _scanned(upright, first, (arm, middle, fire), before)
             positions.append(edges)
         first += block.size
     return np.concatenate(positions) if positions else np.empty(0)

@@ -30,8 +30,9 @@ def spline_speed(time_s: FloatArray, angle_rev: FloatArray, *, start_s: float, s
     slope = knot_slopes(time_s, angle_rev)
     speed = np.empty(count)
     for first in range(0, count, _TOGETHER):
-        instants = np.arange(first, min(first + _TOGETHER, count))
-        speed[instants] = sampled_slopes(time_s, angle_rev, slope, start_s + step_s * instants)
+        instants = np.arange(first, min(first + _TOGETHER, count), dtype=np.int64)
+        position = np.asarray(start_s + step_s * instants, dtype=np.float64)
+        speed[instants] = sampled_slopes(time_s, angle_rev, slope, position)
     return speed
 
 
@@ -42,7 +43,8 @@ def spline_speeds(
     slope = knot_slopes(time_s, angle_rev)
     for first in range(0, count, block):
         instants = np.arange(min(block, count - first))
-        yield sampled_slopes(time_s, angle_rev, slope, start_s + first * step_s + step_s * instants)
+        position = np.asarray(start_s + first * step_s + step_s * instants, dtype=np.float64)
+        yield sampled_slopes(time_s, angle_rev, slope, position)
 
 
 def knot_slopes(x: FloatArray, y: FloatArray) -> FloatArray:
