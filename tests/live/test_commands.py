@@ -1,7 +1,6 @@
 """What ``shaftprint live`` prints and leaves."""
 
 import json
-import os
 import tomllib
 from importlib.resources import files as files_of
 
@@ -11,8 +10,6 @@ import tomlkit
 from tests.live.rehearsed import CAMPAIGN, VESSEL, played
 
 import shaftprint as sp
-from shaftprint.cli._live_options import take_keys
-from shaftprint.live._outcome import Ask, Operator
 from shaftprint.live._replay import replayed
 
 
@@ -76,17 +73,6 @@ def test_a_rehearsal_with_a_fault_ends_with_three_and_its_reason(run, files, tmp
         "live", "rehearse", "stan-tug-1205", files, "-o", str(tmp_path / "v.nc"), "--pace", "1", "--over", "mqtt"
     )
     assert (both.exit_code, "expected one of --pace and --over" in " ".join(both.output.split())) == (2, True)
-
-
-def test_keys_ask_and_others_are_named(capsys):
-    ends, begins = os.pipe()
-    os.write(begins, b"h\ng\nx s r\n")
-    os.close(begins)
-    operator = Operator()
-    take_keys(ends, operator)
-    os.close(ends)
-    assert list(operator.asks) == [Ask.HOLD, Ask.GO_ON, Ask.SKIP, Ask.REPEAT]
-    assert "x: expected one of h, g, s, r" in capsys.readouterr().err
 
 
 @pytest.mark.slow

@@ -7,7 +7,6 @@ import pytest
 from tests.live.rehearsed import CAMPAIGN, ENVELOPE, VESSEL, played
 
 import shaftprint as sp
-from shaftprint.campaign._leg import first_name, name_again
 from shaftprint.live._block import DeviceMode
 from shaftprint.live._changes import Advice, begun_until, by_information, followed_by
 from shaftprint.live._outcome import Ask
@@ -42,14 +41,6 @@ def asks_at(times):
 
 def volts_of(ship):
     return np.array([row[:2] for row in ship.trace])
-
-
-def test_names_of_what_is_played_again():
-    assert [first_name(one) for one in ("M1", "M1-2", "M1-12", "low-1", "low-speed")] == (
-        ["M1", "M1", "M1", "low-1", "low-speed"]
-    )
-    assert name_again("M1", {"M1", "M2"}) == "M1-2"
-    assert name_again("M1-2", {"M1", "M1-2"}) == "M1-3"
 
 
 def test_a_leg_ends_where_nothing_more_is_wished_of_it_and_the_next_follows_for_longer():
