@@ -10,7 +10,7 @@ from tests.web.client import form_of
 from tests.web.conftest import ADA
 
 from shaftprint.plain_table import Column, Table
-from shaftprint.tables._workbook import number_in, with_deviations_apart, workbook
+from shaftprint.tables._workbook import sheet_of, shown, write_workbook
 from shaftprint.web._page_tables import tables_in
 
 PAGE = """<table><caption>One <b>table</b></caption>
@@ -33,13 +33,22 @@ def test_tables_are_read_from_the_page_that_shows_them():
 
 
 def test_a_value_and_its_deviation_are_two_numbers():
-    columns = (Column("test"), Column("K_p [s]"))
-    whole = Table(title="x", columns=columns, rows=(("a", "−1 651.0 ± 2.5"), ("b", "7.0 ± 1.1 *"), ("c", "–")))
-    apart = with_deviations_apart(whole)
-    assert [one.heading for one in apart.columns] == ["test", "K_p [s]", "± K_p [s]", "K_p [s], not to be used"]
-    assert apart.rows == (("a", "−1 651.0", "2.5", ""), ("b", "7.0", "1.1", "*"), ("c", "", "", ""))
-    assert number_in("−1 651.0") == -1651.0
-    assert number_in("2026-03-01") is None
+    columns = (Column("test"), Column("K_p [s]", number=True))
+    rows = (("a", "−1 651.0 ± 2.5"), ("b", "7.00 ± 1.10 *"), ("c", "–"), ("d", "2026-03-01"))
+    apart = sheet_of(Table(title="x", columns=columns, rows=rows))
+    assert [one.heading for one in apart.columns] == ["test", "K_p [s]", "K_p [s], std", "K_p [s], not to be used"]
+    assert [[shown(cell) for cell in row] for row in apart.rows] == [
+        ["a", "-1651.0", "2.5", ""],
+        ["b", "7.00", "1.10", "*"],
+        ["c", "", "", ""],
+        ["d", "2026-03-01", "", ""],
+    ]
+
+
+def test_numbers_are_shown_as_programs_read_them():
+    assert [shown(one) for one in ((0.59, "0%"), (4.7e-5, "0.0E+0"), (0.1, "General"), "=1")] == [
+        "59 %", "4.7e-05", "0.1", "=1",
+    ]  # fmt: skip
 
 
 def test_a_page_gives_each_of_its_tables_as_csv(site):
@@ -75,8 +84,10 @@ def test_a_page_gives_its_tables_as_a_workbook(site):
 def test_numbers_are_numbers_in_a_workbook_and_no_text_is_a_formula():
     pytest.importorskip("xlsxwriter")
     table = Table(title="A/B: [x]", columns=(Column("name"), Column("n", number=True)), rows=(("=1+2", "−2.5"),))
-    with zipfile.ZipFile(io.BytesIO(workbook([table, table]))) as book:
-        sheet, names = book.read("xl/worksheets/sheet1.xml"), book.read("xl/workbook.xml")
+    content = io.BytesIO()
+    write_workbook(content, [sheet_of(table), sheet_of(table)])
+    with zipfile.ZipFile(content) as book:
+        sheet, names = book.read("xl/worksheets/sheet2.xml"), book.read("xl/workbook.xml")
     cells = ET.fromstring(sheet).iter("{http://schemas.openxmlformats.org/spreadsheetml/2006/main}c")  # noqa: S314
     kinds = {one.get("r"): (one.get("t"), [part.tag.rpartition("}")[2] for part in one]) for one in cells}
     assert kinds["A2"] == ("s", ["v"])

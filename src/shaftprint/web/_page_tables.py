@@ -2,6 +2,7 @@
 
 import csv
 import io
+from collections.abc import Sequence
 from html.parser import HTMLParser
 from typing import Final
 
@@ -10,7 +11,7 @@ from starlette.responses import Response
 
 from shaftprint.escape import csv_cell, plain_name
 from shaftprint.plain_table import Column, Table
-from shaftprint.tables._workbook import with_deviations_apart, workbook
+from shaftprint.tables._workbook import Sheet, sheet_of, shown, write_workbook
 
 XLSX: Final = "application/vnd.openxmlformats-officedocument.spreadsheetml.sheet"
 _CELLS: Final = frozenset({"th", "td"})
@@ -29,22 +30,28 @@ def file_of_tables(page: str, *, kind: str, number: str, name: str) -> Response:
     ``page``: the page. ``kind``: ``csv`` or ``xlsx``. ``number``: which table, from 1 on. ``name``: what the file is
     called, without its ending. Raises HTTPException if there is no such table; ServerError without the package.
     """
-    tables = [with_deviations_apart(one) for one in tables_in(page)]
+    tables = [sheet_of(one) for one in tables_in(page)]
     at = int(number) if number.isascii() and number.isdecimal() and len(number) < 4 else 0
     if kind not in ("csv", "xlsx") or not tables or (kind == "csv" and not 0 < at <= len(tables)):
         raise HTTPException(404)
-    content, media = (_csv(tables[at - 1]), "text/csv; charset=utf-8") if kind == "csv" else (workbook(tables), XLSX)
+    content, media = (_csv(tables[at - 1]), "text/csv; charset=utf-8") if kind == "csv" else (_xlsx(tables), XLSX)
     title = plain_name(f"{name} {tables[at - 1].title}" if kind == "csv" else name)[:80]
     plain = "".join(one if one.isascii() and (one.isalnum() or one in "-._") else "-" for one in title)
     heads = {"content-disposition": f'attachment; filename="{plain.strip("-.") or "table"}.{kind}"'}
     return Response(content, media_type=media, headers=heads)
 
 
-def _csv(table: Table) -> bytes:
+def _xlsx(tables: Sequence[Sheet]) -> bytes:
+    content = io.BytesIO()
+    write_workbook(content, tables)
+    return content.getvalue()
+
+
+def _csv(table: Sheet) -> bytes:
     text = io.StringIO()
     lines = csv.writer(text)
     for row in ([one.heading for one in table.columns], *table.rows):
-        lines.writerow([csv_cell(cell) for cell in row])
+        lines.writerow([csv_cell(cell) if isinstance(cell, str) else shown(cell) for cell in row])
     # a spreadsheet takes a file for UTF-8 by this mark
     return text.getvalue().encode("utf-8-sig")
 
