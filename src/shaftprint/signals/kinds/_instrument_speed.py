@@ -18,7 +18,7 @@ from shaftprint.signals.conditioning._condition import Reading
 from shaftprint.signals.conditioning._outliers import FaultLimits, fault_limits
 from shaftprint.signals.kinds._current_loop import alive_counts
 from shaftprint.signals.kinds._kind import conditioned_on
-from shaftprint.signals.kinds._message_reading import read_messages
+from shaftprint.signals.kinds._message_reading import expect_within, read_messages
 from shaftprint.signals.kinds._speed_reading import LONGEST_GAP_VALUES, REACH_VALUES, SpeedReading
 from shaftprint.signals.kinds._splined_messages import comes_in_messages, no_numbers, splined, unknown_age
 from shaftprint.vessel._current_loop import LIVE_ZERO_MA
@@ -105,4 +105,6 @@ def _splined(channel: "Channel", sensor: SpeedSensor, clock: "Clock", latency_s:
 def _splined_messages(channel: "Channel", limits: FaultLimits, clock: "Clock", latency_s: float) -> Reading:
     """Return messages at times of their own, in their own unit on the grid."""
     ends = sorted(end * channel.scale + channel.offset for end in (limits.lowest, limits.highest))
-    return splined(read_messages(channel, lowest=ends[0], highest=ends[1]), channel, clock, latency_s)
+    came = read_messages(channel, lowest=ends[0], highest=ends[1])
+    expect_within(came, channel, lowest=ends[0], highest=ends[1])
+    return splined(came, channel, clock, latency_s)

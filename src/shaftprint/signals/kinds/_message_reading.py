@@ -33,25 +33,30 @@ class MessageReading(Reading):
         return time_s, self.values[first]
 
 
+def expect_within(came: "MessageReading", channel: "Channel", *, lowest: float = -np.inf, highest: float) -> None:
+    """Raise SignalError if all numbers of a channel are beyond its smallest and largest value [unit]."""
+    _, values = stamped_values(channel, count=channel.count)
+    values = values[np.isfinite(values)]
+    if came.values.size or not values.size:
+        return
+    allowed = f"at most {highest:g}" if lowest == -np.inf else f"{lowest:g} to {highest:g}"
+    raise SignalError(
+        f"channel {channel.name}: expected values of {allowed} {channel.unit}, found {values.min():.4g} to "
+        f"{values.max():.4g}; correct the unit or the scale of the channel in the vessel file."
+    )
+
+
 def read_messages(
     channel: "Channel", *, lowest: float = -np.inf, highest: float = np.inf, wrong: BoolArray | None = None
 ) -> MessageReading:
     """Return the messages of a channel that hold a value, with the holes between them.
 
     ``channel``: a channel with ``stamps``. ``lowest``, ``highest``: smallest and largest value [unit]: what is beyond
-    says that there is none. ``wrong``: which messages do not count beside those, shape (messages,). Raises SignalError
-    if all numbers are beyond.
+    says that there is none. ``wrong``: which messages do not count beside those, shape (messages,).
     """
     time_s, values = stamped_values(channel, count=channel.count)
     # written so that what is not a number counts as missing
     is_value = (values >= lowest) & (values <= highest) & np.isfinite(values)
-    numbers = values[np.isfinite(values)]
-    if numbers.size and not is_value.any():
-        allowed = f"at most {highest:g}" if lowest == -np.inf else f"{lowest:g} to {highest:g}"
-        raise SignalError(
-            f"channel {channel.name}: expected values of {allowed} {channel.unit}, found {numbers.min():.4g} to "
-            f"{numbers.max():.4g}; correct the unit or the scale of the channel in the vessel file."
-        )
     if wrong is not None:
         is_value &= ~wrong
     values, time_s = values[is_value], time_s[is_value]

@@ -16,7 +16,7 @@ from shaftprint.signals._channels import middle_of
 from shaftprint.signals.conditioning._condition import Reading
 from shaftprint.signals.conditioning._outliers import FaultLimits, fault_limits
 from shaftprint.signals.kinds._kind import ChannelKind, Source, SteadyState, conditioned_on
-from shaftprint.signals.kinds._message_reading import read_messages
+from shaftprint.signals.kinds._message_reading import expect_within, read_messages
 from shaftprint.signals.kinds._splined_messages import comes_in_messages, splined
 from shaftprint.units import rpm_from_rev_s
 from shaftprint.vessel._set_point import SetPointSensor
@@ -98,6 +98,7 @@ def _read_messages(channel: "Channel", sensor: SetPointSensor, clock: "Clock") -
     latency_s = clock.latency_s(sensor.message_latency_s)
     highest = _HIGHEST_PERCENT if sensor.unit == "%" else math.inf
     came = read_messages(channel, highest=highest)
+    expect_within(came, channel, highest=highest)
     on_grid = splined(came, channel, clock, latency_s)
     in_volts = on_grid.of(sensor.volts, earlier_s=latency_s)
     return SetPointMessages(
