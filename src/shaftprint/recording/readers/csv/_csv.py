@@ -108,6 +108,9 @@ def read(path: Path, **hints: object) -> Recording:
                 digest = pool.submit(sha256_of, path)
                 done = unpack(path, content, header, spool)
                 sha256 = digest.result()
+            if 0 < done.full < done.count and done.stamps is None:
+                done.remarks.append(f"{done.count - done.full} rows at the end without any value were left out.")
+                done.count = done.full
             done.remarks += [guessed] if guessed else []
             return _recording(path, sha256, header, spool, done, rate_hz or header.rate_hz, time_unit)
         except BaseException:

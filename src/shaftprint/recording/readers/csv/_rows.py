@@ -43,6 +43,8 @@ class Unpacked:
 
     count: int = 0
     """How many there are."""
+    full: int = 0
+    """How many there are to the last with a value: a sheet may end in rows of separators alone."""
     stamps: Stamps | None = None
     """Dates or times of day."""
     left_out: dict[str, str] = field(default_factory=dict)
@@ -122,8 +124,10 @@ class _Unpacking:
             if header.names[column] in self.done.left_out:
                 continue
             values = np.asarray(columns[place], dtype=np.float64)
-            if np.isfinite(values).any():
+            is_value = np.isfinite(values)
+            if is_value.any():
                 self.has_value[place] = True
+                self.done.full = max(self.done.full, self.done.count + rows - int(np.argmax(is_value[::-1])))
                 self.marks[column].take(values)
             self.spool.append_column(column, values)
         self.done.count += rows
@@ -278,10 +282,6 @@ class _Unpacking:
         Raises RecordingError if no column of numbers is left.
         """
         header, done = self.header, self.done
-        empty = done.count - self._rows_to_the_last_value()
-        if empty and done.stamps is None:
-            done.count -= empty
-            done.remarks.append(f"{empty} rows at the end without any value were left out.")
         if self.damaged:
             more = f" and {len(self.damaged) - 1} more" if len(self.damaged) > 1 else ""
             done.remarks.append(f"Line {self.damaged[0]}{more}: damaged or cut off, and left out.")
@@ -298,19 +298,6 @@ class _Unpacking:
         ]
         if channels and len(done.left_out) == len(channels) and self.mistakes:
             raise wrong_rows(self.path, self.mistakes, header)
-
-    def _rows_to_the_last_value(self) -> int:
-        """Return how many rows there are to the last with a value: a sheet may end in rows of separators alone."""
-        kept = [number for number, name in enumerate(self.header.names) if name not in self.done.left_out]
-        sources = [self.spool.source(number) for number in kept]
-        last = self.done.count if sources else 0
-        while last > 0:
-            first = max(last - _TAIL, 0)
-            full = np.flatnonzero(np.any([np.isfinite(source(first, last)) for source in sources], axis=0))
-            if full.size:
-                return first + int(full[-1]) + 1
-            last = first
-        return self.done.count
 
 
 def _blocks(path: Path, file: IO[bytes], first: int) -> Iterator[tuple[int, bytes, bool]]:
