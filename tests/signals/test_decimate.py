@@ -57,6 +57,18 @@ def test_cut_into_blocks_does_not_matter(cut, size, first):
     assert np.array_equal(decimated(cut(SIGNAL, size), grid, channel="X"), whole)
 
 
+@pytest.mark.parametrize("first", [1000.0, 2503.7, 4990.0])
+def test_a_grid_that_begins_many_blocks_behind_the_channel_is_where_it_should_be(cut, first):
+    grid = SampleGrid(first=first, step=10.0, count=40)
+    ramp = np.arange(5000.0)
+    found = decimated(cut(ramp, 64), grid, channel="X")
+    assert np.array_equal(found, decimated([ramp], grid, channel="X"))
+    place = first + 10.0 * np.arange(40)
+    inside = place < 4900.0
+    # the filter leaves a straight line as it is, and its taps stand within a thousandth of a sample
+    assert found[inside] == pytest.approx(place[inside], abs=1.5e-3)
+
+
 def test_constant_stays_beyond_both_ends():
     found = decimated([np.full(40, 3.5)], SampleGrid(first=-200.0, step=10.0, count=60), channel="X")
     assert found == pytest.approx(np.full(60, 3.5), rel=1e-14)

@@ -97,7 +97,9 @@ def decimated(samples: Iterable[FloatArray], grid: SampleGrid, *, channel: str) 
         while done < grid.count:
             begin, phase = _places(grid, taps, np.arange(done, done + strip))
             if begin[-1] + reach > origin + held.size:
-                held, origin = held[max(begin[0] - origin, 0) :], max(int(begin[0]), origin)
+                # a grid may begin far behind the samples that are there so far
+                dropped = min(max(int(begin[0]) - origin, 0), held.size)
+                held, origin = held[dropped:], origin + dropped
                 break
             out[done : done + strip] = _filtered(held, begin - origin, taps, phase)[: grid.count - done]
             done += strip
