@@ -107,3 +107,11 @@ def test_a_log_that_is_no_table_is_named(tmp_path, ending, lines, words):
     path.write_text(40 * lines)
     with pytest.raises(RecordingError, match=words):
         read_recording(path)
+
+
+def test_a_table_of_whole_numbers_with_dates_is_no_bus(tmp_path):
+    path = tmp_path / "log.csv"
+    rows = (f"2026-03-01 10:00:{k:02d},1,{12500 + k},950,85,77,{30 + k % 10}\n" for k in range(60))
+    path.write_text("time,running,torque [N m],speed [rpm],oil [degC],water [degC],rack [%]\n" + "".join(rows))
+    with read_recording(path) as recording:
+        assert recording.channel("torque").values(0, 3) == pytest.approx([12500.0, 12501.0, 12502.0])

@@ -19,7 +19,11 @@ _CATMAN = (
     "of 1970 and times that go by the length of channels: check both, and write CSV"
 )
 _NMEA_0183 = rb"[$!][A-Z]{4,5},[^\r\n]*\*[0-9A-F]{2}"
-_CANBOAT = rb"\d{4}-\d\d-\d\d[-T ][\d:.,]+Z?,\d,\d{5,6},\d+,\d+,\d+,[0-9a-fA-F]{2}[,\r\n]"
+# Time, priority, a number of NMEA 2000, sender, receiver, length, bytes: a table of whole numbers is none.
+_CANBOAT = (
+    rb"\d{4}-\d\d-\d\d[-T ][\d:.,]+Z?,[0-7],(?:[5-9]\d|1\d\d)\d{3},\d{1,3},\d{1,3},\d{1,3}"
+    rb"(?:,[0-9a-fA-F]{2}){3,}[, \t]*\r?$"
+)
 _FRAMES_WITHOUT_TIMES = rb"(?:\w*can\d+ +|<0x)[0-9a-fA-F]{3,8}>? +\[\d\] +[0-9a-fA-F]{2}"
 _OF_LINES = {
     _NMEA_0183: "sentences of NMEA 0183, which come about once a second and are not read: log the NMEA 2000 bus itself "
