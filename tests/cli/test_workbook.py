@@ -1,5 +1,8 @@
 """What ``--xlsx`` writes, read by another library: numbers are numbers, texts stay texts, nothing is lost."""
 
+import errno
+from pathlib import Path
+
 import openpyxl
 import pytest
 from click.testing import CliRunner
@@ -68,6 +71,19 @@ def test_every_command_has_it_and_refuses_what_it_cannot_write(tmp_path):
         assert result.exit_code == 1
         assert words in result.output
     assert kept.read_text() == "mine"
+
+
+def test_a_disk_that_is_full_is_told_in_a_sentence(tmp_path, monkeypatch):
+    def full(*_):
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(Path, "write_bytes", full)
+    path = tmp_path / "cl4.xlsx"
+    result = CliRunner().invoke(shaftprint, ["structures", "CL4", "--xlsx", str(path)])
+    assert isinstance(result.exception, SystemExit)
+    assert result.exit_code == 1
+    assert "cl4.xlsx: No space left on device; check the path" in " ".join(result.stderr.split())
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_the_parameters_of_a_structure_come_as_numbers(tmp_path):

@@ -127,16 +127,12 @@ class CommandGroup(LazyGroup):
         Raises click.ClickException for an error that the user can mend; click prints it and exits with 1.
         """
         try:
-            returned = super().invoke(ctx)
+            return self._invoked(ctx)
         except ShaftprintError as error:
             raise click.ClickException(terminal_message(str(error))) from error
         except click.ClickException as error:
             # click says of its own attribute that nobody is to change it
             vars(error)["message"] = terminal_message(error.message)
-            raise
-        except click.exceptions.Exit as end:
-            if end.exit_code in (NOT_REACHED, CHANGED):
-                print_document()
             raise
         except KeyboardInterrupt:
             echo("Interrupted; nothing is left half-written.", err=True)
@@ -145,6 +141,15 @@ class CommandGroup(LazyGroup):
             if error.errno == errno.EPIPE:
                 raise
             raise click.ClickException(terminal_message(_describe(error))) from error
+
+    def _invoked(self, ctx: click.Context) -> Any:
+        """Run a command and give what it gathered, where its answer is a no as well."""
+        try:
+            returned = super().invoke(ctx)
+        except click.exceptions.Exit as end:
+            if end.exit_code in (NOT_REACHED, CHANGED):
+                print_document()
+            raise
         print_document()
         return returned
 

@@ -50,7 +50,7 @@ def expect_writer() -> None:
         raise ShaftprintError('xlsx: expected the package XlsxWriter, found none; pip install "shaftprint[xlsx]".')
 
 
-def write_workbook(target: str | IO[bytes], sheets: Sequence[Sheet]) -> None:
+def write_workbook(target: IO[bytes], sheets: Sequence[Sheet]) -> None:
     """Write a workbook (XLSX) with a sheet for each table, and before them one that lists them.
 
     Raises ShaftprintError without the package that writes it.

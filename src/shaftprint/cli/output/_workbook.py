@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
@@ -37,8 +38,11 @@ class Workbook:
     def write(self) -> None:
         """Write the file, whole or not at all."""
         sheets = [*self._fingerprints(), *(sheet_of(table) for table in self.tables if table.rows)]
+        # the library has words of its own for a disk that is full
+        content = io.BytesIO()
+        write_workbook(content, sheets)
         with written_whole(self.path) as part:
-            write_workbook(str(part), sheets)
+            part.write_bytes(content.getbuffer())
 
     def _fingerprints(self) -> Iterator[Sheet]:
         """Return numbers and sources of each fingerprint that the command gives."""
