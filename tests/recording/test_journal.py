@@ -112,5 +112,14 @@ def test_what_follows_a_torn_block_is_looked_at_a_few_times_only(tmp_path, monke
 def test_a_rate_that_is_not_that_of_the_samples_is_refused(tmp_path, monkeypatch, rate_hz):
     monkeypatch.setitem(CHANNELS[0], "rate_hz", rate_hz)
     path = written(tmp_path / "test.journal", (1, 2, 9))
-    with pytest.raises(RecordingError, match=r"samples of channel U in 0\.3 s by its rate of .* Hz, found 30"):
+    refused = r"samples of channel U in 0\.3 s by its rate of .* Hz, found 30"
+    with sp.recording.read_recording(path) as recording:
+        with pytest.raises(RecordingError, match=refused):
+            recording.channel("U")
+        assert list(recording.channels) == ["M"]
+        assert recording.channel("M").values(0, 4).tolist() == [1.25, 1.75, 2.25, 2.75]
+    # where no channel is left there is no recording
+    monkeypatch.setitem(CHANNELS[1], "rate_hz", rate_hz)
+    path = written(tmp_path / "none.journal", (1, 2, 9))
+    with pytest.raises(RecordingError, match=rf"none\.journal: expected about .* {refused}"):
         sp.recording.read_recording(path)

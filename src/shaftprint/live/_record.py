@@ -26,7 +26,7 @@ class Left:
     """What a live test has left."""
 
     recording: Path
-    """The recording in the native container; the journal where that could not be written."""
+    """The recording in the native container; the journal where that would not hold all that came."""
     campaign: Path | None
     """The campaign as it was played; None where nothing was."""
     log: Path
@@ -89,6 +89,9 @@ class LiveRecord:
         if self.first_s is None:
             return Left(recording=self.journal_path, campaign=played, log=log)
         with read_recording(self.journal_path) as recording:
+            if recording.left_out:
+                # only the journal holds all that came
+                return Left(recording=self.journal_path, campaign=played, log=log)
             write_recording(self.path, recording.channels.values(), attributes=recording.attributes)
         self.journal_path.unlink()
         return Left(recording=self.path, campaign=played, log=log)

@@ -33,21 +33,29 @@ def is_mine(path: Path) -> bool:
 def read(path: Path, **hints: object) -> Recording:
     """Open a journal; samples are read as channels are asked for them.
 
-    Raises RecordingError if it is damaged before its last block, or has no block.
+    A channel whose rate is not that of its samples is left out. Raises RecordingError if the journal is damaged before
+    its last block, has no block, or no channel is left.
     """
     expect_hints(path, hints, {})
     journal = read_journal(path)
     if not journal.blocks:
         raise RecordingError(f"{path}: expected blocks in the journal, found none.")
-    channels = {
-        one["name"]: _channel(path, journal, number, one) for number, one in enumerate(journal.head["channels"])
-    }
+    channels: dict[str, Channel] = {}
+    left_out: dict[str, str] = {}
+    for number, stated in enumerate(journal.head["channels"]):
+        if reason := _other_rate(journal.blocks, number, stated):
+            left_out[stated["name"]] = reason
+        else:
+            channels[stated["name"]] = _channel(path, journal, number, stated)
+    if not channels:
+        raise RecordingError(f"{path}: {next(iter(left_out.values()))}")
     torn = journal.torn_bytes
     return Recording(
         path=path,
         sha256=sha256_of(path),
         format=NAME,
         channels=channels,
+        left_out=left_out,
         attributes={name: value for name, value in journal.head.items() if isinstance(value, str | float)},
         remarks=(f"{path}: the last block was being written when the program ended, {torn} bytes are left out.",)
         if torn
@@ -58,7 +66,6 @@ def read(path: Path, **hints: object) -> Recording:
 def _channel(path: Path, journal: Journal, number: int, stated: Mapping[str, Any]) -> Channel:
     """Return one channel; where blocks were lost its samples are not numbers, and it is no longer counts."""
     rate_hz = float(stated["rate_hz"])
-    _expect_rate(path, journal.blocks, number, str(stated["name"]), rate_hz)
     pieces, jumps = _pieces(journal.blocks, number, rate_hz)
     dtype = np.dtype(stated["dtype"])
     lossless = all(place >= 0 for place, _ in pieces)
@@ -79,16 +86,18 @@ def _channel(path: Path, journal: Journal, number: int, stated: Mapping[str, Any
     )
 
 
-def _expect_rate(path: Path, blocks: Sequence[JournalBlock], number: int, name: str, rate_hz: float) -> None:
-    """Refuse a rate that is not that of the samples: times, and samples that were lost, would be made up by it."""
+def _other_rate(blocks: Sequence[JournalBlock], number: int, stated: Mapping[str, Any]) -> str:
+    """Return why a rate is not that of the samples: times, and samples that were lost, would be made up by it."""
+    rate_hz = float(stated["rate_hz"])
     span_s, count = sum(one.span_s for one in blocks), sum(one.places[number][1] for one in blocks)
     expected = rate_hz * span_s
     # a slow channel may begin late, and has a sample now and then
-    if not rate_hz > 0.0 or (count and abs(count - expected) > max(2.0, _SAME_RATE * expected)):
-        raise RecordingError(
-            f"{path}: expected about {expected:.6g} samples of channel {printable(name)} in {span_s:.6g} s by its rate "
-            f"of {rate_hz:g} Hz, found {count}; is the head of the journal damaged?"
-        )
+    if rate_hz > 0.0 and (not count or abs(count - expected) <= max(2.0, _SAME_RATE * expected)):
+        return ""
+    return (
+        f"expected about {expected:.6g} samples of channel {printable(stated['name'])} in {span_s:.6g} s by its rate "
+        f"of {rate_hz:g} Hz, found {count}; is that its rate, and did it come all the time?"
+    )
 
 
 def _pieces(
