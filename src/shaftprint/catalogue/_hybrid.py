@@ -15,16 +15,15 @@ from dataclasses import replace
 
 from shaftprint.arrays import FloatArray
 from shaftprint.catalogue._gauge import (
-    C_SET,
     GAUGE_K_I,
     GAUGE_K_P,
     K_Q,
-    T_SP,
     TAU_DN,
     TAU_UP,
     G,
     diesel,
     rigid_load,
+    set_point,
     speed_sensor,
     torque_sensor,
 )
@@ -32,7 +31,6 @@ from shaftprint.catalogue._gauge_combinations import RESET_TIME, TOTAL_DELAY
 from shaftprint.catalogue._roles import ShipRole
 from shaftprint.models._blocks import Gain, PIGovernor
 from shaftprint.models._combination import Combination
-from shaftprint.models._delays import Delay
 from shaftprint.models._expression import Sensitivity
 from shaftprint.models._own_blocks import RationalBlock
 from shaftprint.models._parameter import Parameter
@@ -80,7 +78,7 @@ def gauge_hybrid() -> Structure:
     engine = RationalBlock(_of_engine, (C_M, SHARE)) * diesel()
     loop = PIGovernor(OWN_K_P, OWN_K_I) * engine * shaft
     left_of_error = Sensitivity(loop)
-    moved = {"n_set": Delay(T_SP) * Gain(C_SET) * loop * left_of_error, "M_m": Gain(C_M) * shaft * left_of_error}
+    moved = {"n_set": set_point() * loop * left_of_error, "M_m": Gain(C_M) * shaft * left_of_error}
     return Structure(
         name="GAUGE-HYBRID",
         title="gauge-aware closed loop with an electric machine on the gearbox",
