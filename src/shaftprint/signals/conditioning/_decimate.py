@@ -93,6 +93,9 @@ def decimated(samples: Iterable[FloatArray], grid: SampleGrid, *, channel: str) 
     out = np.full(grid.count, np.nan)
     held, origin, done = np.empty(0), -before, 0
     for block in _prolonged(samples, before, int(last[0]) + reach):
+        if done >= grid.count:
+            # behind the grid blocks are only looked at by whoever gives them
+            continue
         held = np.concatenate([held, block])
         while done < grid.count:
             begin, phase = _places(grid, taps, np.arange(done, done + strip))
