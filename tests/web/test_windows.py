@@ -7,6 +7,7 @@ import pytest
 from tests.web.conftest import ADA
 
 from shaftprint.campaign import Campaign, load_campaign
+from shaftprint.errors import ServerError
 from shaftprint.web._kept import Making
 from shaftprint.web._recorded import drawn_recording
 from shaftprint.web.calculator._windows import _with_more, chosen_campaign, windows
@@ -123,16 +124,46 @@ def test_places_along_time_are_shares_of_the_recording():
 def test_what_the_set_point_shows_beside_the_campaign_can_be_taken_in():
     planned = Campaign(name="one", duration_s=100.0, offset_v=-5.0, sines=(SINE,))
     seen = Campaign(name="seen", duration_s=100.0, offset_v=-5.01, sines=(SINE, OTHER))
-    both, more = _with_more(planned, seen, {"S1"})
+    both, more = _with_more(planned, seen, [(20.0, 40.0)])
     assert (more, both.sines[1].start_s) == (["seen 1"], 50.0)
     # where it was not found, what is there in its place is offered too
-    assert _with_more(planned, seen, set())[1] == ["seen 1", "seen 2"]
+    assert _with_more(planned, seen, [])[1] == ["seen 1", "seen 2"]
     # another middle would be another voltage of every sine
-    assert _with_more(planned, seen.model_copy(update={"offset_v": -4.0}), {"S1"})[1] == []
+    assert _with_more(planned, seen.model_copy(update={"offset_v": -4.0}), [(20.0, 40.0)])[1] == []
     taken = chosen_campaign(both.model_dump(mode="json"), {}, "by eye")
     assert taken["tests"] == ["S1", "seen 1"]
     left = chosen_campaign(both.model_dump(mode="json"), {"seen 1": {"is_used": False}}, "by eye")
     assert left["tests"] == ["S1"]
+
+
+def test_what_the_set_point_shows_may_take_the_place_of_a_test_that_was_not_made_as_planned():
+    planned = Campaign(name="one", duration_s=100.0, offset_v=-5.0, sines=(SINE,))
+    late = {"name": "S2", "start_s": 150.0, "settled_s": 154.0, "stop_s": 190.0}
+    seen = Campaign(name="seen", duration_s=200.0, offset_v=-5.0, sines=(SINE, OTHER | late))
+    both, more = _with_more(planned, seen, [])
+    assert more == ["seen 1", "seen 2"]
+    content, left_out = both.model_dump(mode="json"), {"is_used": False}
+    # S1 and what was seen in its place are one test: either can be chosen, and both cannot
+    made = chosen_campaign(content, {"S1": left_out, "seen 2": left_out}, "by eye")
+    assert made["tests"] == ["seen 1"]
+    made = chosen_campaign(content, {"seen 1": left_out, "seen 2": left_out}, "by eye")
+    assert tomllib.loads(made["text"])["duration_s"] == 100.0
+    # behind the last test of the plan come 60 s
+    made = chosen_campaign(content, {"seen 1": left_out}, "by eye")
+    assert made["tests"] == ["S1", "seen 2"]
+    assert tomllib.loads(made["text"])["duration_s"] == 250.0
+    with pytest.raises(ServerError, match="expected seen 1 to start after S1 has stopped"):
+        chosen_campaign(content, {"seen 2": left_out}, "by eye")
+
+
+def test_a_test_that_was_found_later_is_not_offered_once_more():
+    planned = Campaign(name="one", duration_s=100.0, offset_v=-5.0, sines=(SINE,))
+    later = SINE | {"start_s": 120.0, "settled_s": 124.0, "stop_s": 140.0}
+    seen = Campaign(name="seen", duration_s=200.0, offset_v=-5.0, sines=(SINE, later | {"name": "S2"}))
+    both, more = _with_more(planned, seen, [(119.9, 139.9)])
+    assert [one.start_s for one in both.sines if one.name in more] == [20.0]
+    # one that begins where another ends is not the same
+    assert _with_more(planned, seen, [(100.0, 120.2), (139.8, 150.0), (20.0, 40.0)])[1] == ["seen 1"]
 
 
 @pytest.mark.slow

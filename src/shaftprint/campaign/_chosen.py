@@ -2,10 +2,12 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Self
+
+from pydantic import model_validator
 
 from shaftprint.campaign._campaign import Campaign
-from shaftprint.campaign._excitation import Excitation
+from shaftprint.campaign._excitation import ROUNDING_S, Excitation
 from shaftprint.campaign._excitations import Chirp, Staircase
 from shaftprint.campaign._file_text import TESTS
 from shaftprint.campaign._leg import Leg
@@ -29,6 +31,14 @@ class Choice:
     """By how much later than that its window, and the test, ends [s]."""
 
 
+class Offered(Campaign):
+    """A campaign with tests of which some stand for each other: none that can be sailed before they are chosen."""
+
+    @model_validator(mode="after")
+    def _can_be_sailed(self) -> Self:
+        return self
+
+
 def chosen(campaign: Campaign, choices: Mapping[str, Choice]) -> Campaign:
     """Return a campaign with some of its tests moved, or without them.
 
@@ -48,8 +58,9 @@ def chosen(campaign: Campaign, choices: Mapping[str, Choice]) -> Campaign:
             if (choice := choices.get(beside.get(test.name, test.name), Choice())).is_used
         ]
     ends = [one["stop_s"] if "stop_s" in one else _end_of(one) for every in tests.values() for one in every]
-    # what comes behind the last test, such as the ramp back, comes behind it still
-    behind_s = campaign.duration_s - max(one.stop_s for one in campaign.excitations)
+    # what comes behind the last test, such as the ramp back, comes behind it still; one that is offered may end later
+    within = [one.stop_s for one in campaign.excitations if one.stop_s <= campaign.duration_s + ROUNDING_S]
+    behind_s = campaign.duration_s - max(within, default=campaign.duration_s)
     longer = {"duration_s": max((campaign.duration_s, *(end + behind_s for end in ends)))}
     return Campaign.model_validate(campaign.model_dump() | tests | longer)
 

@@ -9,7 +9,7 @@ import numpy as np
 from pydantic import ValidationError
 
 from shaftprint.campaign._campaign import Campaign, load_campaign
-from shaftprint.campaign._chosen import Choice, chosen, kind_of_test, shortest_s, window_of
+from shaftprint.campaign._chosen import Choice, Offered, chosen, kind_of_test, shortest_s, window_of
 from shaftprint.campaign._excitations import Chirp, Staircase
 from shaftprint.campaign._file_text import TESTS, campaign_text
 from shaftprint.errors import ServerError, ShaftprintError, SignalError
@@ -24,6 +24,8 @@ from shaftprint.units import rpm_from_rev_s
 from shaftprint.vessel._vessel import load_vessel
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from shaftprint.arrays import FloatArray
     from shaftprint.campaign._excitation import Excitation
     from shaftprint.recording._recording import Recording
@@ -35,6 +37,8 @@ COLUMNS: Final = 1600
 MOST_REPAIRS: Final = 200
 MOST_FINDINGS: Final = 20
 _SAME_MIDDLE_V: Final = 0.05
+# So far two tests may lie over each other by the errors of their times [s].
+_SAME_TIME_S: Final = 0.5
 
 
 def windows(path: str, vessel: str, campaign: str | None) -> dict[str, Any]:
@@ -53,7 +57,8 @@ def windows(path: str, vessel: str, campaign: str | None) -> dict[str, Any]:
             raise SignalError(unseen)
         tests = () if planned is None else find_tests(opened, ship, planned, readings=channels)
         found = {one.planned.name: one for one in tests}
-        asked, more = _with_more(planned, seen, {name for name, one in found.items() if one.is_found})
+        there = [(one.begin_s, one.planned.stop_s + one.later_s) for one in tests if one.is_found]
+        asked, more = _with_more(planned, seen, there)
         refusal = ""
         findings: tuple[str, ...] = ()
         try:
@@ -92,7 +97,7 @@ def chosen_campaign(campaign: dict[str, Any], choices: dict[str, dict[str, Any]]
     """
     try:
         made = chosen(
-            Campaign.model_validate_json(json.dumps(campaign)), {name: Choice(**one) for name, one in choices.items()}
+            Offered.model_validate_json(json.dumps(campaign)), {name: Choice(**one) for name, one in choices.items()}
         )
     except ValidationError as error:
         raise ServerError(f"These windows make no campaign: {faults(error)}") from None
@@ -118,22 +123,26 @@ def _seen(opened: "Recording", ship: "Vessel") -> tuple[Campaign | None, str]:
         return None, str(error)
 
 
-def _with_more(planned: Campaign | None, seen: Campaign | None, found: set[str]) -> tuple[Campaign, list[str]]:
+def _with_more(
+    planned: Campaign | None, seen: Campaign | None, there: "Sequence[tuple[float, float]]"
+) -> tuple[Campaign, list[str]]:
     """Return a campaign with the tests that the set point shows beside those that were found, and the names of these.
 
-    None of them is in the result of itself: who looks at the page takes it in.
+    ``there``: from when to when those were found [s]. None of the others is in the result of itself: who looks at the
+    page takes it in.
     """
     if planned is None:
         assert seen is not None  # noqa: S101
         return seen, []
     if seen is None or abs(seen.offset_v - planned.offset_v) > _SAME_MIDDLE_V:
         return planned, []
-    spans = [(one.start_s, one.stop_s) for one in planned.excitations if one.name in found]
     names = {one.name for one in planned.excitations}
     tests, more = {section: list(getattr(planned, section)) for section in TESTS}, []
     for section in TESTS:
         for one in getattr(seen, section):
-            if any(one.start_s < stop_s and start_s < one.stop_s for start_s, stop_s in spans):
+            if any(
+                one.start_s < end_s - _SAME_TIME_S and begin_s < one.stop_s - _SAME_TIME_S for begin_s, end_s in there
+            ):
                 continue
             name = next(text for at in count(1) if (text := f"seen {at}") not in names)
             names.add(name)
