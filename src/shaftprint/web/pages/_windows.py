@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import AsyncIterator
+from dataclasses import replace
 from pathlib import PurePath
 from typing import Any, Final
 
@@ -19,6 +20,7 @@ AS_SEEN: Final = "as-recorded"
 """In the place of a campaign: the tests that the set point shows."""
 LONGEST_S: Final = 60.0
 _MOST_S: Final = 1e6
+_TEMPLATE: Final = "windows.html.j2"
 _DIGITS: Final = 3
 
 
@@ -57,15 +59,11 @@ async def choose(asked: Asked) -> Shown | Moved:
     }
     answer = await asked.service.desk.ask(question, longest_s=LONGEST_S)
     if fields.get("do") != "save":
-        shown = await asked.read(_windows, asked, vessel, campaign)
-        content = {**shown.data, "chosen": choices, "file": answer["text"]}
-        # a program knows the rest
-        return Shown(
-            template=shown.template,
-            title=shown.title,
-            data={"file": answer["text"]} if asked.is_api else content,
-            drawn=shown.drawn,
-        )
+        if asked.is_api:
+            # a program knows the rest, and asks with every move of a window
+            return Shown(template=_TEMPLATE, title=one.name, data={"file": answer["text"]})
+        shown = await asked.read(_shown, asked, one, making, vessel, campaign)
+        return replace(shown, data={**shown.data, "chosen": choices, "file": answer["text"]})
     line = Line(ship=Ship(name=one.ship, imo_number=one.imo), position=one.line)
     kept = await taken(asked, _pieces(answer["text"]), f"{PurePath(one.name).stem[:80]}-by-eye{SETTINGS}", line)
     to = f"/recordings/{one.id}?vessel={vessel}&campaign={kept.data['id']}#identify"
@@ -129,7 +127,10 @@ def _making(asked: Asked, vessel: str, campaign: str) -> tuple[Upload, Making | 
 
 
 def _windows(asked: Asked, vessel: str, campaign: str) -> Shown:
-    one, making = _making(asked, vessel, campaign)
+    return _shown(asked, *_making(asked, vessel, campaign), vessel, campaign)
+
+
+def _shown(asked: Asked, one: Upload, making: Making | None, vessel: str, campaign: str) -> Shown:
     data: dict[str, Any] = {
         "recording": {"id": one.id, "name": one.name, "ship": one.ship, "line": one.line},
         "vessel": vessel,
@@ -145,4 +146,4 @@ def _windows(asked: Asked, vessel: str, campaign: str) -> Shown:
         found = making.args["answer"]
         data["seen"] = found | {"refusal": without_paths(asked, found["refusal"])}
         drawn = drawn_recording(found)
-    return Shown(template="windows.html.j2", title=f"Windows of {one.name}", data=data, drawn=drawn)
+    return Shown(template=_TEMPLATE, title=f"Windows of {one.name}", data=data, drawn=drawn)
