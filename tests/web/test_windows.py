@@ -78,6 +78,27 @@ def test_a_form_gives_the_campaign_that_it_shows(choosing):
     assert "<b>M</b>" not in page
 
 
+def test_a_form_that_is_shown_again_has_the_seconds_to_the_last_digit(choosing):
+    """A second look at the file must not move a window: it lies an hour later in the recording than in the plan."""
+    address = looked(choosing)
+    page = choosing.person("tester-ada").post(f"{address}/campaign", FORM | {"later.0": "3725.384"}).text
+    assert 'name="later.0" value="3725.384"' in page
+    assert "start_s = 3745.384" in page
+
+
+def test_a_file_of_a_folder_is_found_again_whatever_it_is_called(made, tmp_path):
+    """In an address & and # begin something else."""
+    folder = tmp_path / "lies-here"
+    folder.mkdir()
+    (folder / "a&b #1.toml").write_bytes(b"x")
+    site = made(folders=(folder,))
+    tester = site.person("tester-all")
+    form = {"vessel": "folder:0:a&b #1.toml", "campaign": "short"}
+    asked = tester.post(f"/recordings/{site.uploads[ADA]}/windows", form)
+    assert asked.status == 303, asked.text
+    assert "It is being read" in tester.get(asked.heads["location"]).text
+
+
 def test_a_campaign_that_is_kept_is_a_file_of_the_line_which_its_form_has_chosen(choosing):
     tester = choosing.person("tester-ada")
     kept = tester.post(f"{looked(choosing)}/campaign", FORM | {"do": "save"})

@@ -5,6 +5,7 @@ from collections.abc import AsyncIterator
 from dataclasses import replace
 from pathlib import PurePath
 from typing import Any, Final
+from urllib.parse import urlencode
 
 from starlette.exceptions import HTTPException
 
@@ -66,8 +67,8 @@ async def choose(asked: Asked) -> Shown | Moved:
         return replace(shown, data={**shown.data, "chosen": choices, "file": answer["text"]})
     line = Line(ship=Ship(name=one.ship, imo_number=one.imo), position=one.line)
     kept = await taken(asked, _pieces(answer["text"]), f"{PurePath(one.name).stem[:80]}-by-eye{SETTINGS}", line)
-    to = f"/recordings/{one.id}?vessel={vessel}&campaign={kept.data['id']}#identify"
-    return Moved(to=to, data=kept.data, status=201)
+    chosen = urlencode({"vessel": vessel, "campaign": kept.data["id"]})
+    return Moved(to=f"/recordings/{one.id}?{chosen}#identify", data=kept.data, status=201)
 
 
 def choices_in(fields: dict[str, str], tests: list[dict[str, Any]]) -> dict[str, dict[str, Any]]:
@@ -106,7 +107,7 @@ def _key(one: Upload, vessel: str, campaign: str) -> str:
 
 
 def _address(one: Upload, vessel: str, campaign: str) -> str:
-    return f"/recordings/{one.id}/windows?vessel={vessel}&campaign={campaign}"
+    return f"/recordings/{one.id}/windows?{urlencode({'vessel': vessel, 'campaign': campaign})}"
 
 
 def _files(asked: Asked, vessel: str, campaign: str) -> dict[str, str | None]:
