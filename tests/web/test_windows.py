@@ -97,6 +97,11 @@ def test_a_file_of_a_folder_is_found_again_whatever_it_is_called(made, tmp_path)
     asked = tester.post(f"/recordings/{site.uploads[ADA]}/windows", form)
     assert asked.status == 303, asked.text
     assert "It is being read" in tester.get(asked.heads["location"]).text
+    # whether a file lies there is nothing that a reader is told
+    reader = site.person("reader-all")
+    for name in ("a%26b%20%231.toml", "none.toml"):
+        address = f"/recordings/{site.uploads[ADA]}/windows?vessel=folder:0:{name}&campaign=short"
+        assert (name, reader.get(address).status) == (name, 403)
 
 
 def test_a_campaign_that_is_kept_is_a_file_of_the_line_which_its_form_has_chosen(choosing):

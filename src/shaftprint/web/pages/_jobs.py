@@ -19,6 +19,7 @@ from shaftprint.store._ledger import retry
 from shaftprint.store._nouns import Line, Ship
 from shaftprint.web._asked import Asked, Moved, NotThere, Shown
 from shaftprint.web._kept import KeptJob
+from shaftprint.web.access._person import Role
 from shaftprint.web.pages._folders import place_of
 from shaftprint.web.pages._recordings import (
     CAMPAIGNS,
@@ -241,6 +242,8 @@ def settings_file(asked: Asked, chosen: str, shipped: tuple[str, ...]) -> str:
     if chosen in shipped:
         return chosen
     if chosen.startswith("folder:"):
+        # as the pages of the folders
+        asked.expect(Role.TESTER)
         _, number, inside = (*chosen.split(":", 2), "", "")[:3]
         return str(place_of(asked, number, inside).path)
     one = upload_called(asked, chosen)
