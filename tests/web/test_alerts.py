@@ -152,6 +152,8 @@ def test_a_mail_goes_out_by_tls_before_a_password_does(site, tmp_path, monkeypat
     [
         ("", r"expected the tables \[mail\] or \[webhook\]"),
         ('[webhook]\nurl = "ftp://x/"', "begins with https"),
+        ('[webhook]\nurl = "https://[::1/x"', "begins with https"),
+        ('[webhook]\nurl = "https://x:99999/"', "begins with https"),
         ('[webhook]\nurl = "https://x/"\nother = 1', "expected a table of url"),
         (f'[mail]\n{MAIL}tls = "none"', "where there is a password"),
         (f"[mail]\n{MAIL}".replace("yard@", "a\\nBcc: b@"), "a text in one line"),

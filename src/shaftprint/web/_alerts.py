@@ -61,9 +61,18 @@ def read_alerts(path: Path) -> Alerts:
     if table or not isinstance(pages, str) or (mail is None and hook is None):
         raise ServerError(f"{path}: expected the tables [mail] or [webhook] and the text pages, nothing else.")
     url = None if hook is None else _text(_table(hook, _HOOK, path, "webhook"), "url", path, "webhook")
-    if url is not None and (urlsplit(url).scheme not in ("https", "http") or not urlsplit(url).hostname):
+    if url is not None and not _is_address(url):
         raise ServerError(f"{path}: [webhook] url: expected an address that begins with https:// or http://.")
     return Alerts(mail=None if mail is None else _mail(mail, path), hook=url, pages=pages.rstrip("/"))
+
+
+def _is_address(url: str) -> bool:
+    try:
+        place = urlsplit(url)
+        return place.scheme in ("https", "http") and bool(place.hostname) and place.port != 0
+    except ValueError:
+        # brackets of an address that do not close, or a port that is none
+        return False
 
 
 def _mail(content: Any, path: Path) -> Mail:
