@@ -157,10 +157,10 @@ def _fill(book: Any, name: str, columns: Sequence[Column], rows: Sequence[Sequen
         for place, cell in enumerate(row):
             if isinstance(cell, tuple):
                 value, style = cell
+                if style not in formats:
+                    formats[style] = book.add_format({"num_format": style})
                 if math.isfinite(value):
-                    sheet.write_number(
-                        number, place, value, formats.setdefault(style, book.add_format({"num_format": style}))
-                    )
+                    sheet.write_number(number, place, value, formats[style])
             elif cell:
                 text = printable(str(cell))
                 sheet.write_string(number, place, text, *([quoted] if text[0] in FORMULA_BEGINS else []))
