@@ -32,6 +32,19 @@ def test_tables_are_read_from_the_page_that_shows_them():
     assert table.rows == (("a & b c", "1"),)
 
 
+def test_a_table_without_rows_does_not_change_the_numbers_of_the_others(site):
+    empty = "<table><caption>None</caption><thead><tr><th>when</th></tr></thead><tbody></tbody></table>"
+    none, one = tables_in(empty + PAGE)
+    assert (none.title, [column.heading for column in none.columns], none.rows) == ("None", ["when"], ())
+    assert one.title == "One table"
+    owner = site.person("owner-ada")
+    page = owner.get("/audit?kind=withdrew+an+event")
+    assert "?kind=withdrew+an+event&amp;as=csv&amp;table=1" in page.text
+    assert rows_of(owner.get("/audit?kind=withdrew+an+event&as=csv&table=1")) == [
+        ["when", "who", "from", "what", "about"]
+    ]
+
+
 def test_a_value_and_its_deviation_are_two_numbers():
     columns = (Column("test"), Column("K_p [s]", number=True))
     rows = (("a", "−1 651.0 ± 2.5"), ("b", "7.00 ± 1.10 *"), ("c", "–"), ("d", "2026-03-01"))

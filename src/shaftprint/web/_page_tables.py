@@ -103,9 +103,8 @@ class _Tables(HTMLParser):
         rows = [[" ".join(cell.split()) for cell in row] for row in self._rows]
         wide = len(rows[0]) if rows else 0
         body = [row for row in rows[1:] if len(row) == wide]
-        said = [at for at in range(wide) if any(row[at] for row in body)]
-        if not said:
-            return
+        # one without rows counts too: the links of the page have numbers
+        said = [at for at in range(wide) if any(row[at] for row in body)] or range(wide)
         columns = tuple(Column(rows[0][at], number=at in self._numbers) for at in said)
         cells = tuple(tuple(row[at] for at in said) for row in body)
         self.tables.append(Table(title=" ".join(self._caption.split()), columns=columns, rows=cells))
