@@ -3,6 +3,7 @@
 import csv
 import io
 import zipfile
+from types import SimpleNamespace
 from xml.etree import ElementTree as ET
 
 import pytest
@@ -11,6 +12,7 @@ from tests.web.conftest import ADA
 
 from shaftprint.plain_table import Column, Table
 from shaftprint.tables._workbook import sheet_of, shown, write_workbook
+from shaftprint.web import _upload
 from shaftprint.web._page_tables import tables_in
 
 PAGE = """<table><caption>One <b>table</b></caption>
@@ -132,6 +134,22 @@ def test_a_form_gives_several_files_however_it_is_cut(site, size):
     listed = browser.get("/api/v1/upload").json["uploads"]
     sizes = {one["name"]: one["size"] for one in listed}
     assert {name: sizes[name] for name, _ in files} == {name: len(content) for name, content in files}
+
+
+def test_files_of_one_form_need_their_room_once(site, monkeypatch):
+    """1000 bytes beyond what stays free are enough for 900, also when half of them are written."""
+
+    def usage(folder):
+        there = sum(one.stat().st_size for one in folder.rglob("*") if one.is_file())
+        return SimpleNamespace(free=_upload._LEFT_FREE + 1000 + len(frame) - there)
+
+    browser = site.person("tester-ada")
+    kind, frame = several({"token": browser.known(), "line": f"{ADA}/port"}, [("a.nc", b""), ("b.nc", b"")])
+    _, body = several({"token": browser.token, "line": f"{ADA}/port"}, [("a.nc", b"x" * 450), ("b.nc", b"x" * 450)])
+    monkeypatch.setattr(_upload.shutil, "disk_usage", usage)
+    heads = [("content-type", kind), ("content-length", str(len(body)))]
+    answer = browser.ask("POST", "/upload", body=body, heads=heads)
+    assert answer.status == 303, answer.text
 
 
 def test_what_came_before_a_file_that_is_refused_is_named(site):

@@ -130,7 +130,8 @@ async def upload(asked: Asked) -> Moved:
     kept: list[Moved] = []
     try:
         async for name, pieces in form.files():
-            kept.append(await taken(asked, pieces, name, line, of=MOST_FILES))
+            there = sum(one.data["size"] for one in kept)
+            kept.append(await taken(asked, pieces, name, line, of=MOST_FILES, there=there))
     except HTTPException as refused:
         names = ", ".join(one.data["name"] for one in kept)
         detail = f"{refused.detail} Kept before it: {names}." if names else refused.detail
@@ -219,11 +220,16 @@ def is_imo_number(text: str) -> bool:
     return sum(factor * int(digit) for factor, digit in zip(range(7, 1, -1), text, strict=False)) % 10 == int(text[-1])
 
 
-async def taken(asked: Asked, pieces: AsyncIterator[bytes], name: str, line: Line, *, of: int = 1) -> Moved:
-    """Take a file for a line, and say where its page is; ``of``: how many files its request may have."""
+async def taken(
+    asked: Asked, pieces: AsyncIterator[bytes], name: str, line: Line, *, of: int = 1, there: int = 0
+) -> Moved:
+    """Take a file for a line, and say where its page is.
+
+    ``of``: how many files its request may have. ``there``: how much of the request is on the disk already [bytes].
+    """
     plain, most = checked_name(name), asked.service.serving.most_upload
     announced = asked.request.headers.get("content-length", "")
-    length = int(announced) if announced.isascii() and announced.isdecimal() and len(announced) < 19 else None
+    length = int(announced) - there if announced.isascii() and announced.isdecimal() and len(announced) < 19 else None
     expect_room(asked.service.recordings, most=of * most + 64 * 1024, length=length)
     found: Taken = await take(pieces, asked.service.recordings, plain, most=most, length=None)
     one = Upload(
