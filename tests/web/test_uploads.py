@@ -123,6 +123,17 @@ def test_new_lines_need_a_number_that_checks_itself(site):
     assert tester.put("/api/v1/recordings/a.nc?line=port", b"x").status == 400
 
 
+def test_the_page_of_a_settings_file_says_what_it_is_for(site):
+    tester = site.person("tester-ada")
+    for text, words in (
+        (b"offset_v = 1.0", "A campaign file: choose it in the form"),
+        (b"draught_m = 1.8", "A conditions file, which the form of a recording does not take."),
+        (b"x", "No vessel or campaign file that can be read: choose it in the form"),
+    ):
+        number = tester.put(f"/api/v1/recordings/a.toml?line={LINE}", text).json["id"]
+        assert words in tester.get(f"/recordings/{number}").text
+
+
 def test_settings_that_a_job_does_not_take_are_not_offered(made, tmp_path):
     folder = tmp_path / "lies-here"
     folder.mkdir()
