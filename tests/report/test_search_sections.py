@@ -44,6 +44,11 @@ def test_the_table_of_numbers_says_what_the_verdict_says(fingerprint):
     assert doubted
     footnotes = dict(re.findall(r"(\(\d+\)) ([^;]+?)(?=; \(|\. ±)", table.note))
     assert all(footnotes[told[name].removeprefix("no ")] == verdict.not_trusted[name] for name in doubted)
+    # the zero of the gauge is no row of this table, and what speaks against it no footnote
+    doubts = [(name, words) for name, words in verdict.not_trusted.items() if name != "M_s0"]
+    other = replace(verdict, not_trusted={"M_s0": "it never stood still"} | dict(doubts))
+    (beside,) = number_section(SimpleNamespace(fingerprint=fingerprint.model_copy(update={"verdict": other}))).tables
+    assert beside == table
     refused = fingerprint.model_copy(update={"verdict": replace(verdict, trustworthy=False)})
     (table,) = number_section(SimpleNamespace(fingerprint=refused)).tables
     assert {row[-2] for row in table.rows} == {"no"}

@@ -50,7 +50,8 @@ def number_section(inputs: Inputs) -> Section:
     groups = (fingerprint.parameters, fingerprint.combinations, fingerprint.physical, fingerprint.margins)
     quantities = [quantity for group in groups for quantity in group]
     table = quantity_table("Identified numbers", quantities)
-    doubts = list(dict.fromkeys(fingerprint.verdict.not_trusted.values())) if fingerprint.verdict.trustworthy else []
+    not_trusted = fingerprint.verdict.not_trusted if fingerprint.verdict.trustworthy else {}
+    doubts = list(dict.fromkeys(not_trusted[one.name] for one in quantities if one.name in not_trusted))
     usable = tuple(_usable(fingerprint, quantity.name, doubts) for quantity in quantities)
     # the appendix has the differences; a unit stands with its value, which leaves room for the meaning
     kept = [place for place, column in enumerate(table.columns[:-2]) if place > 1 and column.heading != "difference"]
