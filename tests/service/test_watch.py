@@ -80,41 +80,48 @@ def test_a_fingerprint_at_another_load_keeps_its_deviations_in_newton_metres(mod
     assert at_point.values["K_p"] == pytest.approx(2.0 * load)
 
 
-def test_the_deviation_of_a_change_is_that_of_the_scatter_of_segments(model):
+@pytest.mark.parametrize("scale_std", [1e-9, 0.005])
+def test_the_deviation_of_a_change_is_that_of_the_scatter_of_segments(model, scale_std):
     rng = np.random.default_rng(5)
     covariance, error = fingerprint_error(model, rng)
+    # one segment tells more of this number, another of that, and of the scale of the lever with it
+    way = np.sqrt(np.diag(information(model))) * rng.standard_normal((SEGMENTS, len(FREE)))
     made = [
-        replace(day, slopes=3.0 * day.slopes)
-        for day in days(replace(model, prior_std={**model.prior_std, "c_set": 1e-9}), rng, count=3, error=0.0 * error)
+        replace(day, slopes=3.0 * day.slopes, information=day.information + way[:, :, None] * way[:, None, :])
+        for day in days(model, rng, count=3, error=0.0 * error)
     ]
-    rest = [k for k, name in enumerate(FREE) if name != "c_set"]
-    found = watch_days(made, replace(model, prior_std={**model.prior_std, "c_set": 1e-9}), covariance)
+    scale = FREE.index("c_set")
+    rest = [k for k in range(len(FREE)) if k != scale]
+    found = watch_days(made, replace(model, prior_std={**model.prior_std, "c_set": scale_std}), covariance)
     one = next(one for one in found.causes if one.cause.name == "inertia behind the gauge")
     # by hand: g = H e + H v s + noise, e of that covariance, s since the last days
-    h = information(model)[np.ix_(rest, rest)]
     v = (model.theta * (np.array(FREE) == "tau_dn"))[rest]
     prior = np.linalg.inv(covariance[np.ix_(rest, rest)])
     normal = np.zeros((len(rest) + 1, len(rest) + 1))
-    slopes = [day.slopes[:, rest] for day in made]
     right = np.zeros(len(rest) + 1)
     design = []
-    for number, own in enumerate(slopes):
+    for number, day in enumerate(made):
+        # the scale of the lever, which is another every day, is taken out by what the day tells of it
+        total = day.information.sum(axis=0)
+        share = total[:, scale] / (total[scale, scale] + scale_std**-2)
+        without = (np.eye(len(FREE)) - np.outer(share, np.eye(len(FREE))[scale]))[rest]
+        own, h = day.slopes @ without.T, without @ day.information[:, :, rest]
         after = float(number >= len(made) - one.days)
         block = np.column_stack([np.eye(len(rest)), after * v])
-        normal += SEGMENTS * block.T @ h @ block
+        normal += block.T @ h.sum(axis=0) @ block
         right += block.T @ own.sum(axis=0)
-        design.append(block)
+        design.append((own, h, block))
     normal[:-1, :-1] += prior
     inverse = np.linalg.inv(normal)
     solution = inverse @ right
     assert one.size == pytest.approx(solution[-1], rel=1e-6)
     row = inverse[-1]
     variance = row[:-1] @ prior @ row[:-1]
-    for own, block in zip(slopes, design, strict=True):
+    for own, h, block in design:
         left = own - (h @ block @ solution)
         variance += np.sum((left @ block @ row) ** 2)
         # what a day differs by however long it is
-        variance += (0.003 * SEGMENTS * row @ block.T @ h @ v) ** 2
+        variance += (0.003 * row @ block.T @ h.sum(axis=0) @ v) ** 2
     assert one.std == pytest.approx(np.sqrt(variance), rel=1e-6)
 
 

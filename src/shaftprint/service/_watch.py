@@ -241,8 +241,8 @@ def watch_days(
 class _Sums:
     """What days tell together, so that more of them cost no more: sums over days and over their segments.
 
-    A pair of slope ``g`` and curvature ``H`` of each segment enters as ``sum (g v - s^T H v)^2``, for which these are
-    enough whatever ``v`` and ``s``.
+    A pair of slope ``g`` and curvature ``H`` of each segment enters as ``sum (g s - s^T H a)^2``, for which these are
+    enough whatever ``s`` and ``a``.
     """
 
     slope: FloatArray
@@ -273,8 +273,11 @@ class _Sums:
         return _Sums(**parts)
 
     def scatter(self, seen: FloatArray, change: FloatArray) -> float:
-        """Return the sum over segments of ``(g s - a^T H s)^2`` for ``s`` seen and ``a`` a change."""
-        outer = np.outer(change, seen).reshape(-1)
+        """Return the sum over segments of ``(g s - s^T H a)^2`` for ``s`` seen and ``a`` a change.
+
+        A segment's own ``H`` is not symmetric where the scale of the lever is taken out by the share of its day.
+        """
+        outer = np.outer(seen, change).reshape(-1)
         return float(seen @ self.slopes @ seen - 2.0 * (seen @ self.mixed @ outer) + outer @ self.curvatures @ outer)
 
     def per_day(self, seen: FloatArray, direction: FloatArray) -> float:
