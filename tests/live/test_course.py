@@ -8,11 +8,38 @@ from tests.live.rehearsed import CAMPAIGN, ENVELOPE, VESSEL, played
 
 import shaftprint as sp
 from shaftprint.live._block import DeviceMode
-from shaftprint.live._changes import Advice, begun_until, by_information, followed_by
+from shaftprint.live._changes import Advice, begun_until, by_information, end_of_cut, followed_by
 from shaftprint.live._outcome import Ask
+from shaftprint.live._timetable import rendered
 
 # Ramps of 2 s; M1 from 3 to 17.1 s with 4 periods of 3 s from 5 s on, M2 from 20 to 31.1 s with 3 from 22 s on.
 M1, M2 = CAMPAIGN.legs
+# Two sines without ramps, and nothing behind the last.
+SINES = sp.campaign.Campaign.model_validate(
+    {
+        "name": "two sines",
+        "duration_s": 16.0,
+        "offset_v": -5.0,
+        "sines": (
+            {
+                "name": "S1",
+                "frequency_hz": 0.5,
+                "amplitude_v": 0.3,
+                "start_s": 1.0,
+                "settled_s": 3.0,
+                "stop_s": 9.0,
+            },
+            {
+                "name": "S2",
+                "frequency_hz": 1.0,
+                "amplitude_v": 0.3,
+                "start_s": 10.0,
+                "settled_s": 11.0,
+                "stop_s": 16.0,
+            },
+        ),
+    }
+)
 
 
 def may(campaign):
@@ -97,6 +124,33 @@ def test_a_ramp_that_is_under_way_goes_on_to_its_leg():
     assert after.legs[1].start_s == pytest.approx(20.0)
 
 
+def test_after_a_hold_the_set_point_goes_from_where_it_stands():
+    # the ramp of a file begins where the leg stops: held since, it begins when somebody says so
+    begun, _ = begun_until(CAMPAIGN, 27.3)
+    after = followed_by(CAMPAIGN, begun, (), from_s=50.0, from_v=-4.2, like=CAMPAIGN)
+    play = rendered(after, zero_s=100.0, from_s=50.0, from_v=-4.2)
+    assert play.start_s == pytest.approx(150.0)
+    assert play.value_at(np.array([150.0, 151.0, 152.0, 153.0])) == pytest.approx([-4.2, -4.6, -5.0, -5.0])
+    # a leg that is played again out of the ramp back: it is there when it begins, by a ramp as fast as others
+    fast = CAMPAIGN.model_copy(update={"ramp_s": None, "ramp_v_per_s": 0.1})
+    after = followed_by(fast, (M1,), (M2,), from_s=18.0, from_v=-5.2, like=fast)
+    play = rendered(after, zero_s=0.0, from_s=18.0, from_v=-5.2)
+    first_v = float(M2.value_at(np.array([M2.start_s]))[0])
+    assert after.legs[1].start_s - 18.0 == pytest.approx((first_v + 5.2) / 0.1)
+    before = play.volts[play.start_s + np.arange(play.volts.size) / play.rate_hz < after.legs[1].start_s]
+    assert np.diff(before) == pytest.approx(0.1 / play.rate_hz)
+    assert (before[0], before[-1]) == (pytest.approx(-5.2), pytest.approx(first_v, abs=1e-3))
+
+
+def test_a_sine_ends_where_it_passes_through_its_middle():
+    (sine, _) = SINES.sines
+    assert end_of_cut(sine, 3.3) == pytest.approx(4.0)
+    assert end_of_cut(sine, 4.0) == pytest.approx(4.0)
+    assert end_of_cut(sine, 0.2) == pytest.approx(1.0)
+    assert end_of_cut(sine, 8.9) == pytest.approx(9.0)
+    assert end_of_cut(sine.model_copy(update={"phase_rad": np.pi / 2.0}), 3.3) == pytest.approx(3.5)
+
+
 @pytest.mark.slow
 def test_what_is_known_changes_the_legs_and_leaves_the_campaign_as_it_was_played(tmp_path):
     async def advises(test):
@@ -161,3 +215,39 @@ def test_a_leg_is_played_again_after_itself_and_a_hold_ends_with_the_time_of_the
     outcome, _, ship = played(folder, proves=may, shown=asks_at({9.0: Ask.HOLD}), envelope=short)
     assert (outcome.word, ship.device.mode) == ("aborted", DeviceMode.LEVER)
     assert "may not rule for longer" in outcome.reason
+
+
+@pytest.mark.slow
+def test_a_leg_is_repeated_out_of_the_ramp_back_and_a_hold_of_the_last_one_ends(tmp_path):
+    # M2 ends at 31.1 s; from 32.2 s on the set point goes to it again, which begins at 34.2 s and is held from 43 s on
+    asks = {31.15: Ask.REPEAT, 42.0: Ask.HOLD, 46.0: Ask.GO_ON}
+    outcome, test, ship = played(tmp_path, proves=may, shown=asks_at(asks), waits=True)
+    assert (outcome.word, outcome.reason, told(test, "not done")) == ("played", "", [])
+    assert [(leg.name, leg.periods) for leg in outcome.campaign.legs] == [("M1", 4), ("M2", 3), ("M2-2", 2)]
+    zero_s = outcome.campaign.legs[0].start_s - 3.0
+    volts = volts_of(ship)
+    assert np.abs(np.diff(volts[:, 1])).max() < 0.2
+    # as it stands in the campaign, until the hold and from its beginning on
+    inside = (volts[:, 0] > zero_s + 34.3) & (volts[:, 0] < zero_s + 42.8)
+    again = outcome.campaign.legs[2]
+    by_campaign = again.value_at(volts[inside, 0])
+    assert np.abs(volts[inside, 1] - by_campaign).max() < 0.15
+    held = volts[(volts[:, 0] > zero_s + 43.2) & (volts[:, 0] < zero_s + 46.8), 1]
+    assert np.ptp(held) < 1e-9
+
+
+@pytest.mark.slow
+def test_sines_are_held_skipped_and_repeated(tmp_path):
+    # S1 is cut at 6 s, where it passes through its middle; S2 follows a second after 9 s, and again a second after 17 s
+    campaign = SINES.model_copy(update={"duration_s": 17.0})
+    asks = {4.3: Ask.HOLD, 7.0: Ask.SKIP, 8.0: Ask.GO_ON, 16.1: Ask.REPEAT, 19.3: Ask.SKIP}
+    outcome, test, ship = played(tmp_path, campaign=campaign, proves=may, shown=asks_at(asks), waits=True)
+    assert (outcome.word, outcome.reason, told(test, "not done")) == ("played", "", [])
+    assert [(sine.name, sine.periods) for sine in outcome.campaign.sines] == [("S1", 1), ("S2", 5), ("S2-2", 1)]
+    volts = volts_of(ship)[:, 1]
+    assert np.abs(np.diff(volts)).max() < 0.2
+    # a change that ends the campaign where its last test was cut
+    folder = tmp_path / "cut"
+    folder.mkdir()
+    outcome, *_ = played(folder, campaign=SINES, proves=may, shown=asks_at({12.2: Ask.SKIP}), waits=True)
+    assert (outcome.word, outcome.reason, outcome.is_back) == ("played", "", True)

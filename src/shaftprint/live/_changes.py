@@ -1,5 +1,6 @@
 """Changes of a timetable on the way: a test is cut, and others follow in another order, again, or not at all."""
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, TypeAlias
@@ -45,8 +46,15 @@ class Advice:
 
 
 def end_of_cut(test: Excitation, at_s: float) -> float:
-    """Return when a test ends that is to end at a time [s]: stairs and sweeps, which have no periods, play on."""
-    return max(at_s, test.start_s) if isinstance(test, Sine | Leg) else test.stop_s
+    """Return when a test ends that is to end at a time [s]: stairs and sweeps, which have no periods, play on.
+
+    A sine, after which no ramp goes on from where it stands, ends where it passes through its middle next.
+    """
+    if isinstance(test, Sine):
+        before = test.phase_rad / math.pi
+        halves = math.ceil(2.0 * test.frequency_hz * max(at_s - test.start_s, 0.0) + before)
+        return min(max(test.start_s + (halves - before) / (2.0 * test.frequency_hz), at_s), test.stop_s)
+    return max(at_s, test.start_s) if isinstance(test, Leg) else test.stop_s
 
 
 def begun_until(campaign: Campaign, at_s: float) -> tuple[tuple[Excitation, ...], tuple[Excitation, ...]]:
@@ -63,32 +71,41 @@ def begun_until(campaign: Campaign, at_s: float) -> tuple[tuple[Excitation, ...]
 
 
 def followed_by(
-    campaign: Campaign, begun: Sequence[Excitation], to_come: Sequence[Excitation], *, from_s: float, like: Campaign
+    campaign: Campaign,
+    begun: Sequence[Excitation],
+    to_come: Sequence[Excitation],
+    *,
+    from_s: float,
+    like: Campaign,
+    from_v: float | None = None,
 ) -> Campaign:
     """Return a campaign of tests that have begun, and others that follow one after the other, each after its ramp.
 
     ``from_s``: when the first of them may begin to be gone to [s]. ``like``: the campaign that was asked for: between
-    tests that need no ramp, and after the last, as much time passes as there.
+    tests that need no ramp, and after the last, as much time passes as there. ``from_v``: where the set point stands at
+    that time [V], where that is not where the last test has ended.
     """
     ramps = {"ramp_s": campaign.ramp_s, "ramp_v_per_s": campaign.ramp_v_per_s}
 
-    def ramp_s(before: Excitation | None, after: Excitation | None) -> float:
-        from_v, to_v = ends_of_move(before, after, offset_v=campaign.offset_v)
-        return length_of_move_s(abs(to_v - from_v), **ramps)
+    def ramp_s(before: Excitation | None, after: Excitation | None, stands_v: float | None) -> float:
+        ended_v, to_v = ends_of_move(before, after, offset_v=campaign.offset_v)
+        return length_of_move_s(abs(to_v - (ended_v if stands_v is None else stands_v)), **ramps)
 
     last, free_s, follow = (begun[-1] if begun else None), from_s, list[Excitation]()
     for test in to_come:
         needs_ramp = isinstance(last, Leg) or isinstance(test, Leg)
-        start_s = free_s + (ramp_s(last, test) if needs_ramp else _gap_s(like, first_name(test.name)))
-        last = moved(test, start_s - test.start_s)
+        start_s = free_s + (ramp_s(last, test, from_v) if needs_ramp else _gap_s(like, first_name(test.name)))
+        last, from_v = moved(test, start_s - test.start_s), None
         follow.append(last)
         free_s = last.stop_s
     asked = like.excitations[-1]
-    spare_s = like.duration_s - asked.stop_s - ramp_s(asked, None)
+    spare_s = like.duration_s - asked.stop_s - ramp_s(asked, None, None)
     sections: dict[str, tuple[Excitation, ...]] = {
         section: tuple(one for one in (*begun, *follow) if isinstance(one, kind)) for kind, section in _SECTIONS.items()
     }
-    return campaign.model_copy(update=sections | {"duration_s": free_s + ramp_s(last, None) + max(spare_s, 0.0)})
+    return campaign.model_copy(
+        update=sections | {"duration_s": free_s + ramp_s(last, None, from_v) + max(spare_s, 0.0)}
+    )
 
 
 def again(test: Excitation, campaign: Campaign, *, periods: int | None = None) -> Excitation:

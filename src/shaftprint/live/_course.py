@@ -23,7 +23,7 @@ from shaftprint.live._outcome import Ask
 from shaftprint.live._play import Play
 from shaftprint.live._replay import judged_channels
 from shaftprint.live._state import State
-from shaftprint.live._timetable import PLAY_HZ, played_until, rendered, shifted, state_at, test_at
+from shaftprint.live._timetable import PLAY_HZ, faster_than, played_until, rendered, shifted, state_at, test_at
 
 if TYPE_CHECKING:
     from shaftprint.campaign._campaign import Campaign
@@ -127,6 +127,8 @@ class Course(Loop):
                 await self._obey(self.operator.asks.popleft())
             elif ended is not None and self._held is None:
                 await self._take_advice(*ended)
+        # a change may have ended it where a test was
+        self._enter(State.RAMP_OUT)
 
     async def _judge_lines(self) -> tuple[Periodic, LineJudge] | None:
         """Judge the last block; return the leg of which it has ended a period."""
@@ -213,8 +215,7 @@ class Course(Loop):
         if ran is not None and ran.stop_s > stop_s:
             to_come = (*self._missing_of(ran, begun[-1]), *to_come)
         held_s = max(stop_s, self.campaign_s + LEAD_S)
-        now = rendered(self.campaign, zero_s=self._zero_s)
-        volts = now.value_at(np.array([self._zero_s + held_s]))
+        volts = np.array([self._stands_v(held_s)])
         play = Play(name="hold", start_s=self._zero_s + held_s, rate_hz=PLAY_HZ, volts=volts)
         campaign = followed_by(self.campaign, begun, (), from_s=held_s, like=self._asked)
         if await self._put_out(play, campaign):
@@ -229,11 +230,20 @@ class Course(Loop):
         missing = whole.periods - cut.periods
         return (again(whole, self.campaign, periods=missing),) if missing >= FEWEST_PERIODS else ()
 
+    def _stands_v(self, at_s: float) -> float:
+        """Return the set point at a time of the campaign [s] by what is played now [V]."""
+        play = self._play or rendered(self.campaign, zero_s=self._zero_s)
+        return float(play.value_at(np.array([self._zero_s + at_s]))[0])
+
+    def _then(self, begun: "Sequence[Excitation]", follow: "Sequence[Excitation]", *, from_s: float) -> _Change:
+        """Return the change to tests that follow on those that have begun."""
+        is_between = not begun or begun[-1].stop_s < from_s
+        from_v = self._stands_v(from_s) if is_between else None
+        return followed_by(self.campaign, begun, follow, from_s=from_s, from_v=from_v, like=self._asked), from_s
+
     def _going_on(self, held: "tuple[Excitation, ...]") -> _Maker:
         def make(at_s: float) -> _Change:
-            from_s = max(at_s, self._held_s)
-            begun = self.campaign.excitations
-            return followed_by(self.campaign, begun, held, from_s=from_s, like=self._asked), from_s
+            return self._then(self.campaign.excitations, held, from_s=max(at_s, self._held_s))
 
         return make
 
@@ -242,9 +252,9 @@ class Course(Loop):
         is_cut = bool(begun) and begun[-1].stop_s >= at_s
         if not is_cut and not to_come:
             return None
-        from_s = begun[-1].stop_s if is_cut else at_s
-        follow = to_come if is_cut else to_come[1:]
-        return followed_by(self.campaign, begun, follow, from_s=from_s, like=self._asked), from_s
+        if is_cut:
+            return self._then(begun, to_come, from_s=begun[-1].stop_s)
+        return self._then(begun, to_come[1:], from_s=at_s)
 
     def _repeating(self, at_s: float) -> _Change:
         begun, to_come = begun_until(self.campaign, at_s)
@@ -252,9 +262,8 @@ class Course(Loop):
             return None
         ran = next(one for one in self.campaign.excitations if one.name == begun[-1].name)
         asked = next(one for one in self._asked.excitations if one.name == first_name(ran.name))
-        from_s = max(ran.stop_s, at_s)
         follow = (again(asked, self.campaign), *to_come)
-        return followed_by(self.campaign, (*begun[:-1], ran), follow, from_s=from_s, like=self._asked), from_s
+        return self._then((*begun[:-1], ran), follow, from_s=max(ran.stop_s, at_s))
 
     async def _offer(self, make: _Maker, word: str) -> None:
         if not await self._propose(make, word):
@@ -289,7 +298,10 @@ class Course(Loop):
         if change is None:
             return None
         campaign, from_s = change
-        if not await self._put_out(rendered(campaign, zero_s=self._zero_s, from_s=from_s), campaign):
+        play = rendered(campaign, zero_s=self._zero_s, from_s=from_s, from_v=self._stands_v(from_s))
+        if too_fast := faster_than(play.volts, self.envelope.highest_slew_v_per_s):
+            return self._tell("not done", f"Nothing is changed; it may not be played: {too_fast}")
+        if not await self._put_out(play, campaign):
             return None
         if self._held is not None:
             self._most_s += from_s - self._held_s

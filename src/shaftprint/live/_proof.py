@@ -13,7 +13,7 @@ from shaftprint.forecast._predict import expected_motion
 from shaftprint.forecast._ship_before_test import ShipBeforeTest
 from shaftprint.forecast._simulation import SimulatedSignal, simulated_ship
 from shaftprint.live._envelope import SET_POINT, SPEED, TORQUE, Bound, Envelope
-from shaftprint.live._timetable import PLAY_HZ, expect_playable, rendered
+from shaftprint.live._timetable import expect_playable, faster_than, rendered
 
 if TYPE_CHECKING:
     from shaftprint.campaign._campaign import Campaign
@@ -113,7 +113,8 @@ def prove(
         _foreseen(TORQUE, "N m", torque, envelope),
     )
     refusals = [_outside(one) for one in foreseen if not one.is_within]
-    refusals += _too_fast(volts, envelope)
+    if too_fast := faster_than(volts, envelope.highest_slew_v_per_s):
+        refusals.append(too_fast)
     if campaign.duration_s > envelope.longest_s:
         refusals.append(
             f"campaign {campaign.name}: expected at most {envelope.longest_s:g} s, found {campaign.duration_s:g} s."
@@ -219,16 +220,6 @@ def _outside(one: Foreseen) -> str:
         f"{one.quantity}: expected within {low:.6g} to {high:.6g} {one.unit}, foreseen {one.lowest:.6g} to "
         f"{one.highest:.6g} {one.unit}; make the test smaller or move its level."
     )
-
-
-def _too_fast(volts: FloatArray, envelope: Envelope) -> list[str]:
-    fastest = float(np.abs(np.diff(volts)).max(initial=0.0)) * PLAY_HZ
-    if fastest <= envelope.highest_slew_v_per_s:
-        return []
-    return [
-        f"set point: expected at most {envelope.highest_slew_v_per_s:g} V/s, found {fastest:.4g} V/s; staircases and "
-        "sines that begin at once jump, multisines with ramp_s do not."
-    ]
 
 
 def _barred(speed_rpm: FloatArray, envelope: Envelope) -> list[str]:

@@ -24,7 +24,7 @@ _MAY_FOLLOW = {
     State.RAMP_IN: {State.SETTLE, State.LEG, State.RAMP_OUT, State.HOLD},
     State.SETTLE: {State.LEG, State.RAMP_IN, State.RAMP_OUT, State.HOLD},
     State.LEG: {State.SETTLE, State.RAMP_IN, State.RAMP_OUT, State.HOLD},
-    State.RAMP_OUT: {State.IDLE, State.HOLD},
+    State.RAMP_OUT: {State.RAMP_IN, State.SETTLE, State.LEG, State.IDLE, State.HOLD},
     State.HOLD: {State.RAMP_IN, State.SETTLE, State.LEG, State.RAMP_OUT},
     State.ABORT: {State.IDLE},
 }

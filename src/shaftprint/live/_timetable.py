@@ -1,6 +1,7 @@
 """A campaign in time: what is put out, the state at each time, and the campaign as it was played."""
 
 import math
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -9,6 +10,7 @@ from shaftprint.campaign._campaign import Campaign
 from shaftprint.campaign._excitation import Excitation
 from shaftprint.campaign._excitations import SPEED_SET_POINT, Chirp, Sine, Staircase
 from shaftprint.campaign._leg import FEWEST_PERIODS, Leg
+from shaftprint.campaign._moves import length_of_move_s
 from shaftprint.campaign._setpoint import setpoint
 from shaftprint.errors import LiveError
 from shaftprint.live._play import Play
@@ -21,6 +23,8 @@ PLAY_HZ = 200.0
 """Set points a second of a waveform [Hz]."""
 # A set point a block, early or late by some ten milliseconds, says nothing of faster lines [Hz].
 _WRITTEN_HZ = 5.0
+# Nearer than this the set point stands where it is to begin: it was read between two values that are put out [V].
+_BEGINS_V = 1e-3
 # A window of whole periods may fall short by rounding of its decimal stop time.
 _PERIOD_ROUNDING = 1e-6
 _TESTS = ("sines", "multisines", "binary_sequences", "chirps", "staircases")
@@ -55,14 +59,36 @@ def expect_slow(campaign: Campaign) -> None:
             )
 
 
-def rendered(campaign: Campaign, *, zero_s: float, from_s: float = 0.0) -> Play:
+def rendered(campaign: Campaign, *, zero_s: float, from_s: float = 0.0, from_v: float | None = None) -> Play:
     """Return what a campaign puts out from a time on.
 
     ``zero_s``: its second 0 by the counterpart's clock [s]. ``from_s``: time of the campaign at which it begins [s].
+    ``from_v``: where the set point stands then [V]: a ramp of the campaign that would be under way, or over, begins
+    there and then, as after a hold.
     """
     count = math.ceil((campaign.duration_s - from_s) * PLAY_HZ) + 1
     time_s: FloatArray = from_s + np.arange(count) / PLAY_HZ
-    return Play(name=campaign.name, start_s=zero_s + from_s, rate_hz=PLAY_HZ, volts=setpoint(campaign, time_s))
+    volts = setpoint(campaign, time_s)
+    if from_v is not None and abs(from_v - volts[0]) > _BEGINS_V:
+        for move in (one for one in campaign.moves if one.free_s[0] <= from_s < one.free_s[1]):
+            length_s = length_of_move_s(
+                abs(move.to_v - from_v), ramp_s=campaign.ramp_s, ramp_v_per_s=campaign.ramp_v_per_s
+            )
+            ramp = replace(move, start_s=from_s, stop_s=from_s + length_s, from_v=from_v)
+            inside = time_s < move.free_s[1]
+            volts[inside] = ramp.value_at(time_s[inside])
+    return Play(name=campaign.name, start_s=zero_s + from_s, rate_hz=PLAY_HZ, volts=volts)
+
+
+def faster_than(volts: "FloatArray", most_v_per_s: float) -> str:
+    """Return what is wrong with a waveform that moves faster than it may, in a sentence; nothing where it does not."""
+    fastest = float(np.abs(np.diff(volts)).max(initial=0.0)) * PLAY_HZ
+    if fastest <= most_v_per_s:
+        return ""
+    return (
+        f"set point: expected at most {most_v_per_s:g} V/s, found {fastest:.4g} V/s; staircases and sines that begin "
+        "at once jump, multisines with ramp_s do not."
+    )
 
 
 def test_at(campaign: Campaign, time_s: float) -> Excitation | None:
