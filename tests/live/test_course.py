@@ -1,5 +1,6 @@
 """What is to come is changed while a test is played: by what is known, and by the operator."""
 
+import threading
 from dataclasses import replace
 
 import numpy as np
@@ -251,3 +252,23 @@ def test_sines_are_held_skipped_and_repeated(tmp_path):
     folder.mkdir()
     outcome, *_ = played(folder, campaign=SINES, proves=may, shown=asks_at({12.2: Ask.SKIP}), waits=True)
     assert (outcome.word, outcome.reason, outcome.is_back) == ("played", "", True)
+
+
+@pytest.mark.slow
+def test_a_proof_that_takes_long_skips_no_other_leg(tmp_path):
+    proved = threading.Event()
+
+    def may_late(campaign):
+        proved.wait(60.0)
+        return ()
+
+    def shown(test, sight):
+        asks(test, sight)
+        if test.campaign_s > 22.0:
+            proved.set()
+
+    # asked for a second and a half before M1 ends; the answer is there when M2 is played
+    asks = asks_at({15.5: Ask.SKIP})
+    outcome, test, _ = played(tmp_path, proves=may_late, shown=shown)
+    assert [(leg.name, leg.periods) for leg in outcome.campaign.legs] == [("M1", 4), ("M2", 3)]
+    assert told(test, "not done") == ["Nothing is changed: it is too late."]

@@ -33,8 +33,9 @@ if TYPE_CHECKING:
 LEAD_S = 1.0
 """Time that a change needs to reach the device [s]."""
 
-# A campaign, and when it begins to differ from the one that is played [s]; None where it is too late for that.
-_Change: TypeAlias = "tuple[Campaign, float] | None"
+# A campaign, when it begins to differ from the one that is played [s], and the test that is cut, left out or played
+# again; None where it is too late for that.
+_Change: TypeAlias = "tuple[Campaign, float, str] | None"
 # Makes a change that begins at a time of the campaign, or soon after it [s].
 _Maker: TypeAlias = Callable[[float], _Change]
 
@@ -66,7 +67,7 @@ class Course(Loop):
         self._asked = self.campaign
         self._most_s = self.campaign.duration_s if self.most_s is None else self.most_s
         self._judge: tuple[str, LineJudge] | None = None
-        self._proving: tuple[asyncio.Task[Sequence[str]], _Maker, str] | None = None
+        self._proving: tuple[asyncio.Task[Sequence[str]], _Maker, str, str] | None = None
         self._held: tuple[Excitation, ...] | None = None
         self._held_s = math.nan
 
@@ -181,7 +182,7 @@ class Course(Loop):
             if changed is None or changed == self.campaign:
                 return None
             (ends,) = (one for one in changed.legs if one.name == leg.name)
-            return changed, min(ends.stop_s, leg.stop_s)
+            return changed, min(ends.stop_s, leg.stop_s), leg.name
 
         if advice.sentence:
             self._tell("known", advice.sentence)
@@ -235,15 +236,17 @@ class Course(Loop):
         play = self._play or rendered(self.campaign, zero_s=self._zero_s)
         return float(play.value_at(np.array([self._zero_s + at_s]))[0])
 
-    def _then(self, begun: "Sequence[Excitation]", follow: "Sequence[Excitation]", *, from_s: float) -> _Change:
+    def _then(
+        self, begun: "Sequence[Excitation]", follow: "Sequence[Excitation]", *, from_s: float, of: str
+    ) -> _Change:
         """Return the change to tests that follow on those that have begun."""
         is_between = not begun or begun[-1].stop_s < from_s
         from_v = self._stands_v(from_s) if is_between else None
-        return followed_by(self.campaign, begun, follow, from_s=from_s, from_v=from_v, like=self._asked), from_s
+        return followed_by(self.campaign, begun, follow, from_s=from_s, from_v=from_v, like=self._asked), from_s, of
 
     def _going_on(self, held: "tuple[Excitation, ...]") -> _Maker:
         def make(at_s: float) -> _Change:
-            return self._then(self.campaign.excitations, held, from_s=max(at_s, self._held_s))
+            return self._then(self.campaign.excitations, held, from_s=max(at_s, self._held_s), of="")
 
         return make
 
@@ -253,8 +256,8 @@ class Course(Loop):
         if not is_cut and not to_come:
             return None
         if is_cut:
-            return self._then(begun, to_come, from_s=begun[-1].stop_s)
-        return self._then(begun, to_come[1:], from_s=at_s)
+            return self._then(begun, to_come, from_s=begun[-1].stop_s, of=begun[-1].name)
+        return self._then(begun, to_come[1:], from_s=at_s, of=to_come[0].name)
 
     def _repeating(self, at_s: float) -> _Change:
         begun, to_come = begun_until(self.campaign, at_s)
@@ -263,7 +266,7 @@ class Course(Loop):
         ran = next(one for one in self.campaign.excitations if one.name == begun[-1].name)
         asked = next(one for one in self._asked.excitations if one.name == first_name(ran.name))
         follow = (again(asked, self.campaign), *to_come)
-        return self._then((*begun[:-1], ran), follow, from_s=max(ran.stop_s, at_s))
+        return self._then((*begun[:-1], ran), follow, from_s=max(ran.stop_s, at_s), of=ran.name)
 
     async def _offer(self, make: _Maker, word: str) -> None:
         if not await self._propose(make, word):
@@ -277,7 +280,7 @@ class Course(Loop):
         if change is None or self.proves is None:
             return False
         task = asyncio.create_task(asyncio.to_thread(self.proves, change[0]))
-        self._proving = task, make, word
+        self._proving = task, make, word, change[2]
         if self.waits:
             await asyncio.wait([task])
             await self._proved()
@@ -287,7 +290,7 @@ class Course(Loop):
         """Put a change out that was proved; the same as was proved, but for when it begins."""
         if self._proving is None or not self._proving[0].done():
             return None
-        (task, make, word), self._proving = self._proving, None
+        (task, make, word, of), self._proving = self._proving, None
         try:
             refusals = task.result()
         except ShaftprintError as error:
@@ -295,9 +298,9 @@ class Course(Loop):
         if refusals:
             return self._tell("not done", f"Nothing is changed; it may not be played: {' '.join(refusals)}")
         change = make(self.campaign_s + LEAD_S)
-        if change is None:
-            return None
-        campaign, from_s = change
+        if change is None or change[2] != of:
+            return self._tell("not done", "Nothing is changed: it is too late.")
+        campaign, from_s, _ = change
         play = rendered(campaign, zero_s=self._zero_s, from_s=from_s, from_v=self._stands_v(from_s))
         if too_fast := faster_than(play.volts, self.envelope.highest_slew_v_per_s):
             return self._tell("not done", f"Nothing is changed; it may not be played: {too_fast}")
