@@ -219,10 +219,11 @@ def test_a_leg_is_played_again_after_itself_and_a_hold_ends_with_the_time_of_the
 
 
 @pytest.mark.slow
-def test_a_leg_is_repeated_out_of_the_ramp_back_and_a_hold_of_the_last_one_ends(tmp_path):
+@pytest.mark.parametrize("plays_waveform", [True, False])
+def test_a_leg_is_repeated_out_of_the_ramp_back_and_a_hold_of_the_last_one_ends(tmp_path, plays_waveform):
     # M2 ends at 31.1 s; from 32.2 s on the set point goes to it again, which begins at 34.2 s and is held from 43 s on
     asks = {31.15: Ask.REPEAT, 42.0: Ask.HOLD, 46.0: Ask.GO_ON}
-    outcome, test, ship = played(tmp_path, proves=may, shown=asks_at(asks), waits=True)
+    outcome, test, ship = played(tmp_path, proves=may, shown=asks_at(asks), waits=True, plays_waveform=plays_waveform)
     assert (outcome.word, outcome.reason, told(test, "not done")) == ("played", "", [])
     assert [(leg.name, leg.periods) for leg in outcome.campaign.legs] == [("M1", 4), ("M2", 3), ("M2-2", 2)]
     zero_s = outcome.campaign.legs[0].start_s - 3.0

@@ -104,6 +104,9 @@ class Loop:
     def _value_now(self, play: "Play", sight: Sight) -> float:
         """Return the set point of the time until the next block, for a device that plays no table [V]."""
         middle_s = sight.time_s + 0.5 * sight.block.span_s
+        if self._play is not None and middle_s < play.start_s:
+            # until a change begins, what it follows on is put out
+            play = self._play
         return float(play.value_at(np.array([middle_s]))[0])
 
     async def _new_block(self) -> Block:
