@@ -36,6 +36,9 @@ SINGLE_PASSES = 16
 LEAST_DAMPING = 1e-12
 FIRST_DAMPING = 1e-2
 MOST_DAMPING = 1e10
+# Where the cost is rough, as with dry friction, no step leads to the contour itself. From this share of the way on the
+# rest is taken to be like the way so far.
+NEAR = 0.8
 # With more damping than this a small step says nothing.
 TRUSTED_DAMPING = 1e-5
 # A step that was good leaves this share of the damping.
@@ -115,22 +118,28 @@ class _Climb:
         lower, upper = numbers.objective.lower, numbers.objective.upper
         at = _Position.at_start(self, rows, theta)
         theta = at.theta.copy()
-        is_open = np.zeros(rows.size, dtype=np.bool_)
+        is_open, failed, stretch = np.zeros(rows.size, np.bool_), np.zeros(rows.size, np.bool_), np.ones(rows.size)
         for _ in range(ROUNDS):
             step = _model_step(at, lower, upper)
-            stopped, done = _judged(at, step)
+            stopped, lost, done = _judged(at, step)
+            if lost.any():
+                places = at.rows[lost]
+                is_open[places], failed[places], stretch[places] = _short_of(at.chosen(lost), lower, upper)
             if done.any():
                 places = at.rows[done]
                 theta[places] = self._last_step(at.chosen(done), step.chosen(done))
-                is_open[places] = stopped[done]
+                is_open[places] |= stopped[done]
                 at, step = at.chosen(~done), step.chosen(~done)
                 if at.rows.size == 0:
                     break
             at.advance(numbers, np.minimum(np.maximum(at.theta + step.delta, lower), upper), step)
-        short, failed = at.root < (1.0 - SHARP) * at.distance, np.zeros_like(is_open)
-        stopped = np.any((at.theta <= lower) | (at.theta >= upper), axis=1)
-        theta[at.rows], is_open[at.rows], failed[at.rows] = at.theta, short & stopped, short & ~stopped
-        return Ends(theta=theta, value=numbers.values(theta), is_open=is_open, failed=failed)
+        theta[at.rows] = at.theta
+        is_open[at.rows], failed[at.rows], stretch[at.rows] = _short_of(at, lower, upper)
+        value = numbers.values(theta)
+        if np.any(stretch > 1.0):
+            centre = numbers.values(np.broadcast_to(self.start, theta.shape))
+            value = np.where(stretch > 1.0, centre + stretch * (value - centre), value)
+        return Ends(theta=theta, value=value, is_open=is_open, failed=failed)
 
     def _last_step(self, at: "_Position", step: "_Step") -> FloatArray:
         """Return the ends of rows that are done: a step further, but where that leaves the contour.
@@ -296,8 +305,16 @@ def _diagonal(matrix: FloatArray) -> FloatArray:
     return matrix.reshape(rows, -1)[:, :: size + 1]
 
 
-def _judged(at: _Position, step: _Step) -> tuple[BoolArray, BoolArray]:
-    """Return which rows bounds have stopped, and which are done, those included."""
+def _short_of(at: _Position, lower: FloatArray, upper: FloatArray) -> tuple[BoolArray, BoolArray, FloatArray]:
+    """Return of rows that go no further which are open, which failed, and how much further the contour of each is."""
+    share = at.root / at.distance
+    short, held = share < 1.0 - SHARP, np.any((at.theta <= lower) | (at.theta >= upper), axis=1)
+    near = share >= NEAR
+    return short & held, short & ~held & ~near, np.where(short & ~held & near, 1.0 / np.maximum(share, NEAR), 1.0)
+
+
+def _judged(at: _Position, step: _Step) -> tuple[BoolArray, BoolArray, BoolArray]:
+    """Return which rows bounds have stopped, which no step leads further, and which are done, those included."""
     gain = np.vecdot(at.slope, step.delta)
     small = np.abs(gain) <= PRECISION * np.abs(at.value + gain - at.start)
     small &= at.damping <= TRUSTED_DAMPING
@@ -305,7 +322,7 @@ def _judged(at: _Position, step: _Step) -> tuple[BoolArray, BoolArray]:
     fall = -np.vecdot(at.gradient, step.delta)
     stopped = small & step.stuck & (fall <= SHARP * at.distance**2) & (at.cost < at.limit)
     lost = ~reached & (at.damping > MOST_DAMPING)
-    return stopped | (lost & (at.root < (1.0 - SHARP) * at.distance)), reached | stopped | lost
+    return stopped, lost & ~stopped, reached | stopped | lost
 
 
 def _model_step(at: _Position, lower: FloatArray, upper: FloatArray) -> _Step:
