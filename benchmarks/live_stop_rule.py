@@ -25,7 +25,7 @@ from shaftprint.errors import ShaftprintError
 from shaftprint.live._engine import LiveTest
 from shaftprint.live._envelope import envelope_of
 from shaftprint.live._proof import prove
-from shaftprint.live._record import LiveRecord
+from shaftprint.live._recorded import recorded
 from shaftprint.live._rehearse import simulated_ship_of
 from shaftprint.live._stop_rule import advice_by
 from shaftprint.live.counterparts._faults import LinkFaults
@@ -43,20 +43,17 @@ def tested(seed: int, plan: Path) -> dict[str, Any]:
     simulated = simulated_ship_of(ship.vessel, whole, seed=seed, faults=LinkFaults(), tug=ship.tug)
     counterpart, told = SimulatedCounterpart(simulated), []
     with tempfile.TemporaryDirectory() as folder:
-        record = LiveRecord(Path(folder) / "test.nc", counterpart.channels, {"vessel": VESSEL.name})
-        test = LiveTest(
-            counterpart=counterpart,
+        made = partial(
+            LiveTest,
             vessel=VESSEL,
             campaign=whole,
             envelope=envelope,
-            record=record,
             slope_rpm_per_v=whole.slope_rpm_per_v,
             waits=True,
             advises=advice_by(planned, told=told.append),
             proves=lambda changed: prove(changed, VESSEL, envelope).refusals,
         )
-        outcome = asyncio.run(test.run())
-        left = record.finish(outcome.campaign)
+        test, outcome, left = asyncio.run(recorded(counterpart, Path(folder) / "test.nc", made))
         done = {"seed": seed, "word": outcome.word, "reason": outcome.reason, "asked_s": whole.duration_s}
         if outcome.word != "played":
             return done

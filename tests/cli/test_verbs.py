@@ -65,6 +65,7 @@ VERBS = {
     "service fit": "service.fit_service",
     "service watch": "service.watch_folders",
     "start": "card.write_vessel",
+    "live channels": "live.read_channel_list",
     "live check": "live.prove",
     "live rehearse": "live.rehearse",
     "live play": "live.play_on_board",

@@ -5,13 +5,18 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from tests.live.rehearsed import CAMPAIGN, ENVELOPE, VESSEL, played
+from tests.live.rehearsed import CAMPAIGN, ENVELOPE, TUG, VESSEL, played
 
 import shaftprint as sp
 from shaftprint.live._block import DeviceMode
 from shaftprint.live._changes import Advice, begun_until, by_information, end_of_cut, followed_by
+from shaftprint.live._engine import LiveTest
 from shaftprint.live._outcome import Ask
+from shaftprint.live._record import LiveRecord
+from shaftprint.live._rehearse import simulated_ship_of
 from shaftprint.live._timetable import rendered
+from shaftprint.live.counterparts._faults import LinkFaults
+from shaftprint.live.counterparts._simulated import SimulatedCounterpart
 
 # Ramps of 2 s; M1 from 3 to 17.1 s with 4 periods of 3 s from 5 s on, M2 from 20 to 31.1 s with 3 from 22 s on.
 M1, M2 = CAMPAIGN.legs
@@ -273,3 +278,35 @@ def test_a_proof_that_takes_long_skips_no_other_leg(tmp_path):
     outcome, test, _ = played(tmp_path, proves=may_late, shown=shown)
     assert [(leg.name, leg.periods) for leg in outcome.campaign.legs] == [("M1", 4), ("M2", 3)]
     assert told(test, "not done") == ["Nothing is changed: it is too late."]
+
+
+def test_what_was_asked_before_there_was_a_test_is_left_out_but_a_hold(tmp_path):
+    ship = simulated_ship_of(VESSEL, CAMPAIGN, seed=1, faults=LinkFaults(), tug=TUG)
+    counterpart, said = SimulatedCounterpart(ship), []
+    record = LiveRecord(tmp_path / "test.nc", counterpart.channels, {})
+    test = LiveTest(
+        counterpart=counterpart, vessel=VESSEL, campaign=CAMPAIGN, envelope=ENVELOPE, record=record, told=said.append
+    )
+    test.operator.asks.extend([Ask.SKIP, Ask.HOLD, Ask.REPEAT])
+    test._forget_early_asks()
+    record.close()
+    assert list(test.operator.asks) == [Ask.HOLD]
+    assert [event.sentence.split()[0] for event in said] == ['"skip"', '"repeat"']
+
+
+@pytest.mark.slow
+def test_a_test_that_begins_at_once_is_played_and_nothing_is_skipped_that_was_asked_for_before(tmp_path):
+    first, _ = SINES.sines
+    at_once = SINES.model_copy(
+        update={"sines": (first.model_copy(update={"start_s": 0.0, "settled_s": 2.0}),), "duration_s": 12.0}
+    )
+
+    def shown(test, sight):
+        if not test.is_ruling and not test.operator.asks:
+            test.operator.asks.append(Ask.SKIP)
+
+    outcome, test, ship = played(tmp_path, campaign=at_once, proves=may, shown=shown, waits=True)
+    assert (outcome.word, outcome.reason, ship.device.mode) == ("played", "", DeviceMode.LEVER)
+    assert told(test, "state") == ["armed", "settle", "leg", "ramp out", "idle"]
+    assert [(sine.name, sine.periods) for sine in outcome.campaign.sines] == [("S1", 3)]
+    assert told(test, "not done") == ['"skip" has no meaning before the test is played.']

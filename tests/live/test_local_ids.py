@@ -153,6 +153,30 @@ def test_a_list_says_the_same_in_both_languages(channel_list):
     assert list(channel_list.left_out) == ["/dnv-v2/vis-3-4a/411.1/C101/meta"]
 
 
+def test_a_command_shows_a_list_and_what_is_wrong_in_it(run, tmp_path):
+    content = as_json()
+    rows = content["Package"]["DataChannelList"]["DataChannel"]
+    rows.append(rows[0])
+    rows.append({"DataChannelID": {"LocalID": TORQUE.replace("412.72", "412.73"), "ShortID": "0100"}})
+    path, vessel = tmp_path / "list.json", tmp_path / "vessel.toml"
+    path.write_text(json.dumps(content), encoding="utf-8")
+    result = run("live", "channels", path, "--json")
+    document = json.loads(result.stdout)
+    assert result.exit_code == 0, result.output
+    assert len(document["tables"][0]["rows"]) == 5
+    said = " ".join(document["answer"])
+    assert "6 channels, 5 of them by the rule dnv-v2; 3 findings" in said
+    assert 'at least one tag behind "/meta/"' in said
+    assert f"{ENGINE}: expected a local id once, found it 2 times" in said
+    assert "0100: expected values of one channel by that short id, found 2" in said
+    for local_id, code, words in ((TORQUE, 0, "M_s"), (TORQUE.replace("412.72", "412.74"), 1, "not there")):
+        vessel.write_text(
+            f'{VESSEL}\n[[sensors.local_ids]]\nchannel = "{CHANNELS["shaft_torque"]}"\nlocal_id = "{local_id}"\n'
+        )
+        result = run("live", "channels", path, "--vessel", vessel)
+        assert (result.exit_code, words in result.output) == (code, True), result.output
+
+
 def test_channels_are_found_by_their_local_ids(channel_list):
     named = channel_list.named({"n_e": ENGINE, "torque": TORQUE})
     assert {name: channel.short_id for name, channel in named.items()} == {"n_e": "0010", "torque": TORQUE}

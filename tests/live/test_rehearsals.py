@@ -10,6 +10,7 @@ from tests.live.rehearsed import CAMPAIGN, ENVELOPE, TUG, VESSEL, played
 import shaftprint as sp
 from shaftprint.live._block import DeviceMode
 from shaftprint.live._envelope import SPEED
+from shaftprint.live._rehearse import simulated_ship_of
 from shaftprint.live._watch import AbortRule
 from shaftprint.live.counterparts._faults import LinkFaults, Spell
 
@@ -168,3 +169,13 @@ def test_the_operator_stops_it_at_once(tmp_path):
     # back at the lever on a cosine of two seconds: the set point never moves faster than pi/2 times its mean rate
     volts = np.array([one[1] for one in ship.trace if one[0] > outcome.breach.time_s])
     assert np.abs(np.diff(volts)).max() <= 1.1 * math.pi / 2.0 * 0.5 / 2.0 * 0.05
+
+
+def test_a_device_hears_no_heartbeat_over_a_silent_link():
+    # it is silent from its first second on: the heartbeat that is sent then is not given back
+    ship = simulated_ship_of(VESSEL, CAMPAIGN, seed=1, faults=LinkFaults(silent=Spell(start_s=0.0)), tug=TUG)
+    ship.hear(1)
+    assert ship.device.heartbeat == 0
+    ship = simulated_ship_of(VESSEL, CAMPAIGN, seed=1, faults=LinkFaults(silent=Spell(start_s=60.0)), tug=TUG)
+    ship.hear(1)
+    assert ship.device.heartbeat == 1

@@ -19,6 +19,14 @@ def test_nothing_is_played_that_was_not_armed(state):
         following(state, State.RAMP_IN)
 
 
+@pytest.mark.parametrize("state", [State.SETTLE, State.LEG])
+def test_a_campaign_may_begin_with_a_test_at_once(state):
+    # a sine at 0 s needs no ramp before it
+    assert following(State.ARMED, state) is state
+    with pytest.raises(LiveError, match='found "idle"'):
+        following(state, State.IDLE)
+
+
 def test_a_play_holds_its_ends():
     play = Play(name="M1", start_s=10.0, rate_hz=2.0, volts=np.array([1.0, 3.0, 2.0]))
     assert play.stop_s == 11.0

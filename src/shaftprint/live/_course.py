@@ -208,6 +208,15 @@ class Course(Loop):
                 now = "is played" if self._held is None else "holds"
                 self._tell("not done", f'"{ask}" has no meaning while the test {now}.')
 
+    def _forget_early_asks(self) -> None:
+        """Leave out what was asked before anything was played, but a hold: there was no test that it could mean."""
+        asks = self.operator.asks
+        for ask in [asks.popleft() for _ in range(len(asks))]:
+            if ask is Ask.HOLD:
+                asks.append(ask)
+            else:
+                self._tell("not done", f'"{ask}" has no meaning before the test is played.')
+
     async def _hold(self) -> None:
         """Stay where the set point is: a test that runs ends there, and what is missing of it comes after the hold."""
         begun, to_come = begun_until(self.campaign, self.campaign_s + LEAD_S)

@@ -145,6 +145,7 @@ class LiveTest(Course):
         play = rendered(self.campaign, zero_s=self._zero_s)
         await self._send(play)
         await self._follow(play, self.campaign)
+        self._forget_early_asks()
 
     async def _give_back(self) -> None:
         self._written = None

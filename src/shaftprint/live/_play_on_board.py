@@ -3,6 +3,7 @@
 import asyncio
 import signal
 from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -13,7 +14,8 @@ from shaftprint.live._counterpart import Counterpart
 from shaftprint.live._engine import LiveTest
 from shaftprint.live._outcome import Operator, Outcome
 from shaftprint.live._page import LivePages, watched
-from shaftprint.live._record import Left, LiveRecord
+from shaftprint.live._record import Left
+from shaftprint.live._recorded import recorded
 from shaftprint.live._stop_rule import advice_by
 from shaftprint.live.counterparts._can_bus import CanCounterpart
 from shaftprint.live.counterparts._modbus import ModbusCounterpart
@@ -113,70 +115,28 @@ def play_on_board(
     RecordingError
         If the recording is there already or cannot be written.
     """
-    return asyncio.run(
-        _played(
-            counterpart_at(url, access, places),
-            vessel,
-            campaign,
-            envelope,
-            path,
-            confirm=confirm,
-            operator=operator or Operator(),
-            dry=dry,
-            planned=planned,
-            proves=proves,
-            most_s=most_s,
-            slope_rpm_per_v=slope_rpm_per_v,
-            told=told,
-            pages=pages,
-        )
-    )
+    counterpart, operator = counterpart_at(url, access, places), operator or Operator()
 
-
-async def _played(
-    counterpart: Counterpart,
-    vessel: "Vessel",
-    campaign: "Campaign",
-    envelope: "Envelope",
-    path: Path,
-    *,
-    confirm: Callable[[str], bool],
-    operator: Operator,
-    dry: bool,
-    planned: "PlannedTest | None",
-    proves: "Callable[[Campaign], Sequence[str]] | None",
-    most_s: float | None,
-    slope_rpm_per_v: float | None,
-    told: Callable[[Event], None],
-    pages: LivePages | None,
-) -> tuple[Outcome, Left]:
     async def asked(question: str) -> bool:
         return await asyncio.to_thread(confirm, question)
 
     operator.confirm = asked
+    test = partial(
+        LiveTest,
+        vessel=vessel,
+        campaign=campaign,
+        envelope=envelope,
+        operator=operator,
+        slope_rpm_per_v=slope_rpm_per_v,
+        **watched(told, pages),
+        dry=dry,
+        advises=None if planned is None else advice_by(planned),
+        proves=proves,
+        most_s=most_s,
+    )
     before = signal.signal(signal.SIGINT, lambda number, frame: setattr(operator, "stops", "interrupted"))
     try:
-        await counterpart.connect()
-        record = LiveRecord(path, counterpart.channels, {"vessel": vessel.name})
-        test = LiveTest(
-            counterpart=counterpart,
-            vessel=vessel,
-            campaign=campaign,
-            envelope=envelope,
-            record=record,
-            operator=operator,
-            slope_rpm_per_v=slope_rpm_per_v,
-            **watched(told, pages),
-            dry=dry,
-            advises=None if planned is None else advice_by(planned),
-            proves=proves,
-            most_s=most_s,
-        )
-        try:
-            outcome = await test.run()
-        finally:
-            record.close()
+        _, outcome, left = asyncio.run(recorded(counterpart, path, test))
     finally:
         signal.signal(signal.SIGINT, before)
-        await counterpart.close()
-    return outcome, record.finish(outcome.campaign)
+    return outcome, left

@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING, Any
 
 from shaftprint.errors import RequestError
 from shaftprint.live._block import Event
-from shaftprint.live._counterpart import Counterpart
 from shaftprint.live._engine import LiveTest
 from shaftprint.live._outcome import Operator, Outcome
 from shaftprint.live._over import ship_over
 from shaftprint.live._page import LivePages, watched
-from shaftprint.live._record import Left, LiveRecord
+from shaftprint.live._record import Left
+from shaftprint.live._recorded import recorded
 from shaftprint.live._stop_rule import advice_by
 from shaftprint.live.counterparts._faults import LinkFaults, Spell
 from shaftprint.live.counterparts._simulated import SimulatedCounterpart, SimulatedShip
@@ -113,35 +113,25 @@ def rehearse(
     truth = tug or _usual_ship(vessel, campaign)
     make = partial(simulated_ship_of, vessel, campaign, seed=seed, faults=faults or LinkFaults(), tug=truth)
 
-    async def played(counterpart: Counterpart) -> tuple[Outcome, LiveRecord]:
-        await counterpart.connect()
-        record = LiveRecord(path, counterpart.channels, {"vessel": vessel.name})
-        test = LiveTest(
-            counterpart=counterpart,
-            vessel=vessel,
-            campaign=campaign,
-            envelope=envelope,
-            record=record,
-            operator=operator or Operator(),
-            slope_rpm_per_v=truth.set_point_slope_rpm_per_v,
-            **watched(told, pages),
-            waits=pace is None and over is None,
-            advises=None if planned is None else advice_by(planned),
-            proves=proves,
-            most_s=most_s,
-        )
-        try:
-            return await test.run(), record
-        finally:
-            record.close()
-            await counterpart.close()
-
+    test = partial(
+        LiveTest,
+        vessel=vessel,
+        campaign=campaign,
+        envelope=envelope,
+        operator=operator or Operator(),
+        slope_rpm_per_v=truth.set_point_slope_rpm_per_v,
+        **watched(told, pages),
+        waits=pace is None and over is None,
+        advises=None if planned is None else advice_by(planned),
+        proves=proves,
+        most_s=most_s,
+    )
     if over is None:
-        outcome, record = asyncio.run(played(SimulatedCounterpart(make(), pace=pace)))
+        _, outcome, left = asyncio.run(recorded(SimulatedCounterpart(make(), pace=pace), path, test))
     else:
         with ship_over(over, make) as reached:
-            outcome, record = asyncio.run(played(reached))
-    return outcome, record.finish(outcome.campaign)
+            _, outcome, left = asyncio.run(recorded(reached, path, test))
+    return outcome, left
 
 
 def rehearsed_slope(vessel: "Vessel", campaign: "Campaign") -> float:

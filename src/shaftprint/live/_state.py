@@ -18,14 +18,13 @@ class State(StrEnum):
     ABORT = "abort"
 
 
+_PLAYED = frozenset({State.RAMP_IN, State.SETTLE, State.LEG, State.RAMP_OUT, State.HOLD})
 _MAY_FOLLOW = {
     State.IDLE: {State.ARMED},
-    State.ARMED: {State.RAMP_IN, State.IDLE},
-    State.RAMP_IN: {State.SETTLE, State.LEG, State.RAMP_OUT, State.HOLD},
-    State.SETTLE: {State.LEG, State.RAMP_IN, State.RAMP_OUT, State.HOLD},
-    State.LEG: {State.SETTLE, State.RAMP_IN, State.RAMP_OUT, State.HOLD},
-    State.RAMP_OUT: {State.RAMP_IN, State.SETTLE, State.LEG, State.IDLE, State.HOLD},
-    State.HOLD: {State.RAMP_IN, State.SETTLE, State.LEG, State.RAMP_OUT},
+    # a campaign may begin with a test that needs no ramp
+    State.ARMED: _PLAYED | {State.IDLE},
+    **dict.fromkeys(_PLAYED, _PLAYED),
+    State.RAMP_OUT: _PLAYED | {State.IDLE},
     State.ABORT: {State.IDLE},
 }
 """Besides, an abort may follow everything."""

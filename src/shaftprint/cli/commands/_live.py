@@ -9,6 +9,7 @@ from shaftprint.cli._command_group import LazyGroup
 
 # The one-line help of every action: a list of them imports none of their files.
 ACTIONS = {
+    "channels": "Show what a list of data channels (ISO 19848) offers, and what is wrong in it.",
     "check": "Prove that a campaign stays within the envelope of a ship; nothing is played.",
     "rehearse": "Play a test on a simulated ship, as fast as it can be calculated or by the clock.",
     "play": "Play a test through a counterpart on board.",

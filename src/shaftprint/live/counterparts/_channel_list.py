@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import json
 import math
+from collections import Counter
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -61,6 +62,21 @@ class ChannelList:
     left_out: Mapping[str, str] = field(default_factory=dict)
     """Channels that cannot be used, and why."""
 
+    @property
+    def findings(self) -> tuple[str, ...]:
+        """What is wrong, a sentence each: channels left out, local ids there twice, short ids of several channels."""
+        ids = Counter(_id_of(one) for one in self.channels)
+        shorts = Counter(short for short, _ in {(one.short_id, _id_of(one)) for one in self.channels})
+        return (
+            *(f"{name}: {why}" for name, why in self.left_out.items()),
+            *(f"{name}: expected a local id once, found it {count} times." for name, count in ids.items() if count > 1),
+            *(
+                f"{name}: expected values of one channel by that short id, found {count}; nobody can tell them apart."
+                for name, count in shorts.items()
+                if count > 1 and name not in ids
+            ),
+        )
+
     def named(self, local_ids: Mapping[str, str]) -> dict[str, DataChannel]:
         """Return the channel of the list for each channel of a vessel file.
 
@@ -69,7 +85,7 @@ class ChannelList:
         """
         offered: dict[str, list[DataChannel]] = {}
         for channel in self.channels:
-            offered.setdefault(channel.name if channel.local_id is None else str(channel.local_id), []).append(channel)
+            offered.setdefault(_id_of(channel), []).append(channel)
         chosen, wrong = {}, []
         for name, text in local_ids.items():
             there = offered.get(str(LocalId.parse(text)), [])
@@ -83,6 +99,10 @@ class ChannelList:
                 f"{len(self.channels)} channels, found {'; '.join(wrong)}."
             )
         return chosen
+
+
+def _id_of(channel: DataChannel) -> str:
+    return channel.name if channel.local_id is None else str(channel.local_id)
 
 
 def read_channel_list(path: str | Path) -> ChannelList:

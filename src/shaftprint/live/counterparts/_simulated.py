@@ -192,8 +192,8 @@ class SimulatedShip:
         return self.faults.frozen.holds(self.time_s) or self.faults.silent.holds(self.time_s)
 
     def hear(self, count: int) -> None:
-        """Take a heartbeat, where it is not deaf."""
-        if not self.faults.deaf.holds(self.time_s):
+        """Take a heartbeat, where it is not deaf and its link not silent."""
+        if not (self.is_silent or self.faults.deaf.holds(self.time_s)):
             self.device.hear(count, self.time_s)
 
     def obey(self, word: str, content: Mapping[str, Any]) -> None:
