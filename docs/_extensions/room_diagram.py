@@ -87,6 +87,7 @@ def stub() -> str:
             "# What type checkers see of the rooms, which __init__.py loads when they are first used.",
             "# Made by docs/_extensions/made_pages.py.",
             *lines,
+            "from shaftprint.survey import read as read",
             "from shaftprint.survey import run as open_survey  # noqa: F401",
             "",
             "__version__: str",

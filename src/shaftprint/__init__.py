@@ -35,6 +35,7 @@ room            nouns                       verbs
 =============== =========================== ==========================================================================
 
 ``sp.open_survey(recording, vessel, campaign)`` is ``survey.run``: all of ``shaftprint identify`` in one call.
+``sp.read("result")`` is ``survey.read``: the result, recording or settings file that a command would take.
 Verbs take the noun first and the rest by keyword. Errors that a user can mend are ``errors.ShaftprintError``.
 """
 
@@ -49,8 +50,8 @@ _NOT_OFFERED = {"cli", "kernels", "markup", "notebook", "publication"}
 _OFFERED_FILES = {"errors", "settings", "units"}
 """Leaf modules that a session offers."""
 
-_VERB = "open_survey"
-"""All of ``shaftprint identify`` in one call, ``survey.run``."""
+_VERBS = {"open_survey": "run", "read": "read"}
+"""Verbs of ``survey`` that stand beside the rooms, by the name of each here."""
 
 
 def __getattr__(name: str) -> Any:
@@ -61,8 +62,8 @@ def __getattr__(name: str) -> Any:
     AttributeError
         If there is no room of that name; the message says where names like it are.
     """
-    if name == _VERB:
-        return importlib.import_module("shaftprint.survey").run
+    if name in _VERBS:
+        return getattr(importlib.import_module("shaftprint.survey"), _VERBS[name])
     rooms = _rooms()
     if name in rooms:
         return importlib.import_module(f"shaftprint.{name}")
@@ -77,7 +78,7 @@ def __getattr__(name: str) -> Any:
 
 
 def __dir__() -> list[str]:
-    return ["__version__", _VERB, *(room for room, is_offered in _rooms().items() if is_offered)]
+    return ["__version__", *_VERBS, *(room for room, is_offered in _rooms().items() if is_offered)]
 
 
 def _rooms() -> dict[str, bool]:

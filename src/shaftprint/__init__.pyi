@@ -58,6 +58,7 @@ from shaftprint import validation as validation
 from shaftprint import vessel as vessel
 from shaftprint import web as web
 from shaftprint import zones as zones
+from shaftprint.survey import read as read
 from shaftprint.survey import run as open_survey  # noqa: F401
 
 __version__: str

@@ -11,16 +11,20 @@ _Given = ParamSpec("_Given")
 _Result = TypeVar("_Result")
 
 
-def refusing_none(error: type[Exception]) -> Callable[[Callable[_Given, _Result]], Callable[_Given, _Result]]:
-    """Return a decorator that refuses None for an argument without default, before anything else is done.
+def refusing_none(
+    error: type[Exception], **remedies: str
+) -> Callable[[Callable[_Given, _Result]], Callable[_Given, _Result]]:
+    """Return a decorator that refuses an argument that is left out or None, before anything else is done.
 
-    In an interactive session it is what a name holds that was never set, and would otherwise end far inside in an
+    In an interactive session None is what a name holds that was never set, and would otherwise end far inside in an
     attribute that None lacks.
 
     Parameters
     ----------
     error
         What is raised, with one sentence.
+    remedies
+        What to give, by argument, in words.
     """
 
     def decorated(verb: Callable[_Given, _Result]) -> Callable[_Given, _Result]:
@@ -33,10 +37,14 @@ def refusing_none(error: type[Exception]) -> Callable[[Callable[_Given, _Result]
 
         @functools.wraps(verb)
         def checked(*args: _Given.args, **kwargs: _Given.kwargs) -> _Result:
-            arguments = signature.bind(*args, **kwargs).arguments
-            missing = [f"{name} ({kind})" for name, kind in kinds.items() if arguments[name] is None]
+            arguments = signature.bind_partial(*args, **kwargs).arguments
+            missing = [name for name in kinds if arguments.get(name) is None]
             if missing:
-                raise error(f"{verb.__name__}: expected {' and '.join(missing)}, found None; it cannot be left out.")
+                expected = " and ".join(f"{name} ({kinds[name]})" for name in missing)
+                found = "None" if any(name in arguments for name in missing) else "nothing"
+                give = "; ".join(remedies[name] for name in missing if name in remedies)
+                remedy = give or f"{'they' if len(missing) > 1 else 'it'} cannot be left out"
+                raise error(f"{verb.__name__}: expected {expected}, found {found}; {remedy}.")
             return verb(*args, **kwargs)
 
         return checked

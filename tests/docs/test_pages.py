@@ -32,8 +32,9 @@ OPENED = {page for page in PAGES if f'"{Path(page).name}"' in OTHER_TEXT}
 WITH_PYTHON = [page for page in PAGES if python_of(page)]
 WITH_COMMANDS = [page for page in PAGES if commands_of(page)]
 # these sail a test and identify it; the documentation, which .ci/run builds, is built by running them too
+NOTEBOOKS = ("first-fingerprint", "own-structure", "my-csv", "two-speeds", "five-tests")
 LONG = {"docs/thesis-figures.md", "docs/gallery.md"} | {
-    f"docs/tutorials/{name}.md" for name in ("first-fingerprint", "own-structure", "logger-file", "two-loggers", "fmu")
+    f"docs/tutorials/{name}.md" for name in (*NOTEBOOKS, "logger-file", "two-loggers", "fmu")
 }
 SLOW = {"docs/house.md", "docs/planning.md", "docs/command-output.md", "docs/tutorials/recording-to-fingerprint.md"}
 DEAR = {"long": LONG, "slow": SLOW}

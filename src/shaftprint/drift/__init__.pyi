@@ -4,6 +4,7 @@ from ._history import History, history_of
 from ._shared_errors import shared_errors
 from ._sisters import judge_sisters
 from ._watch import watch
+from ._words import watch_sentences
 
 __all__ = [
     "Finding",
@@ -13,4 +14,5 @@ __all__ = [
     "judge_sisters",
     "shared_errors",
     "watch",
+    "watch_sentences",
 ]

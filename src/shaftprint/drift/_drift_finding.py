@@ -7,6 +7,8 @@ from typing import Literal, TypeAlias
 from shaftprint.drift._causes import Cause
 from shaftprint.drift._dated import Event
 from shaftprint.drift._finding import SizedCause
+from shaftprint.notebook._shown import Shown
+from shaftprint.notebook._summary import Summary, shortened
 
 Shape: TypeAlias = Literal["step", "ramp"]
 Outcome: TypeAlias = Literal["cannot be told", "unchanged", "worn as expected", "changed"]
@@ -67,8 +69,8 @@ class SizeByNow:
     """Its standard deviation."""
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class WatchFinding:
+@dataclass(frozen=True, kw_only=True, slots=True, repr=False)
+class WatchFinding(Shown):
     """What the history of a line says."""
 
     drifts: tuple[Drift, ...]
@@ -87,6 +89,12 @@ class WatchFinding:
     """What the events of the history did, in their order."""
     by_now: Mapping[str, SizeByNow] = field(default_factory=dict)
     """How far each cause that drifts is at the last test, by the name of the cause."""
+
+    def summary(self) -> Summary:
+        """Return whether the ship has changed, and the most likely cause of each change with its size."""
+        facts = {one.best.words: one.best.amount for one in self.by_urgency}
+        judged = {"judged": shortened(self.names), "left out": shortened(self.left_out), "because": self.because}
+        return Summary(title=f"Ship {self.outcome}", facts=facts | judged)
 
     @property
     def outcome(self) -> Outcome:

@@ -3,7 +3,10 @@
 import math
 from dataclasses import dataclass
 
+from shaftprint.digits import stated
 from shaftprint.drift._causes import Cause
+from shaftprint.notebook._shown import Shown
+from shaftprint.notebook._summary import Summary, shortened
 
 _LARGEST_EXPONENT = 700.0
 
@@ -28,6 +31,12 @@ class SizedCause:
         """What has happened to the ship, by the sign of the size."""
         return self.cause.more if self.size > 0.0 else self.cause.less
 
+    @property
+    def amount(self) -> str:
+        """Size and standard deviation with the digits that these have."""
+        factor, unit = (100.0, "%") if self.cause.is_share else (1.0, "s")
+        return stated(factor * self.size, factor * self.std, unit)
+
 
 def odds_against(score: float, best: float) -> float:
     """Return how much more likely a difference is under the cause with the best score than under another."""
@@ -50,8 +59,8 @@ class ShipChange:
         return self.candidates[0]
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Finding:
+@dataclass(frozen=True, kw_only=True, slots=True, repr=False)
+class Finding(Shown):
     """What differs between two tests of one ship, judged along causes."""
 
     changes: tuple[ShipChange, ...]
@@ -69,3 +78,9 @@ class Finding:
     """Causes of numbers that were left out: they are not excluded."""
     because: str = ""
     """Why nothing could be judged; empty where something was."""
+
+    def summary(self) -> Summary:
+        """Return the most likely cause of each change with its size."""
+        facts = {one.best.words: one.best.amount for one in self.changes}
+        judged = {"judged": shortened(self.names), "left out": shortened(self.left_out), "because": self.because}
+        return Summary(title=f"Changes of a ship: {len(self.changes)} beyond chance", facts=facts | judged)

@@ -20,7 +20,7 @@ def closest_names(name: str) -> tuple[str, ...]:
     name
         What somebody looked for.
     """
-    rooms: dict[str, str] = {"open_survey": "sp"}
+    rooms: dict[str, str] = {"open_survey": "sp", "read": "sp"}
     for room, public in _public_names():
         rooms.setdefault(public, f"sp.{room}")
     close = difflib.get_close_matches(name, rooms, n=MOST_ANSWERS, cutoff=LEAST_LIKENESS)

@@ -5,6 +5,7 @@ from ._legs import leg_tests
 from ._limits import with_limits
 from ._measurement import Measurement, measure
 from ._of_vessel import default_structure, of_vessel
+from ._read import read
 from ._shipped_noise import STAN_TUG_NOISE, STAN_TUG_NOISE_AT_SPEEDS
 from ._survey import Survey, run, survey_of
 from ._thesis_mode import ThesisMode
@@ -29,6 +30,7 @@ __all__ = [
     "measure",
     "of_vessel",
     "priors_of",
+    "read",
     "run",
     "run_both",
     "survey_of",

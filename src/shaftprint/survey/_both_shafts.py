@@ -19,7 +19,7 @@ from shaftprint.models._structure import Structure
 from shaftprint.notebook._shown import Shown
 from shaftprint.notebook._summary import Summary
 from shaftprint.settings import settings_content
-from shaftprint.survey._progress import SILENT, Progress
+from shaftprint.survey._progress import Progress
 from shaftprint.survey._survey import SettingsOf, Survey, run
 from shaftprint.survey._trial import Trial, load_trial
 from shaftprint.survey._wash import Wash, wash_on
@@ -122,7 +122,7 @@ def run_both(
     tested_at: datetime | None = None,
     judge: bool = True,
     hints: Mapping[str, Any] | None = None,
-    progress: Progress = SILENT,
+    progress: Progress | None = None,
 ) -> SurveyOfBoth:
     """Identify both lines of a ship from one recording, each on its own lines, and the wash on the other's.
 

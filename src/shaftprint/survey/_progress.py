@@ -1,7 +1,8 @@
 """What a long run reports while it works; whoever calls it may show it."""
 
-from dataclasses import dataclass
 from typing import Protocol
+
+from shaftprint.notebook._progress import cell_progress
 
 
 class Progress(Protocol):
@@ -19,8 +20,10 @@ class Progress(Protocol):
     def tell(self, step: str, detail: str) -> None:
         """Say what is being done of a step whose amount of work is not known."""
 
+    def end(self) -> None:
+        """End the last step."""
 
-@dataclass(frozen=True, slots=True)
+
 class Silent:
     """Progress that nobody looks at."""
 
@@ -36,5 +39,13 @@ class Silent:
     def tell(self, step: str, detail: str) -> None:
         """Do nothing."""
 
+    def end(self) -> None:
+        """Do nothing."""
+
 
 SILENT = Silent()
+
+
+def shown_here() -> Progress:
+    """Return progress that a notebook shows below its cell; silent elsewhere."""
+    return cell_progress() or SILENT

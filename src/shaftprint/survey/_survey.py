@@ -47,7 +47,7 @@ from shaftprint.survey._limit_hints import hints_of
 from shaftprint.survey._measurement import Measurement, measure, of_legs
 from shaftprint.survey._noise import noise_at_speeds
 from shaftprint.survey._of_vessel import at_speeds, default_structure, expect_one_speed, of_vessel
-from shaftprint.survey._progress import SILENT, Progress
+from shaftprint.survey._progress import SILENT, Progress, shown_here
 from shaftprint.survey._ship_numbers import ship_numbers
 from shaftprint.survey._stray_line import fits_beside_a_stray_line
 from shaftprint.survey._trial import Trial, load_trial
@@ -137,7 +137,13 @@ class Survey(Shown):
         return hints_of(self.measurement, self.trial, failed_steps(self.validations), named=named)
 
 
-@refusing_none(SettingsError)
+@refusing_none(
+    SettingsError,
+    recording='recording="log.csv": a logger file, or one that sp.read has opened',
+    vessel='vessel="mine.toml": the file of the ship, which "shaftprint start" writes, or a shipped one by its name',
+    campaign='campaign="test.toml": the file of the test, which "shaftprint plan" writes, or "shaftprint new campaign '
+    '--from log.csv" from the recording, or a shipped one by its name',
+)
 def run(
     recording: str | Path | Recording,
     vessel: str | Path | Vessel,
@@ -154,7 +160,7 @@ def run(
     legs: Sequence[str] = (),
     judge: bool = True,
     hints: Mapping[str, Any] | None = None,
-    progress: Progress = SILENT,
+    progress: Progress | None = None,
 ) -> Survey:
     """Identify a line from a recording: all that ``shaftprint identify`` does, before anything is written.
 
@@ -184,6 +190,8 @@ def run(
         Names of the legs of the campaign to use; all when not given.
     judge
         Whether structures are compared and the model is held against other records; ``judged`` does it later.
+    progress
+        Is told of each step; a line below the cell of a notebook where it is not given.
 
     Raises
     ------
@@ -191,6 +199,7 @@ def run(
         If a file cannot be used, or the recording does not give what a structure describes.
     """
     rng = np.random.default_rng(1) if rng is None else rng
+    progress = shown_here() if progress is None else progress
     trial = load_trial(vessel, campaign, conditions)
     trial = replace(trial, sources=(*trial.sources, *sources))
     chosen = tuple(
@@ -209,7 +218,9 @@ def run(
     alone = legs_alone(fits[0], measurement, settings=by_name, rng=rng)
     offer = _offer(fits, measurement, trial, settings or _with_priors, rng=rng, progress=progress)
     survey = _of_fits(fits, measurement, trial, now=now, progress=progress, alone=alone, offer=offer)
-    return judged(survey, rng=rng, progress=progress) if judge else survey
+    survey = judged(survey, rng=rng, progress=progress) if judge else survey
+    progress.end()
+    return survey
 
 
 def _offer(

@@ -9,6 +9,7 @@ from shaftprint.campaign._campaign import Campaign
 from shaftprint.campaign._lever_course import LeverCourse
 from shaftprint.errors import RecordingError, SettingsError
 from shaftprint.files import reason, written_whole
+from shaftprint.notebook._progress import cell_bar
 from shaftprint.recording._writer import RecordingWriter
 from shaftprint.tug._crew import Crew
 from shaftprint.tug._truth import Truth, truth_path, truth_text
@@ -51,7 +52,8 @@ def sail(
     overwrite
         Whether existing files may be replaced.
     progress
-        Called with the share of the campaign that is done, 0 to 1.
+        Called with the share of the campaign that is done, 0 to 1; a line below the cell of a notebook where it is not
+        given.
 
     Returns
     -------
@@ -72,7 +74,7 @@ def sail(
             written_whole(truth_path(path), overwrite=overwrite) as part,
             RecordingWriter(path, attributes={"vessel": vessel.name}, overwrite=overwrite) as writer,
         ):
-            _record(crew, tug, vessel, campaign, writer, progress or _ignore)
+            _record(crew, tug, vessel, campaign, writer, progress or cell_bar("Simulating the test"))
             truth = crew.truth()
             part.write_text(truth_text(truth), encoding="utf-8")
     except OSError as error:
@@ -111,7 +113,3 @@ def _record(
             progress(done / crew.samples)
     if waiting is not None:
         waiting.result()
-
-
-def _ignore(share: float) -> None:
-    """Show no progress."""

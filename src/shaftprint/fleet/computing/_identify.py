@@ -12,11 +12,12 @@ from shaftprint.identify.search._settings import Settings
 from shaftprint.models._structure import Structure
 from shaftprint.survey._fits import priors_of
 from shaftprint.survey._measurement import Measurement
+from shaftprint.survey._progress import Silent
 from shaftprint.survey._survey import Survey, run
 from shaftprint.survey._trial import Trial
 
 
-class Told:
+class Told(Silent):
     """Progress whose steps are told to somebody; amounts of work within a step are not."""
 
     def __init__(self, tell: Callable[[str], None]) -> None:
@@ -25,15 +26,6 @@ class Told:
     def begin(self, text: str, total: float | None = None) -> None:
         """Tell the next step."""
         self._tell(text)
-
-    def advance(self, amount: float) -> None:
-        """Do nothing."""
-
-    def reach(self, amount: float) -> None:
-        """Do nothing."""
-
-    def tell(self, step: str, detail: str) -> None:
-        """Do nothing."""
 
 
 def survey_of_job(
