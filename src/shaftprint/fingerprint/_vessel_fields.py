@@ -28,11 +28,11 @@ TVC = "TVC"
 
 
 def vessel_fields(vessel: "Vessel") -> dict[str, FieldValue]:
-    """Return every field that a vessel file states, by its path such as ``sensors.shaft_torque.zero_nm``.
+    """Return every field that a vessel file states of the ship, by its path such as ``sensors.shaft_torque.zero_nm``.
 
     Rows of a table that have a name are called by it, such as ``inertia.flywheel.inertia_kg_m2``; others are numbered.
     """
-    return dict(_flat("", vessel.model_dump(mode="json", exclude_none=True)))
+    return dict(_flat("", vessel.model_dump(mode="json", exclude_none=True, exclude={"company"})))
 
 
 def _flat(path: str, content: object) -> Iterator[tuple[str, FieldValue]]:

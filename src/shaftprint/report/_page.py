@@ -125,6 +125,7 @@ def expect_reportlab() -> None:
 def _html(page: Page, charts: Mapping[str, ChartFiles], scripts: Sequence[str], empty_sheets: Sequence[str]) -> str:
     names = [picture.name for section in page.sections for picture in section.pictures]
     style = style_sheet() + _template(CHART_STYLE)
+    logo = None if page.cover is None else page.cover.logo
     filled = environment({name: _template(name) for name in TEMPLATES})
     chart_template = filled.get_template(CHART_TEMPLATE)
     return filled.get_template(TEMPLATE).render(
@@ -134,6 +135,7 @@ def _html(page: Page, charts: Mapping[str, ChartFiles], scripts: Sequence[str], 
         version=page.version,
         fingerprint_sha256=page.fingerprint_sha256,
         cover=page.cover,
+        logo=None if logo is None else base64.b64encode(logo).decode(),
         sections=[section for section in page.sections if not section.folded],
         appendix=[section for section in page.sections if section.folded],
         neighbours=page.neighbours,
@@ -146,7 +148,7 @@ def _html(page: Page, charts: Mapping[str, ChartFiles], scripts: Sequence[str], 
         drawn=lambda picture: _shown(chart_template, picture=picture, chart=charts[picture.name]),
         # The style sheet is ours and holds nothing of the user's.
         style=Markup(style),  # noqa: S704
-        policy=_policy(style),
+        policy=_policy(style, embedded=logo is not None),
     )
 
 
@@ -155,11 +157,12 @@ def _shown(template: Template, **content: object) -> Markup:
     return Markup(template.render(**content))  # noqa: S704
 
 
-def _policy(style: str) -> str:
-    """Return the page's policy: what it may load and run."""
+def _policy(style: str, *, embedded: bool) -> str:
+    """Return the page's policy: what it may load and run; ``embedded``: whether a picture stands in its text."""
     sheets = " ".join(f"'sha256-{_digest(sheet)}'" for sheet in (style, ""))
     return (
-        "default-src 'none'; img-src 'self' file:; script-src 'self' file:; style-src-attr 'unsafe-inline'; "
+        f"default-src 'none'; img-src 'self' file:{' data:' * embedded}; script-src 'self' file:; "
+        "style-src-attr 'unsafe-inline'; "
         f"style-src {sheets}; base-uri 'none'; form-action 'none'"
     )
 

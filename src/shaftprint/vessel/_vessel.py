@@ -14,6 +14,7 @@ from shaftprint.errors import SettingsError
 from shaftprint.notebook._shown import Shown
 from shaftprint.notebook._summary import Summary, shortened
 from shaftprint.settings import Name, PositiveNumber, Settings, load_settings, names_twice
+from shaftprint.vessel._company import Company
 from shaftprint.vessel._envelope import StatedEnvelope
 from shaftprint.vessel._hull import Hull
 from shaftprint.vessel._inertia import InertiaRow
@@ -67,6 +68,8 @@ class Vessel(Shown, Settings):
     """The instrument that recorded."""
     ship: Ship | None = None
     """The ship and its line by number and name, for fingerprints of many years; None where not stated."""
+    company: Company | None = None
+    """Who makes the test, for the first page of the report."""
 
     def summary(self) -> Summary:
         """Return engine, gearbox, propeller, working point, inertias and sensors."""
@@ -324,4 +327,7 @@ def load_vessel(path_or_name: str | Path) -> Vessel:
     SettingsError
         If the file cannot be used; the message lists every field that is wrong.
     """
-    return load_settings(path_or_name, Vessel, shipped=files(__package__) / "shipped")
+    vessel = load_settings(path_or_name, Vessel, shipped=files(__package__) / "shipped")
+    if vessel.company is not None:
+        vessel.company.lies_in(Path(path_or_name).resolve().parent)
+    return vessel

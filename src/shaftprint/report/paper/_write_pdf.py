@@ -33,6 +33,7 @@ SHRUNK = 0.75
 MM_A_PX = 0.19
 # What ReportLab leaves free within the margins, above and below.
 FRAME_PT = 14.0
+LOGO_MM = (45.0, 12.0)
 CARDS_A_ROW = 3
 FEWEST_LETTERS, MOST_LETTERS = 7, 34
 # So many letters of a table stand beside each other on a sheet.
@@ -52,6 +53,7 @@ def write_pdf(
     looks = make_looks()
     story: list[Any] = [looks.paragraph(title, "title"), looks.paragraph(subtitle, "text")]
     if cover is not None:
+        story = [*_company(cover, looks), *story]
         # nothing of page one is spilled over to the next: what is too long for a sheet is set smaller
         sheet = (WIDTH_MM * mm, (HEIGHT_MM - 2.0 * MARGIN_MM) * mm - FRAME_PT)
         story = [KeepInFrame(*sheet, [*story, *_first_page(cover, looks)], mode="shrink"), PageBreak()]
@@ -74,6 +76,17 @@ def write_pdf(
     )
     document.build(story)
     path.write_bytes(content.getvalue())
+
+
+def _company(cover: "Cover", looks: Looks) -> list[Any]:
+    """Return who made the test, with the logo before the name; nothing where nobody says so."""
+    name = [looks.paragraph(cover.company, "text")] if cover.company else []
+    if cover.logo is None:
+        return name
+    logo = Image(io.BytesIO(cover.logo))
+    logo._restrictSize(LOGO_MM[0] * mm, LOGO_MM[1] * mm)
+    logo.hAlign = "LEFT"
+    return [logo, *name]
 
 
 def _first_page(cover: "Cover", looks: Looks) -> list[Any]:

@@ -66,6 +66,10 @@ class Cover:
     """The numbers that matter."""
     sketch: "Sketch | None" = None
     """What was tested; None where there is nothing to draw."""
+    company: str = ""
+    """Who made the test; empty where nobody says so."""
+    logo: bytes | None = None
+    """Its logo, PNG; None where there is none."""
 
 
 def overall(cards: Sequence[Card], *, usable: bool) -> tuple[State, str]:

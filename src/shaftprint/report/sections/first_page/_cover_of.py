@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from shaftprint.digits import plain, unit_text, with_deviation
+from shaftprint.report._logo import drawn_logo
 from shaftprint.report.sections._cover import Cover, overall
 from shaftprint.report.sections.first_page._change_answer import change_answer
 from shaftprint.report.sections.first_page._line_answers import hunting, inertia, other_contradictions, propeller
@@ -48,6 +49,9 @@ def cover_of(
         measured(fingerprint),
     ]
     state, headline = overall(cards, usable=fingerprint.verdict.trustworthy)
+    company = None if vessel is None else vessel.company
+    logo_path = None if company is None else company.logo_path
+    logo, missing = (None, "") if logo_path is None else drawn_logo(logo_path)
     return Cover(
         headline=headline,
         state=state,
@@ -55,9 +59,11 @@ def cover_of(
         cards=cards,
         known=_known(fingerprint),
         change=f"{change[0].question} {change[0].sentence}" if change else "",
-        facts=_facts(fingerprint),
+        facts=[*_facts(fingerprint), *([("Logo", missing)] if missing else [])],
         tables=number_table(fingerprint),
         sketch=None if vessel is None else line_sketch(vessel),
+        company="" if company is None else company.name,
+        logo=logo,
     )
 
 

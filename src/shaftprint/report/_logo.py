@@ -1,0 +1,40 @@
+"""The logo of a report: a small picture drawn anew from the file of a user, or why there is none."""
+
+import io
+from pathlib import Path
+
+from shaftprint.files import reason
+
+_MOST_BYTES, _MOST_PIXELS = 2**20, 16_000_000
+_SIZE_PX = (600, 200)
+
+
+def drawn_logo(path: Path) -> tuple[bytes | None, str]:
+    """Return a logo as PNG of at most 600 by 200 pixels, or None with why it is left out.
+
+    It is drawn anew, so that nothing of the file but its pixels comes into a report.
+
+    ``path``: PNG or JPEG.
+    """
+    # comes with matplotlib; few reports have a logo
+    from PIL import Image
+
+    try:
+        if path.is_symlink() or not path.is_file():
+            return None, f"expected {path.name} beside the vessel file, found none there"
+        with path.open("rb") as file:
+            content = file.read(_MOST_BYTES + 1)
+        if len(content) > _MOST_BYTES:
+            return None, f"expected {path.name} of at most 1 MB, found more"
+        with Image.open(io.BytesIO(content), formats=("PNG", "JPEG")) as picture:
+            if picture.width * picture.height > _MOST_PIXELS:
+                return None, f"expected {path.name} of at most 16 million pixels, found more"
+            picture.thumbnail(_SIZE_PX)
+            small = picture.convert("RGBA")
+    except OSError as error:
+        return None, f"expected {path.name} as PNG or JPEG: {reason(error) if error.errno else 'it is neither'}"
+    except (ValueError, SyntaxError, Image.DecompressionBombError):
+        return None, f"expected {path.name} as PNG or JPEG, found a damaged one"
+    drawn = io.BytesIO()
+    small.save(drawn, format="PNG")
+    return drawn.getvalue(), ""
