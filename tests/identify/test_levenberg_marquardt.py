@@ -108,6 +108,46 @@ def test_reaches_the_optimum_that_scipy_finds(name):
     assert np.all(found.converged)
 
 
+@dataclass
+class Carried:
+    """Residuals of a problem with the derivatives of its first start, wherever they are asked for."""
+
+    problem: Problem
+    first: np.ndarray | None = None
+    evaluated: int = 0
+    found_anew: int = 0
+
+    def __call__(self, theta, starts):
+        residuals, jacobian = self.problem.batched(theta, starts)
+        self.evaluated += 1
+        self.first = jacobian if self.first is None else self.first
+        return residuals, self.first
+
+    def anew(self, theta, starts):
+        self.found_anew += 1
+        residuals, self.first = self.problem.batched(theta, starts)
+        return residuals, self.first
+
+
+@pytest.mark.parametrize("name", [name for name in PROBLEMS if "Powell" not in name])
+def test_derivatives_of_earlier_steps_lead_to_the_same_optimum(name):
+    problem = PROBLEMS[name]
+    exact = problem.descended()
+    for row, start in enumerate(problem.starts):
+        carried = Carried(problem)
+        found = descend(
+            carried,
+            np.array([start]),
+            np.array(problem.lower),
+            np.array(problem.upper),
+            tolerance=1e-14,
+            max_iterations=2000,
+            anew=carried.anew,
+        )
+        assert found.theta[0] == pytest.approx(exact.theta[row], rel=1e-5, abs=1e-5)
+        assert 0 < carried.found_anew < carried.evaluated
+
+
 def test_parameters_stop_exactly_on_their_bounds():
     found = PROBLEMS["Rosenbrock, both bounds active"].descended()
     # on the corner (1.5, 2): residuals 10 (2 - 2.25) and -0.5, so half the sum of squares is 3.25

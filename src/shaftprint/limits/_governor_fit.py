@@ -16,8 +16,10 @@ from shaftprint.identify.search._levenberg_marquardt import descend
 from shaftprint.identify.search._settings import Settings
 from shaftprint.identify.search._starts import Draw
 from shaftprint.limits._candidates import IDLE, Kind, parameters_of
+from shaftprint.limits.prediction._carried import CarriedError
 from shaftprint.limits.prediction._held_set_point import Messages
 from shaftprint.limits.prediction._prediction_error import PredictionError
+from shaftprint.limits.prediction._recent_simulations import RecentSimulations
 from shaftprint.limits.prediction._set_point import GovernorRecord
 from shaftprint.models._structure import Structure
 
@@ -109,26 +111,36 @@ def fitted(
     negligible: float = NEGLIGIBLE_FALL,
     held: Sequence[str] = (),
     messages: Messages | None = None,
+    near: Fitted | None = None,
+    recent: RecentSimulations | None = None,
+    checked: bool = True,
 ) -> Fitted:
     """Return the best governor with some limits, from given values on.
 
     ``record``: the test; of a held set point with the jumps as late as the messages have them. ``priors``: what is
-    known of the set point's scale and offset. ``iterations``: limit of steps. ``negligible``: fall of minus twice the
-    log-likelihood that is not worth a step. ``held``: names of parameters that stay although they would be free.
+    known of the set point's scale and offset. ``iterations``: limit of steps and of derivatives that are found anew.
+    ``negligible``: fall of minus twice the log-likelihood that is not worth a step. ``held``: names of parameters that
+    stay although they would be free. ``near``: a governor near the start, whose derivatives are the first that are
+    carried along. ``recent``: simulations that others have kept; none if not given. ``checked``: whether it ends with
+    derivatives that were found there.
     """
     free = [name for name in (*GOVERNOR, *parameters_of(kinds)) if name not in held]
     term = PredictionError.of(whole, record, values, free)
+    term = term if recent is None else replace(term, recent=recent)
     term = term.with_scale_at(np.array([values[name] for name in whole.names]))
-    objective = build_joint_objective([term], weighting=MaximumLikelihood(), priors=priors, regularisation={})
+    carried = CarriedError.along(term, None if near is None else near.own)
+    objective = build_joint_objective([carried], weighting=MaximumLikelihood(), priors=priors, regularisation={})
     start = np.array([[values[p.name] for p in objective.free_parameters]])
     descent = descend(
-        objective.of_starts,
+        objective.following(1),
         np.clip(start, objective.lower, objective.upper),
         objective.lower,
         objective.upper,
         # half the squared innovations are about half their number
         tolerance=negligible / term.data_count,
         max_iterations=iterations,
+        anew=objective.of_starts,
+        checked=checked,
     )
     moved = {p.name: float(value) for p, value in zip(objective.free_parameters, descent.theta[0], strict=True)}
     return _at(Fitted(kinds=tuple(kinds), term=term, values=values, priors=priors, messages=messages), moved)

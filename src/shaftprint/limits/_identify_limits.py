@@ -45,7 +45,7 @@ EXCLUDED = 15.0
 # measured speed has noise that the governor did not feel. Levels are as far off as stated.
 GOVERNOR_OFF = 2.4
 # Most steps of the fit that is reported.
-FINE = 15
+FINE = 24
 LIMITS = ("torque", "rate", "deadband", "ramp", "smoke")
 
 
@@ -102,7 +102,15 @@ def identify_limits(
     say("Fitting the limits", "")
     test = with_messages(test, here.messages)
     rough = fitted(
-        governor, test.record(), here.values, here.kinds, priors=priors, iterations=FINE, messages=here.messages
+        governor,
+        test.record(),
+        here.values,
+        here.kinds,
+        priors=priors,
+        iterations=FINE,
+        messages=here.messages,
+        near=here,
+        recent=search.recent,
     )
     best, identification = identified(rough)
     spread = spread_of(best, test, signals, vessel)

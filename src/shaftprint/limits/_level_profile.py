@@ -11,7 +11,7 @@ from shaftprint.limits._uncertainty import LevelScatter
 
 # Steps towards the end of a profile, and how near the end they must come, as a share of the threshold.
 MOST_STEPS, NEAR = 4, 0.1
-PROFILE_ITERATIONS = 8
+PROFILE_ITERATIONS = 12
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -82,6 +82,10 @@ def _distance(fit: Fitted, name: str) -> Callable[[float], float]:
             iterations=PROFILE_ITERATIONS,
             held=(name,),
             messages=fit.messages,
+            near=fit,
+            recent=fit.term.recent,
+            # so near the optimum its derivatives do
+            checked=False,
         )
         return float(np.sqrt(max(there.log_squares - base, 0.0)))
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 
 import numpy as np
 
@@ -15,6 +16,7 @@ from shaftprint.limits._moves import LARGEST_OFFSET, SAME_OFFSET, calm_part, del
 from shaftprint.limits.prediction._governor_test import GovernorTest
 from shaftprint.limits.prediction._held_set_point import Messages, messages_of
 from shaftprint.limits.prediction._reach import Reach
+from shaftprint.limits.prediction._recent_simulations import RecentSimulations
 from shaftprint.limits.prediction._set_point import GovernorRecord
 from shaftprint.models._structure import Structure
 
@@ -35,7 +37,7 @@ MOST_LIMITS, MOST_ROUNDS = 4, 16
 POLISHED, POLISHED_CALM, PUSHED = 2, 5, 3
 # Most iterations of a fit that is compared with others, and the fall of minus twice the log-likelihood that is not
 # worth one: limits are told apart by falls of tens.
-ROUGH, ROUGH_FALL = 12, 0.2
+ROUGH, ROUGH_FALL = 16, 0.2
 # Most pushed fits come back to where they were: they end sooner, and go on only where they came lower.
 LEAST_FALL, PUSH_FALL = 0.5, 1.0
 # A line whose calibration does not tell offsets apart is first fitted with that of its slow parts, known to this:
@@ -87,8 +89,12 @@ class Search:
     """What the test reached: limits that it passed are impossible."""
     offset: float
     """Offset of the set point where it hardly moves: beside limits the likelihood has several optima over it."""
+    recent: RecentSimulations = field(default_factory=RecentSimulations, repr=False)
+    """What was simulated last."""
     optima: dict[frozenset[Kind], Fitted] = field(default_factory=dict, repr=False)
     """The best governor that was found with each choice of limits."""
+    done: dict[tuple[object, ...], Fitted] = field(default_factory=dict, repr=False)
+    """Fits by where they began: ways that lead to one place ask for the same fit again."""
     lesser: dict[tuple[frozenset[Kind], Kind], float] = field(default_factory=dict, repr=False)
     """For limits of which one was taken away, the criterion of the governor that still had it."""
 
@@ -159,7 +165,7 @@ class Search:
             if other is here:
                 break
             here = other
-        return self.fit(here.values, here.kinds, here.messages, negligible=NEGLIGIBLE_FALL), scans
+        return self.fit(here.values, here.kinds, here.messages, negligible=NEGLIGIBLE_FALL, near=here), scans
 
     def scanned(self, here: Fitted) -> list[Scanned]:
         """Return what each level of each limit that is not present would gain over a governor."""
@@ -304,7 +310,7 @@ class Search:
         for start in starts:
             moved = self._tried(start, here.kinds, here.messages, negligible=PUSH_FALL)
             if moved is not None and moved.log_squares < best.log_squares - LEAST_FALL:
-                best = self.fit(moved.values, moved.kinds, moved.messages)
+                best = self.fit(moved.values, moved.kinds, moved.messages, near=moved)
         return best
 
     def _rest_moves(self, here: Fitted) -> list[dict[str, float]]:
@@ -334,36 +340,31 @@ class Search:
         *,
         negligible: float = ROUGH_FALL,
         at_rest: bool = False,
+        near: Fitted | None = None,
     ) -> Fitted:
         """Return the best governor with some limits, from given values on.
 
-        ``at_rest``: whether the offset of the set point is first held where its slow parts have it, if it is not known.
+        ``near``: one with the same limits whose derivatives do to begin with. ``at_rest``: whether the offset of the
+        set point is first held where its slow parts have it, if it is not known.
         """
-        if at_rest and self.priors[GovernorSymbol.SET_POINT_OFFSET].std > SAME_OFFSET:
+        at_rest = at_rest and self.priors[GovernorSymbol.SET_POINT_OFFSET].std > SAME_OFFSET
+        place = (tuple(kinds), tuple(values.values()), id(messages), negligible, at_rest)
+        if place in self.done:
+            return self.done[place]
+        rough = partial(fitted, self.whole, kinds=kinds, iterations=ROUGH, recent=self.recent)
+        if at_rest:
             known = {GovernorSymbol.SET_POINT_OFFSET: Prior(self.offset, AT_REST_STD)}
             values = {**values, GovernorSymbol.SET_POINT_OFFSET: self.offset}
-            priors = {**self.priors, **known}
-            resting = fitted(
-                self.whole, self.record, values, kinds, priors=priors, iterations=ROUGH, negligible=PUSH_FALL
-            )
-            values = resting.values
+            values = rough(self.record, values, priors={**self.priors, **known}, negligible=PUSH_FALL).values
         self.say(" and ".join(kind.value for kind in kinds) or "a governor without limits")
         record = self.record
         if messages is not None:
             record = with_messages(self.test, messages).record(drive_hz=self.drive_hz)
-        best = fitted(
-            self.whole,
-            record,
-            values,
-            kinds,
-            priors=self.priors,
-            iterations=ROUGH,
-            negligible=negligible,
-            messages=messages,
-        )
+        best = rough(record, values, priors=self.priors, negligible=negligible, messages=messages, near=near)
         before = self.optima.get(frozenset(kinds))
         if not self._passes_a_rate(best) and (before is None or schwarz(best) < schwarz(before)):
             self.optima[frozenset(kinds)] = best
+        self.done[place] = best
         return best
 
     def _passes_a_rate(self, one: Fitted) -> bool:

@@ -10,6 +10,9 @@ Where a step gains much more than ``A`` predicts, the cost is flatter than ``A``
 time four times as far, until one gains less than predicted. Without it a model that cannot follow the data creeps, such
 as a pure delay between two wraps of the fast lines' phase.
 
+Where derivatives cost many times as much as residuals, those of earlier steps may be carried along: they are found anew
+where a step gained less than they promise, and before a descent ends.
+
 All starts go through the same array operations; those that have converged are left out of the next step. A step to
 where the parameters are not allowed to be is refused as one that raises the cost is.
 """
@@ -30,6 +33,10 @@ LARGEST_DAMPING = 1e12
 SMALLEST_DAMPING = 1e-12
 STRETCH_ABOVE_GAIN = 1.5
 UNSTRETCH_BELOW_GAIN = 1.0
+# Derivatives that were carried along and promise so much more than a step gained are found anew.
+RENEW_BELOW_GAIN = 0.25
+# Where those that were found anew promise less than so many tolerances, the rest is done with them.
+LAST_TOLERANCES = 25.0
 LARGEST_STRETCH = 256.0
 # Curvature of a parameter without influence: the system stays solvable and its step stays zero.
 SMALLEST_SCALE = 1e-100
@@ -72,6 +79,8 @@ def descend(
     max_iterations: int,
     leader_tolerance: float | None = None,
     allowed: Allowed | None = None,
+    anew: Residuals | None = None,
+    checked: bool = True,
 ) -> Descent:
     """Minimise half the sum of squared residuals from every start.
 
@@ -80,7 +89,9 @@ def descend(
     ``tolerance``: a start has converged when a step is expected to lower its cost by less than this share of it.
     ``max_iterations``: limit of steps for each start. ``leader_tolerance``: the same for the start of lowest cost,
     which polishes its optimum while others are still on their way. ``allowed``: tells where parameters, shape (rows,
-    free), may be, shape (rows,); everywhere within the bounds when not given. The starts must be there.
+    free), may be, shape (rows,); everywhere within the bounds when not given. The starts must be there. ``anew``: the
+    same as ``residuals``, where these give derivatives that are carried along; such a renewal counts as an iteration.
+    ``checked``: whether derivatives are found anew before a descent ends, too.
     """
     theta = np.clip(start, lower, upper)
     starts = np.arange(theta.shape[0])
@@ -90,7 +101,8 @@ def descend(
     information = np.empty((*theta.shape, theta.shape[1]))
     # The old Jacobian lives until the new one is there: freed before, its memory would go back and be faulted in again.
     r, jacobian = residuals(theta, starts)
-    at, lowest = _Position.at_start(theta, r, jacobian), np.inf
+    at, lowest, carried = _Position.at_start(theta, r, jacobian), np.inf, anew is not None
+    last = not checked
     for iteration in range(1, max_iterations + 1):
         step, settled = _bounded_step(at, lower, upper)
         predicted = -np.vecdot(step, at.gradient + 0.5 * _times(at.hessian, step))
@@ -101,6 +113,11 @@ def descend(
         if leader_tolerance is not None and at.cost[leader] <= lowest:
             small[leader] = max(leader_tolerance, ROUNDING) * at.cost[leader]
         flat = trusted & (predicted <= small)
+        last |= not carried and bool(np.all(trusted & (predicted <= LAST_TOLERANCES * small)))
+        if anew is not None and carried and (at.doubted.any() or (flat.any() and not last)):
+            at.renew(*anew(at.theta, at.starts))
+            carried = False
+            continue
         if flat.any():
             lowest = min(lowest, at.cost[flat].min())
             done, moving = at.starts[flat], ~flat
@@ -111,7 +128,7 @@ def descend(
                 break
         trial = np.minimum(np.maximum(at.theta + at.stretch[:, None] * step, lower), upper)
         r, jacobian = residuals(trial, at.starts)
-        at.advance(trial, r, jacobian, predicted, allowed)
+        carried |= at.advance(trial, r, jacobian, predicted, allowed)
     theta[at.starts], cost[at.starts], refused[at.starts] = at.theta, at.cost, at.refused
     information[at.starts] = at.hessian
     return Descent(
@@ -138,6 +155,7 @@ class _Position:
     growth: FloatArray
     stretch: FloatArray
     refused: BoolArray
+    doubted: BoolArray
 
     @classmethod
     def at_start(cls, theta: FloatArray, r: FloatArray, jacobian: FloatArray) -> "_Position":
@@ -154,7 +172,14 @@ class _Position:
             growth=np.full(cost.size, FIRST_GROWTH),
             stretch=np.ones(cost.size),
             refused=np.zeros(cost.size, dtype=np.bool_),
+            doubted=np.zeros(cost.size, dtype=np.bool_),
         )
+
+    def renew(self, r: FloatArray, jacobian: FloatArray) -> None:
+        """Take derivatives that were found anew; a step that failed says nothing against them."""
+        _, self.gradient, self.hessian = _quadratic(r, jacobian)
+        self.scale = np.maximum(self.scale, _diagonal(self.hessian))
+        self.growth, self.doubted = np.full_like(self.growth, FIRST_GROWTH), np.zeros_like(self.doubted)
 
     def chosen(self, rows: BoolArray) -> "_Position":
         """Return some of the rows."""
@@ -162,8 +187,11 @@ class _Position:
 
     def advance(
         self, trial: FloatArray, r: FloatArray, jacobian: FloatArray, predicted: FloatArray, allowed: Allowed | None
-    ) -> None:
-        """Take the trials that lower the cost; change damping and stretch by how well their gain was predicted."""
+    ) -> bool:
+        """Take the trials that lower the cost; change damping and stretch by how well their gain was predicted.
+
+        Returns whether there were any.
+        """
         cost, gradient, hessian = _quadratic(r, jacobian)
         good = (cost < self.cost) & (predicted > 0.0)
         if allowed is not None:
@@ -180,6 +208,7 @@ class _Position:
         self.growth = np.where(failed, 2.0 * self.growth, FIRST_GROWTH)
         longer = np.where(gain > STRETCH_ABOVE_GAIN, np.minimum(4.0 * self.stretch, LARGEST_STRETCH), self.stretch)
         self.stretch = np.where(gain < UNSTRETCH_BELOW_GAIN, 1.0, longer)
+        self.doubted = gain < RENEW_BELOW_GAIN
         if good.all():
             self.theta, self.cost, self.gradient, self.hessian = trial, cost, gradient, hessian
         else:
@@ -188,6 +217,7 @@ class _Position:
             self.gradient = np.where(row, gradient, self.gradient)
             self.hessian = np.where(row[:, :, None], hessian, self.hessian)
         self.scale = np.maximum(self.scale, _diagonal(self.hessian))
+        return bool(good.any())
 
 
 def _quadratic(residuals: FloatArray, jacobian: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:

@@ -27,7 +27,6 @@ LONGEST_STEP_S = 0.01
 # Cost of a simulation that runs away.
 AWAY = 1e9
 OUTPUT = "y"
-EXACT = ExactDelays(longest_step_s=LONGEST_STEP_S)
 # The rate limit of the set point acts before the equations; the step of its derivative, as a share of it.
 RATE, RATE_STEP = GovernorSymbol.SET_POINT_RATE, 1e-3
 
@@ -76,6 +75,8 @@ class PredictionError(WhitenedTerm):
     """The data."""
     scale: float = 1.0
     """Standard deviation of the innovations, by which they are divided."""
+    longest_step_s: float = LONGEST_STEP_S
+    """Longest step of its simulations [s]."""
     recent: RecentSimulations = field(default_factory=RecentSimulations, repr=False)
     """What was simulated last; the same in other units and with other free parameters."""
 
@@ -138,12 +139,12 @@ class PredictionError(WhitenedTerm):
 
     def innovations(self, values: FloatArray) -> Innovations | None:
         """Return the innovations at all parameters of the structure; None where the simulation runs away."""
-        simulated = self._simulated(values, ())
+        simulated = self.simulated(values, ())
         return None if simulated is None else innovations(self._measured - simulated[0], self.record.used)
 
     def predicted(self, values: FloatArray) -> FloatArray:
         """Return the predicted torque over the load, shape (samples,); infinite where the simulation runs away."""
-        simulated = self._simulated(values, ())
+        simulated = self.simulated(values, ())
         return np.full(self.record.samples, np.inf) if simulated is None else simulated[0]
 
     def residuals(self, values: FloatArray) -> FloatArray:
@@ -152,7 +153,7 @@ class PredictionError(WhitenedTerm):
 
     def rows(self, values: FloatArray) -> FloatArray | None:
         """Return innovations over their deviation and below them their derivatives, shape (1 + free, innovations)."""
-        simulated = self._simulated(values, [self.whole.names[column] for column in self.free])
+        simulated = self.simulated(values, [self.whole.names[column] for column in self.free])
         if simulated is None:
             return None
         at_values = innovations(self._measured - simulated[0], self.record.used)
@@ -171,12 +172,12 @@ class PredictionError(WhitenedTerm):
 
     def evaluable(self, theta: FloatArray) -> BoolArray:
         """Return whether the simulation of each start stays within bounds, shape (starts,)."""
-        return np.array([self._simulated(values, ()) is not None for values in self.complete(theta)])
+        return np.array([self.simulated(values, ()) is not None for values in self.complete(theta)])
 
     def assessed(self, values: FloatArray, number: int) -> tuple[PredictedTorque, TermTest]:
         """Return FitPercent; whether the innovations are small has no meaning, for they are the unit."""
         structure_values = self.structure_values(values)
-        simulated, at_values = self._simulated(structure_values, ()), self.innovations(structure_values)
+        simulated, at_values = self.simulated(structure_values, ()), self.innovations(structure_values)
         if simulated is None or at_values is None:
             raise IdentificationError(
                 f"{self.name}: the simulation of {self.structure.name} runs away at the parameters that were found."
@@ -200,7 +201,7 @@ class PredictionError(WhitenedTerm):
         """Refuse: the speed that drives the governor holds the noise that would have to be drawn anew."""
         raise IdentificationError(f"{self.name}: repeats of a governor on its measured speed cannot be drawn.")
 
-    def _simulated(self, values: FloatArray, wanted: Sequence[str]) -> FloatArray | None:
+    def simulated(self, values: FloatArray, wanted: Sequence[str]) -> FloatArray | None:
         """Return prediction and derivatives, shape (1 + wanted, samples); None where it runs away."""
         again = self.recent.found(self.record, values, wanted)
         if again is not None:
@@ -210,9 +211,13 @@ class PredictionError(WhitenedTerm):
             self.recent.keep(self.record, values, wanted, simulated)
         return simulated
 
+    @property
+    def _simulator(self) -> ExactDelays:
+        return ExactDelays(longest_step_s=self.longest_step_s)
+
     def _simulated_anew(self, values: FloatArray, wanted: Sequence[str]) -> FloatArray | None:
         inside = [name for name in wanted if name != RATE]
-        simulated = simulated_on(EXACT, self.whole, values, self._record_at(values), inside)
+        simulated = simulated_on(self._simulator, self.whole, values, self._record_at(values), inside)
         if simulated is None or len(inside) == len(wanted):
             return None if simulated is None else simulated[:, :, 0]
         change = self._change_with_rate(values)
@@ -234,7 +239,7 @@ class PredictionError(WhitenedTerm):
         for side in (-1.0, 1.0):
             moved = values.copy()
             moved[column] *= 1.0 + side * RATE_STEP
-            simulated = simulated_on(EXACT, self.whole, moved, self._record_at(moved), ())
+            simulated = simulated_on(self._simulator, self.whole, moved, self._record_at(moved), ())
             if simulated is None:
                 return None
             ends.append(simulated[0, :, 0])

@@ -12,7 +12,7 @@ from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.time_domain._record import Record
 
 # Beyond the best parameters a descent has tried a few others before it ends.
-KEPT = 4
+KEPT = 12
 
 
 class RecentSimulations:

@@ -5,12 +5,13 @@ recorded set point alone. It is worked out on the polyline, exact between two sa
 ramp begins a share of a step early, which at 100 Hz made rates up to 5 % too low.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.kernels._compiled import compiled
+from shaftprint.time_domain._decimator import Decimator
 from shaftprint.time_domain._record import Record
 
 
@@ -22,6 +23,15 @@ class GovernorRecord(Record):
     """Corners of the set point [s]; a jump has two of one time, shape (corners,)."""
     corner_value: FloatArray
     """The set point there [-], shape (corners,)."""
+
+    def coarser(self) -> "GovernorRecord":
+        """Return the record with every other sample of its drive, or with all where they cannot be halved."""
+        half = Decimator(every=self.every // 2)
+        ahead = 2 * half.half - self.margin
+        if self.every % 2 or ahead < 0:
+            return self
+        drive = {name: frozen_float(np.pad(values, ahead, mode="edge")[::2]) for name, values in self.drive.items()}
+        return replace(self, every=half.every, drive=drive)
 
     def set_point_at(self, rate_per_s: float) -> FloatArray:
         """Return the set point that changes no faster than a rate [1/s], on the drive's grid, shape (samples,)."""
