@@ -1,5 +1,6 @@
 """Steps and ramps in histories of a known line: found, dated, sized, and taken for nothing after what was done."""
 
+import tracemalloc
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 
@@ -10,7 +11,9 @@ from tests.known_fits import TRUTH, fitted, taken
 
 from shaftprint.drift import differ, history_of, watch
 from shaftprint.drift._causes import CAUSES
+from shaftprint.drift._course_search import CourseSearch
 from shaftprint.drift._dated import Event
+from shaftprint.drift._series import series_of
 from shaftprint.drift._words import limit_sentence, time_to_limit, watch_sentences
 from shaftprint.errors import FingerprintError
 from shaftprint.identify import Settings
@@ -50,6 +53,36 @@ def test_an_unchanged_ship_has_no_drift(base):
     history, finding = looked_at([made(place, base) for place in range(5)])
     assert finding.drifts == ()
     assert watch_sentences(finding, history) == ("No change beyond chance in 5 tests from 2024-01-01 to 2024-12-31.",)
+
+
+@pytest.mark.parametrize(("beyond", "pieces"), [(0, 8), (12, 8), (25, 4), (250, 1)])
+def test_draws_end_where_the_rest_could_make_nothing_unlikely(base, monkeypatch, beyond, pieces):
+    """Of 2000 in pieces of 250 the 100th beyond decides: (1 + 100) / 2001 is more than one in twenty."""
+    history = history_of({f"t{place}": made(place, base) for place in range(5)})
+    search = CourseSearch.of(series_of(history, made=5, load_repeatability=0.02), 5)
+    drawn = []
+    evidence = np.where(np.arange(250) < beyond, np.inf, -1.0)
+    monkeypatch.setattr(CourseSearch, "_largest_of", lambda self, looks, noise: drawn.append(noise.shape) or evidence)
+    p_value = search.nearest(np.zeros((search.values.size, 2000))).p_value
+    assert len(drawn) == pieces
+    assert p_value == pytest.approx((1.0 + pieces * beyond) / (1.0 + pieces * 250.0))
+    assert (p_value <= 0.05) == (beyond < 13)
+
+
+def test_a_search_takes_little_more_room_than_its_courses(base):
+    """Of a hundred tests the courses take 13 MB, and six times as much was taken to find them."""
+    history = history_of({f"t{place}": made(place, base) for place in range(40)})
+    series = series_of(history, made=40, load_repeatability=0.02)
+    tracemalloc.start()
+    search = CourseSearch.of(series, 40)
+    found = tracemalloc.get_traced_memory()[1]
+    tracemalloc.reset_peak()
+    search.likeliest()
+    looked_through = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert search.columns.shape == (40 * len(series.names), 2 * 40 * len(series.causes))
+    assert found < 4.0 * search.columns.nbytes
+    assert looked_through < 5.0 * search.columns.nbytes
 
 
 def test_a_step_is_found_with_its_size_and_the_test_at_which_it_began(base):

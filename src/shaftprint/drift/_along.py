@@ -89,7 +89,9 @@ def whitened(difference: FloatArray, covariance: FloatArray, directions: FloatAr
     if not np.all(np.isfinite(covariance)) or not np.all(scale > 0.0):
         raise np.linalg.LinAlgError("expected finite numbers and positive variances")
     factor = np.linalg.cholesky(covariance / scale[:, None] / scale)
-    solved = np.linalg.solve(factor, np.column_stack([difference, directions]) / scale[:, None])
+    columns = np.column_stack([difference, directions])
+    columns /= scale[:, None]
+    solved = np.linalg.solve(factor, columns)
     return Whitened(difference=solved[:, 0], directions=solved[:, 1:])
 
 

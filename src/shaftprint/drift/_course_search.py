@@ -5,7 +5,8 @@ of nine causes steps at one of twenty tests up or down is one of hundreds of way
 ``z^2``, twice what the logarithm of the likelihood gains by it, and twice the logarithm of ``WEAR_ODDS`` more for wear:
 a generalised likelihood ratio with weights, whose false alarms are drawn as they are (C. R. Genovese, K. Roeder,
 L. Wasserman, "False discovery control with p-value weighting", Biometrika 93, 2006, on why weights cost little where
-they are wrong and gain much where they are right).
+they are wrong and gain much where they are right). Draws end where the rest can no longer make a course unlikely
+(J. Besag, P. Clifford, "Sequential Monte Carlo p-values", Biometrika 78, 1991): an unchanged ship takes few of them.
 """
 
 import math
@@ -18,6 +19,7 @@ import numpy as np
 from shaftprint.arrays import FloatArray, IntArray
 from shaftprint.distributions import normal_cdf
 from shaftprint.drift._along import whitened
+from shaftprint.drift._differ import UNLIKELY
 from shaftprint.drift._drift_finding import DatedCause, Drift, Shape
 from shaftprint.drift._finding import odds_against
 from shaftprint.drift._series import Series
@@ -59,26 +61,26 @@ class CourseSearch:
 
         Raises numpy.linalg.LinAlgError if the covariance is not positive definite.
         """
-        courses: list[tuple[int, Shape, int]] = []
-        columns: list[FloatArray] = []
-        steps = [(np.arange(series.time_a.size) >= at).astype(np.float64) for at in range(series.time_a.size)]
-        ramps = [np.maximum(series.time_a - begun, 0.0) for begun in series.time_a]
+        every, causes = series.time_a.size, len(series.causes)
         # steps first: between two tests a ramp is none other
-        shapes: tuple[tuple[Shape, list[FloatArray]], ...] = (("step", steps), ("ramp", ramps))
-        for shape, growths in shapes:
-            for cause, direction in enumerate(series.directions.T):
-                courses += [(cause, shape, at) for at in range(len(growths))]
-                columns += [np.kron(growth, direction) for growth in growths]
-        stacked = np.column_stack([series.baseline, np.array(columns).T])
-        white = whitened(series.values.reshape(-1), series.covariance, stacked)
+        shapes: tuple[Shape, ...] = ("step", "ramp")
+        courses = [(cause, shape, at) for shape in shapes for cause in range(causes) for at in range(every)]
+        # a course is the sum of what its cause did to each test
+        each = np.kron(np.eye(every), series.directions)
+        white = whitened(series.values.reshape(-1), series.covariance, np.column_stack([series.baseline, each]))
         free = series.baseline.shape[1]
+        of_each = white.directions[:, free:].reshape(-1, every, causes).transpose(0, 2, 1)
+        columns = np.empty((len(of_each), len(shapes), causes, every))
+        for place, shape in enumerate(shapes):
+            growths = np.column_stack([growth_of(shape, at, series.time_a) for at in range(every)])
+            np.matmul(of_each, growths, out=columns[:, place])
         wear = [series.causes[cause].wears * (shape == "ramp" and at == 0) for cause, shape, at in courses]
         return cls(
             series=series,
             tests=tests,
             values=white.difference,
             free=white.directions[:, :free],
-            columns=white.directions[:, free:],
+            columns=columns.reshape(len(columns), -1),
             courses=tuple(courses),
             wear=np.array(wear, dtype=np.float64),
         )
@@ -146,12 +148,17 @@ class CourseSearch:
         length = np.linalg.norm(left, axis=0)
         # beside the whole course: of one that begins later there is rounding alone
         length = np.where(length > _ROUNDING * np.linalg.norm(self.columns, axis=0), length, 0.0)
-        return np.where(length > 0.0, left / np.where(length > 0.0, length, 1.0), 0.0), length
+        left /= np.where(length > 0.0, length, np.inf)
+        return left, length
+
+    def _top(self) -> float:
+        """Return the largest evidence of any course."""
+        directions, length = self._directions(self.tests)
+        return float(_evidence(directions.T @ self.values[: len(directions)], self.wear)[length > 0.0].max())
 
     def _p_value(self, noise: FloatArray) -> float:
         """Return the probability that an unchanged ship shows as much evidence in any test up to the horizon."""
-        directions, length = self._directions(self.tests)
-        top = float(_evidence(directions.T @ self.values[: len(directions)], self.wear)[length > 0.0].max())
+        top = self._top()
         beyond = float(normal_cdf(-math.sqrt(top)))
         beyond_as_wear = float(normal_cdf(-math.sqrt(max(top - _BONUS, 0.0))))
         looks = list(self._looks())
@@ -162,8 +169,15 @@ class CourseSearch:
         if bound < 1.0 / (1.0 + noise.shape[1]):
             # what is too rare to be drawn is bounded by the sum over all looks
             return float(bound)
-        drawn = (1.0 + np.count_nonzero(self._largest(looks, noise) >= top)) / (1.0 + noise.shape[1])
-        return float(min(drawn, bound))
+        drawn = reached = 0
+        # in pieces that stay in the cache of a processor
+        for piece in np.split(noise, range(_PIECE, noise.shape[1], _PIECE), axis=1):
+            drawn += piece.shape[1]
+            reached += int(np.count_nonzero(self._largest_of(looks, piece) >= top))
+            if 1.0 + reached > UNLIKELY * (1.0 + noise.shape[1]):
+                # whatever the others show, it is not unlikely any more
+                break
+        return float(min((1.0 + reached) / (1.0 + drawn), bound))
 
     def _looks(self) -> Iterator["_Look"]:
         """Yield what the first test tells, the first two, and so on; each goes on from the one before.
@@ -183,13 +197,8 @@ class CourseSearch:
             told = np.flatnonzero(length > _ROUNDING * whole)
             yield _Look(rows=rows, turn=turn, told=told, along=along[:, told] / length[told], length=length[told])
 
-    def _largest(self, looks: Sequence["_Look"], noise: FloatArray) -> FloatArray:
-        """Return the largest evidence of each drawn history of an unchanged ship in any look, shape (draws,)."""
-        # in pieces that stay in the cache of a processor
-        pieces = [self._largest_of(looks, noise[:, at : at + _PIECE]) for at in range(0, noise.shape[1], _PIECE)]
-        return np.concatenate(pieces)
-
     def _largest_of(self, looks: Sequence["_Look"], noise: FloatArray) -> FloatArray:
+        """Return the largest evidence of each drawn history of an unchanged ship in any look, shape (draws,)."""
         largest = np.zeros(noise.shape[1])
         inner, free = np.zeros((self.columns.shape[1], noise.shape[1])), np.zeros((0, noise.shape[1]))
         for tests, look in enumerate(looks, start=1):
@@ -199,7 +208,8 @@ class CourseSearch:
                 continue
             scores = inner[look.told] / look.length[:, None] - look.along.T @ free
             wear = self.wear[look.told]
-            largest = np.maximum(largest, np.abs(scores).max(axis=0, initial=0.0) ** 2)
+            extreme = np.maximum(scores.max(axis=0, initial=0.0), -scores.min(axis=0, initial=0.0))
+            largest = np.maximum(largest, extreme**2)
             largest = np.maximum(largest, _evidence(scores[wear != 0.0], wear[wear != 0.0]).max(axis=0, initial=0.0))
         return largest
 

@@ -78,7 +78,7 @@ def series_of(history: History, *, made: int, load_repeatability: float, moved: 
         left_out=judged.left_out,
         time_a=time_a,
         values=np.array([one.values for one in singles]),
-        covariance=_covariance(history, singles, load, judged.whole) + np.diag(_padded(judged.unknown, len(singles))),
+        covariance=_covariance(history, singles, load, judged.whole, _padded(judged.unknown, len(singles))),
         baseline=baseline,
         causes=causes,
         directions=directions,
@@ -102,7 +102,9 @@ def _moved(values: FloatArray, baseline: FloatArray, moved: FloatArray | None) -
     return by_all
 
 
-def _covariance(history: History, singles: list[SingleTest], load: FloatArray, whole: BoolArray) -> FloatArray:
+def _covariance(
+    history: History, singles: list[SingleTest], load: FloatArray, whole: BoolArray, unknown: FloatArray
+) -> FloatArray:
     size, count = len(load), len(singles)
     covariance = np.zeros((count * size, count * size))
     tests = [test.fingerprint for test in history.tests]
@@ -116,6 +118,7 @@ def _covariance(history: History, singles: list[SingleTest], load: FloatArray, w
     for stated in stated_errors(tests, singles, shared, whole):
         along = stated.reshape(-1)
         covariance += np.outer(along, along)
+    covariance[np.diag_indices(count * size)] += unknown
     return covariance
 
 

@@ -58,8 +58,9 @@ def watch(
         return _nothing(f"expected {FEWEST_TESTS} tests that can be judged or more, found {count}", {})
     extended = _extended(history, horizon)
     series = series_of(extended, made=count, load_repeatability=load_repeatability)
+    left_out = series.left_out
     if not series.causes:
-        return _nothing(NOT_TOLD, series.left_out)
+        return _nothing(NOT_TOLD, left_out)
     try:
         search = CourseSearch.of(series, count)
         noise = rng.standard_normal((series.values.size, draws))
@@ -67,11 +68,13 @@ def watch(
         if nearest is not None and nearest.p_value <= UNLIKELY:
             for _ in range(ROUNDS):
                 moved = search.effect(search.likeliest()[0])
+                # of a hundred tests each takes thirty megabytes: what is found anew has their room
+                del search, series
                 series = series_of(extended, made=count, load_repeatability=load_repeatability, moved=moved)
                 search = CourseSearch.of(series, count)
             nearest = search.nearest(noise)
     except np.linalg.LinAlgError:
-        return _nothing(NOT_DETERMINED, series.left_out)
+        return _nothing(NOT_DETERMINED, left_out)
     drifts: list[Drift] = []
     while nearest is not None and nearest.p_value <= UNLIKELY and len(drifts) < MOST_CHANGES:
         drifts.append(nearest)
