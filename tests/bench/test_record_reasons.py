@@ -1,8 +1,12 @@
 """How a record of a drive was taken: what is wrong is refused and named, and what is not stays trusted."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from tests.bench.drawn_lags import GAIN, LAG_TOML, TIME_S, identified, lag, levels, written
+
+from shaftprint.bench._record_reasons import large_offsets
 
 pytestmark = pytest.mark.slow
 
@@ -68,6 +72,26 @@ def test_dry_friction_of_a_motion_one_way_is_no_zero_of_the_sensor(tmp_path):
     assert offset.std < 0.5
     assert "the motion of steps goes one way, in which dry friction is a constant too" in reason
     assert "zero_std of y" in reason
+
+
+def test_offset_that_another_end_of_the_search_does_not_need_is_none(tmp_path):
+    """A load of 0.3 V, stated too well, stands 30 rad/s beside the sensor; with none the model stands where it is."""
+    block = '[[blocks]]\noutput = "load"\nkind = "constant"\nparameters = { value = "F" }\n\n[[parameters]]'
+    text = LAG_TOML.replace("[[parameters]]", block, 1).replace('inputs = ["u"]', 'inputs = ["u", "load"]')
+    load = '[[parameters]]\nname = "F"\nunit = "V"\nlower = -1.0\nupper = 1.0\nvalue = 0.3\nmeaning = "load"'
+    known = '[[known]]\nname = "F"\nvalue = 0.3\nstd = 0.001'
+    text = text.replace("[fit]", f"{load}\n\n{known}\n\n[fit]")
+    u = levels(np.random.default_rng(11), 400, 20)
+    record = written(tmp_path, "steps", {"u": u, "y": noisy(lag(u, INTERVAL, hold=True), 12)}, INTERVAL)
+    fit = identified(tmp_path, record, text=f"{text}inputs_hold = true")
+    assert "y stands -29.9" in named(fit)
+
+    found = fit.identification
+    values = np.array([found.value(name) if name != "F" else 0.0 for name in found.objective.names])
+    for further, reasons in ((1.9, 0), (2.0, 1)):  # 95 % of a number ends where the cost is higher by 1.92
+        other = replace(found.clusters[0], values=values, cost=found.cost + further)
+        elsewhere = replace(found, clusters=(*found.clusters, other))
+        assert len(list(large_offsets(fit.equipped, elsewhere))) == reasons
 
 
 def test_zero_of_a_sensor_is_found_with_its_deviation_and_trusted(tmp_path):

@@ -10,7 +10,9 @@ from shaftprint.bench._held_values import kept_for
 from shaftprint.digits import rounded, stated
 from shaftprint.drive._signals import Signal
 from shaftprint.drive._unit_factors import zero_is_anywhere
+from shaftprint.identify.fit._estimate import Estimate
 from shaftprint.identify.fit._identification import Identification
+from shaftprint.identify.fit._optima import WITHIN
 from shaftprint.identify.judgement._data_contradictions import fails
 from shaftprint.identify.judgement._requirements import Requirements
 from shaftprint.reasons import Reason
@@ -80,7 +82,11 @@ def starts_in_motion(one: EquippedDrive, fit: Identification) -> Iterator[Reason
 
 
 def large_offsets(one: EquippedDrive, fit: Identification) -> Iterator[Reason]:
-    """Yield the outputs beside whose sensor the model stands further than a sensor's zero may lie off."""
+    """Yield the outputs beside whose sensor the model stands further than a sensor's zero may lie off.
+
+    Where friction and an offset do the same, another end of the search that fits as well may stand elsewhere: what
+    counts is the one that stands nearest.
+    """
     parts = [part for part in fit.parts if isinstance(part, RecordFit)]
     for output in one.drive.outputs:
         level = max(float(np.abs(part.record.outputs[output.name][part.record.used]).max()) for part in parts)
@@ -91,7 +97,10 @@ def large_offsets(one: EquippedDrive, fit: Identification) -> Iterator[Reason]:
             for part, offset in found
             if abs(offset.value) - allowed > CERTAIN * offset.std  # false where nothing is known of it
         ]
-        if not large:
+        if not large or any(
+            all(abs(offset.value) <= allowed for offset in offsets if offset.name == output.name)
+            for offsets in _offsets_elsewhere(fit)
+        ):
             continue
         part, offset = max(large, key=lambda pair: abs(pair[1].value))
         values = part.record.outputs[output.name][part.record.used]
@@ -113,6 +122,14 @@ def large_offsets(one: EquippedDrive, fit: Identification) -> Iterator[Reason]:
                 "the zero of the sensor may lie off."
             ),
         )
+
+
+def _offsets_elsewhere(fit: Identification) -> Iterator[list[Estimate]]:
+    """Yield the offsets of all records at each other end of the search within the 95 % interval of some number."""
+    for cluster in fit.clusters:
+        if 2.0 * (cluster.cost - fit.cost) < WITHIN and not np.array_equal(cluster.values, fit.values):
+            parts = [term.assessed(cluster.values, number)[0] for number, term in enumerate(fit.objective.terms)]
+            yield [offset for part in parts if isinstance(part, RecordFit) for offset in part.offsets]
 
 
 def _allowed(output: Signal, level: float, factor: float) -> float:
