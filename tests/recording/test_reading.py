@@ -1,8 +1,10 @@
 """Choosing the reader of a file."""
 
+import wave
 from types import SimpleNamespace
 
 import pytest
+from scipy.io import wavfile
 
 from shaftprint.errors import RecordingError
 from shaftprint.recording import Recording, read_recording
@@ -115,3 +117,13 @@ def test_a_table_of_whole_numbers_with_dates_is_no_bus(tmp_path):
     path.write_text("time,running,torque [N m],speed [rpm],oil [degC],water [degC],rack [%]\n" + "".join(rows))
     with read_recording(path) as recording:
         assert recording.channel("torque").values(0, 3) == pytest.approx([12500.0, 12501.0, 12502.0])
+
+
+def test_a_sound_file_is_refused_with_what_its_reader_makes_of_24_bits(tmp_path):
+    path = tmp_path / "log.wav"
+    with wave.open(str(path), "wb") as file:
+        file.setparams((1, 3, 1000, 0, "NONE", "not compressed"))
+        file.writeframes(b"".join(count.to_bytes(3, "little", signed=True) for count in (1000, -1000)))
+    with pytest.raises(RecordingError, match="24 bits come times 256"):
+        read_recording(path)
+    assert wavfile.read(path)[1].tolist() == [256_000, -256_000]

@@ -60,7 +60,8 @@ _BY_BYTES = {
     b"\x89MCAP": "it is a ROS log: PlotJuggler exports it as CSV",
     b"#ROSBAG": "it is a ROS log: PlotJuggler exports it as CSV",
     b"|CF,": _IMC,
-    b"RIFF": "it is a sound file: scipy.io.wavfile reads it, scipy.io.savemat writes the samples with fs",
+    b"RIFF": "it is a sound file: scipy.io.wavfile reads it (24 bits come times 256), scipy.io.savemat writes the "
+    "samples with fs",
 }
 # names of what is in an archive
 _BY_NAMES = {
