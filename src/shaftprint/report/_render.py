@@ -145,6 +145,7 @@ def _inputs(survey: "Survey", **further: Any) -> Inputs:
         levels=survey.measurement.levels,
         legs=survey.measurement.legs,
         leg_tests=survey.leg_tests,
+        black_boxes=survey.black_boxes,
         **(nothing | further),
     )
 

@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+from shaftprint.fingerprint._leg_records import LegRecord, leg_record
 from shaftprint.identify.fit._fit_test import FitTest
 from shaftprint.identify.fit._identification import Identification
 from shaftprint.identify.fit._part_tests import part_tests
@@ -134,4 +135,15 @@ def leg_tests(identification: Identification, working_points: Mapping[str, "Work
     return tuple(
         LegTest(name=name, working_point=point, test=test)
         for (name, point), test in zip(working_points.items(), part_tests(identification), strict=True)
+    )
+
+
+def fitted_legs(signals: "Signals", legs: Sequence[LegMeasurement], tests: Sequence[LegTest]) -> tuple[LegRecord, ...]:
+    """Return what is kept of the legs that were measured, each with its share of the test of fit."""
+    p_values = {one.name: one.test.p_value for one in tests}
+    names = {leg.name for leg in legs}
+    return tuple(
+        leg_record(leg, main=signals.working_point, p_value=p_values.get(leg.name))
+        for leg in signals.legs
+        if leg.name in names
     )

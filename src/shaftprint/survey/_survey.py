@@ -17,9 +17,10 @@ from shaftprint.campaign._trial_conditions import TrialConditions
 from shaftprint.catalogue._shipped import shipped_structure
 from shaftprint.errors import IdentificationError, SettingsError, StructureError
 from shaftprint.fingerprint._fingerprint import Fingerprint
-from shaftprint.fingerprint._leg_records import LegRecord, NoiseSpectrum, leg_record, noise_spectra
+from shaftprint.fingerprint._leg_records import NoiseSpectrum, noise_spectra
 from shaftprint.fingerprint._line_fingerprint import SourceFile
 from shaftprint.fingerprint._take import take_fingerprint
+from shaftprint.identify.comparison._black_box import BlackBox, black_boxes
 from shaftprint.identify.comparison._comparison import StructureComparison
 from shaftprint.identify.fit._estimate import Estimate
 from shaftprint.identify.fit._identification import Identification
@@ -41,7 +42,7 @@ from shaftprint.survey._elastic_line import (
     may_twist,
 )
 from shaftprint.survey._fits import comparisons_of, fit, priors_of
-from shaftprint.survey._legs import LegTest, leg_tests
+from shaftprint.survey._legs import LegTest, fitted_legs, leg_tests
 from shaftprint.survey._legs_apart import LegAlone, apart_reasons, legs_alone
 from shaftprint.survey._limit_hints import hints_of
 from shaftprint.survey._measurement import Measurement, measure, of_legs
@@ -86,6 +87,8 @@ class Survey(Shown):
     """Limits of governor and engine; None where they were not looked for."""
     validations: "tuple[Validation, ...]" = ()
     """The first structure, with its limits where they were looked for, held against records that it has not seen."""
+    black_boxes: tuple[BlackBox, ...] = ()
+    """What the data say without physics, of each leg or of the sines; where the fit can be trusted nothing."""
     remarks: tuple[str, ...] = ()
     """What could not be done, in words."""
 
@@ -208,7 +211,7 @@ def run(
     )
     expect_one_speed(trial.campaign, trial.vessel, legs)
     measurement = of_legs(measure(recording, trial, mode=mode, hints=hints or {}, progress=progress), legs)
-    measurement = replace(measurement, began=_began(tested_at, measurement.began, trial))
+    measurement = replace(measurement, began=trial.began(tested_at, measurement.began))
     speeds = [point.engine_speed_rev_s for point in measurement.working_points.values()]
     chosen = tuple(at_speeds(one, speeds) for one in chosen)
     by_name = settings_by_name(chosen, measurement, trial, settings or _with_priors)
@@ -244,17 +247,6 @@ def _offer(
     )
 
 
-def _began(stated: datetime | None, by_the_recording: datetime | None, trial: Trial) -> datetime | None:
-    """Return when a test began, in the zone of its conditions where it is known without an offset."""
-    conditions = trial.conditions
-    if stated is not None:
-        conditions = conditions.model_copy(update={"tested_at": stated})
-    try:
-        return conditions.began(by_the_recording)
-    except ValueError as error:
-        raise SettingsError(f"When the test began: {error}.") from None
-
-
 def fingerprint_of(
     identification: Identification, measurement: Measurement, trial: Trial, *, now: datetime | None = None
 ) -> Fingerprint:
@@ -284,7 +276,7 @@ def _fingerprint(
         now=now or datetime.now(UTC),
         tested_at=measurement.began,
         trial_conditions=trial.conditions,
-        legs=_fitted_legs(measurement, tests),
+        legs=fitted_legs(measurement.signals, measurement.legs, tests),
         reasons=reasons,
         noise=_measured_noise(measurement, trial),
         torque_ripple=measurement.torque_ripple,
@@ -300,17 +292,6 @@ def _ship(identification: Identification, measurement: Measurement, trial: Trial
         return ship_numbers(identification, measurement.signals, trial.vessel, rng=np.random.default_rng(1))
     except (StructureError, IdentificationError):
         return ()
-
-
-def _fitted_legs(measurement: Measurement, tests: Sequence[LegTest]) -> tuple[LegRecord, ...]:
-    """Return what is kept of the legs that were measured, each with its share of the test of fit."""
-    p_values = {one.name: one.test.p_value for one in tests}
-    names = {leg.name for leg in measurement.legs}
-    return tuple(
-        leg_record(leg, main=measurement.signals.working_point, p_value=p_values.get(leg.name))
-        for leg in measurement.signals.legs
-        if leg.name in names
-    )
 
 
 def _measured_noise(measurement: Measurement, trial: Trial) -> tuple[NoiseSpectrum, ...]:
@@ -394,6 +375,9 @@ def judged(survey: Survey, *, rng: np.random.Generator, progress: Progress = SIL
         fingerprint=with_validation(survey.fingerprint, validations),
         comparisons=comparisons,
         validations=validations,
+        black_boxes=()
+        if survey.fingerprint.verdict.trustworthy
+        else black_boxes(survey.identification, [leg.name for leg in survey.measurement.legs]),
         remarks=(*survey.remarks, *remarks),
     )
 

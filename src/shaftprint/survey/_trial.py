@@ -2,12 +2,14 @@
 
 import hashlib
 from dataclasses import dataclass, field
+from datetime import datetime
 from importlib.resources import files
 from pathlib import Path
 from typing import Literal
 
 from shaftprint.campaign._campaign import Campaign, load_campaign
 from shaftprint.campaign._trial_conditions import TrialConditions, load_trial_conditions
+from shaftprint.errors import SettingsError
 from shaftprint.fingerprint._line_fingerprint import SourceFile
 from shaftprint.notebook._shown import Shown
 from shaftprint.settings import settings_content
@@ -26,6 +28,16 @@ class Trial(Shown):
     """The files with their hashes; none for what was made in a program."""
     conditions: TrialConditions = field(default_factory=TrialConditions)
     """When, where and in what water it was tested, as far as somebody says so."""
+
+    def began(self, stated: datetime | None, by_the_recording: datetime | None) -> datetime | None:
+        """Return when a test began, in the zone of its conditions where it is known without an offset."""
+        conditions = self.conditions
+        if stated is not None:
+            conditions = conditions.model_copy(update={"tested_at": stated})
+        try:
+            return conditions.began(by_the_recording)
+        except ValueError as error:
+            raise SettingsError(f"When the test began: {error}.") from None
 
 
 def load_trial(

@@ -26,6 +26,7 @@ from shaftprint.cli._report_options import ReportOptions, report_options
 from shaftprint.cli._results import Report, print_comparison, print_paths
 from shaftprint.cli._terminal import details, print_findings, say
 from shaftprint.cli.output._fingerprint_file import FINGERPRINT
+from shaftprint.cli.output._json import give
 from shaftprint.cli.output._progress import Steps
 from shaftprint.cli.output._results_options import Results, results_options
 from shaftprint.cli.output._tables import print_table
@@ -37,6 +38,7 @@ with late():
     from shaftprint.catalogue._own_structure import TypedName
     from shaftprint.fingerprint._json_file import write_fingerprint
     from shaftprint.fingerprint._sources import structure_sources
+    from shaftprint.report.sections._black_box import black_box_sentence
     from shaftprint.survey._everything import with_everything
     from shaftprint.survey._fit_options import FitOptions
     from shaftprint.survey._limits import with_limits
@@ -214,5 +216,9 @@ def _print_judgement(survey: Survey) -> None:
         print_findings("Limits", survey.limit_hints)
     if len(survey.fits) > 1:
         print_table(fits_table("All structures", survey.fits))
+    if survey.black_boxes:
+        with details():
+            print_findings("Without physics", [black_box_sentence(one) for one in survey.black_boxes])
+        give("black_box", [one.record for one in survey.black_boxes])
     for comparison in survey.comparisons:
         print_comparison(comparison)

@@ -1,5 +1,6 @@
 """The sections of a report in the order of the page: a new one is a function and a line here."""
 
+from shaftprint.report.sections._black_box import black_box_section
 from shaftprint.report.sections._changes import change_section
 from shaftprint.report.sections._engineer import budget_section, folded, number_section, verdict_section
 from shaftprint.report.sections._inertia import inertia_section
@@ -38,7 +39,8 @@ def _explained(inputs: Inputs, sections: list[Section]) -> list[Section]:
 
 
 def _engineer_sections(inputs: Inputs) -> list[Section]:
-    return [verdict_section(inputs), number_section(inputs), fit_section(inputs), *budget_section(inputs)]
+    refused = black_box_section(inputs)
+    return [verdict_section(inputs), number_section(inputs), fit_section(inputs), *refused, *budget_section(inputs)]
 
 
 def _appendix_sections(inputs: Inputs) -> list[Section]:

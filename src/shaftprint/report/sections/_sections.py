@@ -11,6 +11,7 @@ if TYPE_CHECKING:
     from shaftprint.campaign._campaign import Campaign
     from shaftprint.clocks._logger_clock import LoggerClock
     from shaftprint.fingerprint._fingerprint import Fingerprint
+    from shaftprint.identify.comparison._black_box import BlackBox
     from shaftprint.identify.comparison._comparison import StructureComparison
     from shaftprint.identify.fit._identification import Identification
     from shaftprint.models._structure import Structure
@@ -49,6 +50,7 @@ class Inputs:
     levels: Mapping[str, "Levels"] = field(default_factory=dict)
     legs: Sequence["LegMeasurement"] = ()
     leg_tests: Sequence["LegTest"] = ()
+    black_boxes: Sequence["BlackBox"] = ()
 
     @property
     def aliasing_limit_hz(self) -> float:
