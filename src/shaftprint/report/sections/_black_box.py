@@ -43,7 +43,7 @@ def black_box_sentence(found: "BlackBox") -> str:
     output, hertz, decibels, degrees = found.furthest
     where = (
         f"{found.structure} is furthest from it at {plain(hertz, 3)} Hz in {output}: {decibels:+.1f} dB and "
-        f"{degrees:+.0f} deg."
+        f"{round(degrees):+d} deg."
     )
     model = f"a rational model of order {found.order} with a delay of {plain(1000.0 * found.delay_s, 0)} ms"
     if found.p_value >= EXPLAINS:
