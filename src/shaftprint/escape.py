@@ -116,6 +116,14 @@ def dbc_text(text: str) -> str:
     return plain.encode("latin-1", "replace").decode("latin-1")
 
 
+_CHAT = str.maketrans({"<": "‹", ">": "›", "[": "(", "]": ")", "@": "＠", "&": "+", "|": "/", "`": "'", "*": "·"})
+
+
+def chat_text(text: str) -> str:
+    """Return text in one line in which a chat finds no mention, link or mark-up; what looks like it stays."""
+    return printable(text).translate(_CHAT).replace("://", ": //")
+
+
 def html_text(text: str) -> str:
     """Return text for HTML, or for an attribute in quotation marks."""
     return html.escape(printable(text))

@@ -17,7 +17,7 @@ TABLE = Table(
     rows=(
         (Symbol("K_p"), "4.720 ± 0.091", "4.546 to 4.901", "59 %", "0.022 s", "4.7·10⁻⁵", "=1+1"),
         (Symbol("n"), "1\u202f360.9 ± 2.5", "−3.0 to 2.0", "−2 %", "1.6 kg m²", "0.74", "@here"),
-        (Symbol("t_sp"), "0.000 (at its bound)", "0.000* to 0.069", "–", "", "< 1·10⁻³⁰⁰", "plain"),
+        (Symbol("t_sp"), "0.000 (at its bound)", "0.000* to 0.069", "4.7·10⁻⁵ %", "", "< 1·10⁻³⁰⁰", "plain"),
     ),
     note="A note.",
 )
@@ -40,7 +40,9 @@ def test_numbers_are_numbers_with_the_digits_of_the_table(book):
     assert first[:9] == ["K_p", 4.72, 0.091, 4.546, 4.901, 0.59, 0.022, "s", pytest.approx(4.7e-5)]
     assert second[:9] == ["n", 1360.9, 2.5, -3.0, 2.0, -0.02, 1.6, "kg m²", 0.74]
     assert third[1:5] == ["0.000 (at its bound)", None, "0.000* to 0.069", None]
-    assert third[8] == "< 1·10⁻³⁰⁰"
+    assert third[5:9] == [pytest.approx(4.7e-7), None, None, "< 1·10⁻³⁰⁰"]
+    # 0.000047 % shown, where one decimal would be 0.0 %
+    assert sheet.cell(4, 6).number_format == "0.000000%"
     assert [sheet.cell(2, column).number_format for column in (2, 6, 9)] == ["0.000", "0%", "0.0E+0"]
 
 

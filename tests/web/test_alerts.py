@@ -11,6 +11,7 @@ from tests.web.conftest import ADA
 from tests.web.test_pages import STEP
 
 from shaftprint.errors import ServerError
+from shaftprint.escape import chat_text
 from shaftprint.web import _telling
 from shaftprint.web._alerts import Alerts, read_alerts
 from shaftprint.web._asked import line_key
@@ -28,12 +29,13 @@ class Hook:
     """A hook on this computer: keeps what is posted, and answers with a status."""
 
     def __init__(self):
-        self.status, self.posted = 200, []
+        self.status, self.posted, self.said = 200, [], None
         hook = self
 
         class Handler(BaseHTTPRequestHandler):
             def do_POST(self):
                 body = self.rfile.read(int(self.headers["content-length"]))
+                hook.said = self.headers["authorization"]
                 hook.posted.append((self.path, json.loads(body)))
                 self.send_response(hook.status)
                 self.send_header("location", "/elsewhere")
@@ -88,6 +90,35 @@ def test_a_change_is_told_once_and_again_when_it_is_another(site, hook):
     stands(site, [STEP])
     assert told(site, alerts)
     assert len(hook.posted) == 3
+
+
+def test_user_and_password_of_a_hook_go_along(hook):
+    _telling.post(hook.url.replace("http://", "http://yard:p%40ss@"), "", [])
+    # base64 of yard:p@ss
+    assert hook.said == "Basic eWFyZDpwQHNz"
+    assert hook.posted[0][0] == "/secret-token?x=1"
+
+
+def test_a_name_of_a_ship_calls_nobody_in_a_chat():
+    hostile = "<!channel> @here [see](https://x.example) `a` *b*\n&lt;"
+    assert chat_text(hostile) == "‹!channel› ＠here (see)(https: //x.example) 'a' ·b·?+lt;"
+
+
+def test_an_end_of_the_server_waits_for_no_alert():
+    free = threading.Event()
+
+    async def ended():
+        sending = asyncio.create_task(_telling._sent(free.wait))
+        await asyncio.sleep(0)
+        sending.cancel()
+        with pytest.raises(asyncio.CancelledError):
+            await sending
+
+    asyncio.run(ended())
+    (thread,) = (one for one in threading.enumerate() if one.name == "alert")
+    assert thread.daemon
+    free.set()
+    thread.join()
 
 
 def test_nobody_goes_where_a_hook_sends_him_and_no_log_says_where_it_is(site, hook, caplog):
@@ -154,6 +185,7 @@ def test_a_mail_goes_out_by_tls_before_a_password_does(site, tmp_path, monkeypat
         ('[webhook]\nurl = "ftp://x/"', "begins with https"),
         ('[webhook]\nurl = "https://[::1/x"', "begins with https"),
         ('[webhook]\nurl = "https://x:99999/"', "begins with https"),
+        ('[webhook]\nurl = "http://yard:hunter@x/"', "expected https:// where a user or password"),
         ('[webhook]\nurl = "https://x/"\nother = 1', "expected a table of url"),
         (f'[mail]\n{MAIL}tls = "none"', "where there is a password"),
         (f"[mail]\n{MAIL}".replace("yard@", "a\\nBcc: b@"), "a text in one line"),

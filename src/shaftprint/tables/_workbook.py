@@ -129,7 +129,9 @@ def _value(text: str, *, percent: bool) -> Value:
     style = f"0.{'0' * decimals}" if decimals else "0"
     number = float(mantissa) * 10.0 ** int(power or 0)
     if percent:
-        return number / 100.0, f"{style}%"
+        # a per cent has no power in a spreadsheet: as many decimals as it takes
+        decimals = max(0, decimals - int(power or 0))
+        return number / 100.0, f"0.{'0' * decimals}%" if decimals else "0%"
     return number, f"{style}E+0" if power else style
 
 

@@ -63,6 +63,10 @@ def read_alerts(path: Path) -> Alerts:
     url = None if hook is None else _text(_table(hook, _HOOK, path, "webhook"), "url", path, "webhook")
     if url is not None and not _is_address(url):
         raise ServerError(f"{path}: [webhook] url: expected an address that begins with https:// or http://.")
+    if url is not None and urlsplit(url).username is not None and urlsplit(url).scheme != "https":
+        raise ServerError(
+            f"{path}: [webhook] url: expected https:// where a user or password stands in it, found http."
+        )
     return Alerts(mail=None if mail is None else _mail(mail, path), hook=url, pages=pages.rstrip("/"))
 
 

@@ -5,22 +5,25 @@ server's own database or its log.
 """
 
 import asyncio
+import base64
 import hashlib
 import http.client
 import json
 import logging
 import smtplib
 import ssl
+import threading
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from email.message import EmailMessage
 from functools import partial
 from typing import TYPE_CHECKING, Any, Final
-from urllib.parse import urlsplit
+from urllib.parse import unquote, urlsplit
 
 from starlette.concurrency import run_in_threadpool
 
-from shaftprint.escape import printable
+from shaftprint.escape import chat_text
 from shaftprint.web._asked import line_address, line_key
 from shaftprint.web._standing import Standing, standing_of
 
@@ -56,10 +59,10 @@ class Told:
 
     @property
     def words(self) -> str:
-        """The line and what has changed, in one line of text."""
+        """The line and what has changed, in one line of text in which a chat finds no mention and no link."""
         ship = self.line.line.ship
         number = "" if ship.imo_number is None else f" (IMO {ship.imo_number})"
-        return printable(f"{ship.name}{number}, {self.line.line.position}: {self.standing.word}; {self.standing.note}")
+        return chat_text(f"{ship.name}{number}, {self.line.line.position}: {self.standing.word}; {self.standing.note}")
 
     def content(self, pages: str) -> dict[str, Any]:
         """Return it for JSON."""
@@ -127,7 +130,7 @@ async def tell(service: "Service", alerts: "Alerts") -> bool:
             continue
         is_tried = True
         try:
-            await run_in_threadpool(send, changes)
+            await _sent(partial(send, changes))
         except (OSError, smtplib.SMTPException, http.client.HTTPException, ValueError) as fault:
             # what a server answers may repeat what it was sent
             _LOG.warning("alert: the %s could not be sent (%s)", way, type(fault).__name__)
@@ -136,6 +139,32 @@ async def tell(service: "Service", alerts: "Alerts") -> bool:
             service.kept.put_told(one.key, way, one.mark, service.now().isoformat())
         service.audit.note(f"sent an alert by {way}", person="", address="", now=service.now(), lines=len(changes))
     return is_tried
+
+
+async def _sent(send: Callable[[], None]) -> None:
+    """Wait until something is sent, in a thread that no end of the server waits for.
+
+    What was under way then may arrive, and is told again by the next server: once too often, not once too little.
+    """
+    loop = asyncio.get_running_loop()
+    ended: asyncio.Future[None] = loop.create_future()
+
+    def end(fault: Exception | None) -> None:
+        if not ended.done():
+            ended.set_result(None) if fault is None else ended.set_exception(fault)
+
+    def work() -> None:
+        fault: Exception | None = None
+        try:
+            send()
+        except Exception as error:
+            fault = error
+        with suppress(RuntimeError):
+            # a loop that has ended takes nothing more
+            loop.call_soon_threadsafe(end, fault)
+
+    threading.Thread(target=work, name="alert", daemon=True).start()
+    await ended
 
 
 def subject_of(changes: Sequence[Told]) -> str:
@@ -184,6 +213,9 @@ def post(url: str, pages: str, changes: Sequence[Told]) -> None:
         connection = http.client.HTTPConnection(host, place.port, timeout=TIMEOUT_S)
     try:
         heads = {"content-type": "application/json", "user-agent": "shaftprint"}
+        if place.username is not None:
+            said = f"{unquote(place.username)}:{unquote(place.password or '')}"
+            heads["authorization"] = f"Basic {base64.b64encode(said.encode()).decode()}"
         connection.request("POST", target, json.dumps(content).encode(), heads)
         status = connection.getresponse().status
     finally:

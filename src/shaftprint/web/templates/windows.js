@@ -58,8 +58,14 @@
   };
   const show = async () => {
     const number = ++asked, text = document.getElementById("text"), refused = document.getElementById("refused");
-    const answer = await fetch(`/api/v1${form.getAttribute("action")}`, {method: "POST", body: new URLSearchParams(new FormData(form))});
-    const told = await answer.json();
+    let answer = {ok: false}, told = {refused: "The server did not answer: move a window again to ask once more."};
+    try {
+      answer = await fetch(`/api/v1${form.getAttribute("action")}`, {method: "POST", body: new URLSearchParams(new FormData(form))});
+      told = await answer.json();
+    } catch {
+      // no network, or no JSON from what stands before the server
+      answer = {ok: false};
+    }
     // a later question is on its way
     if (number !== asked) return;
     refused.hidden = answer.ok;
