@@ -70,6 +70,13 @@ def test_pip_installs_what_is_there(words):
         assert re.search(r"^hatchling==", (ROOT / "requirements/run.txt").read_text(encoding="utf-8"), re.MULTILINE)
 
 
+def test_the_extra_all_brings_every_other_one_of_a_user():
+    extras = PROJECT["optional-dependencies"]
+    ((words,),) = ([re.fullmatch(r"shaftprint\[(.*)\]", one)[1]] for one in extras["all"])
+    of_developers = {"all", "test", "lint", "docs", "benchmark"}
+    assert set(words.split(",")) == set(extras) - of_developers
+
+
 @pytest.mark.parametrize("words", [*of("pipx", "install"), *of("uv", "tool", "install")])
 def test_what_is_installed_is_the_wheel_that_make_writes(words):
     (word,) = words

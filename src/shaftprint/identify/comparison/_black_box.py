@@ -7,7 +7,6 @@ and V. Pereyra, SIAM Journal on Numerical Analysis 10, 1973). The order is the l
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import partial
 
 import numpy as np
 
@@ -229,9 +228,13 @@ def _fitted(sections: int, omega: FloatArray, data: FloatArray, inverses: FloatA
             [_LONGEST_DELAY_S],
         ]
     )
-    residuals = partial(_projected, omega=omega, data=data, inverses=inverses)
-    found = least_squares(lambda shape: residuals(shape)[1], begin, bounds=(low, high), x_scale="jac", max_nfev=200)
-    weights, left = residuals(found.x)
+    given = {"omega": omega, "data": data, "inverses": inverses}
+
+    def residuals(shape: FloatArray) -> FloatArray:
+        return _projected(shape, **given)[1]
+
+    found = least_squares(residuals, begin, bounds=(low, high), x_scale="jac", max_nfev=200)
+    weights, left = _projected(found.x, **given)
     return _Fit(sections=sections, shape=found.x, weights=weights, left=left)
 
 

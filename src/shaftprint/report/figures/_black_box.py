@@ -22,7 +22,8 @@ _WIDER = 1.2
 
 def black_box_chart(found: "BlackBox") -> Chart:
     """Return magnitude and phase of each output: lines with 95 % intervals, flexible model with its band, structure."""
-    above, below = [], []
+    above: list[Panel] = []
+    below: list[Panel] = []
     response, omega = found.response, 2.0 * np.pi * found.frequency_hz
     span = frequency_scale((float(omega.min()) / _WIDER, float(omega.max()) * _WIDER))
     for at, output in enumerate(response.outputs):
