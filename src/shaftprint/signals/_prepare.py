@@ -346,7 +346,8 @@ def _straightened_in_place(volts: FloatArray, sensor: "SetPointSensor", campaign
         raise SignalError(
             f"channel {sensor.channel}: expected table_rpm of the vessel file to reach the offset of the campaign, "
             f"{float(sensor.reading(campaign.offset_v)):.4g} {sensor.unit}, found readings from "
-            f"{sensor.table_rpm[0][0]:g} to {sensor.table_rpm[-1][0]:g}."
+            f"{sensor.table_rpm[0][0]:g} to {sensor.table_rpm[-1][0]:g}; add a reading of the lever beyond it, or make "
+            "the test within them."
         )
     volts[:] = sensor.straightened(volts, about_v=campaign.offset_v)
 
