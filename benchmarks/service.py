@@ -30,9 +30,9 @@ from shaftprint.catalogue._shipped import shipped_structure
 from shaftprint.distributions import NORMAL_95
 from shaftprint.service import scan
 from shaftprint.service._fingerprint import STRUCTURE
-from shaftprint.service._fit import along, fit_segments
+from shaftprint.service._fit import fit_segments
 from shaftprint.service._model import FREE, ServiceModel, service_model
-from shaftprint.service._score import noise_of, scores, simulated
+from shaftprint.service._score import Score, noise_of, scores, simulated
 from shaftprint.service._segment_file import read_segments
 from shaftprint.service._ship_numbers import margin_numbers_of
 from shaftprint.tug import Truth, Tug, sail_service
@@ -153,6 +153,21 @@ def outcome(seed: int, hours: float, folder: Path) -> dict[str, Any]:
         "causes": causes,
         "cpu_s": {"scan": told.get("scan_s", np.nan), "fit": fitted_s, "score": scored_s},
     }
+
+
+def along(each: Sequence[Score], direction: FloatArray) -> tuple[float, float]:
+    """Return how far the likelihood goes along a direction in which all else is known, and its standard deviation.
+
+    That is by the scatter of the segments alone.
+
+    ``each``: what each segment tells, at an earlier fingerprint. ``direction``: change of the parameters for one unit
+    of a cause, shape (free,).
+    """
+    slopes = np.array([direction @ one.slope for one in each])
+    curvatures = np.array([direction @ one.information @ direction for one in each])
+    size = float(slopes.sum() / curvatures.sum())
+    left = slopes - size * curvatures
+    return size, float(np.sqrt(np.sum(left**2)) / curvatures.sum())
 
 
 def _numbers(theta: FloatArray, model: ServiceModel) -> dict[str, tuple[float, FloatArray]]:

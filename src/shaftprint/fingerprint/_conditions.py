@@ -11,7 +11,6 @@ from shaftprint.records import Record
 from shaftprint.vessel._ship import ImoNumber, ShortName
 
 if TYPE_CHECKING:
-    from shaftprint.campaign._campaign import Campaign
     from shaftprint.campaign._trial_conditions import TrialConditions
     from shaftprint.vessel._vessel import Vessel
 
@@ -88,15 +87,15 @@ class Conditions(Tested):
 
 
 def conditions_stated(
-    vessel: "Vessel", campaign: "Campaign", trial: "TrialConditions | None", tested_at: datetime | None
+    vessel: "Vessel", campaign: str, place: str | None, trial: "TrialConditions | None", tested_at: datetime | None
 ) -> Mapping[str, Any]:
     """Return the conditions that no recording shows, as fields of ``Conditions``.
 
-    ``vessel``, ``campaign``: what was tested and what was asked of it. ``trial``: where and in what water, where
-    somebody says so. ``tested_at``: when the recording began, where that is known.
+    ``vessel``, ``campaign``, ``place``: what was tested, by what, and where the campaign file says. ``trial``: where
+    and in what water, where somebody says so. ``tested_at``: when the recording began, where that is known.
     """
     ship = None if vessel.ship is None else ShipIdentity(**vessel.ship.model_dump())
     water = {} if trial is None else {name: getattr(trial, name) for name in WATER}
-    place = campaign.place if trial is None or trial.place is None else trial.place
-    test = {"vessel": vessel.name, "campaign": campaign.name, "place": place, "tested_at": tested_at}
+    place = place if trial is None or trial.place is None else trial.place
+    test = {"vessel": vessel.name, "campaign": campaign, "place": place, "tested_at": tested_at}
     return test | {"ship": ship} | water

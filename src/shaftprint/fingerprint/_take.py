@@ -113,7 +113,7 @@ def take_fingerprint(
     left_out = _left_out(identification)
     profiled = profile(identification, margins) if identification.is_likelihood else None
     reported = _Reported(stated, {} if profiled is None else profiled.intervals)
-    stated_conditions = conditions_stated(vessel, campaign, trial_conditions, tested_at)
+    stated_conditions = conditions_stated(vessel, campaign.name, campaign.place, trial_conditions, tested_at)
     conditions = _conditions(identification, signals, vessel, left_out, stated_conditions)
     margin = margin_quantities(identification, profiled, stated)
     off = contradictions(physical, signals, vessel, campaign)

@@ -18,7 +18,7 @@ from shaftprint.catalogue._roles import ShipRole
 from shaftprint.catalogue._shipped import shipped_structure
 from shaftprint.choices import CLOSED_LOOPS
 from shaftprint.errors import ServiceError
-from shaftprint.fingerprint._conditions import WATER, Conditions, ShipIdentity
+from shaftprint.fingerprint._conditions import Conditions, conditions_stated
 from shaftprint.fingerprint._fingerprint import Fingerprint, Quality
 from shaftprint.fingerprint._sources import source_of
 from shaftprint.fingerprint._vessel_fields import TVC, vessel_fields
@@ -169,12 +169,7 @@ def _conditions(
 ) -> Conditions:
     at_v = line.middle_v + (model.engine_speed_rev_s - line.middle_rev_s) / line.slope_rev_s_per_v
     return Conditions(
-        vessel=vessel.name,
-        campaign=ORDINARY_SERVICE,
-        tested_at=tested_at,
-        place=None if trial is None else trial.place,
-        **({} if trial is None else {name: getattr(trial, name) for name in WATER}),
-        ship=None if vessel.ship is None else ShipIdentity(**vessel.ship.model_dump()),
+        **conditions_stated(vessel, ORDINARY_SERVICE, None, trial, tested_at),
         engine_speed=Estimate(
             name="n_0",
             unit="rpm",
@@ -251,5 +246,7 @@ def _findings(fit: ServiceFit, segments: Sequence[Segment], of: int, line: Lever
         f"From ordinary service: {len(segments)} of {of} moves of the lever were used, no test was made.",
         f"Where the lever stands still, the speed is within {line.spread_rpm:.2g} rpm of its line "
         f"({line.stretches} stretches).",
+        f"The scatter of the segments tells the deviations with {np.min(fit.freedom):.0f} degrees of freedom and more; "
+        "intervals are as much wider.",
         f"The fit took {fit.steps} steps; the last was {fit.last_step:.1g} standard deviations long.",
     )

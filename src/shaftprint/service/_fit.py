@@ -6,9 +6,9 @@ time; segments are independent of each other, so that the scatter of their slope
 
     cov = H^-1 (sum_c g_c g_c^T) H^-1
 
-(White, 1982; Liang and Zeger, 1986), in full, with the correlations that it has; a standard deviation is never less
-than that of the noise model. To it comes a floor: what was left of the errors in many hours of simulated service
-however long they were.
+(White, 1982; Liang and Zeger, 1986), in full, with the correlations that it has, and wider where few segments tell a
+number; a standard deviation is never less than that of the noise model. To it comes a floor: what was left of the
+errors in many hours of simulated service however long they were.
 """
 
 from collections.abc import Mapping, Sequence
@@ -19,6 +19,7 @@ import numpy as np
 
 from shaftprint.arrays import BoolArray, FloatArray, frozen_bool, frozen_float
 from shaftprint.catalogue._gauge import GAUGE_K_I, GAUGE_K_P, GAUGE_OMEGA_N, GAUGE_ZETA, T_D, T_SP, TAU_DN, TAU_UP
+from shaftprint.distributions import NORMAL_95, deviations
 from shaftprint.errors import ServiceError
 from shaftprint.service._model import FREE, ServiceModel
 from shaftprint.service._progress import Progress, Reached
@@ -37,6 +38,10 @@ _MOST_STEPS, _LAST, _SHORT, _NOISE_ANEW, _MOST_NOISES = 12, 0.3, 1.5, 1.5, 4
 _ROUGH = 3.0
 # Condition of the scaled curvature beyond which some number is not told at all.
 _WORST = 1e12
+# A segment that alone tells something has left of its own noise, once it is fitted, this share at least.
+_LEAST_LEFT = 0.1
+# What an interval holds, and degrees of freedom beyond which a deviation is as good as known.
+_COVERAGE, _MANY = 0.95, 1e4
 # Times that a step is halved before the fit ends.
 _HALVINGS = 6
 FLOOR: Mapping[str, float] = MappingProxyType({GAUGE_K_P.name: 0.003, GAUGE_K_I.name: 0.003, TAU_DN.name: 0.002})
@@ -52,7 +57,9 @@ class ServiceFit:
     theta: FloatArray
     """Values of the free parameters, in the order of ``FREE``, shape (free,)."""
     covariance: FloatArray
-    """Their covariance, shape (free, free)."""
+    """Their covariance, shape (free, free): 1.96 deviations hold 95 %, however few segments there are."""
+    freedom: FloatArray
+    """Degrees of freedom of each deviation, shape (free,)."""
     of_prior: Mapping[str, FloatArray]
     """Change of them for one standard deviation of what the vessel file knows, by the number, shape (free,)."""
     scores: tuple[Score, ...]
@@ -183,9 +190,11 @@ def fit_segments(
             )  # fmt: skip
     sums = sums_of(each, model, theta)
     of_noise: FloatArray = np.linalg.inv(sums.information).astype(np.float64)
+    covariance, freedom = clustered(each, sums, of_noise)
     return ServiceFit(
         theta=frozen_float(theta),
-        covariance=frozen_float(with_floor(clustered(each, sums, of_noise), theta)),
+        covariance=frozen_float(with_floor(covariance, theta)),
+        freedom=frozen_float(freedom),
         of_prior={name: frozen_float(of_noise[:, FREE.index(name)] / std) for name, std in model.prior_std.items()},
         scores=tuple(each),
         counts=frozen_bool(counts),
@@ -259,21 +268,35 @@ def _with_those_back(
     return _beside_limits([every[k] for k in sorted(every)], counts)
 
 
-def clustered(each: Sequence[Score], sums: Sums, of_noise: FloatArray) -> FloatArray:
-    """Return the covariance from the scatter of segments, no deviation less than that of the noise, (free, free).
+def clustered(each: Sequence[Score], sums: Sums, of_noise: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return the covariance from the scatter of segments, (free, free), and the degrees of freedom of each, (free,).
+
+    A segment that tells much pulls the fit towards its own noise: its slope there is enlarged to what it would be had
+    it not been fitted. Few such segments tell their own scatter badly, so that each deviation is widened until 1.96 of
+    it hold 95 % (Bell and McCaffrey, 2002; Pustejovsky and Tipton, 2018). No deviation is less than that of the noise.
 
     ``each``: what each segment tells, at the greatest likelihood. ``sums``: their sums. ``of_noise``: covariance by the
     noise model, shape (free, free).
     """
-    slopes = np.array([one.slope for one in each])
-    # as many slopes as parameters would fit any data: each segment counts as if it had not been fitted
-    shares = np.array([np.trace(of_noise @ one.information) for one in each]) / len(of_noise)
-    slopes = slopes / np.maximum(1.0 - shares, 0.5)[:, None]
-    count = len(each)
-    variance = count / (count - 1.0) * slopes.T @ slopes + sums.prior
-    scatter = of_noise @ variance @ of_noise
-    wider = np.sqrt(np.maximum(np.diag(of_noise) / np.diag(scatter), 1.0))
-    return np.asarray(scatter * np.outer(wider, wider))
+    root: FloatArray = np.linalg.cholesky(of_noise).astype(np.float64)
+    shares = root.T @ np.array([one.information for one in each]) @ root
+    values, turn = np.linalg.eigh(0.5 * (shares + shares.transpose(0, 2, 1)))
+    enlarged = (turn / np.sqrt(np.maximum(1.0 - values, _LEAST_LEFT))[:, None, :]) @ turn.transpose(0, 2, 1)
+    slopes = np.einsum("sij,sj->si", enlarged, np.array([one.slope for one in each]) @ root)
+    scatter = root @ slopes.T @ slopes @ root.T
+    covariance = scatter + of_noise @ sums.prior @ of_noise
+    # by Satterthwaite: the squares that are summed have the covariance diag(v B v) - (B v)(B v)^T, were B the truth
+    seen = np.einsum("sij,kj->ksi", enlarged, root)
+    pulls = np.einsum("sij,ksj->ksi", shares, seen)
+    own, pulled = np.einsum("ksi,ksi->ks", pulls, seen), np.einsum("ksi,ksi->ks", pulls, pulls)
+    together = np.einsum("ksi,ksj->kij", pulls, pulls)
+    squares = np.sum(own**2 - 2.0 * own * pulled, axis=1) + np.sum(together**2, axis=(1, 2))
+    freedom = np.sum(own - pulled, axis=1) ** 2 / squares
+    # what the vessel file states has no scatter
+    freedom *= (np.diag(covariance) / np.diag(scatter)) ** 2
+    wider = np.array([deviations(_COVERAGE, float(one)) for one in np.minimum(freedom, _MANY)]) / NORMAL_95
+    wider = np.maximum(wider, np.sqrt(np.diag(of_noise) / np.diag(covariance)))
+    return np.asarray(covariance * np.outer(wider, wider)), freedom
 
 
 def with_floor(covariance: FloatArray, theta: FloatArray) -> FloatArray:
@@ -300,18 +323,3 @@ def _within(theta: FloatArray) -> FloatArray:
         TAU_UP.name: 0.01,
     }
     return np.maximum(theta, [least.get(name, -np.inf) for name in FREE])
-
-
-def along(each: Sequence[Score], direction: FloatArray) -> tuple[float, float]:
-    """Return how far the likelihood goes along a direction in which all else is known, and its standard deviation.
-
-    That is by the scatter of the segments alone. The direction is that of a cause, such as a gain that is lower.
-
-    ``each``: what each segment tells, at an earlier fingerprint. ``direction``: change of the parameters for one unit
-    of the cause, shape (free,).
-    """
-    slopes = np.array([direction @ one.slope for one in each])
-    curvatures = np.array([direction @ one.information @ direction for one in each])
-    size = float(slopes.sum() / curvatures.sum())
-    left = slopes - size * curvatures
-    return size, float(np.sqrt(np.sum(left**2)) / curvatures.sum())

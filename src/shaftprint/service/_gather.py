@@ -36,8 +36,8 @@ if TYPE_CHECKING:
 MEAN_S = 5.0
 # Stretches that tell of the lever's line, and the least of them, with the range of speeds that they span.
 _FEWEST, _LEAST_RANGE = 5, 0.05
-# Scatter of the still stretches about the line beyond which the lever is not what the governor follows [rpm].
-_LARGEST_SPREAD_RPM = 15.0
+# Scatter of the still stretches about the line beyond which the lever is not what the governor follows, over the speed.
+_LARGEST_SPREAD = 0.013
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -262,11 +262,11 @@ def lever_line(still: StillMeans) -> LeverLine:
         left = moved[:, 1] - slope * moved[:, 0]
         spread = 1.4826 * float(np.median(np.abs(left[keep])))
         keep = np.abs(left) <= max(5.0 * spread, 1e-9)
-    if spread * SECONDS_PER_MINUTE > _LARGEST_SPREAD_RPM:
+    if spread > _LARGEST_SPREAD * middle[1]:
         raise ServiceError(
-            f"lever: expected a speed that follows the lever within {_LARGEST_SPREAD_RPM:g} rpm where it stands still, "
-            f"found a scatter of {spread * SECONDS_PER_MINUTE:.0f} rpm; the channel of sensors.set_point is not what "
-            "the governor follows: log the demand that the control unit takes."
+            f"lever: expected a speed that follows the lever within {100.0 * _LARGEST_SPREAD:g} % where it stands "
+            f"still, found a scatter of {spread * SECONDS_PER_MINUTE:.0f} rpm; the channel of sensors.set_point is not "
+            "what the governor follows: log the demand that the control unit takes."
         )
     return LeverLine(
         slope_rev_s_per_v=slope,

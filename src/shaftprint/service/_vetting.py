@@ -6,7 +6,7 @@ closed-loop dynamic-stochastic systems, Technometrics 16, 1974). So each of thes
 
 - does the still lever follow the load of some seconds before?
 - by which shift of the lever does the log agree best with an earlier fingerprint?
-- does the speed follow the lever wherever it stands still, and where the torque is high too?
+- does the speed follow the lever wherever it stands still, and give way to the load nowhere?
 - does the torque go with the square of the speed across moves, as it does at the quay?
 
 Somebody who trims against the load only when he moves the lever anyway is seen by none of them.
@@ -19,6 +19,7 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.catalogue._gauge import T_SP
+from shaftprint.distributions import deviations
 from shaftprint.service._gather import MEAN_S, StillMeans
 from shaftprint.service._model import FREE, ServiceModel
 from shaftprint.service._score import Simulated
@@ -39,12 +40,12 @@ _REACH_S = 0.5
 # A ship with way on takes a torque whose load rises with the speed across a move: by more than this share of it, beyond
 # so many standard deviations, in moves of so much of the speed.
 _WAY, _WAY_STD, _LEAST_MOVE = 0.1, 4.0, 0.08
-# Where the lever stands still the speed is what it asks for, within so much and so many deviations of its line [rpm];
-# elsewhere less than this share of the time. After a move that takes so long, and a mean over so much of the end.
-_OFF_RPM, _OFF_STD, _OFF_SHARE, _SETTLED_S, _END_S = 20.0, 6.0, 0.1, 15.0, 5.0
-# Where the torque is high the speed of a still lever scatters by less than this, and than so many times what it does at
-# lower torques; sound lines stay below 2 rpm and twice. Means that are needed at either.
-_HELD_RPM, _HELD_TIMES, _FEWEST_HELD = 5.0, 4.0, 10
+# Where the lever stands still the speed is what it asks for, within this share of it and so many deviations of its
+# line; elsewhere less than this share of the time. After a move that takes so long, and a mean over so much of the end.
+_OFF, _OFF_STD, _OFF_SHARE, _SETTLED_S, _END_S = 0.017, 6.0, 0.1, 15.0, 5.0
+# A governor holds the speed whatever the load; where the torque l n^2 is held, the speed goes with l^-1/2. Nearer to
+# that than to nothing is no governor's doing. How often a sound log may be refused, and the least degrees of freedom.
+_HELD, _HELD_RATE, _FEWEST_HELD = -0.25, 1e-3, 8
 _BEFORE_SAMPLES, _AFTER_S, _UNTIL_S = 40, 4.0, 9.0
 
 
@@ -160,46 +161,63 @@ def off_the_line(still: StillMeans, line: LeverLine) -> Found:
 
 
 def torque_is_held(still: StillMeans, *, speed_rev_s: float) -> Found:
-    """Return by how much the speed scatters where the torque is high, beside what the lever asks for there [rpm].
+    """Return with which power of the load the speed of a still lever goes where the torque is high, beyond elsewhere.
 
-    A governor holds it as well as at low torques, whatever bend the lever has; what holds the torque does not.
+    A governor holds it as well as at low torques, however much it hunts and whatever bend the lever has: each stretch
+    is compared with itself. From which torque on it is held, if it is, the log tells: the one with most evidence
+    counts.
 
     ``still``: means of lever, speed and load where the lever stands still. ``speed_rev_s``: engine speed of the working
     point [rev/s].
     """
-    what = "scatter of the speed at high torques, of a still lever"
+    what = "power of the load with which the speed goes at high torques, of a still lever"
     settled = np.flatnonzero(np.diff(still.stretch, prepend=-1.0) == 0.0)
-    torque = still.load[settled] * (still.speed_rev_s[settled] / speed_rev_s) ** 2
-    if settled.size < 2 * _FEWEST_HELD:
-        return Found(what=what, value=float("nan"), unit="rpm")
-    order = np.argsort(torque)
-    # of the higher part the highest tells: a limit that is seldom met is met there
-    low, high = order[: settled.size // 2], order[-max(settled.size // 10, _FEWEST_HELD) :]
-    lever, speed = still.lever_v[settled], rpm_from_rev_s(still.speed_rev_s[settled])
-    scatter = [_beside_a_curve(lever[part], speed[part]) for part in (low, high)]
+    if not settled.size:
+        return Found(what=what, value=float("nan"), unit="-")
+    _, place, counts = np.unique(still.stretch[settled], return_inverse=True, return_counts=True)
+
+    def of_stretches(values: FloatArray) -> FloatArray:
+        return np.bincount(place, weights=values)
+
+    x, y = (
+        values - (of_stretches(values) / counts)[place]
+        for values in np.log([still.load, still.speed_rev_s])[:, settled]
+    )
+    torques = of_stretches(still.load[settled] * (still.speed_rev_s[settled] / speed_rev_s) ** 2) / counts
+    order = np.argsort(-torques)
+    half = order.size // 2
+    sums = np.array([of_stretches(x * x), of_stretches(x * y), of_stretches(y * y), counts - 1.0])[:, order]
+    lower = _power(sums[:, half:].sum(axis=1, keepdims=True))
+    power, std, freedom = _power(np.cumsum(sums[:, :half], axis=1))
+    tells = np.flatnonzero(freedom >= _FEWEST_HELD)
+    if not tells.size or lower[2][0] < _FEWEST_HELD:
+        return Found(what=what, value=float("nan"), unit="-")
+    beyond = power[tells] - lower[0]
+    ratio = beyond / np.hypot(std[tells], lower[1])
+    at = int(np.argmin(np.where(beyond < _HELD, ratio, np.inf))) if np.any(beyond < _HELD) else int(np.argmin(ratio))
+    last, value = int(tells[at]), float(beyond[at])
     refused = ""
-    if scatter[1] > max(_HELD_TIMES * scatter[0], _HELD_RPM):
+    if value < _HELD and ratio[at] < -deviations(1.0 - 2.0 * _HELD_RATE / tells.size, float(freedom[last])):
         refused = (
-            f"where the torque is high, about {float(np.median(torque[high])):.0%} of the working point's, the speed "
-            f"is not what the lever asks for: it scatters by {scatter[1]:.0f} rpm, at lower torques by "
-            f"{scatter[0]:.1f} rpm; a load controller or a limit behind the lever holds the torque there: log the "
-            "demand that the control unit takes, or use hours without it."
+            f"where the torque is high, from about {torques[order[last]]:.0%} of the working point's on, the speed is "
+            f"not what the lever asks for: it gives way to the load with the power {power[last]:.2f}, where a governor "
+            "holds it (0) and a torque that is held has -0.5; a load controller or a limit behind the lever holds the "
+            "torque there: log the demand that the control unit takes, or use hours without it."
         )
-    return Found(what=what, value=scatter[1], unit="rpm", refused=refused)
+    return Found(what=what, value=value, unit="-", refused=refused)
 
 
-def _beside_a_curve(lever_v: FloatArray, speed_rpm: FloatArray) -> float:
-    """Return the standard deviation of speeds about a parabola over the lever [rpm]."""
-    span = float(np.ptp(lever_v)) or 1.0
-    x = (lever_v - lever_v.mean()) / span
-    columns = np.column_stack([np.ones(x.size), x, x**2])
-    left = speed_rpm - columns @ np.linalg.lstsq(columns, speed_rpm, rcond=None)[0]
-    return float(np.sqrt(left @ left / max(x.size - columns.shape[1], 1)))
+def _power(sums: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return slopes through zero, their deviations and degrees of freedom, from sums (4, cases) of xx, xy, yy and 1."""
+    xx, xy, yy, count = sums
+    xx = np.maximum(xx, 1e-300)
+    left = np.maximum(yy - xy**2 / xx, 0.0)
+    return xy / xx, np.sqrt(left / np.maximum(count - 1.0, 1.0) / xx), count - 1.0
 
 
 def farthest_rpm(line: LeverLine) -> float:
     """Return how far from what the lever asks for the speed may be where it stands still [rpm]."""
-    return max(_OFF_STD * line.spread_rpm, _OFF_RPM)
+    return max(_OFF_STD * line.spread_rpm, _OFF * rpm_from_rev_s(line.middle_rev_s))
 
 
 def speed_is_off(segment: Segment, line: LeverLine) -> str:
