@@ -177,7 +177,7 @@ def torque_is_held(still: StillMeans, *, speed_rev_s: float) -> Found:
     _, place, counts = np.unique(still.stretch[settled], return_inverse=True, return_counts=True)
 
     def of_stretches(values: FloatArray) -> FloatArray:
-        return np.bincount(place, weights=values)
+        return np.asarray(np.bincount(place, weights=values), dtype=np.float64)
 
     x, y = (
         values - (of_stretches(values) / counts)[place]
