@@ -152,11 +152,12 @@ def _deadband(values: Mapping[str, FloatArray], rate_hz: float, names: Channels)
 
 def _astern(values: Mapping[str, FloatArray], rate_hz: float, names: Channels) -> dict[str, FloatArray]:
     """Return a log in which the ship goes astern from every other stay on idle to the next."""
-    lever = values[names.lever]
+    lever, torque = values[names.lever], values[names.torque]
     idles = lever <= lever.min() + 2.0
     stays = np.cumsum(np.diff(idles.astype(np.int8), prepend=np.int8(0)) == 1)
-    backs = (stays % 2 == 1) & ~idles
-    return {**values, names.torque: np.where(backs, -_ASTERN_SHARE, 1.0) * values[names.torque]}
+    # messages of two channels may end a sample apart
+    backs = ((stays % 2 == 1) & ~idles)[np.minimum(np.arange(torque.size), lever.size - 1)]
+    return {**values, names.torque: np.where(backs, -_ASTERN_SHARE, 1.0) * torque}
 
 
 def _stronger_orders(tug: Tug) -> Tug:
