@@ -7,6 +7,7 @@ import pytest
 from scipy.signal import lfilter
 
 from shaftprint.campaign import Campaign
+from shaftprint.signals.levels._fast_gain import fast_gains
 from shaftprint.signals.levels._set_point_steadiness import Amplitudes, change_of, expect_steady_set_point
 from shaftprint.signals.levels._steadiness import expect_steady_gauge, loads_of
 
@@ -225,3 +226,26 @@ def test_loads_in_windows_are_means_and_hold_three_signals_at_most():
     tracemalloc.stop()
     assert loads.load == pytest.approx(np.array([0.5, 0.5, 1.5]) / np.mean([0.5, 0.5, 1.5]), rel=1e-9)
     assert peak < 3.1 * torque.nbytes
+
+
+def test_the_gain_of_the_gauge_is_told_within_the_bytes_of_a_few_signals():
+    rng = np.random.default_rng(3)
+    count = 400_000
+    set_point = np.repeat(rng.choice([-1.0, 1.0], count // 400), 400)
+    speed = 5.0 + 0.1 * np.convolve(set_point, np.exp(-np.arange(400) / 80.0) / 80.0)[:count]
+    torque = 2.0 * speed**2 + 3.0 * np.gradient(speed) * 200.0 + 0.1 * rng.standard_normal(count)
+    tracemalloc.start()
+    gains = fast_gains(
+        set_point,
+        speed,
+        torque,
+        rate_hz=200.0,
+        start_s=0.0,
+        border_s=np.arange(0.0, 2000.1, 100.0),
+        whole=np.ones(20, dtype=np.bool_),
+    )
+    _, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert np.all(np.abs(gains.gain - 1.0) < 4.0 * gains.std + 1e-9)
+    # terms and motion, white and not, are at a tenth of the rate
+    assert peak < 3.5 * torque.nbytes

@@ -5,7 +5,7 @@ import pytest
 from scipy.signal import lfilter
 
 from shaftprint.validation.measures._misfit import Compared, Unfiltered, misfit_of
-from shaftprint.validation.measures._noise_pieces import NoisePieces
+from shaftprint.validation.measures._noise_pieces import NoisePieces, autocorrelated
 
 SAMPLES = 400
 TIME = np.arange(SAMPLES) / 20.0
@@ -153,3 +153,10 @@ def test_without_noise_an_exact_model_passes_and_any_error_is_sure():
         found = judged(one)
         assert (found.outcome, found.p_value) == (outcome, p_value)
         assert found.fit_ceiling == pytest.approx(100.0)
+
+
+def test_sums_of_products_at_lags_are_those_of_the_definition():
+    rng = np.random.default_rng(4)
+    pieces = rng.standard_normal((3, 57))
+    lagged = [sum(piece[: 57 - lag] @ piece[lag:] for piece in pieces) for lag in range(57)]
+    assert autocorrelated(*pieces) == pytest.approx(np.array(lagged), abs=1e-12)

@@ -88,11 +88,15 @@ class Tally:
         if not finite.size:
             return
         self._is_pulses = _are_pulses(finite) if self._count == 0 else self._is_pulses
-        lowest, highest = min(self._lowest, float(finite.min())), max(self._highest, float(finite.max()))
+        low, high = finite.min(), finite.max()
+        lowest, highest = min(self._lowest, float(low)), max(self._highest, float(high))
         # what was lowest so far counts no longer where something lower has come
-        self._at_lowest = (self._at_lowest if lowest == self._lowest else 0) + int(np.count_nonzero(finite == lowest))
-        same_highest = self._at_highest if highest == self._highest else 0
-        self._at_highest = same_highest + int(np.count_nonzero(finite == highest))
+        self._at_lowest = self._at_lowest if lowest == self._lowest else 0
+        self._at_highest = self._at_highest if highest == self._highest else 0
+        if low == lowest:
+            self._at_lowest += int(np.count_nonzero(finite == low))
+        if high == highest:
+            self._at_highest += int(np.count_nonzero(finite == high))
         self._lowest, self._highest = lowest, highest
         exact = np.int64 if counts.dtype == np.int16 else np.float64
         self._total, self._count = self._total + float(finite.sum(dtype=exact)), self._count + finite.size

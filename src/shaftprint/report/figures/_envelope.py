@@ -5,7 +5,7 @@ one, in the order in which they came. No spike is lost, whatever its length.
 """
 
 import itertools
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,7 +32,7 @@ def envelope(time_s: FloatArray, values: FloatArray, *, stretches: int = STRETCH
     return time_s[places], values[places]
 
 
-def extremes(values: FloatArray, *, stretches: int = STRETCHES) -> NDArray[np.intp]:
+def extremes(values: NDArray[Any], *, stretches: int = STRETCHES) -> NDArray[np.intp]:
     """Return which samples are the smallest and the largest of each stretch, shape (at most 2 * stretches,).
 
     ``values``: samples in the order of time, shape (samples,). ``stretches``: number of stretches; of a signal of at
@@ -67,5 +67,9 @@ def channel_envelope(channel: "Channel", *, stretches: int = STRETCHES) -> tuple
     for first in range(0, channel.count, _CHUNK):
         last = min(first + _CHUNK, channel.count)
         share = int(np.ceil(stretches * (last - first) / channel.count))
-        pieces.append(envelope(channel.time_s(first, last), channel.values(first, last), stretches=share))
+        # values of the few that are drawn alone: the rest stay counts
+        counts = channel.read(first, last)
+        places = extremes(counts, stretches=share)
+        values = counts[places] * channel.scale + channel.offset
+        pieces.append((channel.time_s(first, last)[places], values))
     return np.concatenate([time for time, _ in pieces]), np.concatenate([value for _, value in pieces])

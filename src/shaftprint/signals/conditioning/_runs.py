@@ -44,8 +44,9 @@ class RunTally:
         self.watched = replace(channel, source=self._read)
         self._channel = channel
         self._shortest = max(2, round(_SHORTEST_S * channel.rate_hz))
-        # last sample, start of its run, runs that have ended
-        self._state = (np.nan, 0, 0)
+        # last sample, none so far, start of its run, runs that have ended
+        self._last: NDArray[Any] | None = None
+        self._begin = self._ended = 0
         self._seen = 0
         self._long: list[FloatArray] = []
         self._changes: list[FloatArray] = []
@@ -56,7 +57,7 @@ class RunTally:
         return Runs(
             channel=self._channel,
             samples=self._seen,
-            count=self._state[2],
+            count=self._ended,
             lengths=long[0].astype(np.int64),
             jumps=long[1],
             values=long[2],
@@ -73,21 +74,23 @@ class RunTally:
     def _add(self, values: NDArray[Any]) -> None:
         if not values.size:
             return
-        last, begin, ended = self._state
-        # one that is no number is equal to none and ends no run that counts
-        padded = np.concatenate([[last], values])
-        differs, known = padded[1:] != padded[:-1], ~np.isnan(padded)
-        counts = differs & known[1:] & known[:-1]
+        # counts stay whole numbers, of which a quarter of the bytes are moved; the first sample goes on with itself
+        padded = np.concatenate([values[:1] if self._last is None else self._last, values])
+        counts = differs = padded[1:] != padded[:-1]
+        if values.dtype.kind == "f":
+            # one that is no number is equal to none and ends no run that counts
+            known = ~np.isnan(padded)
+            counts = differs & known[1:] & known[:-1]
         ends = np.flatnonzero(differs)
-        lengths = np.diff(ends, prepend=begin - self._seen)
+        lengths = np.diff(ends, prepend=self._begin - self._seen)
         long = np.flatnonzero(lengths >= self._shortest)
         long = long[counts[ends[long]]]
-        after, before = padded[ends[long] + 1], padded[ends[long]]
+        after, before = padded[ends[long] + 1].astype(np.float64), padded[ends[long]].astype(np.float64)
         self._long.append(np.array([lengths[long], np.abs(after - before), before]))
         for first in range(self._seen & -_APART, self._seen + values.size, _APART):
             looked = slice(max(first - self._seen, 0), max(first + _LOOKED - self._seen, 0))
             where = np.flatnonzero(counts[looked]) + looked.start
-            self._changes.append(np.abs(padded[where + 1] - padded[where]))
-        begin = self._seen + int(ends[-1]) if ends.size else begin
-        self._state = float(padded[-1]), begin, ended + int(np.count_nonzero(counts))
+            self._changes.append(np.abs(padded[where + 1].astype(np.float64) - padded[where]))
+        self._begin = self._seen + int(ends[-1]) if ends.size else self._begin
+        self._last, self._ended = padded[-1:].copy(), self._ended + int(np.count_nonzero(counts))
         self._seen += values.size

@@ -13,6 +13,7 @@ L. Ljung, "System Identification", 1999, section 7.6). A piece in which nothing 
 noise is made white beforehand by its own autoregression; its size is that of the pieces around.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -110,12 +111,13 @@ def fast_gains(
     count = speed.size // step
     place = np.clip(np.round((border_s - start_s) * rate).astype(int), 0, count)
     pieces = [slice(first, stop) for first, stop in zip(place[:-1].tolist(), place[1:].tolist(), strict=True)]
+    of_use = [piece for piece, is_whole in zip(pieces, whole, strict=True) if is_whole]
     used = np.zeros(count, dtype=np.bool_)
-    for piece, is_whole in zip(pieces, whole, strict=True):
-        used[piece] = is_whole
+    for piece in of_use:
+        used[piece] = True
     columns, motion, values = _terms(set_point, speed, torque, rate_hz=rate_hz, step=step)
     square = columns[:, _OF_GAIN].copy()
-    common = _solved(columns, motion, values, used)
+    common = _solved(columns, motion, values, of_use)
     of_noise = columns, motion, values
     for _ in range(_ROUNDS):
         # what is late is so in the load as well, which goes with the square of the speed and not as the speed does
@@ -125,7 +127,7 @@ def fast_gains(
         # freed before the next are made, which are as large
         del of_noise
         of_noise = (_filtered(white, columns), _filtered(white, motion), _filtered(white, values))
-        common = _solved(*of_noise, used)
+        common = _solved(*of_noise, of_use)
     columns, motion, values = of_noise
     # what accelerates the shaft, and what the propeller takes
     terms, moved = (
@@ -157,9 +159,9 @@ def _terms(
     derivatives = []
     for _ in range(_OF_GAIN):
         # each is as long as the recording: one is kept at a time
-        relative = np.gradient(relative)
-        relative *= rate_hz
+        relative = _slopes(relative, rate_hz)
         derivatives.append(_means(relative, step))
+    del relative
     columns = np.column_stack([*derivatives, square, *_lags(square, rate)])
     motion = _motion(_means(set_point, step), moved, rate)
     of_motion = [np.gradient(motion) * rate]
@@ -168,8 +170,18 @@ def _terms(
     return (
         columns,
         np.column_stack([*of_motion, 2.0 * motion, *_lags(2.0 * motion, rate)]),
-        _means(torque / torque.mean(), step),
+        _means(torque, step) / torque.mean(),
     )
+
+
+def _slopes(values: FloatArray, rate_hz: float) -> FloatArray:
+    """Return what ``np.gradient`` gives, which would hold three more arrays of that length for it."""
+    slopes = np.empty_like(values)
+    np.subtract(values[2:], values[:-2], out=slopes[1:-1])
+    slopes[1:-1] /= 2.0
+    slopes[0], slopes[-1] = values[1] - values[0], values[-1] - values[-2]
+    slopes *= rate_hz
+    return slopes
 
 
 def _means(values: FloatArray, step: int) -> FloatArray:
@@ -215,11 +227,11 @@ def _parts(values: FloatArray, begins: IntArray, length: int) -> FloatArray:
     return np.asarray(np.diff(values, prepend=values[0])[begins[:, np.newaxis] + np.arange(length)])
 
 
-def _solved(columns: FloatArray, motion: FloatArray, values: FloatArray, used: BoolArray) -> FloatArray:
-    """Return the numbers of the terms."""
-    if not used.all():
-        columns, motion, values = columns[used], motion[used], values[used]
-    return np.asarray(np.linalg.lstsq(motion.T @ columns, motion.T @ values, rcond=None)[0])
+def _solved(columns: FloatArray, motion: FloatArray, values: FloatArray, pieces: Sequence[slice]) -> FloatArray:
+    """Return the numbers of the terms, from the sums over pieces: together they would be as large as the columns."""
+    products = sum((motion[of].T @ columns[of] for of in pieces), np.zeros((columns.shape[1], columns.shape[1])))
+    against = sum((motion[of].T @ values[of] for of in pieces), np.zeros(columns.shape[1]))
+    return np.asarray(np.linalg.lstsq(products, against, rcond=None)[0])
 
 
 def _whitening(noise: FloatArray, used: BoolArray) -> FloatArray:

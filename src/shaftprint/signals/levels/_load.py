@@ -64,8 +64,9 @@ def _blocks(
     count = speed.size // length
     parts = speed[: count * length].reshape(count, length)
     torque = torque_nm[: count * length].reshape(count, length).mean(axis=1)
-    square = np.mean(parts**2, axis=1)
-    near = whole & (np.abs(parts - 1.0).max(axis=1, initial=0.0) <= REACH)
+    # block by block, as the speed is as long as the recording
+    square = np.array([np.mean(part**2) for part in parts])
+    near = whole & (parts.max(axis=1) - 1.0 <= REACH) & (1.0 - parts.min(axis=1) <= REACH)
     # a sample stands for its surroundings: the border of two blocks is halfway between samples
     border = np.arange(count + 1) * length
     at_border = 0.5 * (speed[np.maximum(border - 1, 0)] + speed[np.minimum(border, speed.size - 1)])

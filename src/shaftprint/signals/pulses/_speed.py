@@ -88,14 +88,17 @@ def _solved(lower: FloatArray, diagonal: FloatArray, upper: FloatArray, right: F
 
 def sampled_slopes(x: FloatArray, y: FloatArray, slope: FloatArray, position: FloatArray) -> FloatArray:
     """Return the derivative of the spline at ascending positions; beyond its ends it is held."""
-    k = np.clip(np.searchsorted(x, position) - 1, 0, x.size - 2)
-    if not k.size:
+    if not position.size:
         return np.empty(0)
-    knots = slice(int(k[0]), int(k[-1]) + 2)
+    first, last = np.clip(np.searchsorted(x, position[[0, -1]]) - 1, 0, x.size - 2).tolist()
+    knots = slice(first, last + 2)
     x, slope = x[knots], slope[knots]
     width = np.diff(x)
     chord = np.diff(y[knots]) / width
-    k -= k[0]
+    # knots are fewer than instants, and looked for among them
+    k = np.repeat(
+        np.arange(width.size), np.diff(np.searchsorted(position, x[1:-1], "right"), prepend=0, append=position.size)
+    )
     u = np.clip((position - x[k]) / width[k], 0.0, 1.0)
     return np.asarray(
         6.0 * u * (1.0 - u) * chord[k] + (1.0 - u) * (1.0 - 3.0 * u) * slope[k] + u * (3.0 * u - 2.0) * slope[k + 1]

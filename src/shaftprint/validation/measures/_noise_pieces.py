@@ -66,8 +66,7 @@ class NoisePieces:
         samples = chosen.shape[-1]
         lags = max(int(_LAG_SHARE * samples), 1)
         # divided by all samples, not by those of the lag: a covariance that no signal can have is never made
-        total = sum((autocorrelated(piece)[:lags] for piece in chosen), start=np.zeros(lags))
-        return np.asarray(total / (samples * len(chosen)))
+        return autocorrelated(*chosen)[:lags] / (samples * len(chosen))
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -116,12 +115,16 @@ class QuietNoise:
         return NoisePieces(pieces=cut, as_long=length == samples)
 
 
-def autocorrelated(values: FloatArray) -> FloatArray:
-    """Return the sums of products of values with themselves at lags from 0 on, along the last axis."""
-    samples = values.shape[-1]
+def autocorrelated(*pieces: FloatArray) -> FloatArray:
+    """Return the sums of products of the values of each piece with themselves at lags from 0 on, over all pieces."""
+    samples = pieces[0].size
     size = scipy.fft.next_fast_len(2 * samples, real=True)
-    spectrum = np.fft.rfft(values, size)
-    return np.asarray(np.fft.irfft(spectrum.conj() * spectrum, size)[..., :samples])
+    # spectra are added, and transformed back once
+    power = np.zeros(size // 2 + 1)
+    for piece in pieces:
+        spectrum = np.fft.rfft(piece, size)
+        power += spectrum.real**2 + spectrum.imag**2
+    return np.asarray(np.fft.irfft(power, size)[:samples])
 
 
 def quadratic_form(values: FloatArray, autocovariance: FloatArray) -> float:
