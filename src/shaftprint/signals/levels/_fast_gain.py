@@ -129,17 +129,13 @@ def fast_gains(
         of_noise = (_filtered(white, columns), _filtered(white, motion), _filtered(white, values))
         common = _solved(*of_noise, of_use)
     columns, motion, values = of_noise
-    # what accelerates the shaft, and what the propeller takes
-    terms, moved = (
-        np.column_stack([of, of[:, :_OF_GAIN] @ common[:_OF_GAIN], of[:, _OF_GAIN:] @ common[_OF_GAIN:]])
-        for of in (columns, motion)
-    )
     left = values - columns @ common
     variance = _variance(left, pieces, whole)
     told = np.zeros((len(pieces), common.size + 1, common.size + 2))
     for row in np.flatnonzero(whole & (variance > 0.0)).tolist():
         piece = pieces[row]
-        sums = moved[piece].T @ np.column_stack([terms[piece], left[piece]]) / variance[row]
+        terms, moved = (_with_parts(of[piece], common) for of in (columns, motion))
+        sums = moved.T @ np.column_stack([terms, left[piece]]) / variance[row]
         # the load of the piece is its own
         sums[-1, -2] += _LOAD_STD**-2.0
         apart = np.delete(sums - np.outer(sums[:, -2], sums[-1]) / sums[-1, -2], -2, axis=1)[:-1]
@@ -147,6 +143,12 @@ def fast_gains(
         if apart[-1, -2] > 0.0 and sums[-1, -2] > 0.0:
             told[row] = apart
     return FastGains(start_s=border_s[:-1], stop_s=border_s[1:], told=told, inertia_s=float(common[0]))
+
+
+def _with_parts(terms: FloatArray, common: FloatArray) -> FloatArray:
+    """Return terms, what accelerates the shaft of them together, and what the propeller takes."""
+    parts = terms[:, :_OF_GAIN] @ common[:_OF_GAIN], terms[:, _OF_GAIN:] @ common[_OF_GAIN:]
+    return np.column_stack([terms, *parts])
 
 
 def _terms(
