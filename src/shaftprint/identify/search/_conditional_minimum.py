@@ -83,10 +83,11 @@ class Conditional:
                 fresh, to = fresh[(to >= 0) & (to < cost.size)], to[(to >= 0) & (to < cost.size)]
                 trial = theta[fresh]
                 trial[:, self.held] = theta[to, self.held]
-                trial, lower = self._descended(trial, FINE)
+                # nearly all come back to the optimum that is known: only what is better is led to its end
+                trial, lower = self._descended(trial, WORTH_TAKING)
                 better = lower < cost[to] * (1.0 - WORTH_TAKING)
                 fresh = to[better]
-                theta[fresh], cost[fresh] = trial[better], lower[better]
+                theta[fresh], cost[fresh] = self._descended(trial[better], FINE)
         return theta, cost
 
     def _solved_at(self, at: FloatArray) -> tuple[FloatArray, FloatArray]:

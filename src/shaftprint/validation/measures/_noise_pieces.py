@@ -66,7 +66,7 @@ class NoisePieces:
         samples = chosen.shape[-1]
         lags = max(int(_LAG_SHARE * samples), 1)
         # divided by all samples, not by those of the lag: a covariance that no signal can have is never made
-        return autocorrelated(*chosen)[:lags] / (samples * len(chosen))
+        return np.asarray(autocorrelated(*chosen)[:lags] / (samples * len(chosen)))
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
