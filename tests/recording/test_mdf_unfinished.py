@@ -1,6 +1,8 @@
 """MDF files as loggers leave them that were switched off: counts and lengths of the last blocks are not written."""
 
+import faulthandler
 import struct
+import time
 
 import asammdf
 import numpy as np
@@ -8,7 +10,10 @@ import pytest
 
 from shaftprint.errors import RecordingError
 from shaftprint.recording import read_recording
+from shaftprint.recording.readers import _mdf_trial
 from shaftprint.recording.readers._mdf_unfinished import bytes_to_read
+
+resource = pytest.importorskip("resource", reason="needs limits of time, which Windows does not have")
 
 TIMES = 0.01 * np.arange(3000)
 SPEED = 1200.0 + 100.0 * np.sin(TIMES)
@@ -45,19 +50,26 @@ def test_a_file_that_its_logger_did_not_finish_is_read_whole_and_left_as_it_is(t
     assert [one.name for one in tmp_path.iterdir()] == [path.name]
 
 
-def test_lists_of_data_that_follow_each_other_are_refused(tmp_path):
-    """The blocks are those that are looked at and no others; nobody else takes them for a file."""
-    content = bytearray(400)
-    content[:12] = b"UnFinMF 4.11"
-    struct.pack_into("<H", content, 60, 0x10)
-    struct.pack_into("<Q", content, 0x40 + 24, 200)
-    # the group at 200 has its data at 300, a list that names the next one
-    struct.pack_into("<Q", content, 200 + 24 + 2 * 8, 300)
-    content[300:304] = b"##DL"
+def test_what_the_library_does_not_finish_in_time_is_refused(tmp_path, monkeypatch):
     path = tmp_path / "log.mf4"
-    path.write_bytes(content)
+    path.write_bytes(b"UnFinMF 4.11".ljust(60, b"\0") + struct.pack("<H", COUNTS_AND_LENGTH) + bytes(400))
     bytes_to_read(path)[0].close()
-    struct.pack_into("<Q", content, 300 + 24, 360)
-    path.write_bytes(content)
+    program = tmp_path / "endless.py"
+    # ends as the system's limit of processor time ends a program
+    program.write_text("import os, signal\nos.kill(os.getpid(), signal.SIGKILL)\n")
+    monkeypatch.setattr(_mdf_trial, "__file__", str(program))
     with pytest.raises(RecordingError, match="finish it with the tool of the logger"):
         bytes_to_read(path)
+
+
+def test_the_trial_leaves_the_file_as_it_is(tmp_path, monkeypatch):
+    limits = []
+    monkeypatch.setattr(resource, "setrlimit", lambda which, limit: limits.append((which, limit[0])))
+    monkeypatch.setattr(faulthandler, "dump_traceback_later", lambda *_, **__: None)
+    path = unfinished(tmp_path / "log.mf4")
+    before = path.read_bytes()
+    _mdf_trial.finish(str(path))
+    assert path.read_bytes() == before
+    ((which, longest_s),) = limits
+    assert which == resource.RLIMIT_CPU
+    assert 9.0 < longest_s - time.process_time() < 12.0

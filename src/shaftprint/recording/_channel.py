@@ -119,8 +119,10 @@ class Channel:
             As ``read``.
         """
         values = self.read(start, stop).astype(np.float64)
-        values *= self.scale
-        values += self.offset
+        if self.scale != 1.0:
+            values *= self.scale
+        if self.offset != 0.0:
+            values += self.offset
         return values
 
     def part(self, first: int, last: int) -> Self:

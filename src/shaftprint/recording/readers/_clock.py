@@ -213,8 +213,12 @@ def _uniform_clock(path: Path, name: str, count: int, read: Times) -> tuple[Samp
     for start in range(0, count, _BLOCK):
         stop = min(start + _BLOCK, count)
         row = np.arange(start, stop)
-        stretch = np.searchsorted(rows, row, side="right") - 1 if holes else np.zeros(row.size, dtype=np.intp)
-        away = read(start, stop) - jumped[stretch] - (first + mean_step * (row + missing[stretch]))
+        away = read(start, stop)
+        if holes:
+            stretch = np.searchsorted(rows, row, side="right") - 1
+            row += missing[stretch]
+            away = away - jumped[stretch]
+        away = away - (first + mean_step * row)
         squares, total = squares + float(away @ away), total + float(away.sum())
         off = np.abs(away)
         worst = int(np.argmax(off))

@@ -2,8 +2,12 @@
 
 import contextlib
 import io
+import os
+import subprocess
+import sys
 from collections.abc import Iterator
 from pathlib import Path
+from types import ModuleType
 
 from shaftprint.errors import RecordingError
 from shaftprint.recording.readers._library_output import quiet
@@ -29,6 +33,22 @@ def told_as_damage(path: Path, what: str) -> Iterator[io.StringIO]:
             f"{path}: expected a whole {what} file, found a damaged or truncated one ({short_reason(error)}); "
             "copy it again from the logger."
         ) from None
+
+
+def comes_to_an_end(program: ModuleType, path: Path) -> bool:
+    """Return whether a program of its own ends well with a file: what hangs or crashes there does so there.
+
+    ``program``: the module that is run, which limits its time. ``path``: the file.
+    """
+    done = subprocess.run(  # noqa: S603
+        [sys.executable, "-P", str(program.__file__), str(path.resolve())],
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+        env=os.environ | {"OPENBLAS_NUM_THREADS": "1"},
+        check=False,
+    )
+    return done.returncode == 0
 
 
 def short_reason(error: Exception) -> str:

@@ -14,8 +14,10 @@ SKIP, AS_TEXT = -1, -2
 _POWERS = 10.0 ** np.arange(23)
 _LINE_FEED, _RETURN, _SPACE, _TAB, _ZERO, _NINE, _PLUS, _MINUS = 10, 13, 32, 9, 48, 57, 43, 45
 _EXPONENTS = (69, 101)
+# a place that cannot be negative needs no second look at each letter
+_ONE = np.uintp(1)
 _EXACT = 1 << 53
-_MOST_DIGITS = 19
+_NONE, _MOST_DIGITS = np.uintp(0), np.uintp(19)
 _SPLIT = 134_217_729.0
 _UNSURE = 1e-6
 
@@ -64,22 +66,25 @@ def _scaled(digits, power):  # type: ignore[no-untyped-def]
 def rows_of(text, delimiter, decimal, width, least, targets, numbers, texts, odd):  # type: ignore[no-untyped-def]
     """Read rows; return how many there are and how many fields are left to Python, or -1 where a row is none.
 
-    ``text``: whole lines, shape (bytes,). ``delimiter``, ``decimal``: letters between columns and in numbers; a space
-    as delimiter for white space of any length. ``width``, ``least``: number of fields of a row, and how many it has at
-    least. ``targets``: which row of ``numbers`` takes each column, or one of the marks above, shape (width,).
+    ``text``: whole lines, shape (bytes,): the line feed of the last one ends the search for the end of any field.
+    ``delimiter``, ``decimal``: letters between columns and in numbers; a space as delimiter for white space of any
+    length. ``width``, ``least``: number of fields of a row, and how many it has at least. ``targets``: which row of
+    ``numbers`` takes each column, or one of the marks above, shape (width,).
     ``numbers``: filled with the numbers, shape (columns, most rows). ``texts``: filled with begin and end of fields
     that stay text, in their order, shape (most fields, 2). ``odd``: filled with column, row, begin and end of what is
     neither a number nor empty, shape (most, 4).
     """
-    size, at, row, kept, strange = text.size, 0, 0, 0, 0
+    size, at = np.uintp(text.size), np.uintp(0)
+    row, kept, strange = 0, 0, 0
+    delimiter, decimal = np.uint8(delimiter), np.uint8(decimal)
     spaced = delimiter == _SPACE
     while at < size:
         # a line without anything is no row
         begin = at
-        while at < size and (text[at] == _SPACE or text[at] == _TAB or text[at] == _RETURN):
-            at += 1
-        if at >= size or text[at] == _LINE_FEED:
-            at += 1
+        while text[at] == _SPACE or text[at] == _TAB or text[at] == _RETURN:
+            at += _ONE
+        if text[at] == _LINE_FEED:
+            at += _ONE
             continue
         at = at if spaced else begin
         column = 0
@@ -88,45 +93,55 @@ def rows_of(text, delimiter, decimal, width, least, targets, numbers, texts, odd
                 return -1, 0, 0
             target = targets[column]
             begin = at
-            digits, power, count = np.uint64(0), 0, 0
+            digits, power = np.uint64(0), 0
             sign, is_number = 1.0, target >= 0
+            letter = text[at]
             if is_number:
-                while at < size and text[at] == _SPACE:
-                    at += 1
-                if at < size and (text[at] == _MINUS or text[at] == _PLUS):
-                    sign = -1.0 if text[at] == _MINUS else 1.0
-                    at += 1
-                is_behind = False
-                while at < size:
+                while letter == _SPACE:
+                    at += _ONE
                     letter = text[at]
-                    if _ZERO <= letter <= _NINE:
-                        # of more than 19 digits it overflows, and is left to Python
+                if letter in (_MINUS, _PLUS):
+                    sign = -1.0 if letter == _MINUS else 1.0
+                    at += _ONE
+                    letter = text[at]
+                # of more than 19 digits it overflows, and is left to Python
+                first = at
+                while _ZERO <= letter <= _NINE:
+                    digits = digits * np.uint64(10) + np.uint64(letter - _ZERO)
+                    at += _ONE
+                    letter = text[at]
+                count = at - first
+                if letter == decimal:
+                    at += _ONE
+                    letter = text[at]
+                    first = at
+                    while _ZERO <= letter <= _NINE:
                         digits = digits * np.uint64(10) + np.uint64(letter - _ZERO)
-                        count += 1
-                        power -= is_behind
-                    elif letter == decimal and not is_behind:
-                        is_behind = True
-                    else:
-                        break
-                    at += 1
-                is_number = 0 < count <= _MOST_DIGITS
-                if is_number and at < size and (text[at] == _EXPONENTS[0] or text[at] == _EXPONENTS[1]):
-                    at += 1
-                    is_small = at < size and text[at] == _MINUS
-                    if at < size and (text[at] == _MINUS or text[at] == _PLUS):
-                        at += 1
+                        at += _ONE
+                        letter = text[at]
+                    behind = at - first
+                    count += behind
+                    power = -np.int64(behind)
+                is_number = _NONE < count <= _MOST_DIGITS
+                if is_number and (letter == _EXPONENTS[0] or letter == _EXPONENTS[1]):
+                    at += _ONE
+                    is_small = text[at] == _MINUS
+                    if text[at] == _MINUS or text[at] == _PLUS:
+                        at += _ONE
                     exponent, first = 0, at
-                    while at < size and _ZERO <= text[at] <= _NINE:
+                    while _ZERO <= text[at] <= _NINE:
                         exponent = min(exponent * 10 + (text[at] - _ZERO), 9999)
-                        at += 1
+                        at += _ONE
                     is_number = at > first
                     power += -exponent if is_small else exponent
+                    letter = text[at]
             end = at
-            while at < size and text[at] != _LINE_FEED and text[at] != delimiter and not (spaced and text[at] == _TAB):
-                if text[at] != _SPACE and text[at] != _RETURN:
-                    end = at + 1
+            while letter != _LINE_FEED and letter != delimiter and not (spaced and letter == _TAB):
+                if letter != _SPACE and letter != _RETURN:
+                    end = at + _ONE
                     is_number = False
-                at += 1
+                at += _ONE
+                letter = text[at]
             if target >= 0:
                 value = np.nan
                 if is_number:
@@ -145,12 +160,13 @@ def rows_of(text, delimiter, decimal, width, least, targets, numbers, texts, odd
                 texts[kept, 0], texts[kept, 1] = begin, max(end, begin)
                 kept += 1
             column += 1
-            while spaced and at < size and (text[at] == _SPACE or text[at] == _TAB or text[at] == _RETURN):
-                at += 1
-            if at >= size or text[at] == _LINE_FEED:
-                at += 1
+            while spaced and (text[at] == _SPACE or text[at] == _TAB or text[at] == _RETURN):
+                at += _ONE
+            if text[at] == _LINE_FEED:
+                at += _ONE
                 break
-            at += 0 if spaced else 1
+            if not spaced:
+                at += _ONE
         if column < least:
             return -1, 0, 0
         for missing in range(column, width):

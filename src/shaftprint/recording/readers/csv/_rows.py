@@ -32,6 +32,7 @@ _ODD = 1_000
 _MOST_DAMAGED, _DAMAGED_SHARE = 3, 1e-3
 # What is behind the decimal sign is as long in each of so many rows, where a number of the last row is cut off.
 _DECIMALS_SEEN, _TAIL = 50, 8_000
+_LINE_FEED = ord("\n")
 _UTF_8_MARK = b"\xef\xbb\xbf"
 
 _Columns: TypeAlias = dict[int, "FloatArray | list[str]"]
@@ -71,6 +72,19 @@ def unpack(path: Path, file: IO[bytes], header: Header, spool: Spool) -> Unpacke
     return _Unpacking(path, header, spool).all_of(file)
 
 
+@dataclass(frozen=True, kw_only=True, slots=True)
+class _Block:
+    """Lines of a file."""
+
+    line: int
+    """Number of the first."""
+    text: bytes
+    lines: int
+    """How many there are."""
+    is_end: bool = False
+    """Whether it is a last line without an end."""
+
+
 class _Unpacking:
     """Rows on their way into columns."""
 
@@ -88,11 +102,11 @@ class _Unpacking:
     def all_of(self, file: IO[bytes]) -> Unpacked:
         """Read the rest of a file."""
         with ThreadPoolExecutor(_AHEAD) as pool:
-            ahead: deque[tuple[int, bytes, bool, Future[_Columns | None] | None]] = deque()
-            for line, text, is_end in _blocks(self.path, file, self.header.lines + self.header.first_line):
-                self.tail = self.tail if is_end else text[-_TAIL:]
-                parsed = pool.submit(self._fast, text) if self.is_fast and not is_end else None
-                ahead.append((line, text, is_end, parsed))
+            ahead: deque[tuple[_Block, Future[_Columns | None] | None]] = deque()
+            for block in _blocks(self.path, file, self.header.lines + self.header.first_line):
+                self.tail = self.tail if block.is_end else block.text[-_TAIL:]
+                parsed = pool.submit(self._fast, block) if self.is_fast and not block.is_end else None
+                ahead.append((block, parsed))
                 if len(ahead) > _AHEAD:
                     self._take(*ahead.popleft())
             while ahead:
@@ -101,10 +115,10 @@ class _Unpacking:
         self._close()
         return self.done
 
-    def _take(self, line: int, text: bytes, is_end: bool, parsed: "Future[_Columns | None] | None") -> None:
+    def _take(self, block: _Block, parsed: "Future[_Columns | None] | None") -> None:
         columns = None if parsed is None else parsed.result()
         if columns is None:
-            columns = self._slow(line, text, is_end)
+            columns = self._slow(block)
         # nothing but columns of words
         if not columns:
             return
@@ -116,7 +130,7 @@ class _Unpacking:
                 if parsed is None or parsed.result() is None:
                     raise
                 # a row whose date is none: a second look leaves it out
-                self._take(line, text, is_end, None)
+                self._take(block, None)
                 return
         if header.dates_beside is not None and not self.done.date_beside and rows:
             self.done.date_beside = str(columns[header.dates_beside][0])
@@ -124,10 +138,9 @@ class _Unpacking:
             if header.names[column] in self.done.left_out:
                 continue
             values = np.asarray(columns[place], dtype=np.float64)
-            is_value = np.isfinite(values)
-            if is_value.any():
+            if (last := _last_value(values)) is not None:
                 self.has_value[place] = True
-                self.done.full = max(self.done.full, self.done.count + rows - int(np.argmax(is_value[::-1])))
+                self.done.full = max(self.done.full, self.done.count + last + 1)
                 self.marks[column].take(values)
             self.spool.append_column(column, values)
         self.done.count += rows
@@ -146,16 +159,15 @@ class _Unpacking:
         wanted = [*header.places, *([] if header.milliseconds is None else [header.milliseconds])]
         return [place for place in wanted if place not in self._texts and names.get(place) not in self.done.left_out]
 
-    def _fast(self, text: bytes) -> _Columns | None:
+    def _fast(self, block: _Block) -> _Columns | None:
         """Return the columns of whole rows; nothing where any row is none."""
         # a compiler is for long files only
         _kernel = importlib.import_module("shaftprint.recording.readers.csv._kernel")
         header, texts, wanted = self.header, self._texts, self._numbers
-        if b"\0" in text:
+        if b"\0" in block.text:
             return None
         # quotes that hold a delimiter leave a row with too many fields
-        letters = np.frombuffer(text.replace(b'"', b"") if b'"' in text else text, dtype=np.uint8)
-        most = _count(text, "\n") + 1
+        read, most = block.text.replace(b'"', b""), block.lines
         targets = np.full(header.width, _kernel.SKIP)
         targets[texts] = _kernel.AS_TEXT
         targets[wanted] = np.arange(len(wanted))
@@ -163,7 +175,7 @@ class _Unpacking:
         places = np.empty((len(texts) * most, 2), dtype=np.int64)
         odd = np.empty((_ODD + most * len(wanted) // 2, 4), dtype=np.int64)
         rows, kept, strange = _kernel.rows_of(
-            letters,
+            np.frombuffer(read, dtype=np.uint8),
             ord(header.delimiter),
             ord(header.decimal),
             header.width,
@@ -175,7 +187,6 @@ class _Unpacking:
         )
         if rows < 0:
             return None
-        read = letters.tobytes()
         for target, row, begin, end in odd[:strange].tolist():
             value = number(self.header.pointed(read[begin:end].decode("utf-8", "replace").strip()))
             if value is None:
@@ -186,14 +197,14 @@ class _Unpacking:
         columns: _Columns = {place: fields[at :: len(in_order)] for at, place in enumerate(in_order)}
         return {**columns, **{place: numbers[at, :rows] for at, place in enumerate(wanted)}}
 
-    def _slow(self, first: int, text: bytes, is_end: bool) -> _Columns | None:
+    def _slow(self, block: _Block) -> _Columns | None:
         """Return the columns of the rows that are whole; note the others."""
         header = self.header
         lines: list[int] = []
         rows: list[list[str]] = []
         wrong: list[tuple[int, list[str]]] = []
-        plain_text = text.decode("utf-8", "replace").replace("\r\n", "\n")
-        for line, raw in enumerate(plain_text.split("\n"), start=first):
+        plain_text = block.text.decode("utf-8", "replace").replace("\r\n", "\n")
+        for line, raw in enumerate(plain_text.split("\n"), start=block.line):
             nul = raw.count("\0")
             self.nul += nul
             plain = raw.replace("\0", "").strip("\r\n")
@@ -204,12 +215,12 @@ class _Unpacking:
                 self._note_titles(line, len(rows))
                 continue
             fields = _as_wide(split_row(plain, header.delimiter), header)
-            if fields is None or nul or not self._has_time(fields) or (is_end and self._is_cut(plain, fields)):
+            if fields is None or nul or not self._has_time(fields) or (block.is_end and self._is_cut(plain, fields)):
                 wrong.append((line, split_row(plain, header.delimiter)))
                 continue
             lines.append(line)
             rows.append(fields)
-        self._note_wrong(wrong, len(rows), is_end=is_end)
+        self._note_wrong(wrong, len(rows), is_end=block.is_end)
         if not rows:
             return None
         columns: _Columns = {place: [row[place] for row in rows] for place in self._texts}
@@ -300,25 +311,28 @@ class _Unpacking:
             raise wrong_rows(self.path, self.mistakes, header)
 
 
-def _blocks(path: Path, file: IO[bytes], first: int) -> Iterator[tuple[int, bytes, bool]]:
-    """Yield line number, bytes of whole lines, and whether it is a last line without an end."""
-    line = first
+def _blocks(path: Path, file: IO[bytes], line: int) -> Iterator[_Block]:
+    """Yield whole lines, the first of a number, and what is behind the last of them."""
     while text := file.read(_BLOCK):
         rest = b"" if text.endswith(b"\n") else file.readline(LONGEST_LINE)
         if len(rest) == LONGEST_LINE or (len(text) > LONGEST_LINE and b"\n" not in text):
             raise RecordingError(f"{path}: expected lines of text, found one of over {LONGEST_LINE} characters.")
         text = (text + rest).removeprefix(_UTF_8_MARK if line == 1 else b"")
-        whole, mark, end = text.rpartition(b"\n")
-        if mark:
-            yield line, whole + mark, False
-            line += _count(whole, "\n") + 1
+        lines = int(np.count_nonzero(np.frombuffer(text, dtype=np.uint8) == _LINE_FEED))
+        end = b"" if text.endswith(b"\n") else text[text.rfind(b"\n") + 1 :]
+        if lines:
+            yield _Block(line=line, text=text.removesuffix(end), lines=lines)
+            line += lines
         if end:
-            yield line, end, True
+            yield _Block(line=line, text=end, lines=1, is_end=True)
 
 
-def _count(text: bytes, letter: str) -> int:
-    """Return how often an ASCII letter is in bytes; faster than their own method where it comes often."""
-    return int(np.count_nonzero(np.frombuffer(text, dtype=np.uint8) == ord(letter)))
+def _last_value(values: FloatArray) -> int | None:
+    """Return the place of the last finite number; nothing where there is none."""
+    if values.size and np.isfinite(values[-1]):
+        return int(values.size) - 1
+    places = np.flatnonzero(np.isfinite(values))
+    return int(places[-1]) if places.size else None
 
 
 def _as_wide(fields: list[str], header: Header) -> list[str] | None:

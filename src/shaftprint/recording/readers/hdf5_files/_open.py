@@ -1,16 +1,13 @@
 """Opening HDF5 files without hanging on damaged ones."""
 
 import math
-import os
-import subprocess
-import sys
 from pathlib import Path
 from typing import Any
 
 import h5py
 
 from shaftprint.errors import RecordingError
-from shaftprint.recording.readers._damage import expect_plausible, told_as_damage
+from shaftprint.recording.readers._damage import comes_to_an_end, expect_plausible, told_as_damage
 from shaftprint.recording.readers.hdf5_files import _probe
 from shaftprint.recording.readers.hdf5_files._references import outside_of, stored_outside
 
@@ -39,8 +36,11 @@ def open_hdf5(path: Path, what: str, *, is_whole: bool = False) -> Any:
     written. Raises RecordingError if HDF5's library refuses the file, hangs or crashes on it, or the file leads to
     others.
     """
-    if not is_whole:
-        _expect_an_end(path, what)
+    if not is_whole and not comes_to_an_end(_probe, path):
+        raise RecordingError(
+            f"{path}: expected a whole {what} file, found a damaged one in which HDF5's library does not come to an "
+            "end; copy it again from the logger."
+        )
     with told_as_damage(path, what):
         file = h5py.File(path, "r")
     try:
@@ -87,22 +87,4 @@ def expect_storage(path: Path, name: str, dataset: Any) -> None:
         raise RecordingError(
             f"{path}, channel {name}: expected blocks of at most {_LARGEST_BLOCK >> 20} MiB, found blocks of "
             f"{block >> 20} MiB; if the file is not damaged, write it with smaller ones (h5repack -l CHUNK=262144)."
-        )
-
-
-def _expect_an_end(path: Path, what: str) -> None:
-    """Refuse a file in which HDF5's library does not find back."""
-    program = [sys.executable, "-P", _probe.__file__, str(path.resolve())]
-    done = subprocess.run(  # noqa: S603
-        program,
-        stdin=subprocess.DEVNULL,
-        stdout=subprocess.DEVNULL,
-        stderr=subprocess.DEVNULL,
-        env=os.environ | {"OPENBLAS_NUM_THREADS": "1"},
-        check=False,
-    )
-    if done.returncode != 0:
-        raise RecordingError(
-            f"{path}: expected a whole {what} file, found a damaged one in which HDF5's library does not come to an "
-            "end; copy it again from the logger."
         )
