@@ -1,12 +1,12 @@
-"""Damaged copies of real files: cut off, bits turned, blocks swapped or zeroed, in head and data.
+"""Damaged copies of real files: cut off, bits turned, blocks swapped, zeroed or repeated, the tail of another file.
 
 Files are read by a program of their own under limits of memory and time, so that a crash or a hang ends that program.
 A difference from the truth of which nothing is said is counted apart: where the bytes lie in a compressed stream or
-below a checksum it must not be; what changes a raw number nobody can see.
+below a checksum it must not be; what changes a raw number nobody can see. Outcomes are kept in the folder, a line a
+copy, and a run goes on behind the last one.
 """
 
 import json
-import os
 import resource
 import signal as alarms
 import subprocess
@@ -15,6 +15,7 @@ import traceback
 from collections import Counter
 from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -22,14 +23,17 @@ from benchmarks.real_writers._families import FAMILIES, written
 from benchmarks.real_writers._truth import Answer, Family, Options, answer
 from shaftprint.errors import RecordingError
 
-WAYS = ("cut", "bits", "swapped", "zeros")
+WAYS = ("cut", "bits", "swapped", "zeros", "repeated", "tail")
 MOST_ADDRESSES, LONGEST_S, ORIGINALS = 6_000_000_000, 20, 24
-OUTCOMES = ("refused", "said", "unharmed", "raw", "protected", "traceback", "hang")
-"""``raw`` and ``protected`` are differences of which nothing is said."""
+LONGEST_WAIT_S = 300
+"""By the clock: a busy machine is no hang."""
+OUTCOMES = ("refused", "said", "unharmed", "values", "shorter", "words", "protected", "traceback", "hang")
+"""``values``, ``shorter``, ``words`` (names, units, times, date) and ``protected`` are differences of which nothing is
+said."""
 
 
-def damaged(content: bytes, rng: np.random.Generator, way: str, *, in_head: bool) -> bytes:
-    """Return a damaged copy."""
+def damaged(content: bytes, rng: np.random.Generator, way: str, *, in_head: bool, other: bytes = b"") -> bytes:
+    """Return a damaged copy; ``other`` is another file of its family."""
     size = len(content)
     limit = max(min(size, 600), 1) if in_head else size
     at = int(rng.integers(limit))
@@ -42,11 +46,17 @@ def damaged(content: bytes, rng: np.random.Generator, way: str, *, in_head: bool
             for _ in range(int(rng.integers(1, 5))):
                 new[int(rng.integers(limit))] ^= 1 << int(rng.integers(8))
         case "swapped":
-            other = int(rng.integers(size))
-            first, second = new[at : at + length], new[other : other + length]
+            there = int(rng.integers(size))
+            first, second = new[at : at + length], new[there : there + length]
             width = min(len(first), len(second))
-            if abs(at - other) >= width:
-                new[at : at + width], new[other : other + width] = second[:width], first[:width]
+            if abs(at - there) >= width:
+                new[at : at + width], new[there : there + width] = second[:width], first[:width]
+        case "repeated":
+            new[at:at] = new[at : at + length]
+        case "tail":
+            # as on a card whose clusters were given to the next file
+            at = at if in_head else int(size * rng.uniform(0.3, 1.0))
+            new[at:] = other[at:]
         case _:
             new[at : at + length] = bytes(len(new[at : at + length]))
     return bytes(new)
@@ -80,14 +90,17 @@ def outcome(whole: Answer, now: Answer, options: Options) -> str:
         return "said"
     if set(now.said) - set(whole.said) or now.left_out.keys() - whole.left_out.keys():
         return "said"
-    of_values = all(": value" in word for word in set(now.wrong) - set(whole.wrong))
-    return "protected" if is_protected(options) and of_values else "raw"
+    new = [word for word in now.wrong if word not in whole.wrong]
+    if all(": value" in word for word in new):
+        return "protected" if is_protected(options) else "values"
+    return "shorter" if all(" samples for " in word for word in new) else "words"
 
 
 def read_all(family: Family, folder: Path, first: int) -> None:
     """Read the damaged copies of a family from one number on; print the outcome of each."""
     resource.setrlimit(resource.RLIMIT_AS, (MOST_ADDRESSES, MOST_ADDRESSES))
-    alarms.signal(alarms.SIGALRM, alarms.SIG_DFL)
+    for alarm in (alarms.SIGALRM, alarms.SIGPROF):
+        alarms.signal(alarm, alarms.SIG_DFL)
     originals = [
         (path, options, truth, path.read_bytes(), answer(path, truth))
         for path, options, truth in written(family, folder, ORIGINALS, spread=True)
@@ -98,8 +111,10 @@ def read_all(family: Family, folder: Path, first: int) -> None:
         path, options, truth, content, whole = usable[number % len(usable)]
         way, in_head = WAYS[number // 2 % len(WAYS)], bool(number % 2)
         copy = path.with_name(f"damaged_{path.name}")
-        copy.write_bytes(damaged(content, rng, way, in_head=in_head))
-        alarms.alarm(LONGEST_S)
+        other = usable[(number + 1) % len(usable)][3]
+        copy.write_bytes(damaged(content, rng, way, in_head=in_head, other=other))
+        alarms.alarm(LONGEST_WAIT_S)
+        alarms.setitimer(alarms.ITIMER_PROF, LONGEST_S)
         words: tuple[str, ...] = ()
         try:
             now = answer(copy, truth)
@@ -109,6 +124,7 @@ def read_all(family: Family, folder: Path, first: int) -> None:
         except Exception:
             result, words = "traceback", tuple(traceback.format_exc().splitlines()[-6:])
         alarms.alarm(0)
+        alarms.setitimer(alarms.ITIMER_PROF, 0)
         line = {"number": number, "outcome": result, "way": way, "in_head": in_head, "words": words[:3]}
         sys.stdout.write(json.dumps({**line, "options": str(dict(options))}) + "\n")
         sys.stdout.flush()
@@ -121,26 +137,33 @@ def damage_table(folder: Path, only: tuple[str, ...]) -> list[str]:
     for family in FAMILIES:
         if not family.damaged or (only and family.name not in only):
             continue
-        counts: Counter[str] = Counter()
-        first = 0
-        while first < family.damaged:
-            program = [sys.executable, "-m", "benchmarks.real_writers._damage", str(folder), family.name, str(first)]
-            done = subprocess.run(program, capture_output=True, text=True, check=False, env=os.environ)
-            lines = [json.loads(line) for line in done.stdout.splitlines() if line.startswith("{")]
-            for line in lines:
-                counts[line["outcome"]] += 1
-                if line["outcome"] in ("protected", "traceback", "hang"):
-                    print(f"{family.name} {line}")
-            first = lines[-1]["number"] + 1 if lines else first
-            if first < family.damaged:
+        kept = folder / f"damaged_{family.name.replace(' ', '_')}.jsonl"
+        lines = _lines(kept)
+        while len(lines) < family.damaged:
+            program = [sys.executable, "-m", "benchmarks.real_writers._damage", str(folder), family.name]
+            with kept.open("a") as file:
+                done = subprocess.run(
+                    [*program, str(len(lines))], stdout=file, stderr=subprocess.PIPE, text=True, check=False
+                )
+            lines = _lines(kept)
+            if len(lines) < family.damaged:
                 # whatever ended the program did so at this copy
-                print(f"{family.name}: the program ended at {first} ({done.returncode}): {done.stderr[-300:]}")
-                counts["hang"] += 1
-                first += 1
-            (folder / f"damaged_{family.name.replace(' ', '_')}.jsonl").write_text(done.stdout)
+                fault = {"number": len(lines), "outcome": "hang", "code": done.returncode, "words": done.stderr[-300:]}
+                with kept.open("a") as file:
+                    file.write(json.dumps(fault) + "\n")
+                lines.append(fault)
+        for line in lines:
+            if line["outcome"] in ("protected", "traceback", "hang"):
+                print(f"{family.name} {line}")
+        counts = Counter(line["outcome"] for line in lines)
         total += counts
         rows.append(_row(family.name, counts))
     return [*rows, _row("all", total)]
+
+
+def _lines(kept: Path) -> list[dict[str, Any]]:
+    """Return what is kept of a family's copies, in their order."""
+    return [json.loads(line) for line in kept.read_text().splitlines()] if kept.exists() else []
 
 
 def _row(name: str, counts: Counter[str]) -> str:

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from benchmarks.real_writers import can_logs, hdf5, mat, mdf, netcdf, octave, others, tdms, text, uff
+from benchmarks.real_writers import can_logs, hdf5, mat, mdf, netcdf, octave, others, own, tdms, text, uff
 from benchmarks.real_writers._truth import Family, Options, Truth
 
 FAMILIES: tuple[Family, ...] = (
@@ -19,6 +19,7 @@ FAMILIES: tuple[Family, ...] = (
     uff.FAMILY,
     can_logs.FAMILY,
     others.FAMILY,
+    own.FAMILY,
 )
 _SEED = 1
 

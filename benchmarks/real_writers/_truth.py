@@ -66,6 +66,8 @@ class Family:
     """How many files make the table."""
     damaged: int = 0
     """How many damaged copies."""
+    is_own: bool = False
+    """Whether our own code writes it, so that it shows nothing of real writers."""
     protects: str = ""
     """What of the format tells damage: checksums, compressed streams, counts in heads."""
 
