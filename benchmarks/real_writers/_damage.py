@@ -55,7 +55,7 @@ def damaged(content: bytes, rng: np.random.Generator, way: str, *, in_head: bool
             new[at:at] = new[at : at + length]
         case "tail":
             # as on a card whose clusters were given to the next file
-            at = at if in_head else int(size * rng.uniform(0.3, 1.0))
+            at = int(size * rng.uniform(0.1, 1.0))
             new[at:] = other[at:]
         case _:
             new[at : at + length] = bytes(len(new[at : at + length]))
@@ -65,14 +65,15 @@ def damaged(content: bytes, rng: np.random.Generator, way: str, *, in_head: bool
 def is_protected(options: Options) -> bool:
     """Return whether the samples of a file stand in a compressed stream or below a checksum."""
     layout = options.get("layout")
-    of_layout = isinstance(layout, Mapping) and bool({"compression", "fletcher32"} & set(layout))
+    # LZF has no checksum of its own
+    of_layout = isinstance(layout, Mapping) and (layout.get("compression") == "gzip" or "fletcher32" in layout)
     form = str(options.get("form", ""))
     if options.get("scipy"):
         return False
     return (
         of_layout
         or any(options.get(key) for key in ("zlib", "compressed", "compression"))
-        or str(options.get("suffix", "")).endswith((".gz", ".blf"))
+        or str(options.get("suffix", "")).endswith((".gz", ".blf", ".journal", ".nc"))
         or (bool(options.get("object")) and options.get("container", "v7") == "v7")
         or form == "-v7"
         or "-zip" in form
@@ -96,8 +97,8 @@ def outcome(whole: Answer, now: Answer, options: Options) -> str:
     return "shorter" if all(" samples for " in word for word in new) else "words"
 
 
-def read_all(family: Family, folder: Path, first: int) -> None:
-    """Read the damaged copies of a family from one number on; print the outcome of each."""
+def read_all(family: Family, folder: Path) -> None:
+    """Read the damaged copies of a family that are not kept yet; print the outcome of each."""
     resource.setrlimit(resource.RLIMIT_AS, (MOST_ADDRESSES, MOST_ADDRESSES))
     for alarm in (alarms.SIGALRM, alarms.SIGPROF):
         alarms.signal(alarm, alarms.SIG_DFL)
@@ -106,7 +107,7 @@ def read_all(family: Family, folder: Path, first: int) -> None:
         for path, options, truth in written(family, folder, ORIGINALS, spread=True)
     ]
     usable = [one for one in originals if not one[4].refused and not one[4].wrong]
-    for number in range(first, family.damaged):
+    for number in _missing(family, _kept(folder, family)):
         rng = np.random.default_rng((7, number))
         path, options, truth, content, whole = usable[number % len(usable)]
         way, in_head = WAYS[number // 2 % len(WAYS)], bool(number % 2)
@@ -137,21 +138,16 @@ def damage_table(folder: Path, only: tuple[str, ...]) -> list[str]:
     for family in FAMILIES:
         if not family.damaged or (only and family.name not in only):
             continue
-        kept = folder / f"damaged_{family.name.replace(' ', '_')}.jsonl"
-        lines = _lines(kept)
-        while len(lines) < family.damaged:
+        path = _kept(folder, family)
+        while missing := _missing(family, path):
             program = [sys.executable, "-m", "benchmarks.real_writers._damage", str(folder), family.name]
-            with kept.open("a") as file:
-                done = subprocess.run(
-                    [*program, str(len(lines))], stdout=file, stderr=subprocess.PIPE, text=True, check=False
-                )
-            lines = _lines(kept)
-            if len(lines) < family.damaged:
-                # whatever ended the program did so at this copy
-                fault = {"number": len(lines), "outcome": "hang", "code": done.returncode, "words": done.stderr[-300:]}
-                with kept.open("a") as file:
-                    file.write(json.dumps(fault) + "\n")
-                lines.append(fault)
+            with path.open("a") as file:
+                done = subprocess.run(program, stdout=file, stderr=subprocess.PIPE, text=True, check=False)
+                if left := [number for number in missing if number not in _lines(path)]:
+                    # whatever ended the program did so at this copy
+                    words = [f"code {done.returncode}", done.stderr[-300:]]
+                    file.write(json.dumps({"number": left[0], "outcome": "hang", "words": words}) + "\n")
+        lines = _lines(path).values()
         for line in lines:
             if line["outcome"] in ("protected", "traceback", "hang"):
                 print(f"{family.name} {line}")
@@ -161,9 +157,19 @@ def damage_table(folder: Path, only: tuple[str, ...]) -> list[str]:
     return [*rows, _row("all", total)]
 
 
-def _lines(kept: Path) -> list[dict[str, Any]]:
-    """Return what is kept of a family's copies, in their order."""
-    return [json.loads(line) for line in kept.read_text().splitlines()] if kept.exists() else []
+def _kept(folder: Path, family: Family) -> Path:
+    return folder / f"damaged_{family.name.replace(' ', '_')}.jsonl"
+
+
+def _lines(kept: Path) -> dict[int, dict[str, Any]]:
+    """Return what is kept of a family's copies by their numbers."""
+    lines = [json.loads(line) for line in kept.read_text().splitlines()] if kept.exists() else []
+    return {line["number"]: line for line in lines}
+
+
+def _missing(family: Family, kept: Path) -> list[int]:
+    done = _lines(kept)
+    return [number for number in range(family.damaged) if number not in done]
 
 
 def _row(name: str, counts: Counter[str]) -> str:
@@ -171,4 +177,4 @@ def _row(name: str, counts: Counter[str]) -> str:
 
 
 if __name__ == "__main__":
-    read_all(next(one for one in FAMILIES if one.name == sys.argv[2]), Path(sys.argv[1]), int(sys.argv[3]))
+    read_all(next(one for one in FAMILIES if one.name == sys.argv[2]), Path(sys.argv[1]))

@@ -52,4 +52,3 @@ def bytes_to_read(path: Path) -> tuple[BinaryIO, bool]:
         raise
     file.close()
     return copy, True
-
