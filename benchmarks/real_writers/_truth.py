@@ -145,7 +145,11 @@ def compared(recording: Recording, truth: Truth) -> Answer:
                 wrong.append(f"{name}: lost")
             else:
                 left_out[name] = reason
-    said = (*recording.remarks, *(f"{name}: {why}" for name, why in recording.left_out.items()))
+    # what inspect shows
+    jumps = (
+        f"{name}: {len(one.clock_jumps)} clock jumps" for name, one in recording.channels.items() if one.clock_jumps
+    )
+    said = (*recording.remarks, *(f"{name}: {why}" for name, why in recording.left_out.items()), *jumps)
     return Answer(wrong=tuple(wrong), left_out=left_out, said=said)
 
 

@@ -2,6 +2,7 @@
 """Text as instruments and programs write it: the same two channels of 100 Hz in the layout of each."""
 
 import datetime as dt
+import math
 
 import numpy as np
 import pytest
@@ -302,3 +303,27 @@ def test_long_files_hold_the_numbers_that_python_reads(tmp_path, form, head, hin
     assert np.array_equal(values["u"], expected, equal_nan=True)
     digits = form.split("{y:")[1].split("}")[0]
     assert np.array_equal(values["y"], [float(format(b, digits)) for b in y.tolist()])
+
+
+def test_a_last_number_that_lost_most_of_its_digits_is_left_out(tmp_path):
+    """Digits of numbers as programs print them differ from row to row; the last has fewer than any before."""
+    rows = [f"{0.01 * k:.2f},{math.sin(0.3 * k)!r}" for k in range(1, 61)]
+    path = tmp_path / "log.csv"
+    path.write_text("time [s],M_s [N m]\n" + "\n".join(rows)[:-9], encoding="utf-8")
+    with read_recording(path) as recording:
+        assert recording.channel("M_s").count == 59
+        assert recording.remarks == ("Line 61: damaged or cut off, and left out.",)
+    # whole, without a line feed at its end
+    path.write_text("time [s],M_s [N m]\n" + "\n".join(rows), encoding="utf-8")
+    with read_recording(path) as recording:
+        assert (recording.channel("M_s").count, recording.remarks) == (60, ())
+
+
+def test_a_table_of_wide_rows_behind_words_is_known_without_an_ending(tmp_path):
+    """As programs of movements write results: a few lines about the file, then some hundred columns."""
+    names = "\t".join(["time", *(f"channel_{number}" for number in range(150))])
+    rows = ["\t".join([f"{0.01 * k:.2f}", *["0.12345678"] * 150]) for k in range(30)]
+    path = tmp_path / "powers.sto"
+    path.write_text("\n".join(["Powers", "version=1", "", "endheader", names, *rows, ""]), encoding="utf-8")
+    with read_recording(path) as recording:
+        assert recording.channel("channel_149").count == 30

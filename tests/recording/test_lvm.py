@@ -166,3 +166,15 @@ def test_times_that_stray_are_kept_over_segments(tmp_path):
         channel = recording.channel("Torque")
         assert np.array_equal(channel.stamps_s(0, 400), times)
         assert channel.clock_jumps == ()
+
+
+def test_a_damaged_decimal_sign_is_found_in_the_rows(tmp_path):
+    _, values = _read(tmp_path, _head(decimal="o") + _segment(ROWS))
+    assert values["Torque"][:3].tolist() == [0.25, 2.25, 4.25]
+
+
+def test_rows_that_are_fewer_than_the_head_says_are_told(tmp_path):
+    text = _head() + _segment(ROWS[:7]).replace("Channels|2|\n", "Channels|2|\nSamples|50|50|\n")
+    recording, values = _read(tmp_path, text)
+    assert values["Torque"].size == 7
+    assert any("50 samples are said to follow, 7 do" in remark for remark in recording.remarks)

@@ -76,6 +76,8 @@ def test_a_recording_without_channels_says_so(path):
         ("log.raw", b"|CF,2,1,1;\0", "imc: in FAMOS or imc STUDIO export it as MATLAB, ASCII or MDF 4"),
         ("log.dat", b"|CF,2,1,1;|CK,1,3,1,1;\r\n|NO,1,81", "imc: in FAMOS or imc STUDIO export it as MATLAB"),
         ("log.db", b"SQLite format 3\0", "it is an SQLite database: export the table as CSV"),
+        ("log.bin", b"\x94\x13\x0c\0", "HBM catman: export it as MATLAB, ASCII or MDF 4"),
+        ("log.bin", b"\1\2\3\0", "export it as CSV, MATLAB or MDF 4 from the program that wrote it"),
         ("log.psdata", b"\1\2\3\0", "PicoScope or PicoLog: save it as CSV or MATLAB 4"),
         ("log.acme", b"\1\2\3\0", "export it as CSV, MATLAB or MDF 4 from the program that wrote it"),
     ],

@@ -161,3 +161,13 @@ def test_a_number_of_samples_that_was_lost_is_told(tmp_path):
             "segment 2, /'G'/'a'": "0 samples beside 2 rounds of the other channels: if their number was damaged, "
             "these hold them among their own; copy the file again from the logger, or compare the lengths."
         }
+
+
+def test_samples_under_a_name_that_is_no_channel_are_named(tmp_path):
+    """A part whose name was damaged into that of a group: the channel lacks these samples."""
+    path = _twice(tmp_path / "log.tdms", 2.0)
+    content = path.read_bytes()
+    path.write_bytes(content.replace(b"/'G'/'M_s'", b"/'GGGGGGG'", 1))
+    with read_recording(path) as recording:
+        assert recording.channel("M_s").count == SECOND.size
+        assert "no channel's" in recording.left_out["/'GGGGGGG'"]

@@ -99,6 +99,8 @@ def test_the_unit_in_a_title_holds(tmp_path, title, second):
         [1_200_000_000 + 10_000 * row for row in range(400)],
         [f"{s / 86_400.0:.12f}" for s in SECONDS],
         [f"{20_500.5 + s / 86_400.0:.10f}" for s in SECONDS],
+        # days at 1 Hz, which seconds would make 86,400 Hz
+        [f"{k / 86_400.0:.12f}" for k in range(400)],
         [2 * 10**10 + row for row in range(400)],
     ],
 )

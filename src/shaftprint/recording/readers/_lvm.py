@@ -146,9 +146,10 @@ def _recording(
         )
     values = [place for place, title in enumerate(titles) if title.lower() not in ("x_value", _COMMENT, "")]
     places = sorted([*values, *(place for place, title in enumerate(titles) if title == _TIMES)])
+    decimal = (general.get("Decimal_Separator") or [""])[0]
     header = Header(
         delimiter=separator,
-        decimal=(general.get("Decimal_Separator") or [""])[0] or _decimal(file, segments[0], separator),
+        decimal=decimal if decimal in (",", ".") else _decimal(file, segments[0], separator),
         names=tuple(f"{titles[place]} {place}" for place in places),
         units=("",) * len(places),
         places=tuple(places),
@@ -164,6 +165,9 @@ def _recording(
         done = _rows(path, file, segment, header, spool)
         segment.count = done.count
         gathered.remarks.extend(done.remarks)
+        said = max((int(one) for one in segment.head.get("Samples", ()) if one.isdecimal()), default=0)
+        if said > done.count:
+            gathered.remarks.append(f"Line {segment.line}: {said} samples are said to follow, {done.count} do.")
         wordy = {places[header.names.index(name)]: reason for name, reason in done.left_out.items()} | wordy
     _note_comments(gathered, file, segments[0], separator)
     source = _Source(

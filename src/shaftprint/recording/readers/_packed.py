@@ -28,10 +28,10 @@ def damaged_gzip(path: Path, error: Exception) -> RecordingError:
     return RecordingError(f"{path}: expected a whole gzip file, found a damaged or truncated one ({error}).")
 
 
-def first_bytes(path: Path) -> bytes | None:
+def first_bytes(path: Path, count: int = FIRST_BYTES) -> bytes | None:
     """Return the first bytes, unpacked; None where they are too damaged for it."""
     try:
         with open_unpacked(path) as file:
-            return file.read(FIRST_BYTES)
+            return file.read(count)
     except CANNOT_BE_UNPACKED:
         return None

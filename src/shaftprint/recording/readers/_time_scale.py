@@ -32,7 +32,7 @@ _UNITS = "s, ms, us, ns, min, h or days"
 
 _FIRST = 1001
 # Days step by less than this down to 0.6 Hz; seconds that do are those of 50 kHz and more.
-_DAY_STEP, _MAY_BE_DAYS = 2e-5, 1e4
+_DAY_STEP, _MAY_BE_DAYS, _DAY_SHARE = 2e-5, 1e4, 1e-3
 # No line is sampled faster than this, or slower for a whole file [Hz].
 FASTEST_HZ, SLOWEST_HZ = 1e6, 1e-2
 # Whole numbers that step by so much are rather those of a counter of milliseconds than of a slow clock.
@@ -216,6 +216,9 @@ def _by_size(where: str, first: float, step: float, *, is_whole: bool) -> TimeSc
             return _scale(zero, first)
     is_counter = is_whole and step >= _COUNTED
     is_too_small = 0.0 < step < 1.0 / FASTEST_HZ or (abs(first) >= _MAY_BE_DAYS and 0.0 < step <= _DAY_STEP)
+    # a whole rate by the day, at which nobody samples: 86,400 Hz may be 1 Hz
+    by_the_day = 1.0 / (_EXCEL.second * step) if 0.0 < step <= _DAY_STEP else 0.5
+    is_too_small |= abs(by_the_day - round(by_the_day)) <= _DAY_SHARE * by_the_day
     if is_counter or is_too_small or step > 1.0 / SLOWEST_HZ or abs(first) > LATER_THAN_ANY_TEST_S:
         raise RecordingError(
             f"{where}: expected seconds, found {first:.9g} with steps of {step:.4g} and no unit; milliseconds, "

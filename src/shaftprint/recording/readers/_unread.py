@@ -60,6 +60,7 @@ _BY_BYTES = {
     b"\x89MCAP": "it is a ROS log: PlotJuggler exports it as CSV",
     b"#ROSBAG": "it is a ROS log: PlotJuggler exports it as CSV",
     b"|CF,": _IMC,
+    **dict.fromkeys((b"\x92\x13", b"\x93\x13", b"\x94\x13"), _CATMAN),
     b"RIFF": "it is a sound file: scipy.io.wavfile reads it (24 bits come times 256), scipy.io.savemat writes the "
     "samples with fs",
 }
@@ -76,7 +77,6 @@ _BY_ENDING = {
     (".tdm", ".tdx"): "National Instruments' TDM: in DIAdem or LabVIEW save it as TDMS",
     (".lms", ".ldsf", ".sdf"): "Simcenter Testlab: export time data as MATLAB or as UFF 58",
     (".raw",): _IMC,
-    (".bin",): _CATMAN,
     (".pnrf", ".nrf"): "HBM Perception: export it as MATLAB, ASCII or MDF 4",
     (".psdata", ".plw", ".picolog"): "PicoScope or PicoLog: save it as CSV or MATLAB 4",
     (".wfm", ".isf"): "an oscilloscope's waveform: save it there as CSV",

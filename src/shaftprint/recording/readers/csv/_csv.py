@@ -47,6 +47,8 @@ _SEEN = 65_536
 # printed times are rounded
 _RATE_AGREEMENT = 1e-3
 _FIRST_ROWS, _SHOWN = 1000, 5
+# Where a name does not say that a file is text: so many lines.
+_HEAD = 100
 # A stamp to the second that so many rows have tells their rate, where the caller does not.
 _STAMPS = 5_000
 
@@ -65,8 +67,10 @@ def is_mine(path: Path) -> bool:
         return False
     if name.suffix.lower() in _ENDINGS:
         return True
-    lines = begin.decode("utf-8-sig", "replace").splitlines()
-    return looks_like_a_table(lines[:-1])
+    return any(
+        looks_like_a_table((first_bytes(path, count) or b"").decode("utf-8-sig", "replace").splitlines()[:-1][:_HEAD])
+        for count in (len(begin), _SEEN)
+    )
 
 
 def read(path: Path, **hints: object) -> Recording:

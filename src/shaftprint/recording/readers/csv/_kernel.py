@@ -93,7 +93,7 @@ def rows_of(text, delimiter, decimal, width, least, targets, numbers, texts, odd
                 return -1, 0, 0
             target = targets[column]
             begin = at
-            digits, power = np.uint64(0), 0
+            digits, power = np.uint64(0), np.int64(0)
             sign, is_number = 1.0, target >= 0
             letter = text[at]
             if is_number:

@@ -30,7 +30,7 @@ _AHEAD = 2
 _ODD = 1_000
 # So many rows of a file may be damaged, and such a share: with times the others keep their places.
 _MOST_DAMAGED, _DAMAGED_SHARE = 3, 1e-3
-# What is behind the decimal sign is as long in each of so many rows, where a number of the last row is cut off.
+# What is behind the decimal sign is longer in each of so many rows, where a number of the last row is cut off.
 _DECIMALS_SEEN, _TAIL = 50, 8_000
 _LINE_FEED = ord("\n")
 _UTF_8_MARK = b"\xef\xbb\xbf"
@@ -260,7 +260,7 @@ class _Unpacking:
             for one in self.tail.decode("utf-8", "replace").splitlines()[1:][-_DECIMALS_SEEN:]
             if one.strip()
         }
-        return len(usual) == 1 and self._behind_the_sign(line) < min(usual)
+        return bool(usual) and self._behind_the_sign(line) < min(usual)
 
     def _has_time(self, fields: Sequence[str]) -> bool:
         header = self.header

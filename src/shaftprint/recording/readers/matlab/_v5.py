@@ -9,6 +9,7 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
+from shaftprint.errors import RecordingError
 from shaftprint.recording._channel import Source
 from shaftprint.recording._recording import Recording
 from shaftprint.recording._spool import Spool
@@ -38,6 +39,8 @@ _HEADER_BYTES = 128
 _REAL = "fiub"
 _DEEPEST = 4
 _LONGEST_NAME = 64
+# What OpenModelica and Dymola keep trajectories in.
+_OF_MODELICA = {"dataInfo", "data_1", "data_2"}
 
 
 def is_mine(path: Path) -> bool:
@@ -64,6 +67,11 @@ def read(path: Path, **hints: object) -> Recording:
         spool = Spool(path, ())
         try:
             gathered = gather_variables(path, _survey(path, spool, titles_of(hints)), rate_hz=rate, time_unit=unit)
+            if gathered.left_out.keys() >= _OF_MODELICA and not gathered.channels:
+                raise RecordingError(
+                    f"{path}: expected channels on a clock, found the trajectories of a Modelica tool; write them as "
+                    'CSV (OpenModelica: outputFormat = "csv"; Dymola: DataFiles.convertMATtoCSV).'
+                )
             spool.finish()
             return gathered.recording_from_second_zero(NAME, spool.close)
         except BaseException:

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import RecordingError
+from shaftprint.escape import printable
 from shaftprint.recording._channel import Channel
 from shaftprint.recording._recording import Recording
 from shaftprint.recording.readers._clock import SampleClock, clock_of_times, on_clock
@@ -113,6 +114,12 @@ class _Source:
         channels = [channel for group in self.file.groups() for channel in group.channels()]
         names = unique_names([(channel.group_name, channel.name) for channel in channels])
         began = self._began(channels, groups)
+        known = {channel.path for channel in channels}
+        for place in (place for place, parts in self.parts.items() if parts and place not in known):
+            self.gathered.left_out[printable(place)] = (
+                "its samples stand under a name that is no channel's: the name is damaged, copy the file again from "
+                "the logger."
+            )
         for channel, name in zip(channels, names, strict=True):
             group = groups[channel.group_name]
             if isinstance(group, _Group) and channel is group.time:
