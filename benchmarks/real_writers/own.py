@@ -69,7 +69,7 @@ FAMILY = Family(
     extremes=tuple({"suffix": suffix, "signals": signals} for suffix in SUFFIXES for signals in (1, 2)),
     drawn=drawn,
     files=24,
-    damaged=200,
+    damaged=100,
     protects="native container and journal: checksums",
     is_own=True,
 )
