@@ -1,13 +1,17 @@
-"""What says that a channel changed within the tests."""
+"""What says that a channel changed within the tests, or does not show what the shafts do."""
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 from shaftprint.reasons import Reason
+from shaftprint.signals._channel_signals import SpeedSignal
+from shaftprint.signals._order_scale import reasons_of_orders
 from shaftprint.signals.levels._set_point_steadiness import expect_steady_set_point
 from shaftprint.signals.levels._steadiness import expect_steady_gauge
 
 if TYPE_CHECKING:
     from shaftprint.campaign._campaign import Campaign
+    from shaftprint.signals._channel_signals import ChannelSignal
     from shaftprint.signals._readings import Readings
     from shaftprint.vessel._vessel import Vessel
 
@@ -46,5 +50,25 @@ def changes_of_gauge(vessel: "Vessel", campaign: "Campaign", readings: "Readings
         rate_hz=clock.rate_hz,
         start_s=clock.start_s,
         channel=vessel.sensors.shaft_torque.channel,
+        coverage=readings.coverage,
+    )
+
+
+def orders_against_speed(
+    vessel: "Vessel", signals: "Mapping[str, ChannelSignal]", readings: "Readings"
+) -> tuple[Reason, ...]:
+    """Return what the orders of the shafts in the torque say against the scale of the speed.
+
+    ``vessel``, ``readings``: of the recording. ``signals``: its channels by name.
+    """
+    clock = readings.clock
+    if clock.mode == "thesis":
+        return ()
+    return reasons_of_orders(
+        next(one for one in signals.values() if isinstance(one, SpeedSignal)),
+        signals["M_s"].values,
+        vessel,
+        rate_hz=clock.rate_hz,
+        start_s=clock.start_s,
         coverage=readings.coverage,
     )

@@ -10,7 +10,7 @@ from shaftprint.campaign._campaign import Campaign
 from shaftprint.errors import SignalError
 from shaftprint.memory import give_back_memory
 from shaftprint.reasons import Reason
-from shaftprint.signals._changes import changes_of_gauge, changes_of_set_point
+from shaftprint.signals._changes import changes_of_gauge, changes_of_set_point, orders_against_speed
 from shaftprint.signals._channel_readings import ChannelReadings, logger_channels, read_channels
 from shaftprint.signals._channel_signals import ChannelSignal, SpeedSignal
 from shaftprint.signals._channels import find_channel
@@ -136,6 +136,7 @@ def _prepared(recording: "Recording", vessel: "Vessel", campaign: Campaign, read
         steady, strange = _steady_state(vessel, campaign, readings)
     reasons += changes_of_gauge(vessel, campaign, readings)
     signals, absent = _signals_by_name(readings, steady)
+    reasons += orders_against_speed(vessel, signals, readings)
     delays, missed = find_step_delays(
         readings.set_point,
         readings.pick_ups[0].values,

@@ -66,7 +66,7 @@ def scale_reasons(
             where=vessel.sensors.speed[0].channel,
             sentence=(
                 f"The speed is in doubt: it seems to be {doubt.words} the true one, {found_rpm:.4g} rpm where {torque} "
-                f"{asked_rpm:.4g} rpm{followers}; {_what_to_check(doubt.factor, vessel)}."
+                f"{asked_rpm:.4g} rpm{followers}; {what_to_check(doubt.factor, vessel)}."
             ),
         ),
     )
@@ -105,7 +105,7 @@ def _told(beside: Mapping[str, float], ending: str) -> str:
     return f", with {names} {factors} times what the vessel file expects,{ending}"
 
 
-def _what_to_check(factor: float, vessel: "Vessel") -> str:
+def what_to_check(factor: float, vessel: "Vessel") -> str:
     """Return which field of the vessel file would make a speed right that is shown so many times too large."""
     sensors, ratio = vessel.sensors.speed, vessel.gearbox.ratio
     if len(sensors) > 1:

@@ -1,0 +1,80 @@
+"""Orders in the torque against the count of a pick-up and the gear ratio: the truth is the angle of the shafts."""
+
+import numpy as np
+import pytest
+
+from shaftprint.signals._channel_signals import SpeedSignal
+from shaftprint.signals._gaps import EVERYTHING
+from shaftprint.signals._order_scale import reasons_of_orders
+from shaftprint.vessel import load_vessel
+
+VESSEL = load_vessel("stan-tug-1205")
+RATIO, RATE_HZ = 3.82, 200.0
+TIME_S = np.arange(0.0, 300.0, 1.0 / RATE_HZ)
+# two speeds, and a motion of 3 % at each
+ENGINE_REV_S = np.where(TIME_S < 150.0, 20.0, 15.0) * (1.0 + 0.03 * np.sin(0.7 * TIME_S) + 0.01 * np.sin(3.1 * TIME_S))
+ENGINE_TURNS = np.cumsum(ENGINE_REV_S) / RATE_HZ
+OF_ENGINE, OF_PROPELLER = {0.5: 0.03, 1.0: 0.01, 2.0: 0.02}, {1: 0.02, 3: 0.05, 6: 0.02}
+
+
+def vessel_of(shaft, pulses):
+    speed = VESSEL.sensors.speed[0].model_copy(update={"shaft": shaft, "pulses_per_revolution": pulses, "unit": "V"})
+    return VESSEL.model_copy(update={"sensors": VESSEL.sensors.model_copy(update={"speed": (speed,)})})
+
+
+def reasons_of(vessel, *, shown=1.0, ratio=RATIO, engine=OF_ENGINE, propeller=OF_PROPELLER, further=0.0):
+    """What is said of a speed shown so many times too large, with orders of a true engine, gear and propeller."""
+    places = {**engine, **{order / ratio: size for order, size in propeller.items()}}
+    orders = sum(size * np.cos(2.0 * np.pi * place * ENGINE_TURNS + place) for place, size in places.items())
+    load = 1.0 + orders + 0.03 * np.random.default_rng(3).normal(size=TIME_S.size) + further
+    speed = SpeedSignal(
+        name=vessel.sensors.speed[0].name,
+        channel="PTM",
+        values=shown * ENGINE_REV_S,
+        reference=20.0,
+        pulse_rate_hz=500.0,
+    )
+    torque_nm = 2000.0 * ENGINE_REV_S**2 * load
+    return reasons_of_orders(speed, torque_nm, vessel, rate_hz=RATE_HZ, start_s=0.0, coverage=EVERYTHING)
+
+
+@pytest.mark.parametrize(("shaft", "pulses"), [("engine", 60), ("propeller", 24)])
+@pytest.mark.parametrize("more", [-1, 1])
+def test_a_tooth_more_or_less_is_counted_by_the_orders(shaft, pulses, more):
+    (reason,) = reasons_of(vessel_of(shaft, pulses), shown=(pulses + more) / pulses)
+    assert reason.kind == "speed scale"
+    assert f"{pulses} is stated, {pulses + more} would fit" in reason.sentence
+
+
+def test_a_gear_ratio_is_told_by_the_orders_of_the_other_shaft():
+    for shaft, kind, shown in (("engine", "gear ratio", 1.0), ("propeller", "speed scale", 3.82 / 3.9)):
+        # behind the gears the engine's speed itself is off
+        (reason,) = reasons_of(vessel_of(shaft, 60), ratio=3.9, shown=shown)
+        fitting = float(reason.sentence.split("3.82 is stated, ")[1].split()[0])
+        assert (reason.kind, fitting) == (kind, pytest.approx(3.9, rel=5e-4))
+
+
+@pytest.mark.parametrize("shaft", ["engine", "propeller"])
+@pytest.mark.parametrize(
+    "orders",
+    [
+        {},
+        {"engine": {}},
+        {"propeller": {}},
+        {"engine": {}, "propeller": {}},
+        # five blades where the vessel file has another number, and multiples of which it knows nothing
+        {"engine": {}, "propeller": {5: 0.05, 10: 0.02}},
+        {"engine": {2.5: 0.02, 3.5: 0.02}, "propeller": {2: 0.02, 4: 0.02}},
+        # hum, and pumps that turn at their own speed
+        {
+            "engine": {},
+            "further": 0.03 * np.sin(2.0 * np.pi * 50.0 * TIME_S) + 0.03 * np.sin(2.0 * np.pi * 16.7 * TIME_S),
+        },
+    ],
+)
+def test_a_speed_that_is_right_is_right_whatever_stands_in_the_torque(shaft, orders):
+    assert reasons_of(vessel_of(shaft, 24), **orders) == ()
+
+
+def test_a_ratio_of_three_digits_is_exact_enough():
+    assert reasons_of(vessel_of("engine", 60), ratio=3.8167) == ()
