@@ -150,10 +150,11 @@ def reasons_of(of: Channels, campaign: Campaign, fault: Fault, rng: np.random.Ge
     """Return what is said of a recording with a fault."""
     set_point_v, torque_nm = fault(of, rng, campaign)
     grid = {"rate_hz": of.rate_hz, "start_s": of.start_s}
+    of_gauge, _ = expect_steady_gauge(
+        campaign, set_point=set_point_v, speed_rev_s=of.speed_rev_s, torque_nm=torque_nm, **grid, channel="M_s"
+    )
     return (
-        *expect_steady_gauge(
-            campaign, set_point=set_point_v, speed_rev_s=of.speed_rev_s, torque_nm=torque_nm, **grid, channel="M_s"
-        ),
+        *of_gauge,
         *expect_steady_set_point(campaign, set_point_v, **grid, channel="U_setpoint"),
     )
 

@@ -4,11 +4,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from tests.known_fits import exact_response
 
 from shaftprint.catalogue import structure
 from shaftprint.fingerprint import physical_quantities
 from shaftprint.fingerprint._physical import physical_numbers
 from shaftprint.fingerprint._working_point_share import (
+    GAIN,
     LOAD_WANDER,
     RACK,
     SPEED,
@@ -17,7 +19,8 @@ from shaftprint.fingerprint._working_point_share import (
     widened,
     widened_covariance,
 )
-from shaftprint.identify import Prior, Settings, budget, identify, priors_from_vessel
+from shaftprint.identify import Prior, Settings, budget, identify, identify_jointly, priors_from_vessel
+from shaftprint.models import at_working_point
 
 MORE = 0.01
 
@@ -126,6 +129,31 @@ def test_a_rack_that_is_not_in_the_structure_moves_nothing(found, working_point)
     assert shifts_of_working_point(found, working_point, rack_share=MORE) == shifts_of_working_point(
         found, working_point
     )
+
+
+def test_a_gain_that_changed_between_two_legs_moves_what_their_fit_finds(found, truth, known, working_point):
+    def fit_of(gain):
+        """Return the fit to two legs, the second of which is tied by a torque that is shown so much too large."""
+        first = structure("GAUGE-CLOSED")
+        tied = at_working_point(first, speed_share=0.7, torque_share=0.49 * (1.0 + gain), shown_share=0.49)
+        rng, settings = np.random.default_rng(7), Settings(starts=20, priors=known)
+        return identify_jointly(list(zip((first, tied), data, strict=True)), rng=rng, settings=settings)
+
+    gain = 0.0002
+    at_slow = at_working_point(structure("GAUGE-CLOSED"), speed_share=0.7, torque_share=0.49, shown_share=0.49)
+    data = [exact_response(one, truth, 0.0005) for one in (structure("GAUGE-CLOSED"), at_slow)]
+    before, after = fit_of(0.0), fit_of(gain)
+    legs = [working_point, replace(working_point, unseen_gain=gain)]
+    shift = shifts_of_working_point(before, working_point, legs=legs)[GAIN]
+    for one, other in zip(before.parameters, after.parameters, strict=True):
+        moved = other.value - one.value
+        assert shift[one.name] == pytest.approx(moved, rel=0.01, abs=1e-4 * one.std), one.name
+    # 0.05 % of K_p for 0.02 % between the legs
+    assert shift["K_p"] / truth["K_p"] == pytest.approx(-2.3 * gain, rel=0.05)
+    # a gain that is off alike in both is a scale of the gauge
+    alike = [replace(leg, unseen_gain=gain) for leg in legs]
+    assert shifts_of_working_point(before, working_point, legs=alike)[GAIN] == pytest.approx(dict.fromkeys(shift, 0.0))
+    assert GAIN not in shifts_of_working_point(found, working_point)
 
 
 def test_half_widths_add_in_quadrature_and_bounds_stay():

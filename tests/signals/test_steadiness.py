@@ -10,6 +10,7 @@ from shaftprint.campaign import Campaign
 from shaftprint.signals.levels._fast_gain import fast_gains
 from shaftprint.signals.levels._set_point_steadiness import Amplitudes, change_of, expect_steady_set_point
 from shaftprint.signals.levels._steadiness import expect_steady_gauge, loads_of
+from shaftprint.signals.levels._unseen_gain import unseen_gains
 
 RATE_HZ, PERIOD_S = 50.0, 20.0
 HARMONICS = (1, 3, 7, 13, 21, 31, 43)
@@ -82,7 +83,7 @@ def gauge(campaign, gain=1.0, **of_ship):
     time, volts = put_out(campaign)
     speed, torque = ship(volts, **of_ship)
     shown = torque * (gain(time) if callable(gain) else gain)
-    reasons = expect_steady_gauge(
+    reasons, _ = expect_steady_gauge(
         campaign, set_point=volts, speed_rev_s=speed, torque_nm=shown, rate_hz=RATE_HZ, start_s=0.0, channel="M_s"
     )
     return [(reason.kind, reason.sentence) for reason in reasons]
@@ -132,7 +133,7 @@ def test_a_torque_that_loses_time_at_one_speed_is_no_gain(sines):
     speed, torque = ship(volts)
     for at_s in (160.0, 230.0):
         late = np.interp(time + 0.1 * (time >= at_s), time, torque)
-        found = expect_steady_gauge(
+        found, _ = expect_steady_gauge(
             sines, set_point=volts, speed_rev_s=speed, torque_nm=late, rate_hz=RATE_HZ, start_s=0.0, channel="M_s"
         )
         assert not any("gain" in reason.sentence for reason in found)
@@ -143,12 +144,26 @@ def test_a_speed_that_stands_still_says_nothing_of_the_gain(two_speeds):
     rng = np.random.default_rng(1)
     still = 20.0 + 0.001 * rng.standard_normal(volts.size)
     torque = 1500.0 + rng.standard_normal(volts.size)
-    assert (
-        expect_steady_gauge(
-            two_speeds, set_point=volts, speed_rev_s=still, torque_nm=torque, rate_hz=RATE_HZ, start_s=0.0, channel="M"
-        )
-        == ()
+    reasons, unseen = expect_steady_gauge(
+        two_speeds, set_point=volts, speed_rev_s=still, torque_nm=torque, rate_hz=RATE_HZ, start_s=0.0, channel="M"
     )
+    assert reasons == ()
+    # a load that stands still tells the gain within each speed, and nothing between them
+    assert sum(unseen.values()) == pytest.approx(0.0, abs=1e-12)
+
+
+def test_what_is_unseen_is_what_is_known_of_gauges_where_nothing_is_told():
+    means = np.array([[0.25], [0.75]])
+    told = {"size": np.zeros(1), "power": np.zeros(1), "twice": np.zeros(1)}
+    # one gauge in five changes, by 5 %: root of 1/5 of 0.05^2, of which a drift leaves a quarter on either side
+    off = 0.25 * np.sqrt(0.2) * 0.05
+    assert np.abs(unseen_gains(means, ["drift"], **told)) == pytest.approx([off, off])
+    assert unseen_gains(means, ["drift"], **told).sum() == pytest.approx(0.0, abs=1e-15)
+    # what is told exactly to be none leaves nothing, and a change of 8 % that is certain all of it
+    for size, twice, left in ((0.0, 0.0, 0.0), (0.08, 400.0, 0.02)):
+        told = {"size": np.full(1, size), "power": np.full(1, 1e9), "twice": np.full(1, twice)}
+        assert np.abs(unseen_gains(means, ["drift"], **told)) == pytest.approx([left, left], abs=1e-5)
+    assert unseen_gains(means[:1], ["drift"], **told) == pytest.approx([0.0])
 
 
 @pytest.mark.parametrize("at_s", [97.0, 112.0, 180.0, 222.0])

@@ -22,7 +22,7 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.catalogue._roles import ROLES, ShipRole
-from shaftprint.fingerprint._working_point_share import LOAD_WANDER, shares_over_torque, shifts_of_working_point
+from shaftprint.fingerprint._working_point_share import GAIN, LOAD_WANDER, shares_over_torque, shifts_of_working_point
 from shaftprint.identify.fit._estimate import Estimate
 from shaftprint.identify.fit._identification import Identification
 from shaftprint.identify.likelihood._known import stated_by_vessel
@@ -132,10 +132,16 @@ def _physical_forms(
         yield PhysicalNumber(
             number=number,
             direct=({"gauge scale": value * scale} if scale else {})
-            | {source: -value * share for source, share in shares_over_torque(working_point).items()},
+            | {source: -value * share for source, share in shares_over_torque(working_point).items()}
+            | _of_gain(value, working_point),
             expected=expected,
             expected_std=expected_std,
         )
+
+
+def _of_gain(value: float, working_point: "WorkingPoint") -> dict[str, float]:
+    """Return the change of what goes with the torque for the gain that the gauge may have lost unseen."""
+    return {GAIN: value * working_point.unseen_gain} if working_point.unseen_gain else {}
 
 
 def _product(factor: float, *names: str) -> Callable[[Mapping[str, FloatArray]], FloatArray]:
@@ -176,7 +182,7 @@ def _torque_coefficient(
             f"{', astern' * vessel.working_point.is_astern}",
             role=ShipRole.TORQUE,
         ),
-        direct={source: value * share for source, share in shares.items() if share},
+        direct={source: value * share for source, share in shares.items() if share} | _of_gain(value, working_point),
         # the vessel file states that of zero advance
         expected=None if vessel.is_underway else vessel.torque_coefficient,
         expected_std=vessel.torque_coefficient_std,

@@ -7,12 +7,16 @@ after it, as a source of its own: to every parameter whose role is ``over_torque
 ``n_0`` have. Combinations and margins follow by their slopes: ``K_p / K_i`` does not move, ``v K_i / (k_q - g)`` does.
 In the conversion to kg m2 and N m/rpm the same share comes back with the other sign: ``I_dn`` does not know of it.
 
+Legs are tied by the torques that the gauge shows in each. Where its gain changed between them and nothing showed it,
+the parameters over the torque are off in one leg and not in the other, and the fit makes of that what it can: a source
+of its own, which moves what is in N m as well.
+
 A logged rack is divided by its own ``X_0``, a mean of quiet stretches with the steps of its channel in it. Gains are so
 much rack for a speed, ``v`` so much torque for a rack: ``K_p`` and ``K_i`` go with ``1 / X_0``, ``v`` with ``X_0``, and
 ``v K_p`` does not move.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -20,6 +24,7 @@ import numpy as np
 from shaftprint.arrays import FloatArray
 from shaftprint.distributions import NORMAL_95
 from shaftprint.identify.fit._identification import Identification
+from shaftprint.identify.fit._pseudo_inverse import PseudoInverse
 from shaftprint.identify.uncertainty._budget import Budget
 
 if TYPE_CHECKING:
@@ -28,6 +33,7 @@ if TYPE_CHECKING:
 LOAD_WANDER = "wander of the load"
 SPEED = "working-point speed"
 RACK = "working-point rack"
+GAIN = "working-point gain of the gauge"
 """Sources of the budget."""
 
 FUEL_RACK = "X"
@@ -42,21 +48,46 @@ def shares_over_torque(point: "WorkingPoint") -> dict[str, float]:
 
 
 def shifts_of_working_point(
-    identification: Identification, point: "WorkingPoint", rack_share: float = 0.0
+    identification: Identification,
+    point: "WorkingPoint",
+    rack_share: float = 0.0,
+    legs: "Sequence[WorkingPoint]" = (),
 ) -> dict[str, dict[str, float]]:
     """Return the change of each parameter for one standard deviation of each source, by source and parameter.
 
     ``identification``, ``point``: the fit, and where it was made. ``rack_share``: standard deviation of the working
-    point of a logged rack over its value; it enters the structures that have the rack among their channels.
+    point of a logged rack over its value; it enters the structures that have the rack among their channels. ``legs``:
+    the working points of all terms of a fit to legs, in their order.
     """
     roles = {name: role for part in identification.parts for name, role in part.structure.roles.items()}
     changes = _changes(identification, {name: 1.0 for name, role in roles.items() if role.over_torque})
     shifts = {source: _scaled(share, changes) for source, share in shares_over_torque(point).items()}
+    if len(legs) == len(identification.objective.terms) > 1:
+        shifts[GAIN] = _tied(identification, changes, np.array([one.unseen_gain for one in legs]))
     structure = identification.structure
     if rack_share and FUEL_RACK in (*structure.inputs, *structure.outputs):
         powers = {name: float(role.rack_power) for name, role in roles.items() if role.rack_power}
         shifts[RACK] = _scaled(rack_share, _changes(identification, powers))
     return shifts
+
+
+def _tied(identification: Identification, changes: Mapping[str, float], gains: FloatArray) -> dict[str, float]:
+    """Return the change of each parameter where the gauge shows the torque of each term so much too large.
+
+    ``changes``: of each parameter where all over the torque are larger, over how much they are. ``gains``: relative
+    error of the gain in each term, that of the parameters first, shape (terms,).
+    """
+    objective = identification.objective
+    rows, _ = objective.sensitivity(identification.values[list(objective.free)], expected=False)
+    names = [parameter.name for parameter in objective.free_parameters]
+    along = np.array([changes.get(name, 0.0) for name in names])
+    pull, first = np.zeros(along.size), 0
+    for term, apart in zip(objective.terms, gains - gains[0], strict=True):
+        part = rows[:, first : first + term.row_count]
+        first += term.row_count
+        pull += apart * part @ (part.T @ along)
+    moved = PseudoInverse.of(rows).inverse @ pull
+    return dict(zip(names, moved.tolist(), strict=True))
 
 
 def _scaled(share: float, changes: Mapping[str, float]) -> dict[str, float]:
@@ -91,7 +122,7 @@ def _changes(identification: Identification, powers: Mapping[str, float]) -> dic
 def std_of_working_point(stated: Budget, name: str) -> float:
     """Return the standard deviation that the working point gives to a number of the budget."""
     variances = stated.row(name).variances
-    return float(np.sqrt(sum(variances.get(source, 0.0) for source in (LOAD_WANDER, SPEED, RACK))))
+    return float(np.sqrt(sum(variances.get(source, 0.0) for source in (LOAD_WANDER, SPEED, RACK, GAIN))))
 
 
 def widened(

@@ -1,6 +1,7 @@
 """What says that a channel changed within the tests, or does not show what the shafts do."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from shaftprint.reasons import Reason
@@ -13,6 +14,8 @@ if TYPE_CHECKING:
     from shaftprint.campaign._campaign import Campaign
     from shaftprint.signals._channel_signals import ChannelSignal
     from shaftprint.signals._readings import Readings
+    from shaftprint.signals._working_points import LegState
+    from shaftprint.signals.kinds._kind import SteadyState
     from shaftprint.vessel._vessel import Vessel
 
 
@@ -34,14 +37,16 @@ def changes_of_set_point(vessel: "Vessel", campaign: "Campaign", readings: "Read
     )
 
 
-def changes_of_gauge(vessel: "Vessel", campaign: "Campaign", readings: "Readings") -> tuple[Reason, ...]:
-    """Return what says that the torque gauge changed within the tests.
+def changes_of_gauge(
+    vessel: "Vessel", campaign: "Campaign", readings: "Readings"
+) -> tuple[tuple[Reason, ...], dict[str, float]]:
+    """Return what says that the torque gauge changed within the tests, and what each leg may hold unseen, by name.
 
     ``vessel``, ``campaign``, ``readings``: of the recording.
     """
     clock = readings.clock
     if clock.mode == "thesis":
-        return ()
+        return (), {}
     return expect_steady_gauge(
         campaign.of_input(),
         set_point=readings.set_point,
@@ -52,6 +57,19 @@ def changes_of_gauge(vessel: "Vessel", campaign: "Campaign", readings: "Readings
         channel=vessel.sensors.shaft_torque.channel,
         coverage=readings.coverage,
     )
+
+
+def with_unseen_gains(
+    steady: "SteadyState", states: "tuple[LegState, ...]", unseen: Mapping[str, float]
+) -> "tuple[SteadyState, tuple[LegState, ...]]":
+    """Return the steady states of the recording and of its legs with the gain of the gauge that each may be off."""
+    known = [
+        replace(state, working_point=replace(state.working_point, unseen_gain=unseen.get(state.name, 0.0)))
+        for state in states
+    ]
+    pairs = zip(states, known, strict=True)
+    main = (one.working_point for state, one in pairs if state.working_point == steady.working_point)
+    return replace(steady, working_point=next(main, steady.working_point)), tuple(known)
 
 
 def orders_against_speed(

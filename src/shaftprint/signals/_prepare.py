@@ -10,7 +10,7 @@ from shaftprint.campaign._campaign import Campaign
 from shaftprint.errors import SignalError
 from shaftprint.memory import give_back_memory
 from shaftprint.reasons import Reason
-from shaftprint.signals._changes import changes_of_gauge, changes_of_set_point, orders_against_speed
+from shaftprint.signals._changes import changes_of_gauge, changes_of_set_point, orders_against_speed, with_unseen_gains
 from shaftprint.signals._channel_readings import ChannelReadings, logger_channels, read_channels
 from shaftprint.signals._channel_signals import ChannelSignal, SpeedSignal
 from shaftprint.signals._channels import find_channel
@@ -134,7 +134,9 @@ def _prepared(recording: "Recording", vessel: "Vessel", campaign: Campaign, read
     else:
         states = leg_states(legs)
         steady, strange = _steady_state(vessel, campaign, readings)
-    reasons += changes_of_gauge(vessel, campaign, readings)
+    changed, unseen = changes_of_gauge(vessel, campaign, readings)
+    reasons += changed
+    steady, states = with_unseen_gains(steady, states, unseen)
     signals, absent = _signals_by_name(readings, steady)
     reasons += orders_against_speed(vessel, signals, readings)
     delays, missed = find_step_delays(

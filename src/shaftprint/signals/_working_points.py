@@ -21,6 +21,9 @@ class WorkingPoint:
     """Standard deviation of the mean load ``M_s0 / n_0^2`` over its value [-]: the load of a propeller wanders."""
     zero_share: float = 1.0
     """Share of a zero of the gauge that is in ``M_s0`` [-]: more than 1 where the speed swung."""
+    unseen_gain: float = 0.0
+    """By how much the gain of the gauge may be off that in the other legs and no check would see it, for one standard
+    deviation [-]; its sign says which legs are off together."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

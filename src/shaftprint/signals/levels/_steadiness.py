@@ -13,6 +13,7 @@ does not quite go with the square: what goes with ``1 / n^2`` is therefore no ch
 allowance, and compares two speeds by itself.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal, TypeAlias
 
@@ -22,6 +23,7 @@ from shaftprint.arrays import BoolArray, FloatArray, IntArray
 from shaftprint.reasons import Reason
 from shaftprint.signals._gaps import EVERYTHING, Coverage
 from shaftprint.signals.levels._fast_gain import FastGains, fast_gains
+from shaftprint.signals.levels._unseen_gain import unseen_gains
 from shaftprint.signals.levels._wander import window_covariance
 
 if TYPE_CHECKING:
@@ -118,8 +120,10 @@ def expect_steady_gauge(
     start_s: float,
     channel: str,
     coverage: Coverage = EVERYTHING,
-) -> tuple[Reason, ...]:
-    """Return a reason where the gain of the torque gauge, its zero or the load changes within the tests.
+) -> tuple[tuple[Reason, ...], dict[str, float]]:
+    """Return a reason where the gain of the gauge, its zero or the load changes, and what of a gain may be unseen.
+
+    The latter is by how much the gain of each leg may be off that of all, for one standard deviation, by name of leg.
 
     ``campaign``: what was asked of the ship, in sines, legs or anything else; its first test begins what is looked at.
     ``set_point``, ``speed_rev_s``, ``torque_nm``: signals on the grid, shape (samples,); the set point in any unit.
@@ -128,8 +132,8 @@ def expect_steady_gauge(
     """
     tests = campaign.excitations
     if not tests:
-        return ()
-    change = change_within(
+        return (), {}
+    change, unseen = change_within(
         set_point,
         speed_rev_s,
         torque_nm,
@@ -140,8 +144,10 @@ def expect_steady_gauge(
         rate_hz=rate_hz,
         start_s=start_s,
         coverage=coverage,
+        spans_s=[(leg.settled_s, leg.stop_s) for leg in campaign.legs],
     )
-    return () if change is None else (_reason(change, channel),)
+    names = (leg.name for leg in campaign.legs)
+    return () if change is None else (_reason(change, channel),), dict(zip(names, unseen, strict=False))
 
 
 def change_within(
@@ -153,16 +159,19 @@ def change_within(
     rate_hz: float,
     start_s: float = 0.0,
     coverage: Coverage = EVERYTHING,
-) -> Change | None:
-    """Return the change that explains the torque best; None where there is none.
+    spans_s: Sequence[tuple[float, float]] = (),
+) -> tuple[Change | None, list[float]]:
+    """Return the change that explains the torque best, None where there is none, and what may be unseen.
 
     ``set_point``, ``speed_rev_s``, ``torque_nm``: signals on the grid, shape (samples,). ``within_s``: begin and end of
-    what is looked at [s]. ``rate_hz``, ``start_s``: the grid. ``coverage``: what the recording covers.
+    what is looked at [s]. ``rate_hz``, ``start_s``: the grid. ``coverage``: what the recording covers. ``spans_s``:
+    begin and end of each leg [s], whose gain may differ from that of the others without being seen
+    (``_unseen_gain.py``).
     """
     begin_s, end_s = within_s
     count = min(int((end_s - begin_s) / _PIECE_S), _MOST_PIECES) // _PIECES_A_LOAD * _PIECES_A_LOAD
     if count < _FEWEST * _PIECES_A_LOAD:
-        return None
+        return None, []
     border_s = np.linspace(begin_s, end_s, count + 1)
     grid = {"rate_hz": rate_hz, "start_s": start_s}
     fast = fast_gains(set_point, speed_rev_s, torque_nm, **grid, border_s=border_s, whole=_whole(border_s, coverage))
@@ -177,14 +186,21 @@ def change_within(
         **grid,
     )
     if loads.load.size < _FEWEST:
-        return None
+        return None, []
     courses = _courses(border_s)
     along, power = fast.of_courses(courses.means(fast.start_s, fast.stop_s, within_s))
     by_fast = along / _scatter(fast) ** 2, power / _scatter(fast) ** 2
     nothing = np.zeros(courses.time_s.size), np.zeros(courses.time_s.size)
     by_load = _by_load(loads, courses.means(loads.start_s, loads.stop_s, within_s))
-    of_gain = _best(courses, by_load, by_fast, within_s)
-    of_load = _best(courses, by_load, nothing, within_s)
+    gains, loads_alone = _tried(by_load, by_fast), _tried(by_load, nothing)
+    change = _change(_best(courses, by_load, gains, within_s), _best(courses, by_load, loads_alone, within_s))
+    begins, ends = (np.array([span[side] for span in spans_s]) for side in (0, 1))
+    means = courses.means(begins, ends, within_s) if spans_s else np.empty((0, courses.time_s.size))
+    return change, unseen_gains(means, courses.kinds, size=gains.size, power=gains.power, twice=gains.twice).tolist()
+
+
+def _change(of_gain: Change, of_load: Change) -> Change | None:
+    """Return what has changed, gain or load; None where neither has."""
     if of_gain.likelihood >= of_load.likelihood:
         # a torque that comes late, now more and now less, loses fast motion and keeps its means
         is_change = (
@@ -301,17 +317,37 @@ def _by_load(loads: Loads, courses: FloatArray) -> _ByLoad:
     )
 
 
-def _best(
-    courses: _Courses, by_load: _ByLoad, by_fast: tuple[FloatArray, FloatArray], within_s: tuple[float, float]
-) -> Change:
-    """Return the course and size that explain mean loads and fast gains best."""
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class _Tried:
+    """Each course with the size and the wander that explain mean loads and fast gains best."""
+
+    size: FloatArray
+    """Its size [-], shape (courses,)."""
+    power: FloatArray
+    """One over its variance, shape (courses,)."""
+    twice: FloatArray
+    """Twice the gain in log-likelihood over no change, shape (courses,)."""
+
+
+def _tried(by_load: _ByLoad, by_fast: tuple[FloatArray, FloatArray]) -> _Tried:
+    """Return how well each course explains mean loads and fast gains."""
     along, power = by_fast
-    size = np.zeros_like(by_load.along)
+    size, least = np.zeros_like(by_load.along), np.finfo(np.float64).tiny
     for _ in range(_ROUNDS):
         weight = by_load.count / by_load.left(size)
-        size = (along + weight * by_load.along) / np.maximum(power + weight * by_load.power, np.finfo(np.float64).tiny)
+        size = (along + weight * by_load.along) / np.maximum(power + weight * by_load.power, least)
     by_time = by_load.likelihood(size) + size * along - 0.5 * size**2 * power
-    best = 2.0 * (by_time.max(axis=0) - by_load.likelihood(0.0).max())
+    best = np.argmax(by_time, axis=0), np.arange(by_time.shape[1])
+    return _Tried(
+        size=size[best],
+        power=(power + by_load.count / by_load.left(size) * by_load.power)[best],
+        twice=2.0 * (by_time[best] - by_load.likelihood(0.0).max()),
+    )
+
+
+def _best(courses: _Courses, by_load: _ByLoad, tried: _Tried, within_s: tuple[float, float]) -> Change:
+    """Return the course and size that explain mean loads and fast gains best."""
+    best = tried.twice
     place = int(np.argmax(best))
     kind, of_steps = courses.kinds[place], courses.time_s[np.array(courses.kinds) == "step"]
     # steps are tried at halves of a piece
@@ -322,10 +358,10 @@ def _best(
         kind=kind,
         of_gain=False,
         likelihood=float(best[place]),
-        size=float(size[int(np.argmax(by_time[:, place])), place]) * end,
+        size=float(tried.size[place]) * end,
         time_s=float(courses.time_s[place]),
         between_s=(float(alike.min()) - half_s, float(alike.max()) + half_s),
-        against=2.0 * float(by_load.likelihood(0.0).max() - by_load.likelihood(size)[:, place].max()),
+        against=2.0 * float(by_load.likelihood(0.0).max() - by_load.likelihood(tried.size)[:, place].max()),
     )
 
 
