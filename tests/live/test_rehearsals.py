@@ -1,6 +1,9 @@
 """A live test on a simulated ship: what is played, what is refused, what is aborted and why."""
 
 import math
+import socket
+import threading
+import time
 from dataclasses import replace
 
 import numpy as np
@@ -13,6 +16,7 @@ from shaftprint.live._envelope import SPEED
 from shaftprint.live._rehearse import simulated_ship_of
 from shaftprint.live._watch import AbortRule
 from shaftprint.live.counterparts._faults import LinkFaults, Spell
+from shaftprint.live.counterparts._mqtt_device import expect_server, free_port
 
 # The campaign is played from 13.3 s on.
 IN_A_LEG = Spell(start_s=20.0)
@@ -179,3 +183,17 @@ def test_a_device_hears_no_heartbeat_over_a_silent_link():
     ship = simulated_ship_of(VESSEL, CAMPAIGN, seed=1, faults=LinkFaults(silent=Spell(start_s=60.0)), tug=TUG)
     ship.hear(1)
     assert ship.device.heartbeat == 1
+
+
+def test_a_server_that_begins_a_little_later_is_waited_for():
+    port = free_port()
+
+    def begins():
+        time.sleep(0.3)
+        with socket.create_server(("127.0.0.1", port)) as server:
+            server.accept()[0].close()
+
+    thread = threading.Thread(target=begins)
+    thread.start()
+    expect_server(port, within_s=20.0)
+    thread.join()

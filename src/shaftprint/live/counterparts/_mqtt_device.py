@@ -7,6 +7,7 @@ import shutil
 import socket
 import subprocess
 import tempfile
+import time
 from collections.abc import Iterator
 from pathlib import Path
 from types import TracebackType
@@ -117,4 +118,6 @@ def expect_server(port: int, *, within_s: float) -> None:
     for _ in range(round(within_s / 0.05)):
         with contextlib.suppress(OSError), socket.create_connection(("127.0.0.1", port), 0.05):
             return
+        # a port on which nobody listens yet refuses at once
+        time.sleep(0.05)
     raise LiveError(f"expected a server on port {port} of this computer within {within_s:g} s, found none.")
