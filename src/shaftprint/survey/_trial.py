@@ -30,7 +30,13 @@ class Trial(Shown):
     """When, where and in what water it was tested, as far as somebody says so."""
 
     def began(self, stated: datetime | None, by_the_recording: datetime | None) -> datetime | None:
-        """Return when a test began, in the zone of its conditions where it is known without an offset."""
+        """Return when a test began, in the zone of its conditions where it is known without an offset.
+
+        Raises
+        ------
+        SettingsError
+            If clocks of its zone show that time twice or never.
+        """
         conditions = self.conditions
         if stated is not None:
             conditions = conditions.model_copy(update={"tested_at": stated})
