@@ -6,7 +6,8 @@ only the levels count: over whole periods of a sine the mean speed is that of th
 integrates its error. The value of the line at the working voltage is the speed of the working point. A lever bends by
 some tenths of a per cent a volt: through levels that do not lie evenly about the working voltage a straight line has
 another slope than the lever has there. The bend is fitted where there are three levels, with what is known of it
-beforehand, and is in the deviation of the slope where there are two.
+beforehand, and is in the deviation of the slope where there are two. What disturbs the speed goes with the load, hence
+with the square of the speed: the levels at the ends, which say how the line bends, are not alike.
 """
 
 from itertools import pairwise
@@ -154,7 +155,9 @@ def _bent_line(
     # a slope s (1 + b (n / n_0 - 1)) with n - n_0 = s U
     bent = 0.5 * slope**2 / middle * about_v**2
     if levels >= _LEVELS_OF_BEND and speed.size >= _FEWEST_WINDOWS:
-        free = fit_through_wander(speed, np.column_stack([line, bent]), begins, ends)
+        disturbed = ((middle + slope * about_v) / middle) ** 2
+        columns = np.column_stack([line, bent]) / disturbed[:, None]
+        free = fit_through_wander(speed / disturbed, columns, begins, ends)
         share = free.covariance[:, 2] / (free.covariance[2, 2] + bend_std**2)
         return free.value - share * free.value[2], free.covariance - np.outer(share, free.covariance[2])
     straight = fit_through_wander(speed, line, begins, ends)
