@@ -94,7 +94,7 @@ def test_a_load_controller_behind_the_lever_shows_where_it_stands_still(held_sha
     assert bool(found.refused) == is_refused
 
 
-def held_above(most, *, hunts=0.0, calm=1.0, seed=8):
+def held_above(most, *, hunts=0.0, calm=1.0, seed=8, logged=False):
     """Return forty stretches of a line whose torque goes up to a limit, and whose governor hunts at high torques."""
     rng = np.random.default_rng(seed)
     stretch = np.repeat(np.arange(40.0), 12)
@@ -103,22 +103,30 @@ def held_above(most, *, hunts=0.0, calm=1.0, seed=8):
     swing = np.where(asked > 1300.0, hunts, 1.0) * rng.standard_normal(480)
     speed = np.minimum(asked + swing, 1183.8 * np.sqrt(most / load))
     # a lever that bends by 40 rpm, a pick-up that jitters, and a load that is reckoned with what it shows
-    lever = asked + 40.0 * (asked / 1000.0) ** 2
+    if logged:
+        asked = speed
+    lever = -(asked + 40.0 * (asked / 1000.0) ** 2) / 240.0
     shown = speed + 0.2 * rng.standard_normal(480)
     return StillMeans(lever_v=lever, speed_rev_s=shown / 60.0, load=load * (speed / shown) ** 2, stretch=stretch)
 
 
 @pytest.mark.parametrize(("most", "held"), [(1.2, "117%|118%|119%|120%"), (1.5, "147%|148%|149%|150%")])
 def test_a_torque_that_is_held_gives_way_to_the_load_with_its_root(most, held):
-    found = torque_is_held(held_above(most), speed_rev_s=1183.8 / 60.0)
+    found = torque_is_held(held_above(most), LINE, speed_rev_s=1183.8 / 60.0)
     assert found.value == pytest.approx(-0.5, abs=0.1)
     assert "a load controller or a limit behind the lever" in found.refused
     assert any(f"from about {one} of" in found.refused for one in held.split("|"))
 
 
+def test_a_demand_that_is_logged_behind_the_load_controller_is_followed():
+    assert torque_is_held(held_above(1.2, logged=True), LINE, speed_rev_s=19.73).value == pytest.approx(0.0, abs=0.1)
+
+
 @pytest.mark.parametrize(("hunts", "calm"), [(1.0, 1.0), (12.0, 1.0), (1.0, 0.0)])
 def test_a_governor_that_hunts_where_the_torque_is_high_and_calm_water_are_no_load_controller(hunts, calm):
-    found = [torque_is_held(held_above(9.0, hunts=hunts, calm=calm, seed=k), speed_rev_s=19.73) for k in range(20)]
+    found = [
+        torque_is_held(held_above(9.0, hunts=hunts, calm=calm, seed=k), LINE, speed_rev_s=19.73) for k in range(20)
+    ]
     assert not any(one.refused for one in found)
 
 

@@ -205,7 +205,7 @@ def _judged(
     )
     usable = [one for one in gathered.segments if not one.reason]
     still = gathered.still
-    held = torque_is_held(still, speed_rev_s=model.engine_speed_rev_s)
+    held = torque_is_held(still, line, speed_rev_s=model.engine_speed_rev_s)
     found = [off_the_line(still, line), held, lever_follows_load(still), way_on(usable)]
     each: dict[int, Score] = {}
     loud: set[int] = set()

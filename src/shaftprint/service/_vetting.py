@@ -160,15 +160,15 @@ def off_the_line(still: StillMeans, line: LeverLine) -> Found:
     return Found(what=what, value=100.0 * share, unit="%", refused=refused)
 
 
-def torque_is_held(still: StillMeans, *, speed_rev_s: float) -> Found:
+def torque_is_held(still: StillMeans, line: LeverLine, *, speed_rev_s: float) -> Found:
     """Return with which power of the load the speed of a still lever goes where the torque is high, beyond elsewhere.
 
     A governor holds it as well as at low torques, however much it hunts and whatever bend the lever has: each stretch
     is compared with itself. From which torque on it is held, if it is, the log tells: the one with most evidence
     counts.
 
-    ``still``: means of lever, speed and load where the lever stands still. ``speed_rev_s``: engine speed of the working
-    point [rev/s].
+    ``still``: means of lever, speed and load where the lever stands still. ``line``: what it asks for, which the little
+    that it moves there is taken off by. ``speed_rev_s``: engine speed of the working point [rev/s].
     """
     what = "power of the load with which the speed goes at high torques, of a still lever"
     settled = np.flatnonzero(np.diff(still.stretch, prepend=-1.0) == 0.0)
@@ -181,7 +181,7 @@ def torque_is_held(still: StillMeans, *, speed_rev_s: float) -> Found:
 
     x, y = (
         values - (of_stretches(values) / counts)[place]
-        for values in np.log([still.load, still.speed_rev_s])[:, settled]
+        for values in np.log([still.load, still.speed_rev_s / line.speed_rev_s(still.lever_v)])[:, settled]
     )
     torques = of_stretches(still.load[settled] * (still.speed_rev_s[settled] / speed_rev_s) ** 2) / counts
     order = np.argsort(-torques)
