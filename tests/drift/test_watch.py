@@ -275,6 +275,21 @@ def test_fouling_goes_on_after_a_docking(base):
     assert len(finding.drifts) == 1
 
 
+@pytest.mark.parametrize(("before_m", "since_m", "changed"), [(None, None, True), (3.0, 3.0, True), (3.0, 3.3, False)])
+def test_torque_that_goes_with_the_draught_is_no_change_of_the_propeller(base, before_m, since_m, changed):
+    """K_Q is 5 % higher from the fifth test on; a draught of 10 % more takes 6.6 % by the Admiralty coefficient."""
+    tests = [
+        _at_draught(made(place, base, K_Q=1.05 if place >= 4 else 1.0), since_m if place >= 4 else before_m)
+        for place in range(8)
+    ]
+    _, finding = looked_at(tests)
+    assert [one.best.cause.name for one in finding.drifts] == ["propeller"] * changed
+
+
+def _at_draught(test, draught_m):
+    return test.model_copy(update={"conditions": test.conditions.model_copy(update={"draught_m": draught_m})})
+
+
 def test_two_tests_say_what_a_comparison_says(base):
     """The size is that of the pair; the probability is of a ship that is looked at for years."""
     tests = [made(0, base), made(1, base, omega_n=0.97)]

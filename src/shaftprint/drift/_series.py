@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
@@ -20,6 +20,10 @@ from shaftprint.drift._straight import straightened
 if TYPE_CHECKING:
     from shaftprint.fingerprint._line_fingerprint import LineFingerprint
     from shaftprint.models._role import Role
+
+ADMIRALTY: Final = 2.0 / 3.0
+"""Power of the displacement with which the power of a ship goes in the Admiralty coefficient: the torque at one shaft
+speed may go with the draught by as much, up or down, one standard deviation."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -70,7 +74,8 @@ def series_of(history: History, *, made: int, load_repeatability: float, moved: 
     singles += singles[-1:] * (len(fingerprints) - made)
     start = history.tests[0].at
     time_a = np.array([(test.at - start).total_seconds() / SECONDS_PER_YEAR for test in history.tests])
-    load = np.diag([(load_repeatability * (role == ShipRole.TORQUE)) ** 2 for role in roles.values()])
+    torque = np.array([float(role == ShipRole.TORQUE) for role in roles.values()])
+    known = load_repeatability * torque, np.kron(_with_draught(fingerprints), torque)
     causes, directions = directions_of(roles, singles[0].loadings.get(GAUGE_SCALE), units)
     return Series(
         names=names,
@@ -78,7 +83,7 @@ def series_of(history: History, *, made: int, load_repeatability: float, moved: 
         left_out=judged.left_out,
         time_a=time_a,
         values=np.array([one.values for one in singles]),
-        covariance=_covariance(history, singles, load, judged.whole, _padded(judged.unknown, len(singles))),
+        covariance=_covariance(history, singles, judged.whole, _padded(judged.unknown, len(singles)), known),
         baseline=baseline,
         causes=causes,
         directions=directions,
@@ -102,9 +107,35 @@ def _moved(values: FloatArray, baseline: FloatArray, moved: FloatArray | None) -
     return by_all
 
 
+def _with_draught(tests: "Sequence[LineFingerprint]") -> FloatArray:
+    """Return by how much the torque of a propeller may go with the draught of each test, a deviation, shape (tests,).
+
+    One where nobody stated it counts as one of the mean draught.
+    """
+    stated = [test.tested.of_ship_and_water().get("draught_m") for test in tests]
+    depths = np.array([np.nan if one is None or one <= 0.0 else one for one in stated])
+    known = np.isfinite(depths)
+    logarithms = np.log(np.where(known, depths, 1.0))
+    return (
+        np.where(known, ADMIRALTY * (logarithms - logarithms[known].mean()), 0.0)
+        if known.any()
+        else np.zeros(len(tests))
+    )
+
+
 def _covariance(
-    history: History, singles: list[SingleTest], load: FloatArray, whole: BoolArray, unknown: FloatArray
+    history: History,
+    singles: list[SingleTest],
+    whole: BoolArray,
+    unknown: FloatArray,
+    known: tuple[FloatArray, FloatArray],
 ) -> FloatArray:
+    """Return the covariance of all numbers of all tests.
+
+    ``unknown``: variances of what was not told, shape (tests * numbers,). ``known``: deviations of the load, from day
+    to day, shape (numbers,), and with the draught, which is one error of all tests, shape (tests * numbers,).
+    """
+    load, along_draught = np.diag(known[0] ** 2), known[1]
     size, count = len(load), len(singles)
     covariance = np.zeros((count * size, count * size))
     tests = [test.fingerprint for test in history.tests]
@@ -118,6 +149,7 @@ def _covariance(
     for stated in stated_errors(tests, singles, shared, whole):
         along = stated.reshape(-1)
         covariance += np.outer(along, along)
+    covariance += np.outer(along_draught, along_draught)
     covariance[np.diag_indices(count * size)] += unknown
     return covariance
 
