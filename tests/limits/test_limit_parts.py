@@ -1,5 +1,6 @@
 """Parts of the search for limits, each against what follows without them."""
 
+import math
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -13,7 +14,7 @@ from shaftprint.identify import Estimate
 from shaftprint.limits import Kind, LimitFit, limit_hints
 from shaftprint.limits._identify_limits import LEAST_OFFSET_STD, _offset_std
 from shaftprint.limits._level_profile import LevelInterval
-from shaftprint.limits._numbers import _doubt, doubt_of_governor
+from shaftprint.limits._numbers import _doubt, doubt_of_governor, hardly_seen
 from shaftprint.limits.prediction._noise_colour import ORDER, innovations
 from shaftprint.spectra import Harmonics
 from shaftprint.time_domain.nonlinear._drive import jumps_in, with_jumps
@@ -163,6 +164,28 @@ def test_a_limit_counts_by_its_level_and_a_smoke_limit_by_the_torque_limit_too()
     assert found.doubts[Kind.TORQUE] == "at its bound"
     assert "torque limit" in found.doubts[Kind.SMOKE]
     assert limit_fit((Kind.SMOKE, "a_0", ""), (Kind.SMOKE, "tau_tc", "hardly known")).trusted_kinds == (Kind.SMOKE,)
+
+
+@pytest.mark.parametrize(
+    ("gain", "interval", "named"),
+    [
+        (36.0, (-0.87, -0.38), False),
+        (61.0, (-math.inf, -0.5), False),
+        (61.0, (-0.7, -0.5), True),
+        (450.0, (-0.87, -0.38), True),
+    ],
+)
+def test_a_limit_that_gains_little_at_a_level_that_is_hardly_known_is_not_named(gain, interval, named):
+    level, lag = (
+        Estimate(limit=Kind.MOTORING.value, name=name, unit="-", value=value, std=0.1, interval_95=ends, doubt="")
+        for name, value, ends in (("m_min", -0.6, interval), ("T_aw", 0.02, (-math.inf, 0.2)))
+    )
+    sure = Estimate(
+        limit=Kind.TORQUE.value, name="share", unit="-", value=1.0, std=0.3, interval_95=(0.1, 2.0), doubt=""
+    )
+    weak = hardly_seen((sure, level, lag), {Kind.TORQUE: 2000.0, Kind.MOTORING: gain})
+    assert list(weak) == ([] if named else [Kind.MOTORING])
+    assert named or "m_min = -0.6" in weak[Kind.MOTORING]
 
 
 def test_none_found_says_how_far_the_test_went():

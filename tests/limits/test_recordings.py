@@ -58,7 +58,8 @@ def test_a_line_that_rests_near_its_torque_limit(limits_of):
     one, found = limits_of(24)
     share = number(found, "share")
     assert found.kinds == (Kind.TORQUE,)
-    assert share.trusted
+    # 43 % below the curve of the vessel file, where a lack of air looks alike
+    assert "below the full-load curve" in share.doubt
     assert share.lower <= one.levels["share"] <= share.upper
     assert share.upper - share.lower < 0.12 * one.levels["share"]
 

@@ -19,6 +19,7 @@ from shaftprint.limits._numbers import (
     Units,
     doubt_of_line,
     exclusion,
+    hardly_seen,
     messages_exclusion,
     numbers_of,
     quantum_exclusion,
@@ -123,11 +124,12 @@ def identify_limits(
         numbers, gains = (*numbers, quantum_number(quantum, units, best)), {**gains, Kind.QUANTUM: quantum.gain}
     else:
         not_seen = {**not_seen, Kind.QUANTUM: quantum_exclusion(quantum, units)}
+    weak = hardly_seen(numbers, gains)
     return LimitFit(
-        numbers=numbers,
-        gains=gains,
+        numbers=tuple(number for number in numbers if Kind(number.limit) not in weak),
+        gains={kind: gain for kind, gain in gains.items() if kind not in weak},
         governor=_governor(best, spread, identification),
-        not_seen=not_seen,
+        not_seen={**not_seen, **weak},
         identification=identification,
         reached=reached(search.reach, units),
     )

@@ -1,7 +1,7 @@
 """Numbers of limits in the units of the ship, and whether they may be trusted."""
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -26,6 +26,10 @@ HARDLY_KNOWN = 0.6
 # Deviation of the set point's line at the working point, over its speed, up to which the search tells a line that rests
 # at its torque limit from one that does not: of five recordings beyond it the level of three was wrong.
 LARGEST_LINE_STD = 0.003
+# A limit that gains less of twice the log-likelihood, and whose level is hardly known, may be noise that is not normal.
+# Of twelve recordings without a limit two had such a one (gains of 36 and 61, intervals wider than three quarters of
+# the level); of twenty-one with one none gained less than 445.
+WEAK_GAIN = 100.0
 # Share of its range by which a parameter of the governor may come near an end of it.
 AT_END = 1e-3
 # Torque limits below this share of the full-load curve are rather a lack of air than of fuel.
@@ -143,6 +147,22 @@ def numbers_of(
                 say(f"{kind.value}, {name}")
                 rows += [_doubted(one, of_governor or passed) for one in _printed(fit, spread, units, kind, name)]
     return tuple(rows)
+
+
+def hardly_seen(numbers: Sequence[Estimate], gains: Mapping[Kind, float]) -> Mapping[Kind, str]:
+    """Return the limits that gain too little for a level that is hardly known, in words: they are not named."""
+    words: dict[Kind, str] = {}
+    for number in reversed(numbers):
+        kind = Kind(number.limit)
+        lower, upper = number.interval_95 or (-math.inf, math.inf)
+        # the first number of a limit is its level
+        words.pop(kind, None)
+        if gains[kind] < WEAK_GAIN and not upper - lower <= HARDLY_KNOWN * abs(number.value):
+            words[kind] = (
+                f"{kind.value}: perhaps, but noise may look alike ({number.name} = {number.value:.3g}, hardly known); "
+                "a test with larger moves tells"
+            )
+    return words
 
 
 def _doubted(number: Estimate, doubt: str) -> Estimate:
