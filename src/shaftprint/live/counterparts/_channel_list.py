@@ -108,7 +108,15 @@ def _id_of(channel: DataChannel) -> str:
 def read_channel_list(path: str | Path) -> ChannelList:
     """Read a list of data channels.
 
-    Raises SettingsError if the file cannot be read, is no such list, or has no channel that can be used.
+    Parameters
+    ----------
+    path
+        File of ISO 19848, as XML or JSON.
+
+    Raises
+    ------
+    SettingsError
+        If the file cannot be read, is no such list, or has no channel that can be used.
     """
     path = Path(path)
     try:
