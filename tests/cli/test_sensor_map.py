@@ -178,3 +178,19 @@ def test_names_go_before_units(run, tmp_path):
             writer.append(name, values)
     found = _map(run("inspect", path))["sensors"]
     assert (found["set_point"]["channel"], found["rack"]["channel"]) == ("LeverPosition", "DemandTorque")
+
+
+def test_of_several_channels_in_percent_the_rack_is_one_that_is_called_so(run, tmp_path):
+    def proposed(*names):
+        path = tmp_path / f"{len(list(tmp_path.iterdir()))}.nc"
+        with RecordingWriter(path) as writer:
+            for name in names:
+                writer.declare(name, unit="%", rate_hz=10.0, dtype="float64")
+                writer.append(name, 40.0 + np.sin(np.arange(400.0)))
+        return run("inspect", path)
+
+    sensors = _map(proposed("AF Correction", "Humidity", "Engine load"))["sensors"]
+    assert sensors["rack"]["channel"] == "Engine load"
+    unnamed = proposed("AF Correction", "Humidity")
+    assert "sensors" not in _map(unnamed)
+    assert "# [sensors.rack]: of what is in %, 'AF Correction', 'Humidity', no name says it" in unnamed.output

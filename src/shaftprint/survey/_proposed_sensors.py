@@ -15,6 +15,7 @@ _SET_POINT = re.compile(r"set[ _-]*p|setpoint|demand|lever|throttle|soll|u_set|c
 _TORQUE = re.compile(r"torque|m_s\b|\bms\b|koppel|drehmoment|strain", re.IGNORECASE)
 _PULSES = re.compile(r"ptm|pulse|tacho|pick|rpm|speed|drehzahl|\bn_?e", re.IGNORECASE)
 _NO_RACK = re.compile(r"trim|tilt|slip", re.IGNORECASE)
+_RACK = re.compile(r"rack|load|torque|fuel|index|f(ü|ue)ll|governor|x_", re.IGNORECASE)
 _ENCODER = re.compile(r"enc|crank|shaft|counter|turn", re.IGNORECASE)
 _ENGINE = re.compile(r"eng|motor|_e\b|crank|flywheel", re.IGNORECASE)
 
@@ -122,6 +123,7 @@ def proposed_sensors(seen: Sequence[Seen]) -> list[str]:
     empty = [item.channel.name for item in seen if item.is_empty]
     seen = [item for item in seen if not item.is_empty]
     uses = {item.channel.name: _use(item) for item in seen} | _uses_by_number(seen)
+    in_percent = _of_no_name(seen, uses)
     lines = []
     single: set[str] = set()
     speeds = 0
@@ -142,6 +144,8 @@ def proposed_sensors(seen: Sequence[Seen]) -> list[str]:
         if needed not in single:
             lines += [f"# [sensors.{needed}]: no channel looks like it", ""]
     lines += _without_sensor(seen, uses)
+    if in_percent:
+        lines += [f"# [sensors.rack]: of what is in %, {', '.join(map(repr, in_percent))}, no name says it", ""]
     if not speeds:
         lines += ["# [[sensors.speed]]: no channel holds pulses, a speed or an angle", ""]
     lines += [f"# {name!r}: it holds no numbers" for name in empty] + ([""] if empty else [])
@@ -171,6 +175,19 @@ def _uses_by_number(seen: Sequence[Seen]) -> dict[str, Use | None]:
         elif number is not None and number == rack:
             uses[name] = "rack"
     return uses
+
+
+def _of_no_name(seen: Sequence[Seen], uses: dict[str, Use | None]) -> list[str]:
+    """Keep one channel for the rack where several are in %: the first that is called so; return them where none is."""
+    channels = [item.channel for item in seen if uses[item.channel.name] == "rack"]
+    racks = [channel.name for channel in channels]
+    if len(racks) < 2:
+        return []
+    # a number of J1939 says more than a name
+    named = (channel.name for channel in channels if _RACK.search(channel.name))
+    called = next((channel.name for channel in channels if _number(channel) is not None), next(named, None))
+    uses.update({name: None for name in racks if name != called})
+    return racks if called is None else []
 
 
 def _without_sensor(seen: Sequence[Seen], uses: Mapping[str, Use | None]) -> list[str]:
