@@ -150,14 +150,17 @@ def numbers_of(
 
 
 def hardly_seen(numbers: Sequence[Estimate], gains: Mapping[Kind, float]) -> Mapping[Kind, str]:
-    """Return the limits that gain too little for a level that is hardly known, in words: they are not named."""
+    """Return the limits that gain too little for a level that is hardly known, in words: they are not named.
+
+    Messages are not among them: of those few jumps tell, and noise that is not normal makes none.
+    """
     words: dict[Kind, str] = {}
     for number in reversed(numbers):
         kind = Kind(number.limit)
         lower, upper = number.interval_95 or (-math.inf, math.inf)
         # the first number of a limit is its level
         words.pop(kind, None)
-        if gains[kind] < WEAK_GAIN and not upper - lower <= HARDLY_KNOWN * abs(number.value):
+        if kind is not Kind.HELD and gains[kind] < WEAK_GAIN and not upper - lower <= HARDLY_KNOWN * abs(number.value):
             words[kind] = (
                 f"{kind.value}: perhaps, but noise may look alike ({number.name} = {number.value:.3g}, hardly known); "
                 "a test with larger moves tells"
