@@ -4,15 +4,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from tests.limits.conftest import made_record
 
-from shaftprint.arrays import frozen_bool, frozen_float
+from shaftprint.arrays import frozen_float
 from shaftprint.catalogue import limited_governor
-from shaftprint.identify.likelihood._prior import Prior
+from shaftprint.identify import Prior
 from shaftprint.limits._candidates import Kind
 from shaftprint.limits._governor_fit import fitted, values_without_limits
 from shaftprint.limits.prediction._prediction_error import PredictionError
-from shaftprint.limits.prediction._set_point import GovernorRecord
-from shaftprint.time_domain._decimator import Decimator
 
 pytestmark = pytest.mark.slow
 WHOLE = limited_governor("torque", "rate", "deadband", "ramp", "smoke")
@@ -24,23 +23,16 @@ NOISE = 1e-3
 @pytest.fixture
 def record():
     """A minute of a set point that jumps, and the torque of a limited governor with a little noise."""
-    decimator, rng = Decimator(every=8), np.random.default_rng(5)
-    time = np.arange(749 * 8 + 1 + 2 * decimator.half) / 100.0
-    drive = {name: np.zeros(time.size) for name in ("M_b", "c")}
-    drive["n"] = 0.02 * np.sin(1.7 * time) + 0.01 * np.sin(5.1 * time)
-    drive["n_set"] = np.where(np.sin(0.9 * time) > 0.0, 0.04, -0.04)
-    made = GovernorRecord(
-        name="made",
-        rate_hz=12.5,
-        start_s=0.0,
-        inputs={name: frozen_float(decimator.filtered(values)) for name, values in drive.items()},
-        outputs={"y": frozen_float(np.zeros(750))},
-        used=frozen_bool(np.ones(750, dtype=bool)),
-        drive={name: frozen_float(values) for name, values in drive.items()},
-        every=8,
-        corner_time_s=frozen_float(time),
-        corner_value=frozen_float(drive["n_set"]),
+    made = made_record(
+        750,
+        lambda time: {
+            "M_b": np.zeros(time.size),
+            "c": np.zeros(time.size),
+            "n": 0.02 * np.sin(1.7 * time) + 0.01 * np.sin(5.1 * time),
+            "n_set": np.where(np.sin(0.9 * time) > 0.0, 0.04, -0.04),
+        },
     )
+    rng = np.random.default_rng(5)
     torque = PredictionError.of(WHOLE, made, TRUE, ()).predicted(np.array([TRUE[name] for name in WHOLE.names]))
     return replace(made, outputs={"y": frozen_float(torque + NOISE * rng.standard_normal(750))})
 

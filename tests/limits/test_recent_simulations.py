@@ -4,12 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from tests.limits.conftest import made_record
 
-from shaftprint.arrays import frozen_bool, frozen_float
+from shaftprint.arrays import frozen_float
 from shaftprint.catalogue import limited_governor
 from shaftprint.limits.prediction._prediction_error import PredictionError
-from shaftprint.limits.prediction._set_point import GovernorRecord
-from shaftprint.time_domain._decimator import Decimator
 
 pytestmark = pytest.mark.slow
 FREE = ("K_p", "t_d", "m_max")
@@ -21,22 +20,15 @@ WHOLE = limited_governor("torque", "rate", "deadband", "ramp", "smoke")
 @pytest.fixture
 def record():
     """Twenty seconds of a set point that goes up and down, and of noise in the place of everything else."""
-    decimator, rng = Decimator(every=8), np.random.default_rng(5)
-    time = np.arange(249 * 8 + 1 + 2 * decimator.half) / 100.0
-    drive = {name: 0.01 * rng.standard_normal(time.size) for name in ("n", "M_b", "c")}
-    drive["n_set"] = np.where(np.sin(time) > 0.0, 0.1, 0.0)
-    return GovernorRecord(
-        name="made",
-        rate_hz=12.5,
-        start_s=0.0,
-        inputs={name: frozen_float(decimator.filtered(values)) for name, values in drive.items()},
-        outputs={"y": frozen_float(0.1 * rng.standard_normal(250))},
-        used=frozen_bool(np.ones(250, dtype=bool)),
-        drive={name: frozen_float(values) for name, values in drive.items()},
-        every=8,
-        corner_time_s=frozen_float(time),
-        corner_value=frozen_float(drive["n_set"]),
+    rng = np.random.default_rng(5)
+    made = made_record(
+        250,
+        lambda time: {
+            **{name: 0.01 * rng.standard_normal(time.size) for name in ("n", "M_b", "c")},
+            "n_set": np.where(np.sin(time) > 0.0, 0.1, 0.0),
+        },
     )
+    return replace(made, outputs={"y": frozen_float(0.1 * rng.standard_normal(250))})
 
 
 def term_of(record):

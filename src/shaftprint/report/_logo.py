@@ -4,6 +4,11 @@ import io
 from pathlib import Path
 
 from shaftprint.files import reason
+from shaftprint.late import late
+
+with late():
+    # comes with matplotlib; few reports have a logo
+    from PIL import Image
 
 _MOST_BYTES, _MOST_PIXELS = 2**20, 16_000_000
 _SIZE_PX = (600, 200)
@@ -16,9 +21,6 @@ def drawn_logo(path: Path) -> tuple[bytes | None, str]:
 
     ``path``: PNG or JPEG.
     """
-    # comes with matplotlib; few reports have a logo
-    from PIL import Image
-
     try:
         if path.is_symlink() or not path.is_file():
             return None, f"expected {path.name} beside the vessel file, found none there"

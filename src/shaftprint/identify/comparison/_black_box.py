@@ -14,8 +14,13 @@ from shaftprint.arrays import ComplexArray, FloatArray
 from shaftprint.distributions import NORMAL_95, chi_square_tail
 from shaftprint.identify.fit._identification import Identification
 from shaftprint.identify.likelihood._fitted_response import FittedResponse
+from shaftprint.late import late
 from shaftprint.notebook._shown import Shown
 from shaftprint.spectra._frequency_response import FrequencyResponse
+
+with late():
+    # most verdicts need none of it
+    from scipy.optimize import least_squares
 
 MOST_SECTIONS = 4
 GRID_POINTS = 121
@@ -207,9 +212,6 @@ class _Fit:
 
 
 def _fitted(sections: int, omega: FloatArray, data: FloatArray, inverses: FloatArray) -> _Fit:
-    # most verdicts need none of it
-    from scipy.optimize import least_squares
-
     centre = np.geomspace(omega.min(), omega.max(), sections + 2)[1:-1]
     # sections of ordinary damping, spread over the band
     begin = np.concatenate([np.log(centre), 2.0 * np.log(centre), [0.05]])

@@ -18,7 +18,7 @@ from shaftprint.plain_table import Column, Table, numbers, texts
 
 with late():
     from shaftprint.live.counterparts._channel_list import read_channel_list
-    from shaftprint.vessel import load_vessel
+    from shaftprint.vessel._vessel import load_vessel
 
 if TYPE_CHECKING:
     from shaftprint.live.counterparts._channel_list import DataChannel
