@@ -33,8 +33,8 @@ LARGEST_DAMPING = 1e12
 SMALLEST_DAMPING = 1e-12
 STRETCH_ABOVE_GAIN = 1.5
 UNSTRETCH_BELOW_GAIN = 1.0
-# Derivatives that were carried along and promise so much more than a step gained are found anew.
-RENEW_BELOW_GAIN = 0.25
+# Derivatives that promise so much more than a step gained, or were carried over so many steps, are found anew.
+RENEW_BELOW_GAIN, MOST_CARRIED = 0.25, 20
 # Where those that were found anew promise less than so many tolerances, the rest is done with them.
 LAST_TOLERANCES = 25.0
 LARGEST_STRETCH = 256.0
@@ -101,7 +101,7 @@ def descend(
     information = np.empty((*theta.shape, theta.shape[1]))
     # The old Jacobian lives until the new one is there: freed before, its memory would go back and be faulted in again.
     r, jacobian = residuals(theta, starts)
-    at, lowest, carried = _Position.at_start(theta, r, jacobian), np.inf, anew is not None
+    at, lowest, carried = _Position.at_start(theta, r, jacobian), np.inf, int(anew is not None)
     last = not checked
     for iteration in range(1, max_iterations + 1):
         step, settled = _bounded_step(at, lower, upper)
@@ -113,10 +113,11 @@ def descend(
         if leader_tolerance is not None and at.cost[leader] <= lowest:
             small[leader] = max(leader_tolerance, ROUNDING) * at.cost[leader]
         flat = trusted & (predicted <= small)
-        last |= not carried and bool(np.all(trusted & (predicted <= LAST_TOLERANCES * small)))
-        if anew is not None and carried and (at.doubted.any() or (flat.any() and not last)):
+        last |= carried == 0 and bool(np.all(trusted & (predicted <= LAST_TOLERANCES * small)))
+        over = at.doubted.any() or carried > MOST_CARRIED
+        if anew is not None and carried and (over or (flat.any() and not last)):
             at.renew(*anew(at.theta, at.starts))
-            carried = False
+            carried = 0
             continue
         if flat.any():
             lowest = min(lowest, at.cost[flat].min())
@@ -128,7 +129,7 @@ def descend(
                 break
         trial = np.minimum(np.maximum(at.theta + at.stretch[:, None] * step, lower), upper)
         r, jacobian = residuals(trial, at.starts)
-        carried |= at.advance(trial, r, jacobian, predicted, allowed)
+        carried += at.advance(trial, r, jacobian, predicted, allowed)
     theta[at.starts], cost[at.starts], refused[at.starts] = at.theta, at.cost, at.refused
     information[at.starts] = at.hessian
     return Descent(
