@@ -2,6 +2,7 @@
 
 import json
 from datetime import UTC, datetime
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -13,8 +14,10 @@ from shaftprint.design.files._plan_folder import CAMPAIGN
 from shaftprint.design.files._plan_json import PLAN, write_plan
 from shaftprint.design.files._set_point_files import CSV, GENERATOR, MAT
 from shaftprint.design.files._set_point_samples import set_point_samples
+from shaftprint.design.inputs._lever import Lever, lever_of_sensor
 from shaftprint.design.planned_test._rehearsal import Rehearsal
 from shaftprint.design.planned_test._remedies import Remedy
+from shaftprint.design.views._abort_card import abort_card
 from shaftprint.errors import DesignError
 
 OFFSET_V, SLOPE = -5.0, -251.0
@@ -169,3 +172,35 @@ def test_a_file_that_is_no_json_is_refused(tmp_path, content):
 def test_a_folder_without_a_plan_says_how_to_come_by_one(tmp_path):
     with pytest.raises(DesignError, match="shaftprint plan"):
         read_plan(tmp_path)
+
+
+@pytest.fixture(scope="module")
+def of_current(test):
+    """The same test with a lever of 4 to 20 mA for 2 to -8 V: one mA is -0.625 V, and 0 mA are 4.5 V."""
+    lever = Lever(unit="mA", v_per_unit=-0.625, v_at_zero=4.5)
+    line = SetPointLine(slope_rpm_per_v=SLOPE, offset_v=OFFSET_V, lever=lever)
+    return PlannedTest(**{name: getattr(test, name) for name in test.__slots__} | {"line": line})
+
+
+def test_the_files_speak_the_lever_s_own_unit_beside_volts(of_current, tmp_path):
+    write_plan_files(of_current, tmp_path, rate_hz=100.0)
+    assert (tmp_path / CSV).read_text(encoding="utf-8").splitlines()[0] == "time_s,V,rpm,mA"
+    table, content = np.loadtxt(tmp_path / CSV, delimiter=",", skiprows=1), loadmat(str(tmp_path / MAT))
+    # the first leg is at 1.15 of 1183.8 rpm: 177.57 rpm over 251 rpm/V below -5 V, and (4.5 + 5.707) / 0.625 mA
+    assert table[0, 1:] == pytest.approx([-5.7075, 1361.37, 16.332], abs=1e-3)
+    assert content["lever"][:, 0] == pytest.approx(table[:, 3], abs=1e-6)
+    assert content["lever_unit"].item() == "mA"
+    assert read_plan(tmp_path).line == of_current.line
+    assert abort_card(of_current).lever == of_current.line.lever
+
+
+def test_the_lever_is_that_of_the_vessel_file_and_none_where_it_is_in_volts():
+    current = SimpleNamespace(unit="mA", slope_v=0.5, v_at_zero=1.0)
+    assert lever_of_sensor(current) == Lever(unit="mA", v_per_unit=0.5, v_at_zero=1.0)
+    # behind a divider the logger sees other volts, and the ship the campaign's
+    assert lever_of_sensor(SimpleNamespace(unit="V", slope_v=2.0, v_at_zero=None)) is None
+
+
+def test_a_lever_without_a_scale_is_refused():
+    with pytest.raises(DesignError, match="expected a finite scale other than 0 V for one mA"):
+        Lever(unit="mA", v_per_unit=0.0)

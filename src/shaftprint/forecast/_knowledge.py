@@ -13,6 +13,7 @@ from shaftprint.design.inputs._known_ship import (
     ship_before_test,
     ship_of_fingerprint,
 )
+from shaftprint.design.inputs._lever import lever_of_sensor
 from shaftprint.design.inputs._limits import Limits, limits_from_vessel, usual_speeds
 from shaftprint.design.inputs._set_point_line import SetPointLine, line_of_fingerprint
 from shaftprint.design.inputs._stated_limits import StatedLimit, limits_with, set_point_rpm_of
@@ -233,7 +234,8 @@ def _line(stated: _Stated) -> SetPointLine:
             "sensors.set_point in the vessel file; or a first test that has measured them, with --after or --noise-from"
             f"{'' if limited else f'; and {_SET_POINT_LIMIT}'}."
         )
-    return SetPointLine(slope_rpm_per_v=slope, offset_v=offset_v)
+    lever = lever_of_sensor(stated.vessel.sensors.set_point)
+    return SetPointLine(slope_rpm_per_v=slope, offset_v=offset_v, lever=lever)
 
 
 def _line_of_sensor(vessel: Vessel) -> SetPointLine | None:

@@ -10,6 +10,8 @@ from shaftprint.distributions import NORMAL_95
 from shaftprint.plain_table import Symbol, Table, numbers, texts
 
 if TYPE_CHECKING:
+    from shaftprint.design.inputs._lever import Lever
+    from shaftprint.design.inputs._set_point_line import SetPointLine
     from shaftprint.design.planned_test._planned_test import PlannedTest
     from shaftprint.design.standing._standing import Standing
     from shaftprint.design.views._abort_card import AbortCard
@@ -45,14 +47,19 @@ def predicted_number_table(test: "PlannedTest") -> Table:
 
 def planned_leg_table(test: "PlannedTest") -> Table:
     """Return the legs: where, how long, how strong, and what keeps them from being stronger."""
+    lever = test.line.lever
+    # a lever in rpm is moved by what it asks for, which stands there in any case
+    own = () if lever is None or lever.unit == "rpm" else numbers(f"set point [{lever.unit}]")
     columns = (
         *texts("leg"),
-        *numbers("at [rpm]", "lines", "up to [Hz]", "periods", "of [s]", "set point [V]", "set point [rpm]"),
-        *numbers("speed [rpm]", "brake torque [N·m]"),
+        *numbers("at [rpm]", "lines", "up to [Hz]", "periods", "of [s]"),
+        *own,
+        *numbers("set point [V]", "set point [rpm]", "speed [rpm]", "brake torque [N·m]"),
         *texts("bound by"),
     )
     rows = []
     for number, (leg, peaks) in enumerate(zip(test.plan.legs, test.plan.peaks, strict=True), start=1):
+        volts = leg.peak_rpm / abs(test.line.slope_rpm_per_v)
         rows.append(
             (
                 f"M{number}",
@@ -61,7 +68,8 @@ def planned_leg_table(test: "PlannedTest") -> Table:
                 rounded(float(leg.frequency_hz[-1]), 3),
                 str(leg.periods),
                 plain(leg.period_s, 2),
-                f"± {rounded(leg.peak_rpm / abs(test.line.slope_rpm_per_v), 3)}",
+                *((f"± {rounded(volts / abs(lever.v_per_unit), 3)}",) if own and lever is not None else ()),
+                f"± {rounded(volts, 3)}",
                 f"± {plain(leg.peak_rpm, 0)}",
                 _range(peaks.speed_rpm, 0),
                 _range(peaks.brake_torque_nm, 0),
@@ -78,17 +86,46 @@ def abort_table(card: "AbortCard") -> Table:
     rows = (
         ("engine speed", f"{_range(card.speed_rpm, 0)} rpm", f"below {lowest} or above {highest} rpm"),
         ("brake torque", f"{_range(card.brake_torque_nm, 0)} N·m", "the engine smokes, stalls, or goes on hunting"),
-        ("set point", f"{_range(card.set_point_v, 2)} V", "the voltage is another"),
+        _set_point(card),
         ("speed asked for", f"{_range(card.set_point_rpm, 0)} rpm", "the speed does not come back between swings"),
         ("its fastest change", f"{plain(card.rate_rpm_per_s, 0)} rpm/s{_steps(card)}", ""),
         ("length", length_words(card.duration_s), "the water ahead will not last so long"),
     )
     how = (
-        f"To stop: hold the set point at {plain(card.level_v, 2)} V, which asks for {plain(card.level_rpm, 0)} rpm, "
+        f"To stop: hold the set point at {_level(card)}, which asks for {plain(card.level_rpm, 0)} rpm, "
         "take the generator off, then slow down as usual. What was recorded up to then can be used to its last whole "
         "period."
     )
     return Table(title="Card for the bridge", columns=texts("what", "is seen", "stop when"), rows=rows, note=how)
+
+
+def swing_words(line: "SetPointLine", rpm: float) -> str:
+    """Return how far the set point goes for a swing of the engine speed [rpm], in the lever's own unit and in volts."""
+    volts = rpm / abs(line.slope_rpm_per_v)
+    if line.lever is None or line.lever.unit == "rpm":
+        return f"{plain(volts, 2)} V"
+    return f"{plain(volts / abs(line.lever.v_per_unit), 2)} {line.lever.unit} ({plain(volts, 2)} V)"
+
+
+def _set_point(card: "AbortCard") -> tuple[str, str, str]:
+    volts, lever = f"{_range(card.set_point_v, 2)} V", card.lever
+    if lever is None:
+        return ("set point", volts, "the voltage is another")
+    low, high = sorted(float(end) for end in lever.reading(card.set_point_v))
+    shown = f"{_range((low, high), _decimals(lever))} {lever.unit}"
+    return ("set point", f"{shown} ({volts} of the campaign)", f"the lever shows another value in {lever.unit}")
+
+
+def _level(card: "AbortCard") -> str:
+    volts, lever = f"{plain(card.level_v, 2)} V", card.lever
+    if lever is None:
+        return volts
+    (reading,) = lever.reading([card.level_v])
+    return f"{plain(float(reading), _decimals(lever))} {lever.unit} ({volts} of the campaign)"
+
+
+def _decimals(lever: "Lever") -> int:
+    return {"mA": 2, "%": 1}.get(lever.unit, 0)
 
 
 def _steps(card: "AbortCard") -> str:

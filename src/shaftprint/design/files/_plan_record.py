@@ -7,6 +7,7 @@ from pydantic import AwareDatetime, Field
 
 from shaftprint.arrays import frozen_bool
 from shaftprint.design.inputs._assumed_ship import AssumedShip
+from shaftprint.design.inputs._lever import Lever
 from shaftprint.design.inputs._limits import Limits
 from shaftprint.design.inputs._set_point_line import SetPointLine
 from shaftprint.design.inputs._wish import Wish
@@ -162,6 +163,8 @@ class PlanRecord(Record):
     """Change of the engine speed for one volt [rpm/V]."""
     offset_v: Number
     """Set point at the first working point [V]."""
+    lever: Lever | None = None
+    """What the channel of the set point shows for volts, where it does not show them."""
     rehearsed: bool
     """Whether the plan was sailed on simulated ships; its numbers are predictions all the same."""
     duration_s: Number
@@ -206,7 +209,7 @@ class PlanRecord(Record):
             name=self.name,
             vessel=self.vessel,
             plan=self._plan(structure, sailed),
-            line=SetPointLine(slope_rpm_per_v=self.slope_rpm_per_v, offset_v=self.offset_v),
+            line=SetPointLine(slope_rpm_per_v=self.slope_rpm_per_v, offset_v=self.offset_v, lever=self.lever),
             created=self.created,
             noise_source=self.noise_source,
             version=self.shaftprint_version,
@@ -254,6 +257,7 @@ def record_of(test: PlannedTest) -> PlanRecord:
         noise_source=test.noise_source,
         slope_rpm_per_v=test.line.slope_rpm_per_v,
         offset_v=test.line.offset_v,
+        lever=test.line.lever,
         rehearsed=test.rehearsal is not None,
         duration_s=plan.duration_s,
         predicted={

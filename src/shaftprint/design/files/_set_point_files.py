@@ -21,19 +21,27 @@ def write_set_point(samples: SetPointSamples, folder: Path) -> None:
 
     ``set_point.csv`` has the columns ``time_s``, ``V`` and ``rpm``; ``set_point_generator.txt`` one voltage a line and
     nothing else, which is what generators import; ``set_point.mat`` the vectors ``time_s``, ``set_point_v``,
-    ``set_point_rpm`` and the scalar ``sample_rate_hz``.
+    ``set_point_rpm`` and the scalar ``sample_rate_hz``. Of a lever that is not moved in volts, table and MATLAB have
+    its reading too: a column of its unit, and ``lever`` with ``lever_unit``.
     """
-    columns = np.column_stack([samples.time_s, samples.volts, samples.speed_rpm])
+    lever = samples.lever
+    columns = [samples.time_s, samples.volts, samples.speed_rpm]
+    head, digits = "time_s,V,rpm", ["%.9g", "%.6f", "%.3f"]
+    # the rpm of a lever stand there already
+    if lever is not None and lever.unit != "rpm":
+        columns, head, digits = [*columns, lever.reading(samples.volts)], f"{head},{lever.unit}", [*digits, "%.6f"]
     with written_whole(folder / CSV, overwrite=True) as part:
-        np.savetxt(part, columns, fmt=("%.9g", "%.6f", "%.3f"), delimiter=",", header="time_s,V,rpm", comments="")
+        np.savetxt(part, np.column_stack(columns), fmt=digits, delimiter=",", header=head, comments="")
     with written_whole(folder / GENERATOR, overwrite=True) as part:
         np.savetxt(part, samples.volts, fmt="%.6f")
-    content = {
+    content: dict[str, object] = {
         "sample_rate_hz": samples.rate_hz,
         "time_s": samples.time_s,
         "set_point_v": samples.volts,
         "set_point_rpm": samples.speed_rpm,
     }
+    if lever is not None:
+        content |= {"lever": lever.reading(samples.volts), "lever_unit": lever.unit}
     with written_whole(folder / MAT, overwrite=True) as part:
         scipy.io.savemat(str(part), content, appendmat=False, oned_as="column", do_compression=True)
         with part.open("r+b") as stored:

@@ -9,6 +9,7 @@ import numpy as np
 from shaftprint.arrays import FloatArray
 from shaftprint.campaign._setpoint import setpoint
 from shaftprint.choices import SET_POINT_RATE_HZ
+from shaftprint.design.inputs._lever import Lever
 from shaftprint.errors import DesignError
 
 if TYPE_CHECKING:
@@ -31,6 +32,8 @@ class SetPointSamples:
     """Its voltage [V], shape (samples,)."""
     speed_rpm: FloatArray
     """The engine speed that it asks for [rpm], shape (samples,)."""
+    lever: Lever | None
+    """What the lever shows for volts; None where it shows them."""
 
 
 def set_point_samples(test: "PlannedTest", *, rate_hz: float = SET_POINT_RATE_HZ) -> SetPointSamples:
@@ -53,4 +56,4 @@ def set_point_samples(test: "PlannedTest", *, rate_hz: float = SET_POINT_RATE_HZ
     time_s = np.arange(count) / rate_hz
     volts = setpoint(campaign, time_s + 0.5 / rate_hz)
     speed_rpm = test.line.speed_rpm(volts, working_point_rpm=test.plan.limits.engine_speed_rpm)
-    return SetPointSamples(rate_hz=rate_hz, time_s=time_s, volts=volts, speed_rpm=speed_rpm)
+    return SetPointSamples(rate_hz=rate_hz, time_s=time_s, volts=volts, speed_rpm=speed_rpm, lever=test.line.lever)

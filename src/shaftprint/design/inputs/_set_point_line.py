@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from shaftprint.arrays import FloatArray
+from shaftprint.design.inputs._lever import Lever
 from shaftprint.errors import DesignError
 from shaftprint.notebook._shown import Shown
 
@@ -20,6 +21,8 @@ class SetPointLine(Shown):
     """Change of the engine speed for one volt [rpm/V], negative where a lower voltage asks for more speed."""
     offset_v: float
     """Set point at the speed of the first working point [V]."""
+    lever: Lever | None = None
+    """What the channel of the set point shows for these volts; None where it shows them."""
 
     def __post_init__(self) -> None:
         """Check that a voltage asks for a speed.

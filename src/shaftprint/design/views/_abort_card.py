@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from shaftprint.design.inputs._lever import Lever
 from shaftprint.design.inputs._limits import SPEED_SIGMAS
 from shaftprint.design.motion._motion import SIGNALS, motion_noise
 from shaftprint.notebook._shown import Shown
@@ -41,6 +42,8 @@ class AbortCard(Shown):
     """Voltage to which the set point is brought back when the test is broken off [V]."""
     level_rpm: float
     """The engine speed there [rpm]."""
+    lever: Lever | None
+    """What the lever shows for volts; None where it shows them."""
 
 
 def abort_card(test: "PlannedTest") -> AbortCard:
@@ -70,4 +73,5 @@ def abort_card(test: "PlannedTest") -> AbortCard:
         leave_rpm=(plan.limits.lowest_speed_rpm, plan.limits.highest_speed_rpm),
         level_v=campaign.offset_v,
         level_rpm=plan.legs[0].level_rpm,
+        lever=test.line.lever,
     )

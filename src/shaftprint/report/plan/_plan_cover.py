@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 from shaftprint.design.plan._plan import length_words
 from shaftprint.digits import plain
 from shaftprint.report.sections._cover import Card, Cover
-from shaftprint.tables._plan import wish_table
+from shaftprint.tables._plan import swing_words, wish_table
 
 if TYPE_CHECKING:
     from shaftprint.design.planned_test._planned_test import PlannedTest
@@ -34,13 +34,13 @@ def plan_cover(test: "PlannedTest") -> Cover:
 def _facts(test: "PlannedTest") -> list[tuple[str, str]]:
     plan = test.plan
     largest = max(leg.peak_rpm for leg in plan.legs)
-    volts = largest / abs(test.line.slope_rpm_per_v)
+    moved = swing_words(test.line, largest)
     return [
         ("Ship", test.vessel),
         ("Test", test.name),
         ("Length", f"{length_words(plan.duration_s)}, the way back and the staircase included"),
         ("Speeds", ", ".join(f"{plain(leg.level_rpm, 0)} rpm" for leg in plan.legs)),
-        ("Set point", f"± {plain(largest, 0)} rpm, ± {plain(volts, 2)} V at most, about each speed"),
+        ("Set point", f"± {plain(largest, 0)} rpm, ± {moved} at most, about each speed"),
     ]
 
 

@@ -27,6 +27,7 @@ from shaftprint.report.sections._sections import Picture, Section
 from shaftprint.tables._plan import abort_table, planned_leg_table, predicted_number_table
 
 if TYPE_CHECKING:
+    from shaftprint.design.inputs._lever import Lever
     from shaftprint.design.planned_test._planned_test import PlannedTest
 
 
@@ -53,7 +54,7 @@ def render_plan(directory: str | Path, test: "PlannedTest", *, overwrite: bool =
             _words(test),
             _assumed(test),
         ),
-        files=_files(),
+        files=_files(test.line.lever),
         ending=(
             f"shaftprint {test.version}. ± is one standard deviation throughout, predicted to first order; intervals "
             "and bands hold 95 %."
@@ -165,11 +166,14 @@ def _assumed(test: "PlannedTest") -> Section:
     return Section(key="assumed", title="What was assumed", tables=(table,), folded=True)
 
 
-def _files() -> Table:
+def _files(lever: "Lever | None") -> Table:
+    unit = None if lever is None else lever.unit
+    # a generator that puts out the lever's own unit is told how far it is from these volts
+    scale = "" if lever is None else f"; U = {lever.v_per_unit:g} V/{unit} * lever + {lever.v_at_zero:g} V"
     rows = (
         (CAMPAIGN, "the test, for shaftprint sail, predict, inspect and identify"),
-        (CSV, "set point over time, in volts and rpm"),
-        (GENERATOR, "voltages alone, one a line, for an arbitrary waveform generator"),
+        (CSV, f"set point over time, in {f'{unit}, volts' if unit not in (None, 'rpm') else 'volts'} and rpm"),
+        (GENERATOR, f"voltages alone, one a line, for an arbitrary waveform generator{scale}"),
         (MAT, "the same for MATLAB and Octave"),
         (PLAN, "the plan with all digits, for shaftprint continue"),
     )
