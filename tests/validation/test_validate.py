@@ -11,11 +11,13 @@ from shaftprint.catalogue import structure
 from shaftprint.errors import ValidationError
 from shaftprint.identify import Prior, Settings, identify
 from shaftprint.signals import Gap
+from shaftprint.signals._orders import TrackedOrder
 from shaftprint.spectra import estimate_response
 from shaftprint.tug import Noise, Tug
 from shaftprint.validation import ValidationSettings, validate
 from shaftprint.validation._model import model_of
 from shaftprint.validation._prediction import linear_prediction, simulated_prediction
+from shaftprint.validation._run import Data
 from shaftprint.vessel import load_vessel
 
 RATE_HZ = 100.0
@@ -238,6 +240,32 @@ def test_a_delay_of_one_sample_is_found_in_every_record(made, campaign):
         for delay in comparison.delays:
             assert delay.delay_s == pytest.approx(0.01, abs=4.0 * delay.std_s)
     assert found.of("C11", "1 to 5").delays[0].std_s < 1e-3
+
+
+@pytest.mark.parametrize(
+    ("through_gears", "off", "most"), [(False, 0.0, 0.05), (True, 0.0015, 0.15)], ids=["own pick-up", "rounded ratio"]
+)
+def test_the_order_of_a_slow_shaft_is_taken_out(made, campaign, through_gears, off, most):
+    """An order of 3.6 Hz, at the levels 2.9 to 4.3 Hz, comes and goes at the cut-off of 4 Hz with the speed."""
+    signals, _ = made
+    speed = signals.engine_speed.speed_rev_s
+    order = 0.1 * (speed / 20.0) ** 2 * np.cos(2.0 * np.pi * 0.18 * np.cumsum(speed) / RATE_HZ + 0.7)
+    told = TrackedOrder(name="shaft order 1", per_turn=0.18 * (1.0 + off), speed="n_e", through_gears=through_gears)
+    shaken = replace(
+        signals.with_channel("M_s", values=signals.shaft_torque_nm + 1700.0 * order),
+        orders=(told, replace(told, name="too fast", per_turn=1.0)),
+    )
+    settings = ValidationSettings()
+    still, without = (Data.of(one, campaign, settings) for one in (signals, shaken))
+    for stairs, wrong in ((slice(14_000, 36_500), 0.0), (slice(50_000, 70_000), 0.1)):
+        # a model that is wrong by a tenth: what it misses of a step or a chirp is no order, and stays
+        model = (1.0 + wrong) * still.raw(stairs)
+        left = (without.smooth(stairs, model) - still.smooth(stairs, model))[:, 100:-100]
+        assert np.all(left[0] == 0.0)
+        # through the low-pass 0.057 of the order is seen at the working point
+        assert np.std(left[1]) < most * 0.057
+    for one, other in zip(without.noise.stretches, still.noise.stretches, strict=True):
+        assert np.std(one[1]) == pytest.approx(np.std(other[1]), rel=0.1, abs=most * 0.057)
 
 
 def test_the_same_by_time_steps(made, campaign):

@@ -10,6 +10,7 @@ from shaftprint.arrays import ComplexArray, FloatArray
 from shaftprint.campaign._campaign import Campaign
 from shaftprint.signals._signals import Signals
 from shaftprint.signals.levels._working_point import deviation
+from shaftprint.spectra.orders._order_waves import order_bands, order_waves
 from shaftprint.validation._model import Model
 from shaftprint.validation._prediction import OUTPUTS, Predict, add_quadratic_torque
 from shaftprint.validation._settings import ValidationSettings
@@ -20,6 +21,10 @@ from shaftprint.validation.measures._reach import EVERYWHERE, Reach, Swept, whil
 
 # Time behind a record that is predicted too: the low-pass and the search for a delay look beyond its end.
 _BEHIND_S = 5.0
+# What the low-pass lets through of an order that is faster than its cut-off ends here, as a share of that.
+_PASSED_TO = 1.25
+# An order is one sine of the angle over so long; through a gear ratio that is rounded its phase turns before [s].
+_STRETCH_S, _STRETCH_THROUGH_GEARS_S = 200.0, 40.0
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -48,7 +53,7 @@ class Data:
         highest_hz = settings.highest_hz
         raw_noise, noise = (
             quiet_noise(outputs, campaign, signals, rest_s=settings.rest_s)
-            for outputs in (partial(_raw, signals), partial(_smooth, signals, highest_hz=highest_hz))
+            for outputs in (partial(_raw, signals), partial(_quiet, signals, highest_hz=highest_hz))
         )
         return cls(signals=signals, highest_hz=highest_hz, raw_noise=raw_noise, noise=noise)
 
@@ -65,9 +70,15 @@ class Data:
         """Return speed and torque in some samples, shape (2, samples)."""
         return _raw(self.signals, there)
 
-    def smooth(self, there: slice) -> FloatArray:
-        """Return the same through the low-pass."""
-        return _smooth(self.signals, there, highest_hz=self.highest_hz)
+    def smooth(self, there: slice, model: FloatArray) -> FloatArray:
+        """Return the same through the low-pass, without the orders that it lets through.
+
+        ``model``: what the model makes of them, shape (2, samples): what moves the line is no order.
+        """
+        orders = _orders(self.signals, there, self.raw(there)[1] - model[1], highest_hz=self.highest_hz)
+        smooth = _smooth(self.signals, there, highest_hz=self.highest_hz)
+        smooth[1] -= low_pass(orders, self.signals.rate_hz, self.highest_hz)
+        return smooth
 
 
 def _raw(signals: Signals, there: slice) -> FloatArray:
@@ -88,6 +99,38 @@ def _smooth(signals: Signals, there: slice, *, highest_hz: float) -> FloatArray:
     return smooth[:, there.start - first : there.stop - first]
 
 
+def _quiet(signals: Signals, there: slice, *, highest_hz: float) -> FloatArray:
+    """Return what `_smooth` does, without the orders that stand in it."""
+    smooth = _smooth(signals, there, highest_hz=highest_hz)
+    smooth[1] -= _orders(signals, there, smooth[1], highest_hz=highest_hz)
+    return smooth
+
+
+def _orders(signals: Signals, there: slice, torque: FloatArray, *, highest_hz: float) -> FloatArray:
+    """Return the orders below the cut-off in a torque of some samples over the working point, shape (samples,).
+
+    They move with the speed, in and out of what the low-pass lets through: no noise of another level is like them.
+    """
+    rate_hz = signals.rate_hz
+    speeds = {name: speed.values[there] for name, speed in signals.speeds.items()}
+    every = order_bands(signals.orders, speeds, rate_hz=rate_hz)
+    bands = [band for band in every if band.lowest_hz < _PASSED_TO * highest_hz]
+    load = (speeds[signals.engine_speed.name] / signals.working_point.engine_speed_rev_s) ** 2
+    waves = order_waves(bands, speeds, load, rate_hz=rate_hz)
+    good = ~signals.coverage.lost(signals.start_s + np.arange(there.start, there.stop) / rate_hz)
+    through_gears = any(band.order.through_gears for band in bands)
+    stretch_s = _STRETCH_THROUGH_GEARS_S if through_gears else _STRETCH_S
+    orders = np.zeros(torque.size)
+    for part in np.array_split(np.arange(torque.size), max(round(torque.size / (stretch_s * rate_hz)), 1)):
+        # a phase that turns evenly: to first order, what time makes of the waves
+        of_time = [waves[:, part] * np.linspace(-1.0, 1.0, part.size)] if through_gears else []
+        columns = np.concatenate([waves[:, part], *of_time, np.ones((1, part.size))]).T
+        used = good[part]
+        sizes, *_ = np.linalg.lstsq(columns[used], torque[part][used], rcond=None)
+        orders[part] = columns[:, :-1] @ sizes[:-1]
+    return orders
+
+
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Run:
     """A stretch of the recording around one record: its data, and what the model makes of it."""
@@ -101,7 +144,7 @@ class Run:
     measured: FloatArray
     """Measured speed and torque, shape (2, samples)."""
     measured_smooth: FloatArray
-    """The same through the low-pass, shape (2, samples)."""
+    """The same through the low-pass, the torque without orders, shape (2, samples)."""
     raw: FloatArray
     """Speed and torque of the model, shape (2, samples)."""
     smooth: FloatArray
@@ -199,7 +242,7 @@ def run_model(
         first=there.start,
         set_point=set_point,
         measured=data.raw(there),
-        measured_smooth=data.smooth(there),
+        measured_smooth=data.smooth(there, raw),
         raw=raw,
         smooth=low_pass(raw, rate_hz, settings.highest_hz),
         # in place: the derivatives of a chirp of ten minutes are most of the memory that a validation takes

@@ -16,7 +16,8 @@ class ValidationSettings:
     and 0.15 to 0.27 of the steps of 2 V at which a limit of the torque does. Chosen between them, on that ship."""
     highest_hz: float = 4.0
     """What is faster than this [Hz] is taken out of data and model alike before they are compared: the excitation ends
-    there, and the torque shows shaft, blades and firings beyond. FitPercent is of all frequencies."""
+    there, and the torque shows blades and firings beyond. Slower orders are taken out of the torque. FitPercent is of
+    all frequencies."""
     zoom_before_s: float = 2.0
     """Time before a step that belongs to its excerpt [s]."""
     zoom_after_s: float = 12.0
