@@ -46,6 +46,9 @@ def _reasons(factor, vessel):
 def test_a_gauge_that_shows_too_little_is_told_by_the_torque_over_the_square_of_the_speed():
     (reason,) = _reasons(0.9, TUG)
     assert "torque over the square of the speed, K_Q and I_dn are 0.90, 0.90 and 0.90 times" in reason.sentence
+    # the fifth power of 1.028 / 1.05 is 0.9
+    assert "500 N m for one V is stated, 555.6 would fit" in reason.sentence
+    assert "diameter_m = 1.05 is stated, 1.03 would fit" in reason.sentence
 
 
 @pytest.mark.parametrize(("factor", "doubts"), [(0.9, 0), (1.12, 0), (2.0, 1)])

@@ -54,6 +54,10 @@ def test_what_does_not_hang_on_the_scale_of_the_gauge_stays_usable(gauge):
     assert verdict.not_trusted["K_p / K_i"] == "it depends on the scale of the torque gauge"
     assert verdict.reasons == (scale,)
     assert verdict.reason == "Part of the numbers can be trusted. The scale is in doubt."
+    numbers = len(verdict.trusted) + len(verdict.not_trusted)
+    assert verdict.words == f"trustworthy in part, {len(verdict.trusted)} of {numbers} numbers"
+    assert sum("The scale is in doubt." in sentence for sentence in verdict.sentences) == 1
+    assert before.words == "trustworthy"
 
 
 def test_reasons_of_the_response_come_with_it(gauge):

@@ -227,6 +227,7 @@ def test_there_is_no_room_to_spare_where_the_scale_of_the_gauge_is_in_doubt(fing
     assert told[USABLE].state == "look"
     assert "The scale of the torque gauge is in doubt." in told[USABLE].sentence
     assert told[USABLE].action.startswith("Calibrate the torque gauge")
+    assert cover_of(found).headline.startswith("The test can be used in part; ")
     assert told[HUNTING].state == told[INERTIA].state == "open"
     assert told[HUNTING].sentence.startswith("It cannot be told: it depends on the scale of the torque gauge.")
 

@@ -3,12 +3,15 @@
 The truth is arithmetic: a propeller takes torque with the square of its speed, and a wrong count changes what is shown.
 """
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 from shaftprint.campaign import load_campaign
 from shaftprint.signals import WorkingPoint
-from shaftprint.signals._scale_reasons import scale_reasons
+from shaftprint.signals._contradictions import contradictions
+from shaftprint.signals._scale_reasons import scale_reasons, torque_beside_file
 from shaftprint.signals.levels._speed_scale import ScaleEvidence
 from shaftprint.vessel import load_vessel
 
@@ -154,3 +157,65 @@ def test_pulses_that_are_lost_in_one_leg_are_named_with_it(factor, load):
 @pytest.mark.parametrize("droop", [0.95, 1.0, 1.05])
 def test_legs_of_another_load_and_a_lever_that_bends_are_healthy(load, droop):
     assert reasons_between(load=load, lower_rpm=droop * LOWER_RPM) == ()
+
+
+def card_of(diameter, *, share=0.15, one=False):
+    """The tug's file as a card makes it of a propeller that is so many times as large: torque with its fifth power."""
+    vessel, torque = (one_pick_up() if one else VESSEL), TORQUE_NM * diameter**5
+    coefficient = torque / (1025.0 * (RPM / RATIO / 60.0) ** 2 * (1.05 * diameter) ** 5)
+    propeller = {"diameter_m": 1.05 * diameter, "torque_coefficient": coefficient}
+    return vessel.model_copy(
+        update={
+            "propeller": vessel.propeller.model_copy(
+                update=propeller | {"torque_coefficient_std": share * coefficient}
+            ),
+            "working_point": vessel.working_point.model_copy(update={"shaft_torque_nm": torque}),
+        }
+    )
+
+
+def point_at(rpm, load=1.0):
+    return WorkingPoint(
+        engine_speed_rev_s=rpm / 60.0,
+        shaft_torque_nm=TORQUE_NM * load * (rpm / RPM) ** 2,
+        engine_speed_std_rev_s=0.01,
+        shaft_torque_std_nm=10.0,
+        set_point_v=-5.7,
+        load_std=0.01,
+    )
+
+
+def test_a_propeller_of_another_diameter_is_named_with_the_one_that_fits():
+    """2.4 m in place of 2.1: the file expects (8 / 7)^5 = 1.95 times the torque, at every level of the test."""
+    legs = [SimpleNamespace(name=f"{rpm:g}", working_point=point_at(rpm)) for rpm in (1361.37, 900.0)]
+    signals = SimpleNamespace(working_point=legs[0].working_point, levels_rpm=(1361.37, 900.0), legs=legs)
+    (told,) = contradictions((), card_of(8 / 7), signals=signals, campaign=CAMPAIGNS["12min"])
+    # 1725 N m at 1183.8 rpm are 2281 at 1361.37, and ln 1.95 is 4.4 of 15 % with 1 % of the gauge
+    assert "expected a torque around 4448 N m at 1361 rpm" in told
+    assert "found 2281 N m, 0.51 times that, 0.51 times at 900 rpm, 4.4 standard deviations" in told
+    assert "diameter_m = 1.2 is stated, 1.05 would fit" in told
+    assert "500 N m for one V is stated, 974.8 would fit" in told
+    # pick-ups on both shafts agree in the ratio
+    assert "gear" not in told
+    # a ratio that is too small by the root of the factor makes the same torque of it
+    assert "gearbox.ratio (3.82 is stated, 5.33 would fit)" in torque_beside_file(
+        [point_at(1361.37)], card_of(8 / 7, one=True)
+    )
+
+
+@pytest.mark.parametrize(("diameter", "share"), [(1.0, 0.02), (1.1, 0.15), (8 / 7, 0.4), (0.95, 0.02)])
+def test_a_torque_that_the_file_does_not_know_better_is_no_contradiction(diameter, share):
+    """1.1^5 is 1.61, 3.2 of 15 %; and a day changes the load by more than 2 %."""
+    assert torque_beside_file([point_at(1361.37)], card_of(diameter, share=share)) == ""
+
+
+def test_a_torque_that_is_off_at_one_level_alone_is_no_scale():
+    assert torque_beside_file([point_at(1361.37), point_at(900.0, load=1.95)], card_of(8 / 7)) == ""
+    assert torque_beside_file([point_at(1361.37), point_at(900.0, load=4.0)], card_of(8 / 7)) == ""
+
+
+def test_a_gear_that_would_make_the_torque_is_named():
+    told = torque_beside_file([point_at(1361.37, load=1.0 / RATIO)], VESSEL)
+    assert "whether it is the torque of the engine's shaft, before the gear of 3.82" in told
+    told = torque_beside_file([point_at(1361.37, load=RATIO)], VESSEL)
+    assert "whether the gear of 3.82 is in its scale a second time" in told

@@ -77,9 +77,7 @@ def print_drive(fingerprint: DriveFingerprint, *, whole: bool = True) -> None:
     ``whole``: whether all of it is the answer; otherwise it is the verdict and what was found, the rest are details.
     """
     verdict = fingerprint.verdict
-    print_findings(
-        f"Verdict: {'trustworthy' if verdict.trustworthy else 'not trustworthy'}", verdict.sentences, is_answer=True
-    )
+    print_findings(f"Verdict: {verdict.words}", verdict.sentences, is_answer=True)
     give("fingerprint", fingerprint)
     if whole:
         _print_rest(fingerprint)

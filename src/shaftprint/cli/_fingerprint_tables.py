@@ -72,7 +72,7 @@ def _points(count: int) -> str:
 
 
 def _print_verdict(fingerprint: Fingerprint, sentences: Sequence[str], line: str | None = None) -> None:
-    title = f"Verdict: {'trustworthy' if fingerprint.verdict.trustworthy else 'not trustworthy'}"
+    title = f"Verdict: {fingerprint.verdict.words}"
     print_findings(title if line is None else f"{line}. {title}", sentences, is_answer=True)
     give("fingerprint" if line is None else f"fingerprint of {line}", fingerprint)
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from shaftprint.identify.fit._estimate import Estimate
 from shaftprint.reasons import Reason
-from shaftprint.signals._scale_reasons import scale_reasons
+from shaftprint.signals._scale_reasons import FAR, scale_reasons, what_fits
 from shaftprint.signals.levels._speed_scale import ScaleEvidence, load_over_expected
 
 if TYPE_CHECKING:
@@ -20,8 +20,6 @@ if TYPE_CHECKING:
     from shaftprint.signals._signals import Signals
     from shaftprint.vessel._vessel import Vessel
 
-# So many standard deviations of all that is stated, the scale of the gauge included, are no chance.
-FAR = 3.5
 # The inertia agrees with the factor of the torque coefficient within so many standard deviations.
 ALIKE = 2.5
 
@@ -64,8 +62,7 @@ def contradictions(
                 "The scale of the torque gauge is in doubt: torque over the square of the speed, K_Q and I_dn are "
                 f"{_written(torque)}, {_written(math.exp(coefficient.log))} and {_written(math.exp(inertia.log))} "
                 "times what the vessel file expects; "
-                f"check scale_nm_per_unit of {vessel.sensors.shaft_torque.channel}. Another propeller changes both "
-                "too, fouling K_Q alone."
+                f"check {what_fits(math.exp(coefficient.log), vessel)}: each changes both alike, fouling K_Q alone."
             ),
         ),
     )

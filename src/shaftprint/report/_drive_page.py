@@ -75,7 +75,7 @@ def _counted(fingerprint: DriveFingerprint) -> str:
 
 def _verdict(fingerprint: DriveFingerprint) -> Section:
     verdict = fingerprint.verdict
-    title = f"Verdict: {'trustworthy' if verdict.trustworthy else 'not trustworthy'}"
+    title = f"Verdict: {verdict.words}"
     return Section(key="verdict", title=title, points=verdict.sentences)
 
 

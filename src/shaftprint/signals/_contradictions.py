@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shaftprint.signals._inspect import ChannelReport, PulseReport
-from shaftprint.signals._scale_reasons import scale_reasons
+from shaftprint.signals._scale_reasons import scale_reasons, torque_beside_file
 from shaftprint.signals._working_points import WorkingPoint
 from shaftprint.signals.kinds._compare import LARGEST_DIFFERENCE
 from shaftprint.signals.levels._working_point import direction_words
@@ -140,6 +140,7 @@ def _of_scales(
     reports: Sequence[ChannelReport], vessel: "Vessel", signals: "Signals | None", campaign: "Campaign | None"
 ) -> tuple[str, ...]:
     """Return how speed and torque are off by one factor, by the test, or without one by the means of all channels."""
+    beside = ""
     if signals is not None and campaign is not None:
         reasons = scale_reasons(
             signals.working_point,
@@ -148,10 +149,13 @@ def _of_scales(
             levels_rpm=signals.levels_rpm,
             legs={leg.name: leg.working_point for leg in signals.legs},
         )
+        points = (signals.working_point, *(leg.working_point for leg in signals.legs))
+        beside = torque_beside_file(tuple(dict.fromkeys(points)), vessel)
     else:
         point = _mean_point(reports, vessel)
         reasons = () if point is None else scale_reasons(point, vessel)
-    return tuple(reason.sentence for reason in reasons)
+    # a speed that is miscounted makes another torque of the same
+    return tuple(reason.sentence for reason in reasons) or ((beside,) if beside else ())
 
 
 def _mean_point(reports: Sequence[ChannelReport], vessel: "Vessel") -> WorkingPoint | None:

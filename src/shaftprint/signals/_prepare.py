@@ -39,7 +39,7 @@ from shaftprint.signals.levels._leg_state import leg_states
 from shaftprint.signals.levels._steady import steady_stretches
 from shaftprint.signals.levels._working_point import (
     expect_asked_speed,
-    expect_plausible,
+    expect_driving,
     expect_stated_slope,
     find_working_point,
     stretches_at_working_point,
@@ -129,11 +129,11 @@ def _prepared(recording: "Recording", vessel: "Vessel", campaign: Campaign, read
     states: tuple[LegState, ...]
     if campaign.legs and not campaign.sines:
         steady, states = steady_state_of_legs(campaign, readings, legs, channel=vessel.sensors.set_point.channel)
-        strange = expect_plausible(steady.working_point, vessel)
+        expect_driving(steady.working_point, vessel)
         _calibrated_in_place(readings.set_point, steady.calibration)
     else:
         states = leg_states(legs)
-        steady, strange = _steady_state(vessel, campaign, readings)
+        steady = _steady_state(vessel, campaign, readings)
     changed, unseen = changes_of_gauge(vessel, campaign, readings)
     reasons += changed
     steady, states = with_unseen_gains(steady, states, unseen)
@@ -170,7 +170,6 @@ def _prepared(recording: "Recording", vessel: "Vessel", campaign: Campaign, read
             *readings.findings,
             *mismatches,
             *stopped,
-            *strange,
             *expect_asked_speed(steady.working_point, vessel),
             *expect_stated_slope(steady.calibration, campaign),
             *differences,
@@ -244,8 +243,8 @@ def _differences_from_campaign(
     return lost, mismatches
 
 
-def _steady_state(vessel: "Vessel", campaign: Campaign, readings: Readings) -> tuple[SteadyState, tuple[str, ...]]:
-    """Return working point and line of the set point, with what is strange about them.
+def _steady_state(vessel: "Vessel", campaign: Campaign, readings: Readings) -> SteadyState:
+    """Return working point and line of the set point.
 
     The values of the set point become a speed, in place since the signals of a whole test are large.
     """
@@ -259,7 +258,7 @@ def _steady_state(vessel: "Vessel", campaign: Campaign, readings: Readings) -> t
     scale = DcScale(value=1.0, std=0.0, findings=())
     if clock.mode == "thesis":
         calibration, point = calibrate(stretches, channel=channel), find_working_point(quiet)
-        strange = expect_plausible(point, vessel)
+        expect_driving(point, vessel)
         _calibrated_in_place(n_set, calibration)
     else:
         about_v = working_voltage(quiet)
@@ -276,16 +275,15 @@ def _steady_state(vessel: "Vessel", campaign: Campaign, readings: Readings) -> t
             coverage=coverage,
         )
         point = working_point_of_test(speed, torque, at_v=about_v, at=(at[0], at[1]), **grid, coverage=coverage)
-        strange = expect_plausible(point, vessel)
+        expect_driving(point, vessel)
         _calibrated_in_place(n_set, calibration)
         if calibration.level_v.size > 1:
             scale = _rescale(n_set, speed, tests, coverage, calibration, **grid, about=point.engine_speed_rev_s)
         else:
             scale = scale_of_sines(calibration)
-    steady = SteadyState(
+    return SteadyState(
         clock=clock, stretches=quiet, working_point=point, calibration=calibration, scale=scale, speed_rev_s=speed
     )
-    return steady, strange
 
 
 def _step_v(readings: Readings) -> float:

@@ -1,5 +1,6 @@
 """Why the scales of speed and torque are in doubt, with the field of the vessel file that would mend it."""
 
+import math
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
@@ -23,6 +24,15 @@ if TYPE_CHECKING:
 
 # A factor is that of the gear within so much: the efficiency of the gear, and a load of another day.
 _LIKE_GEAR = 0.15
+# What is stated of the torque where the file states nothing, as of a propeller series, and the least that wind, current
+# and draught of a day change it by.
+_USUAL, _LEAST = 0.15, 0.1
+# The same with a pitch that is controlled.
+_OF_PITCH = 0.7
+# So many standard deviations are no chance.
+FAR = 3.5
+# Torque at one speed goes with this power of the diameter.
+_OF_DIAMETER = 5.0
 
 
 def scale_reasons(
@@ -96,6 +106,75 @@ def _between_legs(
             ),
         )
     return ()
+
+
+def torque_beside_file(points: Sequence["WorkingPoint"], vessel: "Vessel") -> str:
+    """Return that the torque at every level is far from that of the vessel file, and what would fit; empty if not.
+
+    A torque that is known to 15 % contradicts nothing within that: what counts is how many standard deviations of all
+    that the file states lie between both. ``points``: mean speed and torque of each level, the working point first.
+    """
+    sensor = vessel.sensors.shaft_torque
+    loads = [load_over_expected(point, vessel) for point in points]
+    if not min(loads) > 0.0:
+        return ""
+    logs = [math.log(load) for load in loads]
+    std = [_std_of_load(point, vessel) for point in points]
+    away = min(abs(log) / one for log, one in zip(logs, std, strict=True))
+    # a scale makes all levels too large or all too small
+    if away <= FAR or min(logs) < 0.0 < max(logs):
+        return ""
+    point, load, turning = points[0], loads[0], vessel.working_point.turning
+    found_nm = turning * point.shaft_torque_nm
+    further = "".join(
+        f", {one:.2f} times at {rpm_from_rev_s(at.engine_speed_rev_s):.4g} rpm"
+        for at, one in zip(points[1:], loads[1:], strict=True)
+    )
+    return (
+        f"channel {sensor.channel}: expected a torque around {_rounded(found_nm / load)} N m at "
+        f"{rpm_from_rev_s(point.engine_speed_rev_s):.4g} rpm by working_point of the vessel file, found "
+        f"{_rounded(found_nm)} N m, {load:.2f} times that{further}, "
+        f"{away:.1f} standard deviations of what is stated; check {what_fits(load, vessel, std[0])}."
+    )
+
+
+def _rounded(value: float) -> str:
+    """Return a number with four digits, without a power of ten."""
+    return f"{float(f'{value:.4g}'):g}"
+
+
+def _std_of_load(point: "WorkingPoint", vessel: "Vessel") -> float:
+    """Return the standard deviation of the torque that is expected, over it, with that of the gauge."""
+    sensor, stated = vessel.sensors.shaft_torque, vessel.torque_coefficient_std
+    load = max(_USUAL if stated is None else stated / vessel.torque_coefficient, _LEAST)
+    pitch = 0.0 if vessel.pitch is None else _OF_PITCH
+    return math.hypot(load, sensor.scale_std, sensor.zero_std / point.shaft_torque_nm, pitch)
+
+
+def what_fits(load: float, vessel: "Vessel", std: float = 0.0) -> str:
+    """Return what to check where the torque over the square of the speed is off by a factor, with values that fit.
+
+    ``load``: found over expected. ``std``: how well its logarithm is known; of a factor that the inertia behind the
+    gauge shares the gear is none, and nothing is said of it where this is 0.
+    """
+    sensor, gearbox, diameter_m = vessel.sensors.shaft_torque, vessel.gearbox, vessel.propeller.diameter_m
+    scale = sensor.scale_nm_per_unit
+    causes = [
+        f"the scale of {sensor.channel} ({scale:g} N m for one {sensor.unit} is stated, {scale / load:.4g} would fit)",
+        f"the propeller (diameter_m = {diameter_m:g} is stated, {diameter_m * load ** (1.0 / _OF_DIAMETER):.3g} would "
+        "fit, or another pitch)",
+    ]
+    log, of_gear = math.log(load), math.log(gearbox.ratio)
+    if abs(log + of_gear) < 2.0 * std:
+        causes.append(f"whether it is the torque of the engine's shaft, before the gear of {gearbox.ratio:g}")
+    elif abs(log - of_gear) < 2.0 * std:
+        causes.append(f"whether the gear of {gearbox.ratio:g} is in its scale a second time")
+    elif std and all(one.shaft == "engine" for one in vessel.sensors.speed):
+        # a pick-up on each shaft tells the ratio, and one on the propeller's alone needs none
+        causes.append(f"gearbox.ratio ({gearbox.ratio:g} is stated, {gearbox.ratio / load**0.5:.3g} would fit)")
+    if std and load < 1.0 and not vessel.is_underway:
+        causes.append("whether the ship took way")
+    return ", ".join(causes[:-1]) + f" and {causes[-1]}"
 
 
 def _told(beside: Mapping[str, float], ending: str) -> str:

@@ -101,6 +101,15 @@ class Verdict(Shown):
     assumptions: tuple[str, ...] = ()
     """What the numbers rest on and no recording can show, in sentences."""
 
+    @property
+    def words(self) -> str:
+        """How far the numbers can be trusted, in a few words; in part where something speaks against some of them."""
+        if not self.trustworthy:
+            return "not trustworthy"
+        if not self.reasons:
+            return "trustworthy"
+        return f"trustworthy in part, {len(self.trusted)} of {len(self.trusted) + len(self.not_trusted)} numbers"
+
     def summary(self) -> Summary:
         """Return the reason, and which numbers may be used."""
         title = "the trusted numbers may be used" if self.trustworthy else "no number may be used"
@@ -176,7 +185,8 @@ def assess(
     headline = _headline(evidence, every, trusted=trusted, not_trusted=not_trusted, usable=usable)
     sentences = (
         headline,
-        *(reason.sentence for reason in every),
+        # the headline has said the first
+        *(reason.sentence for reason in every if reason.sentence not in headline),
         *_lists(trusted, not_trusted, rejected=bool(of_fit)),
         *cautions,
         *(f"Assumed: {assumption}" for assumption in assumptions),

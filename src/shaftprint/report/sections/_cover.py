@@ -72,19 +72,21 @@ class Cover:
     """Its logo, PNG; None where there is none."""
 
 
-def overall(cards: Sequence[Card], *, usable: bool) -> tuple[State, str]:
+def overall(cards: Sequence[Card], *, usable: bool, partly: bool = False) -> tuple[State, str]:
     """Return the state of the whole and the headline that says it.
 
-    ``cards``: questions with answers. ``usable``: whether the numbers may be used at all.
+    ``cards``: questions with answers. ``usable``: whether the numbers may be used at all. ``partly``:
+    whether something speaks against part of them.
     """
     if not usable:
         return "bad", "The test cannot be used: its numbers are not trustworthy"
+    can = f"The test can be used{' in part' * partly}"
     wrong = sum(card.state == "bad" for card in cards)
     if wrong:
-        return "bad", f"The test can be used; {_points(wrong)} not fine"
+        return "bad", f"{can}; {_points(wrong)} not fine"
     doubtful = sum(card.state == "look" for card in cards)
     if doubtful:
-        return "look", f"The test can be used; {_points(doubtful)} worth a look"
+        return "look", f"{can}; {_points(doubtful)} worth a look"
     return "fine", "The test can be used, and all that it can tell is fine"
 
 

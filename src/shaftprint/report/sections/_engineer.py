@@ -21,12 +21,11 @@ BUDGET_OPENING = (
 def verdict_section(inputs: Inputs) -> Section:
     """Return the verdict on the fit: what it is of, the reason, what is in doubt and what is close to it."""
     verdict = inputs.fingerprint.verdict
-    words = "trustworthy" if verdict.trustworthy else "not trustworthy"
     doubts = [reason.sentence for reason in verdict.reasons if reason.sentence not in verdict.reason]
     suspects = [suspect.sentence for suspect in verdict.suspects]
     return Section(
         key="verdict",
-        title=f"Verdict: the fit is {words}",
+        title=f"Verdict: the fit is {verdict.words}",
         paragraphs=(_conditions(inputs.fingerprint), verdict.reason),
         points=tuple(dict.fromkeys((*doubts, *suspects, *verdict.cautions))),
     )

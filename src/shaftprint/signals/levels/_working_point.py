@@ -16,13 +16,10 @@ if TYPE_CHECKING:
     from shaftprint.signals._gaps import Coverage
     from shaftprint.signals._signals import SetPointCalibration
     from shaftprint.signals.levels._steady import SteadyStretch
-    from shaftprint.vessel._shaft_torque import ShaftTorqueSensor
     from shaftprint.vessel._vessel import Vessel
 
 # Voltages this near to the offset of the campaign are the working voltage.
 _NEAR_V = 0.25
-# A working point further off than this factor is not the load of another day, but a scale.
-_FAR = 1.5
 # A governor with droop runs this much slower than it is asked to.
 _ASKED = 0.1
 # Standard deviations of a measured slope that are no contradiction to the one that is stated.
@@ -135,27 +132,18 @@ def working_point_of_test(
     )
 
 
-def expect_plausible(point: WorkingPoint, vessel: "Vessel") -> tuple[str, ...]:
-    """Return what is strange about a working point beside the one that the vessel file expects.
+def expect_driving(point: WorkingPoint, vessel: "Vessel") -> None:
+    """Raise SignalError if the torque does not drive the propeller the way it is said to turn.
 
-    Raises SignalError if the torque does not drive the propeller the way it is said to turn: nothing can be taken
-    relative to it.
+    Nothing can be taken relative to it then.
     """
-    sensor, expected = vessel.sensors.shaft_torque, vessel.working_point.shaft_torque_nm
-    torque = vessel.working_point.turning * point.shaft_torque_nm
+    sensor = vessel.sensors.shaft_torque
     if not point.shaft_torque_nm > 0.0:
         raise SignalError(
             f"channel {sensor.channel}: expected a {_sign_words(vessel)} mean torque at the working point, found "
-            f"{torque:.4g} N m; {sensor.sign_words} in the vessel file, or correct zero_nm there, or "
-            f"{direction_words(vessel)}."
+            f"{vessel.working_point.turning * point.shaft_torque_nm:.4g} N m; {sensor.sign_words} in the vessel file, "
+            f"or correct zero_nm there, or {direction_words(vessel)}."
         )
-    if max(torque / expected, expected / torque) < _FAR:
-        return ()
-    return (
-        f"The mean torque of {sensor.channel} at the working point is {torque:.4g} N m; the vessel file expects "
-        f"{expected:.4g} N m. Check scale_nm_per_unit there, or shaft_torque_nm of its working point"
-        f"{_unit_words(sensor, torque, expected)}.",
-    )
 
 
 def expect_asked_speed(point: WorkingPoint, vessel: "Vessel") -> tuple[str, ...]:
@@ -199,11 +187,6 @@ def direction_words(vessel: "Vessel") -> str:
     if vessel.working_point.is_astern:
         return "leave out direction of its working point where the shaft turned ahead"
     return 'state direction = "astern" of its working point where the shaft turned so'
-
-
-def _unit_words(sensor: "ShaftTorqueSensor", torque_nm: float, expected_nm: float) -> str:
-    unit = sensor.unit_that_fits(torque_nm, expected_nm)
-    return "" if unit is None else f"; {unit} would fit"
 
 
 def _between_tests(stretch: "SteadyStretch", campaign: "Campaign") -> bool:

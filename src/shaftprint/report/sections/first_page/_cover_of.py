@@ -48,7 +48,8 @@ def cover_of(
         predicts(validations),
         measured(fingerprint),
     ]
-    state, headline = overall(cards, usable=fingerprint.verdict.trustworthy)
+    verdict = fingerprint.verdict
+    state, headline = overall(cards, usable=verdict.trustworthy, partly=bool(verdict.reasons))
     company = None if vessel is None else vessel.company
     logo_path = None if company is None else company.logo_path
     logo, missing = (None, "") if logo_path is None else drawn_logo(logo_path)

@@ -40,7 +40,8 @@ _WORDS: "Mapping[ReasonKind, tuple[str, str]]" = {
     ),
     "gauge scale": (
         "The scale of the torque gauge is in doubt.",
-        "Calibrate the torque gauge or correct its scale in the vessel file, then identify once more.",
+        "Calibrate the torque gauge, or correct its scale or the propeller's diameter in the vessel file; then "
+        "identify once more.",
     ),
     "speed scale": (
         "The speed is off by one factor.",
