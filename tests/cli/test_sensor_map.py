@@ -194,3 +194,23 @@ def test_of_several_channels_in_percent_the_rack_is_one_that_is_called_so(run, t
     unnamed = proposed("AF Correction", "Humidity")
     assert "sensors" not in _map(unnamed)
     assert "# [sensors.rack]: of what is in %, 'AF Correction', 'Humidity', no name says it" in unnamed.output
+
+
+def test_what_alone_is_left_in_milliampere_is_proposed_for_the_set_point(run, tmp_path):
+    """A name in another language is none that is known; of two nobody knows which."""
+
+    def proposed(*names):
+        path = tmp_path / f"{len(list(tmp_path.iterdir()))}.nc"
+        with RecordingWriter(path) as writer:
+            for name, unit in [("Drehmoment", "kN m"), *((name, "mA") for name in names)]:
+                writer.declare(name, unit=unit, rate_hz=10.0, dtype="float64")
+                writer.append(name, 8.0 + np.sin(np.arange(400.0)))
+        return run("inspect", path)
+
+    result = proposed("Fahrhebel")
+    assert _map(result)["sensors"]["set_point"]["channel"] == "Fahrhebel"
+    assert "check" not in result.output.partition("[sensors.set_point]")[2].partition("[logger]")[0]
+    result = proposed("Maneta")
+    assert _map(result)["sensors"]["set_point"]["channel"] == "Maneta"
+    assert "# no name says so: nothing else that is not taken is in V or mA; check" in result.output
+    assert "# [sensors.set_point]: no channel looks like it" in proposed("AI 3", "AI 4").output

@@ -31,8 +31,7 @@ def found_sentences(fingerprint: Fingerprint, truth: Mapping[str, float]) -> lis
         quantity = there[name]
         given = _given(quantity, fingerprint) or ("" if name in truth else _beside(quantity))
         true = _true(quantity, truth[name]) if name in truth else ""
-        # what was known beforehand says by itself that the test did not find it
-        doubt = f"; not to be used: {doubts[name]}" if name in doubts and not _given(quantity, fingerprint) else ""
+        doubt = f"; not to be used: {doubts[name]}" if name in doubts else ""
         sentences.append(f"{SENTENCES[name]}: {_value(quantity)}{given}{true}{doubt}.")
     return sentences or _of_parameters(fingerprint.parameters, doubts)
 

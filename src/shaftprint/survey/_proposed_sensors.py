@@ -11,7 +11,7 @@ from shaftprint.units import ANGLES_REV, NM_PER_UNIT, REV_S_PER_UNIT
 
 Use: TypeAlias = Literal["speed", "instrument", "encoder", "shaft_torque", "set_point", "rack", "demand", "ship_speed"]
 
-_SET_POINT = re.compile(r"set[ _-]*p|setpoint|demand|lever|throttle|soll|u_set|command", re.IGNORECASE)
+_SET_POINT = re.compile(r"set[ _-]*p|setpoint|demand|lever|throttle|hebel|soll|u_set|command", re.IGNORECASE)
 _TORQUE = re.compile(r"torque|m_s\b|\bms\b|koppel|drehmoment|strain", re.IGNORECASE)
 _PULSES = re.compile(r"ptm|pulse|tacho|pick|rpm|speed|drehzahl|\bn_?e", re.IGNORECASE)
 _NO_RACK = re.compile(r"trim|tilt|slip", re.IGNORECASE)
@@ -123,7 +123,7 @@ def proposed_sensors(seen: Sequence[Seen]) -> list[str]:
     empty = [item.channel.name for item in seen if item.is_empty]
     seen = [item for item in seen if not item.is_empty]
     uses = {item.channel.name: _use(item) for item in seen} | _uses_by_number(seen)
-    in_percent = _of_no_name(seen, uses)
+    in_percent, only_left = _of_no_name(seen, uses), _set_point_left(seen, uses)
     lines = []
     single: set[str] = set()
     speeds = 0
@@ -139,6 +139,8 @@ def proposed_sensors(seen: Sequence[Seen]) -> list[str]:
             lines.append(f"[sensors.{use}]")
         filled = [field.format(**_values(item.channel, speeds)) for field in _FIELDS[use]]
         lines += [line for line in filled if line]
+        if item.channel.name == only_left:
+            lines.append("# no name says so: nothing else that is not taken is in V or mA; check")
         lines.append("")
     for needed in ("shaft_torque", "set_point"):
         if needed not in single:
@@ -188,6 +190,17 @@ def _of_no_name(seen: Sequence[Seen], uses: dict[str, Use | None]) -> list[str]:
     called = next((channel.name for channel in channels if _number(channel) is not None), next(named, None))
     uses.update({name: None for name in racks if name != called})
     return racks if called is None else []
+
+
+def _set_point_left(seen: Sequence[Seen], uses: dict[str, Use | None]) -> str:
+    """Take the one channel in V or mA that is left for the set point where nothing is called so; return its name."""
+    units = ("mA", "V")
+    free = [item.channel for item in seen if uses[item.channel.name] is None]
+    left = [channel.name for channel in free if channel.unit in units and not _PULSES.search(channel.name)]
+    if "set_point" in uses.values() or "shaft_torque" not in uses.values() or len(left) != 1:
+        return ""
+    uses[left[0]] = "set_point"
+    return left[0]
 
 
 def _without_sensor(seen: Sequence[Seen], uses: Mapping[str, Use | None]) -> list[str]:
