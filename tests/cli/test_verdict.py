@@ -18,7 +18,9 @@ def test_the_verdict_comes_first(run, demo):
     assert "The stability margins are small: a gain margin of 1." in shown
     assert "Verdict: trustworthy" in result.output
     # mostly its prior, and so among those that are not trusted: what was found says so too
-    found = next(words for words in " ".join(shown.split()).split(" * ") if words.startswith("Engine, coupling"))
+    found = next(
+        words for words in " ".join(result.output.split()).split(" * ") if words.startswith("Engine, coupling")
+    )
     assert "with the prior of the vessel file" in found
     assert "; not to be used: the test adds almost nothing to what was known before" in found
 

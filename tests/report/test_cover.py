@@ -29,7 +29,7 @@ def with_verdict(fingerprint, **changes):
     return fingerprint.model_copy(update={"verdict": replace(fingerprint.verdict, **changes)})
 
 
-INERTIA = "Is the inertia of propeller and shaft as calculated?"
+INERTIA = "Is the inertia of propeller and shaft that of the vessel file?"
 GAUGE = "Is the torque gauge in order?"
 HUNTING = "Does the engine hold its speed without hunting?"
 PROPELLER = "Does the propeller take the torque that it should?"
@@ -44,6 +44,9 @@ def test_an_inertia_is_held_against_both_deviations(fingerprint, value, state):
     """17 +/- 1.6 of the vessel file and 0.5 measured: 1.68 together, so that 20 is 1.8 and 21.5 is 2.7 away."""
     found = with_physical(fingerprint, "I_dn", value=value, std=0.5, expected=17.0, expected_std=1.6)
     assert answers(found)[INERTIA].state == state
+    # a vessel file from a card has estimated it: nothing was calculated
+    assert "in the vessel file" in answers(found)[INERTIA].sentence
+    assert "calculation" not in answers(found)[INERTIA].sentence
 
 
 def test_a_torque_coefficient_says_what_it_means_for_power(fingerprint):

@@ -12,9 +12,9 @@ if TYPE_CHECKING:
     from shaftprint.fingerprint._fingerprint import Fingerprint
 
 BUDGET_OPENING = (
-    "Every estimate depends on the noise of the measured lines and on its prior: the torsional vibration "
-    "calculation (TVC), the accuracy of the torque gauge, the latency of its telemetry, and the slope g of the engine. "
-    "More lines or longer ones lower the share of the noise only."
+    "Every estimate depends on the noise of the measured lines and on its prior: the inertias of the vessel file "
+    "(TVC), calculated or estimated, the accuracy of the torque gauge, the latency of its telemetry, and the slope g "
+    "of the engine. More lines or longer ones lower the share of the noise only."
 )
 
 

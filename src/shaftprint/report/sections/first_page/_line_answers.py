@@ -49,16 +49,16 @@ def hunting(fingerprint: "Fingerprint") -> list[Card]:
 
 
 def inertia(fingerprint: "Fingerprint") -> list[Card]:
-    """Return whether the inertia behind the gauge is the calculated one; nothing where the test did not measure it."""
+    """Return whether the inertia behind the gauge is that of the file; nothing where the test did not measure it."""
     inertias = [q for q in fingerprint.physical if q.name == "I_dn" and q.expected is not None]
     parameter = fingerprint.multiplied(inertias[0]) if inertias else None
     if not inertias or (parameter is not None and parameter.name in fingerprint.priors):
         return []
     (quantity,) = inertias
-    question = "Is the inertia of propeller and shaft as calculated?"
+    question = "Is the inertia of propeller and shaft that of the vessel file?"
     words = (
-        f"Measured {with_deviation(quantity.value, quantity.std)} {unit_text(quantity.unit)}, by the torsional "
-        f"vibration calculation {expected_text(quantity)}."
+        f"Measured {with_deviation(quantity.value, quantity.std)} {unit_text(quantity.unit)}, in the vessel "
+        f"file {expected_text(quantity)}."
     )
     apart, doubt = deviations_apart(quantity), doubt_of(fingerprint, "I_dn")
     if doubt or apart is None:
