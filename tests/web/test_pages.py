@@ -3,6 +3,7 @@
 import json
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
+from types import SimpleNamespace
 
 from tests.web.conftest import ADA, HIDDEN, NOW
 
@@ -10,6 +11,7 @@ from shaftprint.store import claim, refuse, renew
 from shaftprint.store._overview import lines_now
 from shaftprint.web._standing import standing_of
 from shaftprint.web._strip import TimeAxis, strip
+from shaftprint.web.pages._ships import headline_of
 
 STEP = {"name": "propeller", "shape": "step", "since": "2026-03-01", "size": 4.2, "std": 0.8, "unit": "%"}
 
@@ -51,6 +53,9 @@ def test_a_line_is_overdue_after_its_days_and_not_before(site):
     assert (unknown.kind, unknown.overdue) == ("being judged", True)
     both = stands(site, {"causes": [STEP]}, now=newest + timedelta(days=366))
     assert (both.kind, both.overdue) == ("changed", True)
+    # three rows carry the word, so three are counted: one is nothing else
+    rows = [SimpleNamespace(standing=standing) for standing in (late, unknown, both)]
+    assert headline_of(rows) == "3 shaft lines: 1 changed, 3 with a test overdue, 1 being judged"
 
 
 def test_places_of_a_strip_chart():

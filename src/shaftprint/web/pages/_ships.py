@@ -29,7 +29,7 @@ def _ships(asked: Asked) -> Shown:
     rows = rows_of(asked)
     counts = _counts(rows)
     kind, sought = asked.query("kind"), asked.query("q").strip()
-    chosen = [row for row in rows if (not kind or row.standing.kind == kind) and _matches(row.line, sought)]
+    chosen = [row for row in rows if (not kind or _is_of(row, kind)) and _matches(row.line, sought)]
     # a file of the table has all of them
     most = MOST_IN_FILE if asked.query("as") else MOST_ROWS
     pages = max(1, -(-len(chosen) // most))
@@ -87,7 +87,12 @@ def rows_of(asked: Asked) -> list[_Row]:
 
 
 def _counts(rows: list[_Row]) -> dict[str, int]:
-    return {word: sum(row.standing.kind == word for row in rows) for word in WORDS}
+    return {word: sum(_is_of(row, word) for row in rows) for word in WORDS}
+
+
+def _is_of(row: _Row, word: str) -> bool:
+    """Return whether a line stands so: a test that is overdue is told beside what else is said."""
+    return row.standing.kind == word or (word == "test overdue" and row.standing.overdue)
 
 
 def look_of(rows: list[_Row]) -> Look:
