@@ -1,4 +1,5 @@
 import math
+from dataclasses import replace
 from types import SimpleNamespace
 
 import pytest
@@ -75,6 +76,9 @@ def test_tables_of_the_signals(signals, spectra):
     steps = step_table(signals)
     assert [row[3] for row in steps.rows] == ["0.410", "0.380", "0.430", "0.420"]
     assert "Mean of St1: 0.410 ± 0.011 s." in steps.note
+    hidden = step_table(replace(signals, step_delays=[replace(one, speed_time_s=None) for one in signals.step_delays]))
+    assert [row[3] for row in hidden.rows] == ["hidden by noise"] * 4
+    assert "Mean of" not in hidden.note
     strips = strip_table(signals)
     assert strips.rows[1][2:] == ("87.240 ± 0.030", "−3.07 %")
     levels = calibration_table(signals)

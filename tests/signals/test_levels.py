@@ -200,6 +200,24 @@ def test_delay_of_a_pure_delay_and_steps_that_are_missing(steps):
     assert "expected the set point to cross" in findings[1]
 
 
+@pytest.mark.parametrize(("deviations", "is_told"), [(6.0, True), (1.0, False)])
+def test_noise_that_crosses_the_middle_of_a_step_hides_its_delay(steps, deviations, is_told):
+    """Where noise crosses first a delay came out before its cause, by seconds."""
+    time = np.arange(20_000) / RATE_HZ
+    asked = -4.18 * setpoint(steps, time) - 1.4
+    followed = -4.18 * setpoint(steps, time - 0.36) - 1.4
+    half = 0.5 * float(np.min(np.abs(np.diff([-4.18 * level for level in steps.staircases[0].levels_v[:3]]))))
+    noisy = followed + half / deviations * np.random.default_rng(1).standard_normal(time.size)
+    delays, findings = find_step_delays(asked, noisy, steps, rate_hz=RATE_HZ, start_s=0.0)
+    assert len(delays) == 2
+    if is_told:
+        assert findings == ()
+        assert [delay.delay_s for delay in delays] == pytest.approx([0.36, 0.36], abs=0.02)
+    else:
+        assert [delay.delay_s for delay in delays] == [None, None]
+        assert findings[0].startswith("St: noise of the speed hides the delay of 2 of its steps")
+
+
 @pytest.mark.parametrize("start_s", [139.9, 160.0, 399.0])
 def test_step_whose_first_level_was_not_recorded_has_no_delay(steps, start_s):
     """Without the level before a step its middle is not known, and no other part of the record may stand in."""

@@ -107,15 +107,15 @@ class StepDelay:
     """Name of the staircase."""
     set_point_time_s: float
     """When the set point crosses the middle of the step [s]."""
-    speed_time_s: float
-    """When the engine speed crosses the middle of the step [s]."""
+    speed_time_s: float | None
+    """When the engine speed crosses the middle of the step [s]; None where its noise crosses it too."""
     rising: bool
     """Whether the step raises the speed."""
 
     @property
-    def delay_s(self) -> float:
+    def delay_s(self) -> float | None:
         """Level-crossing delay [s]: transport delay, rise time of the loop and sensor delay together."""
-        return self.speed_time_s - self.set_point_time_s
+        return None if self.speed_time_s is None else self.speed_time_s - self.set_point_time_s
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -50,15 +50,17 @@ def step_table(signals: "Signals") -> Table:
         (
             step.staircase,
             plain(step.set_point_time_s, 3),
-            plain(step.speed_time_s, 3),
-            plain(step.delay_s, 3),
+            *("hidden by noise" if one is None else plain(one, 3) for one in (step.speed_time_s, step.delay_s)),
             "rising" if step.rising else "falling",
         )
         for step in signals.step_delays
     )
     note = "Level-crossing delays hold transport delay, rise time of the loop and delay of the sensor together."
     for name in dict.fromkeys(step.staircase for step in signals.step_delays):
-        delays = np.array([step.delay_s for step in signals.step_delays if step.staircase == name])
+        of_name = (step.delay_s for step in signals.step_delays if step.staircase == name)
+        delays = np.array([delay for delay in of_name if delay is not None])
+        if not delays.size:
+            continue
         error = float(delays.std(ddof=1)) / np.sqrt(delays.size) if delays.size > 1 else 0.0
         note += f" Mean of {name}: {with_deviation(float(delays.mean()), error)} s."
     return Table(

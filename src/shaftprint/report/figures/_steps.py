@@ -37,12 +37,12 @@ def delay_chart(signals: "Signals", *, staircase: str | None = None) -> Chart:
     ValueError
         If there is no step of that name.
     """
-    steps = [s for s in signals.step_delays if staircase in (None, s.staircase)]
+    steps = [s for s in signals.step_delays if staircase in (None, s.staircase) and s.delay_s is not None]
     steps = [s for s in steps if s.staircase == steps[0].staircase]
     if not steps:
         raise ValueError(f"step delays: expected steps of {staircase or 'a staircase'}, found none in the signals.")
     first = steps[0]
-    whole = (first.set_point_time_s - AROUND_S, steps[-1].speed_time_s + AROUND_S)
+    whole = (first.set_point_time_s - AROUND_S, steps[-1].set_point_time_s + AROUND_S)
     zoom = (first.set_point_time_s - ZOOM_BEFORE_S, first.set_point_time_s + ZOOM_AFTER_S)
     return Chart(
         panels=(
@@ -88,16 +88,16 @@ def _crossings(signals: "Signals", step: "StepDelay") -> list[Mark]:
     """Return where set point and speed cross the middle of the step, and the time between."""
     sides = (step.set_point_time_s + np.array([-BESIDE_S, BESIDE_S]) - signals.start_s) * signals.rate_hz
     level = float(_deviation(signals, signals.set_point_rev_s[sides.astype(np.intp)]).mean())
-    ends = np.array([step.set_point_time_s, step.speed_time_s])
+    ends = np.array([step.set_point_time_s, step.speed_time_s], dtype=np.float64)
     return [
         *(Straight(at=float(end), axis="x", dash="dash") for end in ends),
         Line(x=ends, y=np.full(2, level), shade="ink", width=1.4),
-        Words(x=step.speed_time_s, y=level, text=f"{step.delay_s:.3f} s"),
+        Words(x=float(ends[1]), y=level, text=f"{step.delay_s:.3f} s"),
     ]
 
 
 def _delays(steps: "list[StepDelay]") -> Panel:
-    delay = np.array([step.delay_s for step in steps])
+    delay = np.array([step.delay_s for step in steps], dtype=np.float64)
     rising = np.array([step.rising for step in steps])
     number = np.arange(delay.size, dtype=np.float64)
     marks: list[Mark] = []

@@ -45,7 +45,7 @@ def signal_section(inputs: Inputs) -> Section:
                 chart=partial(strip_chart, signals.strips, inputs.vessel),
             )
         )
-    if signals.step_delays:
+    if any(step.delay_s is not None for step in signals.step_delays):
         pictures.append(
             Picture(
                 name="step_delays",

@@ -15,6 +15,8 @@ from shaftprint.signals._signals import StepDelay
 # The levels before and after are taken from the last third of their dwell.
 _REST_SHARE = 1.0 / 3.0
 _LEAST_STEP_V = 1e-6
+# Noise crosses the middle of a step that is less than twice so many of its deviations high, before the step as after.
+_CLEAR = 4.0
 
 
 def find_step_delays(
@@ -33,7 +35,9 @@ def find_step_delays(
     touch are passed over. ``delays``: in order of time. ``findings``: one sentence for each step that could not be
     found.
     """
-    delays, findings = [], []
+    delays: list[StepDelay] = []
+    findings: list[str] = []
+    hidden: dict[str, list[float]] = {}
     for staircase in campaign.staircases:
         levels = staircase.levels_v
         for k in range(1, len(levels)):
@@ -48,15 +52,25 @@ def find_step_delays(
                     "between its levels, found no crossing"
                 )
                 continue
+            at_s, rising, _ = set_point_crossing
+            speed_s, _, deviations = speed_crossing
+            clear = deviations >= _CLEAR
+            if not clear:
+                hidden.setdefault(staircase.name, []).append(deviations)
             delays.append(
                 StepDelay(
                     staircase=staircase.name,
-                    set_point_time_s=set_point_crossing[0],
-                    speed_time_s=speed_crossing[0],
-                    rising=set_point_crossing[1],
+                    set_point_time_s=at_s,
+                    speed_time_s=speed_s if clear else None,
+                    rising=rising,
                 )
             )
     delays.sort(key=lambda delay: delay.set_point_time_s)
+    findings += [
+        f"{name}: noise of the speed hides the delay of {len(heights)} of its steps: half of a step is "
+        f"{min(heights):.1f} standard deviations of the noise, {_CLEAR:g} or more are needed"
+        for name, heights in hidden.items()
+    ]
     return tuple(delays), tuple(findings)
 
 
@@ -68,8 +82,9 @@ def step_window(staircase: Staircase, step: int) -> tuple[float, float]:
 
 def _crossing(
     values: FloatArray, staircase: Staircase, step: int, rate_hz: float, start_s: float
-) -> tuple[float, bool] | None:
-    """Return when the values cross the middle between their levels before and after a step.
+) -> tuple[float, bool, float] | None:
+    """Return when the values cross the middle between their levels before and after a step, whether upwards, and how far
+    that is from the levels, in standard deviations about them.
 
     Nothing is returned where a crossing is not found, or the values do not show both levels.
     """
@@ -83,8 +98,8 @@ def _crossing(
     ahead = round(0.02 * dwell * rate_hz)
     if jump - ahead <= first or end - ahead <= settled:
         return None
-    before = float(np.median(values[first : jump - ahead]))
-    after = float(np.median(values[settled : end - ahead]))
+    levels = values[first : jump - ahead], values[settled : end - ahead]
+    before, after = (float(np.median(level)) for level in levels)
     rising = after > before
     middle = 0.5 * (before + after)
     part = values[first:settled]
@@ -94,4 +109,5 @@ def _crossing(
         return None
     k = int(crossings[0])
     fraction = (middle - part[k]) / (part[k + 1] - part[k])
-    return start_s + (first + k + float(fraction)) / rate_hz, rising
+    noise = max(float(level.std()) for level in levels)
+    return start_s + (first + k + float(fraction)) / rate_hz, rising, abs(after - middle) / max(noise, 1e-12)
