@@ -6,7 +6,17 @@ import numpy as np
 import pytest
 
 from shaftprint.catalogue import structure
-from shaftprint.identify import Prior, Requirements, Settings, Unweighted, assess, identify, identify_jointly, profile
+from shaftprint.identify import (
+    Estimate,
+    Prior,
+    Requirements,
+    Settings,
+    Unweighted,
+    assess,
+    identify,
+    identify_jointly,
+    profile,
+)
 from shaftprint.models import Delay, Gain, Parameter, PIGovernor, Sensitivity, Shaft, Structure
 from shaftprint.spectra import FrequencyResponse, SignalToNoise
 
@@ -225,6 +235,18 @@ def test_a_small_margin_is_a_caution(draw):
     assert (
         "a phase margin of 71 deg, where 80 is the least and a delay margin of 0.4 s for a delay of 0.12 s" in caution
     )
+
+
+def test_a_small_margin_that_is_not_to_be_used_is_no_finding(draw):
+    """What is known to a fifth only is said as a range, and not as a number that is too small."""
+    gain = Estimate(name="gain margin", unit="-", value=1.6, std=0.32, interval_95=(1.1, 2.3))
+    verdict = assess(fitted(draw(LITTLE)), further=(gain,))
+    assert verdict.trustworthy
+    assert "gain margin" in verdict.not_trusted
+    assert verdict.cautions == (
+        "Whether the gain margin is small is not known well enough: the gain margin is between 1.1 and 2.3.",
+    )
+    assert verdict.reason.endswith("the loop is stable.")
 
 
 def test_a_data_set_that_allows_an_unstable_loop_is_a_caution(draw):

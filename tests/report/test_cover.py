@@ -49,6 +49,23 @@ def test_an_inertia_is_held_against_both_deviations(fingerprint, value, state):
     assert "calculation" not in answers(found)[INERTIA].sentence
 
 
+def test_an_inertia_names_the_source_that_the_vessel_file_states(fingerprint):
+    """An estimate from the ship's card is no torsional vibration calculation."""
+    told = {}
+    for source in ("estimated", "table"):
+        rows = {
+            "flywheel": ("upstream", "assumed"),
+            "propeller": ("downstream", source),
+            "water": ("downstream", source),
+        }
+        fields = {f"inertia.{name}.gauge": gauge for name, (gauge, _) in rows.items()}
+        fields |= {f"inertia.{name}.source": of for name, (_, of) in rows.items()}
+        told[source] = answers(fingerprint.model_copy(update={"vessel_fields": fields}))[INERTIA].sentence
+    assert told["estimated"].endswith("(estimated).")
+    assert "torsional" not in told["estimated"]
+    assert told["table"].endswith("(from a table).")
+
+
 def test_a_torque_coefficient_says_what_it_means_for_power(fingerprint):
     """0.0525 for 0.05 is 5 % more at one speed; 4 % measured and 3 % in the file are 1.05 times 5 % together."""
     found = with_physical(fingerprint, "K_Q", value=0.0525, std=0.0021, expected=0.05, expected_std=0.0015)
@@ -101,7 +118,7 @@ def test_many_lines_left_out_are_worth_a_look(fingerprint):
     found = fingerprint.model_copy(update={"conditions": conditions, "quality": quality})
     card = answers(found)["Were the measurements good?"]
     assert card.state == "look"
-    assert card.sentence == "2 of 4 test frequencies could be used, 1 place was repaired."
+    assert card.sentence == "2 of 4 test frequencies went into the fit, 1 place was repaired."
     assert "Data quality" in card.action
 
 

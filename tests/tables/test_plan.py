@@ -15,8 +15,8 @@ def card(lever):
     """What the bridge may see."""
     return SimpleNamespace(
         set_point_v=(5.5, 6.8), set_point_rpm=(1012.0, 1224.0), speed_rpm=(990.0, 1250.0),
-        brake_torque_nm=(100.0, 900.0), rate_rpm_per_s=40.0, step_rpm=0.0, duration_s=719.3, leave_rpm=(530.0, 1600.0),
-        level_v=6.16, level_rpm=1120.0, lever=lever,
+        brake_torque_nm=(100.0, 900.0), share_at_limit=3e-4, rate_rpm_per_s=40.0, step_rpm=0.0,
+        duration_s=719.3, leave_rpm=(530.0, 1600.0), level_v=6.16, level_rpm=1120.0, lever=lever,
     )  # fmt: skip
 
 
@@ -32,6 +32,7 @@ def test_the_bridge_holds_what_its_lever_shows(lever, level, seen, stop):
     table = abort_table(card(lever))
     assert f"To stop: hold the set point at {level}, which asks for" in table.note
     assert table.rows[2] == ("set point", seen, stop)
+    assert table.rows[1][1] == "100 to 900 N·m, at the limits of the engine for at most 0.03 % of the time"
 
 
 @pytest.mark.parametrize(

@@ -80,12 +80,24 @@ def planned_leg_table(test: "PlannedTest") -> Table:
     return Table(title="Legs", columns=columns, rows=tuple(rows), note=note)
 
 
+def _at_limit(card: "AbortCard") -> str:
+    """Return that noise reaches what the engine can give."""
+    share = card.share_at_limit
+    return (
+        "" if share is None else f", at the limits of the engine for at most {plain(PERCENT * share, 2)} % of the time"
+    )
+
+
 def abort_table(card: "AbortCard") -> Table:
     """Return the card for the bridge: what may be seen, and when to stop."""
     lowest, highest = (plain(speed, 0) for speed in card.leave_rpm)
     rows = (
         ("engine speed", f"{_range(card.speed_rpm, 0)} rpm", f"below {lowest} or above {highest} rpm"),
-        ("brake torque", f"{_range(card.brake_torque_nm, 0)} N·m", "the engine smokes, stalls, or goes on hunting"),
+        (
+            "brake torque",
+            f"{_range(card.brake_torque_nm, 0)} N·m{_at_limit(card)}",
+            "the engine smokes, stalls, or goes on hunting",
+        ),
         _set_point(card),
         ("speed asked for", f"{_range(card.set_point_rpm, 0)} rpm", "the speed does not come back between swings"),
         ("its fastest change", f"{plain(card.rate_rpm_per_s, 0)} rpm/s{_steps(card)}", ""),

@@ -1,10 +1,13 @@
 """What does not speak against the numbers of a fit, but is close to it, in sentences."""
 
 import math
+from collections.abc import Collection, Mapping
 
 import numpy as np
 
 from shaftprint.digits import stated
+from shaftprint.distributions import NORMAL_95
+from shaftprint.identify.fit._estimate import Estimate
 from shaftprint.identify.judgement._evidence import Evidence, gain_reserve, loop_delay_s
 from shaftprint.identify.judgement._line_quality import crossings_rad_s
 from shaftprint.identify.judgement._phrases import listed, probability
@@ -15,10 +18,13 @@ from shaftprint.identify.judgement._search_words import wrong_basin_words
 TOO_GOOD = 0.999
 
 
-def cautions_of(evidence: Evidence) -> tuple[str, ...]:
-    """Return what a reader of a trustworthy fit must know all the same."""
+def cautions_of(evidence: Evidence, numbers: Mapping[str, Estimate], not_trusted: Collection[str]) -> tuple[str, ...]:
+    """Return what a reader of a trustworthy fit must know all the same.
+
+    ``numbers``: the margins among them, by name. ``not_trusted``: names of those that are not to be used.
+    """
     return (
-        *_small_margins(evidence),
+        *_small_margins(evidence, numbers, not_trusted),
         *_perhaps_unstable(evidence),
         *_beyond_the_lines(evidence),
         *_scale_of_set_point(evidence),
@@ -29,20 +35,43 @@ def cautions_of(evidence: Evidence) -> tuple[str, ...]:
     )
 
 
-def _small_margins(evidence: Evidence) -> list[str]:
+def _small_margins(evidence: Evidence, numbers: Mapping[str, Estimate], not_trusted: Collection[str]) -> list[str]:
+    small = small_margins(evidence)
+    told = [words for name, words in small.items() if name not in not_trusted]
+    hidden = [name for name in small if name in not_trusted]
+    ranges = [f"the {name} is between {_range(numbers[name])}" for name in hidden if name in numbers]
+    sentences = [f"The stability margins are small: {listed(told)}."] if told else []
+    if hidden:
+        reach = f": {listed(ranges)}" if ranges else ""
+        sentences.append(f"Whether the {listed(hidden)} is small is not known well enough{reach}.")
+    return sentences
+
+
+def small_margins(evidence: Evidence) -> dict[str, str]:
+    """Return the margins that are less than what is required, by name, in words."""
     margins, needs = evidence.margins, evidence.requirements
     if margins is None or evidence.loop != "small":
-        return []
+        return {}
     delay = loop_delay_s(evidence.identification)
-    small = []
+    small = {}
     if gain_reserve(margins) < needs.gain_margin:
-        small.append(f"a gain margin of {gain_reserve(margins):.2f}, where {needs.gain_margin:g} is the least")
+        small["gain margin"] = f"a gain margin of {gain_reserve(margins):.2f}, where {needs.gain_margin:g} is the least"
     degrees = float(np.degrees(abs(margins.phase_margin_rad)))
     if degrees < needs.phase_margin_deg:
-        small.append(f"a phase margin of {degrees:.0f} deg, where {needs.phase_margin_deg:g} is the least")
+        small["phase margin"] = f"a phase margin of {degrees:.0f} deg, where {needs.phase_margin_deg:g} is the least"
     if margins.delay_margin_s < needs.delay_margin_share * delay:
-        small.append(f"a delay margin of {margins.delay_margin_s:.2g} s for a delay of {delay:.2g} s in the loop")
-    return [f"The stability margins are small: {listed(small)}."]
+        small["delay margin"] = (
+            f"a delay margin of {margins.delay_margin_s:.2g} s for a delay of {delay:.2g} s in the loop"
+        )
+    return small
+
+
+def _range(number: Estimate) -> str:
+    """Return the 95 % interval of a margin in words."""
+    reach = NORMAL_95 * number.std
+    low, high = number.interval_95 or (number.value - reach, number.value + reach)
+    unit = "" if number.unit == "-" else f" {number.unit}"
+    return f"{low:.3g} and {high:.3g}{unit}"
 
 
 def _perhaps_unstable(evidence: Evidence) -> list[str]:

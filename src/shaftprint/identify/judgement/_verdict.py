@@ -22,7 +22,7 @@ from shaftprint.errors import IdentificationError
 from shaftprint.identify.fit._estimate import Estimate
 from shaftprint.identify.fit._identification import Identification
 from shaftprint.identify.judgement._affected_numbers import OF_WORKING_POINT, basis_of, by_weight, clause_of
-from shaftprint.identify.judgement._cautions import cautions_of
+from shaftprint.identify.judgement._cautions import cautions_of, small_margins
 from shaftprint.identify.judgement._clock_drift import drift_reasons
 from shaftprint.identify.judgement._data_contradictions import contradicting_data
 from shaftprint.identify.judgement._evidence import Evidence
@@ -181,7 +181,7 @@ def assess(
     not_trusted = {name: doubt for name, doubt in doubts.items() if doubt}
     # a speed that may be used says nothing of governor, inertia or load
     usable = not of_fit and any(not doubts[one.name] and basis_of(one) - OF_WORKING_POINT for one in numbers)
-    cautions = cautions_of(evidence) if usable else ()
+    cautions = cautions_of(evidence, {one.name: one for one in numbers}, not_trusted) if usable else ()
     headline = _headline(evidence, every, trusted=trusted, not_trusted=not_trusted, usable=usable)
     sentences = (
         headline,
@@ -236,16 +236,19 @@ def _headline(
         return f"No number is known well enough: {_worded(not_trusted)}."
     if reasons:
         return f"Part of the numbers can be trusted. {reasons[0].sentence}"
-    return _why_trusted(evidence)
+    return _why_trusted(evidence, not_trusted)
 
 
-def _why_trusted(evidence: Evidence) -> str:
+def _why_trusted(evidence: Evidence, not_trusted: Mapping[str, str]) -> str:
     fit = evidence.identification
     p_value = fit.p_value
     explains = "within what the noise allows" if p_value is None else f"within their noise ({probability(p_value)})"
     # of one start nobody knows whether it is
     clauses = ["the optimum is the only one"] if evidence.search.agreeing > 1 else []
-    clauses += [] if evidence.loop is None else [f"the loop is stable with {evidence.loop} margins"]
+    # margins that are not to be used are no finding
+    known = evidence.loop != "small" or any(name not in not_trusted for name in small_margins(evidence))
+    size = f" with {evidence.loop} margins" if known else ""
+    clauses += [] if evidence.loop is None else [f"the loop is stable{size}"]
     ending = "".join(f", {clause}" for clause in clauses[:-1]) + (", and" if len(clauses) > 1 else " and")
     uniqueness = f"{ending} {clauses[-1]}" if clauses else ""
     return f"The fit can be trusted: {fit.objective.name} explains {_data_words(evidence)} {explains}{uniqueness}."

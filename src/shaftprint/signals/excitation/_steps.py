@@ -83,9 +83,9 @@ def step_window(staircase: Staircase, step: int) -> tuple[float, float]:
 def _crossing(
     values: FloatArray, staircase: Staircase, step: int, rate_hz: float, start_s: float
 ) -> tuple[float, bool, float] | None:
-    """Return when the values cross the middle between their levels before and after a step, whether upwards, and how far
-    that is from the levels, in standard deviations about them.
+    """Return when the values cross the middle between their levels before and after a step.
 
+    Returned besides: whether upwards, and how far the middle is from the levels, in standard deviations about them.
     Nothing is returned where a crossing is not found, or the values do not show both levels.
     """
     dwell = staircase.dwell_s

@@ -4,6 +4,7 @@ import math
 from typing import TYPE_CHECKING
 
 from shaftprint.digits import plain, unit_text, with_deviation
+from shaftprint.fingerprint._vessel_fields import INERTIA
 from shaftprint.report.sections._cover import Card, State
 from shaftprint.report.sections.first_page._doubts import FAR, TOO_FAR, deviations_apart, doubt_of, is_off
 from shaftprint.report.sections.first_page._number_table import shown
@@ -16,6 +17,11 @@ if TYPE_CHECKING:
 PERCENT = 100.0
 ANSWERED_ELSEWHERE = ("I_dn", "K_Q")
 """Physical values that have a question of their own."""
+SOURCES = {
+    "table": "from a table",
+    "reconstructed": "reconstructed from other numbers of a table",
+}
+"""Where an inertia of the vessel file is from, where its own word needs more."""
 NOT_TOLD = "Ask for a longer test if this number is needed."
 
 
@@ -36,12 +42,12 @@ def hunting(fingerprint: "Fingerprint") -> list[Card]:
         ]
     state: State = "fine" if loop == "ample" else "look"
     room = "with room to spare" if loop == "ample" else "with little to spare"
-    words = f"The governed line is stable, {room}."
+    doubt = doubt_of(fingerprint, "gain margin")
+    words = f"The governed line is stable{'' if doubt else f', {room}'}."
     margins = [q for q in fingerprint.margins if q.name == "gain margin"]
     if margins:
         value, interval = shown(margins[0])
         words += f" The governor gain may grow by {value} ({interval}) before the speed hunts; 2 or more is usual."
-    doubt = doubt_of(fingerprint, "gain margin")
     if doubt:
         return [Card(question=question, state="open", sentence=f"{doubt} {words}", action=NOT_TOLD)]
     action = "" if state == "fine" else "Do not raise the governor gain; have its setting checked at the next service."
@@ -57,8 +63,8 @@ def inertia(fingerprint: "Fingerprint") -> list[Card]:
     (quantity,) = inertias
     question = "Is the inertia of propeller and shaft that of the vessel file?"
     words = (
-        f"Measured {with_deviation(quantity.value, quantity.std)} {unit_text(quantity.unit)}, in the vessel "
-        f"file {expected_text(quantity)}."
+        f"Measured {with_deviation(quantity.value, quantity.std)} {unit_text(quantity.unit)}, in the vessel file "
+        f"{expected_text(quantity)}{_by(fingerprint)}."
     )
     apart, doubt = deviations_apart(quantity), doubt_of(fingerprint, "I_dn")
     if doubt or apart is None:
@@ -76,6 +82,18 @@ def inertia(fingerprint: "Fingerprint") -> list[Card]:
             ),
         )
     ]
+
+
+def _by(fingerprint: "Fingerprint") -> str:
+    """Return where the vessel file has the inertia behind the gauge from; nothing where that is not known."""
+    fields = fingerprint.vessel_fields
+    rows = [
+        path.removesuffix(".gauge")
+        for path, value in fields.items()
+        if path.startswith(INERTIA) and path.endswith(".gauge") and value == "downstream"
+    ]
+    sources = dict.fromkeys(str(fields[f"{row}.source"]) for row in rows if f"{row}.source" in fields)
+    return f" ({', '.join(SOURCES.get(source, source) for source in sources)})" if sources else ""
 
 
 def propeller(fingerprint: "Fingerprint") -> list[Card]:

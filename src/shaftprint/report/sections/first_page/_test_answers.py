@@ -117,7 +117,7 @@ def measured(fingerprint: "Fingerprint") -> Card:
     conditions, quality = fingerprint.conditions, fingerprint.quality
     used, left_out = len(conditions.lines_used), len(conditions.lines_left_out)
     repairs = sum(quality.repairs.values())
-    words = f"{used} of {used + left_out} test frequencies could be used"
+    words = f"{used} of {used + left_out} test frequencies went into the fit"
     words += f", {repairs} {'place was' if repairs == 1 else 'places were'} repaired." if repairs else "; no repairs."
     many = left_out > LEFT_OUT * (used + left_out)
     remarks = len(quality.remarks)
