@@ -118,6 +118,14 @@ def test_a_torque_that_is_held_gives_way_to_the_load_with_its_root(most, held):
     assert any(f"from about {one} of" in found.refused for one in held.split("|"))
 
 
+def test_a_held_torque_is_told_beside_a_stretch_in_which_another_lever_was_in_command():
+    """At 0 V the line asks for no speed, which a logarithm of it would not survive."""
+    means = held_above(1.2)
+    elsewhere = replace(means, lever_v=np.where(means.stretch == 3.0, 0.0, means.lever_v))
+    found = torque_is_held(elsewhere, LINE, speed_rev_s=1183.8 / 60.0)
+    assert "a load controller or a limit behind the lever" in found.refused
+
+
 def test_a_demand_that_is_logged_behind_the_load_controller_is_followed():
     assert torque_is_held(held_above(1.2, logged=True), LINE, speed_rev_s=19.73).value == pytest.approx(0.0, abs=0.1)
 

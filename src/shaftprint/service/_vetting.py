@@ -171,7 +171,9 @@ def torque_is_held(still: StillMeans, line: LeverLine, *, speed_rev_s: float) ->
     that it moves there is taken off by. ``speed_rev_s``: engine speed of the working point [rev/s].
     """
     what = "power of the load with which the speed goes at high torques, of a still lever"
-    settled = np.flatnonzero(np.diff(still.stretch, prepend=-1.0) == 0.0)
+    asked = line.speed_rev_s(still.lever_v)
+    # a lever that asks for no speed ahead is not the one in command
+    settled = np.flatnonzero((np.diff(still.stretch, prepend=-1.0) == 0.0) & (asked > 0.0))
     if not settled.size:
         return Found(what=what, value=float("nan"), unit="-")
     _, place, counts = np.unique(still.stretch[settled], return_inverse=True, return_counts=True)
@@ -181,7 +183,7 @@ def torque_is_held(still: StillMeans, line: LeverLine, *, speed_rev_s: float) ->
 
     x, y = (
         values - (of_stretches(values) / counts)[place]
-        for values in np.log([still.load, still.speed_rev_s / line.speed_rev_s(still.lever_v)])[:, settled]
+        for values in np.log([still.load[settled], still.speed_rev_s[settled] / asked[settled]])
     )
     torques = of_stretches(still.load[settled] * (still.speed_rev_s[settled] / speed_rev_s) ** 2) / counts
     order = np.argsort(-torques)
