@@ -13,7 +13,7 @@ from shaftprint.drift import differ, history_of, watch
 from shaftprint.drift._causes import CAUSES
 from shaftprint.drift._course_search import CourseSearch
 from shaftprint.drift._dated import Event
-from shaftprint.drift._series import series_of
+from shaftprint.drift._series import _with_draught, series_of
 from shaftprint.drift._words import limit_sentence, time_to_limit, watch_sentences
 from shaftprint.errors import FingerprintError
 from shaftprint.identify import Settings
@@ -284,6 +284,14 @@ def test_torque_that_goes_with_the_draught_is_no_change_of_the_propeller(base, b
     ]
     _, finding = looked_at(tests)
     assert [one.best.cause.name for one in finding.drifts] == ["propeller"] * changed
+
+
+def test_an_unstated_draught_is_the_mean_of_the_tests_that_were_made_whatever_the_horizon(base):
+    tests = [_at_draught(base, draught_m) for draught_m in (2.0, None, 3.0)]
+    # of 2 and 3 m each is half of log(1.5) beside the mean, and two thirds of that is the torque's
+    for horizon in (3, 20):
+        extended = [*tests, *tests[-1:] * (horizon - 3)]
+        assert _with_draught(extended, 3)[:3] == pytest.approx(np.array([-1.0, 0.0, 1.0]) * np.log(1.5) / 3.0)
 
 
 def _at_draught(test, draught_m):

@@ -75,7 +75,7 @@ def series_of(history: History, *, made: int, load_repeatability: float, moved: 
     start = history.tests[0].at
     time_a = np.array([(test.at - start).total_seconds() / SECONDS_PER_YEAR for test in history.tests])
     torque = np.array([float(role == ShipRole.TORQUE) for role in roles.values()])
-    known = load_repeatability * torque, np.kron(_with_draught(fingerprints), torque)
+    known = load_repeatability * torque, np.kron(_with_draught(fingerprints, made), torque)
     causes, directions = directions_of(roles, singles[0].loadings.get(GAUGE_SCALE), units)
     return Series(
         names=names,
@@ -107,20 +107,19 @@ def _moved(values: FloatArray, baseline: FloatArray, moved: FloatArray | None) -
     return by_all
 
 
-def _with_draught(tests: "Sequence[LineFingerprint]") -> FloatArray:
+def _with_draught(tests: "Sequence[LineFingerprint]", made: int) -> FloatArray:
     """Return by how much the torque of a propeller may go with the draught of each test, a deviation, shape (tests,).
 
-    One where nobody stated it counts as one of the mean draught.
+    One where nobody stated it counts as one of the mean draught of those that were made.
     """
     stated = [test.tested.of_ship_and_water().get("draught_m") for test in tests]
     depths = np.array([np.nan if one is None or one <= 0.0 else one for one in stated])
     known = np.isfinite(depths)
+    if not known[:made].any():
+        return np.zeros(len(tests))
     logarithms = np.log(np.where(known, depths, 1.0))
-    return (
-        np.where(known, ADMIRALTY * (logarithms - logarithms[known].mean()), 0.0)
-        if known.any()
-        else np.zeros(len(tests))
-    )
+    mean = logarithms[:made][known[:made]].mean()
+    return np.where(known, ADMIRALTY * (logarithms - mean), 0.0)
 
 
 def _covariance(
