@@ -4,10 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from tests.known_fits import exact_response
+from tests.known_fits import exact_response, known_signals, taken
 
 from shaftprint.catalogue import structure
 from shaftprint.fingerprint import physical_quantities
+from shaftprint.fingerprint._leg_records import leg_record
 from shaftprint.fingerprint._physical import physical_numbers
 from shaftprint.fingerprint._working_point_share import (
     GAIN,
@@ -21,6 +22,7 @@ from shaftprint.fingerprint._working_point_share import (
 )
 from shaftprint.identify import Prior, Settings, budget, identify, identify_jointly, priors_from_vessel
 from shaftprint.models import at_working_point
+from shaftprint.signals._working_points import LegState
 
 MORE = 0.01
 
@@ -154,6 +156,30 @@ def test_a_gain_that_changed_between_two_legs_moves_what_their_fit_finds(found, 
     alike = [replace(leg, unseen_gain=gain) for leg in legs]
     assert shifts_of_working_point(before, working_point, legs=alike)[GAIN] == pytest.approx(dict.fromkeys(shift, 0.0))
     assert GAIN not in shifts_of_working_point(found, working_point)
+
+
+def test_the_gain_between_those_legs_of_a_test_that_were_chosen_is_in_their_budget(truth, known, working_point):
+    """Three legs were sailed, and two of them are fitted."""
+    first = structure("GAUGE-CLOSED")
+    pairs = [
+        (one, exact_response(one, truth, 0.0005))
+        for one in (first, at_working_point(first, speed_share=0.7, torque_share=0.49, shown_share=0.49))
+    ]
+    fit = identify_jointly(pairs, rng=np.random.default_rng(7), settings=Settings(starts=20, priors=known))
+    points = {
+        name: replace(working_point, engine_speed_rev_s=share * working_point.engine_speed_rev_s, unseen_gain=gain)
+        for name, share, gain in (("M1", 1.0, 0.001), ("M2", 0.85, 0.003), ("M3", 0.7, -0.004))
+    }
+    states = [
+        LegState(name=name, start_s=400.0 * place, period_s=30.0, periods=10, working_point=point)
+        for place, (name, point) in enumerate(points.items())
+    ]
+    fitted = [leg_record(state, main=points["M1"], p_value=0.5) for state in states if state.name != "M2"]
+    kept = taken(fit, signals=replace(known_signals(points["M1"]), legs=tuple(states)), legs=fitted)
+    shift = shifts_of_working_point(fit, points["M1"], legs=[points["M1"], points["M3"]])[GAIN]["K_p"]
+    assert kept.budget.row("K_p").variances[GAIN] == pytest.approx(shift**2)
+    # 0.5 % between the two, see above
+    assert abs(shift) / truth["K_p"] == pytest.approx(2.3 * 0.005, rel=0.05)
 
 
 def test_half_widths_add_in_quadrature_and_bounds_stay():

@@ -108,7 +108,9 @@ def take_fingerprint(
     rack = signals.channels.get("X")
     rack_share = 0.0 if rack is None else rack.reference_std / rack.reference
     main = signals.working_point
-    of_legs = sorted((leg.working_point for leg in signals.legs), key=lambda point: point != main)
+    kept = {leg.name for leg in legs}
+    points = (leg.working_point for leg in signals.legs if leg.name in kept)
+    of_legs = sorted(points, key=lambda point: point != main)
     shifts = shifts_of_working_point(identification, main, rack_share, of_legs if main in of_legs else ())
     stated = _budget(identification, signals.working_point, vessel, margins, shifts)
     physical = (*physical_quantities(identification, signals.working_point, vessel, stated), *ship)
