@@ -1,5 +1,7 @@
 """What a fit has simulated a moment ago is what it would simulate anew, and nothing else's."""
 
+import gc
+import weakref
 from dataclasses import replace
 
 import numpy as np
@@ -9,6 +11,7 @@ from tests.limits.conftest import made_record
 from shaftprint.arrays import frozen_float
 from shaftprint.catalogue import limited_governor
 from shaftprint.limits.prediction._prediction_error import PredictionError
+from shaftprint.limits.prediction._recent_simulations import RecentSimulations
 
 pytestmark = pytest.mark.slow
 FREE = ("K_p", "t_d", "m_max")
@@ -64,3 +67,14 @@ def test_derivatives_come_by_name_and_another_record_is_another_question(record)
     moved = replace(term, record=louder).predicted(values_at())
     np.testing.assert_allclose(moved, term_of(louder).predicted(values_at()), atol=1e-12)
     assert np.abs(moved - term.predicted(values_at())).max() > 1e-3
+
+
+def test_a_record_is_kept_no_longer_than_what_was_simulated_of_it(record):
+    made = replace(record, outputs={"y": frozen_float(np.ones(250))})
+    recent, torque = RecentSimulations(), weakref.ref(made.outputs["y"])
+    coarse = recent.coarser(made)
+    assert recent.coarser(made) is coarse
+    assert 2 * coarse.every == made.every
+    del made, coarse, recent
+    gc.collect()
+    assert torque() is None

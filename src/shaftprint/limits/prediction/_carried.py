@@ -8,14 +8,12 @@ by the error of the derivatives, a per cent, as a share of what the noise moves 
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, fields, replace
-from functools import lru_cache
 
 import numpy as np
 
 from shaftprint.arrays import FloatArray, IntArray
 from shaftprint.identify.likelihood._term import Repeats
 from shaftprint.limits.prediction._prediction_error import AWAY, PredictionError
-from shaftprint.limits.prediction._set_point import GovernorRecord
 from shaftprint.time_domain._span import qr_reduced
 
 
@@ -41,7 +39,7 @@ class CarriedError(PredictionError):
     def rows(self, values: FloatArray) -> FloatArray | None:
         """Return innovations over their deviation and below them their derivatives, shape (1 + free, innovations)."""
         now = self.innovations(values)
-        coarse = replace(self, record=_coarser(self.record), longest_step_s=2.0 * self.longest_step_s)
+        coarse = replace(self, record=self.recent.coarser(self.record), longest_step_s=2.0 * self.longest_step_s)
         along = coarse.simulated(values, [self.whole.names[column] for column in self.free])
         if now is None or along is None:
             return None
@@ -75,9 +73,3 @@ class CarriedError(PredictionError):
             return table
         self.last[:] = [(theta.copy(), rows)]
         return qr_reduced(rows)[None]
-
-
-@lru_cache(maxsize=4)
-def _coarser(record: GovernorRecord) -> GovernorRecord:
-    """Return the record with half the drive; one and the same each time, by which simulations are kept."""
-    return record.coarser()

@@ -9,10 +9,11 @@ from collections.abc import Sequence
 import numpy as np
 
 from shaftprint.arrays import FloatArray, frozen_float
+from shaftprint.limits.prediction._set_point import GovernorRecord
 from shaftprint.time_domain._record import Record
 
-# Beyond the best parameters a descent has tried a few others before it ends.
-KEPT = 12
+# Beyond the best parameters a descent has tried a few others before it ends; few records take turns.
+KEPT, KEPT_RECORDS = 12, 4
 
 
 class RecentSimulations:
@@ -21,6 +22,15 @@ class RecentSimulations:
     def __init__(self) -> None:
         """Begin with none."""
         self._kept: deque[tuple[Record, bytes, tuple[str, ...], FloatArray]] = deque(maxlen=KEPT)
+        self._coarser: deque[tuple[GovernorRecord, GovernorRecord]] = deque(maxlen=KEPT_RECORDS)
+
+    def coarser(self, record: GovernorRecord) -> GovernorRecord:
+        """Return a record with half the drive, one and the same each time: by it simulations are found."""
+        for fine, coarse in self._coarser:
+            if fine is record:
+                return coarse
+        self._coarser.append((record, record.coarser()))
+        return self._coarser[-1][1]
 
     def found(self, record: Record, values: FloatArray, wanted: Sequence[str]) -> FloatArray | None:
         """Return a prediction with derivatives, shape (1 + wanted, samples); None where it was not simulated lately."""
