@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from shaftprint.identify.comparison._black_box import black_box
+from shaftprint.identify.comparison._black_box import black_box, black_boxes
 from shaftprint.spectra import FrequencyResponse
 
 HERTZ = np.geomspace(0.02, 10.0, 40)
@@ -88,3 +88,14 @@ def test_too_few_lines_have_no_flexible_model():
     part = fitted_part(3)
     part.fitted, part.whitened = np.arange(HERTZ.size) < 4, part.whitened[:4]
     assert black_box("M1", part) is None
+
+
+def test_each_of_several_responses_has_a_name_of_its_own():
+    """Charts are told apart by it, of two legs as of two inputs."""
+    parts = [fitted_part(seed) for seed in range(2)]
+    for part in parts:
+        part.name = "response of n, M_s"
+    assert [one.name for one in black_boxes(SimpleNamespace(experiments=parts), ["sines", "M1"])] == ["sines", "M1"]
+    assert len({one.name for one in black_boxes(SimpleNamespace(experiments=parts), [])}) == 2
+    (alone,) = black_boxes(SimpleNamespace(experiments=parts[:1]), [])
+    assert alone.name == "response of n, M_s"

@@ -354,11 +354,11 @@ def judged(survey: Survey, *, rng: np.random.Generator, progress: Progress = SIL
 
     ``rng``: for the starts of the fits without a line, and for the parameter sets that bands are drawn from.
     """
-    beside_rng = copy.deepcopy(rng)
+    beside_rng, measurement = copy.deepcopy(rng), survey.measurement
     validated = (
-        partial(validations_of, survey.identification, survey.measurement, survey.trial)
+        partial(validations_of, survey.identification, measurement, survey.trial)
         if survey.limit_fit is None
-        else partial(validations_with_limits, survey.fingerprint, survey.measurement, survey.trial)
+        else partial(validations_with_limits, survey.fingerprint, measurement, survey.trial)
     )
     validated = partial(validated, rng=beside_rng, progress=progress)
     comparisons: tuple[StructureComparison, ...] = ()
@@ -377,7 +377,7 @@ def judged(survey: Survey, *, rng: np.random.Generator, progress: Progress = SIL
         validations=validations,
         black_boxes=()
         if survey.fingerprint.verdict.trustworthy
-        else black_boxes(survey.identification, [leg.name for leg in survey.measurement.legs]),
+        else black_boxes(survey.identification, [*measurement.working_points] if measurement.legs else []),
         remarks=(*survey.remarks, *remarks),
     )
 

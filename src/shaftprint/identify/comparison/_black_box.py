@@ -122,9 +122,17 @@ class BlackBox(Shown):
 def black_boxes(fit: Identification, legs: Sequence[str]) -> tuple[BlackBox, ...]:
     """Return a flexible model of each response of a fit; ``legs``: names of these, where it is of legs."""
     parts = fit.experiments
-    names = legs if len(legs) == len(parts) else [part.name for part in parts]
-    found = (black_box(name, part) for name, part in zip(names, parts, strict=True))
+    found = (black_box(name, part) for name, part in zip(_names(parts, legs), parts, strict=True))
     return tuple(one for one in found if one is not None)
+
+
+def _names(parts: Sequence[FittedResponse], legs: Sequence[str]) -> Sequence[str]:
+    """Return what each response is called, each name once: pictures of them are told apart by it."""
+    if len(legs) == len(parts):
+        return legs
+    if len(parts) == 1:
+        return [parts[0].name]
+    return [f"{part.name} from {', '.join(part.response.inputs)} ({at})" for at, part in enumerate(parts, start=1)]
 
 
 def black_box(name: str, part: FittedResponse) -> BlackBox | None:
@@ -154,9 +162,8 @@ def black_box(name: str, part: FittedResponse) -> BlackBox | None:
         return None
     grid = np.geomspace(omega.min(), omega.max(), GRID_POINTS)
     model, slopes = fit.with_slopes(grid)
-    table = np.einsum("lij,ljp->lip", inverses, _stacked(fit.with_slopes(omega)[1].transpose(1, 2, 0))).reshape(
-        data.size, -1
-    )
+    at_lines, along = fit.with_slopes(omega)
+    table = np.einsum("lij,ljp->lip", inverses, _stacked(along.transpose(1, 2, 0))).reshape(data.size, -1)
     # what it leaves beyond the noise widens the band
     covariance = np.linalg.pinv(table.T @ table) * max(1.0, fit.cost_2 / freedom)
     relative = slopes / model.T[None]
@@ -174,7 +181,7 @@ def black_box(name: str, part: FittedResponse) -> BlackBox | None:
         model=model,
         magnitude_std=np.sqrt(variances[0]),
         phase_std=np.sqrt(variances[1]),
-        at_lines=fit.with_slopes(omega)[0],
+        at_lines=at_lines,
         structure_at_lines=structure.T,
         whitened=fit.left.reshape(data.shape),
         structure_whitened=part.whitened,
