@@ -6,6 +6,7 @@ import pytest
 from shaftprint.signals._channel_signals import SpeedSignal
 from shaftprint.signals._gaps import EVERYTHING
 from shaftprint.signals._order_scale import reasons_of_orders
+from shaftprint.signals.levels._order_lines import order_lines
 from shaftprint.vessel import load_vessel
 
 VESSEL = load_vessel("stan-tug-1205")
@@ -78,3 +79,15 @@ def test_a_speed_that_is_right_is_right_whatever_stands_in_the_torque(shaft, ord
 
 def test_a_ratio_of_three_digits_is_exact_enough():
     assert reasons_of(vessel_of("engine", 60), ratio=3.8167) == ()
+
+
+def test_a_minute_in_which_nothing_moves_hides_no_line():
+    """As before a test that was simulated without noise: torque and speed are one number each."""
+    moves = TIME_S >= 60.0
+    speed = np.where(moves, ENGINE_REV_S, 20.0)
+    noise = 0.03 * np.random.default_rng(3).normal(size=TIME_S.size)
+    load = 1.0 + moves * (0.05 * np.cos(2.0 * np.pi * np.cumsum(speed) / RATE_HZ) + noise)
+    grid = {"rate_hz": RATE_HZ, "start_s": 0.0, "coverage": EVERYTHING}
+    lines = order_lines(speed, 2000.0 * speed**2 * load, **grid)
+    assert lines.order[np.argmax(lines.size)] == pytest.approx(1.0, abs=lines.resolution)
+    assert order_lines(np.full(TIME_S.size, 20.0), np.full(TIME_S.size, 8e5), **grid) is None

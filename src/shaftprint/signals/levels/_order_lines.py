@@ -69,7 +69,12 @@ def order_lines(
         angle = (np.cumsum(speed_rev_s[part]) - speed_rev_s[begin]) / rate_hz
         load = np.interp(at, angle, torque_nm[part] / speed_rev_s[part] ** 2)
         power = np.abs(np.fft.rfft((load - load.mean()) * taper)) ** 2
-        powers.append(power / np.median(power))
+        middle = float(np.median(power))
+        # of what stands still there is no noise to stand out of
+        if middle > 0.0:
+            powers.append(power / middle)
+    if len(powers) < _FEWEST_PARTS:
+        return None
     power = np.quantile(powers, _MOST_WITHOUT, axis=0)
     beside = np.pad(power, _AROUND, mode="reflect")
     noise = np.median(np.lib.stride_tricks.sliding_window_view(beside, 2 * _AROUND + 1), axis=1)
