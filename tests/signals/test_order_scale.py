@@ -18,9 +18,9 @@ ENGINE_TURNS = np.cumsum(ENGINE_REV_S) / RATE_HZ
 OF_ENGINE, OF_PROPELLER = {0.5: 0.03, 1.0: 0.01, 2.0: 0.02}, {1: 0.02, 3: 0.05, 6: 0.02}
 
 
-def vessel_of(shaft, pulses):
-    speed = VESSEL.sensors.speed[0].model_copy(update={"shaft": shaft, "pulses_per_revolution": pulses, "unit": "V"})
-    return VESSEL.model_copy(update={"sensors": VESSEL.sensors.model_copy(update={"speed": (speed,)})})
+def vessel_of(shaft, pulses, *, of=VESSEL):
+    speed = of.sensors.speed[0].model_copy(update={"shaft": shaft, "pulses_per_revolution": pulses, "unit": "V"})
+    return of.model_copy(update={"sensors": of.sensors.model_copy(update={"speed": (speed,)})})
 
 
 def reasons_of(vessel, *, shown=1.0, ratio=RATIO, engine=OF_ENGINE, propeller=OF_PROPELLER, further=0.0):
@@ -45,6 +45,18 @@ def test_a_tooth_more_or_less_is_counted_by_the_orders(shaft, pulses, more):
     (reason,) = reasons_of(vessel_of(shaft, pulses), shown=(pulses + more) / pulses)
     assert reason.kind == "speed scale"
     assert f"{pulses} is stated, {pulses + more} would fit" in reason.sentence
+
+
+def test_a_motor_without_gears_has_no_ratio_that_could_be_wrong():
+    ferry = load_vessel("e-ferry-ellen")
+    assert (ferry.gearbox.ratio, ferry.engine) == (1.0, None)
+    ferry = ferry.model_copy(update={"propeller": ferry.propeller.model_copy(update={"blades": 2})})
+    orders = {"ratio": 1.0, "engine": {}, "propeller": {1: 0.02, 2: 0.05}}
+    (reason,) = reasons_of(vessel_of("engine", 24, of=ferry), shown=25 / 24, **orders)
+    assert reason.kind == "speed scale"
+    assert "24 is stated, 25 would fit" in reason.sentence
+    assert "gear" not in reason.sentence
+    assert reasons_of(vessel_of("engine", 24, of=ferry), **orders) == ()
 
 
 def test_a_gear_ratio_is_told_by_the_orders_of_the_other_shaft():

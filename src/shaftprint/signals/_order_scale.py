@@ -74,8 +74,9 @@ def reasons_of_orders(
     sensor = next(one for one in vessel.sensors.speed if one.name == speed.name)
     exact = _OF_COUNT if sensor.counts_turns else _OF_INSTRUMENT
     orders = [order for order in vessel.orders if order.per_engine_turn < lines.highest]
-    own = [order for order in orders if order.shaft == sensor.shaft]
-    other = [order for order in orders if order.shaft != sensor.shaft]
+    # without gears there is one shaft
+    own = [order for order in orders if order.shaft == sensor.shaft or vessel.gearbox.ratio == 1.0]
+    other = [order for order in orders if order not in own]
     of_own, of_other = _multiples(lines, own, exact), _multiples(lines, other, exact + _OF_RATIO)
     found = _best(lines, orders, exact=exact + _OF_RATIO, belonging=of_own | of_other)
     if found is not None and any(order in own for order in found.orders) and not _is_no_wheel(found, sensor):
