@@ -18,9 +18,9 @@ ENGINE_TURNS = np.cumsum(ENGINE_REV_S) / RATE_HZ
 OF_ENGINE, OF_PROPELLER = {0.5: 0.03, 1.0: 0.01, 2.0: 0.02}, {1: 0.02, 3: 0.05, 6: 0.02}
 
 
-def vessel_of(shaft, pulses, *, of=VESSEL):
+def vessel_of(shaft, pulses, *, of=VESSEL, beside=()):
     speed = of.sensors.speed[0].model_copy(update={"shaft": shaft, "pulses_per_revolution": pulses, "unit": "V"})
-    return of.model_copy(update={"sensors": of.sensors.model_copy(update={"speed": (speed,)})})
+    return of.model_copy(update={"sensors": of.sensors.model_copy(update={"speed": (speed, *beside)})})
 
 
 def reasons_of(vessel, *, shown=1.0, ratio=RATIO, engine=OF_ENGINE, propeller=OF_PROPELLER, further=0.0):
@@ -57,6 +57,14 @@ def test_a_motor_without_gears_has_no_ratio_that_could_be_wrong():
     assert "24 is stated, 25 would fit" in reason.sentence
     assert "gear" not in reason.sentence
     assert reasons_of(vessel_of("engine", 24, of=ferry), **orders) == ()
+
+
+def test_of_two_pick_ups_that_differ_by_one_tooth_of_many_it_is_not_said_that_they_agree():
+    """Up to one per cent apart they are compared in a finding alone."""
+    another = VESSEL.sensors.speed[0].model_copy(update={"name": "n_2", "channel": "PTM_2"})
+    (reason,) = reasons_of(vessel_of("engine", 120, beside=[another]), shown=121 / 120)
+    assert "120 is stated, 121 would fit" in reason.sentence
+    assert "agree" not in reason.sentence
 
 
 def test_a_gear_ratio_is_told_by_the_orders_of_the_other_shaft():

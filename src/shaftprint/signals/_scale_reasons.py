@@ -5,6 +5,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from shaftprint.reasons import Reason
+from shaftprint.signals.kinds._compare import LARGEST_DIFFERENCE
 from shaftprint.signals.levels._speed_scale import (
     ScaleDoubt,
     ScaleEvidence,
@@ -187,7 +188,8 @@ def _told(beside: Mapping[str, float], ending: str) -> str:
 def what_to_check(factor: float, vessel: "Vessel") -> str:
     """Return which field of the vessel file would make a speed right that is shown so many times too large."""
     sensors, ratio = vessel.sensors.speed, vessel.gearbox.ratio
-    if len(sensors) > 1:
+    # pick-ups that differ by more would have been refused: one of them may be off by less
+    if len(sensors) > 1 and abs(factor - 1.0) > LARGEST_DIFFERENCE:
         names = ", ".join(sensor.channel for sensor in sensors)
         return (
             f"all of {names} agree, so look for what divides or doubles their pulses on the way to the logger, and "
