@@ -68,7 +68,7 @@ _WORDS: "Mapping[ReasonKind, tuple[str, str]]" = {
         "Correct the file that describes it, then identify once more.",
     ),
     "gear ratio": (
-        "The two speed pick-ups do not agree with the gear ratio.",
+        "The gear ratio is not what the vessel file says.",
         "Check gear ratio and pulses per revolution in the vessel file, then identify once more.",
     ),
     "elastic coupling": (
