@@ -8,6 +8,7 @@ from tests.known_fits import exact_response, known_signals, taken
 
 from shaftprint.catalogue import structure
 from shaftprint.fingerprint import physical_quantities
+from shaftprint.fingerprint._joint_numbers import joint_numbers
 from shaftprint.fingerprint._leg_records import leg_record
 from shaftprint.fingerprint._physical import physical_numbers
 from shaftprint.fingerprint._working_point_share import (
@@ -180,6 +181,18 @@ def test_the_gain_between_those_legs_of_a_test_that_were_chosen_is_in_their_budg
     assert kept.budget.row("K_p").variances[GAIN] == pytest.approx(shift**2)
     # 0.5 % between the two, see above
     assert abs(shift) / truth["K_p"] == pytest.approx(2.3 * 0.005, rel=0.05)
+
+
+def test_the_gain_of_a_leg_that_is_fitted_alone_is_no_error_that_two_tests_share(found, working_point, vessel):
+    shifts = shifts_of_working_point(found, working_point)
+    known, unseen = (
+        joint_numbers(found, replace(working_point, unseen_gain=gain), vessel, shifts) for gain in (0.0, 0.002)
+    )
+    assert unseen.loadings == known.loadings
+    value = next(item.number for item in physical_numbers(found, working_point, vessel) if item.number.name == "K_Q")
+    of_gain = unseen.covariance_of(("K_Q",)) - known.covariance_of(("K_Q",))
+    named = found.structure.named(found.structure_values())
+    assert of_gain[0, 0] == pytest.approx((0.002 * float(value.of(named))) ** 2)
 
 
 def test_half_widths_add_in_quadrature_and_bounds_stay():

@@ -14,6 +14,7 @@ from pydantic import Field, model_validator
 from shaftprint.arrays import FloatArray
 from shaftprint.fingerprint._covariance_check import covariance_fault
 from shaftprint.fingerprint._physical import GAUGE_ZERO, physical_numbers
+from shaftprint.fingerprint._working_point_share import GAIN
 from shaftprint.identify.uncertainty._joint import JointCovariance, joint_covariance
 from shaftprint.records import Record
 
@@ -22,8 +23,8 @@ if TYPE_CHECKING:
     from shaftprint.signals._working_points import WorkingPoint
     from shaftprint.vessel._vessel import Vessel
 
-# Each test has a zero of its own: it drifts, and is taken anew.
-OF_THE_TEST = ("gauge zero",)
+# Each test has a zero of its own: it drifts, and is taken anew. What its gain lost unseen is of the test too.
+OF_THE_TEST = ("gauge zero", GAIN)
 
 
 class JointNumbers(Record):
