@@ -178,3 +178,10 @@ def test_rows_that_are_fewer_than_the_head_says_are_told(tmp_path):
     recording, values = _read(tmp_path, text)
     assert values["Torque"].size == 7
     assert any("50 samples are said to follow, 7 do" in remark for remark in recording.remarks)
+
+
+def test_a_count_of_samples_that_is_none_is_not_told(tmp_path):
+    text = _head() + _segment(ROWS).replace("Channels|2|\n", f"Channels|2|\nSamples|{'9' * 5000}|50|\n")
+    recording, values = _read(tmp_path, text)
+    assert values["Torque"].size == 50
+    assert not any("are said to follow" in remark for remark in recording.remarks)

@@ -36,6 +36,8 @@ _END_OF_HEAD, _SPECIAL, _END_OF_SPECIAL = "***End_of_Header***", "***Start_Speci
 _SEPARATORS = {"tab": "\t", "comma": ",", "semicolon": ";", "space": " "}
 _COMMENT = "comment"
 _TIMES = "X_Value"
+# Damaged counts may be longer than a text of digits that Python takes for a number.
+_MOST_DIGITS = 18
 _DATE = re.compile(r"(\d{4})[/.-](\d\d?)[/.-](\d\d?)")
 _TIME = re.compile(r"(\d\d?):(\d\d):(\d\d)(?:[.,](\d+))?")
 
@@ -165,7 +167,10 @@ def _recording(
         done = _rows(path, file, segment, header, spool)
         segment.count = done.count
         gathered.remarks.extend(done.remarks)
-        said = max((int(one) for one in segment.head.get("Samples", ()) if one.isdecimal()), default=0)
+        said = max(
+            (int(one) for one in segment.head.get("Samples", ()) if one.isdecimal() and len(one) <= _MOST_DIGITS),
+            default=0,
+        )
         if said > done.count:
             gathered.remarks.append(f"Line {segment.line}: {said} samples are said to follow, {done.count} do.")
         wordy = {places[header.names.index(name)]: reason for name, reason in done.left_out.items()} | wordy
