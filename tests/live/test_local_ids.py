@@ -184,6 +184,9 @@ def test_channels_are_found_by_their_local_ids(channel_list):
         channel_list.named({"n_e": ENGINE, "rack": "/dnv-v2/vis-3-4a/411.1/C101/meta/qty-fuel.index"})
 
 
+DEEP = f'<Package xmlns="urn:ISO19848:SHIP_DATA_DEFINITION">{"<A>" * 3000}{"</A>" * 3000}</Package>'
+
+
 @pytest.mark.parametrize(
     ("content", "sentence"),
     [
@@ -194,6 +197,8 @@ def test_channels_are_found_by_their_local_ids(channel_list):
         (b"<a", "expected XML"),
         (b"<!DOCTYPE a [<!ENTITY b 'c'>]><a>&b;</a>", "without a document type, found DTDForbidden"),
         (b"<Package/>", "found none in it"),
+        (b'<?xml version="1.0" encoding="foo"?><Package/>', "found LookupError: unknown encoding: foo"),
+        (DEEP.encode(), "found RecursionError"),
     ],
 )
 def test_what_is_no_list(tmp_path, content, sentence):

@@ -144,13 +144,13 @@ def _from_xml(path: Path, content: bytes) -> Any:
     parser = library("defusedxml.ElementTree", "lists of data channels in XML")
     try:
         root = parser.fromstring(content, forbid_dtd=True)
-    except (parser.ParseError, ValueError) as error:
-        # what defusedxml refuses is a ValueError too
+        return {root.tag.removeprefix(_SPACE): _as_json(root)}
+    except (parser.ParseError, ValueError, LookupError, RecursionError) as error:
+        # what defusedxml refuses is a ValueError too, and a code page that nobody knows a LookupError
         raise SettingsError(
             f"{path}: expected XML without a document type, found {printable(type(error).__name__)}: "
             f"{printable(str(error))}; export the list anew."
         ) from None
-    return {root.tag.removeprefix(_SPACE): _as_json(root)}
 
 
 def _as_json(element: Any) -> Any:
