@@ -2,6 +2,7 @@
 
 import faulthandler
 import struct
+import tempfile
 import time
 
 import asammdf
@@ -56,10 +57,17 @@ def test_what_the_library_does_not_finish_in_time_is_refused(tmp_path, monkeypat
     bytes_to_read(path)[0].close()
     program = tmp_path / "endless.py"
     # ends as the system's limit of processor time ends a program
-    program.write_text("import os, signal\nos.kill(os.getpid(), signal.SIGKILL)\n")
+    program.write_text(
+        "import os, signal, tempfile\nfile = tempfile.NamedTemporaryFile()\nos.kill(os.getpid(), signal.SIGKILL)\n"
+    )
     monkeypatch.setattr(_mdf_trial, "__file__", str(program))
+    folder = tmp_path / "temporary"
+    folder.mkdir()
+    monkeypatch.setattr(tempfile, "tempdir", str(folder))
+    monkeypatch.setenv("TMPDIR", str(folder))
     with pytest.raises(RecordingError, match="finish it with the tool of the logger"):
         bytes_to_read(path)
+    assert list(folder.iterdir()) == []
 
 
 def test_the_trial_leaves_the_file_as_it_is(tmp_path, monkeypatch):

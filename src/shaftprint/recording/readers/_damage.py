@@ -35,17 +35,19 @@ def told_as_damage(path: Path, what: str) -> Iterator[io.StringIO]:
         ) from None
 
 
-def comes_to_an_end(program: ModuleType, path: Path) -> bool:
+def comes_to_an_end(program: ModuleType, path: Path, *, scratch: str | None = None) -> bool:
     """Return whether a program of its own ends well with a file: what hangs or crashes there does so there.
 
-    ``program``: the module that is run, which limits its time. ``path``: the file.
+    ``program``: the module that is run, which limits its time. ``path``: the file. ``scratch``: folder for temporary
+    files of the program, which it cannot delete itself where it is ended; the usual one where it makes none.
     """
+    folders = {} if scratch is None else dict.fromkeys(("TMPDIR", "TEMP", "TMP"), scratch)
     done = subprocess.run(  # noqa: S603
         [sys.executable, "-P", str(program.__file__), str(path.resolve())],
         stdin=subprocess.DEVNULL,
         stdout=subprocess.DEVNULL,
         stderr=subprocess.DEVNULL,
-        env=os.environ | {"OPENBLAS_NUM_THREADS": "1"},
+        env=os.environ | folders | {"OPENBLAS_NUM_THREADS": "1"},
         check=False,
     )
     return done.returncode == 0

@@ -39,5 +39,12 @@ def finish(path: str) -> None:
         asammdf.MDF(copy, process_bus_logging=False).close()
 
 
+def _leave_no_core() -> None:
+    with contextlib.suppress(ImportError, OSError, ValueError):
+        resource = importlib.import_module("resource")
+        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+
+
 if __name__ == "__main__":
+    _leave_no_core()
     finish(sys.argv[1])

@@ -31,7 +31,10 @@ def bytes_to_read(path: Path) -> tuple[BinaryIO, bool]:
         if not flags:
             file.seek(0)
             return file, False
-        if not comes_to_an_end(_mdf_trial, path):
+        # the library's temporary files have names
+        with tempfile.TemporaryDirectory(prefix="shaftprint-", ignore_cleanup_errors=True) as scratch:
+            is_finished = comes_to_an_end(_mdf_trial, path, scratch=scratch)
+        if not is_finished:
             raise RecordingError(
                 f"{path}: expected a file that its logger has finished, found one that the library asammdf does not "
                 "finish in time, as where lists of data follow each other; finish it with the tool of the logger, or "
