@@ -46,6 +46,13 @@ def test_a_logo_is_drawn_anew_small_and_without_what_else_its_file_holds(tmp_pat
     assert b"secret" not in drawn
 
 
+def test_a_grey_of_16_bits_keeps_its_grey(tmp_path):
+    Image.new("I;16", (1200, 300), 100 * 256).save(tmp_path / "logo.png")
+    drawn, _ = drawn_logo(tmp_path / "logo.png")
+    with Image.open(io.BytesIO(drawn)) as logo:
+        assert logo.getpixel((300, 75)) == (100, 100, 100, 255)
+
+
 @pytest.mark.parametrize(
     ("make", "why"),
     [

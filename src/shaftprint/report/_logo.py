@@ -32,7 +32,9 @@ def drawn_logo(path: Path) -> tuple[bytes | None, str]:
             if picture.width * picture.height > _MOST_PIXELS:
                 return None, f"expected {path.name} of at most 16 million pixels, found more"
             picture.thumbnail(_SIZE_PX)
-            small = picture.convert("RGBA")
+            # a grey of 16 bits would be cut off at the white of 8
+            grey = picture.point(lambda level: level / 256.0).convert("L") if picture.mode.startswith("I") else picture
+            small = grey.convert("RGBA")
     except OSError as error:
         return None, f"expected {path.name} as PNG or JPEG: {reason(error) if error.errno else 'it is neither'}"
     except (ValueError, SyntaxError, Image.DecompressionBombError):
