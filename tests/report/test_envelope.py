@@ -32,6 +32,16 @@ def test_a_short_signal_is_drawn_as_it_is():
     assert np.array_equal(drawn[1], values)
 
 
+def test_a_channel_of_short_floats_is_scaled_with_all_digits():
+    counts = np.array([0.25, 0.5], dtype=np.float32)
+    channel = Channel(
+        name="T", unit="s", rate_hz=1.0, start_s=0.0, count=2, scale=0.1, offset=1e6,
+        source=lambda start, stop: counts[start:stop],
+    )  # fmt: skip
+    _, drawn = channel_envelope(channel)
+    np.testing.assert_allclose(drawn, [1_000_000.025, 1_000_000.05], rtol=1e-15)
+
+
 def test_a_raw_channel_is_read_in_pieces_and_scaled():
     counts = np.zeros(2_500_000, dtype=np.int16)
     counts[[10, 1_048_576, 2_499_999]] = (100, -50, 30)
