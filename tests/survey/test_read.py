@@ -1,5 +1,8 @@
 """One verb opens what commands take, and says what is there where it is something else."""
 
+import re
+import sys
+
 import numpy as np
 import pytest
 from tests.known_fits import TRUTH, fitted, taken
@@ -53,6 +56,25 @@ def test_several_come_in_their_order(folder):
 def test_what_cannot_be_read_is_told_with_what_to_give(folder, name, sentence):
     with pytest.raises(ShaftprintError, match=sentence):
         sp.read(folder / name)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows allows no such names")
+def test_hostile_names_are_told_in_one_plain_sentence(tmp_path):
+    (tmp_path / "res\x1b[31m1").touch()
+    for place in (tmp_path, tmp_path / "res[31m1"):
+        with pytest.raises(ShaftprintError, match=r"res.+31m1") as refused:
+            sp.read(place)
+        assert "\x1b" not in str(refused.value)
+    with pytest.raises(
+        ShaftprintError, match=r"xx: expected a file or a folder that can be opened: File name too long\."
+    ):
+        sp.read("x" * 300)
+
+
+def test_nothing_to_read_is_told_with_the_kinds_that_are_taken():
+    kinds = re.escape("(str | Path | Sequence[str | Path])")
+    with pytest.raises(ShaftprintError, match=f"expected place {kinds}, found nothing;"):
+        sp.read()
 
 
 def test_a_survey_without_ship_or_campaign_says_what_to_give():

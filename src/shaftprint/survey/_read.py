@@ -10,7 +10,9 @@ from shaftprint.arguments import refusing_none
 from shaftprint.campaign._campaign import load_campaign
 from shaftprint.campaign._trial_conditions import load_trial_conditions
 from shaftprint.errors import ShaftprintError
+from shaftprint.escape import printable
 from shaftprint.file_kinds import kind_of_file
+from shaftprint.files import reason
 from shaftprint.fingerprint._json_file import read_any_fingerprint
 from shaftprint.publication._publish import complete
 from shaftprint.recording._read import read_recording
@@ -44,8 +46,15 @@ def read(place: str | Path | Sequence[str | Path], *further: str | Path, **hints
         If there is nothing that can be read; the message says what to give.
     """
     places = [place] if isinstance(place, str | Path) else [*place]
-    found = tuple(_read(str(one), hints) for one in (*places, *further))
+    found = tuple(_opened(str(one), hints) for one in (*places, *further))
     return found[0] if isinstance(place, str | Path) and not further else found
+
+
+def _opened(name: str, hints: Mapping[str, Any]) -> Any:
+    try:
+        return _read(name, hints)
+    except OSError as error:
+        raise ShaftprintError(f"{name}: expected a file or a folder that can be opened: {reason(error)}.") from None
 
 
 def _read(name: str, hints: Mapping[str, Any]) -> Any:
@@ -53,24 +62,20 @@ def _read(name: str, hints: Mapping[str, Any]) -> Any:
     if path.is_dir():
         complete(path)
         return _of_folder(path)
-    for kind, load in _SETTINGS.items():
-        if (
-            not path.exists()
-            and kind != "conditions"
-            and name in shipped_names(files(f"shaftprint.{kind}") / "shipped")
-        ):
-            return load(name)
     if not path.exists():
-        near = meant(path.name, (one.name for one in path.parent.glob("*"))) if path.parent.is_dir() else ""
+        for kind in ("vessel", "campaign"):
+            if name in shipped_names(files(f"shaftprint.{kind}") / "shipped"):
+                return _SETTINGS[kind](name)
+        near = meant(path.name, (printable(one.name) for one in path.parent.glob("*"))) if path.parent.is_dir() else ""
         raise ShaftprintError(f"{name}: expected a file or a folder, found none there.{near}")
     if path.suffix.lower() == ".toml":
-        kind = kind_of_file(path) or ""
-        if kind == "drive":
+        kind_there = kind_of_file(path) or ""
+        if kind_there == "drive":
             raise ShaftprintError(
                 f"{name}: expected a file of a ship, found that of a drive; sp.drive.load_drive reads it."
             )
         # what is of no kind is told what a vessel file has
-        return _SETTINGS.get(kind, load_vessel)(name)
+        return _SETTINGS.get(kind_there, load_vessel)(name)
     if path.suffix.lower() == ".json":
         if path.name == _PLAN:
             raise ShaftprintError(f'{name}: expected a result, found a plan; sp.design.read_plan("{name}") reads it.')
@@ -86,9 +91,9 @@ def _of_folder(folder: Path) -> Any:
     inside = sorted(path.name for path in folder.iterdir() if not path.name.startswith("."))
     within = [name for name in inside if (folder / name / _RESULT).is_file()]
     if within:
-        hint = f'read one of its results, such as "{folder / within[0]}"'
+        hint = f'read one of its results, such as "{printable(str(folder / within[0]))}"'
     elif inside:
-        hint = f'name a file in it, such as "{folder / inside[0]}"'
+        hint = f'name a file in it, such as "{printable(str(folder / inside[0]))}"'
     else:
         hint = "it is empty"
     raise ShaftprintError(f"{folder}: expected the folder of a result, found no {_RESULT} in it; {hint}.")
