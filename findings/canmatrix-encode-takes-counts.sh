@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # About: canmatrix 1.3.3 and cantools 45.1.0, one DBC file, a set point of 1500 rpm put into a frame (factor 0.125)
 # Guess: both put in 1500 rpm, for that is what their decoding calls the value.
-# What happens: canmatrix's encode() takes counts: its own decode() and cantools read 187.5 rpm from the frame. A number beyond the range passes, too, where cantools refuses it.
+# What happens: canmatrix's encode() takes counts: its own decode() and cantools read 187.5 rpm from the frame.
 . "$(dirname "$0")/_setup.sh"
 . "$findings/_dbc.sh"
 packages canmatrix==1.3.3 cantools==45.1.0
