@@ -54,7 +54,8 @@ def command(path: Path, vessel: str | None) -> None:
             rows=tuple(_row(name, one) for name, one in rows.items()),
         )
     )
-    print_findings("What is wrong", offered.findings, is_answer=True) if offered.findings else None
+    if offered.findings:
+        print_findings("What is wrong", offered.findings, is_answer=True)
     known = sum(one.local_id is not None for one in offered.channels)
     answer(
         f"{printable(str(path))}: {len(offered.channels)} channels, {known} of them by the rule dnv-v2; "

@@ -67,10 +67,11 @@ def is_mine(path: Path) -> bool:
         return False
     if name.suffix.lower() in _ENDINGS:
         return True
-    return any(
-        looks_like_a_table((first_bytes(path, count) or b"").decode("utf-8-sig", "replace").splitlines()[:-1][:_HEAD])
-        for count in (len(begin), _SEEN)
-    )
+    return _begins_as_table(begin) or _begins_as_table(first_bytes(path, _SEEN) or b"")
+
+
+def _begins_as_table(content: bytes) -> bool:
+    return looks_like_a_table(content.decode("utf-8-sig", "replace").splitlines()[:-1][:_HEAD])
 
 
 def read(path: Path, **hints: object) -> Recording:
