@@ -1,5 +1,7 @@
 """Figures of drives that are no ships: outputs of any name, and several inputs."""
 
+import re
+
 import numpy as np
 import pytest
 from tests.report.marks import marks, names
@@ -9,6 +11,7 @@ from shaftprint.models import Gain, Parameter, RationalBlock, Structure
 from shaftprint.report import Curve, bode_chart, correlation_chart, residual_chart, sensitivity_chart
 from shaftprint.report.charts._marks import Line, Points
 from shaftprint.report.charts._text import as_plain
+from shaftprint.report.sections._sections import picture_name
 from shaftprint.spectra import FrequencyResponse
 
 FREQUENCY_HZ = np.geomspace(0.5, 20.0, 9)
@@ -116,3 +119,11 @@ def test_sensitivity_of_one_channel(found):
 
 def test_a_name_of_words_is_written_as_it_is(found):
     assert "gain of sensor" in correlation_chart(found).panels[0].x.names
+
+
+@pytest.mark.parametrize(("one", "other"), [("高速", "低速"), ("Fast!", "Fast?"), (f"{'a' * 300}b", f"{'a' * 300}c")])
+def test_two_legs_of_any_names_have_a_picture_each(one, other):
+    names = {picture_name("leg", name) for name in (one, other)}
+    assert len(names) == 2
+    assert all(re.fullmatch(r"leg_[a-z0-9-]{8,70}", name) for name in names)
+    assert picture_name("leg", "M 1") == "leg_m-1"

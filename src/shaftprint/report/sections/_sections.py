@@ -1,5 +1,6 @@
 """What a report is made of: sections with words, tables and pictures."""
 
+import hashlib
 import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -25,6 +26,10 @@ if TYPE_CHECKING:
     from shaftprint.survey._thesis_mode import ThesisMode
     from shaftprint.validation._validation import Validation
     from shaftprint.vessel._vessel import Vessel
+
+# Words of which the name of a picture says all but capitals and marks between them.
+_LONGEST = 60
+_PLAIN = re.compile(rf"[A-Za-z0-9 ._-]{{0,{_LONGEST}}}")
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -93,5 +98,15 @@ class Section:
 
 
 def picture_name(*words: str) -> str:
-    """Return words, some of them a user's, as the name of a picture: what an address could not hold is a hyphen."""
-    return "_".join(re.sub(r"[^a-z0-9-]+", "-", word.lower()).strip("-") for word in words)
+    """Return words, some of them a user's, as the name of a picture: what an address could not hold is a hyphen.
+
+    A word that is long or of other letters has a mark of its own besides: of two legs each has its picture.
+    """
+    return "_".join(map(_addressed, words))
+
+
+def _addressed(word: str) -> str:
+    plain = re.sub(r"[^a-z0-9-]+", "-", word.lower()).strip("-")
+    if _PLAIN.fullmatch(word):
+        return plain
+    return f"{plain[:_LONGEST]}-{hashlib.sha256(word.encode('utf-8', 'replace')).hexdigest()[:8]}".strip("-")
