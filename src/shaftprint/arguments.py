@@ -54,4 +54,7 @@ def refusing_none(
 
 def _name(annotation: object) -> str:
     """Return a type as it is written, without its module."""
-    return annotation.__name__ if isinstance(annotation, type) else str(annotation).rsplit(".", 1)[-1]
+    if isinstance(annotation, type):
+        return annotation.__name__
+    last = str(annotation).rsplit(".", 1)[-1]
+    return last if "[" in last else last.rstrip("]")
