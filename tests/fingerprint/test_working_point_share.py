@@ -23,7 +23,7 @@ from shaftprint.fingerprint._working_point_share import (
 )
 from shaftprint.identify import Prior, Settings, budget, identify, identify_jointly, priors_from_vessel
 from shaftprint.models import at_working_point
-from shaftprint.signals._working_points import LegState
+from shaftprint.signals import LegState
 
 MORE = 0.01
 

@@ -10,7 +10,7 @@ from tests.tug.busy_crew import BUSY
 
 from shaftprint.campaign import TrialConditions
 from shaftprint.cli import shaftprint
-from shaftprint.drift._shared_errors import shared_errors
+from shaftprint.drift import shared_errors
 from shaftprint.errors import ServiceError
 from shaftprint.fingerprint import read_fingerprint, write_fingerprint
 from shaftprint.service import fit_service, scan
