@@ -77,6 +77,8 @@ class Server:
     def kill(self):
         """Kill every process of the server at once; what only its memory held is gone."""
         first = int((self.folder / "data" / "postmaster.pid").read_text().split()[0])
+        # a child that it begets meanwhile would live on, and hold the memory for ever
+        os.kill(first, signal.SIGSTOP)
         children = Path(f"/proc/{first}/task/{first}/children").read_text().split()
         for process in (first, *map(int, children)):
             with suppress(ProcessLookupError):
