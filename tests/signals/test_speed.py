@@ -76,6 +76,7 @@ def test_the_second_derivative_is_continuous_and_at_both_ends_that_of_the_next_k
     assert [out[0], out[-1]] == [slope[0], slope[-1]]
 
 
+@pytest.mark.slow
 def test_a_long_grid_needs_hardly_more_memory_than_the_speed_itself():
     time = np.linspace(0.0, 1000.0, 2000)
     tracemalloc.start()
