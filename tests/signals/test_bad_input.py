@@ -9,6 +9,7 @@ from shaftprint.campaign import Campaign
 from shaftprint.errors import SignalError
 from shaftprint.recording import Recording
 from shaftprint.signals import prepare_signals
+from shaftprint.signals._scale_reasons import torque_beside_file
 
 
 def refused(recording, vessel, campaign, match, **more):
@@ -44,12 +45,14 @@ def test_a_gauge_of_the_wrong_sign_or_scale(ship, vessel, campaign):
     refused(
         ship.recording(), turned, campaign, r"channel M_s: expected a positive mean torque .*, found -1\d\d\d N m; turn"
     )
-    # so much as 1.5 is not the load of another day
-    found = prepare_signals(ship.recording(), with_gauge(vessel, scale_nm_per_unit=2.0 * scale), campaign)
-    (told,) = [finding for finding in found.findings if "scale_nm_per_unit" in finding]
-    assert "the vessel file expects 1725 N m" in told
+    # twice is not the load of another day
+    doubled = with_gauge(vessel, scale_nm_per_unit=2.0 * scale)
+    told = torque_beside_file((prepare_signals(ship.recording(), doubled, campaign).working_point,), doubled)
+    assert f"{2.0 * scale:g} N m for one" in told
+    # 1725 N m at the speed of the file, 1.1 % less here
+    assert "expected a torque around 1687 N m at 1171 rpm" in told
     sound = prepare_signals(ship.recording(), vessel, campaign)
-    assert not [finding for finding in sound.findings if "scale_nm_per_unit" in finding]
+    assert not torque_beside_file((sound.working_point,), vessel)
 
 
 def test_a_file_without_units_is_told_how_to_get_them(spoiled, vessel, campaign):
