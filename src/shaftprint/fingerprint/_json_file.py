@@ -44,7 +44,8 @@ def fingerprint_document(fingerprint: LineFingerprint) -> bytes:
     return (fingerprint.model_dump_json(indent=2) + "\n").encode()
 
 
-_IN_A_FOLDER = "fingerprint.json"
+IN_A_FOLDER = "fingerprint.json"
+"""Name of the file of a result in its folder."""
 
 
 @refusing_none(FingerprintError)
@@ -113,7 +114,7 @@ def read_any_fingerprint(path: str | Path) -> LineFingerprint:
     json_path = Path(path)
     complete(json_path if json_path.is_dir() else json_path.parent)
     if json_path.is_dir():
-        json_path /= _IN_A_FOLDER
+        json_path /= IN_A_FOLDER
     where = "name the file, or the folder in which identify or demo has put it"
     text, content = read_json(json_path, noun="fingerprint", where=where, error=FingerprintError)
     return _fingerprint_of(text, content, named=str(json_path))

@@ -118,7 +118,11 @@ class Channel:
         RecordingError
             As ``read``.
         """
-        values = self.read(start, stop).astype(np.float64)
+        return self.scaled(self.read(start, stop))
+
+    def scaled(self, counts: NDArray[Any]) -> FloatArray:
+        """Return raw counts in the channel's unit, of any shape."""
+        values = counts.astype(np.float64)
         if self.scale != 1.0:
             values *= self.scale
         if self.offset != 0.0:

@@ -13,7 +13,7 @@ from shaftprint.errors import ShaftprintError
 from shaftprint.escape import printable
 from shaftprint.file_kinds import kind_of_file
 from shaftprint.files import reason
-from shaftprint.fingerprint._json_file import read_any_fingerprint
+from shaftprint.fingerprint._json_file import IN_A_FOLDER, read_any_fingerprint
 from shaftprint.publication._publish import complete
 from shaftprint.recording._read import read_recording
 from shaftprint.settings import shipped_names
@@ -23,7 +23,7 @@ from shaftprint.vessel._vessel import load_vessel
 _SETTINGS: Final[Mapping[str, Callable[[str], Any]]] = MappingProxyType(
     {"vessel": load_vessel, "campaign": load_campaign, "conditions": load_trial_conditions}
 )
-_RESULT, _PLAN = "fingerprint.json", "plan.json"
+_PLAN = "plan.json"
 
 
 @refusing_none(ShaftprintError, place='read("result"): the folder of a result, a logger file, a settings file')
@@ -84,16 +84,16 @@ def _read(name: str, hints: Mapping[str, Any]) -> Any:
 
 
 def _of_folder(folder: Path) -> Any:
-    if (folder / _RESULT).is_file():
+    if (folder / IN_A_FOLDER).is_file():
         return read_any_fingerprint(folder)
     if (folder / _PLAN).is_file():
         return _read(str(folder / _PLAN), {})
     inside = sorted(path.name for path in folder.iterdir() if not path.name.startswith("."))
-    within = [name for name in inside if (folder / name / _RESULT).is_file()]
+    within = [name for name in inside if (folder / name / IN_A_FOLDER).is_file()]
     if within:
         hint = f'read one of its results, such as "{printable(str(folder / within[0]))}"'
     elif inside:
         hint = f'name a file in it, such as "{printable(str(folder / inside[0]))}"'
     else:
         hint = "it is empty"
-    raise ShaftprintError(f"{folder}: expected the folder of a result, found no {_RESULT} in it; {hint}.")
+    raise ShaftprintError(f"{folder}: expected the folder of a result, found no {IN_A_FOLDER} in it; {hint}.")

@@ -1,6 +1,5 @@
 """The noun ``AbortCard``: what the bridge may see during a test, and when it is to stop."""
 
-import math
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING
@@ -10,6 +9,7 @@ import numpy as np
 from shaftprint.design.inputs._lever import Lever
 from shaftprint.design.inputs._limits import SPEED_SIGMAS
 from shaftprint.design.motion._motion import SIGNALS, motion_noise
+from shaftprint.distributions import normal_cdf
 from shaftprint.notebook._shown import Shown
 
 if TYPE_CHECKING:
@@ -94,4 +94,4 @@ def abort_card(test: "PlannedTest") -> AbortCard:
 def _share_over(limits: "Limits") -> float:
     """Return the share of the time that a plan leaves to noise beyond a limit of the torque."""
     sigmas = limits.noise_sigmas
-    return limits.share_over if sigmas is None else 0.5 * math.erfc(sigmas / math.sqrt(2.0))
+    return limits.share_over if sigmas is None else float(normal_cdf(-sigmas))

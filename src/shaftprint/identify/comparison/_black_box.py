@@ -14,6 +14,7 @@ from shaftprint.arrays import ComplexArray, FloatArray
 from shaftprint.distributions import NORMAL_95, chi_square_tail
 from shaftprint.identify.fit._identification import Identification
 from shaftprint.identify.likelihood._fitted_response import FittedResponse
+from shaftprint.identify.uncertainty._band import DECIBEL_PER_NEPER
 from shaftprint.late import late
 from shaftprint.notebook._shown import Shown
 from shaftprint.spectra._frequency_response import FrequencyResponse
@@ -28,7 +29,6 @@ EXPLAINS, ENOUGH = 0.01, 0.05
 """From the first p-value on a model explains the data, from the second on no larger one is tried."""
 _LONGEST_DELAY_S = 2.0
 _STEP = 1e-6
-_DB = 20.0 / math.log(10.0)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
@@ -76,9 +76,8 @@ class BlackBox(Shown):
         """Where both differ most: output, frequency [Hz], how much the structure is higher [dB] and ahead [deg]."""
         ratio = np.log(self.structure_at_lines / self.at_lines)
         output, line = np.unravel_index(int(np.argmax(np.abs(ratio))), ratio.shape)
-        furthest = ratio[output, line]
-        hertz = float(self.response.frequency_hz[line])
-        return self.response.outputs[output], hertz, _DB * float(furthest.real), float(np.degrees(furthest.imag))
+        decibels, degrees = DECIBEL_PER_NEPER * float(ratio[output, line].real), np.degrees(ratio[output, line].imag)
+        return self.response.outputs[output], float(self.response.frequency_hz[line]), float(decibels), float(degrees)
 
     @property
     def record(self) -> dict[str, object]:

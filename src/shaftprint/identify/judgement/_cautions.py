@@ -6,7 +6,6 @@ from collections.abc import Collection, Mapping
 import numpy as np
 
 from shaftprint.digits import stated
-from shaftprint.distributions import NORMAL_95
 from shaftprint.identify.fit._estimate import Estimate
 from shaftprint.identify.judgement._evidence import Evidence, gain_reserve, loop_delay_s
 from shaftprint.identify.judgement._line_quality import crossings_rad_s
@@ -68,8 +67,7 @@ def small_margins(evidence: Evidence) -> dict[str, str]:
 
 def _range(number: Estimate) -> str:
     """Return the 95 % interval of a margin in words."""
-    reach = NORMAL_95 * number.std
-    low, high = number.interval_95 or (number.value - reach, number.value + reach)
+    low, high = number.interval_95 or number.limits_95
     unit = "" if number.unit == "-" else f" {number.unit}"
     return f"{low:.3g} and {high:.3g}{unit}"
 

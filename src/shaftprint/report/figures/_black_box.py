@@ -6,17 +6,18 @@ import numpy as np
 
 from shaftprint.arrays import ComplexArray, FloatArray
 from shaftprint.distributions import NORMAL_95
+from shaftprint.identify.uncertainty._band import DECIBEL_PER_NEPER
 from shaftprint.report.charts._chart import Chart, Panel, Scale
 from shaftprint.report.charts._marks import Band, Line, Points
 from shaftprint.report.charts._text import over
 from shaftprint.report.figures._bode import HEIGHTS_PX, frequency_scale
+from shaftprint.report.figures._traces import nearest_turn
 from shaftprint.report.figures._uncertainty import measured_points
 from shaftprint.units import decibel
 
 if TYPE_CHECKING:
     from shaftprint.identify.comparison._black_box import BlackBox
 
-_DB = float(decibel(np.array([np.e]))[0])
 _WIDER = 1.2
 
 
@@ -31,9 +32,9 @@ def black_box_chart(found: "BlackBox") -> Chart:
         model = _phase(found.model[at])
         near = np.interp(np.log(response.omega_rad_s), np.log(omega), model)
         rows = (
-            (decibel(np.abs(found.model[at])), _DB * found.magnitude_std[at],
+            (decibel(np.abs(found.model[at])), DECIBEL_PER_NEPER * found.magnitude_std[at],
              decibel(np.abs(found.structure_at_lines[at])), points.magnitude_db,
-             (points.radial_std * _DB * NORMAL_95, points.above_db)),
+             (points.radial_std * DECIBEL_PER_NEPER * NORMAL_95, points.above_db)),
             (model, np.degrees(found.phase_std[at]), _near(found.structure_at_lines[at], near),
              _near(response.response[at, 0], near), (points.phase_half_deg, points.phase_half_deg)),
         )  # fmt: skip
@@ -69,5 +70,4 @@ def _phase(values: ComplexArray) -> FloatArray:
 
 def _near(values: ComplexArray, phase_deg: FloatArray) -> FloatArray:
     """Return the phases of values by whole turns nearest to others [deg]."""
-    found = np.degrees(np.angle(values))
-    return np.asarray(found + 360.0 * np.round((phase_deg - found) / 360.0))
+    return nearest_turn(np.degrees(np.angle(values)), phase_deg)

@@ -70,6 +70,5 @@ def channel_envelope(channel: "Channel", *, stretches: int = STRETCHES) -> tuple
         # values of the few that are drawn alone: the rest stay counts
         counts = channel.read(first, last)
         places = extremes(counts, stretches=share)
-        values = counts[places].astype(np.float64) * channel.scale + channel.offset
-        pieces.append((channel.time_s(first, last)[places], values))
+        pieces.append((channel.time_s(first, last)[places], channel.scaled(counts[places])))
     return np.concatenate([time for time, _ in pieces]), np.concatenate([value for _, value in pieces])

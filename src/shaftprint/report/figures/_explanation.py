@@ -6,6 +6,7 @@ import numpy as np
 
 from shaftprint.report.charts._chart import Chart, Panel, Scale
 from shaftprint.report.charts._marks import Line, Mark, Points
+from shaftprint.report.figures._traces import nearest_turn
 from shaftprint.units import decibel
 
 if TYPE_CHECKING:
@@ -30,8 +31,7 @@ def missing_damping_chart(explanation: "Explanation") -> Chart:
         turned = np.degrees(np.unwrap(np.angle(values)))
         gain.append(Line(x=curves.omega_rad_s, y=decibel(np.abs(values)), name=name, shade=shade))
         phase.append(Line(x=curves.omega_rad_s, y=turned, name=name, shade=shade))
-    measured_deg = np.degrees(np.angle(measured))
-    measured_deg += 360.0 * np.round((np.interp(at, curves.omega_rad_s, turned) - measured_deg) / 360.0)
+    measured_deg = nearest_turn(np.degrees(np.angle(measured)), np.interp(at, curves.omega_rad_s, turned))
     gain.append(Points(x=at, y=decibel(np.abs(measured)), name="measured"))
     phase.append(Points(x=at, y=measured_deg, name="measured"))
     closed = {"GAUGE-CLOSED": curves.speed_gauge_aware, "OL1+OL5": curves.speed_thesis}

@@ -60,7 +60,12 @@ def measured_phase_deg(data: "FrequencyResponse", channel: int, traces: Sequence
     models = [np.interp(at, np.log(t.omega_rad_s), t.phase_deg) for t in traces]
     misfit = [np.sum(np.abs(np.angle(np.exp(1j * np.radians(phase - m))[data.used]))) for m in models]
     reference = models[int(np.argmin(misfit))]
-    return np.asarray(phase + 360.0 * np.round((reference - phase) / 360.0))
+    return nearest_turn(phase, reference)
+
+
+def nearest_turn(phase_deg: FloatArray, others_deg: FloatArray) -> FloatArray:
+    """Return phases by whole turns nearest to others [deg]."""
+    return np.asarray(phase_deg + 360.0 * np.round((others_deg - phase_deg) / 360.0))
 
 
 def _followed(phase: FloatArray, used: BoolArray) -> FloatArray:

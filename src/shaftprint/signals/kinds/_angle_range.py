@@ -91,7 +91,7 @@ def _parts(channel: "Channel") -> list[FloatArray]:
     """Return the angle in a few stretches from all over the channel, in its unit."""
     if channel.count < _FEWEST_ANGLES:
         raise SignalError(f"channel {channel.name}: expected an angle that turns, found a single one.")
-    return [part.astype(np.float64) * channel.scale + channel.offset for part in spots(channel)]
+    return [channel.scaled(part) for part in spots(channel)]
 
 
 def _found_range(parts: Sequence[FloatArray], span: float) -> float | None:

@@ -195,7 +195,7 @@ def _means(channel: "Channel", group: int, block_samples: int, *, highest: float
     """Yield the means of so many samples in the unit of the channel, not a number where no value was available."""
     waiting = np.empty(0)
     for counts in blocks(channel, block_samples):
-        shown = np.concatenate([waiting, counts * channel.scale + channel.offset])
+        shown = np.concatenate([waiting, channel.scaled(counts)])
         count = shown.size - shown.size % group
         waiting = shown[count:]
         parts = shown[:count].reshape(-1, group)
