@@ -88,6 +88,7 @@ def large_offsets(one: EquippedDrive, fit: Identification) -> Iterator[Reason]:
     counts is the one that stands nearest.
     """
     parts = [part for part in fit.parts if isinstance(part, RecordFit)]
+    elsewhere: list[list[Estimate]] | None = None
     for output in one.drive.outputs:
         level = max(float(np.abs(part.record.outputs[output.name][part.record.used]).max()) for part in parts)
         found = [(part, offset) for part in parts for offset in part.offsets if offset.name == output.name]
@@ -97,9 +98,13 @@ def large_offsets(one: EquippedDrive, fit: Identification) -> Iterator[Reason]:
             for part, offset in found
             if abs(offset.value) - allowed > CERTAIN * offset.std  # false where nothing is known of it
         ]
-        if not large or any(
+        if not large:
+            continue
+        # each costs a simulation of all records
+        elsewhere = list(_offsets_elsewhere(fit)) if elsewhere is None else elsewhere
+        if any(
             all(abs(offset.value) <= allowed for offset in offsets if offset.name == output.name)
-            for offsets in _offsets_elsewhere(fit)
+            for offsets in elsewhere
         ):
             continue
         part, offset = max(large, key=lambda pair: abs(pair[1].value))
