@@ -104,7 +104,8 @@ def rows_of(text, delimiter, decimal, width, least, targets, numbers, texts, odd
                     sign = -1.0 if letter == _MINUS else 1.0
                     at += _ONE
                     letter = text[at]
-                # of more than 19 digits it overflows, and is left to Python
+                # of more than 19 digits it overflows, and is left to Python; the same loop stands here twice, since a
+                # function of its own halves the speed of all
                 first = at
                 while _ZERO <= letter <= _NINE:
                     digits = digits * np.uint64(10) + np.uint64(letter - _ZERO)
