@@ -62,7 +62,10 @@ def test_a_file_is_named_by_its_path_or_by_a_url(tmp_path, run):
 def test_a_password_is_shown_by_nothing(server, run):
     url = server.new_database().replace("postgres:@", f"postgres:{QUOTED}@")
     with create_store(url) as store:
-        assert "42" not in f"{store!r}{store.name}{store.database!r}{store.database.location!r}"
+        shown = f"{store!r}{store.name}{store.database!r}{store.database.location!r}"
+        assert QUOTED not in shown
+        assert "sh%2F42" not in shown
+        assert SECRET not in shown
     for words in (("list",), ("check",), ("init",), ("history", "none"), ("upgrade",)):
         result = run("store", *words, "--store", url, "--json")
         assert "sh%2F42" not in result.output + result.stderr
