@@ -113,6 +113,40 @@ def test_a_missing_file_is_told(tmp_path):
         load_vessel(tmp_path / "ship.toml")
 
 
+def test_a_missing_file_is_told_with_the_one_that_is_spelt_like_it(tmp_path, monkeypatch):
+    write_template("vessel", tmp_path / "vessel.toml")
+    with pytest.raises(SettingsError, match=r"vesel\.toml: expected .* Did you mean vessel\.toml\?$"):
+        load_vessel(tmp_path / "vesel.toml")
+    # the ending that all have in common makes no likeness
+    with pytest.raises(SettingsError, match=r"writes one to fill in\.$"):
+        load_vessel(tmp_path / "tug.toml")
+    with pytest.raises(SettingsError, match=r"Did you mean stan-tug-1205\?$"):
+        load_vessel("stan-tug-120")
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(SettingsError, match=r'^"vessel": expected a path .* Did you mean vessel\.toml\?$'):
+        load_vessel("vessel")
+
+
+def test_a_key_without_its_unit_is_one_mistake(tmp_path):
+    path = tmp_path / "vessel.toml"
+    write_template("vessel", path)
+    text = path.read_text()
+    path.write_text(text.replace("rated_power_kw", "rated_power").replace("\ncylinders", "\ncilinders"))
+    with pytest.raises(SettingsError) as found:
+        load_vessel(path)
+    assert str(found.value) == (
+        f"{path}: 2 fields cannot be used.\n  engine.rated_power: expected no such key; the value is wanted as "
+        "rated_power_kw: convert it to that unit.\n  engine.cilinders: expected no such key; is cylinders meant?"
+    )
+
+
+def test_a_key_that_is_there_already_hides_no_missing_one(tmp_path):
+    message = _message(tmp_path, GOOD.replace("settled_s = 20.0", "amplitude = 0.6"))
+    assert "2 fields cannot be used" in message
+    assert "sines[1].settled_s (S1): expected a value, found none; add the key." in message
+    assert "the value is wanted as amplitude_v" in message
+
+
 def test_a_folder_or_binary_file_is_told(tmp_path):
     (tmp_path / "ship.toml").write_bytes(b"\xff\xfe\x00")
     with pytest.raises(

@@ -7,7 +7,7 @@ import json
 import os
 import secrets
 import tomllib
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from importlib.resources import files
 from importlib.util import find_spec
 from pathlib import Path
@@ -74,7 +74,7 @@ def write_bytes(path: Path, content: bytes, *, noun: str, error: type[Exception]
         raise error(f"{path}: the {noun} cannot be written: {reason(refusal)}.") from None
 
 
-def read_json(path: Path, *, noun: str, where: str, error: type[Exception]) -> tuple[str, Any]:
+def read_json(path: Path, *, noun: str, where: Callable[[], str], error: type[Exception]) -> tuple[str, Any]:
     """Return the text of a JSON file, and what it holds.
 
     Parameters
@@ -82,7 +82,7 @@ def read_json(path: Path, *, noun: str, where: str, error: type[Exception]) -> t
     noun
         What the file should hold, for the message, such as ``fingerprint``.
     where
-        What to do where there is no file, such as ``name the folder``.
+        Gives what to do where there is no file, such as ``name the folder.``; asked only then.
     error
         What is raised where the file cannot be read or is no JSON.
     """
@@ -90,7 +90,7 @@ def read_json(path: Path, *, noun: str, where: str, error: type[Exception]) -> t
         text = path.read_text(encoding="utf-8")
         return text, json.loads(text)
     except FileNotFoundError:
-        raise error(f"{path}: expected a {noun} in JSON, found nothing there; {where}.") from None
+        raise error(f"{path}: expected a {noun} in JSON, found nothing there; {where()}") from None
     except OSError as refusal:
         raise error(f"{path}: expected a {noun} in JSON, but it cannot be read: {reason(refusal)}.") from None
     except (ValueError, RecursionError) as fault:

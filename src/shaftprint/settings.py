@@ -6,11 +6,11 @@ A settings file carries the unit of every number in its key: ``frequency_hz``, `
 import difflib
 import re
 import tomllib
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from importlib.resources import as_file, files
 from importlib.resources.abc import Traversable
 from pathlib import Path
-from typing import Annotated, Any, Literal, TypeVar, get_args
+from typing import Annotated, Any, Literal, TypeAlias, TypeVar, get_args
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from pydantic_core import ErrorDetails
@@ -20,6 +20,7 @@ from shaftprint.file_kinds import kind_of
 from shaftprint.files import reason, written_whole
 from shaftprint.notebook._shown import field_words
 from shaftprint.publication._publish import complete
+from shaftprint.spelling import meant, meant_beside
 
 # Larger than anything on a ship in any unit, and small enough that products and squares stay numbers.
 _LARGEST = 1e30
@@ -62,6 +63,7 @@ class Settings(BaseModel):
 
 
 _Model = TypeVar("_Model", bound=Settings)
+_Place: TypeAlias = tuple[int | str, ...]
 
 
 def names_twice(names: Sequence[str]) -> list[str]:
@@ -109,6 +111,7 @@ def _content(path: Path) -> dict[str, Any]:
     except FileNotFoundError:
         raise SettingsError(
             f"{path}: expected a settings file, found nothing there; shaftprint new writes one to fill in."
+            f"{meant_beside(path)}"
         ) from None
     except UnicodeDecodeError as error:
         line = error.object[: error.start].count(b"\n") + 1
@@ -174,8 +177,10 @@ def _shipped_file(name: str, shipped: Traversable) -> Traversable:
     """Return a file that comes with the package."""
     names = shipped_names(shipped)
     if name not in names:
+        own = [f"{name}.toml"] if Path(f"{name}.toml").is_file() else []
         raise SettingsError(
             f'"{name}": expected a path that ends in .toml or one of the shipped names {", ".join(names)}.'
+            f"{meant(name, own or names)}"
         )
     return shipped / f"{name.replace('-', '_')}.toml"
 
@@ -221,19 +226,23 @@ def write_template(
 
 
 def _describe_all(path: Path, error: ValidationError, model_class: type[Settings], content: Mapping[str, Any]) -> str:
-    rows = [_describe(details, model_class, content) for details in error.errors()]
+    faults = error.errors()
+    missing = {fault["loc"] for fault in faults if fault["type"] == "missing"}
+    unknown = [fault["loc"] for fault in faults if fault["type"] == "extra_forbidden"]
+    # a missing key that stands there under another name is told once, at that name
+    elsewhere = missing & {(*place[:-1], _key_meant(place, model_class, missing)) for place in unknown}
+    rows = [_describe(fault, model_class, content, missing) for fault in faults if fault["loc"] not in elsewhere]
     count = "1 field" if len(rows) == 1 else f"{len(rows)} fields"
     return "\n  ".join([f"{path}: {count} cannot be used.", *rows])
 
 
-def _describe(details: ErrorDetails, model_class: type[Settings], content: Any) -> str:
+def _describe(details: ErrorDetails, model_class: type[Settings], content: Any, missing: Collection[_Place]) -> str:
     where = _dotted_path(details["loc"], content)
     match details["type"]:
         case "missing":
             return f"{where}: expected a value, found none; add the key."
         case "extra_forbidden":
-            keys = _known_keys(model_class, details["loc"][:-1])
-            return f"{where}: expected no such key; {_advice(str(details['loc'][-1]), keys)}"
+            return f"{where}: expected no such key; {_advice(details['loc'], model_class, missing)}"
         case "value_error":
             return f"{where}: {details['msg'].removeprefix('Value error, ')}"
         case "too_short":
@@ -278,16 +287,25 @@ def _model_within(annotation: Any) -> type[Settings]:
     return _model_within(get_args(annotation)[0])
 
 
-def _advice(key: str, keys: Sequence[str]) -> str:
-    for candidate in keys:
-        if _without_unit(candidate) == _without_unit(key):
-            hertz = key.endswith("_rad_s") and candidate.endswith("_hz")
-            how = "divide it by 2 pi" if hertz else "convert it to that unit"
-            return f"the value is wanted as {candidate}: {how}."
-    close = difflib.get_close_matches(key, keys, n=1)
-    if close:
-        return f"is {close[0]} meant?"
-    return f"the known keys are {', '.join(keys)}."
+def _advice(place: _Place, model_class: type[Settings], missing: Collection[_Place]) -> str:
+    key, meant_key = str(place[-1]), _key_meant(place, model_class, missing)
+    if not meant_key:
+        return f"the known keys are {', '.join(_known_keys(model_class, place[:-1]))}."
+    if _without_unit(meant_key) != _without_unit(key):
+        return f"is {meant_key} meant?"
+    hertz = key.endswith("_rad_s") and meant_key.endswith("_hz")
+    return f"the value is wanted as {meant_key}: {'divide it by 2 pi' if hertz else 'convert it to that unit'}."
+
+
+def _key_meant(place: _Place, model_class: type[Settings], missing: Collection[_Place]) -> str:
+    """Return what an unknown key stands for: what is missing rather than what is there; empty where nothing is like it.
+
+    A key without its unit, or with another one, goes before letters that are alike.
+    """
+    *table, key = place
+    keys = sorted(_known_keys(model_class, table), key=lambda known: (*table, known) not in missing)
+    of_other_unit = [known for known in keys if _without_unit(known) == _without_unit(str(key))]
+    return next(iter(of_other_unit or difflib.get_close_matches(str(key), keys, n=1)), "")
 
 
 def _without_unit(key: str) -> str:

@@ -2,13 +2,29 @@
 
 import difflib
 from collections.abc import Iterable
+from pathlib import Path
+
+# Names of files share an ending and are chosen to be alike: more letters have to agree than in a word.
+_WORD, _FILE = 0.6, 0.75
 
 
-def meant(word: str, known: Iterable[str]) -> str:
+def meant(word: str, known: Iterable[str], *, likeness: float = _WORD) -> str:
     """Return ``Did you mean GAUGE-CLOSED?`` with a blank before, or nothing where no known word is like it.
 
-    Capitals make no difference.
+    ``likeness``: share of the letters that have to agree. Capitals make no difference.
     """
     by_letters = {name.casefold(): name for name in known}
-    close = difflib.get_close_matches(word.casefold(), by_letters, n=1, cutoff=0.6)
+    close = difflib.get_close_matches(word.casefold(), by_letters, n=1, cutoff=likeness)
     return f" Did you mean {by_letters[close[0]]}?" if close else ""
+
+
+def meant_beside(path: Path) -> str:
+    """Return which file or folder beside a missing one was probably meant, in the words of ``meant``.
+
+    Names with letters that are not to be seen, and hidden ones, are not proposed.
+    """
+    try:
+        names = [one.name for one in path.parent.iterdir() if one.name.isprintable() and not one.name.startswith(".")]
+    except OSError:
+        return ""
+    return meant(path.name, names, likeness=_FILE)

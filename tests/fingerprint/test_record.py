@@ -254,6 +254,9 @@ def test_file_that_is_missing(tmp_path):
         FingerprintError, match=r"none\.json: expected a fingerprint in JSON, found nothing there; name the file"
     ):
         read_fingerprint(tmp_path / "none.json")
+    (tmp_path / "result").mkdir()
+    with pytest.raises(FingerprintError, match=r"has put it\. Did you mean result\?$"):
+        read_fingerprint(tmp_path / "reslt")
 
 
 @pytest.mark.parametrize(

@@ -54,6 +54,13 @@ def test_a_missing_file_a_folder_and_an_empty_file_are_told(tmp_path):
         read_recording(tmp_path / "empty.csv")
 
 
+def test_a_missing_file_is_told_with_the_one_that_is_spelt_like_it(path):
+    with pytest.raises(RecordingError, match=r"loger\.dat: expected .* Did you mean logger\.dat\?$"):
+        read_recording(path.with_name("loger.dat"))
+    with pytest.raises(RecordingError, match=r"trip\.dat: expected a logger file, found none there\.$"):
+        read_recording(path.with_name("trip.dat"))
+
+
 def test_a_file_that_cannot_be_opened_is_told(path):
     def fail(path):
         raise PermissionError("Permission denied")

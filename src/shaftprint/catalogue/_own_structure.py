@@ -17,6 +17,7 @@ from shaftprint.catalogue._thesis import STRUCTURES
 from shaftprint.errors import ShaftprintError, StructureError
 from shaftprint.models._check import check_structure
 from shaftprint.models._structure import Structure
+from shaftprint.spelling import meant_beside
 
 SUFFIX = ".py"
 
@@ -73,8 +74,8 @@ def _run(path: Path, text: str) -> ModuleType:
             "my_ship.py:my_loop, or the name of a shipped structure."
         )
     if not path.is_file():
-        what = "a folder" if path.is_dir() else "nothing there"
-        raise StructureError(f"{path}: expected a Python file, found {what}.")
+        what = "a folder." if path.is_dir() else f"nothing there.{meant_beside(path)}"
+        raise StructureError(f"{path}: expected a Python file, found {what}")
     origin = str(path.resolve())
     spec = spec_from_file_location(origin, origin, loader=_Text(origin, origin))
     assert spec is not None  # noqa: S101 - a loader was given

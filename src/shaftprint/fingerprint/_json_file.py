@@ -17,6 +17,7 @@ from shaftprint.fingerprint._fingerprint import SCHEMA_VERSION, Fingerprint
 from shaftprint.fingerprint._line_fingerprint import LineFingerprint
 from shaftprint.publication._publish import complete
 from shaftprint.records import faults
+from shaftprint.spelling import meant_beside
 
 _SCHEMA_2 = re.compile(r"2\.([0-9]{1,4})")
 MINOR = int(SCHEMA_VERSION.partition(".")[2])
@@ -115,7 +116,10 @@ def read_any_fingerprint(path: str | Path) -> LineFingerprint:
     complete(json_path if json_path.is_dir() else json_path.parent)
     if json_path.is_dir():
         json_path /= IN_A_FOLDER
-    where = "name the file, or the folder in which identify or demo has put it"
+
+    def where() -> str:
+        return f"name the file, or the folder in which identify or demo has put it.{meant_beside(Path(path))}"
+
     text, content = read_json(json_path, noun="fingerprint", where=where, error=FingerprintError)
     return _fingerprint_of(text, content, named=str(json_path))
 

@@ -15,6 +15,7 @@ from shaftprint.recording.readers._outside import read_outside
 from shaftprint.recording.readers._reader import Reader
 from shaftprint.recording.readers._time_scale import FASTEST_HZ, SLOWEST_HZ
 from shaftprint.recording.readers._unread import remedy
+from shaftprint.spelling import meant_beside
 
 # a log of ordinary service has a value a second or more often
 _SLOW_FILE_HZ = 0.2
@@ -45,7 +46,7 @@ def read_recording(path: str | Path, *, readers: Sequence[Reader] = READERS, **h
     if path.is_dir():
         raise RecordingError(f"{path}: expected a logger file, found a folder; name the file in it.")
     if not path.is_file():
-        raise RecordingError(f"{path}: expected a logger file, found none there.")
+        raise RecordingError(f"{path}: expected a logger file, found none there.{meant_beside(path)}")
     try:
         if path.stat().st_size == 0:
             raise RecordingError(f"{path}: expected a logger file, found an empty one.")

@@ -7,6 +7,7 @@ from shaftprint.arguments import refusing_none
 from shaftprint.errors import StoreError
 from shaftprint.files import reason
 from shaftprint.publication._publish import complete
+from shaftprint.spelling import meant_beside
 from shaftprint.store._document import MOST_BYTES
 from shaftprint.store._nouns import Added, Ship
 from shaftprint.store._record import record_of
@@ -90,7 +91,7 @@ def _content(file: Path) -> bytes:
     except FileNotFoundError:
         raise StoreError(
             f"{file}: expected a fingerprint in JSON, found nothing there; name the file, or the folder in which "
-            "identify or demo has put it."
+            f"identify or demo has put it.{meant_beside(file)}"
         ) from None
     except OSError as refusal:
         raise StoreError(f"{file}: expected a fingerprint, but it cannot be read: {reason(refusal)}.") from None

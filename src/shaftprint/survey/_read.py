@@ -17,7 +17,7 @@ from shaftprint.fingerprint._json_file import IN_A_FOLDER, read_any_fingerprint
 from shaftprint.publication._publish import complete
 from shaftprint.recording._read import read_recording
 from shaftprint.settings import shipped_names
-from shaftprint.spelling import meant
+from shaftprint.spelling import meant_beside
 from shaftprint.vessel._vessel import load_vessel
 
 _SETTINGS: Final[Mapping[str, Callable[[str], Any]]] = MappingProxyType(
@@ -66,8 +66,7 @@ def _read(name: str, hints: Mapping[str, Any]) -> Any:
         for kind in ("vessel", "campaign"):
             if name in shipped_names(files(f"shaftprint.{kind}") / "shipped"):
                 return _SETTINGS[kind](name)
-        near = meant(path.name, (printable(one.name) for one in path.parent.glob("*"))) if path.parent.is_dir() else ""
-        raise ShaftprintError(f"{name}: expected a file or a folder, found none there.{near}")
+        raise ShaftprintError(f"{name}: expected a file or a folder, found none there.{meant_beside(path)}")
     if path.suffix.lower() == ".toml":
         kind_there = kind_of_file(path) or ""
         if kind_there == "drive":

@@ -14,6 +14,7 @@ from shaftprint.files import read_json, write_bytes
 from shaftprint.models._structure import Structure
 from shaftprint.publication._publish import complete
 from shaftprint.records import faults
+from shaftprint.spelling import meant_beside
 
 PLAN: Final = "plan.json"
 """Name of the file in a folder of ``shaftprint plan``."""
@@ -84,7 +85,10 @@ def _structure(record: PlanRecord, own: Structure | None) -> Structure:
 
 def _content(json_path: Path) -> str:
     """Return the content of a file that claims to be a plan of the schema that is known here."""
-    where = "name the folder in which shaftprint plan has put it"
+
+    def where() -> str:
+        return f"name the folder in which shaftprint plan has put it.{meant_beside(json_path)}"
+
     text, content = read_json(json_path, noun="plan", where=where, error=DesignError)
     schema = content.get("schema_version") if isinstance(content, dict) else None
     if schema != SCHEMA_VERSION:

@@ -17,6 +17,7 @@ from shaftprint.recording.readers._library_output import quiet
 from shaftprint.recording.readers.can._frames import EXTENDED, is_j1939, is_nmea_2000, pgn_of, sender_of
 from shaftprint.recording.readers.can._known import KNOWN
 from shaftprint.recording.readers.can._messages import MOST_BYTES, Message, Selection, Signal
+from shaftprint.spelling import meant_beside
 
 # what the library prints where it leaves a line out
 _LINE = re.compile(r"error with line no: (\d+)")
@@ -70,7 +71,7 @@ def read_database(path: Path) -> Database:
     kind = "ARXML" if path.suffix.lower() == ".arxml" else "DBC"
     kind_in_words = "an ARXML" if kind == "ARXML" else "a DBC"
     if not path.is_file():
-        raise RecordingError(f"{path}: expected {kind_in_words} file, found none there.")
+        raise RecordingError(f"{path}: expected {kind_in_words} file, found none there.{meant_beside(path)}")
     canmatrix = library(path, "canmatrix", kind)
     library(path, "canmatrix.formats", kind)
     try:
