@@ -14,6 +14,7 @@ from shaftprint.signals.kinds._compare import compare_speeds
 from shaftprint.signals.kinds._torque import expect_moving_torque
 from shaftprint.signals.levels._steady import SteadyStretch, steady_stretches
 from shaftprint.signals.levels._working_point import deviation, find_working_point, stretches_at_working_point
+from shaftprint.vessel import SpeedSensor, load_vessel
 
 RATE_HZ = 50.0
 
@@ -273,9 +274,43 @@ def test_recording_that_begins_after_a_test(steps):
     assert expect_moving_torque(100.0 * volts, steps, sensor, rate_hz=RATE_HZ, start_s=270.0) is None
 
 
+def pick_ups(ratio=3.82, **shafts_and_teeth):
+    """A vessel with pick-ups alone, whose channels are called as they are, in capitals."""
+    template = load_vessel("stan-tug-1205")
+    speed = tuple(
+        SpeedSensor(name=name, channel=name.upper(), shaft=shaft, pulses_per_revolution=teeth, unit="V")
+        for name, (shaft, teeth) in shafts_and_teeth.items()
+    )
+    return template.model_copy(
+        update={
+            "sensors": template.sensors.model_copy(update={"speed": speed}),
+            "gearbox": template.gearbox.model_copy(update={"ratio": ratio}),
+        }
+    )
+
+
+@pytest.mark.parametrize(
+    ("found", "words"),
+    [
+        # the engine's 183 teeth counted as one strip of the propeller shaft, and the other way round
+        ({"e": 20.0 / 3.82 / 183, "s": 20.0 * 183 * 3.82}, "channels E and S seem to be swapped: expected one engine "),
+        # one of them twice as fast as the other: no swap makes that right
+        ({"e": 20.0, "s": 40.0}, "as with a gear ratio of 1.9100 instead of 3.82"),
+    ],
+)
+def test_channels_that_are_swapped_are_no_gear_ratio(found, words):
+    vessel = pick_ups(e=("engine", 183), s=("propeller", 1))
+    speeds = tuple(
+        SimpleNamespace(name=name, channel=name.upper(), values=np.full(5, value), gaps=())
+        for name, value in found.items()
+    )
+    with pytest.raises(SignalError, match=words.replace(".", r"\.")) as refused:
+        compare_speeds(speeds, vessel, rate_hz=1.0, start_s=0.0)
+    assert ("swapped" in str(refused.value)) != ("gear ratio" in str(refused.value))
+
+
 def test_two_sensors_of_one_shaft_have_no_gear_ratio_to_blame():
-    sensors = [SimpleNamespace(name=name, shaft="engine") for name in ("a", "b")]
-    vessel = SimpleNamespace(sensors=SimpleNamespace(speed=sensors), gearbox=SimpleNamespace(ratio=3.82))
+    vessel = pick_ups(a=("engine", 1), b=("engine", 1))
     speeds = tuple(
         SimpleNamespace(name=name, channel=name.upper(), values=np.full(5, value), gaps=())
         for name, value in (("a", 20.0), ("b", 20.04))
@@ -285,9 +320,7 @@ def test_two_sensors_of_one_shaft_have_no_gear_ratio_to_blame():
 
 
 def test_gear_ratio_the_other_way_round():
-    shafts = {"shaft": "propeller", "engine": "engine"}
-    sensors = [SimpleNamespace(name=name, shaft=shaft, unit="V") for name, shaft in shafts.items()]
-    vessel = SimpleNamespace(sensors=SimpleNamespace(speed=sensors), gearbox=SimpleNamespace(ratio=4.0))
+    vessel = pick_ups(ratio=4.0, shaft=("propeller", 1), engine=("engine", 1))
     speeds = tuple(
         SimpleNamespace(name=name, channel=name, values=np.full(5, value), gaps=())
         for name, value in (("shaft", 20.0), ("engine", 19.0))
@@ -308,9 +341,7 @@ def test_gear_ratio_the_other_way_round():
     ],
 )
 def test_what_changes_with_time_is_no_gear_ratio(ratio, words):
-    shafts = {"e": "engine", "s": "propeller"}
-    sensors = [SimpleNamespace(name=name, shaft=shaft, unit="V") for name, shaft in shafts.items()]
-    vessel = SimpleNamespace(sensors=SimpleNamespace(speed=sensors), gearbox=SimpleNamespace(ratio=3.82))
+    vessel = pick_ups(e=("engine", 1), s=("propeller", 1))
     share = np.arange(1000) / 1000
     values = {"e": np.full(1000, 20.0) * ratio(share), "s": np.full(1000, 20.0)}
     # the propeller's count times the ratio is 20 rev/s all the time: shown as the engine's over the propeller's
@@ -321,8 +352,7 @@ def test_what_changes_with_time_is_no_gear_ratio(ratio, words):
 
 def test_a_speed_that_is_late_is_no_slip():
     """A swing of 10 % and 12 s that is shown 0.4 s late: means of 5 s are 1.5 % apart, to either side."""
-    sensors = [SimpleNamespace(name=name, shaft="engine") for name in ("a", "b")]
-    vessel = SimpleNamespace(sensors=SimpleNamespace(speed=sensors), gearbox=SimpleNamespace(ratio=3.82))
+    vessel = pick_ups(a=("engine", 1), b=("engine", 1))
     time_s = np.arange(2000) / 10.0
     shown = {
         name: 20.0 * (1.0 + 0.1 * np.sin(2.0 * np.pi * (time_s - late) / 12.0))
@@ -334,8 +364,7 @@ def test_a_speed_that_is_late_is_no_slip():
 
 def test_a_speed_is_compared_where_it_has_one():
     """Through a gap a straight line goes on, whatever the shaft did meanwhile."""
-    sensors = [SimpleNamespace(name=name, shaft="engine") for name in ("a", "b")]
-    vessel = SimpleNamespace(sensors=SimpleNamespace(speed=sensors), gearbox=SimpleNamespace(ratio=3.82))
+    vessel = pick_ups(a=("engine", 1), b=("engine", 1))
     true, held = np.linspace(15.0, 25.0, 1000), np.linspace(15.0, 25.0, 1000)
     held[300:] = held[300]
     gap = SimpleNamespace(first_s=150.0, last_s=500.0)

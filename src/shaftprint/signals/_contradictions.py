@@ -1,7 +1,6 @@
 """Channels that cannot be what the vessel file says they are, by their pulses and the sign of the torque."""
 
-from collections.abc import Mapping, Sequence
-from itertools import permutations
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -9,7 +8,7 @@ import numpy as np
 from shaftprint.signals._inspect import ChannelReport, PulseReport
 from shaftprint.signals._scale_reasons import scale_reasons, torque_beside_file
 from shaftprint.signals._working_points import WorkingPoint
-from shaftprint.signals.kinds._compare import LARGEST_DIFFERENCE
+from shaftprint.signals.kinds._compare import are_alike, engine_turns, swapped_pick_ups
 from shaftprint.signals.levels._working_point import direction_words
 
 if TYPE_CHECKING:
@@ -18,8 +17,6 @@ if TYPE_CHECKING:
     from shaftprint.vessel._sensors import SpeedSensor
     from shaftprint.vessel._vessel import Vessel
 
-# All orders of more are tried no longer.
-_MOST_SENSORS = 7
 # A channel without so large a share of its values has another mean than the others.
 _LOST = 0.01
 # A gauge that reads less than this share of the expected torque, below zero, may be one with a zero that has moved.
@@ -52,23 +49,13 @@ def _of_speeds(reports: Sequence[ChannelReport], vessel: "Vessel") -> tuple[str,
     pulses = {report.channel: report.pulses for report in reports if report.pulses is not None}
     # means of other times are not alike: with gaps the test compares the speeds where both have one
     cut = {report.channel for report in reports if _lost_share(report) > _LOST}
-    sensors = [one for one in vessel.sensors.speed if one.channel in pulses and one.channel not in cut][:_MOST_SENSORS]
-    channels = [sensor.channel for sensor in sensors]
-    if len(sensors) < 2 or _agree(sensors, channels, pulses, vessel):
+    sensors = [one for one in vessel.sensors.speed if one.channel in pulses and one.channel not in cut]
+    speeds = [_engine_speed(one, pulses[one.channel], vessel) for one in sensors]
+    if len(sensors) < 2 or are_alike(speeds):
         return ()
-    fitting = [order for order in permutations(channels) if _agree(sensors, order, pulses, vessel)]
-    fewest = min((_moved(channels, order) for order in fitting), default=0)
-    likely = [order for order in fitting if _moved(channels, order) == fewest]
-    contradiction = _in_words(sensors, pulses, vessel)
-    if len(likely) != 1:
-        return (f"{contradiction}; check gearbox.ratio and pulses_per_revolution in the vessel file.",)
-    moved = [(sensor.name, order) for sensor, order in zip(sensors, likely[0], strict=True) if sensor.channel != order]
-    names = " and ".join(sensor.channel for sensor in sensors if sensor.name in dict(moved))
-    right = ", ".join(f"{name} = {channel}" for name, channel in moved)
-    return (
-        f"channels {names} seem to be swapped: {contradiction}; with {right} all pick-ups agree. Correct the channels "
-        "in the vessel file or the columns of the recording.",
-    )
+    swap = swapped_pick_ups(sensors, {channel: one.per_second for channel, one in pulses.items()}, vessel)
+    wrong = f"{_in_words(sensors, speeds, vessel)}; check gearbox.ratio and pulses_per_revolution in the vessel file."
+    return (swap or wrong,)
 
 
 def _lost_share(report: ChannelReport) -> float:
@@ -76,26 +63,14 @@ def _lost_share(report: ChannelReport) -> float:
     return sum(gap.stop_s - gap.start_s for gap in report.gaps) / report.duration_s
 
 
-def _agree(
-    sensors: Sequence["SpeedSensor"], channels: Sequence[str], pulses: Mapping[str, PulseReport], vessel: "Vessel"
-) -> bool:
-    """Return whether all pick-ups give one engine speed when the sensors have these channels."""
-    speeds = [_engine_speed(sensor, pulses[channel], vessel) for sensor, channel in zip(sensors, channels, strict=True)]
-    return max(speeds) <= (1.0 + LARGEST_DIFFERENCE) * min(speeds)
-
-
 def _engine_speed(sensor: "SpeedSensor", pulses: PulseReport, vessel: "Vessel") -> float:
     """Return the engine speed [rev/s]."""
-    return vessel.gearbox.engine_over(sensor.shaft) * pulses.per_second / sensor.pulses_per_revolution
+    return engine_turns(sensor, vessel) * pulses.per_second
 
 
-def _moved(channels: Sequence[str], order: Sequence[str]) -> int:
-    return sum(one != other for one, other in zip(channels, order, strict=True))
-
-
-def _in_words(sensors: Sequence["SpeedSensor"], pulses: Mapping[str, PulseReport], vessel: "Vessel") -> str:
+def _in_words(sensors: Sequence["SpeedSensor"], found: Sequence[float], vessel: "Vessel") -> str:
     """Return how far the two pick-ups that differ most are apart."""
-    speeds = {sensor.name: _engine_speed(sensor, pulses[sensor.channel], vessel) for sensor in sensors}
+    speeds = {sensor.name: speed for sensor, speed in zip(sensors, found, strict=True)}
     shafts = {sensor.name: sensor.shaft for sensor in sensors}
     low, high = min(speeds, key=speeds.__getitem__), max(speeds, key=speeds.__getitem__)
     sentence = f"expected one engine speed, found {low} = {speeds[low]:.4g} and {high} = {speeds[high]:.4g} rev/s"

@@ -1,6 +1,7 @@
 """The speed channels side by side: on one rigid shaft line they must agree."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from itertools import permutations
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,12 +11,15 @@ from shaftprint.errors import SignalError
 from shaftprint.signals.kinds._speed_reading import SpeedReading
 
 if TYPE_CHECKING:
+    from shaftprint.vessel._sensors import SpeedSensor
     from shaftprint.vessel._vessel import Vessel
 
 LARGEST_DIFFERENCE = 1e-2
 """Share by which two pick-ups of one line may differ without an error in the vessel file."""
 
 _FINDING = 1e-3
+# All orders of more are tried no longer.
+_MOST_SENSORS = 7
 # Means of so long tell a slip of a thousandth from the swing of the line between two pick-ups [s].
 _BLOCK_S = 5.0
 # A wrong ratio is the same all the time: what goes from one tenth of the time to the other by more than this share of
@@ -30,12 +34,13 @@ def compare_speeds(
 
     ``speeds``: the speed channels, in the order of the vessel file. ``vessel``: says which shaft carries which.
     ``rate_hz``, ``start_s``: their grid. Returns one sentence for each speed that is off by more than 0.1 %. Raises
-    SignalError if one is off by more than 1 %: all the time, as with a wrong gear ratio or number of strips in the
-    vessel file, or more at one time than at another, as with a clutch that slips or a pick-up that loses pulses.
+    SignalError if one is off by more than 1 %: all the time, as with swapped channels or a wrong gear ratio or number
+    of strips in the vessel file, or more at one time than at another, as with a clutch that slips or a pick-up that
+    loses pulses.
     """
     shafts = {sensor.name: sensor.shaft for sensor in vessel.sensors.speed}
     first = speeds[0]
-    findings = []
+    steady = {}
     for other in speeds[1:]:
         ratios = _ratios(first, other, rate_hz=rate_hz, start_s=start_s)
         if not ratios.size:
@@ -53,6 +58,13 @@ def compare_speeds(
                 f"would be the same all the time: check {where}pick-ups and cables for slip and for pulses that are "
                 "lost."
             )
+        steady[other.name] = ratio
+    swap = _swap_of(first, steady, vessel)
+    if swap:
+        raise SignalError(swap)
+    findings = []
+    for other in speeds[1:]:
+        ratio = steady.get(other.name, 1.0)
         if abs(ratio - 1.0) <= _FINDING:
             continue
         message = (
@@ -70,6 +82,59 @@ def compare_speeds(
             raise SignalError(f"{message}; check gearbox.ratio{_counted(vessel)} in the vessel file.")
         findings.append(message)
     return tuple(findings)
+
+
+def _swap_of(first: SpeedReading, ratios: Mapping[str, float], vessel: "Vessel") -> str:
+    """Return the swap that lets the pick-ups that give pulses agree, by their speeds over that of the first."""
+    speeds = {first.name: 1.0, **ratios}
+    sensors = [one for one in vessel.sensors.speed if one.name in speeds and one.gives_pulses]
+    pulses_hz = {one.channel: speeds[one.name] / engine_turns(one, vessel) for one in sensors}
+    return swapped_pick_ups(sensors, pulses_hz, vessel)
+
+
+def swapped_pick_ups(sensors: Sequence["SpeedSensor"], pulses_hz: Mapping[str, float], vessel: "Vessel") -> str:
+    """Return which channels of pick-ups seem to be swapped; empty where all agree, or no single swap lets them agree.
+
+    ``sensors``: pick-ups that give pulses; of more than seven the first. ``pulses_hz``: pulses a second of each of
+    their channels, all in any one unit.
+    """
+    sensors = sensors[:_MOST_SENSORS]
+    channels = [sensor.channel for sensor in sensors]
+
+    def turns(order: Sequence[str]) -> list[float]:
+        return [
+            engine_turns(sensor, vessel) * pulses_hz[channel] for sensor, channel in zip(sensors, order, strict=True)
+        ]
+
+    def moved(order: Sequence[str]) -> int:
+        return sum(one != other for one, other in zip(channels, order, strict=True))
+
+    if len(sensors) < 2 or are_alike(turns(channels)):
+        return ""
+    fitting = [order for order in permutations(channels) if are_alike(turns(order))]
+    fewest = min(map(moved, fitting), default=0)
+    likely = [order for order in fitting if moved(order) == fewest]
+    if len(likely) != 1:
+        return ""
+    found = sorted(zip(turns(channels), (sensor.name for sensor in sensors), strict=True))
+    (low, slow), (high, fast) = found[0], found[-1]
+    right = [(sensor, order) for sensor, order in zip(sensors, likely[0], strict=True) if sensor.channel != order]
+    names = " and ".join(sensor.channel for sensor, _ in right)
+    return (
+        f"channels {names} seem to be swapped: expected one engine speed, found {fast} / {slow} = {high / low:.3g}; with "
+        f"{', '.join(f'{sensor.name} = {channel}' for sensor, channel in right)} all pick-ups agree. Correct the "
+        "channels in the vessel file or the columns of the recording."
+    )
+
+
+def are_alike(speeds: Sequence[float]) -> bool:
+    """Return whether the speeds of pick-ups are that of one rigid line."""
+    return max(speeds) <= (1.0 + LARGEST_DIFFERENCE) * min(speeds)
+
+
+def engine_turns(sensor: "SpeedSensor", vessel: "Vessel") -> float:
+    """Return the turns of the engine from one pulse to the next."""
+    return vessel.gearbox.engine_over(sensor.shaft) / sensor.pulses_per_revolution
 
 
 def _ratios(first: SpeedReading, other: SpeedReading, *, rate_hz: float, start_s: float) -> FloatArray:
