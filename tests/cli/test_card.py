@@ -40,6 +40,24 @@ def test_a_card_that_contradicts_itself_is_told_so(run, tmp_path):
     assert any("gearbox.ratio: expected 4, " in sentence for sentence in answer)
 
 
+def test_pulses_that_the_logger_cannot_show_are_told_with_the_most_that_it_can(run, tmp_path):
+    """Four samples from tooth to tooth: 500 teeth a second at 2000 Hz, 16 a turn at the 30 turns of 1800 rpm."""
+    result = run("new", "vessel", *CARD, "--engine-pulses", "fly=120", tmp_path / "mine.toml")
+    assert result.exit_code == 0
+    answer = " ".join(result.output.partition("contradicts itself")[2].split())
+    assert "sensors.speed[1].pulses_per_revolution: expected at most 16, as a logger of 2000 Hz shows at" in answer
+    assert "1800 rpm of the engine, found 120; log at 15000 Hz or more" in answer
+    # of the propeller shaft, 3.82 times as slow, 63
+    for pulses, is_told in (("63", False), ("64", True), ("60-2", False), ("31+1", False), ("32+1", True)):
+        path = tmp_path / f"{pulses}.toml"
+        result = run("new", "vessel", *CARD, "--shaft-pulses", f"shaft={pulses}", path)
+        assert ("as a logger of 2000 Hz shows" in " ".join(result.output.split())) == is_told, pulses
+    # what is shown at the 1200 rpm of the test is no contradiction; the plan, which lacks the lever, tells it too
+    planned = run("plan", "--vessel", path, "--within", "12min", "-o", tmp_path / "plan")
+    assert "Findings on the vessel file" in planned.output
+    assert "expected at most 31, as a logger of 2000 Hz shows" in " ".join(planned.output.split())
+
+
 @pytest.mark.parametrize(
     ("words", "message"),
     [

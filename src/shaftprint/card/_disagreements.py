@@ -10,6 +10,7 @@ from shaftprint.card._first_mode import first_mode
 from shaftprint.card._series import open_water_curve, series_torque, tested_pitch
 from shaftprint.units import rev_s_from_rpm
 from shaftprint.vessel._vessel import Vessel
+from shaftprint.vessel._wheel import SAMPLES_A_TOOTH
 
 # A rounded gear ratio is off by half a per cent, and no gear slips.
 _ROUNDED_RATIO, _WRONG_RATIO = 0.005, 0.02
@@ -26,8 +27,9 @@ def disagreements(vessel: Vessel) -> tuple[Disagreement, ...]:
     Held against each other are gear ratio, engine and propeller speed; working speed, idle and highest speed; working
     torque, full-load curve, rated power and full scale of the gauge; what a clutch holds and the full-load curve;
     working torque, torque coefficient and propeller series; a controllable pitch and the series; underway the speed of
-    the ship, at which thrust is to meet resistance; inertias and stiffnesses of the links. A torque that is off by a
-    factor of two contradicts the series, by a quarter it is strange.
+    the ship, at which thrust is to meet resistance; inertias and stiffnesses of the links; the pulses of a pick-up at
+    the highest speed and the rate of the logger. A torque that is off by a factor of two contradicts the series, by a
+    quarter it is strange; so are pulses that are shown at the working point.
     """
     of_propeller = (_thrust,) if vessel.is_underway else (_series, _coefficient)
     checks = (
@@ -41,6 +43,7 @@ def disagreements(vessel: Vessel) -> tuple[Disagreement, ...]:
         _pitch,
         _full_scale,
         first_mode,
+        _pulses,
     )
     found = [disagreement for check in checks for disagreement in check(vessel)]
     return tuple(sorted(found, key=lambda one: not one.is_contradiction))
@@ -290,6 +293,29 @@ def _full_scale(vessel: Vessel) -> Iterator[Disagreement]:
             found=f"{full_scale_nm:g} N m",
             advice="correct it, in N m at the propeller shaft, or the working point",
             is_contradiction=True,
+        )
+
+
+def _pulses(vessel: Vessel) -> Iterator[Disagreement]:
+    """Hold the wheel of each pick-up against the rate of the logger."""
+    if vessel.logger is None:
+        return
+    rate_hz, working_rpm = vessel.logger.sample_rate_hz, vessel.working_point.engine_speed_rpm
+    highest_rpm = max(vessel.limits.highest_speed_rpm or vessel.machine.rated_speed_rpm, working_rpm)
+    for number, sensor in enumerate(vessel.sensors.speed, start=1):
+        wheel = sensor.toothed
+        turns_hz = rev_s_from_rpm(highest_rpm) / vessel.gearbox.engine_over(sensor.shaft)
+        shown = math.floor(rate_hz / (SAMPLES_A_TOOTH * turns_hz))
+        if not sensor.gives_pulses or wheel.closest <= shown:
+            continue
+        yield Disagreement(
+            field=f"sensors.speed[{number}].{'pulses_per_revolution' if sensor.wheel is None else 'wheel'}",
+            expected=f"at most {shown * wheel.places // wheel.closest}, as a logger of {rate_hz:g} Hz shows at "
+            f"{highest_rpm:g} rpm of the {vessel.machine.word}",
+            found=str(wheel),
+            advice=f"log at {wheel.least_rate_hz(turns_hz):g} Hz or more, take a wheel with fewer teeth or that of a "
+            "slower shaft, or leave out [logger] where a counter lists the edges",
+            is_contradiction=wheel.closest * working_rpm > shown * highest_rpm,
         )
 
 

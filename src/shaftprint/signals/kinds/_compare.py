@@ -121,8 +121,8 @@ def swapped_pick_ups(sensors: Sequence["SpeedSensor"], pulses_hz: Mapping[str, f
     right = [(sensor, order) for sensor, order in zip(sensors, likely[0], strict=True) if sensor.channel != order]
     names = " and ".join(sensor.channel for sensor, _ in right)
     return (
-        f"channels {names} seem to be swapped: expected one engine speed, found {fast} / {slow} = {high / low:.3g}; with "
-        f"{', '.join(f'{sensor.name} = {channel}' for sensor, channel in right)} all pick-ups agree. Correct the "
+        f"channels {names} seem to be swapped: expected one engine speed, found {fast} / {slow} = {high / low:.3g}; "
+        f"with {', '.join(f'{sensor.name} = {channel}' for sensor, channel in right)} all pick-ups agree. Correct the "
         "channels in the vessel file or the columns of the recording."
     )
 
