@@ -33,6 +33,7 @@ from shaftprint import models as models
 from shaftprint import normalisation as normalisation
 from shaftprint import notebook as notebook
 from shaftprint import plain_table as plain_table
+from shaftprint import processes as processes
 from shaftprint import propeller as propeller
 from shaftprint import publication as publication
 from shaftprint import reasons as reasons

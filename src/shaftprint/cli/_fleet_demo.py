@@ -13,6 +13,7 @@ from multiprocessing import get_context
 from pathlib import Path
 
 from shaftprint.late import late
+from shaftprint.processes import end_with_parent
 
 with late():
     import numpy as np
@@ -133,5 +134,5 @@ def all_tested(
         return
     # a thread of its own for each process: the processors are shared already
     os.environ.setdefault("OMP_NUM_THREADS", "1")
-    with ProcessPoolExecutor(count, mp_context=get_context("spawn")) as pool:
+    with ProcessPoolExecutor(count, mp_context=get_context("spawn"), initializer=end_with_parent) as pool:
         yield from pool.map(test, tests)

@@ -14,6 +14,7 @@ from shaftprint.live.counterparts._mqtt import MqttCounterpart
 from shaftprint.live.counterparts._mqtt_device import PREFIX, SimulatedDevice, broker, free_port
 from shaftprint.live.counterparts._opcua import OpcUaCounterpart
 from shaftprint.live.counterparts._opcua_server import SimulatedServer
+from shaftprint.processes import end_with_parent
 
 if TYPE_CHECKING:
     from shaftprint.live.counterparts._simulated import SimulatedShip
@@ -50,7 +51,8 @@ def ship_over(kind: str, make: "Callable[[], SimulatedShip]") -> Iterator[Counte
 
 
 def _serve(kind: str, port: int, make: "Callable[[], SimulatedShip]", serves: Event) -> None:
-    """Sail until the process is ended."""
+    """Sail until the process is ended, or the rehearsal is."""
+    end_with_parent()
     ship = make()
     # what is compiled at the first block would look like a link that is silent
     ship.sail()
