@@ -1,19 +1,23 @@
-"""The last line of a command: the next sensible command, with the names of the files that were just used or made."""
+"""The last lines of a command: the next sensible ones, with the names of the files that were just used or made."""
 
 from __future__ import annotations
 
 import os
 import shlex
 import subprocess
+from collections.abc import Sequence
 from pathlib import Path
 
 from shaftprint.cli._terminal import echo
 from shaftprint.cli.output._json import give
+from shaftprint.file_kinds import kind_of_file
 from shaftprint.late import late
 
 with late():
     from shaftprint.vessel._vessel import Vessel
 
+VESSEL_FILE = "vessel.toml"
+"""What a vessel file is called where nobody has said it."""
 FIRST_LENGTH = "12min"
 """Length of a test that is proposed where nobody has said one."""
 
@@ -32,6 +36,41 @@ def print_next(*words: object, label: str = "Next:") -> None:
     line = command_line(*words)
     give("next", line)
     echo(f"{label:<12} {line}")
+
+
+def print_steps(*commands: Sequence[object]) -> None:
+    """Print the next commands, the first to be done first."""
+    first, *others = commands
+    print_next(*first)
+    lines = [command_line(*words) for words in others]
+    if lines:
+        give("then", lines)
+    for line in lines:
+        echo(f"{'then:':<12} {line}")
+
+
+def read_by_all(recording: object, reading: Sequence[object]) -> tuple[object, list[tuple[object, ...]]]:
+    """Return a recording as commands take it that have no options for what its file does not say, and what makes it so.
+
+    ``reading``: such options, as they were given to ``inspect`` or ``identify``.
+    """
+    if not reading:
+        return recording, []
+    target = free(f"{Path(str(recording)).stem}.nc")
+    return target, [("convert", recording, *reading, "-o", target)]
+
+
+def vessel_file_near(recording: Path) -> Path | None:
+    """Return the vessel file of this folder, or of that of a recording; None where there is none, or which is not told.
+
+    Of several it is ``vessel.toml``.
+    """
+    for folder in dict.fromkeys((Path(), recording.parent)):
+        files = [path for path in sorted(folder.glob("*.toml")) if kind_of_file(path) == "vessel"]
+        named = [path for path in files if path.name == VESSEL_FILE]
+        if len(files) == 1 or named:
+            return (named or files)[0]
+    return None
 
 
 def free(name: str) -> Path:

@@ -125,3 +125,9 @@ def hints_of(**said: object) -> dict[str, Any]:
     """Return what was said, under the names that readers know, without what was not."""
     names = {"sample_rate": "sample_rate_hz"}
     return {names.get(name, name): value for name, value in said.items() if value is not None}
+
+
+def reading_words(**said: object) -> tuple[object, ...]:
+    """Return the options of ``reading_options`` as they are typed, without those that were not said."""
+    given = ((f"--{name.replace('_', '-')}", value) for name, value in said.items() if value is not None)
+    return tuple(word for option in given for word in option)

@@ -6,19 +6,21 @@ from pathlib import Path
 
 import click
 
+from shaftprint.cli._after_test import after_test
 from shaftprint.cli._drive_identify import identify_on_the_bench
 from shaftprint.cli._drive_options import drive_option, only_recording
 from shaftprint.cli._fingerprint_tables import print_found
 from shaftprint.cli._fit_options import fit_options
 from shaftprint.cli._identify_both import identify_both_lines
 from shaftprint.cli._limit_tables import print_limits, print_line
-from shaftprint.cli._next import plan_after, print_next
+from shaftprint.cli._next import print_steps
 from shaftprint.cli._options import (
     DEFAULT_HELP,
     OWN_FILE_HELP,
     campaign_option,
     hints_of,
     reading_options,
+    reading_words,
     starboard_option,
     vessel_option,
 )
@@ -44,7 +46,7 @@ with late():
     from shaftprint.survey._limits import with_limits
     from shaftprint.survey._of_vessel import default_structure
     from shaftprint.survey._survey import Survey, judged, run
-    from shaftprint.survey._trial import Trial, load_trial
+    from shaftprint.survey._trial import load_trial
     from shaftprint.tables._legs import leg_test_table
     from shaftprint.tables._structures import fits_table
 
@@ -172,19 +174,15 @@ def command(
             with results.progress() as steps:
                 report.write(folder, recording, survey, hints=hints, steps=steps)
     print_paths(results.output, report=report is not None)
-    print_next(*_next(recording, vessel, campaign, results.output, trial, survey))
-
-
-def _next(
-    recording: Path, vessel: str, campaign: str, output: Path, trial: Trial, survey: Survey
-) -> tuple[object, ...]:
-    """Return the next command: where the test can be used it is validated, or a better one is planned."""
-    files = (recording, "--vessel", vessel, "--campaign", campaign)
-    if not survey.fingerprint.verdict.trustworthy:
-        return ("inspect", *files)
-    if trial.campaign.staircases or trial.campaign.chirps:
-        return ("validate", *files, "--fingerprint", output)
-    return plan_after(output, vessel, trial.vessel)
+    steps = after_test(
+        (recording, vessel, campaign),
+        (results.output, survey.fingerprint),
+        trial.vessel,
+        trial.campaign,
+        reading=reading_words(**said),
+        own=("--structure", names[0]) if names and ":" in names[0] else (),
+    )
+    print_steps(*steps)
 
 
 def _with_more(survey: Survey, more: str | None, *, rng: np.random.Generator, steps: Steps) -> Survey:

@@ -11,8 +11,8 @@ import click
 from shaftprint.cli._found_tests import print_found_tests, write_proposal
 from shaftprint.cli._inspect_headline import headline, lines_of, lost_parts
 from shaftprint.cli._limit_uses import print_limit_uses
-from shaftprint.cli._next import free, print_next
-from shaftprint.cli._options import NAMES, hints_of, reading_options
+from shaftprint.cli._next import VESSEL_FILE, free, print_next, print_steps, read_by_all, vessel_file_near
+from shaftprint.cli._options import NAMES, hints_of, reading_options, reading_words
 from shaftprint.cli._signal_tables import print_lines, print_signals
 from shaftprint.cli._terminal import answer, echo, print_findings, say
 from shaftprint.cli._vessel_file import print_disagreements
@@ -82,6 +82,7 @@ def command(
     planned = None if campaign is None else load_campaign(campaign)
     if ship is not None and vessel is not None:
         print_disagreements(ship, vessel)
+    reading = reading_words(**said)
     with read_recording(recording, **hints_of(**said)) as opened:
         clocks = logger_clocks(opened)
         watch = watch_levels(opened)
@@ -89,8 +90,10 @@ def command(
         levels = _levels(watch, hidden=no_progress)
         if ship is None or readings is None:
             _print_proposal(opened, _print_channels(opened, levels), clocks)
+            near = vessel_file_near(recording)
+            there = ("inspect", recording, *reading, "--vessel", near)
             # a comment of the vessel file into which the proposal is pasted
-            print_next("new", "vessel", free("vessel.toml"), label="# Next:")
+            print_next(*(there if near else ("new", "vessel", free(VESSEL_FILE))), label="# Next:")
             return
         test = None if planned is None else _tested(opened, ship, planned, readings, clocks, hidden=no_progress)
         reports = channel_reports(readings, levels)
@@ -102,16 +105,25 @@ def command(
             write_proposal(test.tests, test.planned, output)
         if test is not None:
             _print_test(test)
-    _print_next((recording, "--vessel", vessel), campaign, output, test)
+    _print_next(recording, reading, ("--vessel", vessel), campaign, output, test)
     # with the campaign as recorded what was asked for is there
     if test is not None and test.refusal is not None and output is None:
         raise test.refusal
 
 
-def _print_next(files: tuple[object, ...], campaign: str | None, output: Path | None, test: _Test | None) -> None:
+def _print_next(
+    recording: Path,
+    reading: tuple[object, ...],
+    vessel: tuple[object, ...],
+    campaign: str | None,
+    output: Path | None,
+    test: _Test | None,
+) -> None:
     """Print the next command; none where the recording can only be made anew."""
+    files = (recording, *reading, *vessel)
     if test is None or campaign is None:
-        print_next("new", "campaign", free("campaign.toml"), "--from", *files)
+        readable, steps = read_by_all(recording, reading)
+        print_steps(*steps, ("new", "campaign", free("campaign.toml"), "--from", readable, *vessel))
     elif output is not None:
         print_next("inspect", *files, "--campaign", output)
     elif any(one.is_found and one.differences for one in test.tests):

@@ -7,9 +7,10 @@ from typing import Any
 
 import click
 
+from shaftprint.cli._after_test import after_test
 from shaftprint.cli._card_options import ask_card, card_of, card_options
 from shaftprint.cli._lying_files import LyingFiles, lying_files
-from shaftprint.cli._next import free, plan_after, plan_words, print_next, rated_rpm_of
+from shaftprint.cli._next import VESSEL_FILE, free, plan_words, print_steps, rated_rpm_of
 from shaftprint.cli._terminal import answer, print_findings
 from shaftprint.cli._vessel_file import write_from_card
 from shaftprint.cli.output._fingerprint_file import fingerprint_at
@@ -39,8 +40,7 @@ def command(folder: Path, *, yes: bool, **said: object) -> None:
         vessel = _written(folder, said, yes=yes)
     elif any(value not in (None, False, ()) for value in said.values()):
         answer(f"{vessel} is there: what was stated of the card was not used. `shaftprint new vessel` writes another.")
-    for words in _next(vessel, lying):
-        print_next(*words)
+    print_steps(*_next(vessel, lying))
 
 
 def _print(lying: LyingFiles) -> None:
@@ -73,7 +73,7 @@ def _written(folder: Path, said: dict[str, object], *, yes: bool) -> Path:
     card = card_of(said)
     if card is None:
         raise click.UsageError("--yes needs the ship's card by options, such as --power-kw 221; see --help.")
-    path = free(str(folder / "vessel.toml"))
+    path = free(str(folder / VESSEL_FILE))
     write_from_card(card, path)
     return path
 
@@ -107,9 +107,4 @@ def _next(vessel: Path, lying: LyingFiles) -> list[tuple[object, ...]]:
         fingerprint = fingerprint_at(result)
     except ShaftprintError:
         return [("show", result)]
-    if not fingerprint.verdict.trustworthy:
-        return [("inspect", *of_test)]
-    asked, plan = load_campaign(campaign), plan_after(result, vessel, ship)
-    if asked.staircases or asked.chirps:
-        return [("validate", *of_test, "--fingerprint", result), plan]
-    return [plan]
+    return after_test((recording, vessel, campaign), (result, fingerprint), ship, load_campaign(campaign))

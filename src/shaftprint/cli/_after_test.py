@@ -1,0 +1,68 @@
+"""What comes after a test that was identified: its validation, and the next test."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from contextlib import suppress
+from pathlib import Path
+
+from shaftprint.cli._next import plan_after, read_by_all
+from shaftprint.errors import FingerprintError, ShaftprintError
+from shaftprint.late import late
+
+with late():
+    from shaftprint.campaign._campaign import Campaign
+    from shaftprint.design.files import _plan_folder, _plan_json
+    from shaftprint.fingerprint._fingerprint import Fingerprint
+    from shaftprint.vessel._vessel import Vessel
+
+
+def after_test(
+    files: tuple[object, str | Path, str | Path],
+    found: tuple[object, Fingerprint],
+    ship: Vessel,
+    asked: Campaign,
+    *,
+    reading: Sequence[object] = (),
+    own: Sequence[object] = (),
+) -> list[tuple[object, ...]]:
+    """Return the next commands of a test, the first to be done first.
+
+    A test that cannot be used is looked at. Another one is validated, where there is what it can be validated on; then
+    its plan goes on where wishes of it are not met, or the next test is planned.
+
+    ``files``: recording, vessel and campaign file. ``found``: where the result is, and its fingerprint. ``ship``,
+    ``asked``: what is in the vessel and the campaign file. ``reading``: options with what the recording does not say
+    itself. ``own``: the option that names a structure of somebody's own.
+    """
+    recording, vessel, campaign = files
+    result, fingerprint = found
+    if not fingerprint.verdict.trustworthy:
+        return [("inspect", recording, "--vessel", vessel, "--campaign", campaign, *reading)]
+    plan = _with_open_wishes(Path(campaign), fingerprint)
+    is_validated = bool(asked.staircases or asked.chirps)
+    readable, steps = read_by_all(recording, reading if is_validated or plan else ())
+    if is_validated:
+        steps += [("validate", readable, "--vessel", vessel, "--campaign", campaign, "--fingerprint", result, *own)]
+    if plan is None:
+        return [*steps, (*plan_after(result, vessel, ship), *own)]
+    return [*steps, ("continue", readable, "--plan", plan, "--vessel", vessel, *own)]
+
+
+def _with_open_wishes(campaign: Path, fingerprint: Fingerprint) -> Path | None:
+    """Return the folder of the plan that a campaign file is of, where the test has not met all of its wishes."""
+    folder = campaign.parent
+    if campaign.name != _plan_folder.CAMPAIGN or not (folder / _plan_json.PLAN).is_file():
+        return None
+    # a plan that cannot be read, or of a structure of somebody's own, is no reason to refuse what was identified
+    with suppress(ShaftprintError):
+        targets = _plan_json.read_plan(folder).plan.targets
+        return folder if any(_is_open(fingerprint, name, target) for name, target in targets.items()) else None
+    return None
+
+
+def _is_open(fingerprint: Fingerprint, name: str, target: float) -> bool:
+    try:
+        return not fingerprint.quantity(name).std <= target
+    except FingerprintError:
+        return True
