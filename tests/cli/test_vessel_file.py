@@ -38,6 +38,12 @@ def test_sail_predict_and_inspect_say_the_same(run, aboard):
     assert [contradictions(result) for result in (sailed, predicted, inspected)] == 3 * [SENTENCE]
 
 
+def test_identify_says_so_before_the_recording_is_read(run, aboard):
+    result = run("identify", "none.nc", "--vessel", "ship.toml", "--campaign", "brief.toml", "-o", "result")
+    assert result.exit_code == 1
+    assert f"{TITLE} * {SENTENCE}" in " ".join(result.output.split())
+
+
 def test_plan_says_so_before_the_leg_that_is_refused_for_it(run, aboard):
     overloaded = (aboard / "ship.toml").read_text().replace("shaft_torque_nm = 1725", "shaft_torque_nm = 5500")
     (aboard / "ship.toml").write_text(overloaded)

@@ -11,6 +11,7 @@ from shaftprint.cli._fingerprint_tables import print_found
 from shaftprint.cli._report_options import ReportOptions
 from shaftprint.cli._results import Report
 from shaftprint.cli._terminal import answer, details, echo, say
+from shaftprint.cli._vessel_file import print_disagreements
 from shaftprint.cli.output._fingerprint_file import FINGERPRINT, REPORT
 from shaftprint.cli.output._json import give
 from shaftprint.cli.output._results_options import Results
@@ -55,6 +56,8 @@ def identify_both_lines(
 ) -> None:
     """Identify both lines, print and write the results of each side and the comparison of both."""
     trials = load_trials_of_both(*vessels, campaign, about.conditions)
+    for trial, file in zip(trials, vessels, strict=True):
+        print_disagreements(trial.vessel, file)
     chosen = names or (default_structure(trials[0].vessel, trials[0].campaign),)
     structures = options.structures(chosen, trials[0].vessel)
     of_user = structure_sources(names)

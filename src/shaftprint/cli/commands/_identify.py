@@ -27,6 +27,7 @@ from shaftprint.cli._options import (
 from shaftprint.cli._report_options import ReportOptions, report_options
 from shaftprint.cli._results import Report, print_comparison, print_paths
 from shaftprint.cli._terminal import details, print_findings, say
+from shaftprint.cli._vessel_file import print_disagreements
 from shaftprint.cli.output._fingerprint_file import FINGERPRINT
 from shaftprint.cli.output._json import give
 from shaftprint.cli.output._progress import Steps
@@ -141,6 +142,7 @@ def command(
         return
     # before the folder is made: a mistake in a settings file leaves none
     trial, rng = load_trial(vessel, campaign), np.random.default_rng(options.seed)
+    print_disagreements(trial.vessel, vessel)
     structures = options.structures(names or (default_structure(trial.vessel, trial.campaign),), trial.vessel)
     with results.folder("identify") as folder:
         with results.progress() as steps:
