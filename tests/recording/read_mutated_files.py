@@ -137,6 +137,18 @@ def _journal(path):
             journal.block(number, 0.1 * number, 0.1, [np.arange(10, dtype=np.int16)])
 
 
+def _imc(path):
+    words = (
+        "CF,2 1|CK,1 1,1|CG,1 1,1,1|CD,1 1E-2,1,1,s,0,0,0|NT,1 5,3,2026,9,0,12.25|CC,1 1,1|CP,1 1,2,4,16,0,0,1,0|"
+        "Cb,1 1,0,1,1,0,800,0,800,1,0,0,|CR,1 1,0.5,-3,1,2,Nm|CN,1 0,0,0,3,M_s,0,|"
+        "CG,1 1,1,1|CD,1 1E-2,1,1,s,0,0,0|NT,1 5,3,2026,9,0,12.75|CC,1 1,1|CP,1 2,4,7,32,0,0,1,0|"
+        "Cb,1 1,0,2,1,800,1600,0,1600,1,0,0,|CR,1 0,1,0,1,1,V|CN,1 0,0,0,1,U,0,"
+    )
+    blocks = (word.split(" ") for word in words.split("|"))
+    head = "".join(f"|{key},{len(said)},{said};\r\n" for key, said in blocks)
+    path.write_bytes(head.encode() + b"|CS,1,2402,1," + COUNTS.tobytes() + CLOCK.astype("<f4").tobytes() + b";")
+
+
 def _noise(path):
     path.write_bytes(np.random.default_rng(5).bytes(4000))
 
@@ -146,7 +158,7 @@ FORMATS = {
     "v5.mat": _mat("5"), "v73.mat": _mat73, "other.nc": _netcdf4, "classic.nc": _netcdf3, "log.csv": _text,
     "log.csv.gz": _packed, "plain.txt": _plain, "log.dxd": _noise,
     "log.blf": _frames, "log.asc": _frames, "log.trc": _frames, "log.log": _frames, "log.lvm": _labview,
-    "log.uff": _universal, "test.journal": _journal,
+    "log.uff": _universal, "test.journal": _journal, "log.dat": _imc,
 }  # fmt: skip
 
 

@@ -80,8 +80,7 @@ def test_a_recording_without_channels_says_so(path):
     ("name", "content", "remedy"),
     [
         ("log.xlsx", b"PK\3\4\0\0", "it is a spreadsheet: save the sheet as CSV"),
-        ("log.raw", b"|CF,2,1,1;\0", "imc: in FAMOS or imc STUDIO export it as MATLAB, ASCII or MDF 4"),
-        ("log.dat", b"|CF,2,1,1;|CK,1,3,1,1;\r\n|NO,1,81", "imc: in FAMOS or imc STUDIO export it as MATLAB"),
+        ("log.raw", b"\1\2\3\0", "imc in a form that is not read: in FAMOS or imc STUDIO save it as .dat"),
         ("log.db", b"SQLite format 3\0", "it is an SQLite database: export the table as CSV"),
         ("log.bin", b"\x94\x13\x0c\0", "HBM catman: export it as MATLAB, ASCII or MDF 4"),
         ("log.bin", b"\1\2\3\0", "export it as CSV, MATLAB or MDF 4 from the program that wrote it"),

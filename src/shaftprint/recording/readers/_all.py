@@ -5,6 +5,7 @@ from shaftprint.recording.readers._reader import Reader
 from shaftprint.recording.readers.can import _log
 from shaftprint.recording.readers.csv import _csv
 from shaftprint.recording.readers.dewesoft import _dewesoft
+from shaftprint.recording.readers.imc import _imc
 from shaftprint.recording.readers.matlab import _v5, _v73
 from shaftprint.recording.readers.tdms import _tdms
 
@@ -15,6 +16,7 @@ READERS: tuple[Reader, ...] = (
     _tdms,
     _log,
     _dewesoft,
+    _imc,
     _v5,
     _v73,
     _hdf5,

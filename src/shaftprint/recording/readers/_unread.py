@@ -10,10 +10,6 @@ _SEEN, _FEWEST_LINES = 4000, 2
 _TABLE, _TO_CSV = "save the sheet as CSV", ".to_csv(...)"
 _ARCHIVE = "it is an archive: unpack it"
 _OCTAVE = "in Octave save -v7 FILE.mat"
-_IMC = (
-    "imc: in FAMOS or imc STUDIO export it as MATLAB, ASCII or MDF 4; without them the package IMCtermite gives names, "
-    "units, times and values to Python: write them as CSV"
-)
 _CATMAN = (
     "HBM catman: export it as MATLAB, ASCII or MDF 4; without it the package apread gives values to Python, with dates "
     "of 1970 and times that go by the length of channels: check both, and write CSV"
@@ -59,7 +55,6 @@ _BY_BYTES = {
     b"ULog": "it is a PX4 log: ulog2csv of the package pyulog writes CSV",
     b"\x89MCAP": "it is a ROS log: PlotJuggler exports it as CSV",
     b"#ROSBAG": "it is a ROS log: PlotJuggler exports it as CSV",
-    b"|CF,": _IMC,
     **dict.fromkeys((b"\x92\x13", b"\x93\x13", b"\x94\x13"), _CATMAN),
     b"RIFF": "it is a sound file: scipy.io.wavfile reads it (24 bits come times 256), scipy.io.savemat writes the "
     "samples with fs",
@@ -76,7 +71,7 @@ _BY_ENDING = {
     (".zip",): _ARCHIVE,
     (".tdm", ".tdx"): "National Instruments' TDM: in DIAdem or LabVIEW save it as TDMS",
     (".lms", ".ldsf", ".sdf"): "Simcenter Testlab: export time data as MATLAB or as UFF 58",
-    (".raw",): _IMC,
+    (".raw",): "imc in a form that is not read: in FAMOS or imc STUDIO save it as .dat, MATLAB or MDF 4",
     (".pnrf", ".nrf"): "HBM Perception: export it as MATLAB, ASCII or MDF 4",
     (".psdata", ".plw", ".picolog"): "PicoScope or PicoLog: save it as CSV or MATLAB 4",
     (".wfm", ".isf"): "an oscilloscope's waveform: save it there as CSV",

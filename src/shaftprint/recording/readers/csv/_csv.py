@@ -28,6 +28,7 @@ from shaftprint.recording.readers.csv._dates import dates, has_offset, is_date
 from shaftprint.recording.readers.csv._edge_list import edge_channels
 from shaftprint.recording.readers.csv._header import Header, looks_like_a_table, read_header
 from shaftprint.recording.readers.csv._rows import LONGEST_LINE, Unpacked, unpack
+from shaftprint.recording.readers.imc._blocks import BEGIN as BEGIN_OF_IMC
 
 NAME = "CSV"
 
@@ -60,7 +61,7 @@ def is_mine(path: Path) -> bool:
     if begin is None:
         # too damaged to tell: the name decides
         return name.suffix.lower() in _ENDINGS
-    if begin.startswith((_LABVIEW, _JSON)) or begins_as_log(path, begin) or _uff.is_mine(path):
+    if begin.startswith((_LABVIEW, _JSON, BEGIN_OF_IMC)) or begins_as_log(path, begin) or _uff.is_mine(path):
         return False
     # a logger that lost its supply leaves NUL bytes behind its rows
     if b"\0" in begin.rstrip(b"\0") and not begin.startswith((*_UTF_16, *_UTF_32)):

@@ -1,0 +1,1 @@
+"""Files of imc: FAMOS, STUDIO and the devices, format 2."""
