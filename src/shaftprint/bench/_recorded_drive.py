@@ -1,21 +1,25 @@
 """The drive file that a recording begins: its channels with their units, and a first structure to fit."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from itertools import product
 from pathlib import Path
 
 import numpy as np
 
 from shaftprint.arrays import FloatArray
+from shaftprint.catalogue._drives import DRIVES, SIGNAL_UNITS
+from shaftprint.catalogue._linear_drives import unit_along
+from shaftprint.catalogue._shipped import shipped_structure
+from shaftprint.drive._unit_factors import unit_factor
 from shaftprint.errors import RecordingError
 from shaftprint.escape import printable, toml_string
 from shaftprint.recording._channel import Channel
 from shaftprint.recording._read import read_recording
 
-# Words in the names of channels that are put in, not measured.
-_INPUTS = (
-    "set", "setpoint", "soll", "sollwert", "demand", "command", "cmd", "reference", "ref", "target", "input", "u", "in",
-    "pwm", "duty", "voltage", "spannung",
-)  # fmt: skip
+# Words in the names of channels that ask a controller for something, and in those of others that are put in.
+_ASKED = ("set", "setpoint", "soll", "sollwert", "demand", "command", "cmd", "reference", "ref", "target")
+_INPUTS = (*_ASKED, "input", "u", "in", "pwm", "duty", "voltage", "spannung")
 _MOST_SAMPLES = 200_000
 # Bounds of a gain, as multiples of its first value.
 _SPAN = 100.0
@@ -38,7 +42,9 @@ class RecordedDrive:
 def recorded_drive(recording: Path) -> RecordedDrive:
     """Return a drive file with the channels of a recording.
 
-    Which channel is the input, its name or its steps tell: a guess, as the lag from it to each other channel is.
+    Where the channels are the signals of a shipped structure, each told by its unit, as voltage, current and speed are
+    those of a motor, it is named. Else which channel is the input its name or its steps tell: a guess, as the lag from
+    it to each other channel is.
 
     Raises RecordingError if the recording has fewer than two channels on one clock.
     """
@@ -54,19 +60,47 @@ def recorded_drive(recording: Path) -> RecordedDrive:
                 f"{recording}: expected an input and an output on one clock, found {', '.join(opened.channels)}; put "
                 "them into one file with `shaftprint convert` or `shaftprint merge`."
             )
-        moved = next((one for one in alike if _is_named_as_input(one.name)), None)
-        moved = moved or max(alike, key=lambda one: _still(values[one.name]))
+        structure, signals = _shipped(alike) or ("", _of_lags(alike, values))
+        moved = next(iter(signals.values()))
         return RecordedDrive(
-            text=_text(recording, moved, [one for one in alike if one is not moved], values),
+            text=_text(recording, structure, signals, values),
             channels=tuple(one.name for one in alike),
             moved=moved.name,
             left_out=tuple(one.name for one in channels if one not in alike),
         )
 
 
-def _is_named_as_input(name: str) -> bool:
-    words = "".join(letter if letter.isalnum() else " " for letter in name.lower()).split()
-    return any(word in _INPUTS for word in words)
+def _shipped(channels: list[Channel]) -> tuple[str, dict[str, Channel]] | None:
+    """Return the shipped structure whose signals channels are by their units, and the channel of each, inputs first.
+
+    A voltage that asks a controller for something is not that of a winding.
+    """
+    if any(_is_named(one, _ASKED) for one in channels):
+        return None
+    along = {signal: unit_along(unit) for signal, unit in SIGNAL_UNITS.items()}
+    for name, units in product(DRIVES, (SIGNAL_UNITS, along)):
+        structure = shipped_structure(name)
+        fitting = {
+            signal: [one for one in channels if unit_factor(one.unit, units[signal]) is not None]
+            for signal in (*structure.inputs, *structure.outputs)
+        }
+        if len(fitting) == len(channels) and all(len(ones) == 1 for ones in fitting.values()):
+            return name, {signal: ones[0] for signal, ones in fitting.items()}
+    return None
+
+
+def _of_lags(channels: list[Channel], values: Mapping[str, FloatArray]) -> dict[str, Channel]:
+    """Return the channel of the input, by its name or its steps, and of the outputs."""
+    moved = next((one for one in channels if _is_named(one, _INPUTS)), None)
+    moved = moved or max(channels, key=lambda one: _still(values[one.name]))
+    outputs = [one for one in channels if one is not moved]
+    names = ["y"] if len(outputs) == 1 else [f"y_{number}" for number in range(1, len(outputs) + 1)]
+    return {"u": moved, **dict(zip(names, outputs, strict=True))}
+
+
+def _is_named(channel: Channel, words: tuple[str, ...]) -> bool:
+    name = "".join(letter if letter.isalnum() else " " for letter in channel.name.lower())
+    return any(word in words for word in name.split())
 
 
 def _still(values: FloatArray) -> float:
@@ -75,21 +109,24 @@ def _still(values: FloatArray) -> float:
     return float(np.mean(np.diff(values) == 0.0)) if numbers.size > 1 and np.ptp(numbers) > 0.0 else -1.0
 
 
-def _text(recording: Path, moved: Channel, outputs: list[Channel], values: dict[str, FloatArray]) -> str:
+def _text(recording: Path, structure: str, signals: Mapping[str, Channel], values: Mapping[str, FloatArray]) -> str:
+    """Return the drive file of signals, inputs first, with a shipped structure or with lags from the only input."""
+    inputs = shipped_structure(structure).inputs if structure else ("u",)
+    guess = f"{structure} by the units" if structure else "a lag from it to each of the others"
     lines = [
         f"# Begun with the channels of {printable(recording.name)}. Which of them is the input is a guess,",
-        "# and so is the structure, a lag from it to each of the others. `shaftprint new drive FILE` writes a file",
+        f"# and so is the structure, {guess}. `shaftprint new drive FILE` writes a file",
         "# that explains every key.",
         "",
         f"name = {toml_string(recording.stem)}",
+        *([f'structure = "{structure}"'] if structure else []),
         "",
-        *_signal("inputs", "u", moved),
     ]
-    names = ["y"] if len(outputs) == 1 else [f"y_{number}" for number in range(1, len(outputs) + 1)]
-    for name, channel in zip(names, outputs, strict=True):
-        lines += _signal("outputs", name, channel)
-    for name, channel in zip(names, outputs, strict=True):
-        lines += _lag(name, channel, moved, values)
+    for name, channel in signals.items():
+        lines += _signal("inputs" if name in inputs else "outputs", name, channel)
+    for name, channel in ({} if structure else signals).items():
+        if name not in inputs:
+            lines += _lag(name, channel, signals["u"], values)
     lines += [
         "[fit]",
         '# "steady": in steady running at the first inputs; "found": states are found with each record.',
@@ -111,7 +148,7 @@ def _signal(kind: str, name: str, channel: Channel) -> list[str]:
     ]
 
 
-def _lag(name: str, channel: Channel, moved: Channel, values: dict[str, FloatArray]) -> list[str]:
+def _lag(name: str, channel: Channel, moved: Channel, values: Mapping[str, FloatArray]) -> list[str]:
     end = name.removeprefix("y")
     spread = [float(np.nanstd(values[one.name])) for one in (channel, moved)]
     gain = float(f"{spread[0] / spread[1] if spread[1] > 0.0 and spread[0] > 0.0 else 1.0:.3g}")

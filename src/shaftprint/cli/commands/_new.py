@@ -73,7 +73,8 @@ def command(
 
     With --from RECORDING and --vessel the campaign file says what the recorded set point shows, each sine, multisine,
     binary sequence, chirp, staircase and ramp with its times; what is none of these is named. A drive file --from
-    RECORDING begins with its channels and their units, and fits a lag from one of them to the others.
+    RECORDING begins with its channels and their units: a motor where they are voltage, current and speed, else a lag
+    from one of them to the others.
 
     With what stands on a ship's card the vessel file is filled in. It needs --power-kw, --rated-rpm, --cylinders,
     --diameter-m, --blades, --pitch-ratio and --ratio or --propeller-rpm; the rest is derived or usual, and comments in
