@@ -76,6 +76,13 @@ def test_marks_are_traces_of_their_panel():
     assert content["panels"][1]["y"]["names"][0] == "<i>K</i><sub>p</sub>"
 
 
+def test_lines_whose_colour_comes_again_have_other_dashes():
+    """Eight numbers of a plan are told apart though there are six colours."""
+    chart = Chart(panels=[Panel(marks=[Line(x=X, y=X, name=f"line {k}", shade=k) for k in range(8)])])
+    looks = [(trace["line"]["color"], trace["line"]["dash"]) for trace in json.loads(chart_script(chart))["data"]]
+    assert len(set(looks)) == 8
+
+
 def test_a_name_stands_in_the_legend_once():
     chart = Chart(panels=[Panel(marks=(Line(x=X, y=X, name="model"),))] * 2)
     assert [trace["showlegend"] for trace in chart_json(chart)["data"]] == [True, False]

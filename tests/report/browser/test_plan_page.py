@@ -59,6 +59,19 @@ def test_the_first_screen_says_what_is_missed_and_that_it_was_not_rehearsed(visi
         assert "not rehearsed" in found.page.locator("#top").inner_text()
 
 
+def test_predicted_numbers_have_their_meaning_and_the_limits_of_speed_lie_inside_the_frame(visit, page):
+    with visit(page) as found:
+        # what stands in the title is not said again as a fact
+        assert found.page.locator("#found dt").all_inner_texts() == ["Length", "Speeds", "Set point"]
+        table = found.page.locator("section:has(#numbers) table").first
+        assert table.locator("thead th").last.inner_text() == "meaning"
+        assert "proportional gain of the governor" in table.inner_text()
+        found.show("set_point")
+        low, high = found.axis("set_point", "yaxis")
+        assert low < 600.0
+        assert high > 1800.0
+
+
 def test_hostile_names_are_shown_as_they_are(visit, page):
     with visit(page) as found:
         assert HOSTILE in found.page.locator("h1").inner_text()

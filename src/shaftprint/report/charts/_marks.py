@@ -22,8 +22,8 @@ COLOURS = 6
 
 
 def dash_of(shade: Shade) -> Dash:
-    """Return the dashes of a line: those of its place among others, none otherwise."""
-    return DASHES[shade % len(DASHES)] if isinstance(shade, int) else "solid"
+    """Return the dashes of a line: those of its place among others, others when colours come again; or none."""
+    return DASHES[(shade + shade // COLOURS) % len(DASHES)] if isinstance(shade, int) else "solid"
 
 
 def marker_of(shade: Shade) -> Marker:

@@ -1,6 +1,7 @@
 """A planned test: its lines, what they do to the ship, and what another length would make of it."""
 
-from collections.abc import Sequence
+import math
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,7 +13,7 @@ from shaftprint.plain_table import Symbol
 from shaftprint.report.charts._chart import Chart, Panel, Scale
 from shaftprint.report.charts._marks import Band, Line, Mark, Points, Straight
 from shaftprint.report.figures._envelope import envelope
-from shaftprint.units import SECONDS_PER_MINUTE
+from shaftprint.units import SECONDS_PER_HOUR, SECONDS_PER_MINUTE
 
 if TYPE_CHECKING:
     from shaftprint.design.plan._plan import Plan
@@ -22,6 +23,8 @@ if TYPE_CHECKING:
     from shaftprint.design.views._planned_motion import PlannedMotion
 
 PERCENT = 100.0
+# Room of an axis beyond what it shows, as a share of it.
+_ROOM = 0.06
 # Samples of the set point of a whole test.
 _SAMPLES = 20_000
 _NOISE = "noise, 95 %"
@@ -37,8 +40,10 @@ def planned_set_point_chart(test: "PlannedTest") -> Chart:
         Line(x=time / SECONDS_PER_MINUTE, y=values, name="set point", width=1.0),
         *_speed_limits(test.plan),
     ]
+    levels = [*values, limits.lowest_speed_rpm, limits.highest_speed_rpm]
+    speeds = Scale(title="engine speed [rpm]", span=_around(levels))
     return Chart(
-        panels=(Panel(marks=marks, x=Scale(title="time [min]"), y=Scale(title="engine speed [rpm]")),),
+        panels=(Panel(marks=marks, x=Scale(title="time [min]"), y=speeds),),
         heights_px=(260,),
     )
 
@@ -54,10 +59,12 @@ def planned_line_chart(worths: "Sequence[LineWorth]") -> Chart:
             x=hertz, y=amplitudes, bars=(amplitudes, np.zeros_like(amplitudes)), name="lines", shade=0, size=5
         )
         lines.append(Panel(marks=(stems,), x=x, y=Scale(title="amplitude [rpm]"), title=f"{leg.level_rpm:.0f} rpm"))
-        there = np.interp(np.log(hertz), np.log(worth.frequency_hz), worth.per_second)
-        curve = Line(x=worth.frequency_hz, y=worth.per_second, name="information of a line of 1 rpm", shade=1)
+        per_hour = SECONDS_PER_HOUR * worth.per_second
+        there = np.interp(np.log(hertz), np.log(worth.frequency_hz), per_hour)
+        curve = Line(x=worth.frequency_hz, y=per_hour, name="information of a line of 1 rpm", shade=1)
         marks: tuple[Mark, ...] = (curve, Points(x=hertz, y=there, shade=0, size=5))
-        information.append(Panel(marks=marks, x=x, y=Scale(title="information a second [1/s]", log=True)))
+        y = Scale(title="information [1/h]", log=True, span=_around(per_hour, log=True))
+        information.append(Panel(marks=marks, x=x, y=y))
     return Chart(panels=(*lines, *information), columns=len(worths), heights_px=(220, 220), linked="columns")
 
 
@@ -85,8 +92,21 @@ def length_chart(curve: "LengthCurve", plan: "Plan") -> Chart:
     if targets:
         marks.append(Straight(at=1.0, axis="y", name="wish", dash="dash"))
     title = "predicted std over wish" if targets else "predicted std [%]"
-    panel = Panel(marks=marks, x=Scale(title="length of the test [min]", log=True), y=Scale(title=title, log=True))
+    levels = [value for mark in marks if isinstance(mark, Line) for value in mark.y.tolist()]
+    upright = Scale(title=title, log=True, span=_around([*levels, 1.0] if targets else levels, log=True))
+    panel = Panel(marks=marks, x=Scale(title="length of the test [min]", log=True), y=upright)
     return Chart(panels=(panel,), heights_px=(320,))
+
+
+def _around(values: Iterable[float], *, log: bool = False) -> tuple[float, float] | None:
+    """Return the ends of an axis that leaves room beyond all values; None where there are none to show."""
+    shown = [math.log(value) if log else value for value in values if math.isfinite(value) and (value > 0 or not log)]
+    if not shown:
+        return None
+    low, high = min(shown), max(shown)
+    room = _ROOM * (high - low) or 1.0
+    ends = low - room, high + room
+    return (math.exp(ends[0]), math.exp(ends[1])) if log else ends
 
 
 def _speed_marks(motion: "PlannedMotion", plan: "Plan") -> list[Mark]:

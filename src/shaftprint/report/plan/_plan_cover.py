@@ -36,8 +36,6 @@ def _facts(test: "PlannedTest") -> list[tuple[str, str]]:
     largest = max(leg.peak_rpm for leg in plan.legs)
     moved = swing_words(test.line, largest)
     return [
-        ("Ship", test.vessel),
-        ("Test", test.name),
         ("Length", f"{length_words(plan.duration_s)}, the way back and the staircase included"),
         ("Speeds", ", ".join(f"{plain(leg.level_rpm, 0)} rpm" for leg in plan.legs)),
         ("Set point", f"± {plain(largest, 0)} rpm, ± {moved} at most, about each speed"),

@@ -23,6 +23,7 @@ from shaftprint.report.figures._plan import (
     planned_set_point_chart,
 )
 from shaftprint.report.plan._plan_cover import plan_cover
+from shaftprint.report.sections._meanings import explained
 from shaftprint.report.sections._sections import Picture, Section
 from shaftprint.tables._plan import abort_table, planned_leg_table, predicted_number_table
 
@@ -84,7 +85,10 @@ def _card(test: "PlannedTest") -> Section:
 
 
 def _numbers(test: "PlannedTest") -> Section:
-    return Section(key="numbers", title="What it would tell", tables=(predicted_number_table(test),))
+    structure = test.plan.ship.structure
+    meanings = {one.name: one.meaning for one in (*structure.parameters, *structure.combinations)}
+    section = Section(key="numbers", title="What it would tell", tables=(predicted_number_table(test),))
+    return explained(section, meanings)
 
 
 def _motion(test: "PlannedTest") -> Section:
@@ -108,13 +112,13 @@ def _lines(test: "PlannedTest") -> Section:
         title="Lines and what they tell",
         words=(
             "Above, the amplitude at each test frequency. Below, how much a sine of 1 rpm at each frequency would "
-            "still reduce the joint uncertainty of all numbers, per second (D-optimality). Without limits of the "
+            "still reduce the joint uncertainty of all numbers, per hour (D-optimality). Without limits of the "
             "peaks the test frequencies lie where this curve is highest."
         ),
         picture=Picture(
             name="lines",
-            caption="Amplitudes, and how much a sine of 1 rpm would still reduce the joint uncertainty, per second.",
-            alt="Amplitudes over frequency above the information that a line gives in a second; a leg a column.",
+            caption="Amplitudes, and how much a sine of 1 rpm would still reduce the joint uncertainty, per hour.",
+            alt="Amplitudes over frequency above the information that a line gives in an hour; a leg a column.",
             chart=lambda: planned_line_chart(line_worths(test.plan)),
         ),
     )

@@ -112,7 +112,7 @@ window.shaftprintLayout = (() => {
                             showgrid: false });
     } else if (scale.log) {
       const decades = scale.span ? Math.abs(scale.span[1] - scale.span[0]) : 3;
-      Object.assign(axis, { type: "log", dtick: lengthPx / decades > 150 ? "D2" : 1, tickformat: "~g" });
+      Object.assign(axis, { type: "log", dtick: lengthPx / decades > (which === "x" ? 150 : 70) ? "D2" : 1, tickformat: "~g" });
     } else if (scale.step) Object.assign(axis, { dtick: scale.step * (lengthPx < 110 ? 2 : 1), tick0: 0 });
     else axis.nticks = Math.max(3, Math.floor(lengthPx / (which === "x" ? 80 : 34)));
     return axis;
