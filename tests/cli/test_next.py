@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from shaftprint.campaign import load_campaign
+from shaftprint.cli import _after_test
 from shaftprint.cli._after_test import after_test
 from shaftprint.errors import FingerprintError
 from shaftprint.vessel import load_vessel
@@ -133,7 +134,7 @@ def test_a_plan_goes_on_while_a_wish_of_it_is_not_met(here, monkeypatch, targets
     (here / "plan").mkdir()
     (here / "plan" / "plan.json").write_text("{}")
     planned = SimpleNamespace(plan=SimpleNamespace(targets=targets))
-    monkeypatch.setattr("shaftprint.design.files._plan_json.read_plan", lambda folder: planned)
+    monkeypatch.setattr(_after_test, "_plan_json", SimpleNamespace(PLAN="plan.json", read_plan=lambda folder: planned))
     campaign = here / "plan" / "campaign.toml"
     last = [str(word) for word in following(campaign)[-1]]
     if goes_on:

@@ -10,10 +10,10 @@ from pathlib import Path
 
 from shaftprint.cli._terminal import echo
 from shaftprint.cli.output._json import give
-from shaftprint.file_kinds import kind_of_file
 from shaftprint.late import late
 
 with late():
+    from shaftprint.file_kinds import kind_of_file
     from shaftprint.vessel._vessel import Vessel
 
 VESSEL_FILE = "vessel.toml"

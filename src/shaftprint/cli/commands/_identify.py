@@ -6,7 +6,6 @@ from pathlib import Path
 
 import click
 
-from shaftprint.cli._after_test import after_test
 from shaftprint.cli._drive_identify import identify_on_the_bench
 from shaftprint.cli._drive_options import drive_option, only_recording
 from shaftprint.cli._fingerprint_tables import print_found
@@ -39,6 +38,7 @@ with late():
     import numpy as np
 
     from shaftprint.catalogue._own_structure import TypedName
+    from shaftprint.cli._after_test import after_test
     from shaftprint.fingerprint._json_file import write_fingerprint
     from shaftprint.fingerprint._sources import structure_sources
     from shaftprint.report.sections._black_box import black_box_sentence
