@@ -31,7 +31,7 @@ demo-fleet: $(VENV)/web ## Eight sister ships over five years in a store; demo-f
 QUICK := not slow and not long and not wrong_recordings
 TRACED := calculating and $(QUICK)
 PYTEST := $(BIN)/python -m pytest -n auto --dist loadfile --no-loadscope-reorder
-test test-slow test-all: export OPENBLAS_NUM_THREADS ?= 1
+test test-slow test-all docs: export OPENBLAS_NUM_THREADS ?= 1
 test: $(VENV)/test ## Run the tests that a change needs
 	$(PYTEST) -m "$(QUICK)"
 

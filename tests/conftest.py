@@ -50,17 +50,27 @@ def work_unit(nodeid: str) -> str:
     return nodeid if file == ONE_BY_ONE else room if room in TOGETHER else file
 
 
-@pytest.hookimpl(tryfirst=True)
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+@pytest.hookimpl(wrapper=True, tryfirst=True)
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> Iterator[None]:
     """Mark what belongs to the calculating rooms, and put what has many slow tests first, small work last.
 
-    Workers take it in this order (``--no-loadscope-reorder``), so that none has long work left at the end.
+    Workers take it in this order (``--no-loadscope-reorder``), so that none has long work left at the end. One of them
+    begins with what asks for no demo, so as not to wait for the one that makes it.
     """
-    dear = Counter(work_unit(item.nodeid) for item in items if any(item.get_closest_marker(name) for name in DEAR))
     for item in items:
         if item.path.relative_to(HERE).parts[0] in CALCULATING:
             item.add_marker("calculating")
-    items.sort(key=lambda item: (item.nodeid.startswith(ONE_BY_ONE), -dear[work_unit(item.nodeid)]))
+    # what is left now is run
+    yield
+    dear = Counter(work_unit(item.nodeid) for item in items if any(item.get_closest_marker(name) for name in DEAR))
+    waits = {work_unit(item.nodeid) for item in items if "demo" in getattr(item, "fixturenames", ())}
+    first = max((unit for unit in dear if unit not in waits), key=dear.__getitem__, default=None)
+
+    def place(item: pytest.Item) -> tuple[bool, bool, int]:
+        unit = work_unit(item.nodeid)
+        return item.nodeid.startswith(ONE_BY_ONE), unit != first, -dear[unit]
+
+    items.sort(key=place)
 
 
 def pytest_collection_finish() -> None:

@@ -1,5 +1,7 @@
 """``shaftprint identify`` with its options; without any it is run in ``tests/docs``, as the pages show it."""
 
+import shutil
+
 import pytest
 
 from shaftprint.fingerprint import read_fingerprint
@@ -133,18 +135,26 @@ def test_place_below_a_file(run, recording, tmp_path):
     assert "check the path, the permissions and the free space" in result.stderr
 
 
-@pytest.mark.slow
-def test_the_answer_is_printed_before_the_model_is_judged_and_the_report_is_drawn(run, recording, tmp_path):
-    result = run("identify", recording, *GIVEN, "-v", "-o", tmp_path / "out")
+@pytest.fixture(scope="module")
+def whole(invoke, recording, tmp_path_factory):
+    """The output and the folder of a command with all that it makes where nothing is said."""
+    folder = tmp_path_factory.mktemp("whole") / "out"
+    result = invoke("identify", recording, *GIVEN, "-v", "-o", folder)
     assert result.exit_code == 0
+    return result.output, folder
+
+
+@pytest.mark.slow
+def test_the_answer_is_printed_before_the_model_is_judged_and_the_report_is_drawn(whole):
+    output, _ = whole
     judging, drawing = "Holding the model against records that it has not seen ...", "Writing the report ..."
-    order = [result.output.index(words) for words in ("Verdict", "GAUGE-CLOSED", judging, drawing, "Report:  ")]
+    order = [output.index(words) for words in ("Verdict", "GAUGE-CLOSED", judging, drawing, "Report:  ")]
     assert order == sorted(order)
 
 
 @pytest.mark.slow
-def test_a_fingerprint_alone_is_written_without_page_and_takes_the_place_of_one_with(run, recording, tmp_path):
-    assert run("identify", recording, *GIVEN, "-o", tmp_path / "out").exit_code == 0
+def test_a_fingerprint_alone_is_written_without_page_and_takes_the_place_of_one_with(run, recording, whole, tmp_path):
+    shutil.copytree(whole[1], tmp_path / "out")
     assert (tmp_path / "out" / "index.html").exists()
     whole = read_fingerprint(tmp_path / "out" / "fingerprint.json")
     alone = run("identify", recording, *GIVEN, "--no-report", "-o", tmp_path / "out")

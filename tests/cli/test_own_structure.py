@@ -323,8 +323,8 @@ def test_a_fault_while_a_file_runs_leaves_the_path_as_it_was(written):
 def test_a_structure_in_names_of_ones_own_is_known_by_its_roles(run, recording, written, tmp_path):
     """``J_aft`` in seconds gets kg m2, the vessel file's value, a budget and its place in a comparison."""
     written(LINE)
-    for name in ("first", "second"):
-        result = run("identify", recording, *GIVEN, "--structure", "my_ship.py:line", "-o", tmp_path / name)
+    for name, more in (("first", ()), ("second", ("--no-report",))):
+        result = run("identify", recording, *GIVEN, "--structure", "my_ship.py:line", *more, "-o", tmp_path / name)
         assert result.exit_code == 0, result.stderr
     found = read_fingerprint(tmp_path / "first" / "fingerprint.json")
     inertia, action = found.quantity("I_dn"), found.quantity("governor proportional action")

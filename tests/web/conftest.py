@@ -1,5 +1,6 @@
 """A server with a small store: two ships, each given to other people, and one job, upload and event of each."""
 
+import shutil
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 
@@ -71,22 +72,28 @@ def password_hash():
     return hashed(PASSWORD)
 
 
+@pytest.fixture(scope="session")
+def kept(tmp_path_factory, password_hash):
+    """The store and the users' file that every server begins with a copy of, and the hashes of what is in the store."""
+    folder = tmp_path_factory.mktemp("kept")
+    shas = _filled(folder / "fleet.db")
+    for role in Role:
+        for who, ships in (("ada", (str(ADA),)), ("hidden", (str(HIDDEN),)), ("all", ("all",))):
+            person = Person(name=f"{role.name.lower()}-{who}", role=role, ships=ships, password=password_hash)
+            with_user(folder / "users.toml", person)
+    return folder, shas
+
+
 @pytest.fixture
-def made(tmp_path, password_hash):
+def made(tmp_path, kept):
     """Give what makes a server."""
     services = []
 
     def make(*, users=True, **further):
+        folder, shas = kept
         store = tmp_path / "fleet.db"
-        shas = _filled(store)
-        path = None
-        if users:
-            path = tmp_path / "users.toml"
-            for role in Role:
-                for who, ships in (("ada", (str(ADA),)), ("hidden", (str(HIDDEN),)), ("all", ("all",))):
-                    with_user(
-                        path, Person(name=f"{role.name.lower()}-{who}", role=role, ships=ships, password=password_hash)
-                    )
+        shutil.copy(folder / "fleet.db", store)
+        path = shutil.copy(folder / "users.toml", tmp_path / "users.toml") if users else None
         serving = Serving(
             store=str(store),
             state=tmp_path / "state",

@@ -101,14 +101,15 @@ def store(tmp_path_factory):
     return folder
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def server(store):
+    """The one server of all these pages."""
     running = Server(store)
     yield running
     running.kill()
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def windows(server):
     """Give the address of the windows of an upload that was looked at."""
     number, kept = "00000000000000aa", Kept.at(server.folder / "state" / "server.db")

@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-WAIT_MS = 60_000
+WAIT_MS, LOOK_MS = 60_000, 10
 
 
 @dataclass
@@ -19,10 +19,10 @@ class Visit:
 
     def wait_for(self, expression):
         """Wait until an expression is true; ``wait_for_function`` would need a policy that allows ``eval``."""
-        for _ in range(WAIT_MS // 50):
+        for _ in range(WAIT_MS // LOOK_MS):
             if self.page.evaluate(expression):
                 return
-            self.page.wait_for_timeout(50)
+            self.page.wait_for_timeout(LOOK_MS)
         raise AssertionError(f"never true: {expression}; messages: {self.messages}")
 
     def show(self, name):

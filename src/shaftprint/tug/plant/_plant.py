@@ -62,7 +62,7 @@ FARTHEST_SHARE = 4.0
 it."""
 
 
-@compiled(inline="always")
+@compiled()
 def _on_curve(speed, speeds, torques):  # type: ignore[no-untyped-def]
     """Return the torque [N m] of a curve at a speed [rev/s], straight between its points and flat beyond them."""
     last = speeds.size - 1
@@ -87,7 +87,7 @@ def torque_limits(speed, plant):  # type: ignore[no-untyped-def]
     return lowest, highest
 
 
-@compiled(inline="always")
+@compiled()
 def _power_sum(powers, at):  # type: ignore[no-untyped-def]
     """Return a sum of powers, by Horner's rule."""
     value = 0.0
@@ -282,23 +282,39 @@ def _runge_kutta(h, x, k1, demand, past, propeller, engine, plant, air, pitch, m
     ``demand``, ``past``, ``propeller``, ``engine``, ``pitch`` and ``machine`` hold the inputs at the start, middle and
     end of the step.
     """
-    x2 = _moved(x, 0.5 * h, k1)
-    k2 = derivatives(x2, demand[1], past[1], propeller[1], engine[1], plant, air, pitch[1], machine[1])
-    x3 = _moved(x, 0.5 * h, k2)
-    k3 = derivatives(x3, demand[1], past[1], propeller[1], engine[1], plant, air, pitch[1], machine[1])
-    x4 = _moved(x, h, k3)
-    k4 = derivatives(x4, demand[2], past[2], propeller[2], engine[2], plant, air, pitch[2], machine[2])
+    at, rates, total, speeds = x, k1, k1, x[0]
+    # a loop, so that the equations stand here once: compiling them is what takes long
+    for place, ahead, weight in ((1, 0.5 * h, 2.0), (1, 0.5 * h, 2.0), (2, h, 1.0)):
+        at = _moved(x, ahead, rates)
+        rates = derivatives(
+            at, demand[place], past[place], propeller[place], engine[place], plant, air, pitch[place], machine[place]
+        )
+        speeds += weight * at[0]
+        total = (
+            total[0] + weight * rates[0],
+            total[1] + weight * rates[1],
+            total[2] + weight * rates[2],
+            total[3] + weight * rates[3],
+            total[4] + weight * rates[4],
+            rates[5],
+            rates[6],
+            rates[7],
+            rates[8],
+            total[9] + weight * rates[9],
+            total[10] + weight * rates[10],
+            total[11] + weight * rates[11],
+        )
     part = h / 6.0
     return (
-        x[0] + part * (k1[0] + 2.0 * k2[0] + 2.0 * k3[0] + k4[0]),
-        x[1] + part * (k1[1] + 2.0 * k2[1] + 2.0 * k3[1] + k4[1]),
-        x[2] + part * (k1[2] + 2.0 * k2[2] + 2.0 * k3[2] + k4[2]),
-        x[3] + part * (k1[3] + 2.0 * k2[3] + 2.0 * k3[3] + k4[3]),
-        x[4] + part * (k1[4] + 2.0 * k2[4] + 2.0 * k3[4] + k4[4]),
-        x[5] + part * (x[0] + 2.0 * x2[0] + 2.0 * x3[0] + x4[0]),
-        x[6] + part * (k1[9] + 2.0 * k2[9] + 2.0 * k3[9] + k4[9]),
-        x[7] + part * (k1[10] + 2.0 * k2[10] + 2.0 * k3[10] + k4[10]),
-        x[8] + part * (k1[11] + 2.0 * k2[11] + 2.0 * k3[11] + k4[11]),
+        x[0] + part * total[0],
+        x[1] + part * total[1],
+        x[2] + part * total[2],
+        x[3] + part * total[3],
+        x[4] + part * total[4],
+        x[5] + part * speeds,
+        x[6] + part * total[9],
+        x[7] + part * total[10],
+        x[8] + part * total[11],
     )
 
 
