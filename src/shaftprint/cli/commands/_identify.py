@@ -176,7 +176,7 @@ def command(
             with results.progress() as steps:
                 report.write(folder, recording, survey, hints=hints, steps=steps)
     print_paths(results.output, report=report is not None)
-    steps = after_test(
+    following = after_test(
         (recording, vessel, campaign),
         (results.output, survey.fingerprint),
         trial.vessel,
@@ -184,7 +184,7 @@ def command(
         reading=reading_words(**said),
         own=("--structure", names[0]) if names and ":" in names[0] else (),
     )
-    print_steps(*steps)
+    print_steps(*following)
 
 
 def _with_more(survey: Survey, more: str | None, *, rng: np.random.Generator, steps: Steps) -> Survey:
