@@ -7,6 +7,7 @@ and number alone. The program that calls it ends it where an input takes too lon
 import gzip
 import json
 import resource
+import struct
 import sys
 import time
 from pathlib import Path
@@ -149,6 +150,23 @@ def _imc(path):
     path.write_bytes(head.encode() + b"|CS,1,2402,1," + COUNTS.tobytes() + CLOCK.astype("<f4").tobytes() + b";")
 
 
+def _catman(path):
+    numbers = [CLOCK, COUNTS / 7.0]
+    pieces = []
+    for name, unit in ((b"Time  1", b"s"), (b"M_s", b"Nm")):
+        texts = b"".join(struct.pack("<h", len(text)) + text for text in (name, unit, b""))
+        clock = struct.pack("<di2d", 0.0, 148, 46086.375, 10.0) + bytes(132)
+        pieces.append(struct.pack("<hi", 1, 400) + texts + struct.pack("<hh", 0, 8) + clock + bytes(11))
+    begin = 8 + 64 + 6 + 8 + 4
+    places = [begin + 2, begin + len(pieces[0]) + 2]
+    head = (
+        struct.pack("<hih", 5012, begin + sum(map(len, pieces)), 0)
+        + bytes(64)
+        + struct.pack("<hi2ii", 2, 0, *places, 0)
+    )
+    path.write_bytes(head + b"".join(pieces) + np.array(numbers).tobytes())
+
+
 def _noise(path):
     path.write_bytes(np.random.default_rng(5).bytes(4000))
 
@@ -158,7 +176,7 @@ FORMATS = {
     "v5.mat": _mat("5"), "v73.mat": _mat73, "other.nc": _netcdf4, "classic.nc": _netcdf3, "log.csv": _text,
     "log.csv.gz": _packed, "plain.txt": _plain, "log.dxd": _noise,
     "log.blf": _frames, "log.asc": _frames, "log.trc": _frames, "log.log": _frames, "log.lvm": _labview,
-    "log.uff": _universal, "test.journal": _journal, "log.dat": _imc,
+    "log.uff": _universal, "test.journal": _journal, "log.dat": _imc, "log.bin": _catman,
 }  # fmt: skip
 
 

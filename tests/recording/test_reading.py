@@ -82,7 +82,6 @@ def test_a_recording_without_channels_says_so(path):
         ("log.xlsx", b"PK\3\4\0\0", "it is a spreadsheet: save the sheet as CSV"),
         ("log.raw", b"\1\2\3\0", "imc in a form that is not read: in FAMOS or imc STUDIO save it as .dat"),
         ("log.db", b"SQLite format 3\0", "it is an SQLite database: export the table as CSV"),
-        ("log.bin", b"\x94\x13\x0c\0", "HBM catman: export it as MATLAB, ASCII or MDF 4"),
         ("log.bin", b"\1\2\3\0", "export it as CSV, MATLAB or MDF 4 from the program that wrote it"),
         ("log.psdata", b"\1\2\3\0", "PicoScope or PicoLog: save it as CSV or MATLAB 4"),
         ("log.acme", b"\1\2\3\0", "export it as CSV, MATLAB or MDF 4 from the program that wrote it"),

@@ -1,6 +1,6 @@
 """The formats that are read, in the order in which they are tried; a new one is a new file and one more entry."""
 
-from shaftprint.recording.readers import _hdf5, _journal, _lvm, _mdf, _native, _netcdf3, _uff
+from shaftprint.recording.readers import _catman, _hdf5, _journal, _lvm, _mdf, _native, _netcdf3, _uff
 from shaftprint.recording.readers._reader import Reader
 from shaftprint.recording.readers.can import _log
 from shaftprint.recording.readers.csv import _csv
@@ -17,6 +17,7 @@ READERS: tuple[Reader, ...] = (
     _log,
     _dewesoft,
     _imc,
+    _catman,
     _v5,
     _v73,
     _hdf5,

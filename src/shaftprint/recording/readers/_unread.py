@@ -10,10 +10,6 @@ _SEEN, _FEWEST_LINES = 4000, 2
 _TABLE, _TO_CSV = "save the sheet as CSV", ".to_csv(...)"
 _ARCHIVE = "it is an archive: unpack it"
 _OCTAVE = "in Octave save -v7 FILE.mat"
-_CATMAN = (
-    "HBM catman: export it as MATLAB, ASCII or MDF 4; without it the package apread gives values to Python, with dates "
-    "of 1970 and times that go by the length of channels: check both, and write CSV"
-)
 _NMEA_0183 = rb"[$!][A-Z]{4,5},[^\r\n]*\*[0-9A-F]{2}"
 # Time, priority, a number of NMEA 2000, sender, receiver, length, bytes: a table of whole numbers is none.
 _CANBOAT = (
@@ -55,7 +51,6 @@ _BY_BYTES = {
     b"ULog": "it is a PX4 log: ulog2csv of the package pyulog writes CSV",
     b"\x89MCAP": "it is a ROS log: PlotJuggler exports it as CSV",
     b"#ROSBAG": "it is a ROS log: PlotJuggler exports it as CSV",
-    **dict.fromkeys((b"\x92\x13", b"\x93\x13", b"\x94\x13"), _CATMAN),
     b"RIFF": "it is a sound file: scipy.io.wavfile reads it (24 bits come times 256), scipy.io.savemat writes the "
     "samples with fs",
 }
