@@ -42,6 +42,15 @@ def test_a_phase_of_many_turns_is_drawn_within_one_and_one_of_few_as_it_is(ident
     assert np.isfinite(line.y).all()
 
 
+def test_a_phase_of_a_turn_and_a_half_has_no_jump():
+    model = structure("GAUGE-CLOSED")
+    chart = bode_chart([Curve.at(model, {})], outputs=("n",), span_rad_s=(0.1, 25.0))
+    line = mark(chart.panels[1], "GAUGE-CLOSED")
+    phase = line.y[line.x <= 25.0]
+    assert 450.0 < np.ptp(phase) < 540.0
+    assert np.abs(np.diff(phase)).max() < 90.0
+
+
 def test_a_first_order_lag_falls_by_3_db_and_45_degrees():
     """OL1 is 1 / (tau s + 2 - k) like: at the default values its corner is where |H| is 3.01 dB below its DC value."""
     model = structure("OL1")

@@ -55,6 +55,20 @@ def test_the_set_point_stands_beside_the_speed_only(validations):
     assert "−4 to −5 V" in as_plain(speed.title)
 
 
+def test_with_a_working_point_speed_is_in_rpm_and_torque_in_newton_metres(validations, signals):
+    point = signals.working_point
+    speed, torque = validation_chart(validations[:1], "St1", "step at 230", working_point=point).panels
+    assert (speed.y.title, torque.y.title) == ("[rpm]", "[N·m]")
+    deviation = validation_chart(validations[:1], "St1", "step at 230").panels
+    for panel, plain, level in zip(
+        (speed, torque), deviation, (60.0 * point.engine_speed_rev_s, point.shaft_torque_nm), strict=True
+    ):
+        for name in ("measured", "GAUGE-CLOSED"):
+            np.testing.assert_allclose(mark(panel, name).y / level, 1.0 + mark(plain, name).y, rtol=1e-9)
+        band, of_plain = mark(panel, "95 % band", Band), mark(plain, "95 % band", Band)
+        np.testing.assert_allclose(band.upper - band.lower, level * (of_plain.upper - of_plain.lower), rtol=1e-6)
+
+
 def test_bands_one_after_the_other(validations):
     chart = validation_chart(validations, "C11", "5 to 10", "above 10")
     assert chart.panels[0].x.span == pytest.approx(

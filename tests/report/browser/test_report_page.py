@@ -10,6 +10,7 @@ import pytest
 
 from shaftprint.report import _render as render_module
 from shaftprint.report import render_report
+from shaftprint.report.sections._engineer import budget_section
 from shaftprint.report.sections._measurement import time_section
 from shaftprint.report.sections._quality import quality_section
 from shaftprint.report.sections._results import fit_section, stability_section, summary_section
@@ -22,6 +23,7 @@ pytestmark = pytest.mark.slow
 
 SECTIONS = (
     fit_section,
+    budget_section,
     summary_section,
     stability_section,
     validation_section,

@@ -73,7 +73,7 @@ def bode_chart(
 ) -> Chart:
     """Return a Bode diagram of models and data: rad/s, dB, degrees, 95 % intervals and bands.
 
-    A phase of more than a turn and a quarter is drawn between -270 and 90 degrees, where it can be read.
+    A phase of more than a turn and a half is drawn between -270 and 90 degrees, where it can be read.
 
     Parameters
     ----------

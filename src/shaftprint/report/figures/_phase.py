@@ -7,12 +7,12 @@ from shaftprint.arrays import FloatArray
 TURN_DEG = 360.0
 HIGHEST_DEG = 90.0
 WRAPPED_SPAN_DEG = (-285.0, 105.0)
-# More than that on one axis cannot be read.
-MOST_DEG = 450.0
+# More than that on one axis cannot be read; up to it a line without jumps tells more.
+MOST_DEG = 540.0
 
 
 def reads_better_wrapped(limits_deg: tuple[float, float]) -> bool:
-    """Return whether a phase axis of these ends [deg] shows more than a turn and a quarter."""
+    """Return whether a phase axis of these ends [deg] shows more than a turn and a half."""
     return limits_deg[1] - limits_deg[0] > MOST_DEG
 
 

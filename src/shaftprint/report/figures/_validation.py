@@ -1,18 +1,22 @@
 """A model against the records that it has not seen: over time, and what it misses of every excerpt."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from shaftprint.arrays import FloatArray
 from shaftprint.distributions import deviations
 from shaftprint.plain_table import Symbol
 from shaftprint.report.charts._chart import Chart, Panel, Scale
 from shaftprint.report.charts._marks import Band, Line, Mark, Points, Straight
 from shaftprint.report.charts._text import joined
 from shaftprint.report.figures._envelope import envelope, worthwhile
+from shaftprint.units import rpm_from_rev_s
 
 if TYPE_CHECKING:
+    from shaftprint.signals._working_points import WorkingPoint
     from shaftprint.validation._validation import ExcerptComparison, Validation
 
 PERCENT = 100.0
@@ -29,6 +33,7 @@ def validation_chart(
     *titles: str,
     set_point: bool = False,
     around_step_s: tuple[float, float] | None = None,
+    working_point: "WorkingPoint | None" = None,
 ) -> Chart:
     """Return speed and torque of one or more models over the data of a record that they have not seen.
 
@@ -48,6 +53,8 @@ def validation_chart(
         Whether the set point is drawn beside the speed, as in thesis figures 5.10 and 5.11.
     around_step_s
         Time before and after the step that is shown [s]; all of the excerpt when not given.
+    working_point
+        That of the recording, for speed in rpm and torque in N m; deviations over it when not given.
 
     Raises
     ------
@@ -63,19 +70,39 @@ def validation_chart(
         span = (first.step_s - around_step_s[0], first.step_s + around_step_s[1])
     what = f", {record}, {' and '.join(part.excerpt.title for part in shown[0])}".replace(" -", " −")
     panels = []
-    for row, (output, words) in enumerate(WHAT):
-        marks = _data(validations[0], shown[0], row, set_point=set_point and row == 0)
+    for row, ((output, words), axis) in enumerate(zip(WHAT, _axes(working_point), strict=True)):
+        marks = _data(validations[0], shown[0], row, axis, set_point=set_point and row == 0)
         for shade, (validation, parts) in enumerate(zip(validations, shown, strict=True)):
-            marks += _model(validation, parts, row, shade)
+            marks += _model(validation, parts, row, axis, shade)
         panels.append(
             Panel(
                 title=joined(f"{words} ", Symbol(output), what),
                 marks=marks,
                 x=Scale(title="time in the recording [s]", span=span),
-                y=Scale(title="deviation [-]"),
+                y=Scale(title=axis.title),
             )
         )
     return Chart(panels=panels, heights_px=(230,))
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class _Axis:
+    """In what deviations from the working point are drawn."""
+
+    title: str
+    level: float = 0.0
+    scale: float = 1.0
+
+    def of(self, deviation: FloatArray) -> FloatArray:
+        return self.level + self.scale * deviation
+
+
+def _axes(point: "WorkingPoint | None") -> tuple[_Axis, _Axis]:
+    """Return the axes of speed and torque."""
+    if point is None:
+        return (_Axis(title="deviation [-]"),) * 2
+    speed, torque = rpm_from_rev_s(point.engine_speed_rev_s), point.shaft_torque_nm
+    return _Axis(title="[rpm]", level=speed, scale=speed), _Axis(title="[N·m]", level=torque, scale=torque)
 
 
 def _found(validation: "Validation", record: str, titles: Sequence[str]) -> "list[ExcerptComparison]":
@@ -85,21 +112,23 @@ def _found(validation: "Validation", record: str, titles: Sequence[str]) -> "lis
         raise ValueError(f"validation figure: expected an excerpt {missing.args[0]}, found none.") from None
 
 
-def _data(validation: "Validation", parts: "list[ExcerptComparison]", row: int, *, set_point: bool) -> list[Mark]:
+def _data(
+    validation: "Validation", parts: "list[ExcerptComparison]", row: int, axis: _Axis, *, set_point: bool
+) -> list[Mark]:
     marks: list[Mark] = []
     for part in parts:
         traces = part.traces
         few = worthwhile(traces.time_s, validation.settings.highest_hz)
-        time, measured = envelope(traces.time_s[few], traces.measured[row, few])
+        time, measured = envelope(traces.time_s[few], axis.of(traces.measured[row, few]))
         marks.append(Line(x=time, y=measured, name="measured", shade="soft", width=4.0))
         if set_point:
-            time, wanted = envelope(traces.time_s[few], traces.set_point[few])
+            time, wanted = envelope(traces.time_s[few], axis.of(traces.set_point[few]))
             name = joined("set point ", Symbol("n_set"))
             marks.append(Line(x=time, y=wanted, name=name, shade="reference", width=1.4))
     return marks
 
 
-def _model(validation: "Validation", parts: "list[ExcerptComparison]", row: int, shade: int) -> list[Mark]:
+def _model(validation: "Validation", parts: "list[ExcerptComparison]", row: int, axis: _Axis, shade: int) -> list[Mark]:
     marks: list[Mark] = []
     wide = deviations(validation.settings.coverage)
     for part in parts:
@@ -107,18 +136,19 @@ def _model(validation: "Validation", parts: "list[ExcerptComparison]", row: int,
         half = wide * traces.model_std[row]
         if np.any(half > 0.0):
             every = slice(None, None, max(1, half.size // BAND_POINTS))
-            middle, text = traces.model[row, every], f"{PERCENT * validation.settings.coverage:g} % band of "
+            lower, upper = (axis.of(traces.model[row, every] + sign * half[every]) for sign in (-1.0, 1.0))
+            text = f"{PERCENT * validation.settings.coverage:g} % band of "
             marks.append(
                 Band(
                     x=traces.time_s[every],
-                    lower=middle - half[every],
-                    upper=middle + half[every],
+                    lower=lower,
+                    upper=upper,
                     name=text + validation.model.name,
                     shade=shade,
                 )
             )
         few = worthwhile(traces.time_s, validation.settings.highest_hz)
-        time, values = envelope(traces.time_s[few], traces.model[row, few])
+        time, values = envelope(traces.time_s[few], axis.of(traces.model[row, few]))
         marks.append(Line(x=time, y=values, name=validation.model.name, shade=shade, width=1.6))
     return marks
 

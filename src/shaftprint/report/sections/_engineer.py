@@ -5,8 +5,9 @@ from typing import TYPE_CHECKING
 
 from shaftprint.digits import unit_text, with_deviation
 from shaftprint.plain_table import MEANING, Column
-from shaftprint.report.sections._sections import Inputs, Section
-from shaftprint.tables._fingerprint import budget_table, quantity_table
+from shaftprint.report.figures._covariance import budget_chart
+from shaftprint.report.sections._sections import Inputs, Picture, Section
+from shaftprint.tables._fingerprint import quantity_table
 
 if TYPE_CHECKING:
     from shaftprint.fingerprint._fingerprint import Fingerprint
@@ -74,7 +75,7 @@ def _usable(fingerprint: "Fingerprint", name: str, doubts: list[str]) -> str:
 
 
 def budget_section(inputs: Inputs) -> list[Section]:
-    """Return where the uncertainty comes from, as one table; nothing where no number is known."""
+    """Return where the uncertainty comes from, as bars; nothing where no number is known."""
     budget = inputs.fingerprint.budget
     if not any(row.shares for row in budget.rows):
         return []
@@ -83,7 +84,14 @@ def budget_section(inputs: Inputs) -> list[Section]:
             key="budget",
             title="Where the uncertainty comes from",
             paragraphs=(BUDGET_OPENING,),
-            tables=(budget_table(budget),),
+            pictures=(
+                Picture(
+                    name="budget",
+                    caption="Share of each source in the variance of every number; the appendix has them in numbers.",
+                    alt="One horizontal bar for each number, divided by the share of each source in its variance.",
+                    chart=lambda: budget_chart(budget),
+                ),
+            ),
         )
     ]
 

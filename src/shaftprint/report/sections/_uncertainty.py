@@ -1,23 +1,16 @@
-"""The section of a report that draws the uncertainty: shares of the sources, and how far parabolas can be trusted."""
+"""The section of a report on the uncertainty: shares of the sources, and how far parabolas can be trusted."""
 
-from shaftprint.report.figures._covariance import budget_chart
 from shaftprint.report.figures._profiles import profile_chart
 from shaftprint.report.sections._sections import Inputs, Picture, Section
+from shaftprint.tables._fingerprint import budget_table
 
 
 def uncertainty_section(inputs: Inputs) -> list[Section]:
-    """Return where the uncertainty comes from; nothing where no number is known."""
+    """Return where the uncertainty comes from in numbers, and the profiles; nothing where no number is known."""
     budget = inputs.fingerprint.budget
     if not any(row.shares for row in budget.rows):
         return []
-    pictures = [
-        Picture(
-            name="budget",
-            caption="Share of each source in the variance of every number.",
-            alt="One horizontal bar for each number, divided by the share of each source in its variance.",
-            chart=lambda: budget_chart(budget),
-        )
-    ]
+    pictures = []
     if inputs.identification.is_likelihood:
         pictures.append(
             Picture(
@@ -34,7 +27,8 @@ def uncertainty_section(inputs: Inputs) -> list[Section]:
     return [
         Section(
             key="uncertainty",
-            title="Uncertainty, drawn",
+            title="Uncertainty in numbers",
+            tables=(budget_table(budget),),
             pictures=pictures,
         )
     ]

@@ -1,6 +1,5 @@
 """The section of a report on records that the model has not seen: in words, in numbers, and over time."""
 
-from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING
@@ -53,17 +52,17 @@ def step_against_data(inputs: Inputs) -> Picture | None:
     steps = [c for c in shown_excerpts(first) if c.excerpt.step_s is not None]
     if not steps:
         return None
-    picture = _picture(inputs.validations, steps[0])
+    picture = _picture(inputs, steps[0])
     outcome = f"{first.headline[:1].upper()}{first.headline[1:]}"
     return replace(picture, caption=f"The largest step: {picture.caption} {outcome}.")
 
 
 def _excerpt_pictures(inputs: Inputs) -> list[Picture]:
-    return [_picture(inputs.validations, comparison) for comparison in shown_excerpts(inputs.validations[0])]
+    return [_picture(inputs, comparison) for comparison in shown_excerpts(inputs.validations[0])]
 
 
-def _picture(validations: "Sequence[Validation]", comparison: "ExcerptComparison") -> Picture:
-    excerpt = comparison.excerpt
+def _picture(inputs: Inputs, comparison: "ExcerptComparison") -> Picture:
+    validations, excerpt = inputs.validations, comparison.excerpt
     is_step = excerpt.step_s is not None
     return Picture(
         name=picture_name("validation", excerpt.record, excerpt.kind, f"{excerpt.start_s:.0f}"),
@@ -79,6 +78,7 @@ def _picture(validations: "Sequence[Validation]", comparison: "ExcerptComparison
             excerpt.title,
             set_point=excerpt.kind != "chirp band",
             around_step_s=AROUND_STEP_S if is_step else None,
+            working_point=inputs.signals.working_point,
         ),
     )
 

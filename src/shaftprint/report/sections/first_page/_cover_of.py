@@ -22,6 +22,10 @@ if TYPE_CHECKING:
 
 WATT = 1000.0
 """Watts in a kilowatt."""
+OPENING = (
+    "Everything here holds at the working point. ± is one standard deviation; where a range is given, the true value "
+    "lies in it in 95 of 100 tests."
+)
 
 
 def cover_of(
@@ -56,11 +60,11 @@ def cover_of(
     return Cover(
         headline=headline,
         state=state,
-        opening=_opening(fingerprint, vessel),
+        opening=OPENING,
         cards=cards,
         known=_known(fingerprint),
         change=f"{change[0].question} {change[0].sentence}" if change else "",
-        facts=[*_facts(fingerprint), *([("Logo", missing)] if missing else [])],
+        facts=[*_facts(fingerprint, vessel), *([("Logo", missing)] if missing else [])],
         tables=number_table(fingerprint),
         sketch=None if vessel is None else line_sketch(vessel),
         company="" if company is None else company.name,
@@ -68,13 +72,12 @@ def cover_of(
     )
 
 
-def _opening(fingerprint: "Fingerprint", vessel: "Vessel | None") -> str:
+def _working_point(fingerprint: "Fingerprint", vessel: "Vessel | None") -> str:
     conditions = fingerprint.conditions
     speed, torque = conditions.engine_speed, conditions.shaft_torque
     return (
-        f"Everything here holds at {plain(speed.value, 0)} {unit_text(speed.unit)} engine speed and "
-        f"{plain(torque.value, 0)} {unit_text(torque.unit)} shaft torque{_power(fingerprint, vessel)}. "
-        "± is one standard deviation; where a range is given, the true value lies in it in 95 of 100 tests."
+        f"{plain(speed.value, 0)} {unit_text(speed.unit)} engine speed, {plain(torque.value, 0)} "
+        f"{unit_text(torque.unit)} shaft torque{_power(fingerprint, vessel)}"
     )
 
 
@@ -95,13 +98,13 @@ def _known(fingerprint: "Fingerprint") -> str:
     return f"{known} of {len(verdict.trusted) + len(verdict.not_trusted)} numbers are known"
 
 
-def _facts(fingerprint: "Fingerprint") -> list[tuple[str, str]]:
+def _facts(fingerprint: "Fingerprint", vessel: "Vessel | None") -> list[tuple[str, str]]:
     conditions = fingerprint.conditions
     ship = ship_text(conditions.ship)
     return [
         *([("Ship", ship)] if ship else []),
         *([("Tested", tested)] if (tested := tested_text(conditions.tested_at)) else []),
         *([("Place", conditions.place)] if conditions.place else []),
-        ("Test", conditions.campaign),
+        ("Working point", _working_point(fingerprint, vessel)),
         *water_facts(conditions),
     ]
