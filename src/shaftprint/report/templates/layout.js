@@ -11,6 +11,8 @@ window.shaftprintLayout = (() => {
   const SLANTED = 45;
   // A panel that is narrower has titles that begin left of it [px].
   const SLIM = 200;
+  // A panel that is lower has its numbers closer together [px].
+  const LOW = 140;
   // A field of a matrix that is narrower shows its colour only [px].
   const FIELD = 40;
   const FONT = 'system-ui, "Segoe UI", "Liberation Sans", Arial, sans-serif';
@@ -114,7 +116,7 @@ window.shaftprintLayout = (() => {
       const decades = scale.span ? Math.abs(scale.span[1] - scale.span[0]) : 3;
       Object.assign(axis, { type: "log", dtick: lengthPx / decades > (which === "x" ? 150 : 70) ? "D2" : 1, tickformat: "~g" });
     } else if (scale.step) Object.assign(axis, { dtick: scale.step * (lengthPx < 110 ? 2 : 1), tick0: 0 });
-    else axis.nticks = Math.max(3, Math.floor(lengthPx / (which === "x" ? 80 : 34)));
+    else axis.nticks = Math.max(3, Math.floor(lengthPx / (which === "x" ? 80 : lengthPx < LOW ? 22 : 34)));
     return axis;
   }
 
