@@ -15,7 +15,7 @@ PYTHON ?= $(shell for p in $(PYTHONS); do \
 ROOMS := signals spectra models catalogue simulation identify
 
 .DEFAULT_GOAL := help
-.PHONY: help demo demo-fleet test test-slow test-all lint docs bench wheel offline lock clean
+.PHONY: help demo demo-fleet test test-slow test-all lint docs bench wheel offline program lock clean
 
 help: ## Say what can be made
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "  make %-10s %s\n", $$1, $$2}' $(firstword $(MAKEFILE_LIST))
@@ -61,6 +61,13 @@ wheel: $(VENV)/run ## Build the wheel into dist/
 
 offline: wheel ## Write a zip that installs without a network; OPTIONS=--help
 	$(BIN)/python requirements/offline.py $(OPTIONS)
+
+program: wheel ## Write a program with its own Python, for this system, into dist/: a double click opens the pages
+	@echo "Installing requirements/program.txt into build/python (a few minutes) ..."
+	@$(BIN)/python -m venv --clear build/python
+	@build/python/bin/python -m pip --disable-pip-version-check install --quiet --no-deps --no-compile --require-hashes --requirement requirements/program.txt
+	@build/python/bin/python -m pip --disable-pip-version-check install --quiet --no-deps dist/shaftprint-*.whl
+	build/python/bin/python requirements/program/build.py
 
 lock: $(VENV)/bin/python ## Choose new versions for requirements/ (needs the network)
 	$(PIP) install --quiet uv

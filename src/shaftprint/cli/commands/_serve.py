@@ -1,5 +1,8 @@
 """``shaftprint serve``: pages of the store for browsers and programs."""
 
+import webbrowser
+from contextlib import suppress
+from functools import partial
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Final
@@ -8,10 +11,11 @@ import click
 
 from shaftprint.cli._store_options import store_option
 from shaftprint.cli._terminal import answer, echo, say
-from shaftprint.errors import ServerError
+from shaftprint.errors import ServerError, StoreError
 from shaftprint.late import late
 
 with late():
+    from shaftprint.store._store import create_store
     from shaftprint.web._server import serve
     from shaftprint.web._settings import Serving, listen_at
     from shaftprint.web.access import _password, _users
@@ -49,6 +53,9 @@ _MEGABYTE: Final = 2**20
 @click.option(
     "--host", "hosts", multiple=True, metavar="NAME", help="A name by which browsers reach it. May be repeated."
 )
+@click.option(
+    "--open", "is_opened", is_flag=True, help="Open the first page in the browser; make the store where there is none."
+)
 @click.option("--workers", type=click.IntRange(0, 64), default=1, show_default=True, help="Processes that identify.")
 @click.option("--certificate", type=click.Path(path_type=Path), help="Certificate for TLS.")
 @click.option("--key", type=click.Path(path_type=Path), help="Key of the certificate.")
@@ -79,6 +86,7 @@ def command(
     behind_tls: bool,
     overdue_days: int,
     most_upload: int,
+    is_opened: bool,
 ) -> None:
     """Serve pages of the store: how each ship stands, histories, comparisons, uploads and jobs.
 
@@ -106,11 +114,17 @@ def command(
     )
     if not serving.listen.is_local and not serving.is_secure:
         say("Passwords and pages go over the network as they are: state --certificate and --key, or --behind-tls.\n")
-    serve(serving, begun=_begun)
+    if is_opened:
+        # one that is there is refused and opened by the pages, which say what else is wrong with the place
+        with suppress(StoreError):
+            create_store(url).close()
+    serve(serving, begun=partial(_begun, is_opened=is_opened))
 
 
-def _begun(address: str) -> None:
+def _begun(address: str, *, is_opened: bool) -> None:
     answer(f"Open {address}")
+    if is_opened:
+        webbrowser.open(address)
     echo("Ctrl-C ends it; jobs that are open go on when it is begun again.")
 
 
