@@ -4,7 +4,8 @@ from PyInstaller.utils.hooks import collect_data_files, collect_submodules, copy
 
 # numba keeps compiled code beside the age of its source, and some modules are run as files
 module_collection_mode = "py"
-datas = collect_data_files("shaftprint", include_py_files=False) + copy_metadata("shaftprint")
+# migrations of the store are found as files
+datas = collect_data_files("shaftprint", include_py_files=True) + copy_metadata("shaftprint")
 hiddenimports = collect_submodules("shaftprint")
 # what is imported where it is needed, by its name
 for package in ("asammdf", "asyncua", "can", "canmatrix", "matio", "nptdms", "psycopg", "pymodbus", "pyuff"):
