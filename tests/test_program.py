@@ -36,9 +36,12 @@ def ended(*words):
 def test_it_runs_a_module_as_python_does():
     done = ended("-P", "-m", "platform", "terse")
     assert done.returncode == 0, done.stderr
-    assert done.stdout.strip() == subprocess.run(
-        [sys.executable, "-m", "platform", "terse"], capture_output=True, text=True, encoding="utf-8", check=True
-    ).stdout.strip()
+    assert (
+        done.stdout.strip()
+        == subprocess.run(
+            [sys.executable, "-m", "platform", "terse"], capture_output=True, text=True, encoding="utf-8", check=True
+        ).stdout.strip()
+    )
 
 
 def test_words_are_those_of_the_command_line():

@@ -15,7 +15,8 @@ import PyInstaller.__main__
 HERE = Path(__file__).parent
 # what packages bring for their own tests, and other ways to draw
 LEFT_OUT = (
-    "tkinter", "IPython", "PySide6", "PyQt5", "pytest", "numpy.tests", "scipy.tests", "matplotlib.tests", "pandas.tests",
+    "tkinter", "IPython", "PySide6", "PyQt5", "pytest",
+    "numpy.tests", "scipy.tests", "matplotlib.tests", "pandas.tests",
 )  # fmt: skip
 
 

@@ -1,4 +1,4 @@
-"""What a double click begins: the pages of a store in the user's documents, in the browser. With words, the command line.
+"""What a double click begins: the pages of a store in the user's documents. With words, the command line.
 
 The modules of this program are begun by ``sys.executable -P -m MODULE`` and ``-P FILE``; here that is this program, so
 it takes those words as Python does.
