@@ -86,7 +86,8 @@ def _card(test: "PlannedTest") -> Section:
 
 def _numbers(test: "PlannedTest") -> Section:
     structure = test.plan.ship.structure
-    meanings = {one.name: one.meaning for one in (*structure.parameters, *structure.combinations)}
+    meanings = {one.name: one.meaning for one in structure.parameters}
+    meanings |= {one.name: one.meaning for one in structure.combinations}
     section = Section(key="numbers", title="What it would tell", tables=(predicted_number_table(test),))
     return explained(section, meanings)
 
