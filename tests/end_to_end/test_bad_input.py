@@ -131,8 +131,8 @@ def test_campaign_with_several_mistakes_names_them_all(short_trip, refused, tmp_
     spoilt = SHORT.replace("frequency_hz = 0.02\n", "frequency = 0.02\n").replace("dwell_s = 30.0", "dwell_s = -30.0")
     path.write_text(spoilt, encoding="utf-8")
     sentence = refused(short_trip.path, path)
-    assert sentence.startswith(f"{path}: 3 fields cannot be used.")
-    for wrong in ("frequency_hz (S1): ", "frequency (S1): ", "dwell_s (St1): "):
+    assert sentence.startswith(f"{path}: 2 fields cannot be used.")
+    for wrong in ("frequency (S1): ", "wanted as frequency_hz", "dwell_s (St1): "):
         assert wrong in sentence
 
 

@@ -238,7 +238,7 @@ def test_tab_goes_from_the_skip_link_through_the_page_in_its_order(opened):
     names = [name for _, name, _ in seen]
     assert "plot-fit" in names
     reached = list(dict.fromkeys(name for name in names if name.startswith("plot-")))
-    assert reached[:3] == ["plot-fit", "plot-validation_st1_step_208", "plot-residuals"]
+    assert reached[:3] == ["plot-fit", "plot-validation_st1_step_208", "plot-budget"]
 
 
 def test_the_first_screen_holds_the_verdict(opened, fingerprint):
