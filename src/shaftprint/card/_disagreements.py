@@ -21,7 +21,7 @@ _CURVE_TOLERANCE = 1.1
 _FINDING, _CONTRADICTION = 1.25, 2.0
 
 
-def disagreements(vessel: Vessel) -> tuple[Disagreement, ...]:
+def disagreements(vessel: Vessel, *, is_recorded: bool = False) -> tuple[Disagreement, ...]:
     """Return what in a vessel file contradicts the rest of it or is strange beside it, contradictions first.
 
     Held against each other are gear ratio, engine and propeller speed; working speed, idle and highest speed; working
@@ -30,6 +30,8 @@ def disagreements(vessel: Vessel) -> tuple[Disagreement, ...]:
     the ship, at which thrust is to meet resistance; inertias and stiffnesses of the links; the pulses of a pick-up at
     the highest speed and the rate of the logger. A torque that is off by a factor of two contradicts the series, by a
     quarter it is strange; so are pulses that are shown at the working point.
+
+    ``is_recorded``: whether there is a recording, which shows itself how the logger took the pulses.
     """
     of_propeller = (_thrust,) if vessel.is_underway else (_series, _coefficient)
     checks = (
@@ -43,7 +45,7 @@ def disagreements(vessel: Vessel) -> tuple[Disagreement, ...]:
         _pitch,
         _full_scale,
         first_mode,
-        _pulses,
+        *(() if is_recorded else (_pulses,)),
     )
     found = [disagreement for check in checks for disagreement in check(vessel)]
     return tuple(sorted(found, key=lambda one: not one.is_contradiction))

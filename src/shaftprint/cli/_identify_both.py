@@ -57,7 +57,7 @@ def identify_both_lines(
     """Identify both lines, print and write the results of each side and the comparison of both."""
     trials = load_trials_of_both(*vessels, campaign, about.conditions)
     for trial, file in zip(trials, vessels, strict=True):
-        print_disagreements(trial.vessel, file)
+        print_disagreements(trial.vessel, file, is_recorded=True)
     chosen = names or (default_structure(trials[0].vessel, trials[0].campaign),)
     structures = options.structures(chosen, trials[0].vessel)
     of_user = structure_sources(names)

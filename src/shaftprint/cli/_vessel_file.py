@@ -14,12 +14,13 @@ with late():
     from shaftprint.vessel._vessel import Vessel, load_vessel
 
 
-def print_disagreements(vessel: Vessel, file: str) -> None:
+def print_disagreements(vessel: Vessel, file: str, *, is_recorded: bool = False) -> None:
     """Print what in a vessel file contradicts itself, as part of the answer, and what is strange; nothing else.
 
-    ``vessel``, ``file``: what was read, and the path or name of a shipped file it was read from.
+    ``vessel``, ``file``: what was read, and the path or name of a shipped file it was read from. ``is_recorded``:
+    whether it is of a recording that is there.
     """
-    found = disagreements(vessel)
+    found = disagreements(vessel, is_recorded=is_recorded)
     contradictions = [one.sentence(file) for one in found if one.is_contradiction]
     if contradictions:
         print_findings("The vessel file contradicts itself", contradictions, is_answer=True)

@@ -142,7 +142,7 @@ def command(
         return
     # before the folder is made: a mistake in a settings file leaves none
     trial, rng = load_trial(vessel, campaign), np.random.default_rng(options.seed)
-    print_disagreements(trial.vessel, vessel)
+    print_disagreements(trial.vessel, vessel, is_recorded=True)
     structures = options.structures(names or (default_structure(trial.vessel, trial.campaign),), trial.vessel)
     with results.folder("identify") as folder:
         with results.progress() as steps:

@@ -81,7 +81,7 @@ def command(
     ship = None if vessel is None else load_vessel(vessel)
     planned = None if campaign is None else load_campaign(campaign)
     if ship is not None and vessel is not None:
-        print_disagreements(ship, vessel)
+        print_disagreements(ship, vessel, is_recorded=True)
     reading = reading_words(**said)
     with read_recording(recording, **hints_of(**said)) as opened:
         clocks = logger_clocks(opened)
