@@ -6,29 +6,30 @@ from typing import Any
 
 import pytest
 
+from shaftprint.cli import _identify_both
 from shaftprint.fingerprint import read_fingerprint
-from shaftprint.survey._both_shafts import SurveyOfBoth, run_both
 
 PORT, STARBOARD = "stan-tug-1205", "stan-tug-1205-starboard"
 SIDES = ("--vessel", PORT, "--starboard", STARBOARD, "--campaign", "at-once", "--no-progress")
 
 
 @pytest.fixture
-def found_once(monkeypatch: pytest.MonkeyPatch) -> list[SurveyOfBoth]:
+def found_once(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
     """What was found in the one recording: a command that asks for it again is given it, and prints or writes it."""
-    found: list[SurveyOfBoth] = []
+    found: list[Any] = []
+    run_both = _identify_both.run_both
 
-    def give(*arguments: Any, **options: Any) -> SurveyOfBoth:
+    def give(*arguments: Any, **options: Any) -> Any:
         found.append(found[0] if found else run_both(*arguments, **options))
         return found[-1]
 
-    monkeypatch.setattr("shaftprint.cli._identify_both.run_both", give)
+    monkeypatch.setattr(_identify_both, "run_both", give)
     return found
 
 
 @pytest.mark.slow
 def test_one_recording_gives_a_fingerprint_of_each_side_and_how_they_differ(
-    run: Any, tmp_path: Path, found_once: list[SurveyOfBoth]
+    run: Any, tmp_path: Path, found_once: list[Any]
 ) -> None:
     recording, result = tmp_path / "both.nc", tmp_path / "result"
     sailed = run("sail", PORT, "at-once", "--starboard", STARBOARD, "-o", recording, "--seed", "3", "--no-progress")
