@@ -102,10 +102,10 @@ def _delay_of_leg_s(play_v: float, leg: Any, campaign: Campaign) -> float:
             last = min(max(last, voltage - 0.5 * play_v), voltage + 0.5 * play_v)
             followed[place] = last
     lines = np.array(list(leg.lines))
-    speed = 2j * np.pi * lines / leg.length_of_period_s * np.fft.rfft(asked)[lines]
-    late = 2j * np.pi * lines / leg.length_of_period_s * np.fft.rfft(asked - followed)[lines]
-    turned = 2j * np.pi * lines / leg.length_of_period_s * speed
-    return float(np.vdot(turned, late).real / np.vdot(turned, turned).real)
+    turn = 2j * np.pi * lines / leg.length_of_period_s
+    # of a set point that is later by a second, and of the one behind the play: how much slower it moves
+    per_second, slower = turn**2 * np.fft.rfft(asked)[lines], turn * np.fft.rfft(asked - followed)[lines]
+    return float(np.vdot(per_second, slower).real / np.vdot(per_second, per_second).real)
 
 
 def true_values(truth: Truth, ship: Ship, signals: Signals, campaign: Campaign) -> dict[str, float]:

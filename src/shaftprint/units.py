@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 SECONDS_PER_MINUTE = 60.0
 SECONDS_PER_HOUR = 3600.0
-M_S_PER_KNOT = 1852.0 / 3600.0
+M_S_PER_KNOT = 1852.0 / SECONDS_PER_HOUR
 MILLI, PPM = 1e3, 1e6
 """How many thousandths and millionths there are in one."""
 

@@ -29,7 +29,7 @@ from shaftprint.service._vetting import (
     torque_is_held,
     way_on,
 )
-from shaftprint.units import rpm_from_rev_s
+from shaftprint.units import SECONDS_PER_HOUR, rpm_from_rev_s
 
 if TYPE_CHECKING:
     from shaftprint.fingerprint._fingerprint import Fingerprint
@@ -247,7 +247,7 @@ def _accuracy(each: Sequence[Score], model: ServiceModel, *, used: int) -> tuple
 def _how_long(seconds: float) -> str:
     """Return a length of time as one says it."""
     if seconds >= 3300.0:
-        hours = f"{seconds / 3600.0:.3g}"
+        hours = f"{seconds / SECONDS_PER_HOUR:.3g}"
         return f"{hours} hour{'' if hours == '1' else 's'}"
     return f"{seconds / 60.0:.0f} minutes" if seconds >= 120.0 else f"{seconds:.0f} seconds"
 

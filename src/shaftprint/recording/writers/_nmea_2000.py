@@ -18,6 +18,7 @@ from shaftprint.recording.readers.can._messages import Signal
 from shaftprint.recording.writers._bus_log import write_bus_log
 from shaftprint.recording.writers._bus_messages import Sent, counts_of, names_in_messages, none_of, rounding_of
 from shaftprint.recording.writers._can_log import losses_of, own_message
+from shaftprint.units import M_S_PER_KNOT
 
 _PRIORITY, _SENDER = 2, 0x0A
 # Bytes of a frame that say who made it: no maker, marine industry.
@@ -27,7 +28,7 @@ _RAPID_S = 0.1
 _AS_IT_COMES = 4.0 / 3.0
 _FRAME_BYTES = 8
 _ROUNDING = 1e-6
-_KNOTS = {"m/s": 1.0, "kn": 1852.0 / 3600.0}
+_KNOTS = {"m/s": 1.0, "kn": M_S_PER_KNOT}
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

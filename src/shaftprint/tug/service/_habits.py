@@ -8,6 +8,7 @@ import numpy as np
 
 from shaftprint.campaign._lever_course import LeverCourse
 from shaftprint.tug._tug import Tug
+from shaftprint.units import SECONDS_PER_HOUR
 from shaftprint.vessel._vessel import Vessel
 
 # A day begins and ends with the lever where it is.
@@ -75,7 +76,7 @@ def lever_course(
     rng
         Source of what happens to be done.
     """
-    end_s, (lowest, highest) = 3600.0 * hours, habits.speeds_rpm
+    end_s, (lowest, highest) = SECONDS_PER_HOUR * hours, habits.speeds_rpm
     engine = vessel.engine
     idle = 0.5 * lowest if engine is None or engine.idle_speed_rpm is None else engine.idle_speed_rpm
     corners = [(0.0, 0.5 * (lowest + highest))]
@@ -96,7 +97,7 @@ def lever_course(
     mean_hold_s = (habits.longest_hold_s - habits.shortest_hold_s) / math.log(
         habits.longest_hold_s / habits.shortest_hold_s
     )
-    to_idle = habits.idles_per_hour * mean_hold_s / 3600.0
+    to_idle = habits.idles_per_hour * mean_hold_s / SECONDS_PER_HOUR
     while time_s < end_s - _BEFORE_S:
         if rng.uniform() < to_idle:
             move(idle)

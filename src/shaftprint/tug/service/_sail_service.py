@@ -22,6 +22,7 @@ from shaftprint.tug._truth import Truth, truth_path
 from shaftprint.tug._tug import Tug
 from shaftprint.tug.service._habits import Habits, lever_course
 from shaftprint.tug.service._troubles import TROUBLES, Channels, Load, Logged, Trouble, trimmed
+from shaftprint.units import SECONDS_PER_HOUR
 from shaftprint.vessel._vessel import Vessel
 
 FILE_S = 3600.0
@@ -92,7 +93,9 @@ def sail_service(
         raise SettingsError(
             f"vessel {vessel.name}: expected [logger] with the sample_rate_hz of the log of service, found none."
         )
-    files = tuple(folder / f"log-{k + 1:02d}{ending}" for k in range(int(np.ceil(3600.0 * hours / FILE_S - 1e-9))))
+    files = tuple(
+        folder / f"log-{k + 1:02d}{ending}" for k in range(int(np.ceil(SECONDS_PER_HOUR * hours / FILE_S - 1e-9)))
+    )
     there = [file for file in (*files, truth_path(folder / "log.nc")) if file.exists()]
     if there and not overwrite:
         raise RecordingError(f"{there[0]} exists already; choose another folder or delete it first.")
