@@ -257,6 +257,9 @@ def test_file_that_is_missing(tmp_path):
     (tmp_path / "result").mkdir()
     with pytest.raises(FingerprintError, match=r"has put it\. Did you mean result\?$"):
         read_fingerprint(tmp_path / "reslt")
+    # a folder that is there is not proposed in place of itself
+    with pytest.raises(FingerprintError, match=r"has put it\.$"):
+        read_fingerprint(tmp_path / "result")
 
 
 @pytest.mark.parametrize(

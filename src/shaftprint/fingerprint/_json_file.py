@@ -118,7 +118,7 @@ def read_any_fingerprint(path: str | Path) -> LineFingerprint:
         json_path /= IN_A_FOLDER
 
     def where() -> str:
-        return f"name the file, or the folder in which identify or demo has put it.{meant_beside(Path(path))}"
+        return f"name the file, or the folder in which identify or demo has put it.{meant_beside(json_path)}"
 
     text, content = read_json(json_path, noun="fingerprint", where=where, error=FingerprintError)
     return _fingerprint_of(text, content, named=str(json_path))
