@@ -149,6 +149,15 @@ def test_signals_spectra_and_fits_are_made_without_a_compiler():
     assert [path.parent.name for path in readers if "import compiled\n" in path.read_text("utf-8")] == ["csv"]
 
 
+def test_verdict_and_validation_are_made_without_the_parts_of_scipy():
+    """Its splines and transforms take longer to load than a validation takes."""
+    rooms = ("fingerprint", "identify", "models", "survey", "validation")
+    files = [path for room in rooms for path in sorted((SOURCE / room).rglob("*.py"))]
+    loaded = [path.name for path in files if "\nimport scipy" in path.read_text("utf-8")]
+    assert len(files) > 100
+    assert loaded == []
+
+
 def test_the_help_of_a_command_loads_its_options_and_no_more():
     script = (
         "import sys\n"

@@ -53,6 +53,7 @@ from shaftprint import survey as survey
 from shaftprint import tables as tables
 from shaftprint import time_domain as time_domain
 from shaftprint import torsion as torsion
+from shaftprint import transforms as transforms
 from shaftprint import tug as tug
 from shaftprint import units as units
 from shaftprint import validation as validation

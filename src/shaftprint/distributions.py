@@ -17,7 +17,10 @@ NORMAL_95 = 1.959963984540054
 # Terms after which series and continued fractions have long settled, for up to a hundred thousand degrees of freedom.
 _TERMS = 100_000
 _TINY = 1e-300
-_BISECTIONS = 60
+# As many as halving takes, should it come to that; ten are usual.
+_STEPS = 60
+# Two steps that end at one number, but for the rounding of the tail.
+_SAME = 4e-16
 
 _erfc = np.frompyfunc(math.erfc, 1, 1)
 
@@ -64,12 +67,28 @@ def chi_square_quantile(coverage: float, degrees_of_freedom: float) -> float:
 def _quantile(tail: Callable[[float], float], share: float) -> float:
     """Return the positive value beyond which a share of a distribution lies."""
     low, high = 0.0, 1.0
-    while tail(high) > share:
-        low, high = high, 2.0 * high
-    for _ in range(_BISECTIONS):
-        middle = 0.5 * (low + high)
-        low, high = (middle, high) if tail(middle) > share else (low, middle)
+    # over the logarithm a tail is nearly straight: the secant of a bracket finds it in a few steps
+    below, above = -math.log(share), _above(tail(high), share)
+    while above > 0.0:
+        low, high, below = high, 2.0 * high, above
+        above = _above(tail(high), share)
+    before, side = low, 0
+    for _ in range(_STEPS):
+        middle = low + (high - low) * below / (below - above) if above > -math.inf else 0.5 * (low + high)
+        if abs(middle - before) <= _SAME * middle:
+            return middle
+        value, before = _above(tail(middle), share), middle
+        # Illinois rule: an end that stays twice counts half, so that both close in
+        if value > 0.0:
+            low, below, above, side = middle, value, above * (0.5 if side > 0 else 1.0), 1
+        else:
+            high, above, below, side = middle, value, below * (0.5 if side < 0 else 1.0), -1
     return 0.5 * (low + high)
+
+
+def _above(probability: float, share: float) -> float:
+    """Return by how much a probability is above a share, over their logarithms."""
+    return math.log(probability / share) if probability > 0.0 else -math.inf
 
 
 def chi_square_tail(value: float, degrees_of_freedom: float) -> float:

@@ -10,6 +10,7 @@ import scipy.optimize
 from shaftprint.catalogue import structure
 from shaftprint.errors import IdentificationError
 from shaftprint.identify import MaximumLikelihood, Prior, Settings, Unweighted, identify, scan
+from shaftprint.identify.likelihood._objective import Objective
 from shaftprint.identify.search._starts import Draw
 from shaftprint.models import Delay, Gain, Parameter, PIGovernor, Structure
 from shaftprint.spectra import FrequencyResponse
@@ -219,6 +220,17 @@ def test_the_grid_gets_finer_where_the_cost_turns_fast():
     assert fine.grid.size > 400
     coarse = scan_response(delay_of_unit_gain(0.2), two_lines(1e4), "t")
     assert coarse.grid.size == 129
+
+
+def test_neighbours_lead_on_so_that_few_values_are_searched_from_all_starts(make_response, monkeypatch):
+    """A search of every value from every start asked for the model at 15,500 sets of parameters here."""
+    rng = np.random.default_rng(5)
+    found = identify(structure("CL4"), make_response("CL4", noise=0.03, rng=rng), rng=rng)
+    asked, residuals = [], Objective.residuals
+    monkeypatch.setattr(Objective, "residuals", lambda self, theta: asked.append(len(theta)) or residuals(self, theta))
+    scanned = scan(found, "t_d", starts=4)
+    assert scanned.best.cost == pytest.approx(found.cost, rel=1e-9)
+    assert sum(asked) < 8000
 
 
 def test_findings_name_the_optima():

@@ -8,21 +8,28 @@ from shaftprint.arguments import refusing_none
 from shaftprint.errors import RecordingError
 from shaftprint.escape import terminal_message
 from shaftprint.files import reason
+from shaftprint.late import late
 from shaftprint.publication._publish import complete
 from shaftprint.recording._recording import Recording
-from shaftprint.recording.readers._all import READERS
+from shaftprint.recording.readers import _journal, _native
 from shaftprint.recording.readers._outside import read_outside
 from shaftprint.recording.readers._reader import Reader
 from shaftprint.recording.readers._time_scale import FASTEST_HZ, SLOWEST_HZ
 from shaftprint.recording.readers._unread import remedy
 from shaftprint.spelling import meant_beside
 
+with late():
+    from shaftprint.recording.readers import _all
+
+OWN: tuple[Reader, ...] = (_native, _journal)
+"""Formats of this package: their marks belong to nobody else, so that no other reader is loaded to be asked."""
+
 # a log of ordinary service has a value a second or more often
 _SLOW_FILE_HZ = 0.2
 
 
 @refusing_none(RecordingError)
-def read_recording(path: str | Path, *, readers: Sequence[Reader] = READERS, **hints: object) -> Recording:
+def read_recording(path: str | Path, *, readers: Sequence[Reader] | None = None, **hints: object) -> Recording:
     """Open a raw logger file, read only; samples are read as they are asked for.
 
     Parameters
@@ -50,7 +57,7 @@ def read_recording(path: str | Path, *, readers: Sequence[Reader] = READERS, **h
     try:
         if path.stat().st_size == 0:
             raise RecordingError(f"{path}: expected a logger file, found an empty one.")
-        outside = read_outside(path, **hints) if readers is READERS else None
+        outside = read_outside(path, **hints) if readers is None else None
         return _questioned(outside or _the_reader(path, readers).read(path, **hints))
     except OSError as error:
         raise RecordingError(f"{path}: the file cannot be read: {reason(error)}.") from None
@@ -77,7 +84,12 @@ def _questioned(recording: Recording) -> Recording:
     return replace(recording, remarks=(*recording.remarks, sentence))
 
 
-def _the_reader(path: Path, readers: Sequence[Reader]) -> Reader:
+def _the_reader(path: Path, readers: Sequence[Reader] | None) -> Reader:
+    if readers is None:
+        own = next((reader for reader in OWN if reader.is_mine(path)), None)
+        if own is not None:
+            return own
+        readers = _all.READERS
     claims = [reader for reader in readers if reader.is_mine(path)]
     if len(claims) == 1:
         return claims[0]

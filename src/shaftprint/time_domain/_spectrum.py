@@ -10,6 +10,7 @@ from shaftprint.errors import SignalError
 from shaftprint.spectra._frequency_response import FrequencyResponse
 from shaftprint.time_domain._bands import NARROWEST, LineBands, bands_of
 from shaftprint.time_domain._record import Record
+from shaftprint.transforms import largest_quick_length
 
 # Of the largest power in a share of the frequency, what makes a line excited.
 EXCITED = 1e-2
@@ -91,7 +92,9 @@ def spectrum_of(
             f"record {record.name}: expected channels {input_name}, {', '.join(output_names)}, found "
             f"{', '.join((*record.inputs, *record.outputs))}."
         )
-    length = _fast_length(record.samples - 1)
+    # the first samples are left out for it, one in five hundred at most
+    count = record.samples - 1
+    length = largest_quick_length(count, max(count - count // SHORTENED, 1))
     channels = np.stack([record.inputs[input_name], *(_filled(record, name) for name in output_names)])
     transformed = _transformed(channels[:, record.samples - 1 - length :])
     step = record.rate_hz / length
@@ -111,21 +114,6 @@ def spectrum_of(
         bands=bands,
         outside=frozen_float(np.maximum(everything - 2.0 * np.sum(np.abs(outputs) ** 2, axis=1), 0.0)),
     )
-
-
-def _fast_length(count: int) -> int:
-    """Return the largest length up to a count that is a product of small primes, where a transform is quick.
-
-    The first samples are left out for it, one in five hundred at most.
-    """
-    for length in range(count, max(count - count // SHORTENED, 1), -1):
-        factor = length
-        for prime in (2, 3, 5, 7, 11):
-            while factor % prime == 0:
-                factor //= prime
-        if factor == 1:
-            return length
-    return count
 
 
 def _transformed(values: FloatArray) -> ComplexArray:

@@ -13,12 +13,12 @@ from collections.abc import Sequence
 from typing import Protocol
 
 import numpy as np
-import scipy
 
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import ValidationError
 from shaftprint.models._structure import Structure
 from shaftprint.simulation._simulate import simulate
+from shaftprint.transforms import smallest_quick_length
 
 OUTPUTS = ("n", "M_s")
 
@@ -68,7 +68,7 @@ def linear_prediction(
     back = round(_BACK_S * rate_hz)
     return_ = (set_point[-1] - first) * 0.5 * (1.0 + np.cos(np.linspace(0.0, np.pi, back)))
     # at least as long as the rest, and of a length whose transform is fast
-    length = scipy.fft.next_fast_len(set_point.size + back + round(_REST_S * rate_hz), real=True)
+    length = smallest_quick_length(set_point.size + back + round(_REST_S * rate_hz))
     moved = np.concatenate([set_point - first, return_, np.zeros(length - set_point.size - back)])
     frequency = np.fft.rfftfreq(moved.size, 1.0 / rate_hz)
     low, high = _FADE_HZ

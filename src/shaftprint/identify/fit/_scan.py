@@ -19,9 +19,10 @@ from shaftprint.identify.search._conditional_minimum import Conditional
 from shaftprint.identify.search._levenberg_marquardt import descend
 from shaftprint.models._parameter import Parameter
 
-FIRST_POINTS = 65
-# Halvings of an interval of the first grid.
-LEVELS = 5
+# Values that are searched from all starts; between them neighbours lead on.
+FIRST_POINTS = 17
+# Halvings of an interval of the first grid: of all of them, and of those that the curve asks for.
+ALWAYS, LEVELS = 2, 7
 # An interval is resolved when its middle lies within this share of the curve's height of the cubic through its ends.
 RESOLVED = 2e-3
 # Optima of the fit that are starts of the search at each value.
@@ -144,7 +145,7 @@ def _refined(conditional: Conditional, optima: FloatArray, starts: int) -> tuple
     at = np.linspace(conditional.objective.lower[column], conditional.objective.upper[column], FIRST_POINTS)
     theta, cost = conditional.lowest(at, optima, starts=starts)
     open_ends = np.ones(at.size - 1, dtype=np.bool_)
-    for _ in range(LEVELS):
+    for level in range(LEVELS):
         lower_ends = np.flatnonzero(open_ends)
         if lower_ends.size == 0:
             break
@@ -155,7 +156,7 @@ def _refined(conditional: Conditional, optima: FloatArray, starts: int) -> tuple
         middle = 0.5 * (at[lower_ends] + at[lower_ends + 1])
         between, lowest = conditional.between(middle, theta[lower_ends], theta[lower_ends + 1])
         height = float(np.ptp(np.concatenate([cost, lowest])))
-        rough = np.abs(lowest - predicted) > RESOLVED * height
+        rough = (np.abs(lowest - predicted) > RESOLVED * height) | (level < ALWAYS)
         open_ends = np.repeat(False, at.size - 1)
         open_ends[lower_ends] = rough
         open_ends = np.insert(open_ends, lower_ends + 1, rough)

@@ -17,10 +17,10 @@ from shaftprint.identify.search._bounded_least_squares import bounded_least_squa
 from shaftprint.identify.search._levenberg_marquardt import descend
 from shaftprint.identify.search._spread import spread
 
-COARSE, FINE = 1e-3, 1e-13
+COARSE, FINE = 1e-3, 1e-9
 ITERATIONS = 200
 # A neighbour's branch is taken when it lowers the cost by more than this share.
-WORTH_TAKING = 1e-9
+WORTH_TAKING = 1e-6
 # Problems that go through the array operations together: few enough for the processor's cache.
 BLOCK = 1024
 

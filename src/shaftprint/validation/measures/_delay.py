@@ -2,17 +2,17 @@
 
 ``y(t) = a + b f(t - d)`` is fitted by least squares with offset ``a`` and gain ``b`` free, which is the same as the
 largest correlation coefficient; ``d`` is positive where the data come later. It is not bound to the samples: the model
-is a cubic spline through its samples, and ``d`` is found by Gauss-Newton steps from the best whole sample. With noise
-of covariance ``R`` the estimate has the covariance ``(X^T X)^-1 X^T R X (X^T X)^-1``, ``X`` being the columns 1, ``f``
-and its slope.
+is a cubic between two samples, its slopes of fourth order in the step, and ``d`` is found by Gauss-Newton steps from
+the best whole sample. With noise of covariance ``R`` the estimate has the covariance
+``(X^T X)^-1 X^T R X (X^T X)^-1``, ``X`` being the columns 1, ``f`` and its slope.
 """
 
 from dataclasses import dataclass
 
 import numpy as np
-import scipy
 
 from shaftprint.arrays import FloatArray
+from shaftprint.transforms import smallest_quick_length
 from shaftprint.validation.measures._noise_pieces import quadratic_form
 
 LONGEST_S = 1.0
@@ -62,11 +62,11 @@ def remaining_delay(
     unknown = RemainingDelay(output=output, delay_s=np.nan, noise_std_s=np.nan, model_std_s=np.nan)
     if margin < 1:
         return unknown
-    spline = scipy.interpolate.CubicSpline(np.arange(model.size) / rate_hz, model)
+    pieces = _pieces(model, rate_hz)
     delay = _best_sample(measured, model, margin) / rate_hz
     longest = (margin - 1) / rate_hz
     for _ in range(_STEPS):
-        columns = _columns(spline.c, margin - delay * rate_hz, measured.size, rate_hz)
+        columns = _columns(pieces, margin - delay * rate_hz, measured.size, rate_hz)
         offset_gain_slope = np.linalg.lstsq(columns, measured, rcond=None)[0]
         gain = float(offset_gain_slope[1])
         if not gain > 0.0:
@@ -77,7 +77,7 @@ def remaining_delay(
             return unknown
         if abs(change) < _SMALL_S:
             break
-    columns = _columns(spline.c, margin - delay * rate_hz, measured.size, rate_hz)
+    columns = _columns(pieces, margin - delay * rate_hz, measured.size, rate_hz)
     inverse = np.linalg.pinv(columns.T @ columns)
     row = inverse[2] @ columns.T
     by_parameter = slopes[:, margin : margin + measured.size] @ row
@@ -89,11 +89,21 @@ def remaining_delay(
     )
 
 
-def _columns(pieces: FloatArray, position: float, samples: int, rate_hz: float) -> FloatArray:
-    """Return 1, a cubic spline and its slope from a position on, which need not be a whole sample.
+def _pieces(values: FloatArray, rate_hz: float) -> FloatArray:
+    """Return the coefficients of the cubics between samples, the cubic ones first, shape (4, samples - 1)."""
+    slope = np.gradient(values, 1.0 / rate_hz)
+    slope[2:-2] = rate_hz * (8.0 * (values[3:-1] - values[1:-3]) - (values[4:] - values[:-4])) / 12.0
+    mean = np.diff(values) * rate_hz
+    before, behind = slope[:-1], slope[1:]
+    cubic, square = (before + behind - 2.0 * mean) * rate_hz**2, (3.0 * mean - 2.0 * before - behind) * rate_hz
+    return np.stack([cubic, square, before, values[:-1]])
 
-    ``pieces``: coefficients between the samples of the spline, the cubic ones first, shape (4, pieces). ``position``:
-    where the first value is taken [samples]. ``samples``: how many values are taken. ``rate_hz``: sample rate [Hz].
+
+def _columns(pieces: FloatArray, position: float, samples: int, rate_hz: float) -> FloatArray:
+    """Return 1, the cubics and their slope from a position on, which need not be a whole sample.
+
+    ``pieces``: coefficients between the samples, the cubic ones first, shape (4, pieces). ``position``: where the
+    first value is taken [samples]. ``samples``: how many values are taken. ``rate_hz``: sample rate [Hz].
     """
     # at a whole sample the end of the piece before it, so that the last sample has a piece
     first = max(int(np.ceil(position)) - 1, 0)
@@ -107,7 +117,7 @@ def _columns(pieces: FloatArray, position: float, samples: int, rate_hz: float) 
 def _best_sample(measured: FloatArray, model: FloatArray, margin: int) -> int:
     """Return the whole number of samples by which the data come later, at the largest correlation coefficient."""
     samples = measured.size
-    size = scipy.fft.next_fast_len(model.size + samples, real=True)
+    size = smallest_quick_length(model.size + samples)
     centred = measured - measured.mean()
     spectrum = np.fft.rfft(centred, size).conj() * np.fft.rfft(model, size)
     products = np.fft.irfft(spectrum, size)[: 2 * margin + 1]

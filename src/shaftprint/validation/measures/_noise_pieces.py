@@ -23,7 +23,6 @@ from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
-import scipy
 
 from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.campaign._campaign import Campaign
@@ -31,6 +30,7 @@ from shaftprint.campaign._excitations import Staircase
 from shaftprint.errors import ValidationError
 from shaftprint.signals._signals import Signals
 from shaftprint.signals._working_points import LegState
+from shaftprint.transforms import smallest_quick_length
 
 # What the low-pass shows of a step before it happens.
 _AHEAD_S = 1.0
@@ -118,7 +118,7 @@ class QuietNoise:
 def autocorrelated(*pieces: FloatArray) -> FloatArray:
     """Return the sums of products of the values of each piece with themselves at lags from 0 on, over all pieces."""
     samples = pieces[0].size
-    size = scipy.fft.next_fast_len(2 * samples, real=True)
+    size = smallest_quick_length(2 * samples)
     # spectra are added, and transformed back once
     power = np.zeros(size // 2 + 1)
     for piece in pieces:

@@ -13,7 +13,6 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-import scipy
 
 from shaftprint.arrays import FloatArray
 from shaftprint.validation.measures._step_numbers import STEP_NUMBERS, step_numbers
@@ -87,7 +86,8 @@ class WhileSettling:
         """Return the trace of ``(T R T)^2``, from every stride-th row and column of ``R``."""
         lags = autocovariance[: samples : self.stride]
         size = -(-samples // self.stride)
-        covariance = scipy.linalg.toeplitz(np.pad(lags, (0, size - lags.size)))
+        places = np.arange(size)
+        covariance = np.pad(lags, (0, size - lags.size))[np.abs(places[:, None] - places)]
         thin = WhileSettling(first=self.first // self.stride, stop=self.stop // self.stride, stride=1)
         covariance = thin.of(thin.of(covariance).T)
         return float(np.sum(covariance**2)) * self.stride**2
