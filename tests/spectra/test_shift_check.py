@@ -1,5 +1,8 @@
 """A torque that comes later than load and inertia let expect, also where a lever moves a pitch with the speed."""
 
+from dataclasses import replace
+
+import numpy as np
 import pytest
 from tests.known_fits import exact_response
 
@@ -25,3 +28,12 @@ def test_a_late_pick_up_is_a_gauge_that_comes_too_early():
 @pytest.mark.parametrize(("name", "given"), LINES)
 def test_a_line_as_it_is_has_no_shift(name, given):
     assert shift_reasons(exact_response(structure(name), given, 0.001)) == ()
+
+
+def test_a_torque_that_no_line_has_is_not_told_as_a_shift():
+    """Loads far above and below what a propeller takes fit no delay at all: nothing is said, and nothing warned of."""
+    response = exact_response(structure("GAUGE-CLOSED"), {}, 0.001)
+    size = np.ones((len(response.outputs), 1, 1))
+    size[response.outputs.index("M_s")] = -30.0
+    turned = replace(response, response=response.response * size)
+    assert shift_reasons(turned) == ()

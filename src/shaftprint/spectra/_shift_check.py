@@ -65,7 +65,9 @@ def shift_reasons(response: "FrequencyResponse") -> tuple[Reason, ...]:
     fall = _chi_squares(omega, ratio, np.abs(ratio) * np.sqrt(share / 2.0), load, further)
     best = int(np.argmin(fall))
     delay_s = float(_DELAYS_S[best])
-    if abs(delay_s) < _LEAST_S or not fall[_DELAYS_S.size // 2] - fall[best] > _LEAST_FALL:
+    if abs(delay_s) < _LEAST_S or np.isinf(fall[best]):
+        return ()
+    if not fall[_DELAYS_S.size // 2] - fall[best] > _LEAST_FALL:
         return ()
     return (
         Reason(
@@ -91,13 +93,10 @@ def _chi_squares(
 
     ``further`` are loads over the speed that were measured, each with a real factor of its own.
     """
-    chi_square = np.full(_DELAYS_S.size, np.inf)
-    for index, delay_s in enumerate(_DELAYS_S):
-        seen = ratio * np.exp(1j * omega_rad_s * delay_s) / std
-        # slope of the load and inertia, both real
-        rows = np.stack([load / std + 0j, 1j * omega_rad_s / std, *(one / std for one in further)])
-        factors = np.linalg.solve((rows @ rows.conj().T).real, (rows.conj() @ seen).real)
-        k, tau = factors[:2].tolist()
-        if _LOADS[0] < k < _LOADS[1] and 0.0 <= tau < _LONGEST_S:
-            chi_square[index] = np.sum(np.abs(seen - factors @ rows) ** 2)
-    return chi_square
+    # slope of the load and inertia, both real, against the ratio shifted by each delay
+    rows = np.stack([load / std + 0j, 1j * omega_rad_s / std, *(one / std for one in further)])
+    seen = ratio / std * np.exp(1j * omega_rad_s * _DELAYS_S[:, None])
+    factors = np.linalg.solve((rows @ rows.conj().T).real, (rows.conj() @ seen.T).real).T
+    k, tau = factors[:, 0], factors[:, 1]
+    possible = (_LOADS[0] < k) & (k < _LOADS[1]) & (tau >= 0.0) & (tau < _LONGEST_S)
+    return np.where(possible, np.sum(np.abs(seen - factors @ rows) ** 2, axis=1), np.inf)
