@@ -30,6 +30,7 @@ from shaftprint.spectra._open_loop import governor_and_engine, open_loop
 from shaftprint.spectra._spectra import Spectra, estimate_spectra
 from shaftprint.spectra._speed_ratios import SpeedRatio
 from shaftprint.spectra.lines._bin_selection import ExactBin
+from shaftprint.spectra.lines._signal_to_noise import SignalToNoise
 from shaftprint.spectra.lines._sine_fit import WholePeriodSine
 from shaftprint.survey._legs import LegMeasurement, legs_of, rack_of, structure_at
 from shaftprint.survey._progress import SILENT, Progress
@@ -70,10 +71,18 @@ class Measurement(Shown):
         return of_legs if main in of_legs.values() else {SINES: main} | of_legs
 
     @property
+    def signal_to_noise(self) -> SignalToNoise:
+        """Signal-to-noise ratios of the lines of sines and of every leg, by name; overall those of the first."""
+        return self.spectra.signal_to_noise.with_lines_of([leg.signal_to_noise for leg in self._further_legs])
+
+    @property
     def speed_ratios(self) -> tuple[SpeedRatio, ...]:
         """What the other speed sensors show over the first, of sines and of every leg."""
-        legs = [leg.spectra for leg in self.legs if leg.spectra is not self.spectra]
-        return tuple(ratio for one in (self.spectra, *legs) for ratio in one.speed_ratios)
+        return tuple(ratio for one in (self.spectra, *self._further_legs) for ratio in one.speed_ratios)
+
+    @property
+    def _further_legs(self) -> list[Spectra]:
+        return [leg.spectra for leg in self.legs if leg.spectra is not self.spectra]
 
 
 def measure(

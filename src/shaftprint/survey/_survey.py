@@ -269,7 +269,7 @@ def _fingerprint(
     return take_fingerprint(
         identification,
         signals=measurement.signals,
-        signal_to_noise=measurement.spectra.signal_to_noise,
+        signal_to_noise=measurement.signal_to_noise,
         vessel=trial.vessel,
         campaign=trial.campaign,
         settings_files=trial.sources,

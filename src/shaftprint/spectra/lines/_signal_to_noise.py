@@ -1,7 +1,7 @@
 """Signal-to-noise ratios of every line and channel (thesis section 3.3.2)."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -30,6 +30,14 @@ class SignalToNoise:
         """Make the arrays read-only."""
         object.__setattr__(self, "local_db", frozen_float(self.local_db))
         object.__setattr__(self, "overall", frozen_float(self.overall))
+
+    def with_lines_of(self, others: Sequence["SignalToNoise"]) -> "SignalToNoise":
+        """Return the ratios with those of further lines of the same channels; overall ratios stay these."""
+        return replace(
+            self,
+            lines=(*self.lines, *(line for other in others for line in other.lines)),
+            local_db=np.concatenate([self.local_db, *(other.local_db for other in others)]),
+        )
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
