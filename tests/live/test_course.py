@@ -176,6 +176,23 @@ def test_what_is_known_changes_the_legs_and_leaves_the_campaign_as_it_was_played
 
 
 @pytest.mark.slow
+def test_what_is_known_is_asked_for_less_often_while_much_is_missing(tmp_path):
+    """Of eight periods with eight missing after the second: after a quarter of them, and before the leg ends."""
+    asked = []
+
+    async def advises(test):
+        (periods,) = {one.periods for one in test.judgements["M1"]}
+        asked.append(periods)
+        return Advice(more={"M1": 10 - periods}, recorded={"M1": periods})
+
+    longer = M1.model_copy(update={"stop_s": M1.settled_s + 8.03 * M1.period_s})
+    campaign = CAMPAIGN.model_copy(update={"multisines": (longer,)})
+    outcome, _, _ = played(tmp_path, campaign=campaign, advises=advises, fewest_periods=2, waits=True)
+    assert outcome.word == "played"
+    assert asked == [2, 4, 6, 7]
+
+
+@pytest.mark.slow
 def test_nothing_is_played_that_was_not_proved(tmp_path):
     async def advises(test):
         return Advice(more={"M1": 0, "M2": 1}, recorded={"M1": 2, "M2": 2})

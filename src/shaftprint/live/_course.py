@@ -33,6 +33,9 @@ if TYPE_CHECKING:
 LEAD_S = 1.0
 """Time that a change needs to reach the device [s]."""
 
+# What is known is worked out again after a quarter of the periods that are missing.
+_QUARTER = 0.25
+
 # A campaign, when it begins to differ from the one that is played [s], and the test that is cut, left out or played
 # again; None where it is too late for that.
 _Change: TypeAlias = "tuple[Campaign, float, str] | None"
@@ -70,6 +73,7 @@ class Course(Loop):
         self._proving: tuple[asyncio.Task[Sequence[str]], _Maker, str, str] | None = None
         self._held: tuple[Excitation, ...] | None = None
         self._held_s = math.nan
+        self._wait_periods = 0
 
     @property
     def left_s(self) -> float:
@@ -160,9 +164,14 @@ class Course(Loop):
         """Change what is to come where that is known to tell more, or enough is known."""
         if self.advises is None or not self.fewest_periods <= judge.periods < leg.periods:
             return
+        self._wait_periods -= 1
+        # where much is missing the next period does not bring it; before a leg ends it must be known
+        if self._wait_periods > 0 and judge.periods < leg.periods - 1:
+            return
         advice = await self.advises(self)
         if advice is None:
             return
+        self._wait_periods = math.ceil(sum(advice.more.values()) * _QUARTER)
 
         def make(at_s: float) -> _Change:
             now = test_at(self.campaign, self.campaign_s)
