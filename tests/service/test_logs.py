@@ -286,6 +286,20 @@ def test_a_channel_with_a_deadband_is_refused_and_one_of_coarse_steps_is_not():
     expect_no_deadband(channel(np.round(speed / 3.0) * 3.0), Path("log.nc"))
 
 
+def test_a_gauge_that_shows_nothing_without_load_has_no_deadband():
+    """Half an hour at the quay with the clutch out, now and then: exactly zero, for minutes."""
+    rng = np.random.default_rng(7)
+    torque = np.round(3.0 + 0.3 * rng.standard_normal(30_000), 4)
+    torque[3_000:20_000] = 0.0
+    expect_no_deadband(channel(torque), Path("log.nc"))
+    for k in range(20_000, torque.size):
+        torque[k] = torque[k] if abs(torque[k] - torque[k - 1]) > 1.0 else torque[k - 1]
+    for k in range(1, 3_000):
+        torque[k] = torque[k] if abs(torque[k] - torque[k - 1]) > 1.0 else torque[k - 1]
+    with pytest.raises(ServiceError, match="a historian with a deadband"):
+        expect_no_deadband(channel(torque), Path("log.nc"))
+
+
 MOVES_S = (40.0, 90.0, 140.0, 200.0, 260.0)
 
 

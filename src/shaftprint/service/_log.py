@@ -38,6 +38,8 @@ _HELD_SHARE = 0.3
 # Stretches of a channel that are looked at for a deadband, and how long each is [s]; changes that are needed to tell,
 # share of the samples that repeat the last, and steps of the resolution below which a deadband does no harm.
 _LOOKS, _LOOK_S, _FEWEST_MOVED, _KEPT_SHARE, _STEPS = 6, 60.0, 100, 0.5, 4.0
+# Where so many of the repeats are of one value, the quantity itself stands still there.
+_ONE_VALUE = 0.5
 # Periods of clocks at which a lever may be asked for [s], the longest first; changes that are needed to tell, and the
 # length of their mean arrow from which on they are at its ticks.
 _PERIODS_S = (2.0, 1.5, 1.0, 0.75, 0.5, 0.4, 0.3, 0.25, 0.2, 0.1)
@@ -254,7 +256,11 @@ def expect_no_deadband(channel: "Channel", path: Path) -> None:
     length = round(_LOOK_S * channel.rate_hz)
     begins = np.unique(np.linspace(0, max(channel.count - length, 0), _LOOKS).astype(np.int64))
     values = [channel.values(int(begin), min(int(begin) + length, channel.count)) for begin in begins]
-    changes = np.abs(np.concatenate([np.diff(one) for one in values]))
+    changes, at = np.abs(np.concatenate([np.diff(one) for one in values])), np.concatenate([one[1:] for one in values])
+    kept_at, times = np.unique(at[changes == 0.0], return_counts=True)
+    if times.size and times.max() > _ONE_VALUE * times.sum():
+        # a shaft without load, or at rest: a deadband keeps now one value and now another
+        changes = changes[(changes > 0.0) | (at != kept_at[np.argmax(times)])]
     changes = changes[np.isfinite(changes)]
     moved = changes[changes > 0.0]
     if moved.size < _FEWEST_MOVED or moved.size > (1.0 - _KEPT_SHARE) * changes.size:
