@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
+from shaftprint.arrays import FloatArray
 from shaftprint.errors import RecordingError
 from shaftprint.recording._channel import Times
 from shaftprint.recording.readers._clock import SampleClock, clock_of_times
@@ -20,7 +21,7 @@ from shaftprint.recording.readers._units import seconds_in
 
 TIME_NAMES = (
     "time", "t", "timestamp", "timestamps", "time stamp", "zeit", "tijd", "temps", "elapsed", "elapsed time", "millis",
-    "micros",
+    "micros", "__time", "lv time stamp", "cumulative time", "total time", "test time", "run time",
 )  # fmt: skip
 # A name with its unit: Time (ms), time_us, t [s], Zeit in ms. Beside one letter alone d is no day: t_d is a delay.
 _WITH_UNIT = re.compile(r"(?P<name>[a-z ]+?)[ _]*(?:[\[(]|(?<=[ _])|\bin )[ ]*(?P<unit>[a-zµμ]+)[\])]?", re.IGNORECASE)
@@ -30,7 +31,9 @@ _CAPITAL = re.compile(r"T\b|T_")
 _SINCE = re.compile(r"\s*(\w+)\s+since\s+(.+)", re.IGNORECASE)
 _UNITS = "s, ms, us, ns, min, h or days"
 
-_FIRST = 1001
+_FIRST, _BLOCK = 1001, 1_000_000
+# times of day written as one number, hhmmss, end here
+_OF_DAY = 240_000.0
 # Days step by less than this down to 0.6 Hz; seconds that do are those of 50 kHz and more.
 _DAY_STEP, _MAY_BE_DAYS, _DAY_SHARE = 2e-5, 1e4, 1e-3
 # No line is sampled faster than this, or slower for a whole file [Hz].
@@ -90,6 +93,8 @@ class TimeScale:
     """Whether a date that follows from them is in UTC; else in the time of the place."""
     reference_s: float | None = None
     """Date of their zero in seconds since 1970, where the file gives it and they begin soon after it."""
+    is_of_day: bool = False
+    """Whether they are times of day written as one number, hhmmss; ``zero`` is then in seconds."""
     remark: str = ""
     """What was taken from their size alone, one sentence; empty where the file says it."""
 
@@ -102,6 +107,8 @@ class TimeScale:
 
     def reading(self, read: Times) -> Times:
         """Return what gives the times in seconds in place of the numbers."""
+        if self.is_of_day:
+            return lambda start, stop: _of_day_s(read(start, stop)) - self.zero
         return lambda start, stop: (np.asarray(read(start, stop), dtype=np.float64) - self.zero) * self.second
 
     def clock(self, path: Path, name: str, count: int, read: Times) -> SampleClock:
@@ -169,9 +176,44 @@ def time_scale(path: Path, name: str, count: int, read: Times, *, unit: str = ""
         if since and not asked:
             return _since(where, since[2], first, second)
         scale = _in_unit(where, first, second, stated, is_asked=bool(asked))
+    elif _are_of_day(numbers) and _go_on_as_of_day(count, read):
+        zero = float(_of_day_s(numbers[:1])[0])
+        scale = TimeScale(
+            zero=zero,
+            is_of_day=True,
+            remark=f"numbers such as {first:.10g} were taken for times of day, hhmmss: second 0 is "
+            f"{timedelta(seconds=round(zero, 6))} of a day that is not said.",
+        )
     else:
         scale = _by_size(where, first, step, is_whole=bool(np.all(numbers == np.rint(numbers))))
     return replace(scale, remark=f"{name}: {scale.remark}") if scale.remark else scale
+
+
+def _are_of_day(numbers: FloatArray) -> bool:
+    """Return whether numbers may be times of day, hhmmss: no minute and no second from 60 on."""
+    return bool(
+        np.all((numbers >= 0.0) & (numbers < _OF_DAY) & (numbers % 100.0 < 60.0) & (numbers // 100.0 % 100.0 < 60.0))
+    )
+
+
+def _go_on_as_of_day(count: int, read: Times) -> bool:
+    """Return whether all numbers are such times, and some go on from 59 seconds to the next minute at once."""
+    minutes = 0
+    for start in range(0, count, _BLOCK):
+        numbers = np.asarray(read(start, min(start + _BLOCK + 1, count)), dtype=np.float64)
+        if not _are_of_day(numbers):
+            return False
+        steps, in_truth = np.diff(numbers), np.diff(_of_day_s(numbers))
+        # a minute that is over leaves out 40 of the numbers, an hour 4040
+        usual = 1.5 * float(np.median(np.abs(in_truth))) if in_truth.size else 0.0
+        minutes += int(np.count_nonzero((steps - in_truth >= 40.0) & (np.abs(in_truth) <= usual)))
+    return minutes > 0
+
+
+def _of_day_s(numbers: FloatArray) -> FloatArray:
+    """Return the seconds since midnight of times written as one number, hhmmss."""
+    numbers = np.asarray(numbers, dtype=np.float64)
+    return numbers // 1e4 * 3600.0 + numbers // 100.0 % 100.0 * 60.0 + numbers % 100.0
 
 
 def _since(where: str, date: str, first: float, second: float) -> TimeScale:

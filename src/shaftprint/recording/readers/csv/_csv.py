@@ -10,23 +10,20 @@ from itertools import islice
 from pathlib import Path
 from typing import IO, TextIO, cast
 
-import numpy as np
-
 from shaftprint.errors import RecordingError
-from shaftprint.recording._channel import Channel, Times
 from shaftprint.recording._recording import Recording, sha256_of
 from shaftprint.recording._spool import Spool
 from shaftprint.recording.readers import _uff
-from shaftprint.recording.readers._clock import SampleClock, clock_of_times, on_clock
 from shaftprint.recording.readers._gather import reasons_in_words
 from shaftprint.recording.readers._hints import rate_hint
 from shaftprint.recording.readers._packed import CANNOT_BE_UNPACKED, damaged_gzip, first_bytes, open_unpacked
-from shaftprint.recording.readers._time_scale import TimeScale, expect_time_unit, time_scale
+from shaftprint.recording.readers._time_scale import expect_time_unit
 from shaftprint.recording.readers._unread import what_lines_are
 from shaftprint.recording.readers.can._log import begins_as_log
 from shaftprint.recording.readers.csv._dates import dates, has_offset, is_date
 from shaftprint.recording.readers.csv._edge_list import edge_channels
 from shaftprint.recording.readers.csv._header import Header, looks_like_a_table, read_header
+from shaftprint.recording.readers.csv._row_clocks import sampled, scale_of_rows
 from shaftprint.recording.readers.csv._rows import LONGEST_LINE, Unpacked, unpack
 from shaftprint.recording.readers.imc._blocks import BEGIN as BEGIN_OF_IMC
 
@@ -42,16 +39,10 @@ _FRAMES = b"timestamp,arbitration_id,extended,remote,error,dlc,data"
 # no row of a table begins so; a fingerprint or the truth of a simulated recording does
 _JSON = b"{"
 _WINDOWS = "cp1252"
-# when clocks are changed for summer time
-_HOUR_S, _SUNDAY, _BEFORE = 3600.0, 6, 4
 _SEEN = 65_536
-# printed times are rounded
-_RATE_AGREEMENT = 1e-3
 _FIRST_ROWS, _SHOWN = 1000, 5
 # Where a name does not say that a file is text: so many lines.
 _HEAD = 100
-# A stamp to the second that so many rows have tells their rate, where the caller does not.
-_STAMPS = 5_000
 
 
 def is_mine(path: Path) -> bool:
@@ -194,72 +185,16 @@ def _lines(path: Path, file: TextIO) -> Iterator[str]:
         yield line
 
 
-def _time_scale(path: Path, header: Header, spool: Spool, count: int, asked: str) -> TimeScale:
-    """Return what the numbers of the times mean; dates are seconds already."""
-    if header.time_column is None or header.time_unit is None:
-        return TimeScale()
-    name = f"column {header.names[header.time_column]}"
-    read = spool.source(header.time_column)
-    return time_scale(path, name, count, read, unit=header.time_unit, asked=asked)
-
-
-def _clock(
-    path: Path, header: Header, read: Times | None, done: Unpacked, rate_hz: float | None
-) -> tuple[SampleClock, str]:
-    """Return the clock of the times, or that of the rate which the caller knows, and what has to be said of it."""
-    if header.time_column is None or read is None:
-        return SampleClock(rate_hz=cast(float, rate_hz), start_s=header.start_s), ""
-    name = f"column {header.names[header.time_column]}"
-    rows = _rows_of_a_stamp(read, done.count) if header.dated else 1
-    if rows > 1 and rate_hz is None:
-        raise RecordingError(
-            f"{path}, {name}: expected times of the rows, found about {rows} rows with each stamp; pass their rate, "
-            f"sample_rate_hz= (--sample-rate {rows})."
-        )
-    if rows > 1:
-        remark = f"{name}: {rows} rows have each stamp; the rows are placed by the rate of {rate_hz:g} Hz."
-        return SampleClock(rate_hz=cast(float, rate_hz), start_s=0.0), remark
-    clock = clock_of_times(path, name, done.count, read)
-    if rate_hz is not None and abs(clock.rate_hz / rate_hz - 1.0) > _RATE_AGREEMENT:
-        raise RecordingError(
-            f"{path}: expected one sample rate, found {clock.rate_hz:g} Hz in {name} and {rate_hz:g} Hz in the hint."
-        )
-    return clock, _change_of_hour(name, clock, read, done)
-
-
-def _change_of_hour(name: str, clock: SampleClock, read: Times, done: Unpacked) -> str:
-    """Return what has to be said where dates without an offset jump by an hour as clocks do in spring and autumn."""
-    began = None if done.stamps is None else done.stamps.began
-    for hole in clock.holes:
-        off_s = hole.missing / clock.rate_hz + hole.jump_s
-        if began is None or began.tzinfo is not None or abs(abs(off_s) - _HOUR_S) > 2.0 / clock.rate_hz:
-            continue
-        at = began + timedelta(seconds=float(read(hole.row - 1, hole.row)[0]))
-        if at.weekday() == _SUNDAY and at.hour < _BEFORE:
-            return (
-                f"{name}: the times jump by an hour behind {at.isoformat(sep=' ', timespec='seconds')}, as clocks do "
-                "that change to or from summer time; write them in UTC or with their offset."
-            )
-    return ""
-
-
-def _rows_of_a_stamp(read: Times, count: int) -> int:
-    """Return how many rows have one stamp, in most places."""
-    seconds = read(0, min(count, _STAMPS))
-    changes = np.flatnonzero(np.diff(seconds))
-    if 2 * changes.size > seconds.size or changes.size < 2:
-        return 1
-    return int(np.median(np.diff(changes)))
-
-
 def _recording(
     path: Path, sha256: str, header: Header, spool: Spool, done: Unpacked, rate_hz: float | None, time_unit: str
 ) -> Recording:
-    scale = _time_scale(path, header, spool, done.count, time_unit)
+    scale = scale_of_rows(path, header, spool, done.count, time_unit)
     read = None if header.time_column is None else scale.reading(spool.source(header.time_column))
     edges = edge_channels(path, header, spool, done.count, read) if rate_hz is None else None
-    channels, remark = _sampled(path, header, spool, done, rate_hz, read) if edges is None else (edges, "")
     left_out = {**header.left_out, **done.left_out}
+    channels, remarks = edges, list[str]()
+    if channels is None:
+        channels, remarks = sampled(path, header, spool, done, rate_hz, scale, time_unit, left_out)
     left_out |= {name: "it has no value in any row" for name in done.empty if name in channels}
     channels = {name: channel for name, channel in channels.items() if name not in left_out}
     if not channels:
@@ -274,8 +209,8 @@ def _recording(
         format=NAME if edges is None else f"{NAME}, list of edges",
         channels=channels,
         left_out=left_out,
-        began=scale.began if done.stamps is None else done.stamps.began,
-        remarks=tuple(one for one in (*header.remarks, scale.remark, remark, *done.remarks) if one),
+        began=(scale.began or header.began) if done.stamps is None else done.stamps.began,
+        remarks=tuple(one for one in (*header.remarks, scale.remark, *remarks, *done.remarks) if one),
         release=spool.close,
     )
     return _with_more(recording, header, done)
@@ -300,25 +235,3 @@ def _with_more(recording: Recording, header: Header, done: Unpacked) -> Recordin
         day = cast("datetime", dates(recording.path, [done.date_beside])[0].item())
         began = (day.replace(tzinfo=UTC) if has_offset(done.date_beside) else day) - timedelta(seconds=first.start_s)
     return replace(recording, remarks=tuple(remarks), began=began)
-
-
-def _sampled(
-    path: Path, header: Header, spool: Spool, done: Unpacked, rate_hz: float | None, read: Times | None
-) -> tuple[dict[str, Channel], str]:
-    """Return the columns as channels with one row a sample, and what has to be said of their clock."""
-    clock, remark = _clock(path, header, read, done, rate_hz)
-    return {
-        name: on_clock(
-            Channel(
-                name=name,
-                unit=unit,
-                rate_hz=clock.rate_hz,
-                start_s=clock.start_s,
-                count=done.count,
-                source=spool.source(number),
-            ),
-            clock,
-        )
-        for number, (name, unit) in enumerate(zip(header.names, header.units, strict=True))
-        if number != header.time_column and name not in done.left_out
-    }, remark

@@ -2,7 +2,10 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from datetime import datetime
 from pathlib import Path
+
+import numpy as np
 
 from shaftprint.errors import RecordingError
 from shaftprint.escape import printable
@@ -19,6 +22,7 @@ from shaftprint.recording.readers.csv._fields import (
     with_point,
 )
 from shaftprint.recording.readers.csv._head_facts import HeadFacts, head_facts, is_fact
+from shaftprint.recording.readers.csv._scope_export import began_of_export, width_of_export
 from shaftprint.recording.readers.csv._table import Table, find_table
 from shaftprint.recording.readers.csv._time_columns import TimeColumns, expect_no_words_as_times, time_columns
 from shaftprint.recording.readers.csv._time_titles import is_time_title
@@ -57,6 +61,8 @@ class Header:
     """Which of the columns that are read holds the times; None where there is none."""
     time_unit: str | None
     """Unit of the times, empty where the file gives none; None where times are dates, or there are none."""
+    more_times: tuple[tuple[int, str], ...] = ()
+    """Further columns of times among those that are read, each with its unit: the columns behind it are its own."""
     is_whole: bool = False
     """Whether rows have all fields, the last a number: one that is shorter is damaged."""
     first_line: int = 1
@@ -71,6 +77,8 @@ class Header:
     """Sample rate that the lines above the titles give, where there are no times [Hz]."""
     start_s: float = 0.0
     """Second of the first row that they give [s]."""
+    began: datetime | None = None
+    """Date of second 0 that they give."""
     head: frozenset[str] = frozenset()
     """The titles and the lines about them, without white space at their ends: they may come again."""
     left_out: dict[str, str] = field(default_factory=dict)
@@ -120,7 +128,7 @@ def read_header(
     """
     asked = [] if columns is None else [title.strip() for title in columns.split(",")]
     renamed = bool(asked) and all("=" in title for title in asked)
-    table = _expect_table(path, lines, delimiter, 0 if renamed else len(asked))
+    table = _expect_table(path, lines, delimiter, (0 if renamed else len(asked)) or width_of_export(lines))
     units: list[str]
     titles, units = (asked + [""] * (table.width - len(asked)), []) if asked and not renamed else ([], [])
     if not titles:
@@ -156,15 +164,19 @@ def read_header(
         units=tuple(units[place] for place in kept),
         places=tuple(kept),
         width=table.width,
-        is_whole=not set(table.kinds[1 + max([*kept, *times.stamps]) :]) & {GAP, TEXT} and table.kinds[-1] == NUMBER,
+        is_whole=not times.more
+        and not set(table.kinds[1 + max([*kept, *times.stamps]) :]) & {GAP, TEXT}
+        and table.kinds[-1] == NUMBER,
         lines=table.first,
         time_column=None if times.place is None else kept.index(times.place),
         time_unit=times.unit,
+        more_times=tuple((kept.index(place), unit) for place, unit in times.more if place in kept),
         stamps=times.stamps,
         milliseconds=times.milliseconds,
         dates_beside=times.dates_beside,
         rate_hz=facts.rate_hz if times.place is None else None,
-        start_s=facts.start_s if times.place is None else 0.0,
+        start_s=facts.start_s + _skipped(table, names) / (facts.rate_hz or np.inf) if times.place is None else 0.0,
+        began=began_of_export(lines[: table.first]),
         head=frozenset(line.strip() for line in lines[: table.first] if line.strip()),
         left_out=left_out,
         remarks=_remarks(path, times, facts, has_rate=has_rate),
@@ -277,6 +289,10 @@ def _chosen(table: Table, names: Sequence[str], times: TimeColumns) -> tuple[lis
             continue
         elif place in counters:
             left_out[shown] = "it counts the rows"
+        elif times.other_dates is not None and place > times.other_dates and kind == NUMBER:
+            left_out[shown] = (
+                f"it has dates of its own in front, in column {times.other_dates + 1}; save it in a file of its own"
+            )
         elif name and kind in (NUMBER, GAP):
             kept.append(place)
         elif kind == TEXT:
@@ -287,6 +303,14 @@ def _chosen(table: Table, names: Sequence[str], times: TimeColumns) -> tuple[lis
         else:
             left_out[shown] = "name it with columns= (--columns)"
     return kept, left_out
+
+
+def _skipped(table: Table, names: Sequence[str]) -> int:
+    """Return how many rows a column that counts them leaves out before the first; it may count from 1."""
+    columns = ([row[place] for row in table.rows] for place in range(table.width))
+    counters = [fields for place, fields in enumerate(columns) if _is_counter(place, names[place], fields)]
+    begin = int(counters[0][0]) if counters else 0
+    return begin if begin > 1 else 0
 
 
 def _is_counter(place: int, name: str, fields: Sequence[str]) -> bool:

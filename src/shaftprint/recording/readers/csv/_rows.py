@@ -32,6 +32,8 @@ _ODD = 1_000
 _MOST_DAMAGED, _DAMAGED_SHARE = 3, 1e-3
 # What is behind the decimal sign is longer in each of so many rows, where a number of the last row is cut off.
 _DECIMALS_SEEN, _TAIL = 50, 8_000
+# the last line of an export of TwinCAT's Scope
+_END = "EOF"
 _LINE_FEED = ord("\n")
 _UTF_8_MARK = b"\xef\xbb\xbf"
 
@@ -209,7 +211,7 @@ class _Unpacking:
             self.nul += nul
             plain = raw.replace("\0", "").strip("\r\n")
             bare = plain.strip()
-            if not bare:
+            if not bare or bare == _END:
                 continue
             if bare in header.head:
                 self._note_titles(line, len(rows))
@@ -345,5 +347,7 @@ def _as_wide(fields: list[str], header: Header) -> list[str] | None:
 
 
 def _least(header: Header) -> int:
-    """Return how many fields a row has at least: those behind the columns that are read may be missing."""
+    """Return how many fields a row has at least: columns behind those that are read may be missing, or have ended."""
+    if header.more_times and header.time_column is not None:
+        return header.places[header.time_column] + 2
     return header.width if header.is_whole else 1 + max([*header.places, *header.stamps])

@@ -1,7 +1,7 @@
 """Which columns of a table hold the times of its rows."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from pathlib import Path
 
@@ -16,6 +16,8 @@ from shaftprint.recording.readers.csv._time_titles import MILLISECONDS, begins_a
 from shaftprint.recording.readers.csv._titles import counts_rows
 
 _LONGEST = 80
+# times may go back where a logger begins again
+_MOST = 0.9
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -32,6 +34,10 @@ class TimeColumns:
     """Which of them holds milliseconds alone."""
     dates_beside: int | None = None
     """Column of dates beside times that are numbers."""
+    more: tuple[tuple[int, str], ...] = ()
+    """Further columns of times, each with its unit: the columns behind it are on those."""
+    other_dates: int | None = None
+    """Column of dates that are others than those of the rows."""
     remark: str = ""
     """What was taken though the file does not say it."""
 
@@ -58,6 +64,49 @@ def _instead(field: str) -> str:
 
 def time_columns(table: Table, names: Sequence[str], units: Sequence[str], *, has_rate: bool) -> TimeColumns:
     """Return which columns hold the times: numbers by their title, else dates, times of day, or what counts time."""
+    first = _first_times(table, names, units, has_rate=has_rate)
+    if first.place is None:
+        return first
+    if first.stamps:
+        return replace(first, other_dates=_other_dates(table, names, first))
+    return replace(first, more=_more(table, names, units, first.place))
+
+
+def _more(table: Table, names: Sequence[str], units: Sequence[str], first: int) -> tuple[tuple[int, str], ...]:
+    """Return further columns of times: with a column between them and the times before, and one behind."""
+    more: list[tuple[int, str]] = []
+    before = first
+    for place in range(first + 2, table.width - 1):
+        unit = _of_time(units[place]) or unit_in_name(names[place]) or ""
+        may_be = _is_titled(names, place) or names[place] == names[first] or _is_of_next(names, place)
+        is_of_time = table.kinds[place] == NUMBER and (not unit or seconds_in(unit) is not None)
+        if may_be and is_of_time and place > before + 1 and _ascends([row[place] for row in table.rows], _MOST):
+            more.append((place, unit))
+            before = place
+    return tuple(more)
+
+
+def _other_dates(table: Table, names: Sequence[str], first: TimeColumns) -> int | None:
+    """Return the first column of dates that are others than those of the rows, with columns of their own behind it."""
+    lead = first.stamps[0]
+    for place in range(max(first.stamps) + 2, table.width - 1):
+        may_be = _is_titled(names, place) or names[place] == names[lead]
+        if may_be and table.kinds[place] == DATE and any(row[place] not in ("", row[lead]) for row in table.rows):
+            return place
+    return None
+
+
+def _is_titled(names: Sequence[str], place: int) -> bool:
+    return is_time_title(names[place]) or begins_as_time(names[place])
+
+
+def _is_of_next(names: Sequence[str], place: int) -> bool:
+    """Return whether a title is that of the times of the next column: Torque time, Torque."""
+    own, following = (" ".join(name.lower().replace("_", " ").split()) for name in (*names, "")[place : place + 2])
+    return own in (f"{following} time", f"time {following}")
+
+
+def _first_times(table: Table, names: Sequence[str], units: Sequence[str], *, has_rate: bool) -> TimeColumns:
     kinds = table.kinds
     dates = [place for place, kind in enumerate(kinds) if kind == DATE]
     hours = [place for place, kind in enumerate(kinds) if kind == DAY_TIME]
@@ -80,7 +129,7 @@ def time_columns(table: Table, names: Sequence[str], units: Sequence[str], *, ha
     if first is None:
         return TimeColumns()
     ascends = _ascends([row[first] for row in table.rows])
-    if ascends and (seconds_in(units[first]) is not None or begins_as_time(names[first])):
+    if ascends and (seconds_in(units[first]) is not None or begins_as_time(names[first]) or _is_of_next(names, first)):
         return TimeColumns(place=first, unit=units[first])
     if ascends and not names[first] and not counts_rows([row[first] for row in table.rows]):
         return TimeColumns(
@@ -118,6 +167,8 @@ def _of_time(unit: str) -> str:
     return unit if seconds_in(unit) is not None or seconds_in(unit.lower()) is None else unit.lower()
 
 
-def _ascends(fields: Sequence[str]) -> bool:
+def _ascends(fields: Sequence[str], share: float = 1.0) -> bool:
+    """Return whether numbers ascend, at no less than a share of the steps."""
     numbers = [float(field.replace(",", ".")) for field in fields if is_number(field)]
-    return len(numbers) > 1 and all(below > above for above, below in pairwise(numbers))
+    ascending = sum(below > above for above, below in pairwise(numbers))
+    return len(numbers) > 1 and ascending >= share * (len(numbers) - 1)

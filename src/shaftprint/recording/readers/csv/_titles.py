@@ -7,12 +7,15 @@ from shaftprint.escape import csv_cell_text, printable
 from shaftprint.recording.readers._units import seconds_in
 from shaftprint.recording.readers.csv._fields import GAP, WHITE_SPACE, is_number, split_row
 from shaftprint.recording.readers.csv._head_facts import is_fact, plain_key
+from shaftprint.recording.readers.csv._scope_export import titles_of_export
 from shaftprint.recording.readers.csv._table import Table
 from shaftprint.recording.readers.csv._time_titles import IN_BRACKETS, begins_as_time, is_time_title
 from shaftprint.units import plain_unit
 
 # a title with its unit behind it, where white space stands between columns
 _SPACED_TITLE = re.compile(r"\S+(?:\s*[\[(][^\])]*[\])])?")
+# what stands alone above the rows: [data]
+_SECTION = re.compile(r"\[[A-Za-z][A-Za-z ]{2,}\]")
 _BEHIND_A_WORD = re.compile(r"(?P<name>.*?)\s*(?:\bin\b|/|,)\s*(?P<unit>\S+(?: m)?)")
 # What stands in brackets behind a variable of a co-simulation: its number, its type and what it is.
 _OF_A_VARIABLE = re.compile(
@@ -41,11 +44,14 @@ def titles_and_units(lines: Sequence[str], table: Table) -> tuple[list[str], lis
 
     Both are empty where there are none.
     """
-    above = [line for line in lines[: table.first] if line.strip()]
+    above = [line for line in lines[: table.first] if line.strip() and _SECTION.fullmatch(line.strip()) is None]
     if above and split_row(above[0].lstrip("\ufeff"), table.delimiter)[0] in _TOA5 and len(above) >= _TOA5_ROWS:
         return _padded(_fields(above[1], table), table), [
             _unit(field) for field in _padded(_fields(above[2], table), table)
         ]
+    export = titles_of_export(above, table)
+    if export is not None:
+        return export
     named = _named_rows(above, table)
     if named is not None:
         return named
@@ -126,8 +132,9 @@ def _fields(line: str, table: Table) -> list[str]:
     if table.delimiter != WHITE_SPACE or '"' in line:
         return [csv_cell_text(field) for field in split_row(line, table.delimiter)]
     spaced = [title.strip() for title in _SPACED_TITLE.findall(line)]
-    far_apart = re.split(r"\s{2,}", line.strip())
-    return far_apart if len(spaced) != table.width == len(far_apart) else spaced
+    # units in brackets, apart by one space, are no parts of titles
+    others = (re.split(r"\s{2,}", line.strip()), line.split())
+    return next((fields for fields in (spaced, *others) if len(fields) == table.width), spaced)
 
 
 def _as_wide(fields: list[str], table: Table) -> list[str] | None:
@@ -149,9 +156,9 @@ def _padded(fields: list[str], table: Table) -> list[str]:
 
 
 def counts_rows(fields: Sequence[str]) -> bool:
-    """Return whether fields are whole numbers that step by one from 0 or 1 on."""
+    """Return whether fields are whole numbers that step by one."""
     numbers = [int(field) if field.isdecimal() else -1 for field in fields]
-    return len(numbers) > 1 and numbers[0] in (0, 1) and numbers == list(range(numbers[0], numbers[0] + len(numbers)))
+    return len(numbers) > 1 and numbers[0] >= 0 and numbers == list(range(numbers[0], numbers[0] + len(numbers)))
 
 
 def name_and_unit(title: str) -> tuple[str, str]:

@@ -1,0 +1,178 @@
+"""Text with several columns of times, with times of day as one number, and with counted rows that begin later."""
+
+from datetime import UTC, datetime
+
+import numpy as np
+import pytest
+
+from shaftprint.errors import RecordingError
+from shaftprint.recording import read_recording
+
+COUNT = 200
+FAST, SLOW = 0.01 * np.arange(COUNT), 0.02 * np.arange(COUNT)
+TORQUE, SPEED = np.round(100.0 * np.cos(FAST), 3), np.round(1500.0 + 10.0 * np.sin(SLOW), 2)
+
+
+def _read(tmp_path, text, **hints):
+    path = tmp_path / "log.csv"
+    path.write_text(text)
+    return read_recording(path, **hints)
+
+
+def _in_pairs(titles, later=SLOW):
+    rows = zip(FAST, TORQUE, later, SPEED, strict=True)
+    return f"{titles}\n" + "".join(f"{t:.3f};{torque};{own:.3f};{speed}\n" for t, torque, own, speed in rows)
+
+
+@pytest.mark.parametrize(
+    "titles",
+    [
+        "time [s];M_s [N m];time [s];n_e [rpm]",
+        "Time  1 - fast;M_s;Time  2 - slow;n_e\ns;N m;s;rpm",
+        "X;M_s;X;n_e\ns;N m;s;rpm",
+        "M_s Time;M_s;n_e Time;n_e\ns;N m;s;rpm",
+    ],
+)
+def test_columns_behind_further_times_are_on_those(tmp_path, titles):
+    with _read(tmp_path, _in_pairs(titles)) as recording:
+        torque, speed = recording.channels.values()
+        assert (torque.rate_hz, speed.rate_hz) == (100.0, 50.0)
+        assert (torque.unit, speed.unit) == ("N m", "rpm")
+        assert np.array_equal(speed.values(0, COUNT), SPEED)
+        assert any("were placed by those times" in remark for remark in recording.remarks)
+
+
+def test_further_times_may_begin_later(tmp_path):
+    with _read(tmp_path, _in_pairs("time;M_s;time;n_e", FAST + 0.004)) as recording:
+        assert [one.start_s for one in recording.channels.values()] == [0.0, 0.004]
+
+
+def test_the_same_times_again_are_no_channel_and_need_no_word(tmp_path):
+    with _read(tmp_path, _in_pairs("time;M_s;time;n_e", FAST)) as recording:
+        assert list(recording.channels) == ["M_s", "n_e"]
+        assert recording.remarks == ()
+
+
+def test_a_date_beside_seconds_stays_a_channel(tmp_path):
+    with _read(tmp_path, _in_pairs("time;M_s;timestamp;n_e", 1_767_225_600.0 + FAST)) as recording:
+        assert [one.rate_hz for one in recording.channels.values()] == [100.0] * 3
+
+
+def test_columns_of_a_slow_clock_end_earlier(tmp_path):
+    rows = [f"{t:.2f};{torque}" for t, torque in zip(FAST, TORQUE, strict=True)]
+    slow = [f";{t:.2f};{speed}" for t, speed in zip(10.0 * FAST[:20], SPEED[:20], strict=True)]
+    ends = slow + [";;"] * (COUNT - 20)
+    text = "t;M_s;t;n_e\n" + "".join(f"{row}{more}\n" for row, more in zip(rows, ends, strict=True))
+    with _read(tmp_path, text) as recording:
+        assert [(one.rate_hz, one.count) for one in recording.channels.values()] == [(100.0, COUNT), (10.0, 20)]
+
+
+def test_the_first_clock_may_end_earlier(tmp_path):
+    slow = [f"{t:.2f};{speed}" if k < 20 else ";" for k, (t, speed) in enumerate(zip(10.0 * FAST, SPEED, strict=True))]
+    text = "t;n_e;t;M_s\n" + "".join(
+        f"{before};{t:.2f};{torque}\n" for before, t, torque in zip(slow, FAST, TORQUE, strict=True)
+    )
+    with _read(tmp_path, text) as recording:
+        assert [(one.rate_hz, one.count) for one in recording.channels.values()] == [(10.0, 20), (100.0, COUNT)]
+
+
+def test_what_has_times_of_no_clock_is_left_out_with_the_reason(tmp_path):
+    later = np.where(np.arange(COUNT) % 50 > 45, 0.0, SLOW)
+    with _read(tmp_path, _in_pairs("time;M_s;time;n_e", later)) as recording:
+        assert list(recording.channels) == ["M_s"]
+        assert recording.left_out["n_e"].startswith("column time (2): expected ascending times")
+
+
+def test_columns_with_dates_of_their_own_are_left_out(tmp_path):
+    def rows(step):
+        return "".join(
+            f"2026-03-05 09:00:{k // 10:02d}.{k % 10};{k};2026-03-05 09:00:{step * k // 10:02d}.{step * k % 10};{k}\n"
+            for k in range(COUNT)
+        )
+
+    with _read(tmp_path, f"Timestamp;A;Timestamp;B\n{rows(2)}") as recording:
+        assert list(recording.channels) == ["A"]
+        assert "dates of its own in front" in recording.left_out["B"]
+    with _read(tmp_path, f"Timestamp;A;Timestamp;B\n{rows(1)}") as recording:
+        assert list(recording.channels) == ["A", "B"]
+
+
+HEAD = (
+    "Name\tmy scope\nFile\tC:\\scope.csv\nStarttime of export\t{ticks}\tDonnerstag, 5. M\tärz 2026\n\n\n"
+    "Name\t{names}\nSymbolComment\t\nSampleTime[ms]\t10\tSampleTime[ms]\t20\nUnit\tNm (Torque)\tUnit\t(None)\n\n"
+)
+
+
+def test_an_export_of_twincat_scope_has_times_in_milliseconds_and_a_date(tmp_path):
+    fast = [f"{10 * k}\t{torque}" for k, torque in enumerate(TORQUE)]
+    slow = [f"\t{20 * k}\t{speed}" if k < 50 else "" for k, speed in enumerate(SPEED)]
+    # 134000000000000000 is 2025-08-18 14:13:20 UTC
+    head = HEAD.format(ticks=134 * 10**15, names="M_s\tName\tn_e")
+    text = head + "".join(f"{one}{other}\n" for one, other in zip(fast, slow, strict=True)) + "EOF\n"
+    with _read(tmp_path, text) as recording:
+        torque, speed = recording.channels.values()
+        assert (torque.name, torque.unit, torque.rate_hz, torque.count) == ("M_s", "N m", 100.0, COUNT)
+        assert (speed.name, speed.unit, speed.rate_hz, speed.count) == ("n_e", "", 50.0, 50)
+        assert recording.began == datetime(2025, 8, 18, 14, 13, 20, tzinfo=UTC)
+        assert not any("damaged" in remark for remark in recording.remarks)
+
+
+def _of_day(first_s, count, step_s):
+    seconds = first_s + step_s * np.arange(count)
+    return [f"{s // 3600:02.0f}{s // 60 % 60:02.0f}{s % 60:05.2f}" for s in np.round(seconds, 6)]
+
+
+def test_times_of_day_as_one_number_go_on_over_minutes_and_hours(tmp_path):
+    times = _of_day(13 * 3600 + 58 * 60 + 50.0, 2000, 0.1)
+    assert times[100] == "135900.00"
+    assert times[700] == "140000.00"
+    text = "time;M_s\n" + "".join(f"{t};{k}\n" for k, t in enumerate(times))
+    with _read(tmp_path, text) as recording:
+        torque = recording.channels["M_s"]
+        assert (torque.rate_hz, torque.start_s, torque.count) == (10.0, 0.0, 2000)
+        assert torque.clock_jumps == ()
+        assert "second 0 is 13:58:50 of a day" in recording.remarks[0]
+
+
+def test_seconds_with_a_hole_are_no_times_of_day(tmp_path):
+    times = np.delete(0.1 * np.arange(1200), range(400, 500))
+    text = "time;M_s\n" + "".join(f"{t:.1f};{k}\n" for k, t in enumerate(times))
+    with _read(tmp_path, text) as recording:
+        assert recording.channels["M_s"].count == 1200
+        assert recording.remarks == ()
+
+
+def test_a_log_of_racelogic_is_read(tmp_path):
+    rows = "".join(f"012 {t} +3141.689 {k:+.3f}\n" for k, t in enumerate(_of_day(50_000.0, 1000, 0.1)))
+    head = (
+        "File created on 05/03/2026 @ 13:53\n\n[header]\nsatellites\ntime\nlatitude\nvelocity kmh\n\n[column names]\n"
+    )
+    with _read(tmp_path, f"{head}sats time lat velocity\n\n[data]\n{rows}") as recording:
+        assert list(recording.channels) == ["sats", "lat", "velocity"]
+        assert recording.channels["velocity"].rate_hz == 10.0
+
+
+def test_a_counter_that_begins_later_moves_the_start(tmp_path):
+    rows = "".join(f"{k},{k % 7}.5,\n" for k in range(22, 122))
+    with _read(tmp_path, f"X,CH1,Start,Increment,\nSequence,Volt,-1.0,1.0e-02\n{rows}") as recording:
+        assert list(recording.channels) == ["CH1"]
+        assert recording.channels["CH1"].start_s == pytest.approx(-0.78)
+
+
+def test_units_in_brackets_apart_by_one_space(tmp_path):
+    rows = "".join(f"{0.01 * k:.2f}  {k}.5  {2 * k}.5\n" for k in range(100))
+    with _read(tmp_path, f"Time  RotSpeed  GenTq\n(sec) (rpm) (kN·m)\n{rows}") as recording:
+        assert [(one.name, one.unit) for one in recording.channels.values()] == [("RotSpeed", "rpm"), ("GenTq", "kN m")]
+
+
+@pytest.mark.parametrize("name", ["__time", "LV Time Stamp", "Cumulative Time (s)"])
+def test_times_as_programs_call_them(tmp_path, name):
+    text = f"{name},a\n" + "".join(f"{0.01 * k:.2f},{k % 5}\n" for k in range(100))
+    with _read(tmp_path, text) as recording:
+        assert recording.channels["a"].rate_hz == 100.0
+
+
+def test_a_counter_alone_is_no_clock(tmp_path):
+    text = ",a,b\n" + "".join(f"{k},{k % 5}.5,{k % 3}.5\n" for k in range(5000, 5100))
+    with pytest.raises(RecordingError, match="name the columns"):
+        _read(tmp_path, text)
