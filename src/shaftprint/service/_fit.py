@@ -44,6 +44,21 @@ _LEAST_LEFT = 0.1
 _COVERAGE, _MANY = 0.95, 1e4
 # Times that a step is halved before the fit ends.
 _HALVINGS = 6
+# Below which no step goes.
+_LEAST: Mapping[str, float] = MappingProxyType(
+    {
+        GAUGE_K_P.name: 0.05,
+        GAUGE_K_I.name: 0.05,
+        GAUGE_OMEGA_N.name: 1.0,
+        GAUGE_ZETA.name: 0.05,
+        T_D.name: 0.0,
+        TAU_DN.name: 0.01,
+        TAU_UP.name: 0.01,
+    }
+)
+# A step changes none of those that are above zero by more than this share of itself: delay, lag and gain lie in a
+# valley that bends, and a longer one ends at a line that hunts.
+_LONGEST_SHARE = 0.25
 FLOOR: Mapping[str, float] = MappingProxyType({GAUGE_K_P.name: 0.003, GAUGE_K_I.name: 0.003, TAU_DN.name: 0.002})
 """Share of each number below which its standard deviation does not fall, however long the service."""
 FLOOR_S: Mapping[str, float] = MappingProxyType({T_D.name: 1e-3, T_SP.name: 1e-3})
@@ -217,7 +232,9 @@ def _stepped(
     guided: bool,
 ) -> tuple[FloatArray, list[Simulated], list[Score]] | None:
     """Return what lies a step on, halved until it is no worse where the misfit is a guide; None if it never is."""
-    step, misfit = sums.step, _misfit(each, sums, model, theta)
+    positive = np.array([_LEAST.get(name, 0.0) > 0.0 for name in FREE])
+    share = float(np.max(np.abs(sums.step[positive]) / theta[positive], initial=_LONGEST_SHARE))
+    step, misfit = sums.step * (_LONGEST_SHARE / share), _misfit(each, sums, model, theta)
     for _ in range(_HALVINGS):
         tried = _within(theta + step)
         try:
@@ -313,13 +330,4 @@ def _misfit(each: Sequence[Score], sums: Sums, model: ServiceModel, theta: Float
 
 def _within(theta: FloatArray) -> FloatArray:
     """Return parameters that can be: what cannot be below zero is not."""
-    least = {
-        GAUGE_K_P.name: 0.05,
-        GAUGE_K_I.name: 0.05,
-        GAUGE_OMEGA_N.name: 1.0,
-        GAUGE_ZETA.name: 0.05,
-        T_D.name: 0.0,
-        TAU_DN.name: 0.01,
-        TAU_UP.name: 0.01,
-    }
-    return np.maximum(theta, [least.get(name, -np.inf) for name in FREE])
+    return np.maximum(theta, [_LEAST.get(name, -np.inf) for name in FREE])

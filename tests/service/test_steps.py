@@ -1,0 +1,28 @@
+"""A step of the fit to segments: as far as the curvature of one point is a guide."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from shaftprint.service import _fit
+from shaftprint.service._model import FREE
+
+HERE = {
+    "K_p": 6.01, "K_i": 4.72, "omega_n": 13.4, "zeta": 0.65, "t_d": 0.09, "t_sp": 0.043, "tau_dn": 0.326,
+    "tau_up": 1.02, "g": -0.17, "c_set": 0.997, "t_gauge": -0.003,
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("share", [0.1, 0.5, 3.0])
+def test_a_step_goes_its_way_but_no_farther_than_a_quarter_of_a_gain_or_lag(monkeypatch, share):
+    """From usual values to a ship of its own a whole step halved the lag, and the next met a line that hunts."""
+    monkeypatch.setattr(_fit, "simulated", lambda records, model, theta, simulator: [])
+    monkeypatch.setattr(_fit, "scores", lambda runs, whitening: [])
+    monkeypatch.setattr(_fit, "_misfit", lambda each, sums, model, theta: 0.0)
+    theta = np.array([HERE[name] for name in FREE])
+    asked = 0.01 * theta
+    asked[FREE.index("omega_n")] *= -100.0 * share
+    sums = SimpleNamespace(step=asked)
+    tried, _, _ = _fit._stepped([], [], sums, None, theta, None, None, guided=False)
+    assert (tried - theta) / asked == pytest.approx(min(1.0, 0.25 / share))
