@@ -1,6 +1,8 @@
 """What is said without a command being called, and what that must not load."""
 
 import os
+import re
+import shlex
 import subprocess
 import sys
 
@@ -184,3 +186,46 @@ def test_commands_stand_under_what_they_are_for(run):
         "Use the model:",
         "Keep over the years:",
     ]
+
+
+LONG_HELPS = ("identify", "plan", "start", "new")
+"""Commands with so many options that their help has them in sections."""
+
+
+def _words_after(command, name, example):
+    """Return the arguments of an example line of a command."""
+    program, called, *words = shlex.split(example)
+    assert (program, called) == ("shaftprint", name)
+    return command.make_context(name, words)
+
+
+@pytest.mark.parametrize("name", LONG_HELPS)
+def test_a_long_help_has_every_option_once_below_an_example_that_can_be_typed(name):
+    command = shaftprint.get_command(click.Context(shaftprint), name)
+    help_text = command.get_help(click.Context(command, info_name=name))
+    shown = re.findall(r"^  (?:-\w, )?(--[\w-]+)", help_text.partition("\nExample:")[2], re.MULTILINE)
+    options = [max(one.opts, key=len) for one in command.params if isinstance(one, click.Option)]
+    assert sorted(shown) == sorted([*options, "--help"])
+    examples = re.findall(r"^  (shaftprint .*)$", help_text, re.MULTILINE)
+    assert examples
+    for example in examples:
+        _words_after(command, name, example)
+
+
+def test_what_is_needed_comes_first(run):
+    lines = run("identify", "--help").output.splitlines()
+    needed = lines[lines.index("Needed:") + 1 : lines.index("Test:")]
+    assert [line.split()[0] for line in needed if line.startswith("  -")] == [
+        "--vessel",
+        "--campaign",
+        "-o,",
+        "--drive",
+    ]
+    assert "\n\nOptions:" not in run("identify", "--help").output
+
+
+def test_the_ends_of_a_card_do_not_stand_in_the_help(run):
+    told = run("start", "--help").output
+    assert "--power-kw NUMBER" in told
+    assert "1e-06" not in told
+    assert run("new", "vessel", "--power-kw", "nan", "x.toml").exit_code == 2

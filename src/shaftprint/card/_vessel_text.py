@@ -41,7 +41,7 @@ def vessel_text(card: Card) -> str:
 
 def _head(card: Card) -> Iterable[str]:
     return (
-        "# Written by `shaftprint new vessel` from what stands on the ship's card: the numbers without a comment.",
+        "# Written by `shaftprint new vessel` from the ship's main particulars: the numbers without a comment.",
         "# The comments of the others say where they are from, with a deviation; replace what you know better.",
         "",
         f"name = {toml_string(card.name)}",

@@ -1,4 +1,4 @@
-"""Options of ``new vessel``: what stands on a ship's card."""
+"""Options of ``new vessel``: the main particulars of a ship, its card."""
 
 from __future__ import annotations
 
@@ -14,8 +14,24 @@ with late():
     from shaftprint.card._card import Card, Gauge, Lever, Pulses
 
 
-# Wider than any ship, and so that no power of them is beyond all numbers.
-_POSITIVE = click.FloatRange(1e-6, 1e9)
+LEAST, MOST = 1e-6, 1e9
+"""Ends of all numbers of a card: wider than any ship, and so that no power of them is beyond all numbers."""
+
+
+class _Positive(click.types.FloatParamType):
+    """A number of a ship; the help does not show its ends, which tell nothing."""
+
+    name = "number"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> float:
+        """Return the number; one that no ship has fails."""
+        number = float(super().convert(value, param, ctx))
+        if not LEAST <= number <= MOST:
+            self.fail(f"{number} is not in the range {LEAST:g} to {MOST:g}.", param, ctx)
+        return number
+
+
+_POSITIVE = _Positive()
 _COUNT = click.IntRange(1, 1000)
 
 # Fields of a card by their option; the first six and one of the two of the gear are needed.
@@ -37,11 +53,19 @@ _GEAR: Mapping[str, tuple[str, Any, str]] = {
 }
 _FURTHER: Mapping[str, tuple[str, Any, str]] = {
     "name": ("--name", click.STRING, "Name of ship and shaft line."),
-    "strokes_per_cycle": ("--strokes", click.IntRange(min=2, max=4), "Strokes in a cycle, 2 or 4; 4 when not given."),
+    "strokes_per_cycle": ("--strokes", click.IntRange(min=2, max=4), "Strokes in a cycle, 2 or 4; 4 by default."),
     "area_ratio": ("--area-ratio", click.FloatRange(0.0, 1.0, min_open=True), "Blade area over disc area."),
-    "engine_speed_rpm": ("--test-rpm", _POSITIVE, "Engine speed of the test [rpm]; two thirds of rated speed."),
-    "shaft_torque_nm": ("--torque-nm", _POSITIVE, "Torque of the propeller shaft there, where it is known [N m]."),
-    "idle_speed_rpm": ("--idle-rpm", _POSITIVE, "Idle speed [rpm]; a third of rated speed."),
+    "engine_speed_rpm": (
+        "--test-rpm",
+        _POSITIVE,
+        "Engine speed of the test [rpm]; two thirds of rated speed by default.",
+    ),
+    "shaft_torque_nm": (
+        "--torque-nm",
+        _POSITIVE,
+        "Torque of the propeller shaft at that speed, where it is known [N m].",
+    ),
+    "idle_speed_rpm": ("--idle-rpm", _POSITIVE, "Idle speed [rpm]; a third of rated speed by default."),
     "inertia_upstream_kg_m2": (
         "--inertia-upstream",
         _POSITIVE,
@@ -52,15 +76,15 @@ _FURTHER: Mapping[str, tuple[str, Any, str]] = {
         _POSITIVE,
         "Inertia from gauge to propeller, with its water [kg m2].",
     ),
-    "water_density_kg_m3": ("--density", _POSITIVE, "Density of the water [kg/m3]; 1025, sea water."),
-    "set_point_channel": ("--set-point", click.STRING, "Channel of the set point; U_setpoint."),
-    "sample_rate_hz": ("--sample-rate", _POSITIVE, "Samples a second of the logger [Hz]; 2000."),
+    "water_density_kg_m3": ("--density", _POSITIVE, "Density of the water [kg/m3]; 1025 by default, sea water."),
+    "set_point_channel": ("--set-point", click.STRING, "Channel of the set point; U_setpoint by default."),
+    "sample_rate_hz": ("--sample-rate", _POSITIVE, "Samples a second of the logger [Hz]; 2000 by default."),
 }
 _GAUGE: Mapping[str, tuple[str, Any, str]] = {
-    "channel": ("--torque", click.STRING, "Channel of the shaft torque; M_s."),
-    "unit": ("--torque-unit", click.Choice(["V", "N m", "kN m"]), "Unit of that channel; N m."),
-    "scale_nm_per_unit": ("--torque-scale", click.FLOAT, "Torque for one unit of it [N m]; needed for V."),
-    "full_scale_nm": ("--full-scale-nm", _POSITIVE, "Largest torque that it passes on [N m]."),
+    "channel": ("--torque", click.STRING, "Channel of the shaft torque; M_s by default."),
+    "unit": ("--torque-unit", click.Choice(["V", "N m", "kN m"]), "Unit of that channel; N m by default."),
+    "scale_nm_per_unit": ("--torque-scale", click.FLOAT, "Torque for one unit of that channel [N m]; needed for V."),
+    "full_scale_nm": ("--full-scale-nm", _POSITIVE, "Largest torque that the gauge passes on [N m]."),
 }
 _LEVER = ("V", "mA", "%", "rpm", "counts")
 _FLAGS = {
@@ -75,6 +99,21 @@ _PULSES = {
     "shaft_pulses": ("--shaft-pulses", "The same on the propeller shaft."),
 }
 _OF_GAUGE = "gauge_"
+
+CARD_SECTIONS = {
+    "Engine": ("--power-kw", "--rated-rpm", "--cylinders", "--strokes", "--idle-rpm"),
+    "Gearbox, propeller and water": (
+        "--ratio", "--propeller-rpm", "--diameter-m", "--blades", "--pitch-ratio", "--area-ratio", "--nozzle",
+        "--density",
+    ),
+    "Inertia, where it is known": ("--inertia-upstream", "--inertia-downstream"),
+    "Test": ("--test-rpm", "--torque-nm", "--underway", "--name"),
+    "Logger": (
+        "--sample-rate", "--set-point", "--lever-unit", "--lever", "--engine-pulses", "--shaft-pulses", "--torque",
+        "--torque-unit", "--torque-scale", "--full-scale-nm",
+    ),
+}  # fmt: skip
+"""The options of a card by what they are of."""
 
 
 def pulses(text: str) -> Pulses:
@@ -119,7 +158,7 @@ def card_options(command: Callable[..., Any]) -> Callable[..., Any]:
         help="What the lever reads and the engine speed that it asks for, such as 4=600 and 20=1600; twice or more.",
     )(command)
     command = click.option(
-        "--lever-unit", "lever_unit", type=click.Choice(_LEVER), help="Unit of the set point's channel; V."
+        "--lever-unit", "lever_unit", type=click.Choice(_LEVER), help="Unit of the set point's channel; V by default."
     )(command)
     for field, (option, help_text) in reversed(_FLAGS.items()):
         command = click.option(option, field, is_flag=True, help=help_text)(command)
@@ -141,7 +180,7 @@ def card_of(said: Mapping[str, Any]) -> Card | None:
     if not set(_GEAR) & set(stated):
         missing.append("--ratio or --propeller-rpm")
     if missing:
-        raise click.UsageError(f"A vessel file from a card needs {', '.join(missing)} too.")
+        raise click.UsageError(f"A vessel file from main particulars needs {', '.join(missing)} too.")
     lever = Lever(unit=stated.pop("lever_unit", "V"), pairs=stated.pop("lever_pairs", ()))
     if len(lever.pairs) == 1:
         raise click.UsageError("--lever is needed twice, at a low and at a high speed, such as 4=600 and 20=1600.")

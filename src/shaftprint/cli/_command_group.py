@@ -17,7 +17,7 @@ from shaftprint.spelling import meant
 # asking every command for it would import them all: 0.26 s instead of 0.07. A test holds both against each other.
 SECTIONS = {
     "Begin": {
-        "start": "Say what lies in a folder and what comes next; ask for a ship's card where there is none.",
+        "start": "Say what lies in a folder and what comes next; ask for the ship's main particulars first.",
         "demo": "Simulate the Stan Tug 1205 and identify it from its recording.",
     },
     "Plan a test": {
@@ -27,28 +27,28 @@ SECTIONS = {
         "inertia": "Calculate inertia and torsional modes from the vessel file.",
         "plan": "Plan the strongest test within a time, or the shortest that meets your wishes.",
         "continue": "Say what is known so far of a planned test, and plan what is still missing.",
-        "sail": "Simulate a tug in a campaign and write its raw recording.",
+        "sail": "Simulate the test of a ship and write the raw recording of its logger.",
     },
     "Make a test": {
-        "live": "Play a test through a counterpart on board, watch it, judge it and stop it.",
+        "live": "Play a test through a device on board, the counterpart; watch it, judge it and stop it.",
     },
     "Prepare a recording": {
         "inspect": "Show what is in a recording and whether it is good enough.",
         "merge": "Bring the recordings of two loggers onto the clock of the first.",
         "join": "Join files that one logger wrote one after the other, in the order given.",
-        "convert": "Write recordings of any readable format as the native container.",
+        "convert": "Write recordings of any readable format as NetCDF or in another format.",
     },
     "Identify": {
         "identify": "Identify the fingerprint from a recording.",
         "service": "Identify a line from the logs of its ordinary service, without a test.",
         "limits": "Find which limits a line has, and their levels and rates with uncertainty.",
-        "structures": "List the model structures with their parameters and bounds.",
+        "structures": "List the model structures with their parameters, meanings and bounds.",
     },
     "Judge": {
         "show": "Print a saved fingerprint.",
         "compare": "Compare fingerprints: what differs, and whether by more than chance.",
         "drift": "Watch a line over the years: what has changed, since when, and how fast.",
-        "sisters": "Hold the ships of a class against each other: who is other, and in what.",
+        "sisters": "Compare the ships of a class: which one differs, and in what.",
         "validate": "Validate a model on chirps and steps that it was not identified from.",
         "compare-structures": "Compare model structures on a recording: which explains it best, and why.",
         "explain": "Explain the numbers of the thesis' method on one recording.",

@@ -17,7 +17,7 @@ def drive_option(command: Callable[..., Any]) -> Callable[..., Any]:
         "drive_file",
         type=click.Path(path_type=Path),
         is_eager=True,
-        help="Drive file of a line that is no ship's, in place of --vessel and --campaign.",
+        help="Drive file of a motor or another drive, in place of the files of a ship.",
     )(command)
 
 

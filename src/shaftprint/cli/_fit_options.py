@@ -19,7 +19,7 @@ _OPTIONS = (
         "freed",
         metavar="NAME",
         multiple=True,
-        help="Take nothing as known of a parameter, such as tau_up, of which the vessel file knows the inertia.",
+        help="Ignore what is known of a parameter beforehand, such as tau_up, whose inertia the vessel file has.",
     ),
     hold_option,
     click.option(
@@ -27,11 +27,17 @@ _OPTIONS = (
         type=click.Choice(["shaftprint", "thesis"]),
         default="shaftprint",
         show_default=True,
-        help="How signals and lines are prepared; the thesis' way is there to compare.",
+        help="How signals and responses are prepared; thesis: as in the master thesis, to compare.",
     ),
-    click.option("--unweighted", is_flag=True, help="Weigh all lines alike, as the thesis did; intervals are wider."),
-    click.option("--starts", type=click.IntRange(min=1), default=50, show_default=True, help="Starts of each search."),
-    click.option("--seed", type=click.IntRange(min=0), default=1, show_default=True, help="Seed of the starts."),
+    click.option(
+        "--unweighted", is_flag=True, help="Weigh all frequencies alike, as the thesis did; intervals are wider."
+    ),
+    click.option(
+        "--starts", type=click.IntRange(min=1), default=50, show_default=True, help="Starting points of each search."
+    ),
+    click.option(
+        "--seed", type=click.IntRange(min=0), default=1, show_default=True, help="Seed of the starting points."
+    ),
 )
 
 fit_options = gathered_options(lambda **values: FitOptions(**values), _OPTIONS)

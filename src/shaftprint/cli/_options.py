@@ -8,7 +8,7 @@ import click
 
 from shaftprint.choices import CLOSED_LOOPS, COMBINED_LOOP, PITCHED_LOOP, WRITTEN_ENDINGS, WRITTEN_FORMATS
 
-OWN_FILE_HELP = "a shipped one, or my_ship.py:my_loop for one of your own file, which is Python and is run"
+OWN_FILE_HELP = "one of `shaftprint structures`, or my_ship.py:my_loop of your own file, which is Python and is run"
 DEFAULT_HELP = (
     f"{CLOSED_LOOPS['engine']}, {CLOSED_LOOPS['motor']} where a motor drives the line, {CLOSED_LOOPS['hybrid']} where "
     f"one helps an engine, {PITCHED_LOOP} where the campaign moves a logged pitch, {COMBINED_LOOP} with a "

@@ -35,7 +35,11 @@ def _slope(context: click.Context, parameter: click.Parameter, value: float | No
 
 
 free_option = click.option(
-    "--free", "freed", metavar="NAME", multiple=True, help="Take nothing as known of a parameter, such as tau_up."
+    "--free",
+    "freed",
+    metavar="NAME",
+    multiple=True,
+    help="Ignore what is known of a parameter beforehand, such as tau_up.",
 )
 value_option = click.option(
     "--value",

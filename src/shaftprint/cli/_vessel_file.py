@@ -39,4 +39,6 @@ def checked_vessel(file: str) -> Vessel:
 def write_from_card(card: Card, path: Path) -> None:
     """Write the vessel file that follows from a card; whether it agrees with itself is said."""
     print_disagreements(write_vessel(card, path), str(path))
-    answer(f"{path}: a vessel file from the card; its comments say what was derived and what is usual only.")
+    answer(
+        f"{path}: a vessel file from the main particulars; its comments say what was derived and what is usual only."
+    )

@@ -53,7 +53,7 @@ def command(
     no_progress: bool,
     **said: object,
 ) -> None:
-    """Write recordings of any readable format as the native container.
+    """Write recordings of any readable format as NetCDF or in another format.
 
     Channels keep their own clocks and counts. The ending of the output chooses another format. --from and --to cut;
     what is left keeps its times, so that a campaign file holds for it too. Input files are not changed.

@@ -13,6 +13,7 @@ from shaftprint.cli._fit_options import fit_options
 from shaftprint.cli._identify_both import identify_both_lines
 from shaftprint.cli._limit_tables import print_limits, print_line
 from shaftprint.cli._next import print_steps
+from shaftprint.cli._option_sections import SectionedCommand
 from shaftprint.cli._options import (
     DEFAULT_HELP,
     OWN_FILE_HELP,
@@ -52,7 +53,22 @@ with late():
     from shaftprint.tables._structures import fits_table
 
 
-@click.command("identify")
+@click.command(
+    "identify",
+    cls=SectionedCommand,
+    example="shaftprint identify log.csv --vessel mine.toml --campaign test.toml -o result",
+    sections={
+        "Needed": ("--vessel", "--campaign", "--output", "--drive"),
+        "Test": ("--leg", "--starboard", "--tested-at", "--conditions", "--previous"),
+        "Model": ("--structure", "--with", "--prior", "--free", "--hold"),
+        "Fit": ("--mode", "--unweighted", "--starts", "--seed"),
+        "Report": ("--no-report", "--figures", "--pdf"),
+        "What the file does not say itself": (
+            "--sample-rate", "--time-unit", "--columns", "--delimiter", "--decimal", "--encoding", "--dbc",
+            "--interleaved",
+        ),
+    },
+)  # fmt: skip
 @click.argument("recordings", metavar="RECORDING...", nargs=-1, required=True, type=click.Path(path_type=Path))
 @drive_option
 @vessel_option
@@ -63,7 +79,7 @@ with late():
     "names",
     multiple=True,
     metavar="NAME",
-    help=f"Model structure: {OWN_FILE_HELP}; {DEFAULT_HELP} by default. The fingerprint is of the first, "
+    help=f"Model structure: {OWN_FILE_HELP}. By default {DEFAULT_HELP}. The fingerprint is of the first, "
     "others are fitted beside it.",
 )
 @click.option("--figures", is_flag=True, help="Write every chart as SVG, PDF and PNG, too: half a minute more.")

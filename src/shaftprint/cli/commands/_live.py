@@ -26,7 +26,7 @@ class ActionGroup(LazyGroup):
 
 @click.group("live", cls=ActionGroup, subcommand_metavar="ACTION [ARGS]...")
 def command() -> None:
-    """Play a test through a counterpart on board, watch it, judge it and stop it.
+    """Play a test through a device on board, the counterpart; watch it, judge it and stop it.
 
     The program never replaces the lever: the counterpart goes back to it by itself when the program is gone, and
     nothing is armed before that was seen. Begin with `shaftprint live check`, then `shaftprint live rehearse`.

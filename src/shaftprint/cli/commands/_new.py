@@ -8,8 +8,9 @@ from typing import Literal
 
 import click
 
-from shaftprint.cli._card_options import card_of, card_options
+from shaftprint.cli._card_options import CARD_SECTIONS, card_of, card_options
 from shaftprint.cli._next import plan_words, print_next
+from shaftprint.cli._option_sections import SectionedCommand
 from shaftprint.cli._options import NAMES
 from shaftprint.cli._terminal import answer, echo, print_findings
 from shaftprint.cli._vessel_file import write_from_card
@@ -38,7 +39,12 @@ TESTS: Mapping[str, str] = {
 _CALLED = {"vessel": "a vessel", "campaign": "a campaign", "conditions": "the conditions of a test", "drive": "a drive"}
 
 
-@click.command("new")
+@click.command(
+    "new",
+    cls=SectionedCommand,
+    example="shaftprint new vessel mine.toml\nshaftprint new campaign --test 12min test.toml",
+    sections={"File": ("--output", "--test", "--from", "--vessel"), **CARD_SECTIONS},
+)
 @click.argument("kind", type=click.Choice(["vessel", "campaign", "conditions", "drive"]))
 @click.argument("file", type=click.Path(path_type=Path), required=False)
 @click.option(
@@ -76,7 +82,7 @@ def command(
     RECORDING begins with its channels and their units: a motor where they are voltage, current and speed, else a lag
     from one of them to the others.
 
-    With what stands on a ship's card the vessel file is filled in. It needs --power-kw, --rated-rpm, --cylinders,
+    With the ship's main particulars the vessel file is filled in. That needs --power-kw, --rated-rpm, --cylinders,
     --diameter-m, --blades, --pitch-ratio and --ratio or --propeller-rpm; the rest is derived or usual, and comments in
     the file say where each number is from and how uncertain it is.
     """
@@ -85,7 +91,7 @@ def command(
     if test is not None and kind != "campaign":
         raise click.UsageError("--test names a campaign to begin with; write `shaftprint new campaign`.")
     if card is not None and kind != "vessel":
-        raise click.UsageError("A ship's card makes a vessel file; write `shaftprint new vessel`.")
+        raise click.UsageError("Main particulars make a vessel file; write `shaftprint new vessel`.")
     if recorded is not None and kind == "drive":
         if vessel is not None or test is not None or card is not None:
             raise click.UsageError("--from makes a drive file of a recording; write `shaftprint new drive` alone.")

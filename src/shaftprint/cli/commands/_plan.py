@@ -15,6 +15,7 @@ from shaftprint.cli._drive_options import drive_option, expect_not_given, is_giv
 from shaftprint.cli._drive_plan import plan_on_the_bench
 from shaftprint.cli._known_values import by_name, named_value
 from shaftprint.cli._next import free, print_next
+from shaftprint.cli._option_sections import SectionedCommand
 from shaftprint.cli._options import DEFAULT_HELP, OWN_FILE_HELP, vessel_option
 from shaftprint.cli._plan_options import limit_of, seconds_of, shares_of, wish_from, wish_of
 from shaftprint.cli._ship_options import known_options
@@ -51,14 +52,28 @@ _OF_SHIPS = (
 )  # fmt: skip
 
 
-@click.command("plan")
+@click.command(
+    "plan",
+    cls=SectionedCommand,
+    example="shaftprint plan --vessel mine.toml --within 12min --wish t_d=20% --wish K_p=6% -o my_plan",
+    sections={
+        "Needed": ("--vessel", "--output", "--drive"),
+        "Test": ("--within", "--wish", "--shortest", "--staircase", "--name"),
+        "Lever and limits": ("--rpm-per-volt", "--offset", "--limit", "--speeds"),
+        "What is known of the ship": (
+            "--after", "--noise-from", "--noise-campaign", "--structure", "--prior", "--free", "--hold", "--value",
+        ),
+        "Rehearsal and set-point file": ("--rehearse", "--rate", "--seed"),
+        "With --drive": ("--noise", "--at"),
+    },
+)  # fmt: skip
 @drive_option
 @vessel_option
 @click.option(
     "--structure",
     "structure_name",
     metavar="NAME",
-    help=f"Structure: {OWN_FILE_HELP}; {DEFAULT_HELP}, or that of --after, when not given.",
+    help=f"Model structure: {OWN_FILE_HELP}. By default that of --after, or {DEFAULT_HELP}.",
 )
 @click.option(
     "--wish",
@@ -66,7 +81,8 @@ _OF_SHIPS = (
     metavar="NAME=STD",
     type=wish_of,
     multiple=True,
-    help="How well a number is to be known, as t_d=10% or, in its own unit, g=0.05.",
+    help="Standard deviation with which a number is to be known, as t_d=10% or, in its own unit, g=0.05; `shaftprint "
+    "structures` has the names.",
 )
 @click.option("--within", "within_s", metavar="TIME", type=seconds_of, help="Length of the test, such as 12min.")
 @click.option(
@@ -90,9 +106,10 @@ _OF_SHIPS = (
     "--speeds",
     metavar="SHARE,...",
     type=shares_of,
-    help="Speeds of the legs over that of the working point; as far apart as limits allow, within 1.15,0.78.",
+    help="Speeds of the legs over that of the working point, such as 1.1,0.8; by default as far apart as limits allow, "
+    "within 1.15,0.78.",
 )
-@click.option("--offset", "offset_v", type=float, help="Set point at the working point [V].")
+@click.option("--offset", "offset_v", type=float, help="Set point that asks for the speed of the working point [V].")
 @click.option(
     "--after", type=click.Path(path_type=Path), help="Fingerprint of a first test: its values with their covariance."
 )
@@ -123,7 +140,7 @@ _OF_SHIPS = (
     type=click.IntRange(min=0),
     default=0,
     show_default=True,
-    help="Sail so many raw recordings of the assumed ship and identify them: seconds each.",
+    help="Simulate so many raw recordings of the assumed ship and identify them: seconds each.",
 )
 @click.option(
     "--rate",
@@ -163,10 +180,10 @@ def command(
 ) -> None:
     """Plan the strongest test within a time, or the shortest that meets your wishes.
 
-    Writes campaign, set point, plan and a page into a folder. Ends with 3 where the wishes cannot be met; the best
-    plan that can be reached is written then. --wish, --limit, --prior, --free, --hold and --value may be repeated.
-    With --drive, the input of a bench's record is planned, under the limits that stand in the drive file; --noise and
-    --at may be repeated.
+    Writes campaign, set point, plan and a page into a folder. Ends with exit code 3 where the wishes cannot be met;
+    the best plan that can be reached is written then. --wish, --limit, --prior, --free, --hold and --value may be
+    repeated. With --drive, the input of a bench's record is planned, under the limits that stand in the drive file;
+    --noise and --at may be repeated.
     """
     wish = wish_from(wishes)
     if drive_file is not None:

@@ -74,11 +74,11 @@ def command(
     force: bool,
     no_progress: bool,
 ) -> None:
-    """Simulate a tug in a campaign and write its raw recording.
+    """Simulate the test of a ship and write the raw recording of its logger.
 
-    VESSEL and CAMPAIGN are files, or names of shipped ones such as stan-tug-1205 and thesis. Governor, delays and noise
-    are those of the Stan Tug 1205; gains are scaled with the inertia. At -5 V the lever asks for the working speed of
-    the vessel file. With a ship speed in its working point the ship sails free, and the lever asks
+    VESSEL and CAMPAIGN (the test) are files, or names of shipped ones such as stan-tug-1205 and thesis. Governor,
+    delays and noise are those of the Stan Tug 1205; gains are scaled with the inertia. At -5 V the lever asks for the
+    working speed of the vessel file. With a ship speed in its working point the ship sails free, and the lever asks
     for the working speed at the voltage of the campaign. A campaign that states slope_rpm_per_v is sailed with that
     lever: at its offset it asks for offset_rpm, or for the working speed. What was put into the recording goes to a
     file of its own beside it, which nothing that identifies will open. The recording is written as the logger of its

@@ -62,7 +62,7 @@ def command(
     output: Path | None,
     force: bool,
 ) -> None:
-    """Hold the ships of a class against each other: who is other, and in what.
+    """Compare the ships of a class: which one differs, and in what.
 
     Takes the CLASS that ships of the store have in common. Each ship is held against what the others tell, along the
     causes of drift, with how much sisters differ as they are built.

@@ -8,9 +8,10 @@ from typing import Any
 import click
 
 from shaftprint.cli._after_test import after_test
-from shaftprint.cli._card_options import ask_card, card_of, card_options
+from shaftprint.cli._card_options import CARD_SECTIONS, ask_card, card_of, card_options
 from shaftprint.cli._lying_files import LyingFiles, lying_files
 from shaftprint.cli._next import VESSEL_FILE, free, plan_words, print_steps, rated_rpm_of
+from shaftprint.cli._option_sections import SectionedCommand
 from shaftprint.cli._terminal import answer, print_findings
 from shaftprint.cli._vessel_file import write_from_card
 from shaftprint.cli.output._fingerprint_file import fingerprint_at
@@ -22,16 +23,21 @@ with late():
     from shaftprint.vessel._vessel import load_vessel
 
 
-@click.command("start")
+@click.command(
+    "start",
+    cls=SectionedCommand,
+    example="shaftprint start",
+    sections=CARD_SECTIONS,
+)
 @click.argument("folder", type=click.Path(path_type=Path, file_okay=False, exists=True), default=Path())
-@click.option("--yes", is_flag=True, help="Ask nothing: what is not stated is derived or usual.")
+@click.option("--yes", is_flag=True, help="Ask nothing: what is not stated is derived, or taken as usual.")
 @card_options
 def command(folder: Path, *, yes: bool, **said: object) -> None:
-    """Say what lies in a folder and what comes next; ask for a ship's card where there is none.
+    """Say what lies in a folder and what comes next; ask for the ship's main particulars first.
 
-    FOLDER is where you are if none is named. Where there is no vessel file yet, the card of the ship is asked for step
-    by step and vessel.toml is written; options answer beforehand, as those of `shaftprint new vessel`. From then on
-    each command ends with the next one.
+    FOLDER is where you are if none is named. Where there is no vessel file yet, power, speed, gearbox, propeller,
+    sensors and lever are asked for step by step, and vessel.toml is written; options answer beforehand, as those of
+    `shaftprint new vessel`. From then on each command ends with the next one.
     """
     lying = lying_files(folder)
     _print(lying)
@@ -39,7 +45,7 @@ def command(folder: Path, *, yes: bool, **said: object) -> None:
     if vessel is None:
         vessel = _written(folder, said, yes=yes)
     elif any(value not in (None, False, ()) for value in said.values()):
-        answer(f"{vessel} is there: what was stated of the card was not used. `shaftprint new vessel` writes another.")
+        answer(f"{vessel} is there: what was stated of the ship was not used. `shaftprint new vessel` writes another.")
     print_steps(*_next(vessel, lying))
 
 
@@ -72,7 +78,9 @@ def _written(folder: Path, said: dict[str, object], *, yes: bool) -> Path:
         said = ask_card(said, _prompt)
     card = card_of(said)
     if card is None:
-        raise click.UsageError("--yes needs the ship's card by options, such as --power-kw 221; see --help.")
+        raise click.UsageError(
+            "--yes needs the ship's main particulars by options, such as --power-kw 221; see --help."
+        )
     path = free(str(folder / VESSEL_FILE))
     write_from_card(card, path)
     return path

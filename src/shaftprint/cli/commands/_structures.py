@@ -20,7 +20,7 @@ with late():
 @click.command("structures")
 @click.argument("names", metavar="[NAME]...", nargs=-1)
 def command(names: tuple[_own_structure.TypedName, ...]) -> None:
-    """List the model structures with their parameters and bounds.
+    """List the model structures with their parameters, meanings and bounds.
 
     With one or more NAMEs only those. A NAME such as my_ship.py:my_loop is a structure in a file of your
     own, which is Python and is run. Held parameters keep their value unless they are freed.

@@ -1,0 +1,42 @@
+"""Commands with many options, whose help has them under what they are for, below an example."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import click
+
+WIDEST_COLUMN = 30
+"""Letters that the names of options have beside their help."""
+
+
+class SectionedCommand(click.Command):
+    """A command whose help begins with an example, and names what is needed first."""
+
+    def __init__(self, *args: Any, example: str, sections: Mapping[str, Sequence[str]], **attributes: Any) -> None:
+        """Take what ``click.Command`` takes, an example and the longest name of each option by what it is for.
+
+        ``sections``: in the order of the help; options that none of them names stand last, under Output.
+        """
+        super().__init__(*args, **attributes)
+        self.example, self.sections = example, sections
+
+    def format_help_text(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write what the command does, and how it is called."""
+        super().format_help_text(ctx, formatter)
+        with formatter.section("Example"):
+            for line in self.example.splitlines():
+                formatter.write(f"{'':{formatter.current_indent}}{line}\n")
+
+    def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write the options by what they are for, in columns that all of them share."""
+        shown = {
+            max(parameter.opts, key=len): record
+            for parameter in self.get_params(ctx)
+            if isinstance(parameter, click.Option) and (record := parameter.get_help_record(ctx)) is not None
+        }
+        # longer ones stand on a line of their own
+        longest = min(max(len(words) for words, _ in shown.values()), WIDEST_COLUMN)
+        by_heading = {heading: [shown.pop(name) for name in names] for heading, names in self.sections.items()}
+        for heading, records in {**by_heading, "Output": [*shown.values()]}.items():
+            with formatter.section(heading):
+                formatter.write_dl([(words.ljust(longest), text) for words, text in records], col_max=WIDEST_COLUMN)
