@@ -10,7 +10,7 @@ def test_the_verdict_comes_first(run, demo):
     lines = shown.splitlines()
     assert lines[0] == "Verdict: trustworthy"
     assert lines[1].startswith(
-        "  * The fit can be trusted: GAUGE-CLOSED explains 10 good lines within their noise (p = "
+        "  * The fit can be trusted: GAUGE-CLOSED explains 10 good spectral lines within their noise (p = "
     )
     assert lines[2].startswith("  * Trusted: ")
     assert "k_q" in lines[2]

@@ -118,7 +118,9 @@ def expect_identification(folder, printed, words):
 
 
 def expect_saved_fingerprint(folder, printed, words):
-    assert printed.startswith("Verdict: trustworthy\n  * The fit can be trusted: GAUGE-CLOSED explains 10 good lines")
+    assert printed.startswith(
+        "Verdict: trustworthy\n  * The fit can be trusted: GAUGE-CLOSED explains 10 good spectral lines"
+    )
     found = read_fingerprint(folder / words[1] / "fingerprint.json")
     assert set(rows(printed, "Identified parameters")) == {quantity.name for quantity in found.parameters}
     assert set(rows(printed, "Combinations of parameters")) == {quantity.name for quantity in found.combinations}

@@ -92,9 +92,9 @@ def is_command(words):
 
 
 # A page's command is run as it stands but for this. The campaign of three hours takes too long: the short one is
-# sailed, which has no chirp C11. A word for any file is the name of one that is there. The same identification under
-# the names of two years is run once. What `predict` and `simulate` are given stays, for they sail nothing.
-SUBSTITUTES = {"thesis": "short", "FILE": "recording.nc"}
+# sailed, which has no chirp C11. A word for any file or plan is the name of one that is there. The same identification
+# under the names of two years is run once. What `predict` and `simulate` are given stays, for they sail nothing.
+SUBSTITUTES = {"thesis": "short", "FILE": "recording.nc", "my_plan": "plan"}
 LEFT_OUT = ["--record", "C11"]
 ONE_YEAR = {"2025.nc": "log.csv", "2026.nc": "log.csv", "result-2025": "result", "result-2026": "result"}
 SAIL_NOTHING = ("predict", "simulate")

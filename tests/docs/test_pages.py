@@ -39,7 +39,7 @@ LONG = {"docs/thesis-figures.md", "docs/gallery.md"} | {
 SLOW = {"docs/house.md", "docs/planning.md", "docs/command-output.md", "docs/tutorials/recording-to-fingerprint.md"}
 DEAR = {"long": LONG, "slow": SLOW}
 # their first lines ask for the short demo
-WITH_DEMO = {"docs/house.md"}
+WITH_DEMO = {"docs/house.md", "docs/library.md"}
 # Kinds of blocks, each with the file that holds them against something.
 CHECKED = dict.fromkeys(PYTHON, "test_pages.py")
 CHECKED |= dict.fromkeys(SHELL, "test_page_commands.py, test_page_programs.py and test_page_output.py")

@@ -47,7 +47,9 @@ def test_a_good_fit_of_a_good_loop_is_trustworthy(draw):
     assert verdict.trusted == ("tau_n", "K_p", "K_i", "t_d", "omega_n", "zeta")
     assert (verdict.not_trusted, verdict.suspects, verdict.cautions, verdict.loop) == ({}, (), (), "ample")
     assert verdict.reason == verdict.sentences[0]
-    assert verdict.reason.startswith("The fit can be trusted: CL4 explains 24 good lines within their noise (p = 0.")
+    assert verdict.reason.startswith(
+        "The fit can be trusted: CL4 explains 24 good spectral lines within their noise (p = 0."
+    )
     assert verdict.reason.endswith(", the optimum is the only one, and the loop is stable with ample margins.")
     assert verdict.sentences[1:] == ("Trusted: tau_n, K_p, K_i, t_d, omega_n and zeta.",)
 
@@ -163,7 +165,7 @@ def test_one_bad_line_is_enough_to_refuse(draw):
 def test_without_weights_fit_percent_decides(draw):
     right = assess(fitted(draw(AMPLE), weighting=Unweighted()))
     assert right.trustworthy
-    assert "explains 24 good lines within what the noise allows, the optimum" in right.reason
+    assert "explains 24 good spectral lines within what the noise allows, the optimum" in right.reason
     assert right.cautions[-1].startswith("The fit was not weighted by the noise")
     wrong = assess(fitted(draw(AMPLE), "CL1", weighting=Unweighted()))
     assert not wrong.trustworthy
@@ -265,7 +267,7 @@ def test_margins_beyond_the_lines_are_extrapolated(draw):
     verdict = assess(slow, requirements=Requirements(largest_std=5.0))
     assert verdict.trustworthy
     told = next(s for s in verdict.cautions if s.startswith("The margins are extrapolated"))
-    assert f"the good lines reach from 0.028 to {2 * np.pi * LINES_HZ[19]:.2g} rad/s" in told
+    assert f"the good spectral lines reach from 0.028 to {2 * np.pi * LINES_HZ[19]:.2g} rad/s" in told
 
 
 # ---- the numbers ----
@@ -304,4 +306,4 @@ def test_a_joint_fit_has_one_verdict(draw):
     fit = identify_jointly(pair, rng=np.random.default_rng(1), settings=Settings(starts=15))
     verdict = assess(fit)
     assert verdict.trustworthy
-    assert "CL4 explains 48 good lines" in verdict.reason
+    assert "CL4 explains 48 good spectral lines" in verdict.reason

@@ -420,7 +420,7 @@ def test_all_machinery_of_a_fit_takes_mixed_terms(lag, mixed):
     verdict = assess(found, profile=profile(found))
     assert verdict.trustworthy
     assert set(verdict.trusted) == {"k", "T"}
-    assert "explains 6 good lines and 2 records of 200 s (FitPercent " in verdict.reason
+    assert "explains 6 good spectral lines and 2 records of 200 s (FitPercent " in verdict.reason
     intervals = profile(found).intervals
     for estimate in found.parameters:
         interval = intervals[estimate.name]

@@ -58,7 +58,7 @@ def print_found(
         sentences = tuple(one for one in sentences if not one.startswith(ASSUMED))
         if verdict.assumptions:
             # their count, and where they are told: they are the longest part of a verdict that is fine
-            where = "`shaftprint show` and the report have them"
+            where = "`shaftprint show` and the report have them, and the meaning of each name"
             sentences += (f"{ASSUMED} {_points(len(verdict.assumptions))} that no recording can show; {where}.",)
     _print_verdict(fingerprint, sentences, line)
     if verdict.trustworthy:

@@ -33,7 +33,7 @@ def calibration_table(signals: "Signals") -> Table:
             )
         )
     return Table(
-        title="Set-point voltage and engine speed at the steady levels (as table 3.1)",
+        title="Set-point voltage and engine speed at the steady levels (thesis, table 3.1)",
         columns=numbers("set point [V]", "engine speed [rpm]", "above the line [rpm]"),
         rows=tuple(rows),
         note=(
@@ -64,7 +64,7 @@ def step_table(signals: "Signals") -> Table:
         error = float(delays.std(ddof=1)) / np.sqrt(delays.size) if delays.size > 1 else 0.0
         note += f" Mean of {name}: {with_deviation(float(delays.mean()), error)} s."
     return Table(
-        title="Delay between set point and speed at each step (as table 3.3)",
+        title="Delay between set point and speed at each step (thesis, table 3.3)",
         columns=(
             *texts("staircase"),
             *numbers("set point crosses at [s]", "speed crosses at [s]", "delay [s]"),
@@ -92,7 +92,7 @@ def strip_table(signals: "Signals") -> Table:
             )
     removed = "not removed (thesis mode)" if signals.mode == "thesis" else "removed from the speed"
     return Table(
-        title="Angles between the reflection strips (as table 3.4)",
+        title="Angles between the reflection strips (thesis, table 3.4)",
         columns=(*texts("channel"), *numbers("strip", "angle to the next [deg]", "error of an even spacing")),
         rows=tuple(rows),
         note=f"The uneven angles are {removed}.",
@@ -116,7 +116,7 @@ def window_table(spectra: "Spectra") -> Table:
         for window in spectra.windows
     )
     return Table(
-        title="Analysis windows of whole periods (as table 3.5)",
+        title="Analysis windows of whole periods (thesis, table 3.5)",
         columns=(
             *texts("line"),
             *numbers("periods i", "frequency [Hz]", "start [s]", "stop [s]"),
@@ -134,7 +134,7 @@ def overall_ratio_table(spectra: "Spectra") -> Table:
         for channel, value in zip(ratios.channels, ratios.overall, strict=True)
     )
     return Table(
-        title="Overall signal-to-noise ratio of each channel (as table 3.6)",
+        title="Overall signal-to-noise ratio of each channel (thesis, table 3.6)",
         columns=(*texts("channel"), *numbers("ratio, 1 without noise")),
         rows=rows,
     )
@@ -158,7 +158,7 @@ def local_ratio_table(spectra: "Spectra") -> Table:
         )
     channels = (Column(Symbol(channel), number=True) for channel in ratios.channels)
     return Table(
-        title="Local signal-to-noise ratio [dB], 20 bins on each side (as table 3.7)",
+        title="Local signal-to-noise ratio [dB], 20 bins on each side (thesis, table 3.7)",
         columns=(*texts("line"), *numbers("[Hz]", "[rad/s]"), *channels, *texts("used")),
         rows=tuple(rows),
         note="0 dB means as much noise as signal; the thesis requires 3 dB. Weaker frequencies are kept: the "

@@ -262,7 +262,7 @@ def _data_words(evidence: Evidence) -> str:
     if evidence.good_lines or not records:
         fitted = sum(experiment.s.size for experiment in evidence.identification.objective.experiments)
         of_fitted = f" of {fitted}" if fitted > evidence.good_lines else ""
-        words.append(f"{evidence.good_lines} good lines{of_fitted}")
+        words.append(f"{evidence.good_lines} good spectral lines{of_fitted}")
     if records:
         count = "1 record" if len(records) == 1 else f"{len(records)} records"
         low, high = min(percents), max(percents)

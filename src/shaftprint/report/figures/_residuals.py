@@ -81,7 +81,7 @@ def explained_band(span: tuple[float, float]) -> Band:
     """Return where 95 % of the residuals of a right model lie."""
     ends = np.array(span)
     half = np.full(2, NORMAL_95)
-    return Band(x=ends, lower=-half, upper=half, name="95 % of a model that explains all", shade="reference")
+    return Band(x=ends, lower=-half, upper=half, name="95 % of the residuals of a right model", shade="reference")
 
 
 def _residual_points(identification: "Identification", residuals: FloatArray) -> list[Mark]:

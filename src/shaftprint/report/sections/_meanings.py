@@ -1,6 +1,6 @@
 """What the symbols of a table mean, beside them: one place for all tables of a report."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -19,6 +19,8 @@ CHANNELS = {
     "theta": "pitch",
     "M_m": "torque of the electric machine",
 }
+SHARES = {"n", "M_s", "n_set", "e"}
+"""Channels whose deviations are over their own value at the working point."""
 
 
 def meanings_of(inputs: "Inputs") -> dict[str, str]:
@@ -34,6 +36,17 @@ def meanings_of(inputs: "Inputs") -> dict[str, str]:
             for quantity in group
         },
     }
+
+
+def in_words(channels: "Sequence[tuple[str, str]]") -> str:
+    """Return what outputs and inputs of a ship's responses are, for a caption; empty where one is not a ship's."""
+    names = list(dict.fromkeys(name for pair in channels for name in pair))
+    if not all(name in CHANNELS for name in names):
+        return ""
+    listed = "; ".join(f"{name}: {CHANNELS[name]}" for name in names)
+    if not SHARES.issuperset(names):
+        return f"{listed}. "
+    return f"{listed}; each as a deviation over its value at the working point: 0 dB is 1 % for 1 %. "
 
 
 def explained(section: "Section", meanings: Mapping[str, str]) -> "Section":

@@ -28,7 +28,7 @@ def signal_section(inputs: Inputs) -> Section:
         *_raw_pictures(inputs),
         Picture(
             name="calibration",
-            caption="Line from voltage to engine speed through the steady levels, with residuals (as figure 3.1).",
+            caption="Line from voltage to engine speed through the steady levels, with residuals (thesis, figure 3.1).",
             alt="Straight line of engine speed over set-point voltage, and the distances of the levels from it.",
             chart=partial(calibration_chart, signals.calibration),
         ),
@@ -38,7 +38,7 @@ def signal_section(inputs: Inputs) -> Section:
             Picture(
                 name="strips",
                 caption=(
-                    "Angles between the reflection strips against an even spacing (values of table 3.4). Which strip "
+                    "Angles between the reflection strips against an even spacing (thesis, table 3.4). Which strip "
                     "is counted first differs between recordings: the angles of the vessel file are turned to fit."
                 ),
                 alt="Bars of the deviation of each strip angle from an even spacing.",
@@ -49,7 +49,8 @@ def signal_section(inputs: Inputs) -> Section:
         pictures.append(
             Picture(
                 name="step_delays",
-                caption="Steps of the set point, the speed that follows, and the level-crossing delay (as figure 3.3).",
+                caption="Steps of the set point, the speed that follows, and the level-crossing delay (thesis, figure "
+                "3.3).",
                 alt="Staircase of set point and speed, one step enlarged with its delay, and the delay of every step.",
                 chart=partial(delay_chart, signals),
             )
@@ -69,13 +70,13 @@ def _raw_pictures(inputs: Inputs) -> list[Picture]:
     return [
         Picture(
             name="campaign",
-            caption="Raw set-point voltage over the whole recording, with the tests named (as figure 2.2).",
+            caption="Raw set-point voltage over the whole recording, with the tests named (thesis, figure 2.2).",
             alt="Set-point voltage over time in two rows, with a bar and a name above each test.",
             chart=partial(campaign_chart, inputs.recording, inputs.vessel, inputs.campaign),
         ),
         Picture(
             name="outliers",
-            caption="Set point and shaft torque before and after the repair of outliers (as figure 3.2).",
+            caption="Set point and shaft torque before and after the repair of outliers (thesis, figure 3.2).",
             alt="Set point and shaft torque over time; spikes of the raw signal stand out of the prepared one.",
             chart=partial(outlier_chart, inputs.recording, inputs.signals, inputs.vessel),
         ),
@@ -89,13 +90,13 @@ def response_section(inputs: Inputs) -> Section:
     pictures = [
         Picture(
             name="closed_loop",
-            caption="Measured closed-loop response of speed and torque with 95 % intervals (as figure 3.7).",
+            caption="Measured closed-loop response of speed and torque with 95 % intervals (thesis, figure 3.7).",
             alt="Bode diagram of measured engine speed and shaft torque over set point.",
             chart=partial(bode_chart, data=response, aliasing_limit_hz=limit),
         ),
         Picture(
             name="open_loop",
-            caption="Open-loop responses calculated from it, with the covariance carried through (as figure 3.8).",
+            caption="Open-loop responses calculated from it, with the covariance carried through (thesis, figure 3.8).",
             alt="Bode diagram of torque over speed error and of speed over torque.",
             chart=partial(open_loop_chart, governor, core, aliasing_limit_hz=limit),
         ),
@@ -104,7 +105,7 @@ def response_section(inputs: Inputs) -> Section:
         pictures.append(
             Picture(
                 name="line_selection",
-                caption="The same lines measured in several ways, points side by side (as figure 3.5).",
+                caption="The same lines measured in several ways, points side by side (thesis, figure 3.5).",
                 alt="Bode diagram with one set of points for each way to measure a sine.",
                 chart=partial(bode_chart, data=inputs.line_selection, aliasing_limit_hz=limit),
             )
@@ -122,7 +123,7 @@ def time_section(inputs: Inputs) -> list[Section]:
         pictures.append(
             Picture(
                 name=picture_name("chirp", name),
-                caption=f"Chirp {listed}: smallest and largest sample of each stretch (as figures 3.9 and 3.10).",
+                caption=f"Chirp {listed}: smallest and largest sample of each stretch (thesis, figures 3.9 and 3.10).",
                 alt=f"Engine speed and shaft torque over time with the set point, chirp {listed}.",
                 chart=partial(excitation_chart, inputs.signals, chirps),
             )
@@ -133,7 +134,7 @@ def time_section(inputs: Inputs) -> list[Section]:
         pictures.append(
             Picture(
                 name="staircase",
-                caption=f"Staircase {last}: smallest and largest sample of each stretch (as figure 3.11).",
+                caption=f"Staircase {last}: smallest and largest sample of each stretch (thesis, figure 3.11).",
                 alt=f"Engine speed and shaft torque over time with the set point, staircase {last}.",
                 chart=partial(staircase_chart, inputs.signals, inputs.campaign, name=last),
             )

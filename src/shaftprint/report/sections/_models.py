@@ -132,7 +132,7 @@ def fit_pictures(
         pictures.append(
             Picture(
                 name=f"{prefix}_{number.replace('.', '_')}",
-                caption=f"{what.capitalize()}: {names} with data (as figure {number}). {BAND_NOTE}",
+                caption=f"{what.capitalize()}: {names} with data (thesis, figure {number}). {BAND_NOTE}",
                 alt=f"Bode diagram of {what}: the models {names} and the measured points.",
                 chart=partial(
                     bode_chart,
@@ -162,14 +162,15 @@ def sensitivity_section(inputs: Inputs) -> list[Section]:
         same = model.names == fit.structure.names
         values = dict(zip(model.names, fit.values.tolist(), strict=True)) if same else {}
         free = [parameter.name for parameter in model.free]
+        output, cause = model.channels[0]
         for first in range(0, len(free), ROWS_A_FIGURE):
             names = free[first : first + ROWS_A_FIGURE]
             pictures.append(
                 Picture(
                     name=f"sensitivity_{plain_name(model.name.lower())}_{first // ROWS_A_FIGURE + 1}",
                     caption=(
-                        f"{model.name}: {', '.join(names)} varied one at a time between the bounds, the others at "
-                        f"their {'identified' if same else 'default'} values."
+                        f"{model.name}, {output} / {cause}: {', '.join(names)} varied one at a time between the "
+                        f"bounds, the others at their {'identified' if same else 'default'} values."
                     ),
                     alt=f"Rows of Bode diagrams, one for each of {', '.join(names)}, with five lines each.",
                     chart=partial(sensitivity_chart, model, vary=names, values=values),

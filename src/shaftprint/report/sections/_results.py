@@ -10,6 +10,7 @@ from shaftprint.report.figures._fit import fit_chart
 from shaftprint.report.figures._nyquist import nyquist_chart
 from shaftprint.report.figures._residuals import residual_chart
 from shaftprint.report.figures._step_band import step_chart
+from shaftprint.report.sections._meanings import in_words
 from shaftprint.report.sections._sections import Inputs, Picture, Section
 from shaftprint.report.sections._validation import step_against_data
 from shaftprint.tables._fingerprint import (
@@ -126,6 +127,7 @@ def _given(fingerprint: "Fingerprint") -> tuple[str, ...]:
 
 def fit_section(inputs: Inputs) -> Section:
     """Return how well the model explains the data."""
+    symbols = in_words(inputs.identification.structure.channels)
     return Section(
         key="fit",
         title="Model and data",
@@ -135,8 +137,8 @@ def fit_section(inputs: Inputs) -> Section:
                 name="fit",
                 caption=(
                     "Identified model with its 95 % band (covariance of the parameters) and measured response with "
-                    "95 % intervals, most of them smaller than their markers. Hollow lines are not used. Below, what "
-                    "the model leaves and its band, in standard deviations of each measured line."
+                    f"95 % intervals, most of them smaller than their markers; hollow ones are not used. {symbols}"
+                    "Below, what the model leaves and its band, in standard deviations of each measured point."
                 ),
                 alt="Bode diagram of the identified model through the measured points of all outputs.",
                 chart=lambda: fit_chart(inputs.identification, aliasing_limit_hz=inputs.aliasing_limit_hz),

@@ -93,7 +93,7 @@ def thesis_fit_table(thesis: "ThesisMode") -> Table:
         margin = fit.margins
         rows.append((name, *values, *percent, "–" if margin is None else plain(margin.gain_margin, 2)))
     return Table(
-        title="Unweighted fits in thesis mode (as tables 5.2 and 5.3)",
+        title="Unweighted fits in thesis mode (thesis, tables 5.2 and 5.3)",
         columns=(
             *texts("structure"),
             *numbers(*(Symbol(name) for name in (*SHOWN, "FitPercent n", "FitPercent M_s")), "gain margin"),

@@ -47,7 +47,8 @@ def hunting(fingerprint: "Fingerprint") -> list[Card]:
     margins = [q for q in fingerprint.margins if q.name == "gain margin"]
     if margins:
         value, interval = shown(margins[0])
-        words += f" The governor gain may grow by {value} ({interval}) before the speed hunts; 2 or more is usual."
+        words += f" The governor gain may grow by a factor of {value} ({interval}) before the speed hunts; "
+        words += "2 or more is usual."
     if doubt:
         return [Card(question=question, state="open", sentence=f"{doubt} {words}", action=NOT_TOLD)]
     action = "" if state == "fine" else "Do not raise the governor gain; have its setting checked at the next service."
