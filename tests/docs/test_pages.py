@@ -80,6 +80,18 @@ def test_python_of_a_page_runs(page, tmp_path, monkeypatch, capsys, request):
     capsys.readouterr()
 
 
+def test_a_cell_that_is_left_out_with_ones_own_files_holds_no_import():
+    """The cells after it would end at a name that nobody has defined."""
+    left_out = re.compile(r"leave (this cell out|out the second cell).*?(```\{code-cell\}.*?```)(.*)", re.DOTALL)
+    found = {page: match for page in WITH_PYTHON if (match := left_out.search(PAGES[page]))}
+    assert {Path(page).stem for page in found} == {"first-fingerprint", "my-csv", "five-tests"}
+    for page, match in found.items():
+        cells = match[3] if "second" in match[1] else match[2]
+        (cell, *_) = re.findall(r"```\{code-cell\}[^\n]*\n(.*?)```", cells, re.DOTALL)
+        assert "sp.tug.sail(" in cell, page
+        assert not re.search(r"^\s*(?:import|from) ", cell, re.MULTILINE), page
+
+
 def test_pages_with_tests_of_their_own_are_run_there():
     for page in WITH_PYTHON:
         if page in OPENED:
