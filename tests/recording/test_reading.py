@@ -100,14 +100,18 @@ def test_a_format_that_is_not_read_says_which_export_is(tmp_path, name, content,
     [
         ("server 2021\n$HDMTW,12.6,C*1A\n$HDVTG,189.1,T,,M,8.4,N,15.5,K*49\n", "sentences of NMEA 0183"),
         ("!AIVDM,1,1,,B,3:16dn0PBkPfhv,0*1A\n!AIVDM,1,1,,B,402Fha1vAj>kP0,0*4B\n", "sentences of NMEA 0183"),
+        ("!PDGY,127488,2,3,255,481.734,2C20AAAAAAE=\n!PDGY,127251,2,3,255,481.735,2AAAAAD///8=\n", "form of iKonvert"),
         (
-            "# raw\n2020-07-04-02:46:30.484,2,127245,172,255,8,fc,f8,ff,7f,a4,fe,ff,ff\n"
-            "2020-07-04-02:46:30.534,2,127250,172,255,8,ff,51,9c,ff,7f,55,06,fc\n",
-            "messages of NMEA 2000 in the form of canboat",
+            "***BUSMASTER Ver 3.2.2***\n***PROTOCOL CAN***\n***HEX***\n10:00:00:0010 Rx 1 0x316 s 8 05 21\n",
+            "a log of BUSMASTER.*ASC",
+        ),
+        (
+            "# sample\n<0x316> [8] 05 21 68 09 21 21 00 6f\n<0x18f> [2] fe 5b\n",
+            "frames of a CAN bus without times: log it with candump -l",
         ),
         (
             "# sample\n  can0  09F8027F   [8]  00 FC FF FF 00 00 FF FF\n  can0  09F8017F   [2]  E8 AC\n",
-            "frames of a CAN bus without times: log it with candump -l",
+            "expected times in front of the frames, found none; log with candump -L",
         ),
     ],
 )

@@ -11,17 +11,14 @@ _TABLE, _TO_CSV = "save the sheet as CSV", ".to_csv(...)"
 _ARCHIVE = "it is an archive: unpack it"
 _OCTAVE = "in Octave save -v7 FILE.mat"
 _NMEA_0183 = rb"[$!][A-Z]{4,5},[^\r\n]*\*[0-9A-F]{2}"
-# Time, priority, a number of NMEA 2000, sender, receiver, length, bytes: a table of whole numbers is none.
-_CANBOAT = (
-    rb"\d{4}-\d\d-\d\d[-T ][\d:.,]+Z?,[0-7],(?:[5-9]\d|1\d\d)\d{3},\d{1,3},\d{1,3},\d{1,3}"
-    rb"(?:,[0-9a-fA-F]{2}){3,}[, \t]*\r?$"
-)
+_IKONVERT = rb"!PDGY,\d+,\d,\d+,\d+,[\d.]+,"
+_BUSMASTER = rb"\*{3}(?:BUSMASTER|PROTOCOL) "
 _FRAMES_WITHOUT_TIMES = rb"(?:\w*can\d+ +|<0x)[0-9a-fA-F]{3,8}>? +\[\d\] +[0-9a-fA-F]{2}"
 _OF_LINES = {
     _NMEA_0183: "sentences of NMEA 0183, which come about once a second and are not read: log the NMEA 2000 bus itself "
     "(candump -l, BLF, ASC, TRC), or write the values as CSV with a column of times",
-    _CANBOAT: "messages of NMEA 2000 in the form of canboat, which is not read: log the bus with candump -l, or write "
-    "the values as CSV with a column of times (analyzer -json says them)",
+    _IKONVERT: "messages of NMEA 2000 in the form of iKonvert, which is not read: log the bus with candump -l",
+    _BUSMASTER: "a log of BUSMASTER, which is not read: its converter of formats makes an ASC file of it",
     _FRAMES_WITHOUT_TIMES: "frames of a CAN bus without times: log it with candump -l",
 }
 """What lines of text begin as, and what they are."""

@@ -1,7 +1,7 @@
-"""Text logs of a CAN bus, read by python-can: Vector ASC, PEAK TRC and what candump writes with -L or -l."""
+"""Text logs of a CAN bus, read by python-can: Vector ASC, PEAK TRC, what candump writes, and rows of other programs."""
 
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from datetime import UTC, datetime, timedelta
 from itertools import chain
 from pathlib import Path
@@ -12,10 +12,12 @@ import numpy as np
 from shaftprint.errors import RecordingError
 from shaftprint.recording.readers._epoch import LATER_THAN_ANY_TEST_S, UNDATED_YEAR
 from shaftprint.recording.readers.can._frames import EXTENDED, FILL, FrameLog, Frames
+from shaftprint.recording.readers.can._row_logs import Rows, row_kind
 
 _BLOCK_FRAMES = 1 << 16
 _FIGURES = 3
 _CLASSIC, _LONG = 8, 64
+_ASC, _TRC = "ASC", "TRC"
 
 _MONTHS = {
     name: number
@@ -43,23 +45,25 @@ _SHOWN = re.compile(
     r"\s*(?:\((?P<time>\d+\.\d+)\)\s+)?(?P<bus>[a-z]\w*)\s+(?:[TR]X\s+\S+\s+\S+\s+|[TR]X\s+)?(?P<id>[0-9A-F]{3,8})\s+"
     r"\[(?P<length>\d+)\]\s+(?P<data>(?:[0-9A-F]{2}\s*)+|remote request)"
 )
-_FIRST_LINES = 12
+_FIRST_LINES, _REMARK = 12, "#"
 _CUT = "rows at the cut end of the file"
 # How a row with a frame, or a part of one, begins.
-_ROW_BEGINS = re.compile(r"\s*[\d(]")
+_ROW_BEGINS = re.compile(r"\s*(?:[\d(]|A\d)")
 
 
 def kind_of(path: Path, begin: str) -> str:
     """Return which text log a file is, by its first letters; empty of others."""
-    lines = [line for line in begin.splitlines() if line.strip()][:_FIRST_LINES]
+    lines = [line for line in begin.splitlines() if line.strip() and not line.startswith(_REMARK)][:_FIRST_LINES]
     if not lines:
         return ""
+    if rows := row_kind(lines):
+        return rows
     if _CANDUMP.match(lines[0]) or _SHOWN.match(lines[0]):
         return "candump"
     if any(_TRC_VERSION.match(line) for line in lines) or (path.suffix.lower() == ".trc" and lines[0][0] == ";"):
-        return "TRC"
+        return _TRC
     if any(_ASC_BASE.match(line) for line in lines) and any(_ASC_DATE.match(line) for line in lines):
-        return "ASC"
+        return _ASC
     return ""
 
 
@@ -70,20 +74,22 @@ def open_text_log(path: Path, kind: str, file: TextIO, library: Any) -> FrameLog
     package python-can. Raises RecordingError if its times cannot be told, or nothing in it can be read.
     """
     log = FrameLog(blocks=iter(()), kind=kind)
-    lines = {"ASC": _AscLines, "candump": _CandumpLines}.get(kind, _Lines)(path, file)
-    reader = {"ASC": library.ASCReader, "TRC": library.TRCReader, "candump": library.CanutilsLogReader}[kind](lines)
-    if kind == "TRC":
+    lines = _LINES.get(kind, _RowLines)(path, file, kind)
+    reader = {_ASC: library.ASCReader, _TRC: library.TRCReader}.get(kind, library.CanutilsLogReader)(lines)
+    if kind == _TRC:
         _expect_version(path, file)
     messages = _whole(iter(reader), lines, log)
     first = next(messages, None)
     if first is None:
         raise RecordingError(f"{path}: expected frames of a CAN bus, found none.")
-    zero_s, first_bus = 0.0, 1 if kind == "ASC" else 0
-    if kind == "TRC" and reader.start_time is not None:
+    zero_s, first_bus = 0.0, 1 if kind == _ASC else 0
+    if kind == _TRC and reader.start_time is not None:
         # PEAK counts days by the clock of the computer, whose zone the file does not state
         zero_s, log.began = reader.start_time.timestamp(), reader.start_time.replace(tzinfo=None)
-    elif kind == "candump" and first.timestamp > LATER_THAN_ANY_TEST_S:
+    elif kind not in (_ASC, _TRC) and first.timestamp > LATER_THAN_ANY_TEST_S:
         zero_s, log.began = first.timestamp, datetime.fromtimestamp(first.timestamp, UTC)
+        if isinstance(lines, _RowLines) and not lines.has_zone:
+            log.began = log.began.replace(tzinfo=None)
     elif isinstance(lines, _AscLines):
         log.began = lines.began
     buses: dict[str, int] = {}
@@ -102,10 +108,12 @@ def open_text_log(path: Path, kind: str, file: TextIO, library: Any) -> FrameLog
 class _Lines:
     """Lines of a file for a library that goes through them, and whether the last one has been given."""
 
-    def __init__(self, path: Path, file: TextIO) -> None:
+    def __init__(self, path: Path, file: TextIO, kind: str) -> None:
         self._path = path
         self._file = file
+        self._kind = kind
         self._next: str | None = None
+        self._frames: list[str] = []
         self.rows = 0
         self.last = ""
         self.last_is_row = False
@@ -114,6 +122,8 @@ class _Lines:
         return self
 
     def __next__(self) -> str:
+        if self._frames:
+            return self._frames.pop(0)
         line = self._file.readline() if self._next is None else self._next
         if not line:
             raise StopIteration
@@ -147,7 +157,7 @@ class _CandumpLines(_Lines):
     def changed(self, line: str) -> str:
         shown = _SHOWN.match(line)
         if shown is None:
-            return line
+            return "" if line.startswith(_REMARK) else line
         if shown["time"] is None:
             raise RecordingError(
                 f"{self._path}: expected times in front of the frames, found none; log with candump -L, or -t a."
@@ -155,6 +165,26 @@ class _CandumpLines(_Lines):
         data = "R" if shown["data"].startswith("r") else "".join(shown["data"].split())
         mark = "##0" if int(shown["length"]) > _CLASSIC else "#"
         return f"({shown['time']}) {shown['bus']} {shown['id']}{mark}{data}\n"
+
+
+class _RowLines(_Lines):
+    """Rows of other programs, as lines of candump."""
+
+    def __init__(self, path: Path, file: TextIO, kind: str) -> None:
+        super().__init__(path, file, kind)
+        self._of = Rows(kind)
+
+    @property
+    def has_zone(self) -> bool:
+        """Whether their dates say the zone."""
+        return self._of.has_zone
+
+    def changed(self, line: str) -> str:
+        lines = self._of.lines_of(line)
+        is_remark = not line.strip() or line.startswith(_REMARK)
+        self.rows += len(lines) or not is_remark
+        self._frames = lines[1:]
+        return lines[0] if lines else ""
 
 
 class _AscLines(_Lines):
@@ -165,8 +195,8 @@ class _AscLines(_Lines):
     the row before ("relative").
     """
 
-    def __init__(self, path: Path, file: TextIO) -> None:
-        super().__init__(path, file)
+    def __init__(self, path: Path, file: TextIO, kind: str) -> None:
+        super().__init__(path, file, kind)
         self._header: datetime | None = None
         self._trigger: datetime | None = None
         self._is_new_block = False
@@ -217,6 +247,9 @@ class _AscLines(_Lines):
             return
         if self.began is not None:
             self._shift_s = (zero - self.began).total_seconds()
+
+
+_LINES: Mapping[str, type[_Lines]] = {_ASC: _AscLines, _TRC: _Lines, "candump": _CandumpLines}
 
 
 def _date(text: str) -> datetime | None:
@@ -281,7 +314,7 @@ def _whole(messages: Iterator[Any], lines: _Lines, log: FrameLog) -> Iterator[An
 
 def _is_whole(message: Any, row: str, kind: str) -> bool:
     """Return whether a row that does not end with its line has all bytes that it announces; candump announces none."""
-    if kind == "candump":
+    if kind not in (_ASC, _TRC):
         return False
     is_short = not message.is_remote_frame and len(message.data) < message.dlc
     return not is_short and len(row.split()[-1]) != 1
