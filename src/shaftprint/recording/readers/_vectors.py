@@ -70,10 +70,10 @@ def gather_vectors(
     times = _times_among(vectors)
     signals = [vector for vector in vectors if vector not in times and vector.name not in axes]
     names = unique_names([(vector.group, vector.name) for vector in signals])
-    clocks: dict[tuple[str, str], SampleClock] = {}
+    clocks: dict[tuple[str, str, int], SampleClock] = {}
 
     def clock_of(time: Vector) -> SampleClock:
-        key = (time.group, time.name)
+        key = (time.group, time.name, time.count)
         if key not in clocks:
             clocks[key] = _clock_of_times(path, time, gathered.scales, time_unit)
         return clocks[key]

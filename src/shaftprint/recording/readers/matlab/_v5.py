@@ -20,8 +20,10 @@ from shaftprint.recording.readers._vectors import Vector
 from shaftprint.recording.readers.matlab._objects import keep_objects
 from shaftprint.recording.readers.matlab._v5_headers import MatHeader, headers_of
 from shaftprint.recording.readers.matlab._variables import (
+    MOST_STRUCTURES,
     MatVariables,
     cell_reason,
+    element_of,
     gather_variables,
     object_reason,
     sparse_reason,
@@ -137,6 +139,9 @@ def _keep(name: str, group: str, value: Any, spool: Spool, variables: MatVariabl
             _keep(key, inside, getattr(value, key), spool, variables)
     elif isinstance(value, str):
         variables.texts[group, name] = value
+    elif isinstance(value, np.ndarray) and value.size and all(hasattr(one, "_fieldnames") for one in value.flat):
+        for number, one in enumerate(value.ravel(order="F")[:MOST_STRUCTURES]):
+            _keep(element_of(name, number), group, one, spool, variables)
     elif scipy.sparse.issparse(value):
         variables.left_out[inside] = sparse_reason(name)
     else:

@@ -18,8 +18,10 @@ from shaftprint.recording.readers._vectors import Vector
 from shaftprint.recording.readers.hdf5_files._open import CANNOT_BE_OPENED, expect_storage, open_hdf5
 from shaftprint.recording.readers.matlab._objects import keep_objects
 from shaftprint.recording.readers.matlab._variables import (
+    MOST_STRUCTURES,
     MatVariables,
     cell_reason,
+    element_of,
     gather_variables,
     sparse_reason,
     titles_of,
@@ -64,7 +66,7 @@ def read(path: Path, **hints: object) -> Recording:
         with told_as_damage(path, "MATLAB"):
             variables = MatVariables(titles=titles_of(hints))
             objects: dict[str, str] = {}
-            _survey(path, file, "", opened, variables, objects)
+            _survey(path, file, "", file, opened, variables, objects)
             keep_objects(path, objects, variables)
             gathered = gather_variables(path, variables, rate_hz=rate, time_unit=unit)
             return gathered.recording_from_second_zero(NAME, opened.close)
@@ -74,8 +76,12 @@ def read(path: Path, **hints: object) -> Recording:
 
 
 def _survey(
-    path: Path, group: Any, name: str, opened: Opened, variables: MatVariables, objects: dict[str, str]
+    path: Path, group: Any, name: str, file: Any, opened: Opened, variables: MatVariables, objects: dict[str, str]
 ) -> None:
+    """Sort what a group, or part of one, holds into its kind.
+
+    ``name``: name of the group. ``file``: the open file.
+    """
     for key, item in group.items():
         inside = f"{name}/{key}" if name else key
         if item is None:
@@ -84,13 +90,19 @@ def _survey(
         kind = bytes(np.bytes_(item.attrs.get("MATLAB_class", b"")))
         if key.startswith("#") or "MATLAB_empty" in item.attrs:
             continue
+        if isinstance(item, h5py.Dataset) and item.dtype == h5py.ref_dtype and not kind and "(" not in name:
+            # the field of several structures under one name
+            for number, of_one in enumerate(item[()].ravel()[:MOST_STRUCTURES]):
+                field = {key: file[of_one]} if of_one else {}
+                _survey(path, field, element_of(name, number), file, opened, variables, objects)
+            continue
         if "MATLAB_object_decode" in item.attrs or (isinstance(item, h5py.Dataset) and kind in _OBJECTS):
             objects[inside] = kind.decode("utf-8", "replace")
         elif isinstance(item, h5py.Group):
             if "MATLAB_sparse" in item.attrs:
                 variables.left_out[inside] = sparse_reason(inside.replace("/", "."))
             elif kind in (b"struct", b"") and inside.count("/") < _DEEPEST:
-                _survey(path, item, inside, opened, variables, objects)
+                _survey(path, item, inside, file, opened, variables, objects)
         else:
             _keep(path, item, key, name, kind, opened, variables)
 

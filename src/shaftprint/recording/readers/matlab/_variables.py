@@ -10,6 +10,8 @@ from shaftprint.recording.readers._gather import Gathered
 from shaftprint.recording.readers._time_scale import unit_in_name
 from shaftprint.recording.readers._vectors import Vector, gather_vectors
 
+MOST_STRUCTURES = 500
+"""So many structures under one name are looked into."""
 _TIMES_OF_SIMULINK = "tout"
 _UNIT = "_unit"
 _INSTALL = 'pip install "shaftprint[readers]"'
@@ -108,11 +110,8 @@ def sparse_reason(name: str) -> str:
 
 
 def cell_reason() -> str:
-    """Return why a cell array, or an array of structures, is not read, and what to do in MATLAB."""
-    return (
-        "expected a vector of numbers, found a cell array or several structures under one name; save each element as "
-        "a variable of its own."
-    )
+    """Return why a cell array is not read, and what to do in MATLAB."""
+    return "expected a vector of numbers, found a cell array; save each element as a variable of its own."
 
 
 def gather_variables(path: Path, variables: MatVariables, *, rate_hz: float | None, time_unit: str = "") -> Gathered:
@@ -125,7 +124,7 @@ def gather_variables(path: Path, variables: MatVariables, *, rate_hz: float | No
     ``time_unit``: unit of the times that the caller knows. Raises RecordingError if two clocks of one group disagree.
     """
     named = [
-        replace(vector, attributes={**vector.attributes, **_unit(vector, variables.texts)})
+        _by_its_label(replace(vector, attributes={**vector.attributes, **_unit(vector, variables.texts)}), variables)
         for vector in variables.vectors
     ]
     if not any(unit_in_name(vector.name) is not None for vector in named if not vector.group):
@@ -138,6 +137,30 @@ def gather_variables(path: Path, variables: MatVariables, *, rate_hz: float | No
         group: {name.lower(): value for name, value in numbers.items()} for group, numbers in variables.scalars.items()
     }
     return gather_vectors(path, named, scalars, rate_hz=rate_hz, time_unit=time_unit, left_out=variables.left_out)
+
+
+def element_of(structures: str, number: int) -> str:
+    """Return the name of one of several structures under one name, as MATLAB writes it; the first is 0."""
+    return f"{structures}({number + 1})"
+
+
+def _by_its_label(vector: Vector, variables: MatVariables) -> Vector:
+    """Return a vector under the name that stands beside it.
+
+    Simulink saves ``signals(1).values`` beside a ``label``, dSPACE ``Y(1).Data`` beside ``Name`` and ``Unit``, with the
+    times in ``X(1).Data``.
+    """
+    outer, _, last = vector.group.rpartition("/")
+    texts = {key: variables.texts.get((vector.group, key), "").strip() for key in ("label", "Name", "Unit")}
+    unit = {"unit": texts["Unit"]} if texts["Unit"] else {}
+    match last.partition("(")[0], vector.name:
+        case "signals", "values":
+            return replace(vector, name=texts["label"] or vector.name)
+        case "Y", "Data":
+            return replace(vector, name=texts["Name"] or vector.name, attributes={**vector.attributes, **unit})
+        case "X", "Data":
+            return replace(vector, name="time", group=outer, attributes={**vector.attributes, **unit})
+    return vector
 
 
 def _unit(vector: Vector, texts: Mapping[tuple[str, str], str]) -> dict[str, object]:
