@@ -176,3 +176,40 @@ def test_a_counter_alone_is_no_clock(tmp_path):
     text = ",a,b\n" + "".join(f"{k},{k % 5}.5,{k % 3}.5\n" for k in range(5000, 5100))
     with pytest.raises(RecordingError, match="name the columns"):
         _read(tmp_path, text)
+
+
+@pytest.mark.parametrize(("name", "value"), [("tag", "value"), ("VarName", "VarValue"), ("_field", "_value")])
+@pytest.mark.parametrize("in_turn", [True, False])
+def test_rows_of_one_signal_each_are_refused_with_what_to_do(tmp_path, name, value, in_turn):
+    """So far the values of all signals were one channel."""
+    pairs = [(k, tag) for k in range(60) for tag in ("n_e", "M_s")]
+    pairs = pairs if in_turn else sorted(pairs, key=lambda pair: pair[1])
+    rows = "".join(f"{0.1 * k + (tag == 'M_s') * 0.05:.2f},{tag},{k}.5\n" for k, tag in pairs)
+    with pytest.raises(RecordingError, match=rf'values of .*n_e.* in turn in one, "{value}"; .* columns="{name}"'):
+        _read(tmp_path, f"time,{name},{value}\n{rows}")
+
+
+def test_words_beside_columns_of_signals_are_left_out(tmp_path):
+    rows = "".join(f"{0.1 * k:.1f},{'idle' if k < 50 else 'load'},{k}.5,{k}.25\n" for k in range(100))
+    with _read(tmp_path, f"time,name,n_e,M_s\n{rows}") as recording:
+        assert list(recording.channels) == ["n_e", "M_s"]
+
+
+def test_times_that_do_not_go_on_as_the_dates_beside_them_are_none(tmp_path):
+    """WinCC's Time_ms counts millionths of a day."""
+    rows = "".join(
+        f'"n_e";"05.03.2026 09:{k // 60:02d}:{k % 60:02d}";{k},50;1;{46086375000.0 + k / 0.0864:.2f}\n'
+        for k in range(300)
+    )
+    with _read(tmp_path, f'"VarName";"TimeString";"VarValue";"Validity";"Time_ms"\n{rows}', decimal=",") as recording:
+        value = recording.channels["VarValue"]
+        assert (value.rate_hz, value.start_s, value.count) == (1.0, 0.0, 300)
+        assert recording.began == datetime.fromisoformat("2026-03-05T09:00")
+
+
+def test_times_of_day_as_one_number_may_be_called_seconds(tmp_path):
+    text = "time [s];M_s\n" + "".join(f"{t};{k}\n" for k, t in enumerate(_of_day(50_000.0, 1000, 0.1)))
+    with _read(tmp_path, text) as recording:
+        assert recording.channels["M_s"].count == 1000
+    with _read(tmp_path, text, time_unit="s") as recording:
+        assert recording.channels["M_s"].count > 1000

@@ -166,7 +166,15 @@ def time_scale(path: Path, name: str, count: int, read: Times, *, unit: str = ""
     step = float(np.median(steps)) if steps.size else 0.0
     since = _SINCE.fullmatch(unit)
     stated = asked or (since[1] if since else unit)
-    if stated:
+    if not asked and stated in ("", "s") and _are_of_day(numbers) and _go_on_as_of_day(count, read):
+        zero = float(_of_day_s(numbers[:1])[0])
+        scale = TimeScale(
+            zero=zero,
+            is_of_day=True,
+            remark=f"numbers such as {first:.10g} were taken for times of day, hhmmss: second 0 is "
+            f"{timedelta(seconds=round(zero, 6))} of a day that is not said.",
+        )
+    elif stated:
         second = seconds_in(stated)
         if second is None:
             raise RecordingError(
@@ -176,14 +184,6 @@ def time_scale(path: Path, name: str, count: int, read: Times, *, unit: str = ""
         if since and not asked:
             return _since(where, since[2], first, second)
         scale = _in_unit(where, first, second, stated, is_asked=bool(asked))
-    elif _are_of_day(numbers) and _go_on_as_of_day(count, read):
-        zero = float(_of_day_s(numbers[:1])[0])
-        scale = TimeScale(
-            zero=zero,
-            is_of_day=True,
-            remark=f"numbers such as {first:.10g} were taken for times of day, hhmmss: second 0 is "
-            f"{timedelta(seconds=round(zero, 6))} of a day that is not said.",
-        )
     else:
         scale = _by_size(where, first, step, is_whole=bool(np.all(numbers == np.rint(numbers))))
     return replace(scale, remark=f"{name}: {scale.remark}") if scale.remark else scale

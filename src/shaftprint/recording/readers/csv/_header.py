@@ -34,6 +34,12 @@ _COUNTERS = (
     "", "no", "no.", "nr", "nr.", "number", "index", "#", "sequence", "record", "sample", "samples", "point", "row",
     "id", "rn", "scan", "stepcount", "step", "count", "counter", "zeile", "unnamed: 0",
 )  # fmt: skip
+# Titles of a column that says of which signal a row is, and of the values.
+_SIGNALS = (
+    "varname", "tag", "tagname", "tag name", "name", "signal", "channel", "variable", "sensor", "parameter", "point",
+    "pointname", "item", "_field", "field", "_measurement", "measurement", "series", "metric", "entity_id",
+)  # fmt: skip
+_VALUES = ("value", "varvalue", "wert", "messwert", "state")
 _SHOWN = 80
 # An example of names for as many columns as this names each.
 _MOST_NAMED = 12
@@ -140,6 +146,7 @@ def read_header(
     names = [printable(name if is_time_title(name) else name.replace("/", "|")) for name, _ in parsed]
     names = ["" if kind == GAP and is_fact(name) else name for name, kind in zip(names, table.kinds, strict=True)]
     units = [plain_unit(unit) for _, unit in parsed]
+    _expect_a_column_a_signal(path, table, names)
     facts = head_facts([line for line in lines[: table.first] if line.strip()], table.delimiter)
     times = time_columns(table, [name for name, _ in parsed], units, has_rate=has_rate)
     where = f"{path}, line {max(table.first, 1)}"
@@ -303,6 +310,22 @@ def _chosen(table: Table, names: Sequence[str], times: TimeColumns) -> tuple[lis
         else:
             left_out[shown] = "name it with columns= (--columns)"
     return kept, left_out
+
+
+def _expect_a_column_a_signal(path: Path, table: Table, names: Sequence[str]) -> None:
+    """Refuse rows that each hold one value of one signal, which stand in turn.
+
+    Raises RecordingError if a column says of which signal the values of another are.
+    """
+    values = next((name for name in names if name.lower().strip("_") in _VALUES), None)
+    for place, name in enumerate(names):
+        signals = list(dict.fromkeys(row[place] for row in table.rows if row[place]))
+        if values is not None and table.kinds[place] == TEXT and name.lower() in _SIGNALS and len(signals) > 1:
+            raise RecordingError(
+                f"{path}, column {name}: expected a column for each signal, found the values of "
+                f'{printable(", ".join(signals))[:_SHOWN]} in turn in one, "{values}"; write a column for each, in '
+                f'pandas: table.pivot_table(index=TIME, columns="{name}", values="{values}").to_csv(...).'
+            )
 
 
 def _skipped(table: Table, names: Sequence[str]) -> int:

@@ -5,17 +5,19 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 from pathlib import Path
 
+import numpy as np
+
 from shaftprint.errors import RecordingError
 from shaftprint.escape import printable
 from shaftprint.recording.readers._time_scale import is_capital, unit_in_name
 from shaftprint.recording.readers._units import seconds_in
-from shaftprint.recording.readers.csv._dates import AMBIGUOUS
+from shaftprint.recording.readers.csv._dates import AMBIGUOUS, dates, is_date
 from shaftprint.recording.readers.csv._fields import DATE, DAY_TIME, GAP, NUMBER, TEXT, is_number
 from shaftprint.recording.readers.csv._table import Table
 from shaftprint.recording.readers.csv._time_titles import MILLISECONDS, begins_as_time, is_time_title
 from shaftprint.recording.readers.csv._titles import counts_rows
 
-_LONGEST = 80
+_LONGEST, _MINUTE_S = 80, 61.0
 # times may go back where a logger begins again
 _MOST = 0.9
 
@@ -108,21 +110,22 @@ def _is_of_next(names: Sequence[str], place: int) -> bool:
 
 def _first_times(table: Table, names: Sequence[str], units: Sequence[str], *, has_rate: bool) -> TimeColumns:
     kinds = table.kinds
-    dates = [place for place, kind in enumerate(kinds) if kind == DATE]
+    dated = [place for place, kind in enumerate(kinds) if kind == DATE]
     hours = [place for place, kind in enumerate(kinds) if kind == DAY_TIME]
     titled = [place for place, name in enumerate(names) if kinds[place] in (NUMBER, GAP) and is_time_title(name)]
     plain = [place for place in titled if not is_capital(names[place])] or titled
     # a time in a column further on may be anything where dates stand in the first
-    if plain and not (dates and seconds_in(_of_time(units[plain[0]]) or "s") is None):
+    if plain and not (dated and seconds_in(_of_time(units[plain[0]]) or "s") is None):
         place = plain[0]
-        if not dates or names[place].lower() not in MILLISECONDS:
+        unit = _of_time(units[place]) or unit_in_name(names[place]) or ""
+        if not dated or (names[place].lower() not in MILLISECONDS and _agree(table, place, unit, dated[0])):
             return TimeColumns(
                 place=place,
-                unit=_of_time(units[place]) or unit_in_name(names[place]) or "",
-                dates_beside=dates[0] if dates and not hours else None,
+                unit=unit,
+                dates_beside=dated[0] if dated and not hours else None,
             )
-    if dates or hours:
-        return _stamps(table, names, units, dates, hours)
+    if dated or hours:
+        return _stamps(table, names, units, dated, hours)
     if has_rate:
         return TimeColumns()
     first = next((place for place, kind in enumerate(kinds) if kind == NUMBER), None)
@@ -136,6 +139,21 @@ def _first_times(table: Table, names: Sequence[str], units: Sequence[str], *, ha
             place=first, unit=units[first], remark="The first column, which has no title, was taken for the times"
         )
     return TimeColumns()
+
+
+def _agree(table: Table, place: int, unit: str, date: int) -> bool:
+    """Return whether times with a unit go on as the dates beside them do, which may say minutes alone."""
+    second = seconds_in(unit)
+    rows = [row for row in table.rows if is_number(row[place]) and is_date(row[date]) and ":" in row[date]]
+    if second is None or len(rows) < 2:
+        return True
+    try:
+        first, last = dates(Path(), [row[date] for row in (rows[0], rows[-1])])
+    except RecordingError:
+        return True
+    by_dates_s = float((last - first) / np.timedelta64(1, "s"))
+    begin, end = (float(row[place].replace(",", ".")) for row in (rows[0], rows[-1]))
+    return abs((end - begin) * second - by_dates_s) <= _MINUTE_S + 0.1 * abs(by_dates_s)
 
 
 def _stamps(
