@@ -2,8 +2,11 @@
 
 from datetime import UTC, datetime
 
+import h5py
+import nptdms
 import numpy as np
 import pytest
+import scipy.io
 
 from shaftprint.errors import RecordingError
 from shaftprint.recording import read_recording
@@ -213,3 +216,39 @@ def test_times_of_day_as_one_number_may_be_called_seconds(tmp_path):
         assert recording.channels["M_s"].count == 1000
     with _read(tmp_path, text, time_unit="s") as recording:
         assert recording.channels["M_s"].count > 1000
+
+
+def test_the_same_times_in_another_unit_need_no_word(tmp_path):
+    _write_tdms(tmp_path / "log.tdms", {"Time": FAST, "M_s": TORQUE, "Time (ms)": 1000.0 * FAST})
+    with read_recording(tmp_path / "log.tdms") as recording:
+        assert recording.remarks == ()
+
+
+def _write_mat(path, names):
+    scipy.io.savemat(path, names)
+
+
+def _write_hdf5(path, names):
+    with h5py.File(path, "w") as file:
+        for name, values in names.items():
+            file[name] = values
+
+
+def _write_tdms(path, names):
+    with nptdms.TdmsWriter(path) as writer:
+        writer.write_segment([nptdms.ChannelObject("log", name, values) for name, values in names.items()])
+
+
+@pytest.mark.parametrize(
+    ("ending", "write", "second"),
+    [(".mat", _write_mat, "t2"), (".h5", _write_hdf5, "time_2"), (".tdms", _write_tdms, "Time 2")],
+)
+def test_further_times_of_a_group_are_named(tmp_path, ending, write, second):
+    first = second.rstrip("2 _")
+    path = tmp_path / f"log{ending}"
+    for times, is_said in ((SLOW, True), (FAST + 5.0, False)):
+        path.unlink(missing_ok=True)
+        write(path, {first: FAST, "M_s": TORQUE, second: times, "n_e": SPEED})
+        with read_recording(path) as recording:
+            said = [remark for remark in recording.remarks if remark.startswith(f"{second}: these may be times")]
+            assert bool(said) == is_said

@@ -25,6 +25,8 @@ TIME_NAMES = (
 )  # fmt: skip
 # A name with its unit: Time (ms), time_us, t [s], Zeit in ms. Beside one letter alone d is no day: t_d is a delay.
 _WITH_UNIT = re.compile(r"(?P<name>[a-z ]+?)[ _]*(?:[\[(]|(?<=[ _])|\bin )[ ]*(?P<unit>[a-zµμ]+)[\])]?", re.IGNORECASE)
+# the second and further times of one group: t2, time_2, Time 2
+_NUMBERED, _SAME_STEP = re.compile(r"[ _]?\d+$"), 0.01
 _OF_ONE_LETTER = ("s", "ms", "us", "ns")
 # A temperature or a torque, where another column has the name of a time.
 _CAPITAL = re.compile(r"T\b|T_")
@@ -137,6 +139,24 @@ def time_of(names: Sequence[str]) -> int | None:
 def is_capital(name: str) -> bool:
     """Return whether a name is a capital T, which is a clock only where nothing else is."""
     return _CAPITAL.match(name.strip()) is not None
+
+
+def other_times(name: str, numbers: FloatArray, rate_hz: float, clock: str) -> str:
+    """Return what has to be said of a channel that holds further times; empty of others.
+
+    Whose they are a file of named vectors does not say. ``name``: of the channel. ``numbers``: its first values.
+    ``rate_hz``: rate of the clock on which it lies [Hz]. ``clock``: what that is called.
+    """
+    unit = unit_in_name(_NUMBERED.sub("", name))
+    if unit is None:
+        return ""
+    steps = np.diff(numbers) * (seconds_in(unit) or 1.0)
+    if steps.size < 2 or not np.all(steps > 0.0) or abs(float(np.median(steps)) * rate_hz - 1.0) <= _SAME_STEP:
+        return ""
+    return (
+        f"{name}: these may be times of their own, of which channels the file does not say; all are placed by {clock}. "
+        "Where some are not, save those with their times in a group or a file of their own."
+    )
 
 
 def expect_time_unit(path: Path, unit: object) -> str:

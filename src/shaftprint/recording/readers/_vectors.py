@@ -12,7 +12,7 @@ from shaftprint.errors import RecordingError
 from shaftprint.recording._channel import Channel, Source
 from shaftprint.recording.readers._clock import SampleClock, on_clock
 from shaftprint.recording.readers._gather import Gathered, unique_names
-from shaftprint.recording.readers._time_scale import TimeScale, is_capital, time_scale, unit_in_name
+from shaftprint.recording.readers._time_scale import TimeScale, is_capital, other_times, time_scale, unit_in_name
 from shaftprint.recording.readers._units import seconds_in
 from shaftprint.units import plain_unit
 
@@ -23,6 +23,7 @@ LOCAL = "shaftprint_local_time"
 """Attribute of times that are dates by the clock of the place, without a zone."""
 _UNITS = ("units", "unit", "unit_string")
 _RATE_AGREEMENT = 1e-6
+_FIRST = 1000
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -79,7 +80,12 @@ def gather_vectors(
         return clocks[key]
 
     def make(vector: Vector, name: str) -> Channel:
-        clock = _clock(path, vector, _time_of(path, vector, vectors, times), scalars, rate_hz, clock_of)
+        time = _time_of(path, vector, vectors, times)
+        clock = _clock(path, vector, time, scalars, rate_hz, clock_of)
+        if time is not None:
+            first = np.asarray(vector.source(0, min(vector.count, _FIRST)), dtype=np.float64)
+            said = other_times(vector.name, first, clock.rate_hz, f"variable {time.name}")
+            gathered.remarks.extend([said] if said else [])
         channel = Channel(
             name=name,
             unit=plain_unit(_text(vector.attributes, _UNITS)),

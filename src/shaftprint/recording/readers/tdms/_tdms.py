@@ -23,7 +23,7 @@ from shaftprint.recording.readers._gather import Gathered, unique_names
 from shaftprint.recording.readers._hints import rate_hint
 from shaftprint.recording.readers._library_output import remarks
 from shaftprint.recording.readers._opened import Opened
-from shaftprint.recording.readers._time_scale import expect_time_unit, time_of, time_scale, unit_in_name
+from shaftprint.recording.readers._time_scale import expect_time_unit, other_times, time_of, time_scale, unit_in_name
 from shaftprint.recording.readers.tdms._parts import (
     UNITS,
     Part,
@@ -40,6 +40,7 @@ NAME = "TDMS"
 _SIGNATURE = b"TDSm"
 # LabVIEW's step of a waveform where nothing is known of it [s]; rates of two clocks agree to this.
 _DEFAULT_STEP_S, _RATE_AGREEMENT = 1.0, 1e-3
+_FIRST = 1000
 
 
 def is_mine(path: Path) -> bool:
@@ -215,6 +216,10 @@ class _Source:
         expect_known_scale(self.path, name, channel, channel.properties, of_group, self.file.properties)
         expect_one_scale(self.path, name, self.parts.get(channel.path, []))
         clock = self._clock(channel, name, group, began)
+        if isinstance(group, _Group) and np.dtype(channel.dtype).kind in "fiu" and self.interleaved == 1:
+            first = np.asarray(channel.read_data(0, _FIRST), dtype=np.float64)
+            said = other_times(channel.name, first, clock.rate_hz, f"channel {group.time.name}")
+            self.gathered.remarks.extend([said] if said else [])
         return _channel(self.path, name, channel, clock, self.opened, part, self.interleaved)
 
 
