@@ -12,7 +12,8 @@ from shaftprint.fingerprint import read_fingerprint
 from shaftprint.survey._line_with_limits import expect_limitable
 from shaftprint.vessel import load_vessel
 
-pytestmark = pytest.mark.slow
+# what is asked of one recording takes some minutes of a processor
+pytestmark = pytest.mark.long
 TRIAL = ("--vessel", "stan-tug-1205", "--campaign", "short", "--no-progress")
 ANTI_WINDUP_S, MOTORING_NM = 0.5, -300.0
 GOVERNOR = {"K_p": 5.7, "K_i": 4.27, "t_d": 0.0703, "t_sp": 0.0518}

@@ -55,6 +55,6 @@ def test_tables_of_quick_commands(tables_of, demo, tmp_path, name):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", SLOW)
+@pytest.mark.parametrize("name", [pytest.param(one, marks=pytest.mark.long) if one == "plan" else one for one in SLOW])
 def test_tables_of_commands_that_calculate(tables_of, demo, tmp_path, name):
     _expect_output_readable(tables_of, SLOW[name], demo[0], tmp_path)

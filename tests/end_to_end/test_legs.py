@@ -10,7 +10,6 @@ from shaftprint.campaign import load_campaign
 from shaftprint.catalogue import structure
 from shaftprint.errors import StructureError
 from shaftprint.identify import Settings
-from shaftprint.identify.judgement._line_quality import good_lines
 from shaftprint.recording import cut, read_recording, write_recording
 from shaftprint.survey import STAN_TUG_NOISE, fit, leg_tests, load_trial, measure, priors_of, run
 from shaftprint.survey._fits import comparisons_of
@@ -80,7 +79,7 @@ def test_a_recording_that_ends_in_the_second_leg_still_gives_a_result(trial, voy
     assert (first.name, first.periods, first.load) == ("M1", 9, 1.0)
     assert (second.name, second.periods, second.period_s) == ("M2", 4, 32.0)
     assert second.engine_speed_rpm == pytest.approx(0.70 * 1183.8, rel=2e-3)
-    # a line of either leg that drowns in noise is no good one, as for ``inspect``
+    # a line of either leg that drowns in noise is no good one: what the verdict knows of them
     lines = [line for leg in measurement.legs for line in leg.spectra.response.lines]
     assert list(fingerprint.quality.snr_local_db["M_s"]) == lines
     good = [good_lines(leg.spectra.response, leg.spectra.signal_to_noise).sum() for leg in measurement.legs]

@@ -20,11 +20,11 @@ SPEED_RPM, TORQUE_NM = 1183.8, 1740.0
     ("name_of_line", "rows_a_second"),
     [
         ("GAUGE-CLOSED", 100),
-        ("GAUGE-CLOSED", 1000),
-        ("GAUGE-MOTOR", 100),
-        ("GAUGE-ELASTIC", 1000),
+        pytest.param("GAUGE-CLOSED", 1000, marks=pytest.mark.long),
+        pytest.param("GAUGE-MOTOR", 100, marks=pytest.mark.long),
+        pytest.param("GAUGE-ELASTIC", 1000, marks=pytest.mark.long),
         ("GAUGE-HYBRID", 100),
-        ("GAUGE-HYBRID", 1000),
+        pytest.param("GAUGE-HYBRID", 1000, marks=pytest.mark.long),
     ],
 )
 def test_a_held_step_moves_the_line_as_it_moves_the_fmu(fmu, tmp_path, name_of_line, rows_a_second):

@@ -84,6 +84,16 @@ SHIPPED = (
     "ENGINE",
 )
 ALL = OWN | {name: structure(name) for name in (*SHIPPED, "FREE-PITCH")}
+# Each takes ten seconds and more to compile, of blocks that others have too.
+LARGE = {
+    "CL4-PADE5", "GAUGE-OPEN", "GAUGE-ELASTIC", "GAUGE-HYBRID", "GAUGE-INFLOW", "FREE-PITCH",
+    "two numerators ahead of two lags", "numerators around a delay",
+}  # fmt: skip
+
+
+def large_ones_long(names):
+    """Leave structures that take long to compile to the long tests."""
+    return [pytest.param(name, marks=pytest.mark.long) if name in LARGE else name for name in names]
 
 
 def from_response(model, values):
@@ -93,7 +103,7 @@ def from_response(model, values):
     return np.fft.irfft(model.response(values, s) * spectrum, n=TIME.size) * np.exp(SHIFT * TIME)
 
 
-@pytest.mark.parametrize("name", ALL)
+@pytest.mark.parametrize("name", large_ones_long(ALL))
 def test_a_pulse_does_what_the_frequency_response_says(name):
     model = ALL[name]
     values = model.vector({})
@@ -114,7 +124,7 @@ def lively(model, values):
     return tuple(p.name for p, value in pairs if not (p.held and value == 0.0))
 
 
-@pytest.mark.parametrize("name", [*OWN, "FREE-PITCH"])
+@pytest.mark.parametrize("name", large_ones_long([*OWN, "FREE-PITCH"]))
 def test_derivatives_are_those_of_a_complex_step(name):
     model = ALL[name]
     values = model.vector({})

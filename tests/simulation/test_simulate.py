@@ -73,7 +73,15 @@ def test_a_latency_that_was_corrected_by_too_much_needs_no_future():
     np.testing.assert_allclose(found.derivatives["y"][0][inside], -np.cos(TIME + 0.0237)[inside], atol=5e-3)
 
 
-@pytest.mark.parametrize("limits", [(), ("torque",), ("torque", "rate"), ("torque", "smoke", "deadband")])
+@pytest.mark.parametrize(
+    "limits",
+    [
+        pytest.param((), marks=pytest.mark.long),
+        pytest.param(("torque",), marks=pytest.mark.long),
+        pytest.param(("torque", "rate"), marks=pytest.mark.long),
+        ("torque", "smoke", "deadband"),
+    ],
+)
 def test_derivatives_are_those_of_a_complex_step(limits):
     ship = limited(*limits, curve=((-0.5, 0.8), (0.0, 1.0), (0.3, 1.02), (0.5, 0.9)))
     values = ship.vector(TRUTH | {name: v for name, v in LEVELS.items() if name in ship.names})

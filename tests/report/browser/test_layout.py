@@ -20,7 +20,9 @@ SMALLEST_TEXT_PX = 11.0
 LEAST_CONTRAST = 4.5
 MOST_SHEETS = 12
 # Printing is tried at the width that A4 leaves between its margins, 182 mm.
-MEDIA = [*((width, scheme) for width in (1280, 390) for scheme in ("light", "dark")), (688, "print")]
+MEDIA = [(1280, "light"), (390, "dark"), (688, "print")]
+MORE_MEDIA = [(1280, "dark"), (390, "light")]
+REPORTS = ("demo", "refused", "own")
 OPEN_ALL = "document.querySelectorAll('details').forEach(part => { part.open = true; })"
 CHARTS = "[...document.querySelectorAll('.plot')].filter(chart => chart.checkVisibility()).map(chart => chart.id)"
 SEEN = """const seen = element => element.checkVisibility({visibilityProperty: true, opacityProperty: true})
@@ -124,7 +126,13 @@ def pages(browser, demo, tmp_path_factory):
     return made
 
 
-@pytest.fixture(params=[(name, *media) for name in ("demo", "refused", "own") for media in MEDIA], ids=str)
+@pytest.fixture(
+    params=[
+        *((name, *media) for name in REPORTS for media in MEDIA),
+        *(pytest.param((name, *media), marks=pytest.mark.long) for name in REPORTS for media in MORE_MEDIA),
+    ],
+    ids=str,
+)
 def opened(request, visit, pages):
     """A page of one of the reports with all its sections open and all its charts drawn, on a screen or on paper."""
     name, width, scheme = request.param
