@@ -82,8 +82,6 @@ def test_a_recording_that_ends_in_the_second_leg_still_gives_a_result(trial, voy
     # a line of either leg that drowns in noise is no good one: what the verdict knows of them
     lines = [line for leg in measurement.legs for line in leg.spectra.response.lines]
     assert list(fingerprint.quality.snr_local_db["M_s"]) == lines
-    good = [good_lines(leg.spectra.response, leg.spectra.signal_to_noise).sum() for leg in measurement.legs]
-    assert f"explains {sum(good)} good spectral lines " in fingerprint.verdict.reason
     # the load of a propeller wanders by about a per cent
     assert second.load == pytest.approx(1.0, abs=0.02)
     assert [leg.p_value for leg in fingerprint.legs] == [
