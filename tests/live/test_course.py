@@ -120,6 +120,22 @@ def test_legs_follow_by_what_they_tell():
     sp.campaign.Campaign.model_validate(after.model_dump(exclude_none=True))
 
 
+def test_steps_behind_the_legs_are_played_when_the_legs_have_ended_early():
+    """A planned test ends with a staircase: nothing was ever changed by what is known where one was to come."""
+    stairs = sp.campaign.Staircase(name="St1", levels_v=(-4.9, -5.1), dwell_s=4.0, start_s=34.0)
+    planned = CAMPAIGN.model_copy(update={"staircases": (stairs,), "duration_s": 45.0})
+    enough = Advice(more={"M1": 0, "M2": 0}, recorded={"M1": 4, "M2": 2})
+    after = by_information(planned, M2, enough, played=2, soonest=2, fewest=2, most_s=45.0, like=planned)
+    assert [(leg.name, leg.periods) for leg in after.legs] == [("M1", 4), ("M2", 2)]
+    (moved,) = after.staircases
+    # 28 s, when the second period of M2 ends, and the ramp of 2 s
+    assert (moved.start_s, moved.stop_s - moved.start_s) == (pytest.approx(30.0), 8.0)
+    assert after.duration_s == pytest.approx(41.0)
+    # a leg behind the steps is where it was asked for
+    between = CAMPAIGN.model_copy(update={"staircases": (stairs.model_copy(update={"start_s": 17.5, "dwell_s": 1.0}),)})
+    assert by_information(between, M1, enough, played=3, soonest=3, fewest=2, most_s=45.0, like=between) is None
+
+
 def test_a_ramp_that_is_under_way_goes_on_to_its_leg():
     begun, to_come = begun_until(CAMPAIGN, 18.5)
     assert [one.name for one in begun] == ["M1", "M2"]

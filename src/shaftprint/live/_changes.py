@@ -135,7 +135,7 @@ def by_information(
 
     The leg that runs ends where nothing more is wished of it, and goes on where it would end too early. Legs to come
     follow by what they tell, each for at least ``fewest`` periods; one that was played is played again where no other
-    tells as much. What does not fit into the time is left out.
+    tells as much. What does not fit into the time is left out. Steps and sweeps behind the legs are played behind them.
 
     ``leg``: the one that runs. ``played``: whole periods of it that have come. ``soonest``: periods after which a
     change can reach the device. ``fewest``: periods of a leg that are played at least. ``most_s``: longest that the
@@ -148,12 +148,13 @@ def by_information(
         return None
     before = [one for one in campaign.excitations if one.start_s < leg.start_s]
     to_come = [one for one in campaign.excitations if one.start_s > leg.start_s]
-    if not all(isinstance(one, Periodic) for one in to_come):
+    legs = [one for one in to_come if isinstance(one, Periodic)]
+    # steps and sweeps behind the legs stay what they are
+    rest = to_come[len(legs) :]
+    if to_come[: len(legs)] != legs:
         return None
     follow = [
-        lasting(one, max(min(one.periods, fewest + _ROOM), advice.more.get(first_name(one.name), 0)))
-        for one in to_come
-        if isinstance(one, Periodic)
+        lasting(one, max(min(one.periods, fewest + _ROOM), advice.more.get(first_name(one.name), 0))) for one in legs
     ]
     follow.sort(key=lambda one: -advice.more.get(first_name(one.name), 0))
     others = {first_name(one.name) for one in (leg, *follow)}
@@ -166,7 +167,7 @@ def by_information(
     follow += [one for one in repeated if isinstance(one, Periodic)]
     now = lasting(leg, max(advice.recorded.get(leg.name, 0) + more if more else 0, soonest))
     while True:
-        changed = followed_by(campaign, (*before, now), follow, from_s=now.stop_s, like=like)
+        changed = followed_by(campaign, (*before, now), (*follow, *rest), from_s=now.stop_s, like=like)
         if changed.duration_s <= most_s:
             return changed
         shorter = _shorter(now, follow, advice, soonest=soonest, fewest=fewest)
