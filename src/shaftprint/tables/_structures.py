@@ -28,7 +28,7 @@ def structure_tables(comparison: "StructureComparison") -> list[Table]:
         title=f"Structures of {channels}, lowest BIC first",
         columns=(
             *texts("structure"),
-            *numbers("parameters", "chi-square", "freedom", "p", "AIC", "AICc", "BIC", "belief", "FPE"),
+            *numbers("parameters", "chi-square", "freedom", "p", "AIC", "AICc", "BIC", "BIC weight", "FPE"),
             *numbers("held-out lines", "predicted") * held_out,
         ),
         rows=tuple(
@@ -37,7 +37,7 @@ def structure_tables(comparison: "StructureComparison") -> list[Table]:
         ),
         note=(
             f"Fitted to the same {comparison.best.criteria.data} data, two a complex value. The lower the criteria "
-            "the better; the belief is the share that BIC gives a structure if one of them is right."
+            "the better; the BIC weight is the share that BIC gives a structure if one of them is right."
             f"{HOLD_OUT_NOTE if held_out else ''}"
         ),
     )

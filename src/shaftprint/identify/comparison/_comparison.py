@@ -44,10 +44,10 @@ class StructureComparison(Shown):
     """Which structure wins and why, in words."""
 
     def summary(self) -> Summary:
-        """Return which structure wins, and the belief in each."""
+        """Return which structure wins, and the weight of each."""
         facts = {
             "outcome": self.sentences[0] if self.sentences else "",
-            "belief": shortened(f"{name} {100.0 * share:.1f} %" for name, share in self.weights.items()),
+            "BIC weight": shortened(f"{name} {100.0 * share:.1f} %" for name, share in self.weights.items()),
             "failed": shortened(self.failed),
         }
         return Summary(title=f"StructureComparison: {self.best.name} of {len(self.candidates)}", facts=facts)
@@ -59,7 +59,7 @@ class StructureComparison(Shown):
 
     @property
     def weights(self) -> Mapping[str, float]:
-        """Share of the belief that BIC gives each structure, if one of them is right and none was likelier before.
+        """Weight that BIC gives each structure, if one of them is right and none was likelier before.
 
         ``exp(-BIC / 2)`` over its sum (Kass and Raftery, Bayes factors, 1995, eq. 9).
         """

@@ -68,11 +68,9 @@ def _doubt(
         return "the data say nothing about it"
     prior = identification.settings.priors.get(estimate.name)
     if prior is not None and std > requirements.largest_prior_share * prior.std:
-        reduction = max(100.0 * (1.0 - std / prior.std), 0.0)
-        return (
-            "the test adds almost nothing to what was known before: it reduces the standard deviation by "
-            f"{reduction:.0f} % only"
-        )
+        smaller = round(100.0 * (1.0 - std / prior.std))
+        by_little = f": its standard deviation is {smaller} % smaller" if smaller > 0 else ""
+        return f"the test adds almost nothing to what was known before{by_little}"
     size = _size(identification, estimate)
     if std > requirements.largest_std * size:
         return f"it is known to {100.0 * std / size:.0f} % only" if size > 0.0 else "it cannot be distinguished from 0"
