@@ -39,6 +39,19 @@ def test_a_file_that_nobody_claims_is_refused_with_the_known_formats(path):
     assert str(path) in str(found.value)
 
 
+@pytest.mark.parametrize(("given", "is_told"), [(100.0, False), (100.05, False), (2000.0, True)])
+def test_a_rate_that_was_given_and_is_not_that_of_the_file_is_told(tmp_path, given, is_told):
+    path = tmp_path / "log.csv"
+    path.write_text("time [s],M_s [V]\n" + "".join(f"{k / 100.0},{k % 7}\n" for k in range(300)))
+    try:
+        with read_recording(path, sample_rate_hz=given) as recording:
+            told = [one for one in recording.remarks if "100 Hz, which counts; the 2000 Hz that were given" in one]
+            assert recording.channel("M_s").rate_hz == pytest.approx(100.0)
+    except RecordingError as refused:
+        told = [str(refused)]
+    assert bool(told) is is_told
+
+
 def test_a_file_that_two_claim_is_refused_with_both(path):
     with pytest.raises(RecordingError, match="it may be A and B; pass the right one as readers"):
         read_recording(path, readers=[_reader("A", mine=True), _reader("B", mine=True)])

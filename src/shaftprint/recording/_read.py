@@ -1,5 +1,6 @@
 """Opening a logger file with the one reader that knows its format."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -26,6 +27,8 @@ OWN: tuple[Reader, ...] = (_native, _journal)
 
 # a log of ordinary service has a value a second or more often
 _SLOW_FILE_HZ = 0.2
+# A rate that was stated is that of the file to this share.
+_AS_STATED = 1e-3
 
 
 @refusing_none(RecordingError)
@@ -58,7 +61,8 @@ def read_recording(path: str | Path, *, readers: Sequence[Reader] | None = None,
         if path.stat().st_size == 0:
             raise RecordingError(f"{path}: expected a logger file, found an empty one.")
         outside = read_outside(path, **hints) if readers is None else None
-        return _questioned(outside or _the_reader(path, readers).read(path, **hints))
+        recording = outside or _the_reader(path, readers).read(path, **hints)
+        return _beside_stated_rate(_questioned(recording), hints.get("sample_rate_hz"))
     except OSError as error:
         raise RecordingError(f"{path}: the file cannot be read: {reason(error)}.") from None
     except RecordingError as error:
@@ -80,6 +84,21 @@ def _questioned(recording: Recording) -> Recording:
     sentence = (
         f"{recording.path}, {odd[0].name}: a rate of {odd[0].rate_hz:g} Hz; is the unit of its times right? State it "
         "with time_unit= (--time-unit)."
+    )
+    return replace(recording, remarks=(*recording.remarks, sentence))
+
+
+def _beside_stated_rate(recording: Recording, stated_hz: object) -> Recording:
+    """Return a recording with a sentence where a rate was stated that no channel has: the file's own clocks count."""
+    rates_hz = sorted({one.rate_hz for one in recording.channels.values()})
+    if not isinstance(stated_hz, int | float) or not rates_hz:
+        return recording
+    if any(math.isclose(one, stated_hz, rel_tol=_AS_STATED) for one in rates_hz):
+        return recording
+    own = f"{rates_hz[0]:g} Hz" if len(rates_hz) == 1 else f"{rates_hz[0]:g} to {rates_hz[-1]:g} Hz"
+    sentence = (
+        f"{recording.path}: the file states when its samples were taken, at {own}, which counts; the {stated_hz:g} Hz "
+        "that were given (sample_rate_hz=, --sample-rate) do not."
     )
     return replace(recording, remarks=(*recording.remarks, sentence))
 
