@@ -92,8 +92,8 @@ def _beyond_the_lines(evidence: Evidence) -> list[str]:
         return []
     frequencies = listed([f"{crossing:.2g}" for crossing in outside])
     return [
-        f"The margins are extrapolated: the loop gain passes 1 or -1 at {frequencies} rad/s, and the good lines "
-        f"reach from {omega[0]:.2g} to {omega[-1]:.2g} rad/s."
+        f"The margins are extrapolated: the loop gain passes 1 or -1 at {frequencies} rad/s, and the good spectral "
+        f"lines reach from {omega[0]:.2g} to {omega[-1]:.2g} rad/s."
     ]
 
 
