@@ -1,6 +1,7 @@
 """One short voyage for all tests that want what the program leaves behind."""
 
 import gc
+import importlib
 import os
 import re
 import shutil
@@ -17,7 +18,6 @@ from click.testing import CliRunner, Result
 from hypothesis import HealthCheck, settings
 
 from shaftprint.cli import shaftprint
-from shaftprint.kernels._compiled import Kernel
 
 CHROMIUM = Path("/usr/bin/chromium")
 QUIET = (
@@ -48,17 +48,18 @@ def pytest_configure(config: pytest.Config) -> None:
     """Have numba compile untraced where branches are counted: none of its own is, and it takes twice as long traced."""
     if not config.pluginmanager.hasplugin("_cov"):
         return
-    traced = Kernel.__call__
+    dispatcher: Any = importlib.import_module("numba.core.dispatcher").Dispatcher
+    compiles = dispatcher._compile_for_args
 
-    def untraced(kernel: Kernel, *arguments: Any) -> Any:
+    def untraced(function: Any, *arguments: Any, **options: Any) -> Any:
         tracer = sys.gettrace()
         sys.settrace(None)
         try:
-            return traced(kernel, *arguments)
+            return compiles(function, *arguments, **options)
         finally:
             sys.settrace(tracer)
 
-    Kernel.__call__ = untraced  # type: ignore[method-assign]
+    dispatcher._compile_for_args = untraced
 
 
 def work_unit(nodeid: str) -> str:

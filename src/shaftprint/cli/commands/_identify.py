@@ -6,11 +6,9 @@ from pathlib import Path
 
 import click
 
-from shaftprint.cli._drive_identify import identify_on_the_bench
 from shaftprint.cli._drive_options import drive_option, only_recording
 from shaftprint.cli._fingerprint_tables import print_found
 from shaftprint.cli._fit_options import fit_options
-from shaftprint.cli._identify_both import identify_both_lines
 from shaftprint.cli._limit_tables import print_limits, print_line
 from shaftprint.cli._next import print_steps
 from shaftprint.cli._option_sections import SectionedCommand
@@ -40,6 +38,8 @@ with late():
 
     from shaftprint.catalogue._own_structure import TypedName
     from shaftprint.cli._after_test import after_test
+    from shaftprint.cli._drive_identify import identify_on_the_bench
+    from shaftprint.cli._identify_both import identify_both_lines
     from shaftprint.fingerprint._json_file import write_fingerprint
     from shaftprint.fingerprint._sources import structure_sources
     from shaftprint.report.sections._black_box import black_box_sentence
