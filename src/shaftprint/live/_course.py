@@ -33,8 +33,8 @@ if TYPE_CHECKING:
 LEAD_S = 1.0
 """Time that a change needs to reach the device [s]."""
 
-# What is known is worked out again after a quarter of the periods that are missing.
-_QUARTER = 0.25
+# What is known is worked out again after this share of the periods that are missing.
+_WAITED_SHARE = 0.25
 
 # A campaign, when it begins to differ from the one that is played [s], and the test that is cut, left out or played
 # again; None where it is too late for that.
@@ -171,7 +171,7 @@ class Course(Loop):
         advice = await self.advises(self)
         if advice is None:
             return
-        self._wait_periods = math.ceil(sum(advice.more.values()) * _QUARTER)
+        self._wait_periods = math.ceil(sum(advice.more.values()) * _WAITED_SHARE)
 
         def make(at_s: float) -> _Change:
             now = test_at(self.campaign, self.campaign_s)

@@ -141,22 +141,24 @@ def is_capital(name: str) -> bool:
     return _CAPITAL.match(name.strip()) is not None
 
 
-def other_times(name: str, numbers: FloatArray, rate_hz: float, clock: str) -> str:
-    """Return what has to be said of a channel that holds further times; empty of others.
+def other_times(name: str, count: int, read: Times, rate_hz: float, clock: str) -> tuple[str, ...]:
+    """Return what has to be said of a channel that holds further times; nothing of others.
 
-    Whose they are a file of named vectors does not say. ``name``: of the channel. ``numbers``: its first values.
-    ``rate_hz``: rate of the clock on which it lies [Hz]. ``clock``: what that is called.
+    Whose they are a file of named vectors does not say. ``name``: of the channel; of most it tells that they are none.
+    ``count``, ``read``: its number of values, and what reads some of them. ``rate_hz``: rate of the clock on which it
+    lies [Hz]. ``clock``: what that is called.
     """
     unit = unit_in_name(_NUMBERED.sub("", name))
     if unit is None:
-        return ""
-    steps = np.diff(numbers) * (seconds_in(unit) or 1.0)
+        return ()
+    steps = np.diff(np.asarray(read(0, min(count, _FIRST)), dtype=np.float64)) * (seconds_in(unit) or 1.0)
     if steps.size < 2 or not np.all(steps > 0.0) or abs(float(np.median(steps)) * rate_hz - 1.0) <= _SAME_STEP:
-        return ""
-    return (
+        return ()
+    sentence = (
         f"{name}: these may be times of their own, of which channels the file does not say; all are placed by {clock}. "
         "Where some are not, save those with their times in a group or a file of their own."
     )
+    return (sentence,)
 
 
 def expect_time_unit(path: Path, unit: object) -> str:

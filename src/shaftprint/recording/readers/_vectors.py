@@ -23,7 +23,6 @@ LOCAL = "shaftprint_local_time"
 """Attribute of times that are dates by the clock of the place, without a zone."""
 _UNITS = ("units", "unit", "unit_string")
 _RATE_AGREEMENT = 1e-6
-_FIRST = 1000
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -83,9 +82,9 @@ def gather_vectors(
         time = _time_of(path, vector, vectors, times)
         clock = _clock(path, vector, time, scalars, rate_hz, clock_of)
         if time is not None:
-            first = np.asarray(vector.source(0, min(vector.count, _FIRST)), dtype=np.float64)
-            said = other_times(vector.name, first, clock.rate_hz, f"variable {time.name}")
-            gathered.remarks.extend([said] if said else [])
+            gathered.remarks.extend(
+                other_times(vector.name, vector.count, vector.source, clock.rate_hz, f"variable {time.name}")
+            )
         channel = Channel(
             name=name,
             unit=plain_unit(_text(vector.attributes, _UNITS)),

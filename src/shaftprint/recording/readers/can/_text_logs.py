@@ -74,7 +74,7 @@ def open_text_log(path: Path, kind: str, file: TextIO, library: Any) -> FrameLog
     package python-can. Raises RecordingError if its times cannot be told, or nothing in it can be read.
     """
     log = FrameLog(blocks=iter(()), kind=kind)
-    lines = _LINES.get(kind, _RowLines)(path, file, kind)
+    lines = _LINES[kind](path, file) if kind in _LINES else _RowLines(path, file, kind)
     reader = {_ASC: library.ASCReader, _TRC: library.TRCReader}.get(kind, library.CanutilsLogReader)(lines)
     if kind == _TRC:
         _expect_version(path, file)
@@ -108,12 +108,10 @@ def open_text_log(path: Path, kind: str, file: TextIO, library: Any) -> FrameLog
 class _Lines:
     """Lines of a file for a library that goes through them, and whether the last one has been given."""
 
-    def __init__(self, path: Path, file: TextIO, kind: str) -> None:
+    def __init__(self, path: Path, file: TextIO) -> None:
         self._path = path
         self._file = file
-        self._kind = kind
         self._next: str | None = None
-        self._frames: list[str] = []
         self.rows = 0
         self.last = ""
         self.last_is_row = False
@@ -122,8 +120,6 @@ class _Lines:
         return self
 
     def __next__(self) -> str:
-        if self._frames:
-            return self._frames.pop(0)
         line = self._file.readline() if self._next is None else self._next
         if not line:
             raise StopIteration
@@ -171,8 +167,12 @@ class _RowLines(_Lines):
     """Rows of other programs, as lines of candump."""
 
     def __init__(self, path: Path, file: TextIO, kind: str) -> None:
-        super().__init__(path, file, kind)
+        super().__init__(path, file)
         self._of = Rows(kind)
+        self._frames: list[str] = []
+
+    def __next__(self) -> str:
+        return self._frames.pop(0) if self._frames else super().__next__()
 
     @property
     def has_zone(self) -> bool:
@@ -195,8 +195,8 @@ class _AscLines(_Lines):
     the row before ("relative").
     """
 
-    def __init__(self, path: Path, file: TextIO, kind: str) -> None:
-        super().__init__(path, file, kind)
+    def __init__(self, path: Path, file: TextIO) -> None:
+        super().__init__(path, file)
         self._header: datetime | None = None
         self._trigger: datetime | None = None
         self._is_new_block = False

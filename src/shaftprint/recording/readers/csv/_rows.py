@@ -17,6 +17,7 @@ from shaftprint.recording._spool import Spool
 from shaftprint.recording.readers.csv._fields import is_gap, number, split_row
 from shaftprint.recording.readers.csv._header import Header
 from shaftprint.recording.readers.csv._marks import Marks
+from shaftprint.recording.readers.csv._scope_export import END_OF_EXPORT
 from shaftprint.recording.readers.csv._stamps import Stamps, is_stamp
 from shaftprint.recording.readers.csv._wrong_rows import LONGEST, wrong_rows
 
@@ -32,8 +33,6 @@ _ODD = 1_000
 _MOST_DAMAGED, _DAMAGED_SHARE = 3, 1e-3
 # What is behind the decimal sign is longer in each of so many rows, where a number of the last row is cut off.
 _DECIMALS_SEEN, _TAIL = 50, 8_000
-# the last line of an export of TwinCAT's Scope
-_END = "EOF"
 _LINE_FEED = ord("\n")
 _UTF_8_MARK = b"\xef\xbb\xbf"
 
@@ -211,7 +210,7 @@ class _Unpacking:
             self.nul += nul
             plain = raw.replace("\0", "").strip("\r\n")
             bare = plain.strip()
-            if not bare or bare == _END:
+            if not bare or bare == END_OF_EXPORT:
                 continue
             if bare in header.head:
                 self._note_titles(line, len(rows))

@@ -8,6 +8,8 @@ from shaftprint.recording.readers.csv._fields import split_row
 from shaftprint.recording.readers.csv._table import Table
 from shaftprint.units import plain_unit
 
+END_OF_EXPORT = "EOF"
+"""The last line of an export, behind its rows."""
 _NAME, _UNIT = "Name", "Unit"
 _START = re.compile(r'"?Starttime of export"?(?P<mark>[;,\t|])"?(?P<ticks>\d{17,19})\b')
 # the quantity of a unit: V (Voltage), (None)

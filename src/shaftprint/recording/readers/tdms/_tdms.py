@@ -40,7 +40,6 @@ NAME = "TDMS"
 _SIGNATURE = b"TDSm"
 # LabVIEW's step of a waveform where nothing is known of it [s]; rates of two clocks agree to this.
 _DEFAULT_STEP_S, _RATE_AGREEMENT = 1.0, 1e-3
-_FIRST = 1000
 
 
 def is_mine(path: Path) -> bool:
@@ -217,9 +216,15 @@ class _Source:
         expect_one_scale(self.path, name, self.parts.get(channel.path, []))
         clock = self._clock(channel, name, group, began)
         if isinstance(group, _Group) and np.dtype(channel.dtype).kind in "fiu" and self.interleaved == 1:
-            first = np.asarray(channel.read_data(0, _FIRST), dtype=np.float64)
-            said = other_times(channel.name, first, clock.rate_hz, f"channel {group.time.name}")
-            self.gathered.remarks.extend([said] if said else [])
+            self.gathered.remarks.extend(
+                other_times(
+                    channel.name,
+                    len(channel),
+                    lambda start, stop: channel.read_data(start, stop - start),
+                    clock.rate_hz,
+                    f"channel {group.time.name}",
+                )
+            )
         return _channel(self.path, name, channel, clock, self.opened, part, self.interleaved)
 
 
