@@ -37,11 +37,13 @@ def test_report_has_its_figures(demo):
 def test_last_lines_say_what_was_found_and_where(demo):
     _, result = demo
     tail = result.stdout[result.stdout.index("What was found") :]
-    assert "the inertia behind the torque gauge: " in tail
+    assert "the inertia behind the torque gauge (I_dn): " in tail
     assert "true value 17.00 kg m2." in tail
     assert "true value 0.1221 s." in tail
     assert re.search(r"true value 2\.000+\.", tail)
     assert "The thesis' way finds an inertia time of" in tail
+    # what was found in words, then the names: those that may be used, and of the others why not
+    assert tail.index("Gain margin: ") < tail.index("  * Trusted: omega_n, ") < tail.index("  * Not trusted: K_p (")
     assert tail.rstrip().splitlines()[-4:-1] == [
         f"Recording:   {Path('demo', 'recording.nc')}",
         f"Fingerprint: {Path('demo', 'fingerprint.json')}",

@@ -188,7 +188,7 @@ def test_commands_stand_under_what_they_are_for(run):
     ]
 
 
-LONG_HELPS = ("identify", "plan", "start", "new")
+LONG_HELPS = ("identify", "plan", "start", "new", "inspect", "predict", "validate", "simulate")
 """Commands with so many options that their help has them in sections."""
 
 

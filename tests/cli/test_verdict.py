@@ -1,5 +1,7 @@
 """The verdict comes first on the terminal, and structures beside each other are compared."""
 
+import re
+
 import pytest
 
 
@@ -14,7 +16,9 @@ def test_the_verdict_comes_first(run, demo):
     )
     assert lines[2].startswith("  * Trusted: ")
     assert "k_q" in lines[2]
-    assert lines[3].startswith("  * Not trusted: ")
+    assert re.match(r"  \* Not trusted: K_p \(\d+ %\), K_i \(\d+ %\)", lines[3]), lines[3]
+    told = " ".join(shown.split())
+    assert told.count("known to this share of the value only") == 1
     assert "The stability margins are small: a gain margin of 1." in shown
     assert "Verdict: trustworthy" in result.output
     # mostly its prior, and so among those that are not trusted: what was found says so too

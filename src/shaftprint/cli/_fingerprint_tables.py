@@ -31,6 +31,8 @@ with late():
 
 ASSUMED = "Assumed:"
 """How the sentences of a verdict begin that say what it rests on."""
+LISTS = ("Trusted:", "Not trusted:")
+"""How those begin that name the numbers that may be used and the others."""
 
 
 def print_fingerprint(fingerprint: Fingerprint) -> None:
@@ -53,16 +55,20 @@ def print_found(
     found, in sentences.
     """
     verdict, truth = fingerprint.verdict, truth or {}
-    sentences = verdict.sentences
+    sentences, lists = verdict.sentences, []
     if not is_detailed():
-        sentences = tuple(one for one in sentences if not one.startswith(ASSUMED))
+        # names say little to who does not know them yet: the answer in words comes first
+        lists = [one for one in sentences if one.startswith(LISTS)]
+        sentences = tuple(one for one in sentences if not one.startswith((ASSUMED, *LISTS)))
         if verdict.assumptions:
             # their count, and where they are told: they are the longest part of a verdict that is fine
-            where = "`shaftprint show` and the report have them, and the meaning of each name"
+            where = "`shaftprint show` and the report have them"
             sentences += (f"{ASSUMED} {_points(len(verdict.assumptions))} that no recording can show; {where}.",)
     _print_verdict(fingerprint, sentences, line)
     if verdict.trustworthy:
         print_findings("What was found", [*found_sentences(fingerprint, truth), *further], is_answer=True)
+    if lists:
+        print_findings("By name; `shaftprint show` says what each name means", lists, is_answer=True)
     with details():
         _print_rest(fingerprint, truth)
 

@@ -32,7 +32,9 @@ def found_sentences(fingerprint: Fingerprint, truth: Mapping[str, float]) -> lis
         given = _given(quantity, fingerprint) or ("" if name in truth else _beside(quantity))
         true = _true(quantity, truth[name]) if name in truth else ""
         doubt = f"; not to be used: {doubts[name]}" if name in doubts else ""
-        sentences.append(f"{SENTENCES[name]}: {_value(quantity)}{given}{true}{doubt}.")
+        words = SENTENCES[name] or quantity.meaning.capitalize()
+        symbol = "" if words.lower().startswith(name) else f" ({name})"
+        sentences.append(f"{words}{symbol}: {_value(quantity)}{given}{true}{doubt}.")
     return sentences or _of_parameters(fingerprint.parameters, doubts)
 
 
@@ -89,12 +91,15 @@ def _given(quantity: Estimate, fingerprint: Fingerprint) -> str:
     return f", with the prior of the vessel file {prior}"
 
 
-SENTENCES = {
+# None: its own meaning, which goes with the structure.
+SENTENCES: Mapping[str, str | None] = {
     "I_dn": "Propeller, shaft and entrained water, the inertia behind the torque gauge",
     "I_up": "Engine, coupling and gearbox, the inertia before the torque gauge",
     "K_Q": "Torque coefficient of the propeller",
     "k_q": "The propeller torque grows with this power of the speed; 2 says that gauge and inflow are in order",
     "t_d + t_sp": "Total delay from the set point to the fuel",
+    "K_p": None,
+    "K_i": None,
     "K_p / K_i": "The governor's reset time",
     "gain margin": "Gain margin: the governor gain may grow by this factor before the speed oscillates",
     "delay margin": "Delay margin: this much more delay in the loop makes the speed oscillate",

@@ -71,6 +71,14 @@ def starboard_option(command: Callable[..., Any]) -> Callable[..., Any]:
     )(command)
 
 
+READING_SECTION = {
+    "What the file does not say itself": (
+        "--sample-rate", "--time-unit", "--columns", "--delimiter", "--decimal", "--encoding", "--dbc", "--interleaved",
+    ),
+}  # fmt: skip
+"""The options of ``reading_options`` in the help of a command that has its options in sections."""
+
+
 def reading_options(command: Callable[..., Any]) -> Callable[..., Any]:
     """Add the options that say what a file does not say itself: its rate, its columns, its letters, its messages."""
     rate = click.option("--sample-rate", type=float, help="Samples a second, where the file has no clock [Hz].")

@@ -20,7 +20,7 @@ SMALLEST_PERCENT = 0.5
 NO_TRUTH: Mapping[str, float] = {}
 INTERVAL_NOTE = (
     "± is one standard deviation. It is not shown where the interval says something else. The 95 % interval is that of "
-    " the profile likelihood where there is one; an open end, marked with an asterisk, is a bound of the search "
+    "the profile likelihood where there is one; an open end, marked with an asterisk, is a bound of the search "
     "and not a result."
 )
 PHYSICAL_NOTE = (

@@ -15,6 +15,7 @@ from shaftprint.cli._option_sections import SectionedCommand
 from shaftprint.cli._options import (
     DEFAULT_HELP,
     OWN_FILE_HELP,
+    READING_SECTION,
     campaign_option,
     hints_of,
     reading_options,
@@ -63,12 +64,9 @@ with late():
         "Model": ("--structure", "--with", "--prior", "--free", "--hold"),
         "Fit": ("--mode", "--unweighted", "--starts", "--seed"),
         "Report": ("--no-report", "--figures", "--pdf"),
-        "What the file does not say itself": (
-            "--sample-rate", "--time-unit", "--columns", "--delimiter", "--decimal", "--encoding", "--dbc",
-            "--interleaved",
-        ),
+        **READING_SECTION,
     },
-)  # fmt: skip
+)
 @click.argument("recordings", metavar="RECORDING...", nargs=-1, required=True, type=click.Path(path_type=Path))
 @drive_option
 @vessel_option

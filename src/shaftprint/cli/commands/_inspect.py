@@ -12,7 +12,8 @@ from shaftprint.cli._found_tests import print_found_tests, write_proposal
 from shaftprint.cli._inspect_headline import headline, lines_of, lost_parts
 from shaftprint.cli._limit_uses import print_limit_uses
 from shaftprint.cli._next import VESSEL_FILE, free, print_next, print_steps, read_by_all, vessel_file_near
-from shaftprint.cli._options import NAMES, hints_of, reading_options, reading_words
+from shaftprint.cli._option_sections import SectionedCommand
+from shaftprint.cli._options import NAMES, READING_SECTION, hints_of, reading_options, reading_words
 from shaftprint.cli._signal_tables import print_lines, print_signals
 from shaftprint.cli._terminal import answer, echo, print_findings, say
 from shaftprint.cli._vessel_file import print_disagreements
@@ -53,7 +54,12 @@ _MOST_GAPS = 20
 _MOST_STRIPS = 12
 
 
-@click.command("inspect")
+@click.command(
+    "inspect",
+    cls=SectionedCommand,
+    example="shaftprint inspect log.csv --vessel mine.toml --campaign test.toml",
+    sections={"What the test was": ("--vessel", "--campaign"), **READING_SECTION},
+)
 @click.argument("recording", type=click.Path(path_type=Path))
 @click.option("--vessel", help=f"Vessel file, {NAMES} stan-tug-1205: says what the channels are.")
 @click.option("--campaign", help=f"Campaign file, {NAMES} thesis: says what was asked of the ship.")

@@ -14,6 +14,7 @@ from shaftprint.cli._drive_options import drive_option, expect_not_given
 from shaftprint.cli._fingerprint_tables import print_assumed
 from shaftprint.cli._known_values import by_name, named_value
 from shaftprint.cli._limit_uses import print_limit_uses
+from shaftprint.cli._option_sections import SectionedCommand
 from shaftprint.cli._options import DEFAULT_HELP, NAMES, OWN_FILE_HELP, campaign_option
 from shaftprint.cli._ship_options import known_options
 from shaftprint.cli._terminal import print_findings, say
@@ -38,7 +39,18 @@ with late():
     from shaftprint.spectra._frequency_response import FrequencyResponse
 
 
-@click.command("predict")
+@click.command(
+    "predict",
+    cls=SectionedCommand,
+    example="shaftprint predict --campaign test.toml --vessel mine.toml --from noise.csv",
+    sections={
+        "Test": ("--campaign", "--rpm-per-volt"),
+        "What is known of the ship": (
+            "--vessel", "--from", "--from-campaign", "--structure", "--prior", "--free", "--hold", "--value",
+        ),
+        "With --drive": ("--drive", "--input", "--noise", "--fingerprint"),
+    },
+)  # fmt: skip
 @drive_option
 @click.option(
     "--input",

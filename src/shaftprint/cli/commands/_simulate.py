@@ -10,6 +10,7 @@ import click
 
 from shaftprint.choices import CRASH_STOP
 from shaftprint.cli._known_values import by_name, named_value
+from shaftprint.cli._option_sections import SectionedCommand
 from shaftprint.cli._options import LIMITED_HELP, NAMES, OWN_FILE_HELP
 from shaftprint.cli._ship_options import rpm_per_volt_option
 from shaftprint.cli._terminal import answer, say
@@ -73,7 +74,15 @@ def span_of_time(
     return span
 
 
-@click.command("simulate")
+@click.command(
+    "simulate",
+    cls=SectionedCommand,
+    example="shaftprint simulate --fingerprint result --campaign test.toml -o response.csv",
+    sections={
+        "Model": ("--fingerprint", "--structure", "--linear", "--set", "--vessel"),
+        "Set point": ("--campaign", "--input", "--hold", "--lever", "--between", "--rpm-per-volt", "--rate"),
+    },
+)
 @click.option("--fingerprint", type=click.Path(path_type=Path), help="Fingerprint to take values and uncertainty from.")
 @click.option(
     "--structure",

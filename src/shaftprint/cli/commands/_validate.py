@@ -11,6 +11,7 @@ from shaftprint.cli._drive_options import drive_option, expect_not_given, only_r
 from shaftprint.cli._fit_options import fit_options
 from shaftprint.cli._known_values import named_variable
 from shaftprint.cli._next import free, plan_after, print_next
+from shaftprint.cli._option_sections import SectionedCommand
 from shaftprint.cli._options import DEFAULT_HELP, OWN_FILE_HELP, campaign_option, vessel_option
 from shaftprint.cli._terminal import echo, print_findings
 from shaftprint.cli.output._fingerprint_file import fingerprint_at
@@ -41,7 +42,19 @@ with late():
     from shaftprint.vessel._vessel import Vessel
 
 
-@click.command("validate")
+@click.command(
+    "validate",
+    cls=SectionedCommand,
+    example="shaftprint validate log.csv --vessel mine.toml --campaign test.toml --fingerprint result",
+    sections={
+        "Needed": ("--vessel", "--campaign", "--fingerprint", "--drive"),
+        "Which records": ("--record", "--used", "--allow-in-sample"),
+        "Model": ("--structure", "--model", "--model-variable", "--linear", "--linear-torque", "--thesis-sets"),
+        "Fit, without a fingerprint": (
+            "--prior", "--free", "--hold", "--mode", "--unweighted", "--starts", "--seed",
+        ),
+    },
+)  # fmt: skip
 @click.argument("recordings", metavar="RECORDING...", nargs=-1, required=True, type=click.Path(path_type=Path))
 @drive_option
 @vessel_option

@@ -12,6 +12,9 @@ from shaftprint.identify.judgement._requirements import Requirements
 from shaftprint.identify.uncertainty._profile import Interval, Profile
 
 WHOLE_PERCENT = 100.0
+KNOWN_POORLY = "known to this share of the value only"
+"""Doubt of several numbers whose shares stand beside their names."""
+_KNOWN_TO, _ONLY = "it is known to ", " only"
 
 
 def doubts_of(
@@ -36,6 +39,11 @@ def doubts_of(
         if not doubts[number.name] and (parameter := _multiplied(identification, number))
     }
     return {name: doubt for name, doubt in doubts.items() if doubt}
+
+
+def share_of(doubt: str) -> str:
+    """Return to what share of its value a number is known, as its doubt says; nothing where that is another."""
+    return doubt.removeprefix(_KNOWN_TO).removesuffix(_ONLY) if doubt.startswith(_KNOWN_TO) else ""
 
 
 def _multiplied(identification: Identification, estimate: Estimate) -> str:
@@ -73,7 +81,7 @@ def _doubt(
         return f"the test adds almost nothing to what was known before{by_little}"
     size = _size(identification, estimate)
     if std > requirements.largest_std * size:
-        return f"it is known to {100.0 * std / size:.0f} % only" if size > 0.0 else "it cannot be distinguished from 0"
+        return f"{_KNOWN_TO}{100.0 * std / size:.0f} %{_ONLY}" if size > 0.0 else "it cannot be distinguished from 0"
     return ""
 
 

@@ -35,7 +35,7 @@ from shaftprint.identify.judgement._fit_reasons import (
     unstable,
 )
 from shaftprint.identify.judgement._hold_out_lines import not_predicted
-from shaftprint.identify.judgement._number_precision import doubts_of
+from shaftprint.identify.judgement._number_precision import KNOWN_POORLY, doubts_of, share_of
 from shaftprint.identify.judgement._phrases import listed, probability
 from shaftprint.identify.judgement._prior_contradictions import beyond_priors, contradicted_priors
 from shaftprint.identify.judgement._requirements import Requirements
@@ -279,8 +279,12 @@ def _lists(trusted: tuple[str, ...], not_trusted: Mapping[str, str], *, rejected
 
 
 def _worded(doubts: Mapping[str, str]) -> str:
-    """Return the names that share a doubt together, each doubt once."""
+    """Return the names that share a doubt together, each doubt once; of several known to a share, each with its own."""
+    shares = {name: share for name, doubt in doubts.items() if (share := share_of(doubt))}
     names: dict[str, list[str]] = {}
     for name, doubt in doubts.items():
-        names.setdefault(doubt, []).append(name)
+        if name in shares and len(set(shares.values())) > 1:
+            names.setdefault(KNOWN_POORLY, []).append(f"{name} ({shares[name]})")
+        else:
+            names.setdefault(doubt, []).append(name)
     return "; ".join(f"{listed(group)}: {doubt}" for doubt, group in names.items())
