@@ -51,6 +51,31 @@ def test_a_store_is_made_once(store, url, put):
     assert len(history(store, "Meander").entries) == 1
 
 
+def test_who_comes_second_leaves_the_store_that_another_made_meanwhile(tmp_path, monkeypatch):
+    """The second took away the file that it had found missing, and with it the store of the first."""
+    url, connect = str(tmp_path / "fleet.db"), sqlite3.connect
+
+    def connect_after_another(*args, **options):
+        monkeypatch.undo()
+        create_store(url).close()
+        return connect(*args, **options)
+
+    monkeypatch.setattr(sqlite3, "connect", connect_after_another)
+    with pytest.raises(StoreError, match="expected no store yet, found one; it is as it was"):
+        create_store(url)
+    open_store(url).close()
+
+
+def test_what_fails_on_the_way_leaves_no_file(tmp_path, monkeypatch):
+    def fails(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("alembic.command.upgrade", fails)
+    with pytest.raises(KeyboardInterrupt):
+        create_store(str(tmp_path / "fleet.db"))
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_a_file_keeps_what_it_acknowledges(file_store):
     with file_store.database.unlocked() as raw:
         asked = {

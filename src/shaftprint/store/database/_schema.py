@@ -35,8 +35,9 @@ def create(database: Database) -> None:
             # another one may have made it in between
             _expect_room(database, connection)
             _migrate(connection)
-    except StoreError:
-        if is_new and path is not None:
+    except BaseException:
+        # what another one made in between is a store, and stays
+        if is_new and path is not None and _is_empty(database):
             database.close()
             _take_away(path)
         raise
@@ -146,6 +147,11 @@ def _keep_a_log(database: Database) -> None:
             f"{database.location.shown}: its disk does not let readers and a writer share a file (SQLite keeps its log "
             f"as {mode!r}, not 'wal'); choose a local folder, or PostgreSQL by its URL."
         )
+
+
+def _is_empty(database: Database) -> bool:
+    with database.reading() as connection:
+        return not sa.inspect(connection).get_table_names()
 
 
 def _take_away(path: Path) -> None:
