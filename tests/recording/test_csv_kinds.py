@@ -93,8 +93,8 @@ def test_text_in_utf_16(tmp_path):
     ("content", "expected"),
     [
         (
-            b"Date;M_s\n03/04/2026 05:06;1\n03/04/2026 05:07;2\n",
-            'line 2, column 1 .Date.: expected seconds or a date such as 2026-11-22 10:00:00, found "03/04/2026 05:06"',
+            b"Date;M_s\n03/04/2026;1\n03/05/2026;2\n",
+            'line 2, column 1 .Date.: expected seconds or a date such as 2026-11-22 10:00:00, found "03/04/2026", of',
         ),
         (b"Date;M_s\n2026-13-04;1\n2026-13-05;2\n", "expected dates that the calendar has"),
         (gzip.compress(b"time [s];M_s [V]\n0;1\n1;2\n", mtime=0)[:-12], "expected a whole gzip file, found a damaged"),

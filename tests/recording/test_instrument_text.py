@@ -44,6 +44,33 @@ LAYOUTS = {
         "Model,MSO58\nWaveform Type,ANALOG\nHorizontal Units,s\nSample Interval,0.01\nRecord Length,120\n\nTIME,CH1,CH2\n" + _rows("{t:.6e},{u},{y}\n"),
         ("", ""),
     ),
+    "tektronix, two figures more": (
+        "Model,MDO4104C\nHorizontal Units,s,\nSample Interval,0.01,\nVertical Units,V,V\n,,\nLabel,,\nTIME,CH1,CH2\n" + _rows("{t:.5e},{u},{y}\n"),
+        ("", ""),
+    ),
+    "a counter of milliseconds below the rate": ("Sample rate,100,Hz\nTime,u,y\n" + "".join(f"{10 * i},{u},{y}\n" for i, (u, y) in enumerate(zip(U, Y, strict=True))), ("", "")),
+    "waveforms of labview": (
+        "waveform\t[0]\t[1]\nt0\t2026-03-05 09:00:00.000\t2026-03-05 09:00:00.000\ndelta t\t0.010000\t0.010000\n\ntime\tY[0]\tY[1]\n"
+        + _rows("{at:%Y-%m-%d %H:%M:%S}.{ms:03}\t{u}\t{y}\n"),
+        ("", ""),
+    ),
+    "yokogawa, separators around": (
+        '"TraceName","CH1","CH2"\n"VUnit","V","V"\n"SampleRate",1.0E+02,1.0E+02\n"HOffset",0.0,0.0\n"Time","09:00:00","09:00:00"\n\n'
+        + _rows(",{u:.3e}, {y:.6e},\n"),
+        ("V", "V"),
+    ),
+    "yokogawa wt": ("Store No.,Date,Time,Millisecond,U-1,P-1\n" + _rows("{n},{at:%Y/%m/%d},{at:%H:%M:%S},{ms},{u},{y}\n"), ("", "")),
+    "benchlink": ("Channels,2\n\nScan,Time,101 <Set> (V),102 <M> (V)\n" + _rows("{n},{at:%d.%m.%Y %H:%M:%S}:{ms:03},{u},{y}\n"), ("V", "V")),
+    "a trend of rockwell": (
+        "Trend Name:,T1\nSample Period:,10 ms\nStart Time:,03/05/2026,09:00:00;000\n\nHeader:,Date,Time,Set,M\n"
+        + _rows("Data,{at:%m/%d/%Y},{at:%H:%M:%S};{ms:03},{u},{y}\n"),
+        ("", ""),
+    ),
+    "remarks in brackets": (
+        '"Plot Title: 1"\n"#","Date Time, GMT+01:00","U, V (LGR S/N: 10, LBL: a)","Torque, Nm (LGR S/N: 10)"\n'
+        + _rows("{n},{at:%Y-%m-%d %H:%M:%S}.{ms:03},{u},{y}\n"),
+        ("V", "N m"),
+    ),
     "rohde": ("in s,C1 in V,C2 in N m\n" + _rows("{t:.8E},{u},{y}\n"), ("V", "N m")),
     "hioki": (
         '"File name","WAVE0001.CSV","V1.00"\n"Mode","DC","DC",\n"Ratio"," 1.00000E+00"," 1.00000E+00",\n"Time","CH1[V]","CH2[V]",\n'
@@ -138,7 +165,18 @@ def test_two_channels_are_read(tmp_path, name):
     first, second = values.values()
     assert np.array_equal(first, U)
     assert second == pytest.approx(Y, abs=1e-3)
-    dated = {"three parts of a time", "graphtec", "toa5", "german", "date and time of day", "dates beside seconds"}
+    dated = {
+        "remarks in brackets",
+        "benchlink",
+        "yokogawa wt",
+        "waveforms of labview",
+        "three parts of a time",
+        "graphtec",
+        "toa5",
+        "german",
+        "date and time of day",
+        "dates beside seconds",
+    }
     assert recording.began == (BEGAN if name in dated else None)
 
 
@@ -169,7 +207,8 @@ def test_a_word_in_a_column_of_numbers_leaves_it_out_with_its_line(tmp_path):
 
 
 @pytest.mark.parametrize(
-    "mark", ["NaN", "OL", "-", "---", "n/a", "NULL", "#N/A", "BURNOUT", "", "nan", "******", "Overload"]
+    "mark",
+    ["NaN", "OL", "-", "---", "n/a", "NULL", "#N/A", "BURNOUT", "", "nan", "******", "Overload", "∞", "-∞", "+++++++"],
 )
 def test_marks_for_no_value_are_no_numbers(tmp_path, mark):
     _, values = _read(tmp_path, "time,u,y\n" + _rows("{t:.2f},{u},{y}\n").replace("0.07,0.0,", f"0.07,{mark},"))
@@ -327,3 +366,36 @@ def test_a_table_of_wide_rows_behind_words_is_known_without_an_ending(tmp_path):
     path.write_text("\n".join(["Powers", "version=1", "", "endheader", names, *rows, ""]), encoding="utf-8")
     with read_recording(path) as recording:
         assert recording.channel("channel_149").count == 30
+
+
+@pytest.mark.parametrize(("units", "end"), [("", ","), ('"Points"', ""), ("Points", ",")])
+def test_a_head_beside_the_rows_of_an_oscilloscope(tmp_path, units, end):
+    """As Tektronix wrote a file for each channel: key, value and unit stand in front of the first rows."""
+    head = [f"Record Length,{COUNT},{units}", "Sample Interval,0.01,", "Trigger Point,60,", ",,", "Source,CH2,"]
+    head += ["Vertical Units,V,", "Horizontal Units,s,", "Probe Atten,1.0,"]
+    rows = [f"{t - 0.6:.4f},  {y}{end}" for t, y in zip(TIME, Y, strict=True)]
+    text = "\n".join(f"{head[k] if k < len(head) else ',,'},  {row}" for k, row in enumerate(rows)) + "\n"
+    recording, values = _read(tmp_path, text)
+    assert np.array_equal(values["CH2"], Y)
+    channel = recording.channel("CH2")
+    assert (list(recording.channels), channel.unit, channel.rate_hz, channel.start_s) == (["CH2"], "V", 100.0, -0.6)
+
+
+def test_the_rate_above_the_rows_settles_what_their_times_leave_open(tmp_path):
+    recording, _ = _read(tmp_path, LAYOUTS["a counter of milliseconds below the rate"][0])
+    assert recording.remarks == ("column Time: its unit is ms by the rate of 100 Hz above the rows.",)
+    recording, _ = _read(tmp_path, "Sample rate,20,Hz\ntime [s],y\n" + _rows("{t:.2f},{y}\n"))
+    assert recording.channel("y").rate_hz == 100.0
+    assert recording.remarks == ("column time: a rate of 100 Hz, which counts; the lines above say 20 Hz.",)
+
+
+def test_the_rate_above_the_rows_places_those_that_have_one_stamp(tmp_path):
+    """As LabVIEW writes waveforms: a step a channel above, dates to the second below."""
+    head = "waveform\t[0]\t[1]\nt0\t05.03.2026 09:00:00\t05.03.2026 09:00:00\ndelta t\t0,01\t0,01\n\ntime\tY[0]\tY[1]\n"
+    rows = "".join(f"05.03.2026 09:00:{k // 100:02}\t{k},5\t{k % 7},0\n" for k in range(450))
+    recording, values = _read(tmp_path, head + rows)
+    assert (recording.began, [one.rate_hz for one in recording.channels.values()]) == (BEGAN, [100.0, 100.0])
+    assert np.array_equal(values["Y[0]"], 0.5 + np.arange(450.0))
+    # 50 Hz is not what 100 rows with each stamp have
+    with pytest.raises(RecordingError, match="about 100 rows with each stamp"):
+        _read(tmp_path, head.replace("0,01", "0,02") + rows)

@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 import scipy.io
 
+from shaftprint.errors import RecordingError
 from shaftprint.recording import read_recording
 
 COUNT = 200
@@ -102,3 +103,80 @@ def test_references_in_a_circle_come_to_an_end(tmp_path):
         several = file["exp001/Y"]
         several.create_dataset("Self", data=np.array([[several.ref]] * 2, dtype=h5py.ref_dtype), dtype=h5py.ref_dtype)
     assert set(NAMES) <= set(_channels(path))
+
+
+@pytest.mark.parametrize("rasters", [1, 2])
+def test_a_signal_of_dspace_has_the_times_of_its_index(tmp_path, rasters):
+    """Rasters of one length are told apart by the index alone."""
+    later = TIME + 0.003
+    x = _array(("Name", "Data", "Unit"), [("10ms", TIME[None], "s"), ("Second task", later[None], "s")][:rasters])
+    y = [(NAMES[0], TORQUE[None], UNITS[0], 1.0), (NAMES[1], SPEED[None], UNITS[1], float(rasters))]
+    content = {"exp001": {"X": x, "Y": _array(("Name", "Data", "Unit", "XIndex"), y)}}
+    scipy.io.savemat(tmp_path / "log.mat", content)
+    channels = _channels(tmp_path / "log.mat")
+    assert {name: one[:3] for name, one in channels.items()} == {
+        "M_s": ("N m", 100.0, 0.0),
+        "n_e": ("rpm", 100.0, 0.0 if rasters == 1 else 0.003),
+    }
+    assert np.array_equal(channels["n_e"][3], SPEED)
+
+
+def test_times_are_those_of_the_names(tmp_path):
+    """Dewesoft writes times a channel beside the rate of the fastest, asammdf times a group."""
+    slow = {"time": 0.1 * np.arange(30) + 0.05, "value": np.linspace(60.0, 61.0, 30)}
+    of_dewesoft = {
+        "Sample_rate": 100.0, "Data1_M_s": TORQUE[:, None], "Data1_time_M_s": TIME[:, None],
+        "Data1_T_oil": slow["value"][:, None], "Data1_time_T_oil": slow["time"][:, None],
+    }  # fmt: skip
+    of_asammdf = {
+        "DGM0_timestamps": TIME[:, None], "DG0_M_s": TORQUE[:, None],
+        "DGM1_timestamps": slow["time"][:, None], "DG1_T_oil": slow["value"][:, None],
+    }  # fmt: skip
+    for content, begin in ((of_dewesoft, "Data1"), (of_asammdf, "DG")):
+        scipy.io.savemat(tmp_path / "log.mat", content)
+        channels = _channels(tmp_path / "log.mat")
+        assert [name.startswith(begin) for name in channels] == [True, True]
+        torque, temperature = channels.values()
+        assert (torque[1:3], temperature[1:3]) == ((100.0, 0.0), (10.0, 0.05))
+        assert np.array_equal(temperature[3], slow["value"])
+
+
+def _pulse(frequency, **channels):
+    content = {"File_Header": {"NumberOfChannels": "2", "SampleFrequency": frequency}}
+    for number, (name, unit, values) in enumerate(channels.values(), start=1):
+        content[f"Channel_{number}_Header"] = {"SignalName": name, "Unit": unit}
+        content[f"Channel_{number}_Data"] = values[:, None]
+    return content
+
+
+@pytest.mark.parametrize(("frequency", "kept"), [("100,0", COUNT), ("100 10", 20)])
+def test_channels_with_a_head_each_have_its_name_and_the_rate_of_the_file(tmp_path, frequency, kept):
+    content = _pulse(frequency, torque=("M_s", "Nm", TORQUE), speed=("n_e", "rpm", SPEED[:kept]))
+    scipy.io.savemat(tmp_path / "log.mat", content)
+    channels = _channels(tmp_path / "log.mat")
+    assert {name: one[:2] for name, one in channels.items()} == {
+        "M_s": ("N m", 100.0),
+        "n_e": ("rpm", 100.0 if kept == COUNT else 10.0),
+    }
+    assert np.array_equal(channels["M_s"][3], TORQUE)
+
+
+def test_one_rate_for_channels_of_several_lengths_is_asked_for(tmp_path):
+    content = _pulse("100", torque=("M_s", "Nm", TORQUE), speed=("n_e", "rpm", SPEED[:20]))
+    scipy.io.savemat(tmp_path / "log.mat", content)
+    with pytest.raises(RecordingError, match=r"pass sample_rate_hz="):
+        _channels(tmp_path / "log.mat")
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        {"A": SPEED[:, None], "B": TORQUE[:, None], "Tstart": -1.0, "Tinterval": 0.01, "Length": float(COUNT)},
+        {"Channel_1": {"XInc": 0.01, "XOrg": -1.0, "XUnits": "s", "Data": TORQUE[:, None]}},
+    ],
+)
+def test_oscilloscopes_state_step_and_start(tmp_path, content):
+    scipy.io.savemat(tmp_path / "log.mat", content)
+    channels = _channels(tmp_path / "log.mat")
+    assert {one[1:3] for one in channels.values()} == {(100.0, -1.0)}
+    assert np.array_equal(list(channels.values())[-1][3], TORQUE)

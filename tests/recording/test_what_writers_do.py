@@ -2,7 +2,7 @@
 
 import gzip
 import sqlite3
-from datetime import UTC, datetime
+from datetime import UTC, datetime, timedelta
 
 import asammdf
 import can
@@ -261,12 +261,43 @@ def test_dates_of_many_programs(tmp_path, stamp):
         assert recording.channel("n").rate_hz == 1.0
 
 
-@pytest.mark.parametrize("mark", ["/", "-"])
-def test_a_date_of_which_nobody_can_tell_the_day_is_asked_for(tmp_path, mark):
-    path = _stamped(tmp_path / "log.csv", lambda k: f"03{mark}05{mark}2026 13:00:{k:02}")
-    with pytest.raises(RecordingError, match="of which day and month cannot be told apart; write the dates as in ISO"):
-        read_recording(path)
-    assert _values(path, sample_rate_hz=1.0)[:2].tolist() == [0.5, 1.5]
+@pytest.mark.parametrize("date", ["03/05/2026", "3-5-26", "'26-03-05", "03/05/26"])
+def test_of_a_date_of_which_nobody_can_tell_the_day_the_times_count(tmp_path, date):
+    path = _stamped(tmp_path / "log.csv", lambda k: f"{date} 01:00:{k:02} PM")
+    with read_recording(path) as recording:
+        assert (recording.began, recording.channel("n").rate_hz) == (None, 1.0)
+        assert recording.remarks == (f"Second 0 is 13:00:00 of {date}, of which day and month cannot be told apart.",)
+
+
+@pytest.mark.parametrize("date", ["03/25/2026", "25/03/2026", "25-3-2026"])
+def test_a_date_with_a_number_that_is_no_month_is_told(tmp_path, date):
+    with read_recording(_stamped(tmp_path / "log.csv", lambda k: f"{date} 13:00:{k:02}")) as recording:
+        assert (recording.began, recording.remarks) == (datetime.fromisoformat("2026-03-25T13:00"), ())
+
+
+@pytest.mark.parametrize("form", ["%m/%d/%Y", "%d/%m/%Y"])
+@pytest.mark.parametrize(("begin", "date"), [("2026-12-31", True), ("2026-03-05", False)])
+def test_dates_with_slashes_go_on_over_midnight(tmp_path, form, begin, date):
+    began = datetime.fromisoformat(f"{begin}T23:59:40")
+    path = _stamped(tmp_path / "log.csv", lambda k: (began + timedelta(seconds=k)).strftime(f"{form} %H:%M:%S"))
+    with read_recording(path) as recording:
+        assert recording.began == (began if date else None)
+        assert (recording.channel("n").rate_hz, recording.channel("n").clock_jumps) == (1.0, ())
+
+
+@pytest.mark.parametrize("hours", [30, 48, -13])
+def test_dates_with_slashes_that_do_not_go_on_by_a_day_are_refused(tmp_path, hours):
+    """How long such a pause is depends on which number is the day."""
+    began = datetime.fromisoformat("2026-03-05T14:00")
+    stamps = [began + timedelta(seconds=k, hours=hours if k > 20 else 0) for k in range(50)]
+    with pytest.raises(RecordingError, match="expected dates that go on by a day at midnight"):
+        read_recording(_stamped(tmp_path / "log.csv", lambda k: stamps[k].strftime("%m/%d/%Y %H:%M:%S")))
+
+
+@pytest.mark.parametrize("stamp", ["05.03.2026 13:00:{:02}:500", "2026-03-05 13:00:{:02};500"])
+def test_milliseconds_behind_a_colon_or_a_semicolon(tmp_path, stamp):
+    with read_recording(_stamped(tmp_path / "log.csv", stamp.format)) as recording:
+        assert recording.began == datetime.fromisoformat("2026-03-05T13:00:00.500")
 
 
 def test_an_hour_that_summer_time_takes_is_said(tmp_path):

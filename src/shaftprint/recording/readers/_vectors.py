@@ -17,8 +17,9 @@ from shaftprint.recording.readers._units import seconds_in
 from shaftprint.units import plain_unit
 
 _RATES = ("sample_rate_hz", "fs", "sample_rate", "sampling_rate", "sampling_frequency", "samplerate", "rate_hz")
-_STEPS = ("dt", "ts", "wf_increment", "sampling_interval", "sample_time")
-_STARTS = ("start_s", "t0", "wf_start_offset")
+# tinterval and tstart are PicoScope's, xinc and xorg Keysight's
+_STEPS = ("dt", "ts", "wf_increment", "sampling_interval", "sample_time", "tinterval", "xinc")
+_STARTS = ("start_s", "t0", "wf_start_offset", "tstart", "xorg")
 LOCAL = "shaftprint_local_time"
 """Attribute of times that are dates by the clock of the place, without a zone."""
 _UNITS = ("units", "unit", "unit_string")

@@ -219,9 +219,10 @@ def _recording(
 def _with_more(recording: Recording, header: Header, done: Unpacked) -> Recording:
     """Return a recording with what is said of a clock without a date, and of titles that come again."""
     remarks, began = list(recording.remarks), recording.began
-    day_time_s = None if done.stamps is None else done.stamps.day_time_s
-    if day_time_s is not None:
-        remarks.append(f"Second 0 is {timedelta(seconds=round(day_time_s, 6))} of a day that is not said.")
+    if done.stamps is not None and done.stamps.day_time_s is not None:
+        stated = done.stamps.ambiguous_date
+        of_day = f"{stated}, of which day and month cannot be told apart" if stated else "a day that is not said"
+        remarks.append(f"Second 0 is {timedelta(seconds=round(done.stamps.day_time_s, 6))} of {of_day}.")
     first = next(iter(recording.channels.values()), None)
     for line, row in done.titles_again:
         if first is None:

@@ -8,7 +8,9 @@ import numpy as np
 
 from shaftprint.errors import RecordingError
 
-_CLOCK = r"(?P<clock>\d\d?:\d\d(?::\d\d(?:[.,]\d+)?)?)(?:\s?(?P<half>[AaPp][Mm]))?"
+# milliseconds also behind a colon or a semicolon, as Keysight's and Rockwell's programs write them
+_CLOCK = r"(?P<clock>\d\d?:\d\d(?::\d\d(?:[.,]\d+|[:;]\d{3})?)?)(?:\s?(?P<half>[AaPp][Mm]))?"
+_PART = re.compile(r"(?<=:\d\d:\d\d)[,:;]")
 _ZONED = r"(?:\s?(?P<zone>Z|[+-]\d\d(?::?\d\d)?))?"
 _ISO = re.compile(rf"(?P<year>\d{{4}})[-/](?P<month>\d\d?)[-/](?P<day>\d\d?)(?:[T ]+{_CLOCK})?{_ZONED}")
 # 20260305T090000.5, ISO 8601 without separators
@@ -30,9 +32,6 @@ _MONTHS = {
     for name in names.split()
 }
 _ZONE = re.compile(r"\s?(Z|[+-]\d\d(?::?\d\d)?)$")
-# which of the first two is the day, nobody can tell
-AMBIGUOUS = re.compile(r"\d\d?([/-])\d\d?\1\d{2,4}([T ,].*)?")
-"""A date of which day and month cannot be told apart."""
 
 
 def _parts(text: str) -> re.Match[str] | None:
@@ -84,7 +83,7 @@ def _in_iso(parts: re.Match[str]) -> str:
     month = parts["month"] or str(_MONTHS[parts["name"].lower()])
     year = parts["year"] if len(parts["year"]) > 2 else f"20{parts['year']}"
     day = f"{year}-{int(month):02}-{int(parts['day']):02}"
-    clock = (parts["clock"] or "").replace(",", ".")
+    clock = _PART.sub(".", (parts["clock"] or "").replace(",", "."))
     if not clock:
         return day
     if parts.re is _BASIC:

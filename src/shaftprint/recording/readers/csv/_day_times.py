@@ -1,5 +1,9 @@
-"""Times of a day without a date, such as ``09:00:00.010``, which begin again at midnight."""
+"""Times of a day, such as ``09:00:00.010``, which begin again at midnight: without a date, or behind an ambiguous one.
 
+Of 03/05/2026 and 26-03-05 nobody can tell day and month apart; the times behind them count nevertheless.
+"""
+
+import datetime as dt
 import re
 from collections.abc import Sequence
 
@@ -7,11 +11,16 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 
+_DATE = r"'?\d\d?(?P<mark>[/-])\d\d?(?P=mark)\d{2,4}"
+AMBIGUOUS = re.compile(rf"{_DATE}([T ,].*)?")
+"""A date of which day and month cannot be told apart."""
 # with seconds, or as spreadsheets shorten it: minutes and seconds with a decimal
 _DAY_TIME = re.compile(
-    r"(?:(?P<hour>\d{1,3}):)?(?P<minute>[0-5]?\d):(?P<second>[0-5]?\d)(?P<part>[.,:]\d+)?\s?(?P<half>[AaPp][Mm])?"
+    rf"(?:(?P<date>{_DATE})[T ,]+)?"
+    r"(?:(?P<hour>\d{1,3}):)?(?P<minute>[0-5]?\d):(?P<second>[0-5]?\d)(?P<part>[.,:;]\d+)?\s?(?P<half>[AaPp][Mm])?"
 )
 _DAY_S, _HALF_DAY_S = 86_400.0, 43_200.0
+_MONTHS, _TWO_FIGURES = 12, 99
 
 
 def is_day_time(text: str) -> bool:
@@ -33,6 +42,32 @@ def day_time_s(text: str) -> float:
         hour = hour % 12.0 + (12.0 if parts["half"].lower() == "pm" else 0.0)
     part = float("0." + parts["part"][1:]) if parts["part"] else 0.0
     return 3600.0 * hour + 60.0 * float(parts["minute"]) + float(parts["second"]) + part
+
+
+def ambiguous_date(text: str) -> str:
+    """Return the date in front of a time of day; empty where there is none."""
+    match = _DAY_TIME.fullmatch(text)
+    return "" if match is None else match["date"] or ""
+
+
+def told_date(date: str) -> dt.date | None:
+    """Return what an ambiguous date is where one of its first parts is no month; None where nobody can tell."""
+    first, second, year = (int(part) for part in re.findall(r"\d+", date))
+    in_order = {(True, False): (second, first), (False, True): (first, second)}
+    month, day = in_order.get((first > _MONTHS, second > _MONTHS), (0, 0))
+    try:
+        return dt.date(year, month, day) if year > _TWO_FIGURES else None
+    except ValueError:
+        return None
+
+
+def may_follow(date: str, before: str) -> bool:
+    """Return whether an ambiguous date may be that of the day behind another, whichever part is the day."""
+    parts = zip(re.findall(r"\d+", before), re.findall(r"\d+", date), strict=True)
+    moves = [(int(new), int(new) - int(old)) for old, new in parts]
+    # the day behind the last of a month or a year is a first
+    others = [new for new, move in moves if move not in (0, 1)]
+    return any(move == 1 for _, move in moves) and all(new == 1 for new in others)
 
 
 def day_times_s(texts: Sequence[str]) -> FloatArray:

@@ -7,8 +7,8 @@ from collections.abc import Iterable
 from shaftprint.recording.readers.csv._dates import is_date
 from shaftprint.recording.readers.csv._day_times import is_day_time
 
-WHITE_SPACE = " "
-DELIMITERS = (";", "\t", ",", "|", WHITE_SPACE)
+WHITE_SPACE, TAB = " ", "\t"
+DELIMITERS = (";", TAB, ",", "|", WHITE_SPACE)
 
 NUMBER, DATE, DAY_TIME, GAP, TEXT = "n", "d", "c", "g", "t"
 """Kinds of a field, a letter each; a mark for no value and an empty field are of one kind."""
@@ -18,13 +18,13 @@ _GAPS = (
     "na", "n/a", "#n/a", "#na", "null", "none", "nil", "-nan", "+nan", "nan(ind)", "-nan(ind)",
     "#value!", "#div/0!", "#num!", "ol", "+ol", "-ol", "ovld", "over", "+over", "-over", "overload",
     "overrange", "over range", "underrange", "overflow", "burnout", "burn out", "b.o.", "invalid", "bad", "no data",
-    "nodata", "err", "error", "fault", "?", "off",
+    "nodata", "err", "error", "fault", "?", "off", "∞", "+∞", "-∞",
 )  # fmt: skip
 OVERLOAD = 9.89e37
 """From here on a number is none: instruments write 9.9e37 for an overload and 9.91e37 for no value (SCPI 1999)."""
 # printed by programs of Windows, with as many figures as were asked for: 1.#INF00, -1.#IND, 1.#QNAN
 _WINDOWS = re.compile(r"[+-]?1[.,]#[a-z]+0*", re.IGNORECASE)
-_DASHES = re.compile(r"[-*_.]*|[+-]?\*+|[+-]?-{2,}")
+_DASHES = re.compile(r"[-*_.]*|\+{2,}|[+-]?\*+|[+-]?-{2,}")
 # thousands in groups, 1.234,5 or 1,234.5: two signs, of which the last is the decimal one
 _GROUPED = r"[+-]?\d{1,3}(\.\d{3})+,\d+|[+-]?\d{1,3}(,\d{3})+\.\d+"
 _NUMBER = re.compile(rf"[+-]?(\d+([.,]\d*)?|[.,]\d+)([eE][+-]?\d+)?|[+-]?(nan|inf(inity)?)|{_GROUPED}", re.IGNORECASE)

@@ -97,9 +97,8 @@ def _pairs(lines: Sequence[str], delimiter: str) -> list[tuple[str, str, str]]:
             if key is None:
                 continue
             value = next((one for one in candidates if _VALUE.fullmatch(one.strip()) is not None), "")
-            # a value and its unit in fields of their own
-            unit = key["unit"] or (
-                row[place + 2] if candidates and value == candidates[0] and len(row) > place + 2 else ""
-            )
+            # a value and its unit in fields of their own, where that is no value a channel
+            behind = "".join(row[place + 2 : place + 3]) if candidates and value == candidates[0] else ""
+            unit = key["unit"] or (behind if _VALUE.fullmatch(behind) is None else "")
             pairs.append((plain_key(key["key"]), unit.strip(" []()"), value.strip()))
     return pairs

@@ -21,6 +21,7 @@ from shaftprint.recording.readers.csv._fields import (
     split_row,
     with_point,
 )
+from shaftprint.recording.readers.csv._head_beside import head_beside
 from shaftprint.recording.readers.csv._head_facts import HeadFacts, head_facts, is_fact
 from shaftprint.recording.readers.csv._scope_export import began_of_export, width_of_export
 from shaftprint.recording.readers.csv._table import Table, find_table
@@ -32,7 +33,7 @@ from shaftprint.units import plain_unit
 # Titles of a column that counts the rows.
 _COUNTERS = (
     "", "no", "no.", "nr", "nr.", "number", "index", "#", "sequence", "record", "sample", "samples", "point", "row",
-    "id", "rn", "scan", "stepcount", "step", "count", "counter", "zeile", "unnamed: 0",
+    "id", "rn", "scan", "stepcount", "step", "count", "store no.", "counter", "zeile", "unnamed: 0",
 )  # fmt: skip
 # Titles of a column that says of which signal a row is, and of the values.
 _SIGNALS = (
@@ -81,6 +82,8 @@ class Header:
     """Column of the file that holds dates beside times that are numbers."""
     rate_hz: float | None = None
     """Sample rate that the lines above the titles give, where there are no times [Hz]."""
+    stated_rate_hz: float | None = None
+    """The same beside times, which may be rounded or without a unit [Hz]."""
     start_s: float = 0.0
     """Second of the first row that they give [s]."""
     began: datetime | None = None
@@ -134,11 +137,13 @@ def read_header(
     """
     asked = [] if columns is None else [title.strip() for title in columns.split(",")]
     renamed = bool(asked) and all("=" in title for title in asked)
+    beside = head_beside(lines)
+    lines = lines if beside is None else beside.rows
     table = _expect_table(path, lines, delimiter, (0 if renamed else len(asked)) or width_of_export(lines))
     units: list[str]
     titles, units = (asked + [""] * (table.width - len(asked)), []) if asked and not renamed else ([], [])
     if not titles:
-        titles, units = titles_and_units(lines, table)
+        titles, units = titles_and_units(lines, table) if beside is None else (list(beside.names), list(beside.units))
         _expect_titles(path, lines, table, titles)
     if renamed:
         titles = _renamed(path, titles, asked)
@@ -182,6 +187,7 @@ def read_header(
         milliseconds=times.milliseconds,
         dates_beside=times.dates_beside,
         rate_hz=facts.rate_hz if times.place is None else None,
+        stated_rate_hz=None if times.place is None else facts.rate_hz,
         start_s=facts.start_s + _skipped(table, names) / (facts.rate_hz or np.inf) if times.place is None else 0.0,
         began=began_of_export(lines[: table.first]),
         head=frozenset(line.strip() for line in lines[: table.first] if line.strip()),

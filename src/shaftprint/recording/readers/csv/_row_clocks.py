@@ -1,6 +1,7 @@
 """When the rows of a text file were taken: by a column of times, by several, or at a rate."""
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from datetime import timedelta
 from pathlib import Path
 from typing import cast
@@ -12,6 +13,8 @@ from shaftprint.recording._channel import Channel, Times
 from shaftprint.recording._spool import Spool
 from shaftprint.recording.readers._clock import SampleClock, clock_of_times, on_clock
 from shaftprint.recording.readers._time_scale import TimeScale, time_scale
+from shaftprint.recording.readers._units import seconds_in
+from shaftprint.recording.readers.csv._filled_rows import clock_of_rows, may_have_own_rows, only, own_rows
 from shaftprint.recording.readers.csv._header import Header
 from shaftprint.recording.readers.csv._rows import Unpacked
 
@@ -19,6 +22,8 @@ from shaftprint.recording.readers.csv._rows import Unpacked
 _HOUR_S, _SUNDAY, _BEFORE = 3600.0, 6, 4
 # printed times are rounded
 _RATE_AGREEMENT = 1e-3
+# programs round the rate that they write above the rows
+_STATED_AGREEMENT = 0.02
 # A stamp to the second that so many rows have tells their rate, where the caller does not.
 _STAMPS = 5_000
 _SHOWN = 5
@@ -42,7 +47,23 @@ def scale_of_rows(path: Path, header: Header, spool: Spool, count: int, asked: s
     """
     if header.time_column is None or header.time_unit is None:
         return TimeScale()
-    return _scale(path, header, spool, header.time_column, header.time_unit, count, asked)
+    unit = header.time_unit or _unit_by_rate(header, spool.source(header.time_column), count)
+    scale = _scale(path, header, spool, header.time_column, unit, count, asked)
+    if header.time_unit or asked or unit in ("", "s"):
+        return scale
+    name = header.names[header.time_column]
+    remark = f"column {name}: its unit is {unit} by the rate of {header.stated_rate_hz:g} Hz above the rows."
+    return replace(scale, remark=remark)
+
+
+def _unit_by_rate(header: Header, read: Times, count: int) -> str:
+    """Return the unit in which times step as the rate above them says; empty where none is, or there is no rate."""
+    if header.stated_rate_hz is None:
+        return ""
+    step = float(np.median(np.diff(read(0, min(count, _STAMPS))))) if count > 1 else 0.0
+    units = ("s", "ms", "us", "ns", "min")
+    stepped = ((unit, step * (seconds_in(unit) or 0.0) * header.stated_rate_hz) for unit in units)
+    return next((unit for unit, steps in stepped if abs(steps - 1.0) <= _STATED_AGREEMENT), "")
 
 
 def sampled(
@@ -57,16 +78,16 @@ def sampled(
 ) -> tuple[dict[str, Channel], list[str]]:
     """Return the columns as channels with one row a sample, and what has to be said of their clocks.
 
-    Columns behind a further column of times are placed by that. ``scale``: what the first times mean. ``left_out``:
+    Columns behind a further column of times are placed by that, and those with a value in some of the rows only by the
+    times of these. ``scale``: what the first times mean. ``left_out``:
     takes columns whose own times are those of no clock. Raises RecordingError if the first times are.
     """
     read = None if header.time_column is None else scale.reading(spool.source(header.time_column))
     count = done.count
     if header.more_times and header.time_column is not None:
         count = _filled(spool, header.time_column, count)
-    clock, remark = _clock(path, header, read, done, count, rate_hz)
-    first: _Rows | RecordingError = _Rows(clock=clock, count=count)
-    own, others, channels = first, [], {}
+    first, remark = _rows(path, header, read, done, count, rate_hz)
+    own, others, on_own_rows, channels = first, list[str](), list[str](), {}
     for number, (name, unit) in enumerate(zip(header.names, header.units, strict=True)):
         if number == header.time_column or name in done.left_out:
             continue
@@ -74,21 +95,53 @@ def sampled(
         if further is not None:
             own = further
             others += [name] if own != first else []
-        elif isinstance(own, RecordingError):
-            left_out[name] = str(own).removeprefix(f"{path}, ")
+            continue
+        source, rows = spool.source(number), own
+        if own is first and read is not None and may_have_own_rows(done.filled[name], count):
+            is_uneven = isinstance(first, RecordingError) or first.clock.is_uneven
+            filled = own_rows(source, count, is_uneven=is_uneven)
+            clock = None if filled is None else clock_of_rows(path, name, filled, read)
+            if filled is not None and isinstance(clock, SampleClock):
+                source, rows = only(source, filled), _Rows(clock=clock, count=filled.size)
+                on_own_rows.append(name)
+        if isinstance(rows, RecordingError):
+            left_out[name] = str(rows).removeprefix(f"{path}, ")
         else:
             channel = Channel(
                 name=name,
                 unit=unit,
-                rate_hz=own.clock.rate_hz,
-                start_s=own.clock.start_s,
-                count=own.count,
-                source=spool.source(number),
+                rate_hz=rows.clock.rate_hz,
+                start_s=rows.clock.start_s,
+                count=rows.count,
+                source=source,
             )
-            channels[name] = on_clock(channel, own.clock)
-    more = f" and {len(others) - _SHOWN} more" if len(others) > _SHOWN else ""
-    by_others = f"Columns behind {', '.join(others[:_SHOWN])}{more} were placed by those times." if others else ""
-    return channels, [remark, by_others]
+            channels[name] = on_clock(channel, rows.clock)
+    if isinstance(first, RecordingError) and not channels:
+        raise first
+    by_others = f"Columns behind {_listed(others)} were placed by those times." if others else ""
+    by_rows = f"{_listed(on_own_rows)}: values in some of the rows only, whose times are theirs." if on_own_rows else ""
+    return channels, [remark, by_others, by_rows]
+
+
+def _listed(names: Sequence[str]) -> str:
+    more = f" and {len(names) - _SHOWN} more" if len(names) > _SHOWN else ""
+    return f"{', '.join(names[:_SHOWN])}{more}"
+
+
+def _rows(
+    path: Path, header: Header, read: Times | None, done: Unpacked, count: int, rate_hz: float | None
+) -> tuple[_Rows | RecordingError, str]:
+    """Return the first rows, or why they have no clock where each may be of one column alone; and what has to be said.
+
+    Raises RecordingError if rows that all columns share have no clock.
+    """
+    try:
+        clock, remark = _clock(path, header, read, done, count, rate_hz)
+    except RecordingError as error:
+        if read is None or not any(may_have_own_rows(filled, count) for filled in done.filled.values()):
+            raise
+        return error, ""
+    return _Rows(clock=clock, count=count), remark
 
 
 def _further(
@@ -130,7 +183,10 @@ def _clock(
     if header.time_column is None or read is None:
         return SampleClock(rate_hz=cast(float, rate_hz), start_s=header.start_s), ""
     name = f"column {header.names[header.time_column]}"
-    rows = _rows_of_a_stamp(read, done.count) if header.dated else 1
+    rows, stamp_s = _rows_of_a_stamp(read, done.count) if header.dated else (1, 0.0)
+    stated_hz = header.stated_rate_hz
+    if rows > 1 and rate_hz is None and stated_hz and abs(stated_hz * stamp_s - rows) <= 1.0 + _STATED_AGREEMENT * rows:
+        rate_hz = stated_hz
     if rows > 1 and rate_hz is None:
         raise RecordingError(
             f"{path}, {name}: expected times of the rows, found about {rows} rows with each stamp; pass their rate, "
@@ -144,6 +200,8 @@ def _clock(
         raise RecordingError(
             f"{path}: expected one sample rate, found {clock.rate_hz:g} Hz in {name} and {rate_hz:g} Hz in the hint."
         )
+    if stated_hz and rate_hz is None and abs(clock.rate_hz / stated_hz - 1.0) > _STATED_AGREEMENT:
+        return clock, f"{name}: a rate of {clock.rate_hz:g} Hz, which counts; the lines above say {stated_hz:g} Hz."
     return clock, _change_of_hour(name, clock, read, done)
 
 
@@ -163,10 +221,10 @@ def _change_of_hour(name: str, clock: SampleClock, read: Times, done: Unpacked) 
     return ""
 
 
-def _rows_of_a_stamp(read: Times, count: int) -> int:
-    """Return how many rows have one stamp, in most places."""
+def _rows_of_a_stamp(read: Times, count: int) -> tuple[int, float]:
+    """Return how many rows have one stamp, in most places, and by how much the stamps step [s]."""
     seconds = read(0, min(count, _STAMPS))
     changes = np.flatnonzero(np.diff(seconds))
     if 2 * changes.size > seconds.size or changes.size < 2:
-        return 1
-    return int(np.median(np.diff(changes)))
+        return 1, 0.0
+    return int(np.median(np.diff(changes))), float(np.median(np.diff(seconds)[changes]))

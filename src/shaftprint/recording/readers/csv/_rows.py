@@ -53,6 +53,8 @@ class Unpacked:
     """Columns that hold words, with the first of them: they are not read to the end."""
     empty: list[str] = field(default_factory=list)
     """Columns without a value in any row."""
+    filled: dict[str, int] = field(default_factory=dict)
+    """How many rows have a value, by column."""
     remarks: list[str] = field(default_factory=list)
     """What else was left out, a sentence each."""
     titles_again: list[tuple[int, int]] = field(default_factory=list)
@@ -92,7 +94,7 @@ class _Unpacking:
     def __init__(self, path: Path, header: Header, spool: Spool) -> None:
         self.path, self.header, self.spool = path, header, spool
         self.done = Unpacked(stamps=Stamps(path, header) if header.dated else None)
-        self.has_value = dict.fromkeys(header.places, False)
+        self.done.filled = dict.fromkeys(header.names, 0)
         self.marks = [Marks() for _ in header.places]
         self.mistakes: list[tuple[int, list[str]]] = []
         self.damaged: list[int] = []
@@ -140,7 +142,7 @@ class _Unpacking:
                 continue
             values = np.asarray(columns[place], dtype=np.float64)
             if (last := _last_value(values)) is not None:
-                self.has_value[place] = True
+                self.done.filled[header.names[column]] += int(np.count_nonzero(np.isfinite(values)))
                 self.done.full = max(self.done.full, self.done.count + last + 1)
                 self.marks[column].take(values)
             self.spool.append_column(column, values)
@@ -303,11 +305,7 @@ class _Unpacking:
             if column != header.time_column and (sentence := self.marks[column].sentence(name)):
                 done.remarks.append(sentence)
         channels = [name for column, name in enumerate(header.names) if column != header.time_column]
-        done.empty = [
-            name
-            for name, place in zip(header.names, header.places, strict=True)
-            if done.count and not self.has_value[place]
-        ]
+        done.empty = [name for name in header.names if done.count and not done.filled[name]]
         if channels and len(done.left_out) == len(channels) and self.mistakes:
             raise wrong_rows(self.path, self.mistakes, header)
 

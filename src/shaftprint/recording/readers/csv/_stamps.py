@@ -1,7 +1,7 @@
 """Dates, times of day and milliseconds beside them, as seconds from the first row on."""
 
 from collections.abc import Mapping, Sequence
-from datetime import UTC, datetime
+from datetime import UTC, datetime, time, timedelta
 from pathlib import Path
 from typing import cast
 
@@ -11,8 +11,17 @@ from shaftprint.arrays import FloatArray
 from shaftprint.errors import RecordingError
 from shaftprint.recording.readers._epoch import seconds_from
 from shaftprint.recording.readers.csv._dates import dates, has_offset, is_date
-from shaftprint.recording.readers.csv._day_times import day_times_s, is_day_time, over_midnight
+from shaftprint.recording.readers.csv._day_times import (
+    ambiguous_date,
+    day_times_s,
+    is_day_time,
+    may_follow,
+    over_midnight,
+    told_date,
+)
 from shaftprint.recording.readers.csv._header import Header
+
+_DAY_S = 86_400.0
 
 
 def is_stamp(field: str) -> bool:
@@ -29,17 +38,23 @@ class Stamps:
         self._in_utc = False
         self._first_s: float | None = None
         self._last_s: float | None = None
+        self.ambiguous_date = ""
+        """Date of the first row of which day and month cannot be told apart; empty where there is none."""
+        self._last_date = ""
 
     @property
     def began(self) -> datetime | None:
         """Date of the first row; None where there are times of day alone."""
+        day = told_date(self.ambiguous_date) if self.ambiguous_date else None
+        if day is not None:
+            return datetime.combine(day, time()) + timedelta(seconds=round(self._first_s or 0.0, 6))
         date = None if self._first is None else cast("datetime", self._first.item())
         return date.replace(tzinfo=UTC) if date is not None and self._in_utc else date
 
     @property
     def day_time_s(self) -> float | None:
-        """Seconds since midnight of the first row where there are times of day alone."""
-        return self._first_s
+        """Seconds since midnight of the first row where there are times of day without a date that can be told."""
+        return self._first_s if self.began is None else None
 
     def seconds(self, columns: Mapping[int, FloatArray | Sequence[str]]) -> FloatArray:
         """Return the seconds of rows since the first of the file.
@@ -66,8 +81,31 @@ class Stamps:
             raise RecordingError(
                 f'{self._path}: expected times of day such as 09:00:00.010, found "{texts[int(wrong[0])][:40]}".'
             )
-        seconds = over_midnight(seconds, self._last_s)
+        before_s = self._last_s
+        seconds = over_midnight(seconds, before_s)
+        self._expect_day_after_day(texts, np.diff(seconds // _DAY_S, prepend=(before_s or 0.0) // _DAY_S))
         self._last_s = float(seconds[-1])
         if self._first_s is None:
             self._first_s = float(seconds[0])
         return seconds - self._first_s
+
+    def _expect_day_after_day(self, texts: Sequence[str], midnights: FloatArray) -> None:
+        """Refuse ambiguous dates that do not go on by one at midnight: how far they are apart nobody can tell.
+
+        Raises RecordingError if one does not.
+        """
+        if self._first_s is None:
+            self.ambiguous_date = self._last_date = ambiguous_date(texts[0])
+        if not self.ambiguous_date:
+            return
+        for text, midnight in zip(texts, midnights.tolist(), strict=True):
+            before = self._last_date
+            if not midnight and text.startswith(before):
+                continue
+            date = ambiguous_date(text)
+            if date == before or not midnight or not may_follow(date, before):
+                raise RecordingError(
+                    f'{self._path}: expected dates that go on by a day at midnight, found "{text[:40]}" behind '
+                    f"{before}, of which day and month cannot be told apart; write the dates as in ISO 8601."
+                )
+            self._last_date = date

@@ -4,7 +4,7 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from shaftprint.recording.readers.csv._fields import DELIMITERS, GAP, TEXT, kinds_of, split_row
+from shaftprint.recording.readers.csv._fields import DELIMITERS, GAP, TAB, TEXT, WHITE_SPACE, kinds_of, split_row
 
 # Words in a row speak against a delimiter: a decimal comma taken for one leaves some.
 _WORDS = 0.5
@@ -40,9 +40,20 @@ def find_table(lines: Sequence[str], *, delimiter: str | None = None, width: int
     best: tuple[float, Table] | None = None
     for candidate in (delimiter,) if delimiter else DELIMITERS:
         sized = _table(lines, candidate, width)
-        if sized is not None and (best is None or sized[0] > best[0]):
+        if sized is not None and (best is None or sized[0] > best[0]) and not _splits_dates(best, sized[1]):
             best = sized
     return None if best is None else best[1]
+
+
+def _splits_dates(best: tuple[float, Table] | None, table: Table) -> bool:
+    """Return whether white space has more columns than tabs only because it stands in dates."""
+    tabs = None if best is None or best[1].delimiter != TAB else best[1]
+    return (
+        tabs is not None
+        and table.delimiter == WHITE_SPACE
+        and TEXT not in tabs.kinds
+        and len(tabs.rows) >= len(table.rows)
+    )
 
 
 @dataclass(slots=True)

@@ -11,7 +11,8 @@ from shaftprint.errors import RecordingError
 from shaftprint.escape import printable
 from shaftprint.recording.readers._time_scale import is_capital, unit_in_name
 from shaftprint.recording.readers._units import seconds_in
-from shaftprint.recording.readers.csv._dates import AMBIGUOUS, dates, is_date
+from shaftprint.recording.readers.csv._dates import dates, is_date
+from shaftprint.recording.readers.csv._day_times import AMBIGUOUS
 from shaftprint.recording.readers.csv._fields import DATE, DAY_TIME, GAP, NUMBER, TEXT, is_number
 from shaftprint.recording.readers.csv._table import Table
 from shaftprint.recording.readers.csv._time_titles import MILLISECONDS, begins_as_time, is_time_title

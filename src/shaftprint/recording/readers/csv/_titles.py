@@ -35,6 +35,8 @@ _HIGHEST = 12
 # Lines of a head that hold titles and units without standing above their columns (Yokogawa, Hioki, LabChart).
 _NAMES = ("tracename", "trace name", "signal", "channeltitle", "channel title", "channel titles", "channel names")
 _UNIT_ROWS = ("vunit", "v unit", "unit", "units", "vert units", "vertical units", "unitname", "channel units")
+# what stands in brackets is no unit, but says what something is
+_REMARK = ": "
 _REMARKS = ("comment", "comments", "remark", "remarks")
 _TOA5, _TOA5_ROWS = ("TOA5", "TOB1"), 4
 
@@ -76,14 +78,18 @@ def _named_rows(above: Sequence[str], table: Table) -> tuple[list[str], list[str
         word, _, first = key.partition("=")
         fields = [one for one in ([first] if first else []) + fields if one]
         rows.setdefault(plain_key(word), fields)
-    names = next((rows[key] for key in _NAMES if len(rows.get(key, [])) >= table.width - 1 > 0), None)
-    if names is None or len(names) > table.width:
+    # a separator may stand in front of the rows, and behind them
+    filled = [place for place, kind in enumerate(table.kinds) if kind != GAP]
+    names = next((rows[key] for key in _NAMES if len(rows.get(key, [])) >= len(filled) - 1 > 0), None)
+    if names is None or len(names) > len(filled):
         return None
     units = next((rows[key] for key in _UNIT_ROWS if len(rows.get(key, [])) == len(names)), [""] * len(names))
-    if len(names) < table.width:
+    if len(names) < len(filled):
         names, units = ["time", *names], ["s", *units]
     if is_time_title(names[0]):
         units = [units[0].lower(), *units[1:]]
+    named = dict(zip(filled, zip(names, units, strict=True), strict=True))
+    names, units = ([named.get(place, ("", ""))[which] for place in range(table.width)] for which in (0, 1))
     return names, [_unit(unit) for unit in units]
 
 
@@ -167,6 +173,12 @@ def name_and_unit(title: str) -> tuple[str, str]:
     match = IN_BRACKETS.fullmatch(text)
     if match is not None:
         inside = match["unit"].strip()
+        if inside.isdecimal():
+            # one of several: Y[0]
+            return text, ""
+        if _REMARK in inside:
+            # behind the unit: Temp, °C (LGR S/N: 1)
+            return name_and_unit(match["name"])
         return match["name"].strip(), "" if _OF_A_VARIABLE.fullmatch(inside) else plain_unit(inside)
     behind = _BEHIND_A_WORD.fullmatch(text)
     if behind is not None and behind["unit"].strip() not in _LETTER_UNITS and _is_unit(behind["unit"]):

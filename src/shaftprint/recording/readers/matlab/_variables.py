@@ -1,7 +1,7 @@
 """What the variables of a MATLAB file mean, whatever its version: vectors, numbers, texts, and objects."""
 
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -13,9 +13,19 @@ from shaftprint.recording.readers._vectors import Vector, gather_vectors
 MOST_STRUCTURES = 500
 """So many structures under one name are looked into."""
 _TIMES_OF_SIMULINK = "tout"
+_X_INDEX = "XIndex"
 _UNIT = "_unit"
 _INSTALL = 'pip install "shaftprint[readers]"'
 _TITLE = re.compile(r"(.*?)\s*\[(.*)\]")
+# Names of vectors with the name of their times, as Dewesoft and asammdf write them.
+_TIMES_BY_NAME = (
+    (re.compile(r"(Data\d+)_(?!time_)(.+)"), r"\1_time_\2"),
+    (re.compile(r"DG(\d+)_.+"), r"DGM\1_timestamps"),
+)
+# What B&K PULSE and others write: each channel has a head, the file one with the rate as a text.
+_OF_PULSE = re.compile(r"Channel_(\d+)_Data")
+_HEAD, _FREQUENCY = "File_Header", "SampleFrequency"
+_POSITIVE = re.compile(r"\d*[1-9]\d*(\.\d*)?([eE][+-]?\d+)?")
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -127,6 +137,7 @@ def gather_variables(path: Path, variables: MatVariables, *, rate_hz: float | No
         _by_its_label(replace(vector, attributes={**vector.attributes, **_unit(vector, variables.texts)}), variables)
         for vector in variables.vectors
     ]
+    named = _on_times_of_their_own(named)
     if not any(unit_in_name(vector.name) is not None for vector in named if not vector.group):
         # the times of Simulink's outputs
         named = [
@@ -134,7 +145,10 @@ def gather_variables(path: Path, variables: MatVariables, *, rate_hz: float | No
             for vector in named
         ]
     scalars: Mapping[str, Mapping[str, float]] = {
-        group: {name.lower(): value for name, value in numbers.items()} for group, numbers in variables.scalars.items()
+        group: {name.lower(): value for name, value in numbers.items()}
+        for group, numbers in variables.scalars.items()
+        # Dewesoft's rate is that of its fastest channels
+        if group or not any(vector.axis for vector in named if not vector.group)
     }
     return gather_vectors(path, named, scalars, rate_hz=rate_hz, time_unit=time_unit, left_out=variables.left_out)
 
@@ -148,19 +162,60 @@ def _by_its_label(vector: Vector, variables: MatVariables) -> Vector:
     """Return a vector under the name that stands beside it.
 
     Simulink saves ``signals(1).values`` beside a ``label``, dSPACE ``Y(1).Data`` beside ``Name`` and ``Unit``, with the
-    times in ``X(1).Data``.
+    times in ``X(k).Data``, of which ``XIndex`` says k; PULSE ``Channel_1_Data`` beside ``Channel_1_Header``.
     """
     outer, _, last = vector.group.rpartition("/")
+    of_pulse = _OF_PULSE.fullmatch(vector.name)
+    if of_pulse is not None and not vector.group:
+        return _of_pulse(vector, int(of_pulse[1]), variables)
     texts = {key: variables.texts.get((vector.group, key), "").strip() for key in ("label", "Name", "Unit")}
     unit = {"unit": texts["Unit"]} if texts["Unit"] else {}
     match last.partition("(")[0], vector.name:
         case "signals", "values":
             return replace(vector, name=texts["label"] or vector.name)
         case "Y", "Data":
-            return replace(vector, name=texts["Name"] or vector.name, attributes={**vector.attributes, **unit})
+            place = variables.scalars.get(vector.group, {}).get(_X_INDEX)
+            axis = "" if place is None else element_of("X", int(place) - 1)
+            return replace(
+                vector, name=texts["Name"] or vector.name, axis=axis, attributes={**vector.attributes, **unit}
+            )
         case "X", "Data":
-            return replace(vector, name="time", group=outer, attributes={**vector.attributes, **unit})
+            # one alone has no number
+            of_index = element_of("X", 0) if last == "X" else last
+            name = of_index if any(_X_INDEX in numbers for numbers in variables.scalars.values()) else "time"
+            return replace(vector, name=name, group=outer, attributes={**vector.attributes, **unit})
     return vector
+
+
+def _of_pulse(vector: Vector, number: int, variables: MatVariables) -> Vector:
+    """Return a vector of PULSE under the name of its signal, with its unit and its rate."""
+    head = f"Channel_{number}_Header"
+    name, unit = (variables.texts.get((head, key), "").strip() for key in ("SignalName", "Unit"))
+    attributes = {**vector.attributes, **({"unit": unit} if unit else {})}
+    # one a channel, or one for all, which have to be as long
+    rates = variables.texts.get((_HEAD, _FREQUENCY), "").replace(",", ".").split()
+    counts = {one.count for one in variables.vectors if _OF_PULSE.fullmatch(one.name)}
+    rates = rates * number if len(rates) == len(counts) == 1 else rates if len(rates) > 1 else []
+    stated = rates[number - 1] if number <= len(rates) else ""
+    is_timed = any(
+        unit_in_name(text.strip()) is not None for (_, key), text in variables.texts.items() if key == "SignalName"
+    )
+    if _POSITIVE.fullmatch(stated) and not is_timed:
+        attributes["sample_rate_hz"] = float(stated)
+    return replace(vector, name=name or vector.name, attributes=attributes)
+
+
+def _on_times_of_their_own(vectors: Sequence[Vector]) -> list[Vector]:
+    """Return vectors with the times that belong to them by their names."""
+    top = {vector.name for vector in vectors if not vector.group}
+    return [replace(vector, axis=vector.axis or _times_by_name(vector, top)) for vector in vectors]
+
+
+def _times_by_name(vector: Vector, top: Collection[str]) -> str:
+    if vector.group:
+        return ""
+    theirs = (match.expand(times) for name, times in _TIMES_BY_NAME if (match := name.fullmatch(vector.name)))
+    return next((name for name in theirs if name in top), "")
 
 
 def _unit(vector: Vector, texts: Mapping[tuple[str, str], str]) -> dict[str, object]:
