@@ -84,7 +84,7 @@ def test_motor_bench_of_seven_kinds_of_records(tmp_path, run_program):
     assert fingerprint.starts_at_optimum >= 2
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_servo_with_dry_friction_in_position_control(tmp_path, run_program):
     """The encoder's zero is anywhere: a constant is found with each record."""
     moves = servo_file(tmp_path / "moves.csv", zero=0.3)
@@ -96,7 +96,7 @@ def test_servo_with_dry_friction_in_position_control(tmp_path, run_program):
     assert fingerprint.verdict.trustworthy
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_servo_without_its_friction_is_refused(tmp_path, run_program):
     moves = servo_file(tmp_path / "moves.csv")
     held = '\n[[known]]\nname = "T_C"\nvalue = 0.0\n'

@@ -5,8 +5,8 @@ import pytest
 from benchmarks.rig_twins import outcome_of
 from benchmarks.rigs_made import TWINS
 
-# Cheap ones, which take a response in frequency, several short records, a table and a delay.
-CHEAP = ("flexible_beam", "motor_first_order", "brushless_axis")
+# Cheap ones, which take a response in frequency, a table and a delay.
+CHEAP = ("flexible_beam", "brushless_axis")
 # Three delays under inputs that nearly repeat: one start alone ends at the right one, and the verdict says so.
 ALONE = ("shaft_behind_loggers",)
 

@@ -149,7 +149,7 @@ def one_way_record(name, rng, direction):
     return record_from_arrays(name, {"T": torque}, {"omega": omega}, rate_hz=RATE_HZ, hold=True)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("width", [5.0, 1000.0])
 def test_both_signs_are_found_whatever_the_bounds(tmp_path, width):
     """What is folded at zero alike tells the size of a gain, not its sign."""
@@ -213,7 +213,7 @@ def test_friction_that_an_offset_hides_leaves_the_other_numbers_right(one_way):
         assert fit.agreeing >= 4
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_structure_that_holds_another_fits_no_worse(one_way):
     one, records = one_way
     compared = compare_in_time([one, without(one, ["T_C"])], records, rng=np.random.default_rng(1), starts=1)

@@ -115,7 +115,7 @@ def test_an_own_structure_is_fitted_from_the_command_line(run, recording, writte
     assert run("show", tmp_path / "out").exit_code == 0
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_ties_go_through_the_whole_chain_and_lead_to_the_same_optimum(run, recording, written, tmp_path):
     written(LOOP)
     options = ("--structure", "my_ship.py:my_loop", "--structure", "CL4", "--structure", "GAUGE-CORE")

@@ -212,6 +212,7 @@ def test_a_campaign_through_a_fingerprint(run, demo, here):
     assert "GAUGE-QUADRATIC has the square" in " ".join(result.output.split())
 
 
+@pytest.mark.long
 def test_band_of_a_limited_model_is_that_of_differences(run, demo, here):
     kept = fingerprint(demo)
     given = {"m_max": 2.2, "m_min": -0.3, "T_aw": 0.4, "K_p": 5.0, "t_d": 0.07, "t_sp": 0.05}

@@ -205,7 +205,7 @@ def test_rate_limit_is_kept(tug, limits, quick):
         assert "rate of the set point" in peaks.binding
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_limits_hold_for_nearly_all_lines_that_may_be(limits, quick, truth):
     """Other lines than those that the plan was made for; their peaks as sums of cosines."""
     line = assumed_ship(

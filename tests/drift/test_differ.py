@@ -60,7 +60,7 @@ def elastic_fingerprint(**changes):
     ("changes", "cause", "size"),
     [
         ({"k_c": 0.8}, "stiffness of the coupling", -0.2),
-        ({"tau_dn": 1.02}, "inertia behind the gauge", 0.02),
+        pytest.param({"tau_dn": 1.02}, "inertia behind the gauge", 0.02, marks=pytest.mark.long),
     ],
 )
 def test_a_coupling_that_ages_is_named_and_nothing_else_is_taken_for_it(changes, cause, size):

@@ -41,6 +41,7 @@ def fits(short_trip, vessel, short_campaign, tmp_path_factory):
     return [fitted(path, vessel, short_campaign, truth) for path, truth in trips]
 
 
+@pytest.mark.long
 def test_estimates_in_frequency_and_time_agree_within_their_intervals(fits):
     for _, lines, in_time in fits:
         for one, other in zip(lines.parameters, in_time.parameters, strict=True):

@@ -113,6 +113,7 @@ def test_the_linear_model_fails_on_steps_of_2_v_and_says_so(limited_trip):
     assert any("linear validation fails" in sentence for sentence in found.sentences)
 
 
+@pytest.mark.long
 def test_level_within_3_percent_and_rate_within_5(limited_trip, limited_fit):
     level = number(limited_fit, "share")
     # the engine has the full-load curve of its vessel file, the rack 1.5 of its travel a second

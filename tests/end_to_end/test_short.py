@@ -76,7 +76,7 @@ def matlab_path(short_trip, tmp_path_factory):
     return path
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_matlab_file_gives_the_same(short_campaign, identified, found, matlab_path):
     """It holds values where the logger's own file holds counts: all that differs is the rounding of one product."""
     converted = identified(matlab_path, short_campaign)

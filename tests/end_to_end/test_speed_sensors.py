@@ -35,7 +35,7 @@ def even(measured):
     [
         pytest.param({"wheel": "60-2"}, id="60-2"),
         pytest.param({"wheel": "36-1"}, id="36-1"),
-        pytest.param({"wheel": "36-2-1"}, id="36-2-1"),
+        pytest.param({"wheel": "36-2-1"}, id="36-2-1", marks=pytest.mark.long),
         pytest.param({"unit": "rpm", "shaft": "engine", "latency_s": 0.02}, id="rpm"),
         pytest.param({"unit": "deg"}, id="deg"),
         pytest.param(

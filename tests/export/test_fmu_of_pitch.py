@@ -13,7 +13,7 @@ SIZES = (("n", "engine_speed", SPEED_RPM), ("M_s", "shaft_torque", TORQUE_NM), (
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("version", [2, 3])
+@pytest.mark.parametrize("version", [pytest.param(2, marks=pytest.mark.long), 3])
 def test_speed_and_pitch_move_the_fmu_as_they_move_the_line(fmu, version):
     fmpy = pytest.importorskip("fmpy")
     line = structure("GAUGE-PITCH")
@@ -41,7 +41,7 @@ def test_speed_and_pitch_move_the_fmu_as_they_move_the_line(fmu, version):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("version", [2, 3])
+@pytest.mark.parametrize("version", [2, pytest.param(3, marks=pytest.mark.long)])
 def test_a_lever_moves_the_fmu_as_it_moves_the_line(fmu, version):
     fmpy = pytest.importorskip("fmpy")
     line = structure("GAUGE-COMBINATOR")

@@ -229,7 +229,7 @@ def in_time(text, outputs, until_s, step_s, jump):
         (structure("GAUGE-CLOSED"), 0.02),
         (limited("torque"), 0.35),
         (limited("torque", "rate", "smoke", period_s=0.02, curve=((-0.3, 0.7), (0.0, 1.0), (0.3, 0.9))), 0.3),
-        (limited("deadband", "torque"), -0.2),
+        pytest.param(limited("deadband", "torque"), -0.2, marks=pytest.mark.long),
     ],
     ids=lambda value: getattr(value, "name", ""),
 )

@@ -23,7 +23,13 @@ def repeated(make_response, truth, wanted, *, count=25, noise=0.03, settings=SET
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["OL2", "CL1"])
-@pytest.mark.parametrize("weighting", [Settings().weighting, Unweighted()], ids=["covariance", "unweighted"])
+@pytest.mark.parametrize(
+    "weighting",
+    [
+        pytest.param(Settings().weighting, id="covariance"),
+        pytest.param(Unweighted(), id="unweighted", marks=pytest.mark.long),
+    ],
+)
 def test_the_true_structure_predicts_as_well_as_is_expected(make_response, name, weighting):
     """Over 25 tests, to three standard deviations of the mean; expected is noise and the fit's own uncertainty."""
     settings = Settings(starts=6, stability="ignored", weighting=weighting)

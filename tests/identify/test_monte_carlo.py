@@ -108,7 +108,9 @@ def simulated_tests(shipped, truth, root, known, *, estimated, rng):
         yield identify(shipped, response, rng=rng, settings=settings)
 
 
-@pytest.mark.parametrize("name", PROBLEMS)
+@pytest.mark.parametrize(
+    "name", ["OL5", *(pytest.param(name, marks=pytest.mark.long) for name in PROBLEMS if name != "OL5")]
+)
 def test_intervals_cover_the_truth_and_errors_are_as_large_as_they_must_be(name):
     truth, noise, known, estimated = PROBLEMS[name]
     shipped = structure(name)

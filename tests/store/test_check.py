@@ -79,7 +79,7 @@ def test_one_flipped_byte_of_a_hundred_is_found_each_time(path, kind):
     assert found == 100
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_flipped_byte_of_the_file_is_found_or_changes_nothing_that_is_kept(path, tmp_path, put):
     """A page has room that nothing uses; a byte there is neither found nor missed."""
     with open_store(str(path)) as store:

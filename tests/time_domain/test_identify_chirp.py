@@ -233,7 +233,7 @@ def test_intervals_and_tests_are_right_over_repeats(make_record):
     assert 0.03 < np.mean(p_values < 0.1) < 0.17
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize(("size", "widest"), [(2e-5, 0.1), (5e-4, np.inf)])
 def test_the_simulated_tug_at_small_amplitude_has_the_gauge_aware_loop(size, widest):
     """Its equations share nothing with the models; the chirp begins at rest and ends at full speed.
@@ -311,7 +311,7 @@ def found(make_record):
     return fitted(make_record(size=0.1))
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_profiles_verdict_and_repeats_take_it(found):
     intervals = profile_intervals(found)
     for estimate in found.parameters:
