@@ -234,3 +234,21 @@ def test_dates_with_an_offset_go_on_over_the_change_to_summer_time(tmp_path):
 def test_dates_of_one_figure_and_with_zones(tmp_path, text, began):
     with read_recording(_dated(tmp_path, [text.format(s) for s in SECONDS])) as recording:
         assert (recording.began, recording.channel("M_s").rate_hz) == (datetime.fromisoformat(began), 100.0)
+
+
+@pytest.mark.parametrize(("rate_hz", "start_s", "form"), [(40_000.0, -0.025, "{:.2E}"), (100.0, 0.0, "{:.3g}")])
+def test_times_of_which_a_few_digits_are_left(tmp_path, rate_hz, start_s, form):
+    """As a spreadsheet saves what it shows: far from zero several rows have the same time."""
+    times_s = start_s + np.arange(2000) / rate_hz
+    path = tmp_path / "log.csv"
+    rows = [f"{form.format(time)},{k}" for k, time in enumerate(times_s.tolist())]
+    path.write_text("\n".join(["time [s],M_s [V]", *rows, ""]), encoding="utf-8")
+    with read_recording(path) as recording:
+        torque = recording.channel("M_s")
+        assert (torque.rate_hz, torque.count, torque.stamps) == (rate_hz, 2000, None)
+        assert torque.start_s == pytest.approx(start_s, abs=0.1 / rate_hz)
+    # a row that is missing where digits are left is off the clock
+    middle = int(np.argmin(np.abs(times_s)))
+    path.write_text("\n".join(["time [s],M_s [V]", *rows[: middle + 5], *rows[middle + 7 :], ""]), encoding="utf-8")
+    with pytest.raises(RecordingError, match="column time: expected"):
+        read_recording(path)

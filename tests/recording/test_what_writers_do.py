@@ -215,6 +215,8 @@ def test_a_table_of_pandas_is_told(tmp_path):
         (b"PK\3\4\0\0time.npy\0", "scipy.io.savemat"),
         (b"PK\3\4\0\0docProps/app.xml", "save the sheet as CSV"),
         (b"\x80\x04\x95\0", "never opened here"),
+        (b"\0\x6b\0\x2b\0UniversalDataBinFile - Gantner Instruments\0", "GI.bench exports it as CSV"),
+        (b'"TOB3","station","CR6"\r\n\0\1', "CardConvert writes TOA5"),
         ("time [s];n\n0,0;1\n".encode("utf-16-le"), "save it as UTF-8"),
     ],
 )
@@ -252,8 +254,11 @@ def _stamped(path, stamps, *, count=50):
         lambda k: f"05.03.26 13:00:{k:02}",
         lambda k: f"5 March 2026 13:00:{k:02}",
         lambda k: f"20260305T1300{k:02}.00",
+        lambda k: f"20260305 1300{k:02}.00",
+        lambda k: f"Thu 05 Mar 2026 13:00:{k:02}",
+        lambda k: f"Mar 5 2026 01:00:{k:02}.0 PM",
     ],
-    ids=["half days", "datestr", "two figures", "words", "basic"],
+    ids=["half days", "datestr", "two figures", "words", "basic", "basic, apart", "day of the week", "month first"],
 )
 def test_dates_of_many_programs(tmp_path, stamp):
     with read_recording(_stamped(tmp_path / "log.csv", stamp)) as recording:
@@ -267,6 +272,38 @@ def test_of_a_date_of_which_nobody_can_tell_the_day_the_times_count(tmp_path, da
     with read_recording(path) as recording:
         assert (recording.began, recording.channel("n").rate_hz) == (None, 1.0)
         assert recording.remarks == (f"Second 0 is 13:00:00 of {date}, of which day and month cannot be told apart.",)
+
+
+@pytest.mark.parametrize(
+    ("date", "began"),
+    [("05.03.2026", datetime(2026, 3, 5, 13)), ("25/03/2026", datetime(2026, 3, 25, 13)), ("3/5/2026", None)],  # noqa: DTZ001
+)
+def test_a_date_in_a_column_in_front_of_a_time_of_day(tmp_path, date, began):
+    rows = "".join(f"{date};1:00:{k:02}.000 PM;{k}\n" for k in range(50))
+    (tmp_path / "log.csv").write_text(f"Datum;Zeit;n\n{rows}", encoding="utf-8")
+    with read_recording(tmp_path / "log.csv") as recording:
+        assert (recording.began, recording.left_out) == (began, {})
+        said = () if began else (f"Second 0 is 13:00:00 of {date}, of which day and month cannot be told apart.",)
+        assert (recording.remarks, recording.channel("n").rate_hz) == (said, 1.0)
+
+
+def test_a_date_in_utc_says_so(tmp_path):
+    with read_recording(_stamped(tmp_path / "log.csv", lambda k: f"2026-03-05 13:00:{k:02} UTC")) as recording:
+        assert recording.began == datetime(2026, 3, 5, 13, tzinfo=UTC)
+
+
+@pytest.mark.parametrize("span", ["2 days 00:{minutes:02}:{seconds:02}.500", "{all_s}.5 sec"])
+def test_spans_of_time_are_seconds_from_their_zero(tmp_path, span):
+    """As pandas and MATLAB write durations, from 47 h and 59 min on for MATLAB."""
+
+    def stamp(k):
+        later_s = 172_800 + k if "days" in span else 172_740 + k
+        return span.format(minutes=(later_s - 172_800) // 60, seconds=(later_s - 172_800) % 60, all_s=later_s)
+
+    with read_recording(_stamped(tmp_path / "log.csv", stamp, count=200)) as recording:
+        one = recording.channel("n")
+        assert (one.rate_hz, one.start_s, one.count) == (1.0, 172_800.5 if "days" in span else 172_740.5, 200)
+        assert (one.clock_jumps, recording.remarks) == ((), ())
 
 
 @pytest.mark.parametrize("date", ["03/25/2026", "25/03/2026", "25-3-2026"])

@@ -31,6 +31,8 @@ _WHOLE = 0.02
 # unless they come faster than any sender's: the stamps of a logger's own samples say less than its clock.
 _JITTER, _BY_PRINTING, _FASTEST_SENDER_HZ = 0.02, 1.5, 200.0
 _MOST_DECIMALS, _PRINTED = 6, 1e-3
+# A spreadsheet shows, and saves, so many digits of a number: -2.50E-02 is all that is left of -0.024975.
+_FEWEST_DIGITS, _MOST_DIGITS, _LONGEST_ROUNDED, _RATE_DIGITS = 3, 6, 10_000_000, 6
 # With fewer times a sender is not known; of one, most steps are near its period.
 _FEWEST_MESSAGES, _MOST_NEAR = 100, 0.5
 
@@ -139,14 +141,47 @@ def clock_of_times(path: Path, name: str, count: int, read: Times) -> SampleCloc
     try:
         clock, off_s = _uniform_clock(path, name, count, read)
     except RecordingError:
-        messages = _message_clock(count, read)
-        if messages is None:
+        other = _rounded_clock(count, read) or _message_clock(count, read)
+        if other is None:
             raise
-        return messages
+        return other
     if clock.rate_hz > _FASTEST_SENDER_HZ or off_s <= _JITTER / clock.rate_hz:
         return clock
     printed_s = _BY_PRINTING * printed_step(read(0, min(count, 1000))) / np.sqrt(12.0)
     return replace(clock, stamps=read) if off_s > printed_s else clock
+
+
+def _rounded_clock(count: int, read: Times) -> SampleClock | None:
+    """Return the clock of times of which a few digits are left, so that some are the same; nothing of others.
+
+    Each has to lie on the clock within half of its own last digit, those near zero most closely. Of the rates at which
+    all do, the one with the fewest digits is taken.
+    """
+    if not _FEWEST_MESSAGES <= count <= _LONGEST_ROUNDED:
+        return None
+    times = read(0, count)
+    if not (np.all(np.isfinite(times)) and np.all(np.diff(times) >= 0.0) and times[0] < times[-1]):
+        return None
+    size = np.abs(times)
+    size[size == 0.0] = np.min(size[size > 0.0])
+    for digits in range(_FEWEST_DIGITS, _MOST_DIGITS + 1):
+        last = 10.0 ** (np.floor(np.log10(size) + 1e-9) + 1 - digits)
+        if np.all(np.abs(times / last - np.rint(times / last)) < _PRINTED):
+            return _clock_within(times, (0.5 + _WHOLE) * last)
+    return None
+
+
+def _clock_within(times: FloatArray, off_s: FloatArray) -> SampleClock | None:
+    """Return the clock from which each time is off by no more than stated; nothing where there is none."""
+    rows = np.arange(times.size, dtype=np.float64)
+    rate_hz = 1.0 / float(np.polyfit(rows, times, 1, w=1.0 / off_s)[0])
+    for digits in range(1, _RATE_DIGITS + 1):
+        rounded_hz = float(f"{rate_hz:.{digits}g}")
+        starts = times - rows / rounded_hz
+        earliest, latest = float(np.max(starts - off_s)), float(np.min(starts + off_s))
+        if earliest <= latest:
+            return SampleClock(rate_hz=rounded_hz, start_s=0.5 * (earliest + latest))
+    return None
 
 
 def _message_clock(count: int, read: Times) -> SampleClock | None:

@@ -6,7 +6,7 @@ from pathlib import Path
 from shaftprint.recording.readers._packed import first_bytes
 
 # So many of the first letters are looked at, and so many lines have to be alike.
-_SEEN, _FEWEST_LINES = 4000, 2
+_SEEN, _FEWEST_LINES, _SHORT = 4000, 2, 64
 _TABLE, _TO_CSV = "save the sheet as CSV", ".to_csv(...)"
 _ARCHIVE = "it is an archive: unpack it"
 _OCTAVE = "in Octave save -v7 FILE.mat"
@@ -22,6 +22,8 @@ _OF_LINES = {
     _FRAMES_WITHOUT_TIMES: "frames of a CAN bus without times: log it with candump -l",
 }
 """What lines of text begin as, and what they are."""
+# Gantner's name stands behind its length
+_UDBF = b"UniversalDataBinFile"
 _SQLITE, _ZIP = b"SQLite format 3", b"PK\x03\x04"
 _BY_BYTES = {
     _SQLITE: "it is an SQLite database: export the table as CSV (sqlite3 -header -csv)",
@@ -48,6 +50,7 @@ _BY_BYTES = {
     b"ULog": "it is a PX4 log: ulog2csv of the package pyulog writes CSV",
     b"\x89MCAP": "it is a ROS log: PlotJuggler exports it as CSV",
     b"#ROSBAG": "it is a ROS log: PlotJuggler exports it as CSV",
+    b'"TOB': "it is Campbell's binary form: in LoggerNet, CardConvert writes TOA5",
     b"RIFF": "it is a sound file: scipy.io.wavfile reads it (24 bits come times 256), scipy.io.savemat writes the "
     "samples with fs",
 }
@@ -87,6 +90,8 @@ def remedy(path: Path) -> str:
     by_ending = next((words for endings, words in _BY_ENDING.items() if ending in endings), None)
     if begin.startswith(_SQLITE) and b"arbitration_id" in begin:
         return "it holds the frames of a CAN bus: can_logconvert FILE log.blf makes a log of them, which is read"
+    if _UDBF in begin[:_SHORT]:
+        return "it is Gantner's UDBF: GI.bench exports it as CSV"
     if begin.startswith(_ZIP):
         return next((words for mark, words in _BY_NAMES.items() if mark in begin), by_ending or _ARCHIVE)
     if _every_second_is_nul(begin):

@@ -1,4 +1,4 @@
-"""Dates in text files: ISO 8601, day.month.year with dots, or with the name of the month; with AM and PM."""
+"""Dates in text files: ISO 8601, day.month.year with dots, or with the name of the month; with AM and PM, or UTC."""
 
 import re
 from collections.abc import Sequence
@@ -11,18 +11,30 @@ from shaftprint.errors import RecordingError
 # milliseconds also behind a colon or a semicolon, as Keysight's and Rockwell's programs write them
 _CLOCK = r"(?P<clock>\d\d?:\d\d(?::\d\d(?:[.,]\d+|[:;]\d{3})?)?)(?:\s?(?P<half>[AaPp][Mm]))?"
 _PART = re.compile(r"(?<=:\d\d:\d\d)[,:;]")
-_ZONED = r"(?:\s?(?P<zone>Z|[+-]\d\d(?::?\d\d)?))?"
+_ZONED = r"(?:\s?(?P<zone>Z|UTC|GMT|[+-]\d\d(?::?\d\d)?))?"
 _ISO = re.compile(rf"(?P<year>\d{{4}})[-/](?P<month>\d\d?)[-/](?P<day>\d\d?)(?:[T ]+{_CLOCK})?{_ZONED}")
 # 20260305T090000.5, ISO 8601 without separators
 _BASIC = re.compile(
-    rf"(?P<year>\d{{4}})(?P<month>\d\d)(?P<day>\d\d)T(?P<clock>\d{{4}}(?:\d\d(?:[.,]\d+)?)?)(?P<half>){_ZONED}"
+    rf"(?P<year>\d{{4}})(?P<month>\d\d)(?P<day>\d\d)[T ](?P<clock>\d{{4}}(?:\d\d(?:[.,]\d+)?)?)(?P<half>){_ZONED}"
 )
-# 21.11.2026 and 21.11.26, 21-Nov-2026 (MATLAB's datestr), 21 Nov 2026
+_WEEKDAY = r"(?:(?:Mon|Tue|Wed|Thu|Fri|Sat|Sun)[a-z]*,? )?"
+# 21.11.2026 and 21.11.26, 21-Nov-2026 (MATLAB's datestr), 21 Nov 2026, Sat 21 Nov 2026
 _DAY_FIRST = re.compile(
+    rf"{_WEEKDAY}"
     r"(?P<day>\d\d?)(?:\.(?P<month>\d\d?)\.|[-. /](?P<name>[A-Za-z]{3})[a-z]*\.?[-. /])(?P<year>\d{4}|\d\d)[T ]+"
     rf"{_CLOCK}{_ZONED}"
 )
-_FORMS = (_ISO, _DAY_FIRST, _BASIC)
+# 21.11.2026 beside a time of day in a column of its own
+_DAY_ALONE = re.compile(
+    r"(?P<day>\d\d?)(?:\.(?P<month>\d\d?)\.|[- ](?P<name>[A-Za-z]{3})[a-z]*[- ])(?P<year>\d{4})"
+    r"(?P<clock>)(?P<half>)(?P<zone>(?!))?"
+)
+# Nov 21, 2026
+_NAME_FIRST = re.compile(
+    rf"{_WEEKDAY}(?P<name>[A-Za-z]{{3}})[a-z]*\.? (?P<day>\d\d?),? (?P<year>\d{{4}})[T ,]+{_CLOCK}{_ZONED}"
+)
+_FORMS = (_ISO, _DAY_FIRST, _BASIC, _DAY_ALONE, _NAME_FIRST)
+_NAMED = (_DAY_FIRST, _DAY_ALONE, _NAME_FIRST)
 _MONTHS = {
     name: number
     for number, names in enumerate(
@@ -31,12 +43,12 @@ _MONTHS = {
     )
     for name in names.split()
 }
-_ZONE = re.compile(r"\s?(Z|[+-]\d\d(?::?\d\d)?)$")
+_ZONE = re.compile(r"\s?(Z|UTC|GMT|[+-]\d\d(?::?\d\d)?)$")
 
 
 def _parts(text: str) -> re.Match[str] | None:
     match = next((found for form in _FORMS if (found := form.fullmatch(text)) is not None), None)
-    name = match["name"] if match is not None and match.re is _DAY_FIRST else None
+    name = match["name"] if match is not None and match.re in _NAMED else None
     return None if name is not None and name.lower() not in _MONTHS else match
 
 
@@ -80,7 +92,8 @@ def dates(path: Path, texts: Sequence[str]) -> "np.ndarray[tuple[int], np.dtype[
 
 def _in_iso(parts: re.Match[str]) -> str:
     """Return the parts of a date in the order of ISO 8601."""
-    month = parts["month"] or str(_MONTHS[parts["name"].lower()])
+    number = parts["month"] if "month" in parts.re.groupindex else None
+    month = number or str(_MONTHS[parts["name"].lower()])
     year = parts["year"] if len(parts["year"]) > 2 else f"20{parts['year']}"
     day = f"{year}-{int(month):02}-{int(parts['day']):02}"
     clock = _PART.sub(".", (parts["clock"] or "").replace(",", "."))
@@ -96,7 +109,7 @@ def _in_iso(parts: re.Match[str]) -> str:
 
 def _minutes(zone: str) -> int:
     """Return how far a zone such as ``+01:00`` is before UTC [min]."""
-    if zone == "Z":
+    if zone.isalpha():
         return 0
     digits = zone[1:].replace(":", "")
     return (-1 if zone[0] == "-" else 1) * (60 * int(digits[:2]) + int(digits[2:] or 0))

@@ -14,9 +14,14 @@ from shaftprint.arrays import FloatArray
 _DATE = r"'?\d\d?(?P<mark>[/-])\d\d?(?P=mark)\d{2,4}"
 AMBIGUOUS = re.compile(rf"{_DATE}([T ,].*)?")
 """A date of which day and month cannot be told apart."""
+AMBIGUOUS_DAY = re.compile(_DATE)
+"""The same without a time of day."""
+# a span of time by pandas, 1 days 00:00:00.010, and by MATLAB
+_DAYS = r"(?:(?P<days>\d{1,4}) days? )?"
+_SPAN = re.compile(r"(?P<number>\d+(?:\.\d+)?(?:e-\d+)?) (?P<unit>sec|min|hr)")
 # with seconds, or as spreadsheets shorten it: minutes and seconds with a decimal
 _DAY_TIME = re.compile(
-    rf"(?:(?P<date>{_DATE})[T ,]+)?"
+    rf"(?:(?P<date>{_DATE})[T ,]+|{_DAYS})"
     r"(?:(?P<hour>\d{1,3}):)?(?P<minute>[0-5]?\d):(?P<second>[0-5]?\d)(?P<part>[.,:;]\d+)?\s?(?P<half>[AaPp][Mm])?"
 )
 _DAY_S, _HALF_DAY_S = 86_400.0, 43_200.0
@@ -25,11 +30,20 @@ _MONTHS, _TWO_FIGURES = 12, 99
 
 def is_day_time(text: str) -> bool:
     """Return whether a field is a time of day, or the time that has passed as hours, minutes and seconds."""
-    return _DAY_TIME.fullmatch(text) is not None
+    return _DAY_TIME.fullmatch(text) is not None or _SPAN.fullmatch(text) is not None
+
+
+def is_span(text: str) -> bool:
+    """Return whether a field is the time that has passed, with its days or its unit: it does not begin again."""
+    match = _DAY_TIME.fullmatch(text)
+    return _SPAN.fullmatch(text) is not None if match is None else match["days"] is not None
 
 
 def day_time_s(text: str) -> float:
     """Return the seconds since midnight; not a number where the text is no time of day."""
+    span = _SPAN.fullmatch(text)
+    if span is not None:
+        return float(span["number"]) * {"sec": 1.0, "min": 60.0, "hr": 3600.0}[span["unit"]]
     match = _DAY_TIME.fullmatch(text)
     parts = match.groupdict() if match is not None else None
     if parts is not None and parts["hour"] is None and parts["part"] is None:
@@ -41,7 +55,13 @@ def day_time_s(text: str) -> float:
     if parts["half"] is not None:
         hour = hour % 12.0 + (12.0 if parts["half"].lower() == "pm" else 0.0)
     part = float("0." + parts["part"][1:]) if parts["part"] else 0.0
-    return 3600.0 * hour + 60.0 * float(parts["minute"]) + float(parts["second"]) + part
+    return (
+        _DAY_S * float(parts["days"] or 0.0)
+        + 3600.0 * hour
+        + 60.0 * float(parts["minute"])
+        + float(parts["second"])
+        + part
+    )
 
 
 def ambiguous_date(text: str) -> str:

@@ -12,9 +12,11 @@ from shaftprint.errors import RecordingError
 from shaftprint.recording.readers._epoch import seconds_from
 from shaftprint.recording.readers.csv._dates import dates, has_offset, is_date
 from shaftprint.recording.readers.csv._day_times import (
+    AMBIGUOUS_DAY,
     ambiguous_date,
     day_times_s,
     is_day_time,
+    is_span,
     may_follow,
     over_midnight,
     told_date,
@@ -26,7 +28,7 @@ _DAY_S = 86_400.0
 
 def is_stamp(field: str) -> bool:
     """Return whether a field is a date or a time of day."""
-    return is_date(field) or is_day_time(field)
+    return is_date(field) or is_day_time(field) or AMBIGUOUS_DAY.fullmatch(field) is not None
 
 
 class Stamps:
@@ -41,6 +43,7 @@ class Stamps:
         self.ambiguous_date = ""
         """Date of the first row of which day and month cannot be told apart; empty where there is none."""
         self._last_date = ""
+        self._has_spans = False
 
     @property
     def began(self) -> datetime | None:
@@ -54,7 +57,7 @@ class Stamps:
     @property
     def day_time_s(self) -> float | None:
         """Seconds since midnight of the first row where there are times of day without a date that can be told."""
-        return self._first_s if self.began is None else None
+        return self._first_s if self.began is None and not self._has_spans else None
 
     def seconds(self, columns: Mapping[int, FloatArray | Sequence[str]]) -> FloatArray:
         """Return the seconds of rows since the first of the file.
@@ -81,6 +84,10 @@ class Stamps:
             raise RecordingError(
                 f'{self._path}: expected times of day such as 09:00:00.010, found "{texts[int(wrong[0])][:40]}".'
             )
+        self._has_spans = self._has_spans or (self._first_s is None and is_span(texts[0]))
+        if self._has_spans:
+            self._first_s = 0.0
+            return seconds
         before_s = self._last_s
         seconds = over_midnight(seconds, before_s)
         self._expect_day_after_day(texts, np.diff(seconds // _DAY_S, prepend=(before_s or 0.0) // _DAY_S))

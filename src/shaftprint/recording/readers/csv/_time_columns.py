@@ -1,5 +1,6 @@
 """Which columns of a table hold the times of its rows."""
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
@@ -12,13 +13,14 @@ from shaftprint.escape import printable
 from shaftprint.recording.readers._time_scale import is_capital, unit_in_name
 from shaftprint.recording.readers._units import seconds_in
 from shaftprint.recording.readers.csv._dates import dates, is_date
-from shaftprint.recording.readers.csv._day_times import AMBIGUOUS
+from shaftprint.recording.readers.csv._day_times import AMBIGUOUS, AMBIGUOUS_DAY
 from shaftprint.recording.readers.csv._fields import DATE, DAY_TIME, GAP, NUMBER, TEXT, is_number
 from shaftprint.recording.readers.csv._table import Table
 from shaftprint.recording.readers.csv._time_titles import MILLISECONDS, begins_as_time, is_time_title
 from shaftprint.recording.readers.csv._titles import counts_rows
 
 _LONGEST, _MINUTE_S = 80, 61.0
+_COMPACT_DAY = re.compile(r"(19|20)\d{6}")
 # times may go back where a logger begins again
 _MOST = 0.9
 
@@ -114,6 +116,10 @@ def _first_times(table: Table, names: Sequence[str], units: Sequence[str], *, ha
     dated = [place for place, kind in enumerate(kinds) if kind == DATE]
     hours = [place for place, kind in enumerate(kinds) if kind == DAY_TIME]
     titled = [place for place, name in enumerate(names) if kinds[place] in (NUMBER, GAP) and is_time_title(name)]
+    # 20260305 beside a time of day
+    titled = [
+        place for place in titled if not hours or not all(_COMPACT_DAY.fullmatch(row[place]) for row in table.rows)
+    ]
     plain = [place for place in titled if not is_capital(names[place])] or titled
     # a time in a column further on may be anything where dates stand in the first
     if plain and not (dated and seconds_in(_of_time(units[plain[0]]) or "s") is None):
@@ -161,6 +167,13 @@ def _stamps(
     table: Table, names: Sequence[str], units: Sequence[str], dates: Sequence[int], hours: Sequence[int]
 ) -> TimeColumns:
     """Return dates, with the times of day and the milliseconds beside them."""
+    if not dates:
+        # dates of which nobody can tell the day stand in front of the times of day
+        dates = [
+            place
+            for place, kind in enumerate(table.kinds[: hours[0]])
+            if kind == TEXT and all(AMBIGUOUS_DAY.fullmatch(row[place]) for row in table.rows)
+        ]
     lead = dates[0] if dates else hours[0]
     stamps = [lead]
     has_hours = not dates or any(":" in row[lead] for row in table.rows)
