@@ -117,3 +117,26 @@ def test_many_blocks_of_dates(tmp_path):
     with read_recording(path) as recording:
         assert recording.channel("a").rate_hz == 100.0
         assert recording.channel("b").values(399_998, 400_000).tolist() == [-399_998.0, -399_999.0]
+
+
+@pytest.mark.parametrize(
+    ("titles", "unit_s"),
+    [("secs,nsecs", 1e-9), ("header.stamp.sec,header.stamp.nanosec", 1e-9), ("seconds,usec", 1e-6)],
+)
+def test_whole_seconds_and_what_is_beyond_them_are_one_time(tmp_path, titles, unit_s):
+    path = tmp_path / "log.csv"
+    times = [(1_795_000_000 + k // 100, round(0.01 * (k % 100) / unit_s)) for k in range(350)]
+    rows = "".join(f"{whole},{beyond},{k}.5\n" for k, (whole, beyond) in enumerate(times))
+    path.write_text(f"{titles},M_s [Nm]\n{rows}", encoding="utf-8")
+    with read_recording(path) as recording:
+        torque = recording.channel("M_s")
+        # a float since 1970 has steps of a quarter of a microsecond
+        assert torque.rate_hz == pytest.approx(100.0, rel=1e-8)
+        assert (list(recording.channels), torque.count) == (["M_s"], 350)
+        assert recording.began == datetime(2026, 11, 18, 11, 6, 40, tzinfo=UTC)
+    # beside a time of its own they are channels
+    path.write_text(
+        f"time [s],{titles},M_s [Nm]\n" + "".join(f"{0.02 * k:.2f},{row}\n" for k, row in enumerate(rows.splitlines()))
+    )
+    with read_recording(path) as recording:
+        assert (len(recording.channels), recording.channel("M_s").rate_hz) == (3, 50.0)

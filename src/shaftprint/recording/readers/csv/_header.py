@@ -78,6 +78,8 @@ class Header:
     """Columns of the file that hold dates, times of day and milliseconds, which make the times together."""
     milliseconds: int | None = None
     """Which of the stamps holds milliseconds alone."""
+    fraction: tuple[int, float] | None = None
+    """Column of the file that holds what is beyond the whole seconds of the times, and its unit [s]."""
     dates_beside: int | None = None
     """Column of the file that holds dates beside times that are numbers."""
     rate_hz: float | None = None
@@ -185,6 +187,7 @@ def read_header(
         more_times=tuple((kept.index(place), unit) for place, unit in times.more if place in kept),
         stamps=times.stamps,
         milliseconds=times.milliseconds,
+        fraction=times.fraction,
         dates_beside=times.dates_beside,
         rate_hz=facts.rate_hz if times.place is None else None,
         stated_rate_hz=None if times.place is None else facts.rate_hz,
@@ -298,7 +301,7 @@ def _chosen(table: Table, names: Sequence[str], times: TimeColumns) -> tuple[lis
         shown = name or f"column {place + 1}, which has no title"
         if place == times.place:
             kept.append(place)
-        elif place in times.stamps or (not name and kind == GAP):
+        elif place in times.stamps or (times.fraction or (-1,))[0] == place or (not name and kind == GAP):
             continue
         elif place in counters:
             left_out[shown] = "it counts the rows"

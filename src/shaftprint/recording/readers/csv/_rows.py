@@ -135,6 +135,11 @@ class _Unpacking:
                 # a row whose date is none: a second look leaves it out
                 self._take(block, None)
                 return
+        if header.fraction is not None:
+            time, (place, unit_s) = header.places[header.time_column or 0], header.fraction
+            columns[time] = np.asarray(columns[time], dtype=np.float64) + unit_s * np.asarray(
+                columns[place], dtype=np.float64
+            )
         if header.dates_beside is not None and not self.done.date_beside and rows:
             self.done.date_beside = str(columns[header.dates_beside][0])
         for column, place in enumerate(header.places):
@@ -159,7 +164,8 @@ class _Unpacking:
         """Return the columns of the file that are numbers."""
         header = self.header
         names = dict(zip(header.places, header.names, strict=True))
-        wanted = [*header.places, *([] if header.milliseconds is None else [header.milliseconds])]
+        beside = (header.milliseconds, None if header.fraction is None else header.fraction[0])
+        wanted = [*header.places, *(place for place in beside if place is not None)]
         return [place for place in wanted if place not in self._texts and names.get(place) not in self.done.left_out]
 
     def _fast(self, block: _Block) -> _Columns | None:

@@ -21,6 +21,12 @@ from shaftprint.recording.readers.csv._titles import counts_rows
 
 _LONGEST, _MINUTE_S = 80, 61.0
 _COMPACT_DAY = re.compile(r"(19|20)\d{6}")
+_SECONDS = ("sec", "secs", "second", "seconds")
+_FRACTIONS = {
+    word: unit
+    for words, unit in (("nsec nsecs nanosec nanosecs nanoseconds", 1e-9), ("usec usecs microsec microseconds", 1e-6))
+    for word in words.split()
+}
 # times may go back where a logger begins again
 _MOST = 0.9
 
@@ -39,6 +45,8 @@ class TimeColumns:
     """Which of them holds milliseconds alone."""
     dates_beside: int | None = None
     """Column of dates beside times that are numbers."""
+    fraction: tuple[int, float] | None = None
+    """Column of what is beyond the whole seconds of the times, and its unit [s]."""
     more: tuple[tuple[int, str], ...] = ()
     """Further columns of times, each with its unit: the columns behind it are on those."""
     other_dates: int | None = None
@@ -121,6 +129,9 @@ def _first_times(table: Table, names: Sequence[str], units: Sequence[str], *, ha
         place for place in titled if not hours or not all(_COMPACT_DAY.fullmatch(row[place]) for row in table.rows)
     ]
     plain = [place for place in titled if not is_capital(names[place])] or titled
+    whole = _whole_seconds(table, names)
+    if whole is not None and (not plain or plain[0] == whole.place):
+        return whole
     # a time in a column further on may be anything where dates stand in the first
     if plain and not (dated and seconds_in(_of_time(units[plain[0]]) or "s") is None):
         place = plain[0]
@@ -146,6 +157,15 @@ def _first_times(table: Table, names: Sequence[str], units: Sequence[str], *, ha
             place=first, unit=units[first], remark="The first column, which has no title, was taken for the times"
         )
     return TimeColumns()
+
+
+def _whole_seconds(table: Table, names: Sequence[str]) -> TimeColumns | None:
+    """Return times of which whole seconds stand in one column, what is beyond them in the next: secs, nsecs."""
+    last_words = [re.split(r"[ ._/|]", name.lower())[-1] for name in names]
+    for place, (word, behind) in enumerate(pairwise(last_words)):
+        if word in _SECONDS and behind in _FRACTIONS and set(table.kinds[place : place + 2]) == {NUMBER}:
+            return TimeColumns(place=place, unit="s", fraction=(place + 1, _FRACTIONS[behind]))
+    return None
 
 
 def _agree(table: Table, place: int, unit: str, date: int) -> bool:
