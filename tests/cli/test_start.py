@@ -140,3 +140,79 @@ def test_a_campaign_where_a_vessel_is_asked_for_is_one_sentence(run, here):
     swapped = run("predict", "--vessel", "test.toml", "--campaign", "ship.toml")
     assert swapped.exit_code == 1
     assert "expected a vessel file, found a campaign file" in swapped.stderr
+
+
+def logged(here, *columns, rows=2000):
+    """A log of 20 s in the folder: titles with their units, and values by number of the row."""
+    names, values = zip(*columns, strict=True)
+    lines = [",".join(("time [s]", *names))]
+    lines += [",".join(f"{one:.4f}" for one in (0.01 * row, *(at(row) for at in values))) for row in range(rows)]
+    (here / "log.csv").write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+
+BUS = (
+    ("LeverPosition [%]", lambda row: 50.0 + row % 7),
+    ("EngineSpeed [rpm]", lambda row: 1000.0 + row % 11),
+    ("ShaftTorque [kN m]", lambda row: 20.0 + row % 5),
+)
+PULSES = (
+    ("Hebel [mA]", lambda row: 12.0 + row % 7),
+    ("Drehzahl Motor [V]", lambda row: 5.0 * (row % 20 == 0)),
+    ("Drehzahl Welle [V]", lambda row: 5.0 * (row % 10 == 0)),
+    ("Drehmoment [kN m]", lambda row: 20.0 + row % 5),
+)
+
+
+def test_a_recording_that_lies_there_says_channels_and_units(run, here):
+    logged(here, *BUS)
+    words = following(run("start", "--yes", *CARD, "--lever", "0=600", "--lever", "100=1600"))
+    assert words[:5] == ["new", "campaign", "campaign.toml", "--from", "log.csv"]
+    vessel = load_vessel(here / "vessel.toml")
+    (speed,) = vessel.sensors.speed
+    assert (speed.channel, speed.unit, speed.shaft) == ("EngineSpeed", "rpm", "engine")
+    torque, lever = vessel.sensors.shaft_torque, vessel.sensors.set_point
+    assert (torque.channel, torque.scale_nm_per_unit) == ("ShaftTorque", 1000.0)
+    assert (lever.channel, lever.unit) == ("LeverPosition", "%")
+    assert vessel.logger.sample_rate_hz == pytest.approx(100.0)
+
+
+def test_what_is_stated_goes_before_the_recording_and_what_is_assumed_is_said(run, here):
+    logged(here, *PULSES)
+    said = run("start", "--yes", *CARD, "--torque", "M_s", "--torque-unit", "N m")
+    assert said.exit_code == 0, said.output
+    assert "Drehzahl Motor as pick-up, for which one pulse a turn" in " ".join(said.output.split())
+    vessel = load_vessel(here / "vessel.toml")
+    assert vessel.sensors.shaft_torque.channel == "M_s"
+    assert [sensor.channel for sensor in vessel.sensors.speed] == ["Drehzahl Motor"]
+
+
+def test_channels_of_the_recording_are_what_is_asked_for(run, here):
+    """Enter takes what the log has; pulses of the shaft have to be typed, and a lever may be unknown."""
+    logged(here, *PULSES)
+    card = "Tug\n1325\n1600\n12\n2.1\n4\n0.95\n5.2\n"
+    following(run("start", input=f"{card}\nDrehzahl Welle=2\n\n\n\n\n\n"))
+    sensors = load_vessel(here / "vessel.toml").sensors
+    found = [(sensor.channel, sensor.shaft, sensor.pulses_per_revolution) for sensor in sensors.speed]
+    assert found == [("Drehzahl Motor", "engine", 1), ("Drehzahl Welle", "propeller", 2)]
+    assert (sensors.shaft_torque.channel, sensors.shaft_torque.unit) == ("Drehmoment", "kN m")
+    assert (sensors.set_point.channel, sensors.set_point.unit) == ("Hebel", "mA")
+
+
+def test_where_nobody_answers_it_is_said_how_to_go_on(run, here):
+    refused = run("start", input="Kiel Tug\n")
+    assert refused.exit_code == 2
+    assert "--yes" in refused.stderr
+    assert not list(here.iterdir())
+
+
+def test_a_drive_is_known_by_its_recording_and_then_by_its_file(run, here):
+    motor = (("voltage [V]", lambda row: 6.0 * (row % 200 > 99)), ("current [mA]", lambda row: 100.0 + row % 9))
+    logged(here, *motor, ("speed [rpm]", lambda row: 900.0 + row % 13))
+    made = ["new", "drive", "--from", "log.csv", "-o", "log.toml"]
+    assert following(run("start")) == made
+    assert shlex.split(run("inspect", "log.csv").output.splitlines()[-1])[-6:] == made
+    identified = ["identify", "log.csv", "--drive", "log.toml", "-o", "result"]
+    assert following(run(*made)) == identified
+    said = run("start")
+    assert following(said) == identified
+    assert "Drive file: log.toml." in said.output

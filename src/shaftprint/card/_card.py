@@ -85,7 +85,11 @@ class Card:
     engine_pulses: tuple[Pulses, ...] = ()
     """Pick-ups on the engine shaft."""
     shaft_pulses: tuple[Pulses, ...] = ()
-    """Pick-ups on the propeller shaft; where there is none at all, one pulse a turn of the engine is assumed."""
+    """Pick-ups on the propeller shaft."""
+    engine_speeds: tuple[str, ...] = ()
+    """Channels with the speed of the engine in rpm, as an instrument or a bus gives it."""
+    shaft_speeds: tuple[str, ...] = ()
+    """The same of the propeller shaft; where no speed is stated at all, one pulse a turn of the engine is assumed."""
     gauge: Gauge = Gauge()
     """The torque gauge."""
     set_point_channel: str = "U_setpoint"

@@ -134,14 +134,14 @@ def _row(
 
 
 def _sensors(card: Card) -> Iterable[str]:
-    lines = ["# Speed pick-ups; the first is the one that is identified."]
-    for number, pulses in enumerate(card.engine_pulses, start=1):
-        lines += _pick_up(pulses, f"n_e{number if number > 1 else ''}", "engine")
-    for number, pulses in enumerate(card.shaft_pulses, start=1):
-        lines += _pick_up(pulses, f"n_s{number if number > 1 else ''}", "propeller")
-    if not (card.engine_pulses or card.shaft_pulses):
+    lines = ["# Speeds; the first is the one that is identified."]
+    of_engine, of_shaft = (*card.engine_pulses, *card.engine_speeds), (*card.shaft_pulses, *card.shaft_speeds)
+    if not (of_engine or of_shaft):
         lines.append("# No channel was named: one strip on the engine is assumed.")
-        lines += _pick_up(Pulses(channel="PTM_e"), "n_e", "engine")
+        of_engine = (Pulses(channel="PTM_e"),)
+    for sensors, name, shaft in ((of_engine, "n_e", "engine"), (of_shaft, "n_s", "propeller")):
+        for number, sensor in enumerate(sensors, start=1):
+            lines += _speed(sensor, f"{name}{number if number > 1 else ''}", shaft)
     return (
         *lines,
         *_gauge(card.gauge, full_scale(card)),
@@ -153,19 +153,16 @@ def _sensors(card: Card) -> Iterable[str]:
     )
 
 
-def _pick_up(pulses: Pulses, name: str, shaft: str) -> tuple[str, ...]:
-    is_even = pulses.wheel.isdecimal() and len(pulses.wheel) <= _MOST_DIGITS
-    teeth = f"pulses_per_revolution = {int(pulses.wheel)}" if is_even else f"wheel = {toml_string(pulses.wheel)}"
-    channel = toml_string(pulses.channel)
-    return (
-        "[[sensors.speed]]",
-        f'name = "{name}"',
-        f"channel = {channel}",
-        f'shaft = "{shaft}"',
-        teeth,
-        'unit = "V"',
-        "",
-    )
+def _speed(sensor: Pulses | str, name: str, shaft: str) -> tuple[str, ...]:
+    """Return the table of a pick-up, or of a channel in rpm."""
+    if isinstance(sensor, Pulses):
+        is_even = sensor.wheel.isdecimal() and len(sensor.wheel) <= _MOST_DIGITS
+        teeth = f"pulses_per_revolution = {int(sensor.wheel)}" if is_even else f"wheel = {toml_string(sensor.wheel)}"
+        channel, kind = sensor.channel, (teeth, 'unit = "V"')
+    else:
+        channel, kind = sensor, ('unit = "rpm"',)
+    head = ("[[sensors.speed]]", f'name = "{name}"', f"channel = {toml_string(channel)}", f'shaft = "{shaft}"')
+    return (*head, *kind, "")
 
 
 def _gauge(gauge: Gauge, largest: Derived) -> tuple[str, ...]:

@@ -98,6 +98,12 @@ _PULSES = {
     ),
     "shaft_pulses": ("--shaft-pulses", "The same on the propeller shaft."),
 }
+_SPEEDS = {
+    "engine_speeds": ("--engine-speed", "Channel with the engine speed in rpm, in place of pulses; may be repeated."),
+    "shaft_speeds": ("--shaft-speed", "The same of the propeller shaft."),
+}
+OF_SPEED = (*_PULSES, *_SPEEDS)
+"""The fields of a card that say where a speed is logged."""
 _OF_GAUGE = "gauge_"
 
 CARD_SECTIONS = {
@@ -109,8 +115,8 @@ CARD_SECTIONS = {
     "Inertia, where it is known": ("--inertia-upstream", "--inertia-downstream"),
     "Test": ("--test-rpm", "--torque-nm", "--underway", "--name"),
     "Logger": (
-        "--sample-rate", "--set-point", "--lever-unit", "--lever", "--engine-pulses", "--shaft-pulses", "--torque",
-        "--torque-unit", "--torque-scale", "--full-scale-nm",
+        "--sample-rate", "--set-point", "--lever-unit", "--lever", "--engine-pulses", "--shaft-pulses",
+        "--engine-speed", "--shaft-speed", "--torque", "--torque-unit", "--torque-scale", "--full-scale-nm",
     ),
 }  # fmt: skip
 """The options of a card by what they are of."""
@@ -144,6 +150,8 @@ def lever_pair(text: str) -> tuple[float, float]:
 
 def card_options(command: Callable[..., Any]) -> Callable[..., Any]:
     """Add what stands on a card; all of it reaches the command by the names of the fields of ``Card``."""
+    for field, (option, help_text) in reversed(_SPEEDS.items()):
+        command = click.option(option, field, metavar="CHANNEL", multiple=True, default=(), help=help_text)(command)
     for field, (option, help_text) in reversed(_PULSES.items()):
         command = click.option(
             option, field, type=pulses, metavar="CHANNEL=PULSES", multiple=True, default=(), help=help_text
@@ -191,12 +199,16 @@ def card_of(said: Mapping[str, Any]) -> Card | None:
     return Card(**stated, lever=lever, gauge=Gauge(unit=unit, **gauge))
 
 
-def ask_card(said: Mapping[str, Any], ask: Callable[[str, Any, Any], Any]) -> dict[str, Any]:
+def ask_card(
+    said: Mapping[str, Any], ask: Callable[[str, Any, Any], Any], *, recorded: Mapping[str, Any] | None = None
+) -> dict[str, Any]:
     """Return what was said of a card with the answers to what is needed and was not said.
 
     ``said``: values by the names of the options. ``ask``: asks for one answer, with a text, its type and what is taken
-    where nothing is typed; None where an answer is needed.
+    where nothing is typed; None where an answer is needed. ``recorded``: what a recording that is there shows of the
+    sensors, by the same names.
     """
+    shown = recorded or {}
     answers = {field: value for field, value in said.items() if value not in (None, False, ())}
     if "name" not in answers:
         answers["name"] = ask("Name of ship and shaft line", click.STRING, "My ship, port")
@@ -205,21 +217,57 @@ def ask_card(said: Mapping[str, Any], ask: Callable[[str, Any, Any], Any]) -> di
             answers[field] = ask(words.rstrip("."), kind, None)
     if not set(_GEAR) & set(answers):
         answers["gear_ratio"] = ask("Engine speed over propeller speed, the ratio of the gearbox", _POSITIVE, None)
-    if "engine_pulses" not in answers and "shaft_pulses" not in answers:
-        answers["engine_pulses"] = (ask("Pick-up on the engine, CHANNEL=PULSES a turn", pulses, "PTM_e=1"),)
-    if f"{_OF_GAUGE}channel" not in answers:
-        answers[f"{_OF_GAUGE}channel"] = ask("Channel of the shaft torque", click.STRING, "M_s")
-    if f"{_OF_GAUGE}unit" not in answers:
-        answers[f"{_OF_GAUGE}unit"] = ask("Its unit", click.Choice(["V", "N m", "kN m"]), "N m")
-    if answers[f"{_OF_GAUGE}unit"] == "V" and f"{_OF_GAUGE}scale_nm_per_unit" not in answers:
+    if not set(OF_SPEED) & set(answers):
+        answers |= _asked_speeds(ask, shown)
+    channel, unit = f"{_OF_GAUGE}channel", f"{_OF_GAUGE}unit"
+    if channel not in answers:
+        answers[channel] = ask("Channel of the shaft torque", click.STRING, shown.get(channel, "M_s"))
+    if unit not in answers:
+        answers[unit] = ask("Its unit", click.Choice(["V", "N m", "kN m"]), shown.get(unit, "N m"))
+    if answers[unit] == "V" and f"{_OF_GAUGE}scale_nm_per_unit" not in answers:
         answers[f"{_OF_GAUGE}scale_nm_per_unit"] = ask("Torque for one volt [N m]", click.FLOAT, None)
     if "set_point_channel" not in answers:
-        answers["set_point_channel"] = ask("Channel of the lever's set point", click.STRING, "U_setpoint")
-    unit = answers["lever_unit"] = answers.get("lever_unit") or ask("Its unit", click.Choice(_LEVER), "V")
-    if "lever_pairs" not in answers and unit != "rpm":
-        low = ask(
-            f"A low reading of it and the engine speed that it asks for, {unit}=rpm such as 4=600", lever_pair, None
-        )
-        high = ask(f"A high reading and its engine speed, {unit}=rpm such as 20=1600", lever_pair, None)
-        answers["lever_pairs"] = (low, high)
+        lever = shown.get("set_point_channel", "U_setpoint")
+        answers["set_point_channel"] = ask("Channel of the lever's set point", click.STRING, lever)
+    of_lever = answers.get("lever_unit") or ask("Its unit", click.Choice(_LEVER), shown.get("lever_unit", "V"))
+    answers["lever_unit"] = of_lever
+    if "lever_pairs" not in answers and of_lever != "rpm":
+        answers["lever_pairs"] = _asked_lever(ask, of_lever)
+    if "sample_rate_hz" in shown:
+        answers.setdefault("sample_rate_hz", shown["sample_rate_hz"])
     return answers
+
+
+def _asked_speeds(ask: Callable[[str, Any, Any], Any], shown: Mapping[str, Any]) -> dict[str, Any]:
+    """Return where a speed is logged: what a recording shows in rpm is taken, pulses are asked for."""
+    in_rpm = {field: shown[field] for field in _SPEEDS if field in shown}
+    if in_rpm:
+        return in_rpm
+    answers: dict[str, Any] = {}
+    first = next((one.channel for field in _PULSES for one in shown.get(field, ())), "PTM_e")
+    answers["engine_pulses"] = (ask("Pick-up on the engine, CHANNEL=PULSES a turn", pulses, f"{first}=1"),)
+    others = [one.channel for one in shown.get("shaft_pulses", ()) if one.channel != first]
+    if others:
+        words = f"Pick-up on the propeller shaft, {others[0]}=PULSES a turn, or {_NONE}"
+        typed = ask(words, _or_none(pulses), None)
+        answers |= {} if typed == _NONE else {"shaft_pulses": (typed,)}
+    return answers
+
+
+def _asked_lever(ask: Callable[[str, Any, Any], Any], unit: str) -> tuple[tuple[float, float], ...]:
+    """Return two readings of the lever with their speeds; none where they are not known."""
+    # counts say nothing without their speeds
+    unknown = None if unit == "counts" else _NONE
+    words = f"A low reading of it and the engine speed that it asks for, {unit}=rpm such as 4=600"
+    low = ask(words, lever_pair if unknown is None else _or_none(lever_pair), unknown)
+    if low == _NONE:
+        return ()
+    return (low, ask(f"A high reading and its engine speed, {unit}=rpm such as 20=1600", lever_pair, None))
+
+
+_NONE = "none"
+
+
+def _or_none(kind: Callable[[str], Any]) -> Callable[[str], Any]:
+    """Return a type of answers that may also be the word none."""
+    return lambda text: _NONE if text == _NONE else kind(text)

@@ -9,6 +9,7 @@ from typing import Any
 
 from shaftprint.cli._drive_options import expect_not_given, is_given
 from shaftprint.cli._found import drive_sentences
+from shaftprint.cli._next import after_drive, print_next
 from shaftprint.cli._results import print_paths
 from shaftprint.cli._terminal import details, print_findings, say
 from shaftprint.cli.output._fingerprint_file import FINGERPRINT
@@ -69,6 +70,10 @@ def identify_on_the_bench(
             steps.begin("Writing the report", total=1.0)
             render_drive(folder, fit, fingerprint, pictures=pictures, progress=steps.reach)
     print_paths(results.output)
+    if fingerprint.verdict.trustworthy:
+        print_next(*after_drive(drive_file, results.output))
+    else:
+        print_next("compare-structures", *recordings, "--drive", drive_file)
 
 
 def print_drive(fingerprint: DriveFingerprint, *, whole: bool = True) -> None:

@@ -1,4 +1,4 @@
-"""What lies in a folder: vessel and campaign files, recordings, plans and results, each the newest last."""
+"""What lies in a folder: vessel, campaign and drive files, recordings, plans and results, each the newest last."""
 
 from __future__ import annotations
 
@@ -19,6 +19,7 @@ _MOST_FILES = 500
 # Bytes of a text in which somebody notes something; a test is longer in any format.
 _NOTES = 10_000
 _SETTINGS, _TRUTH = ".toml", ".truth.json"
+_KINDS = ("vessels", "campaigns", "drives", "recordings", "results", "others")
 # read as text or by chance, but no recording of a ship
 _NO_RECORDING = frozenset((_SETTINGS, ".json", ".html", ".md", ".py", ".pdf", ".svg", ".png", ".db", ".zip"))
 
@@ -29,6 +30,7 @@ class LyingFiles:
 
     vessels: tuple[Path, ...] = ()
     campaigns: tuple[Path, ...] = ()
+    drives: tuple[Path, ...] = ()
     recordings: tuple[Path, ...] = ()
     results: tuple[Path, ...] = ()
     others: tuple[Path, ...] = ()
@@ -37,7 +39,7 @@ class LyingFiles:
 
 def lying_files(folder: Path) -> LyingFiles:
     """Return what lies in a folder; of its folders, plans and results are looked for."""
-    found: dict[str, list[Path]] = {name: [] for name in ("vessels", "campaigns", "recordings", "results", "others")}
+    found: dict[str, list[Path]] = {name: [] for name in _KINDS}
     paths = sorted(folder.iterdir(), key=lambda path: (path.stat().st_mtime if path.exists() else 0.0, path.name))
     for path in paths[-_MOST_FILES:]:
         if path.name.startswith("."):
@@ -58,7 +60,7 @@ def _of(path: Path) -> Iterator[tuple[str, Path]]:
     ending = path.suffix.lower()
     if ending == _SETTINGS:
         kind = kind_of_file(path)
-        yield f"{kind}s" if kind in ("vessel", "campaign") else "others", path
+        yield f"{kind}s" if kind in ("vessel", "campaign", "drive") else "others", path
     elif ending not in _NO_RECORDING and _is_recording(path):
         yield "recordings", path
     elif not path.name.lower().endswith(_TRUTH):

@@ -99,6 +99,14 @@ def plan_after(result: object, vessel: object, ship: Vessel) -> tuple[object, ..
     return ("plan", "--vessel", vessel, "--after", result, *_size(rated_rpm_of(ship)), "-o", free("next-plan"))
 
 
+def after_drive(drive: object, result: object) -> tuple[object, ...]:
+    """Return the words that hold what was found of a drive against another record of it, which the user names.
+
+    ``drive``: the drive file. ``result``: what its records gave.
+    """
+    return ("validate", "OTHER", "--drive", drive, "--fingerprint", result)
+
+
 def rated_rpm_of(ship: Vessel) -> float:
     """Return the rated speed of what drives a ship, its engine or its motor [rpm]."""
     return ship.machine.rated_speed_rpm

@@ -122,8 +122,7 @@ def proposed_sensors(seen: Sequence[Seen]) -> list[str]:
     rate = max((item.channel.rate_hz for item in seen), default=0.0)
     empty = [item.channel.name for item in seen if item.is_empty]
     seen = [item for item in seen if not item.is_empty]
-    uses = {item.channel.name: _use(item) for item in seen} | _uses_by_number(seen)
-    in_percent, only_left = _of_no_name(seen, uses), _set_point_left(seen, uses)
+    uses, in_percent, only_left = _uses(seen)
     lines = []
     single: set[str] = set()
     speeds = 0
@@ -152,6 +151,26 @@ def proposed_sensors(seen: Sequence[Seen]) -> list[str]:
         lines += ["# [[sensors.speed]]: no channel holds pulses, a speed or an angle", ""]
     lines += [f"# {name!r}: it holds no numbers" for name in empty] + ([""] if empty else [])
     return [*lines, "[logger]", f"sample_rate_hz = {rate!r}"]
+
+
+def uses_of(seen: Sequence[Seen]) -> dict[str, Use | None]:
+    """Return what each channel that holds numbers is most likely used for, by its name; None where nothing is likely.
+
+    ``seen``: the channels of a recording.
+    """
+    return _uses([item for item in seen if not item.is_empty])[0]
+
+
+def is_of_engine(channel: str) -> bool:
+    """Return whether a channel is called as one of the engine is, and not of the propeller shaft."""
+    return _ENGINE.search(channel) is not None
+
+
+def _uses(seen: Sequence[Seen]) -> tuple[dict[str, Use | None], list[str], str]:
+    """Return the uses by name, the channels in % of which no name says the rack, and the set point that is left over."""
+    uses = {item.channel.name: _use(item) for item in seen} | _uses_by_number(seen)
+    in_percent = _of_no_name(seen, uses)
+    return uses, in_percent, _set_point_left(seen, uses)
 
 
 def _number(channel: Channel) -> int | None:
@@ -243,7 +262,7 @@ def _values(channel: Channel, speeds: int) -> dict[str, object]:
         "channel": toml_string(channel.name),
         "unit": toml_string(channel.unit),
         "name": f"n_{speeds}",
-        "shaft": "engine" if _ENGINE.search(channel.name) else "propeller",
+        "shaft": "engine" if is_of_engine(channel.name) else "propeller",
         "of_rack": _OF_RACK.get(_number(channel) or 0, ""),
         "line": ""
         if channel.unit == "V"

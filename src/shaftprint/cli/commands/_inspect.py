@@ -43,7 +43,7 @@ with late():
     from shaftprint.signals.excitation._found_test import FoundTest
     from shaftprint.spectra._spectra import Spectra, estimate_spectra
     from shaftprint.survey._legs import LegMeasurement, legs_of
-    from shaftprint.survey._proposed_sensors import Seen, proposed_sensors
+    from shaftprint.survey._proposed_sensors import Seen, proposed_sensors, uses_of
     from shaftprint.tables._legs import leg_table
     from shaftprint.tables._recording import clock_map_table
     from shaftprint.vessel._vessel import Vessel, load_vessel
@@ -95,11 +95,10 @@ def command(
         readings = None if ship is None else _read(watch, ship, partly=planned is None, hidden=no_progress)
         levels = _levels(watch, hidden=no_progress)
         if ship is None or readings is None:
-            _print_proposal(opened, _print_channels(opened, levels), clocks)
-            near = vessel_file_near(recording)
-            there = ("inspect", recording, *reading, "--vessel", near)
+            seen = _print_channels(opened, levels)
+            _print_proposal(opened, seen, clocks)
             # a comment of the vessel file into which the proposal is pasted
-            print_next(*(there if near else ("new", "vessel", free(VESSEL_FILE))), label="# Next:")
+            print_next(*_first_step(recording, reading, seen), label="# Next:")
             return
         test = None if planned is None else _tested(opened, ship, planned, readings, clocks, hidden=no_progress)
         reports = channel_reports(readings, levels)
@@ -115,6 +114,19 @@ def command(
     # with the campaign as recorded what was asked for is there
     if test is not None and test.refusal is not None and output is None:
         raise test.refusal
+
+
+def _first_step(recording: Path, reading: tuple[object, ...], seen: Sequence[Seen]) -> tuple[object, ...]:
+    """Return the next command where there was no vessel file: one that lies there, or one to be made."""
+    near = vessel_file_near(recording)
+    if near is not None:
+        return ("inspect", recording, *reading, "--vessel", near)
+    if not {"set_point", "shaft_torque"} & set(uses_of(seen).values()):
+        return ("new", "drive", "--from", recording, "-o", free(f"{recording.stem}.toml"))
+    # `start` reads the file as it stands, and only where it lies
+    is_read_alone = not reading and recording.parent.is_dir()
+    at = () if recording.parent == Path() else (recording.parent,)
+    return ("start", *at) if is_read_alone else ("new", "vessel", free(VESSEL_FILE))
 
 
 def _print_next(

@@ -9,7 +9,7 @@ from typing import Literal
 import click
 
 from shaftprint.cli._card_options import CARD_SECTIONS, card_of, card_options
-from shaftprint.cli._next import plan_words, print_next
+from shaftprint.cli._next import free, plan_words, print_next
 from shaftprint.cli._option_sections import SectionedCommand
 from shaftprint.cli._options import NAMES
 from shaftprint.cli._terminal import answer, echo, print_findings
@@ -101,6 +101,7 @@ def command(
         answer(f"{path}: {len(drive.channels)} channels of {recorded}; {drive.moved} as the input, by a guess.")
         if drive.left_out:
             echo(f"On other clocks or without a number, and not in the file: {', '.join(drive.left_out)}.")
+        print_next("identify", recorded, "--drive", path, "-o", free("result"))
         return
     if recorded is not None and vessel is not None:
         if kind != "campaign" or test is not None or card is not None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import sys
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -10,8 +12,9 @@ import click
 from shaftprint.cli._after_test import after_test
 from shaftprint.cli._card_options import CARD_SECTIONS, ask_card, card_of, card_options
 from shaftprint.cli._lying_files import LyingFiles, lying_files
-from shaftprint.cli._next import VESSEL_FILE, free, plan_words, print_steps, rated_rpm_of
+from shaftprint.cli._next import VESSEL_FILE, after_drive, free, plan_words, print_steps, rated_rpm_of
 from shaftprint.cli._option_sections import SectionedCommand
+from shaftprint.cli._recorded_sensors import is_of_no_ship, recorded_sensors, with_recorded
 from shaftprint.cli._terminal import answer, print_findings
 from shaftprint.cli._vessel_file import write_from_card
 from shaftprint.cli.output._fingerprint_file import fingerprint_at
@@ -37,14 +40,24 @@ def command(folder: Path, *, yes: bool, **said: object) -> None:
 
     FOLDER is where you are if none is named. Where there is no vessel file yet, power, speed, gearbox, propeller,
     sensors and lever are asked for step by step, and vessel.toml is written; options answer beforehand, as those of
-    `shaftprint new vessel`. From then on each command ends with the next one.
+    `shaftprint new vessel`. Needed are power, rated speed, cylinders, ratio, and diameter, blades and pitch of the
+    propeller; channels and units come from a recording that lies there. From then on each command ends with the next
+    one. A motor or another drive has a drive file in place of the vessel file.
     """
     lying = lying_files(folder)
     _print(lying)
     vessel = lying.vessels[-1] if lying.vessels else None
+    is_said = any(value not in (None, False, ()) for value in said.values())
     if vessel is None:
-        vessel = _written(folder, said, yes=yes)
-    elif any(value not in (None, False, ()) for value in said.values()):
+        recorded = recorded_sensors(lying.recordings[-1]) if lying.recordings and not lying.drives else {}
+        steps = None if is_said or yes else _of_drive(lying, recorded)
+        if steps is not None:
+            print_steps(*steps)
+            return
+        if yes and is_said and recorded:
+            said = with_recorded(said, recorded, lying.recordings[-1])
+        vessel = _written(folder, said if yes else _asked(said, recorded))
+    elif is_said:
         answer(f"{vessel} is there: what was stated of the ship was not used. `shaftprint new vessel` writes another.")
     print_steps(*_next(vessel, lying))
 
@@ -52,8 +65,8 @@ def command(folder: Path, *, yes: bool, **said: object) -> None:
 def _print(lying: LyingFiles) -> None:
     """Print what lies there, and which of several is taken."""
     kinds: dict[str, tuple[Path, ...]] = {
-        "Vessel file": lying.vessels,
-        "Campaign": lying.campaigns,
+        **({"Drive file": lying.drives} if lying.drives else {}),
+        **({} if lying.drives and not lying.vessels else {"Vessel file": lying.vessels, "Campaign": lying.campaigns}),
         "Recording": lying.recordings,
         "Result": lying.results,
     }
@@ -69,13 +82,30 @@ def _print(lying: LyingFiles) -> None:
     print_findings("What lies here", sentences, is_answer=True)
 
 
-def _written(folder: Path, said: dict[str, object], *, yes: bool) -> Path:
+def _of_drive(lying: LyingFiles, recorded: Mapping[str, object]) -> list[tuple[object, ...]] | None:
+    """Return the next commands where what lies there is of a drive that is no ship; None of a ship."""
+    if not lying.recordings:
+        return None
+    recording = lying.recordings[-1]
+    if lying.drives:
+        drive = lying.drives[-1]
+        if lying.results and lying.results[-1].stat().st_mtime >= recording.stat().st_mtime:
+            return [after_drive(drive, lying.results[-1])]
+        return [("identify", recording, "--drive", drive, "-o", free("result"))]
+    if not is_of_no_ship(recorded):
+        return None
+    answer(
+        f"{recording} has neither a shaft torque nor a lever by its names and units: if it is of a motor or another "
+        "drive, go on as below; if of a ship, state power and speed as well, --power-kw and --rated-rpm.\n"
+    )
+    return [("new", "drive", "--from", recording, "-o", free(f"{recording.stem}.toml"))]
+
+
+def _written(folder: Path, said: Mapping[str, object]) -> Path:
     """Return the vessel file that is written from the card.
 
-    Raises click.UsageError if the card cannot be asked for and lacks what cannot be derived.
+    Raises click.UsageError if the card lacks what cannot be derived.
     """
-    if not yes:
-        said = ask_card(said, _prompt)
     card = card_of(said)
     if card is None:
         raise click.UsageError(
@@ -84,6 +114,22 @@ def _written(folder: Path, said: dict[str, object], *, yes: bool) -> Path:
     path = free(str(folder / VESSEL_FILE))
     write_from_card(card, path)
     return path
+
+
+def _asked(said: Mapping[str, object], recorded: Mapping[str, object]) -> dict[str, object]:
+    """Return what was said, and what is asked for in addition.
+
+    Raises click.UsageError where nobody is there who could answer.
+    """
+    try:
+        return ask_card(said, _prompt, recorded=recorded)
+    except click.Abort:
+        if sys.stdin.isatty():
+            raise
+        click.echo(err=True)
+        raise click.UsageError(
+            "expected an answer, found the end of what was typed; state the main particulars as options, with --yes."
+        ) from None
 
 
 def _prompt(text: str, kind: Any, default: object) -> object:
