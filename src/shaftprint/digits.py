@@ -62,6 +62,11 @@ def plain(value: float, decimals: int) -> str:
     return text.removeprefix("−") if not any(digit in "123456789" for digit in text) else text
 
 
+def in_nm(value: float) -> str:
+    """Return a torque [N m] for a sentence: four significant digits, large ones without an exponent, and the unit."""
+    return f"{float(f'{value:.4g}'):.0f} N m" if 1e4 <= abs(value) < 1e9 else f"{value:.4g} N m"
+
+
 def rounded(value: float, digits: int = LEAST_DIGITS) -> str:
     """Return a number with a few significant digits."""
     if value == 0.0 or not math.isfinite(value):

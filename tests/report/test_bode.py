@@ -93,6 +93,7 @@ def test_labels_carry_units_and_the_legend_states_the_coverage(identification, r
         "data, 95 % interval",
         "data, line not used",
         "aliasing limit of the speed, 9.87 Hz",
+        "data, weaker than noise",
     ]
 
 
@@ -205,3 +206,17 @@ def test_integral_output_has_its_unit():
 def test_nothing_to_draw_is_refused():
     with pytest.raises(ValueError, match="needs a model or data"):
         bode_chart()
+
+
+def test_lines_that_may_be_noise_alone_are_pale_and_have_no_interval(identification):
+    """Ten times the deviations: an interval that reaches no response at all would fill the diagram."""
+    (part,) = identification.experiments
+    noisy = replace(part.response, covariance=100.0 * part.response.covariance)
+    chart = bode_chart([Curve.of(identification)], data=noisy)
+    (pale,) = marks(chart.panels[0], "data, weaker than noise", Points)
+    (seen,) = marks(chart.panels[0], "data, 95 % interval", Points)
+    assert pale.bars is None
+    assert pale.shade == "soft"
+    assert np.isfinite(seen.y - seen.bars[0]).all()
+    assert seen.bars[0].max() < 200.0
+    assert pale.x.size + seen.x.size == noisy.used.sum()

@@ -152,16 +152,21 @@ def test_what_contradicts_the_vessel_file_is_on_the_first_page(fingerprint):
     assert question not in answers(with_physical(found, "I_up", value=54.0, std=1.0, expected=54.0, expected_std=1.0))
     card = answers(with_physical(found, "I_up", value=71.0, std=1.0, expected=54.0, expected_std=1.0))[question]
     assert card.state == "look"
-    assert "71 kg m² (69 to 73)" in card.sentence
+    assert "71.0 kg m² (69.0 to 73.0)" in card.sentence
 
 
-def test_numbers_have_no_more_digits_than_their_interval_leaves(fingerprint):
-    """By hand: half an interval of 2.85 ms leaves whole milliseconds, one of 0.06 hundredths."""
+def test_numbers_have_two_digits_of_their_interval(fingerprint):
+    """By hand: half an interval of 2.85 ms leaves tenths of milliseconds, one of 0.06 thousandths, one of 323 tens."""
     delay = Estimate(name="t_d + t_sp", unit="s", value=0.1216, std=0.002, interval_95=(0.1197, 0.1254))
     margin = Estimate(name="gain margin", unit="-", value=1.5382, std=0.03, interval_95=(1.5241, 1.6462))
-    made = fingerprint.model_copy(update={"combinations": (delay,), "margins": (margin,), "physical": ()})
+    inertia = Estimate(name="I_up", unit="kg m2", value=738.2, std=161.0, interval_95=(415.3, 1061.2))
+    made = fingerprint.model_copy(update={"combinations": (delay,), "margins": (margin,), "physical": (inertia,)})
     (table,) = cover_of(made).tables
-    assert [row[1:3] for row in table.rows] == [("122 ms", "120 to 125"), ("1.54", "1.52 to 1.65")]
+    assert [row[1:3] for row in table.rows] == [
+        ("740 kg m²", "420 to 1\u202f060"),
+        ("121.6 ms", "119.7 to 125.4"),
+        ("1.538", "1.524 to 1.646"),
+    ]
 
 
 def test_date_and_place_are_facts_of_the_first_page(fingerprint):
@@ -252,7 +257,9 @@ def test_there_is_no_room_to_spare_where_the_scale_of_the_gauge_is_in_doubt(fing
     assert told[USABLE].action.startswith("Calibrate the torque gauge")
     assert cover_of(found).headline.startswith("The test can be used in part; ")
     assert told[HUNTING].state == told[INERTIA].state == "open"
-    assert told[HUNTING].sentence.startswith("It cannot be told: it depends on the scale of the torque gauge.")
+    assert told[HUNTING].sentence.startswith(
+        "It cannot be told: the gain margin depends on the scale of the torque gauge."
+    )
 
 
 def test_power_stands_beside_the_torque(fingerprint):

@@ -8,6 +8,7 @@ import numpy as np
 from shaftprint.card._disagreement import Disagreement
 from shaftprint.card._first_mode import first_mode
 from shaftprint.card._series import open_water_curve, series_torque, tested_pitch
+from shaftprint.digits import in_nm
 from shaftprint.units import rev_s_from_rpm
 from shaftprint.vessel._vessel import Vessel
 from shaftprint.vessel._wheel import SAMPLES_A_TOOTH
@@ -125,9 +126,9 @@ def _full_load_curve(vessel: Vessel) -> Iterator[Disagreement]:
     if apart > _CURVE_TOLERANCE and not in_hand:
         yield Disagreement(
             field="engine.full_load_torque_nm" if vessel.motor is None else "motor.maximum_torque_nm",
-            expected=f"{machine.rated_torque_nm:.4g} N m at {machine.rated_speed_rpm:g} rpm, as "
+            expected=f"{in_nm(machine.rated_torque_nm)} at {machine.rated_speed_rpm:g} rpm, as "
             f"{machine.rated_power_kw:g} kW give there",
-            found=f"{at_rated_nm:.4g} N m",
+            found=f"{in_nm(at_rated_nm)}",
             advice=f"correct {'the curve' if vessel.motor is None else 'it'}, or rated_power_kw (kW, not hp) and "
             "rated_speed_rpm",
             is_contradiction=apart > _FINDING,
@@ -162,8 +163,11 @@ def _engine_load(vessel: Vessel) -> Iterator[Disagreement]:
     power_kw = 2.0 * math.pi * rev_s_from_rpm(point.engine_speed_rpm) * brake_nm / 1000.0
     highest_nm = machine.full_load_nm(point.engine_speed_rpm)
     if brake_nm > highest_nm:
-        load, expected = brake_nm / highest_nm, f"at most {highest_nm:.4g} N m at the {machine.word}, its full load"
-        found = f"{brake_nm:.4g} N m there"
+        load, expected = (
+            brake_nm / highest_nm,
+            f"at most {in_nm(highest_nm)} at the {machine.word}, its full load",
+        )
+        found = f"{in_nm(brake_nm)} there"
     elif power_kw > machine.rated_power_kw and vessel.motor is None:
         load, expected = power_kw / machine.rated_power_kw, f"at most the rated power of {machine.rated_power_kw:g} kW"
         found = f"{power_kw:.4g} kW at the {machine.word}"
@@ -196,7 +200,7 @@ def _series(vessel: Vessel) -> Iterator[Disagreement]:
     if apart > _FINDING:
         yield Disagreement(
             field="working_point.shaft_torque_nm",
-            expected=f"about {point.turning * expected_nm:.4g} N m, as {series.name} takes at zero advance and "
+            expected=f"about {in_nm(point.turning * expected_nm)}, as {series.name} takes at zero advance and "
             f"{point.engine_speed_rpm / vessel.gearbox.ratio:.4g} rpm",
             found=f"{point.shaft_torque_nm:g} N m, a factor of {apart:.3g}",
             advice="correct the torque (N m at the propeller shaft), gearbox.ratio, or diameter_m and pitch_ratio of "

@@ -135,7 +135,8 @@ def _row(
 
 def _sensors(card: Card) -> Iterable[str]:
     lines = ["# Speeds; the first is the one that is identified."]
-    of_engine, of_shaft = (*card.engine_pulses, *card.engine_speeds), (*card.shaft_pulses, *card.shaft_speeds)
+    of_engine: tuple[Pulses | str, ...] = (*card.engine_pulses, *card.engine_speeds)
+    of_shaft: tuple[Pulses | str, ...] = (*card.shaft_pulses, *card.shaft_speeds)
     if not (of_engine or of_shaft):
         lines.append("# No channel was named: one strip on the engine is assumed.")
         of_engine = (Pulses(channel="PTM_e"),)
@@ -155,14 +156,12 @@ def _sensors(card: Card) -> Iterable[str]:
 
 def _speed(sensor: Pulses | str, name: str, shaft: str) -> tuple[str, ...]:
     """Return the table of a pick-up, or of a channel in rpm."""
-    if isinstance(sensor, Pulses):
-        is_even = sensor.wheel.isdecimal() and len(sensor.wheel) <= _MOST_DIGITS
-        teeth = f"pulses_per_revolution = {int(sensor.wheel)}" if is_even else f"wheel = {toml_string(sensor.wheel)}"
-        channel, kind = sensor.channel, (teeth, 'unit = "V"')
-    else:
-        channel, kind = sensor, ('unit = "rpm"',)
-    head = ("[[sensors.speed]]", f'name = "{name}"', f"channel = {toml_string(channel)}", f'shaft = "{shaft}"')
-    return (*head, *kind, "")
+    lines = ["[[sensors.speed]]", f'name = "{name}"', f'shaft = "{shaft}"']
+    if isinstance(sensor, str):
+        return (*lines, f"channel = {toml_string(sensor)}", 'unit = "rpm"', "")
+    is_even = sensor.wheel.isdecimal() and len(sensor.wheel) <= _MOST_DIGITS
+    teeth = f"pulses_per_revolution = {int(sensor.wheel)}" if is_even else f"wheel = {toml_string(sensor.wheel)}"
+    return (*lines, f"channel = {toml_string(sensor.channel)}", teeth, 'unit = "V"', "")
 
 
 def _gauge(gauge: Gauge, largest: Derived) -> tuple[str, ...]:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from contextlib import nullcontext
 from pathlib import Path
 
-from shaftprint.cli._terminal import answer, echo, say
+from shaftprint.cli._terminal import answer, details, echo, say
 from shaftprint.cli.output._file_to_write import expect_free
 from shaftprint.cli.output._tables import print_table
 from shaftprint.errors import SettingsError, SignalError
@@ -38,10 +39,13 @@ def print_found_tests(found: tuple[FoundTest, ...], campaign: Campaign) -> None:
     except SignalError as error:
         say(f"No proposal for the campaign file: {error}\n")
         return
-    echo("Proposal for the campaign file: these tests in place of those that it has\n")
-    for line in text.splitlines():
-        echo(line)
-    echo()
+    # where the tests are only shifted, the next command writes them so
+    is_shifted_only = bool(shift_s) and all(test.is_same for test in found)
+    with details() if is_shifted_only else nullcontext():
+        echo("Proposal for the campaign file: these tests in place of those that it has\n")
+        for line in text.splitlines():
+            echo(line)
+        echo()
 
 
 def write_proposal(found: tuple[FoundTest, ...], campaign: Campaign, file: Path) -> None:

@@ -24,6 +24,8 @@ FEWEST_LINES = 5
 # Where governed lines of this size cross over: there delay, lag and proportional gain show.
 CROSSOVER_RAD_S = (1.0, 12.0)
 FEWEST_AT_CROSSOVER = 2
+_NO_NAMES = ("channel", "expected", "sensors", "the ")
+"""How sentences begin that may begin with a capital; others begin with the name of a file or a sensor."""
 
 
 def headline(parts: Sequence[Spectra], *, planned: int = 0, worst: str = "", lost: Sequence[str] = ()) -> str:
@@ -33,6 +35,7 @@ def headline(parts: Sequence[Spectra], *, planned: int = 0, worst: str = "", los
     campaign, those of all legs. ``worst``: what is worst of all that was found, in one sentence; empty where nothing
     speaks against the recording. ``lost``: what the recording does not hold of its campaign, from ``lost_parts``.
     """
+    worst = f"{worst[:1].upper()}{worst[1:]}" if worst.startswith(_NO_NAMES) else worst
     if not parts:
         return f"Not good enough. {worst}"
     counts, missing, advice = _counted(parts, planned)

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from shaftprint.digits import in_nm
 from shaftprint.signals._inspect import ChannelReport, PulseReport
 from shaftprint.signals._scale_reasons import scale_reasons, torque_beside_file
 from shaftprint.signals._working_points import WorkingPoint
@@ -95,14 +96,14 @@ def _of_torque(reports: Sequence[ChannelReport], vessel: "Vessel") -> tuple[str,
     mean_torque_nm = mean_nm(torque)
     if not np.isfinite(mean_torque_nm) or mean_torque_nm / expected >= _CLEARLY_NEGATIVE:
         return ()
-    sentence = f"expected a torque around {expected:.4g} N m, found a mean of {mean_torque_nm:.4g} N m"
+    sentence = f"expected a torque around {in_nm(expected)}, found a mean of {in_nm(mean_torque_nm)}"
     # astern torque and set point have one sign, so that the sign tells of no swap
     alike = set_point if set_point is not None and set_point.unit == torque.unit else None
     swapped = np.nan if alike is None or vessel.working_point.is_astern else mean_nm(alike)
     if alike is not None and _AROUND[0] < swapped / expected < _AROUND[1]:
         return (
             f"channels {torque.channel} and {alike.channel} seem to be swapped: {sentence} in {torque.channel}, "
-            f"and {swapped:.4g} N m in {alike.channel}. Correct the channels in the vessel file or the columns of "
+            f"and {in_nm(swapped)} in {alike.channel}. Correct the channels in the vessel file or the columns of "
             "the recording.",
         )
     sign = "the sign of sensors.shaft_torque.scale_nm_per_unit" if sensor.shaft is None else "reversed of its shaft"

@@ -4,6 +4,7 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
+from shaftprint.digits import in_nm
 from shaftprint.reasons import Reason
 from shaftprint.signals.kinds._compare import LARGEST_DIFFERENCE
 from shaftprint.signals.levels._speed_scale import (
@@ -67,7 +68,7 @@ def scale_reasons(
     asked_rpm = expected_rpm if campaign is None else asked_speed(point, vessel, campaign)[0]
     by = "vessel file" if campaign is None or campaign.offset_rpm is None else "campaign"
     torque = (
-        f"{point.shaft_torque_nm:.4g} N m belong to {found_rpm * load**0.5:.4g} rpm and the {by} has" if load > 0.0
+        f"{in_nm(point.shaft_torque_nm)} belong to {found_rpm * load**0.5:.4g} rpm and the {by} has" if load > 0.0
         else f"the {by} has"
     )  # fmt: skip
     followers = _told(told, " as one factor of the speed makes them")
@@ -100,7 +101,7 @@ def _between_legs(
                 where=vessel.sensors.speed[0].channel,
                 sentence=(
                     f"The speed is in doubt: in {name} it seems to be {doubt.words} the true one beside that of "
-                    f"{main}, {found_rpm:.4g} rpm where {one.shaft_torque_nm:.4g} N m belong to {torque_rpm:.4g} rpm "
+                    f"{main}, {found_rpm:.4g} rpm where {in_nm(one.shaft_torque_nm)} belong to {torque_rpm:.4g} rpm "
                     f"by the torque there; look for what divides, doubles or loses pulses in one of the two, and test "
                     "again."
                 ),

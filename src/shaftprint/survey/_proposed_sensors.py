@@ -167,7 +167,7 @@ def is_of_engine(channel: str) -> bool:
 
 
 def _uses(seen: Sequence[Seen]) -> tuple[dict[str, Use | None], list[str], str]:
-    """Return the uses by name, the channels in % of which no name says the rack, and the set point that is left over."""
+    """Return uses by name, the channels in % of which no name says the rack, and the set point that is left over."""
     uses = {item.channel.name: _use(item) for item in seen} | _uses_by_number(seen)
     in_percent = _of_no_name(seen, uses)
     return uses, in_percent, _set_point_left(seen, uses)

@@ -15,7 +15,7 @@ from shaftprint.cli._next import VESSEL_FILE, free, print_next, print_steps, rea
 from shaftprint.cli._option_sections import SectionedCommand
 from shaftprint.cli._options import NAMES, READING_SECTION, hints_of, reading_options, reading_words
 from shaftprint.cli._signal_tables import print_lines, print_signals
-from shaftprint.cli._terminal import answer, echo, print_findings, say
+from shaftprint.cli._terminal import answer, details, echo, is_detailed, print_findings, say
 from shaftprint.cli._vessel_file import print_disagreements
 from shaftprint.cli.output._progress import no_progress_option, progress
 from shaftprint.cli.output._tables import print_table, print_tables
@@ -50,6 +50,8 @@ with late():
 
 
 _MOST_GAPS = 20
+# Rows of a table that is read, and not looked up.
+_MOST_LINES = 40
 # More strips than this are teeth, of which the worst is named.
 _MOST_STRIPS = 12
 
@@ -247,8 +249,11 @@ def _print_answer(
         worst = next(iter((*wrong, *against)), "") or refusal
         answer(headline(test.parts, planned=lines_of(test.planned), worst=worst, lost=lost))
         echo()
-        problems += [refusal] if refusal and refusal not in problems else []
-    print_findings("Problems", problems, is_answer=True)
+        # said above; what refuses the test says the same once more, and ends the command
+        problems = [problem for problem in problems if problem != worst]
+        if worst and not problems:
+            return
+    print_findings("Problems" if test is None or not worst else "Further problems", problems, is_answer=True)
 
 
 def _read(watch: LevelWatch, ship: Vessel, *, partly: bool, hidden: bool) -> ChannelReadings:
@@ -362,6 +367,15 @@ def _strips_in_words(pulses: PulseReport) -> str:
     return "" if len(angles) == 1 else ", ".join(f"{angle:.2f}" for angle in angles)
 
 
+def _print_lines(spectra: Spectra, legs: Sequence[LegMeasurement]) -> None:
+    """Print the lines of the sines, or of the first leg, and those of the other legs."""
+    print_lines(spectra)
+    for leg in legs:
+        if leg.spectra is not spectra:
+            say(f"Leg {leg.name}")
+            print_lines(leg.spectra)
+
+
 def _print_test(test: _Test) -> None:
     if test.tests:
         print_found_tests(test.tests, test.planned)
@@ -370,11 +384,14 @@ def _print_test(test: _Test) -> None:
     print_signals(test.signals)
     if test.legs:
         print_table(leg_table(test.legs))
-    print_lines(test.spectra)
-    for leg in test.legs:
-        if leg.spectra is not test.spectra:
-            say(f"Leg {leg.name}")
-            print_lines(leg.spectra)
+    lines = sum(len(one.response.lines) for one in test.parts)
+    if lines <= _MOST_LINES:
+        _print_lines(test.spectra, test.legs)
+    else:
+        with details():
+            _print_lines(test.spectra, test.legs)
+        if not is_detailed():
+            say(f"Signal-to-noise ratios of {lines} lines: --verbose.\n")
     print_limit_uses(test.uses, is_expected=False)
     print_findings("Findings on the signals", [*test.signals.findings, *test.of_clocks])
     if test.planned.sines:

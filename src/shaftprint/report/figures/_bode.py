@@ -35,6 +35,7 @@ SIDEWAYS = 1.12
 ENDLESS_DB = 500.0
 TURN_STEP_DEG = 90.0
 HEIGHTS_PX = (260, 220)
+BELOW_PX = 170
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -124,7 +125,7 @@ def columns_chart(
     return Chart(
         panels=[panel for row in rows for panel in row],
         columns=len(columns),
-        heights_px=HEIGHTS_PX,
+        heights_px=(*HEIGHTS_PX, BELOW_PX) if below else HEIGHTS_PX,
         linked="all" if same else "columns",
     )
 
@@ -198,7 +199,11 @@ def _add_data(
     *,
     wraps: bool,
 ) -> None:
-    """Add a measured response with 95 % intervals, used lines filled, the others hollow."""
+    """Add a measured response with 95 % intervals, used lines filled, the others hollow.
+
+    Used lines that noise may have made alone are pale and have no interval: theirs reach out of any diagram, and hide
+    the others.
+    """
     data = column.data[label]
     index = channel_of(data.outputs, data.inputs, column.output, column.cause)
     points = measured_points(data, index)
@@ -206,12 +211,16 @@ def _add_data(
     phase = wrapped(phase) if wraps else _seen_with(phase, data.used)
     below = np.minimum(points.below_db, ENDLESS_DB)
     aside = SIDEWAYS ** (place - 0.5 * (len(column.data) - 1))
-    for chosen, filled, text in (
-        (data.used, True, f"{label}, 95 % interval"),
-        (~data.used, False, f"{label}, line not used"),
+    drowned = data.used & np.isinf(points.below_db)
+    own: Shade = "data" if len(column.data) == 1 else place
+    for chosen, filled, shade, text in (
+        (data.used & ~drowned, True, own, f"{label}, 95 % interval"),
+        (drowned, True, "soft", f"{label}, weaker than noise"),
+        (~data.used, False, own, f"{label}, line not used"),
     ):
         if not chosen.any():
             continue
+        has_bars = shade == own
         for marks, middle, bars in (
             (pair[0], points.magnitude_db, (below, points.above_db)),
             (pair[1], phase, (points.phase_half_deg, points.phase_half_deg)),
@@ -221,9 +230,9 @@ def _add_data(
                     x=aside * data.omega_rad_s[chosen],
                     y=middle[chosen],
                     name=text,
-                    shade="data" if len(column.data) == 1 else place,
+                    shade=shade,
                     filled=filled,
-                    bars=(bars[0][chosen], bars[1][chosen]),
+                    bars=(bars[0][chosen], bars[1][chosen]) if has_bars else None,
                     words=[line for line, is_shown in zip(data.lines, chosen, strict=True) if is_shown],
                 )
             )

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from shaftprint.identify.fit._identification import Identification
 
 ROOM = 1.1
+STEP_STD, MOST_STEPS = 2.0, 4.0
 
 
 def fit_chart(identification: "Identification", *, aliasing_limit_hz: float | None = None) -> Chart:
@@ -68,8 +69,9 @@ def _remainder(identification: "Identification", curve: Curve, channel: int, col
         words = [line for line, is_shown in zip(data.lines, fitted, strict=True) if is_shown]
         marks.append(Points(x=omega, y=normalised, name=f"residual, {name}", shade=shade, words=words))
         largest = max(largest, ROOM * float(np.abs(normalised).max()))
-    title = "residual over its std [-]" if channel == 0 else ""
-    return Panel(marks=marks, x=frequency_scale(span), y=Scale(title=title, span=(-largest, largest)))
+    title = "residual / std" if channel == 0 else ""
+    step = STEP_STD if largest < MOST_STEPS * STEP_STD else None
+    return Panel(marks=marks, x=frequency_scale(span), y=Scale(title=title, span=(-largest, largest), step=step))
 
 
 def _model_halves(curve: Curve, channel: int, frequency_hz: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -137,7 +137,7 @@ def fit_section(inputs: Inputs) -> Section:
                 name="fit",
                 caption=(
                     "Identified model with its 95 % band (covariance of the parameters) and measured response with "
-                    f"95 % intervals, most of them smaller than their markers; hollow ones are not used. {symbols}"
+                    f"95 % intervals; pale points may be noise alone, hollow ones are not used. {symbols}"
                     "Below, what the model leaves and its band, in standard deviations of each measured point."
                 ),
                 alt="Bode diagram of the identified model through the measured points of all outputs.",

@@ -30,7 +30,7 @@
   };
   const { layoutOf, fitted, keyOf } = window.shaftprintLayout;
   // Width of a sheet between its margins, and how high panels are on it, of their height on a screen: a Bode diagram,
-  // over a logarithmic frequency, is read off on paper too, and has rows of 40 mm at least.
+  // over a logarithmic frequency, is read off on paper too, and has rows of 40 mm at least; names need a line each.
   const PAPER_PX = 688;
   const PAPER_SHARE = 0.45;
   const BODE_SHARE = 0.7;
@@ -93,7 +93,8 @@
   const screen = (place) => ({ width: place.clientWidth, height: place.clientHeight });
 
   function paper({ place, chart }) {
-    const share = chart.panels[0].x.log ? BODE_SHARE : PAPER_SHARE;
+    const { x, y } = chart.panels[0];
+    const share = x.log || y.names.length ? BODE_SHARE : PAPER_SHARE;
     const saved = (1 - share) * chart.heights.reduce((a, b) => a + b);
     return { width: PAPER_PX, height: parseFloat(place.style.getPropertyValue("--height")) - saved, share };
   }

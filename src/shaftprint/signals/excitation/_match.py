@@ -129,11 +129,11 @@ def expect_campaign(
         )
         raise SignalError(
             f'channel {channel}: expected the set point of the campaign "{campaign.name}", found '
-            f"another course in every slow test ({', '.join(foreign)}): {instead}; `shaftprint inspect` with --vessel "
-            "and --campaign proposes the start of every test."
+            f"another course in every slow test ({', '.join(foreign)}): {instead}; `shaftprint inspect` with --vessel, "
+            "--campaign and -o FILE writes the tests as the set point shows them."
         )
     if shift_s:
-        return (f"{_shift_words(shift_s)}; `shaftprint inspect` proposes the start of every test",)
+        return (f"{_shift_words(shift_s)}; `shaftprint inspect` with -o FILE writes them so",)
     held_names = {item.name for item in held}
     held_tests = [test for test in tests if test.planned.name in held_names]
     return tuple(

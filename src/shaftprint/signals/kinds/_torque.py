@@ -8,6 +8,7 @@ import numpy as np
 from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.campaign._campaign import Campaign
 from shaftprint.campaign._excitations import Sine
+from shaftprint.digits import in_nm
 from shaftprint.errors import SignalError
 from shaftprint.signals._channel_signals import ChannelSignal
 from shaftprint.signals._channels import middle_of
@@ -107,7 +108,7 @@ def expect_unit(channel: "Channel", vessel: "Vessel") -> None:
     # a torque of the other sign is no other unit: that it has the other sign is said with the working point
     if unit is not None and torque / expected > 0.0 and not _SMALL_PART < torque / expected < _MULTIPLE:
         raise SignalError(
-            f"channel {channel.name}: expected a torque around {expected:.4g} N m, found {torque:.4g} N m; {unit} in "
+            f"channel {channel.name}: expected a torque around {in_nm(expected)}, found {in_nm(torque)}; {unit} in "
             "sensors.shaft_torque would fit."
         )
 

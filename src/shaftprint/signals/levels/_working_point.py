@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shaftprint.arrays import FloatArray
+from shaftprint.digits import in_nm
 from shaftprint.errors import SignalError
 from shaftprint.signals._working_points import WorkingPoint
 from shaftprint.signals.levels._load import torque_of_mean_load
@@ -141,7 +142,7 @@ def expect_driving(point: WorkingPoint, vessel: "Vessel") -> None:
     if not point.shaft_torque_nm > 0.0:
         raise SignalError(
             f"channel {sensor.channel}: expected a {_sign_words(vessel)} mean torque at the working point, found "
-            f"{vessel.working_point.turning * point.shaft_torque_nm:.4g} N m; {sensor.sign_words} in the vessel file, "
+            f"{in_nm(vessel.working_point.turning * point.shaft_torque_nm)}; {sensor.sign_words} in the vessel file, "
             f"or correct zero_nm there, or {direction_words(vessel)}."
         )
 

@@ -8,6 +8,7 @@ if TYPE_CHECKING:
 
 # A number may differ from the expected one by so many standard deviations of both before anyone should look, and act.
 FAR, TOO_FAR = 2.0, 3.5
+_CALLED = {"I_dn": "inertia", "K_Q": "torque coefficient"}
 
 
 def doubt_of(fingerprint: "Fingerprint", name: str) -> str:
@@ -16,7 +17,11 @@ def doubt_of(fingerprint: "Fingerprint", name: str) -> str:
     if not verdict.trustworthy:
         return "The model is not trustworthy."
     reason = verdict.not_trusted.get(name)
-    return f"It cannot be told: {reason}." if reason else ""
+    if not reason:
+        return ""
+    # of a sentence that begins with the number itself the reader sees which
+    own = f"the {_CALLED.get(name, name)} {reason.removeprefix('it ')}" if reason.startswith("it ") else reason
+    return f"It cannot be told: {own}."
 
 
 def deviations_apart(quantity: "Estimate") -> float | None:

@@ -47,10 +47,10 @@ def shown(quantity: "Estimate") -> tuple[str, str]:
     scale, unit = _scale(quantity)
     value, lower, upper = (scale * number for number in (quantity.value, *limits(quantity)))
     decimals = _decimals(value, upper - lower)
-    text = f"{plain(value, decimals)} {unit}".strip()
+    text = f"{_rounded(value, decimals)} {unit}".strip()
     if not math.isfinite(upper - lower):
         return text, "not known"
-    return text, f"{plain(lower, decimals)} to {plain(upper, decimals)}"
+    return text, f"{_rounded(lower, decimals)} to {_rounded(upper, decimals)}"
 
 
 def expected_shown(quantity: "Estimate") -> str:
@@ -59,7 +59,7 @@ def expected_shown(quantity: "Estimate") -> str:
     if quantity.expected is None or quantity.expected_std:
         return expected_text(quantity, scale)
     lower, upper = (scale * number for number in limits(quantity))
-    return plain(scale * quantity.expected, _decimals(scale * quantity.value, upper - lower))
+    return _rounded(scale * quantity.expected, _decimals(scale * quantity.value, upper - lower))
 
 
 def _scale(quantity: "Estimate") -> tuple[float, str]:
@@ -67,6 +67,13 @@ def _scale(quantity: "Estimate") -> tuple[float, str]:
 
 
 def _decimals(value: float, width: float) -> int:
-    """Return how many decimals a reader can use: the first digit of half the interval, or three digits of the value."""
-    least = width / 2.0 if math.isfinite(width) and width > 0.0 else abs(value) / 100.0
-    return 0 if not 0.0 < least < math.inf else max(0, -math.floor(math.log10(least)))
+    """Return how many decimals are shown, less than none above ten: two digits of half the interval, or of the value.
+
+    So the same number has the same digits in the tables below and on the command line.
+    """
+    least = width / 2.0 if math.isfinite(width) and width > 0.0 else abs(value) / 10.0
+    return 0 if not 0.0 < least < math.inf else 1 - math.floor(math.log10(least))
+
+
+def _rounded(value: float, decimals: int) -> str:
+    return plain(round(value, decimals), max(0, decimals))

@@ -129,7 +129,7 @@ def measured(fingerprint: "Fingerprint") -> Card:
             "Read under Data quality why so many test frequencies were left out before the test is repeated."
         )
     if remarks:
-        actions.append("Read the remarks under Findings, and mend the sensor or the wiring that they name.")
+        actions.append("Read the remarks under Findings, and mend what they name: a sensor, its wiring, or the test.")
     return Card(
         question="Were the measurements good?",
         state="look" if many or remarks else "fine",
