@@ -33,10 +33,12 @@ def test_words_of_a_line(site):
     fouled = stands(site, {"causes": [worn]})
     assert (fouled.kind, fouled.word, fouled.look) == ("worn as expected", "worn as expected: propeller", "worn")
     assert fouled.note == "6.30 ± 0.80 % by now, 4.20 ± 0.80 % a year since 2026-03-01"
+    cleaned = stands(site, {"causes": [worn | {"to_do": "cleaning the propeller takes it off"}]})
+    assert cleaned.note.endswith(" a year since 2026-03-01. Cleaning the propeller takes it off")
     gain = STEP | {"name": "proportional gain of the governor", "to_do": "read the gains"}
     both = stands(site, {"causes": [worn, gain]})
     assert both.word == "changed: proportional gain of the governor"
-    assert both.note == "4.20 ± 0.80 %, seen on 2026-03-01; beside it propeller. Read the gains"
+    assert both.note == "4.20 ± 0.80 %, seen on 2026-03-01; beside it propeller 6.30 ± 0.80 % by now. Read the gains"
     assert (both.clearness, fouled.clearness) == (4.2 / 0.8, 0.0)
     assert stands(site, {}, trustworthy=False).word == "not trustworthy"
     assert stands(site, {"because": "two of them differ"}).note == "two of them differ"

@@ -81,11 +81,11 @@ def _said(line: LineNow, found: tuple[str, dict[str, Any]] | None) -> tuple[str,
     causes = sorted(summary.get("causes") or [], key=lambda one: bool(one.get("expected")))
     if causes:
         first = causes[0]
-        note = change_words(first) + (f"; beside it {causes[1]['name']}" if len(causes) > 1 else "")
+        note = change_words(first) + (f"; beside it {causes[1]['name']}{_by_now(causes[1])}" if len(causes) > 1 else "")
         note += f", and {len(causes) - 2} more" if len(causes) > _NAMED else ""
+        note += f". {first['to_do'][:1].upper()}{first['to_do'][1:]}" if first.get("to_do") else ""
         if first.get("expected"):
             return "worn as expected", f"worn as expected: {first['name']}", "worn", note
-        note += f". {first['to_do'][:1].upper()}{first['to_do'][1:]}" if first.get("to_do") else ""
         return "changed", f"changed: {first['name']}", "look", note
     if line.tests == 1:
         return "cannot be told", "one test only", "open", "from two tests on a change can be seen"
@@ -99,6 +99,11 @@ def change_words(cause: dict[str, Any]) -> str:
     size = f"{with_deviation(cause['size'], cause['std'])} {cause['unit']}"
     if cause["shape"] != "ramp":
         return f"{size}, seen on {cause['since']}"
+    by_now = _by_now(cause).removeprefix(" ")
+    return f"{by_now}{', ' if by_now else ''}{size} a year since {cause['since']}"
+
+
+def _by_now(cause: dict[str, Any]) -> str:
+    """Return what a change that goes on has come to, behind a space; nothing of a step."""
     now = cause.get("now")
-    by_now = "" if now is None else f"{with_deviation(now['size'], now['std'])} {cause['unit']} by now, "
-    return f"{by_now}{size} a year since {cause['since']}"
+    return "" if now is None else f" {with_deviation(now['size'], now['std'])} {cause['unit']} by now"
