@@ -201,7 +201,8 @@ def test_headline_nothing_at_the_crossover():
 def test_headline_is_never_good_above_what_is_wrong():
     good = [_spectra(SIX, [20.0] * 6, [True] * 6)]
     assert headline(good, worst="The speed is in doubt.").startswith("Not as it is. The speed is in doubt. ")
-    assert headline([], worst="channel P: found no pulses.") == "Not good enough. channel P: found no pulses."
+    assert headline([], worst="channel P: found no pulses.") == "Not good enough. Channel P: found no pulses."
+    assert headline([], worst="log.csv: found no pulses.") == "Not good enough. log.csv: found no pulses."
     partly = headline(good, planned=12, lost=("M2 is lost",))
     assert partly.startswith("Good enough, as far as it goes: 6 of 12 lines ")
     assert partly.endswith("Not all of the campaign is there: M2 is lost.")
@@ -220,6 +221,8 @@ def test_proposal_for_a_campaign_whose_times_are_wrong(run, recording, tmp_path)
     path.write_text(wrong, encoding="utf-8")
     result = run("inspect", recording, "--vessel", "stan-tug-1205", "--campaign", path)
     assert "All tests are found 2.500 s earlier than planned." in result.output
+    # what is wrong is said once, before the error
+    assert " ".join(result.stdout.split()).count("another course in every slow test") <= 1
     head, proposal = result.output.split("in place of those that it has\n\n")
     lines = proposal.split("\n\nSteady state")[0]
     path.write_text(wrong.split("[[staircases]]")[0] + lines, encoding="utf-8")

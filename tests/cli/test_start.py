@@ -120,6 +120,9 @@ def test_a_campaign_that_was_begun_late_is_written_as_recorded(run, here, record
     files = (recording, "--vessel", "stan-tug-1205")
     looked = run("inspect", *files, "--campaign", "late.toml")
     assert "earlier than planned" in " ".join(looked.output.split())
+    # the next command writes what would stand here
+    assert "[[sines]]" not in looked.output
+    assert " ".join(looked.stdout.split()).count("another course in every slow test") == 1
     assert "--campaign late.toml -o campaign-as-recorded.toml" in looked.output
     written = run("inspect", *files, "--campaign", "late.toml", "-o", "fixed.toml")
     assert following(written)[-1] == "fixed.toml"
