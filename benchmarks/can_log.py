@@ -199,7 +199,7 @@ def all_messages(seed: int) -> dict[str, Any]:
     late_set_point_s = ship.vessel.sensors.set_point.message_latency_s - DEMAND["message_latency_s"]
     true["t_gauge"] -= late_speed_s
     for name in ("t_sp", "t_d + t_sp"):
-        true[name] += late_speed_s - late_set_point_s
+        true[name] -= late_set_point_s
     named = {name: asdict(row) for name, row in rows_of(found, true).items()}
     return {
         "seed": seed,

@@ -17,7 +17,7 @@ from shaftprint.fingerprint._working_point_share import (
     RACK,
     SPEED,
     shifts_of_working_point,
-    std_of_working_point,
+    std_beside_fit,
     widened,
     widened_covariance,
 )
@@ -76,8 +76,8 @@ def test_numbers_move_with_the_load_as_their_part_of_the_budget_says(found, stat
 def test_physical_values_do_not_know_of_it_but_the_torque_coefficient_does(stated, found, working_point, vessel):
     for name in ("I_dn", "I_up", "governor proportional action", "governor integral action"):
         row = stated.row(name)
-        assert std_of_working_point(stated, name) < 1e-6 * row.value
-    assert std_of_working_point(stated, "K_Q") == pytest.approx(working_point.load_std * stated.row("K_Q").value)
+        assert std_beside_fit(stated, name) < 1e-6 * row.value
+    assert std_beside_fit(stated, "K_Q") == pytest.approx(working_point.load_std * stated.row("K_Q").value)
     wandering = replace(working_point, load_std=0.05)
     calm = {q.name: q for q in physical_quantities(found, working_point, vessel)}
     for quantity in physical_quantities(found, wandering, vessel):
@@ -90,7 +90,7 @@ def test_an_inertia_time_has_the_share_of_load_and_speed(found, stated, working_
     assert stated.row("tau_dn").variances[LOAD_WANDER] == pytest.approx((0.005 * value) ** 2)
     assert stated.row("tau_dn").variances[SPEED] == pytest.approx((0.01 / 19.73 * value) ** 2)
     for name in ("K_p / K_i", "v K_p / (tau_up + tau_dn)", "t_d", "k_q", "c_set"):
-        assert std_of_working_point(stated, name) < 1e-6 * abs(stated.row(name).value)
+        assert std_beside_fit(stated, name) < 1e-6 * abs(stated.row(name).value)
 
 
 def test_covariance_grows_by_the_same(found, stated, working_point):
@@ -123,7 +123,7 @@ def test_numbers_move_with_the_rack_as_their_part_of_the_budget_says(fit, truth,
         part = stated.row(estimate.name).variances.get(RACK, 0.0) ** 0.5
         assert part == pytest.approx(moved, rel=0.02, abs=1e-5 * abs(before[estimate.name]) + 1e-7), estimate.name
     for name in ("K_p", "K_i", "v"):
-        assert std_of_working_point(stated, name) == pytest.approx(
+        assert std_beside_fit(stated, name) == pytest.approx(
             np.sqrt(MORE**2 + (name != "v") * (0.005**2 + (0.01 / 19.73) ** 2)) * before[name], rel=1e-3
         )
 

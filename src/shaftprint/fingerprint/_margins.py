@@ -4,7 +4,7 @@ import numpy as np
 
 from shaftprint.catalogue._roles import ShipRole
 from shaftprint.fingerprint._margin_numbers import MEANINGS, margin_numbers, margin_values
-from shaftprint.fingerprint._working_point_share import std_of_working_point, widened
+from shaftprint.fingerprint._working_point_share import std_beside_fit, widened
 from shaftprint.identify.fit._estimate import Estimate
 from shaftprint.identify.fit._identification import Identification
 from shaftprint.identify.uncertainty._budget import Budget, budget
@@ -37,7 +37,7 @@ def margin_quantities(
             continue
         interval = None if profile is None else profile.intervals.get(name)
         is_open = (False, False) if interval is None else (interval.lower_open, interval.upper_open)
-        further = std_of_working_point(stated, name) if name in std else 0.0
+        further = std_beside_fit(stated, name) if name in std else 0.0
         unit, meaning = MEANINGS[name]
         quantities.append(
             Estimate(

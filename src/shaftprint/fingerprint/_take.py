@@ -25,10 +25,11 @@ from shaftprint.fingerprint._line_fingerprint import SourceFile
 from shaftprint.fingerprint._margin_numbers import margin_numbers
 from shaftprint.fingerprint._margins import margin_quantities
 from shaftprint.fingerprint._physical import physical_numbers, physical_quantities
+from shaftprint.fingerprint._speed_age import shifts_of_speed_age, with_speed_age
 from shaftprint.fingerprint._vessel_fields import vessel_fields
 from shaftprint.fingerprint._working_point_share import (
     shifts_of_working_point,
-    std_of_working_point,
+    std_beside_fit,
     widened,
     widened_covariance,
 )
@@ -112,6 +113,7 @@ def take_fingerprint(
     points = (leg.working_point for leg in signals.legs if leg.name in kept)
     of_legs = sorted(points, key=lambda point: point != main)
     shifts = shifts_of_working_point(identification, main, rack_share, of_legs if main in of_legs else ())
+    shifts |= shifts_of_speed_age(identification)
     stated = _budget(identification, signals.working_point, vessel, margins, shifts)
     physical = (*physical_quantities(identification, signals.working_point, vessel, stated), *ship)
     left_out = _left_out(identification)
@@ -121,9 +123,10 @@ def take_fingerprint(
     conditions = _conditions(identification, signals, vessel, left_out, stated_conditions)
     margin = margin_quantities(identification, profiled, stated)
     off = contradictions(physical, signals, vessel, campaign)
+    estimates = {e.name: e.value for e in (*identification.parameters, *identification.combinations)}
     verdict = assess(
         identification,
-        profile=profiled,
+        profile=with_speed_age(profiled, stated, estimates),
         signal_to_noise=signal_to_noise,
         reasons=(*off, *reasons),
         further=[*physical, *margin, conditions.engine_speed, conditions.shaft_torque],
@@ -247,7 +250,7 @@ class _Reported:
     def quantity(self, estimate: Estimate) -> Estimate:
         """Return a parameter or combination with its standard deviation and interval."""
         interval = self.intervals.get(estimate.name)
-        further = std_of_working_point(self.stated, estimate.name)
+        further = std_beside_fit(self.stated, estimate.name)
         is_open = (False, False) if interval is None else (interval.lower_open, interval.upper_open)
         return replace(
             estimate,

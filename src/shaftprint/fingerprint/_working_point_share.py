@@ -34,7 +34,8 @@ LOAD_WANDER = "wander of the load"
 SPEED = "working-point speed"
 RACK = "working-point rack"
 GAIN = "working-point gain of the gauge"
-"""Sources of the budget."""
+SPEED_AGE = "speed latency"
+"""Sources of the budget, which no fit knows of."""
 
 FUEL_RACK = "X"
 
@@ -119,10 +120,10 @@ def _changes(identification: Identification, powers: Mapping[str, float]) -> dic
     return {name: float(size) for name, size in zip(free, change, strict=True) if size}
 
 
-def std_of_working_point(stated: Budget, name: str) -> float:
-    """Return the standard deviation that the working point gives to a number of the budget."""
+def std_beside_fit(stated: Budget, name: str) -> float:
+    """Return the standard deviation that what comes after the fit gives to a number of the budget."""
     variances = stated.row(name).variances
-    return float(np.sqrt(sum(variances.get(source, 0.0) for source in (LOAD_WANDER, SPEED, RACK, GAIN))))
+    return float(np.sqrt(sum(variances.get(source, 0.0) for source in (LOAD_WANDER, SPEED, RACK, GAIN, SPEED_AGE))))
 
 
 def widened(

@@ -9,6 +9,7 @@ import numpy as np
 
 from shaftprint.catalogue._roles import ShipRole
 from shaftprint.errors import IdentificationError
+from shaftprint.fingerprint._speed_age import AGE_OF_SPEED
 from shaftprint.identify.comparison._compare import compare_fits
 from shaftprint.identify.comparison._comparison import StructureComparison
 from shaftprint.identify.fit._fit_of import fit_of
@@ -54,7 +55,7 @@ def _from_messages(
     speed_s = 1.0 / signals.engine_speed.pulse_rate_hz if is_spline else 0.0
     ages = {
         "age of torque messages": torque_s / math.sqrt(12.0) if gauge.latency_std_s is None else 0.0,
-        "age of speed messages": speed_s / math.sqrt(12.0) if speed.latency_std_s is None else speed.latency_std_s,
+        AGE_OF_SPEED: speed_s / math.sqrt(12.0) if speed.latency_std_s is None else speed.latency_std_s,
     }
     sources = {name: std for name, std in ages.items() if std}
     if not sources:
