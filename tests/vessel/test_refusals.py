@@ -1,5 +1,7 @@
 """What cannot be a ship is refused with a message that says why."""
 
+import re
+
 import pytest
 from pydantic import ValidationError
 
@@ -120,6 +122,20 @@ def test_all_that_is_wrong_with_a_table_is_told_at_once(tmp_path):
             pulse_width_deg=95.0,
             strip_angles_deg=(90.0, 90.0, 90.0, 80.0),
         )
+
+
+def test_the_only_speed_sensor_is_told_by_its_own_fault_alone(tmp_path):
+    """Entries with a fault were not counted, and none seemed to be there."""
+    path = tmp_path / "ship.toml"
+    write_template("vessel", path)
+    tables = re.split(r"^(?=\[)", path.read_text(), flags=re.MULTILINE)
+    first, *others = [table for table in tables if table.startswith("[[sensors.speed]]")]
+    kept = [table for table in tables if table not in others]
+    path.write_text("".join(kept).replace(first, first.replace('shaft = "', 'latency_s = -1.0\nshaft = "')))
+    with pytest.raises(SettingsError) as refused:
+        load_vessel(path)
+    assert str(refused.value).splitlines()[0].endswith("1 field cannot be used.")
+    assert "sensors.speed[1].latency_s" in str(refused.value)
 
 
 def test_rows_without_standard_deviation_take_that_of_the_trade(tmp_path):
