@@ -7,7 +7,8 @@ integrates its error. The value of the line at the working voltage is the speed 
 some tenths of a per cent a volt: through levels that do not lie evenly about the working voltage a straight line has
 another slope than the lever has there. The bend is fitted where there are three levels, with what is known of it
 beforehand, and is in the deviation of the slope where there are two. What disturbs the speed goes with the load, hence
-with the square of the speed: the levels at the ends, which say how the line bends, are not alike.
+with the square of the speed, or is alike at all levels, as a demand that wanders: the levels at the ends, which say how
+the line bends, weigh otherwise. Both are fitted, and the line that is known less well is taken.
 """
 
 from itertools import pairwise
@@ -155,9 +156,13 @@ def _bent_line(
     # a slope s (1 + b (n / n_0 - 1)) with n - n_0 = s U
     bent = 0.5 * slope**2 / middle * about_v**2
     if levels >= _LEVELS_OF_BEND and speed.size >= _FEWEST_WINDOWS:
-        disturbed = ((middle + slope * about_v) / middle) ** 2
-        columns = np.column_stack([line, bent]) / disturbed[:, None]
-        free = fit_through_wander(speed / disturbed, columns, begins, ends)
+        columns = np.column_stack([line, bent])
+        by_load = ((middle + slope * about_v) / middle) ** 2
+        fits = [
+            fit_through_wander(speed / disturbed, columns / disturbed[:, None], begins, ends)
+            for disturbed in (np.ones_like(speed), by_load)
+        ]
+        free = max(fits, key=lambda fit: float(fit.covariance[1, 1]))
         share = free.covariance[:, 2] / (free.covariance[2, 2] + bend_std**2)
         return free.value - share * free.value[2], free.covariance - np.outer(share, free.covariance[2])
     straight = fit_through_wander(speed, line, begins, ends)
