@@ -257,7 +257,13 @@ def expect_further_leg(folder, printed, words):
     assert len(further.sailed) == 2
 
 
+def expect_start(folder, printed, words):
+    # the folder of the pages has vessel, campaign and results: nothing is asked
+    assert re.search(r"^Next: +shaftprint \w+", printed, re.MULTILINE)
+
+
 EXPECTED = {
+    "start": expect_start,
     "plan": expect_plan,
     "continue": expect_further_leg,
     "demo": expect_demo,
