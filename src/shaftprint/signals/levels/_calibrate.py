@@ -21,7 +21,7 @@ from shaftprint.errors import SignalError
 from shaftprint.signals._gaps import EVERYTHING, Coverage
 from shaftprint.signals._signals import SetPointCalibration
 from shaftprint.signals.levels._dc_scale import FEWEST_LINES, low_lines, period_amplitudes, zero_frequency_ratio
-from shaftprint.signals.levels._wander import fit_through_wander
+from shaftprint.signals.levels._wander import Line, fit_through_wander
 
 if TYPE_CHECKING:
     from shaftprint.campaign._campaign import Campaign
@@ -159,17 +159,21 @@ def _bent_line(
         columns = np.column_stack([line, bent])
         by_load = ((middle + slope * about_v) / middle) ** 2
         fits = [
-            fit_through_wander(speed / disturbed, columns / disturbed[:, None], begins, ends)
-            for disturbed in (np.ones_like(speed), by_load)
+            _with_bend_known(fit_through_wander(speed / noise, columns / noise[:, None], begins, ends), bend_std)
+            for noise in (np.ones_like(speed), by_load)
         ]
-        free = max(fits, key=lambda fit: float(fit.covariance[1, 1]))
-        share = free.covariance[:, 2] / (free.covariance[2, 2] + bend_std**2)
-        return free.value - share * free.value[2], free.covariance - np.outer(share, free.covariance[2])
+        return max(fits, key=lambda fit: float(fit[1][1, 1]))
     straight = fit_through_wander(speed, line, begins, ends)
     turned, *_ = np.linalg.lstsq(line, bent, rcond=None)
     moves = np.append(-turned, 1.0)
     covariance = np.pad(straight.covariance, (0, 1)) + bend_std**2 * np.outer(moves, moves)
     return np.append(straight.value, 0.0), covariance
+
+
+def _with_bend_known(free: Line, bend_std: float) -> tuple[FloatArray, FloatArray]:
+    """Return a line whose bend is fitted, and its covariance, with what is known of the bend beforehand."""
+    share = free.covariance[:, 2] / (free.covariance[2, 2] + bend_std**2)
+    return free.value - share * free.value[2], free.covariance - np.outer(share, free.covariance[2])
 
 
 def _slope_of_sines(
