@@ -82,8 +82,8 @@ def test_every_channel_has_its_column_with_its_own_data_and_model(found, measure
 
 def test_error_bars_are_those_of_the_channel(measured):
     # small enough that no point may be noise alone, which would have no bar
-    covariance = 1e-2 * measured.covariance
-    covariance[:, 3, 3] = covariance[:, 7, 7] = 4e-6
+    covariance = 1e-4 * measured.covariance
+    covariance[:, 3, 3] = covariance[:, 7, 7] = 4e-8
     other = FrequencyResponse(
         frequency_hz=FREQUENCY_HZ,
         response=measured.response,
@@ -92,8 +92,8 @@ def test_error_bars_are_those_of_the_channel(measured):
         outputs=measured.outputs,
     )
     shown = [marks(panel, "data", Points)[0] for panel in bode_chart(data=other).panels[:4]]
-    # 1.96 standard deviations outwards along the response: 0.001, and 0.002 of the last channel
-    for place, std in enumerate((0.001, 0.001, 0.001, 0.002)):
+    # 1.96 standard deviations outwards along the response: 0.0001, and 0.0002 of the last channel
+    for place, std in enumerate((0.0001, 0.0001, 0.0001, 0.0002)):
         size = np.abs(measured.response.reshape(4, -1)[place])
         upper = shown[place].y + shown[place].bars[1]
         np.testing.assert_allclose(upper, 20.0 * np.log10(size + 1.959964 * std), atol=1e-6)
