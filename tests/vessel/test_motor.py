@@ -115,7 +115,7 @@ def test_no_machine_at_all_is_refused(tmp_path):
             "regenerating_torque_nm = 4000.0",
             "maximum_torque_nm = 9000.0",
             "motor.maximum_torque_nm",
-            "1.194e+04 N m at 600 rpm, as 750 kW give there",
+            "11940 N m at 600 rpm, as 750 kW give there",
         ),
         ("motor_speed_rpm = 350.0", "motor_speed_rpm = 90.0", "motor.lowest_speed_rpm", "a speed below"),
     ],
