@@ -232,15 +232,11 @@ def _describe_all(path: Path, error: ValidationError, model_class: type[Settings
     # a missing key that stands there under another name is told once, at that name
     elsewhere = missing & {(*place[:-1], _key_meant(place, model_class, missing)) for place in unknown}
     # entries that cannot be used are not counted: that too few are left is no fault of its own
-    uncounted = [fault for fault in faults if fault["type"] == "too_short" and _has_faults_inside(fault["loc"], faults)]
-    told = [fault for fault in faults if fault["loc"] not in elsewhere and fault not in uncounted]
-    rows = [_describe(fault, model_class, content, missing) for fault in told]
+    filled = {fault["loc"][:depth] for fault in faults for depth in range(1, len(fault["loc"]))}
+    told = [fault for fault in faults if fault["type"] != "too_short" or fault["loc"] not in filled]
+    rows = [_describe(fault, model_class, content, missing) for fault in told if fault["loc"] not in elsewhere]
     count = "1 field" if len(rows) == 1 else f"{len(rows)} fields"
     return "\n  ".join([f"{path}: {count} cannot be used.", *rows])
-
-
-def _has_faults_inside(place: _Place, faults: Sequence[ErrorDetails]) -> bool:
-    return any(len(fault["loc"]) > len(place) and fault["loc"][: len(place)] == place for fault in faults)
 
 
 def _describe(details: ErrorDetails, model_class: type[Settings], content: Any, missing: Collection[_Place]) -> str:

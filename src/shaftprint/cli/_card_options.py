@@ -176,12 +176,17 @@ def card_options(command: Callable[..., Any]) -> Callable[..., Any]:
     return command
 
 
+def stated_of(said: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the options of a card that were given, by name."""
+    return {field: value for field, value in said.items() if value not in (None, False, ())}
+
+
 def card_of(said: Mapping[str, Any]) -> Card | None:
     """Return the card that the options state; None where there are none.
 
     Raises click.UsageError if something is missing that cannot be derived.
     """
-    stated = {field: value for field, value in said.items() if value not in (None, False, ())}
+    stated = stated_of(said)
     if not stated:
         return None
     missing = [option for field, (option, _, _) in _NEEDED.items() if field not in stated]
@@ -209,7 +214,7 @@ def ask_card(
     sensors, by the same names.
     """
     shown = recorded or {}
-    answers = {field: value for field, value in said.items() if value not in (None, False, ())}
+    answers = stated_of(said)
     if "name" not in answers:
         answers["name"] = ask("Name of ship and shaft line", click.STRING, "My ship, port")
     for field, (_, kind, words) in _NEEDED.items():

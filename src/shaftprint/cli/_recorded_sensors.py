@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from shaftprint.cli._card_options import OF_SPEED
+from shaftprint.cli._card_options import OF_SPEED, stated_of
 from shaftprint.cli._terminal import answer
 from shaftprint.cli.output._progress import progress
 from shaftprint.errors import ShaftprintError
@@ -69,7 +69,7 @@ def with_recorded(said: Mapping[str, Any], recorded: Mapping[str, Any], file: Pa
     Of pick-ups one of the engine is taken, with one pulse a turn, where there is no speed in rpm. What was taken is
     said. ``recorded``: of ``recorded_sensors``. ``file``: the recording.
     """
-    answers = {field: value for field, value in said.items() if value not in (None, False, ())}
+    answers = stated_of(said)
     taken = {field: value for field, value in recorded.items() if field not in (*answers, *OF_SPEED)}
     sentences = [f"{taken[field]} as {use}" for field, use in _USES.items() if field in taken]
     if not any(field in answers for field in OF_SPEED):

@@ -6,7 +6,6 @@ no fit can tell. What the vessel file does not state of it comes after the fit, 
 that hold it.
 """
 
-from collections.abc import Mapping
 from dataclasses import replace
 
 from shaftprint.catalogue._roles import ShipRole
@@ -31,17 +30,14 @@ def shifts_of_speed_age(identification: Identification) -> dict[str, dict[str, f
     return {SPEED_AGE: {late: age_s}} if age_s and late is not None else {}
 
 
-def with_speed_age(found: Profile | None, stated: Budget, values: Mapping[str, float]) -> Profile | None:
-    """Return the intervals by which numbers are judged, those that hold the age wider by it.
-
-    ``stated``: the budget. ``values``: estimates of parameters and combinations, by name.
-    """
+def with_speed_age(found: Profile | None, stated: Budget) -> Profile | None:
+    """Return the intervals by which numbers are judged, those that hold the age wider by it; ``stated``: the budget."""
     if found is None or SPEED_AGE not in stated.sources:
         return found
     intervals = dict(found.intervals)
-    for name, one in found.intervals.items():
-        further = stated.row(name).variances.get(SPEED_AGE, 0.0) ** 0.5 if name in values else 0.0
-        if further:
-            ends = widened((one.lower, one.upper), values[name], further, (one.lower_open, one.upper_open))
-            intervals[name] = replace(one, lower=ends[0], upper=ends[1])
+    for row in stated.rows:
+        one, further = intervals.get(row.name), row.variances.get(SPEED_AGE, 0.0) ** 0.5
+        if one is not None and further:
+            lower, upper = widened((one.lower, one.upper), row.value, further, (one.lower_open, one.upper_open))
+            intervals[row.name] = replace(one, lower=lower, upper=upper)
     return replace(found, intervals=intervals)

@@ -123,10 +123,9 @@ def take_fingerprint(
     conditions = _conditions(identification, signals, vessel, left_out, stated_conditions)
     margin = margin_quantities(identification, profiled, stated)
     off = contradictions(physical, signals, vessel, campaign)
-    estimates = {e.name: e.value for e in (*identification.parameters, *identification.combinations)}
     verdict = assess(
         identification,
-        profile=with_speed_age(profiled, stated, estimates),
+        profile=with_speed_age(profiled, stated),
         signal_to_noise=signal_to_noise,
         reasons=(*off, *reasons),
         further=[*physical, *margin, conditions.engine_speed, conditions.shaft_torque],

@@ -10,7 +10,7 @@ from typing import Any
 import click
 
 from shaftprint.cli._after_test import after_test
-from shaftprint.cli._card_options import CARD_SECTIONS, ask_card, card_of, card_options
+from shaftprint.cli._card_options import CARD_SECTIONS, ask_card, card_of, card_options, stated_of
 from shaftprint.cli._lying_files import LyingFiles, lying_files
 from shaftprint.cli._next import VESSEL_FILE, after_drive, free, plan_words, print_steps, rated_rpm_of
 from shaftprint.cli._option_sections import SectionedCommand
@@ -47,7 +47,7 @@ def command(folder: Path, *, yes: bool, **said: object) -> None:
     lying = lying_files(folder)
     _print(lying)
     vessel = lying.vessels[-1] if lying.vessels else None
-    is_said = any(value not in (None, False, ()) for value in said.values())
+    is_said = bool(stated_of(said))
     if vessel is None:
         recorded = recorded_sensors(lying.recordings[-1]) if lying.recordings and not lying.drives else {}
         steps = None if is_said or yes else _of_drive(lying, recorded)

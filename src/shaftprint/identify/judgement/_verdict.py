@@ -281,9 +281,10 @@ def _lists(trusted: tuple[str, ...], not_trusted: Mapping[str, str], *, rejected
 def _worded(doubts: Mapping[str, str]) -> str:
     """Return the names that share a doubt together, each doubt once; of several known to a share, each with its own."""
     shares = {name: share for name, doubt in doubts.items() if (share := share_of(doubt))}
+    has_several = len(set(shares.values())) > 1
     names: dict[str, list[str]] = {}
     for name, doubt in doubts.items():
-        if name in shares and len(set(shares.values())) > 1:
+        if has_several and name in shares:
             names.setdefault(KNOWN_POORLY, []).append(f"{name} ({shares[name]})")
         else:
             names.setdefault(doubt, []).append(name)

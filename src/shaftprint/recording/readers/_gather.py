@@ -89,6 +89,12 @@ class Gathered:
         )
 
 
+def names_in_words(names: Sequence[str], *, most: int = _SHOWN) -> str:
+    """Return the first names for a sentence, and how many more there are."""
+    more = f" and {len(names) - most} more" if len(names) > most else ""
+    return f"{', '.join(map(printable, names[:most]))}{more}"
+
+
 def reasons_in_words(left_out: Mapping[str, str], *, most: int) -> str:
     """Return why the first things were left out, in one line; empty where nothing was.
 

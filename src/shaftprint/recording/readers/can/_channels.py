@@ -6,10 +6,10 @@ from functools import partial
 from pathlib import Path
 
 from shaftprint.errors import RecordingError
-from shaftprint.escape import printable
 from shaftprint.recording._channel import Channel
 from shaftprint.recording._spool import Spool
 from shaftprint.recording.readers._clock import SampleClock, clock_of_times, kept_clocks, on_clock
+from shaftprint.recording.readers._gather import names_in_words
 from shaftprint.recording.readers.can._database import Database
 from shaftprint.recording.readers.can._frames import EXTENDED, FrameLog, pgn_of, sender_of
 from shaftprint.recording.readers.can._messages import Signal
@@ -115,9 +115,8 @@ def _left_out(streams: Streams, signals: list[tuple[Stream, Signal]], names: tup
         elif counted := tally.counted():
             left_out[f"values of {name}"] = counted
     if empty:
-        more = f" and {len(empty) - _MOST_LISTED} more" if len(empty) > _MOST_LISTED else ""
         left_out[f"values of {len(empty)} channels"] = (
-            f"in no message there is one: {', '.join(map(printable, empty[:_MOST_LISTED]))}{more}."
+            f"in no message there is one: {names_in_words(empty, most=_MOST_LISTED)}."
         )
     for origin, number in streams.packets.lost.items():
         left_out[f"packets of {getattr(origin, 'label', '')}"] = f"{number} are not whole."

@@ -1,6 +1,5 @@
 """When the rows of a text file were taken: by a column of times, by several, or at a rate."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from datetime import timedelta
 from pathlib import Path
@@ -12,6 +11,7 @@ from shaftprint.errors import RecordingError
 from shaftprint.recording._channel import Channel, Times
 from shaftprint.recording._spool import Spool
 from shaftprint.recording.readers._clock import SampleClock, clock_of_times, on_clock
+from shaftprint.recording.readers._gather import names_in_words
 from shaftprint.recording.readers._time_scale import TimeScale, time_scale
 from shaftprint.recording.readers._units import seconds_in
 from shaftprint.recording.readers.csv._filled_rows import clock_of_rows, may_have_own_rows, only, own_rows
@@ -26,7 +26,6 @@ _RATE_AGREEMENT = 1e-3
 _STATED_AGREEMENT = 0.02
 # A stamp to the second that so many rows have tells their rate, where the caller does not.
 _STAMPS = 5_000
-_SHOWN = 5
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -118,14 +117,13 @@ def sampled(
             channels[name] = on_clock(channel, rows.clock)
     if isinstance(first, RecordingError) and not channels:
         raise first
-    by_others = f"Columns behind {_listed(others)} were placed by those times." if others else ""
-    by_rows = f"{_listed(on_own_rows)}: values in some of the rows only, whose times are theirs." if on_own_rows else ""
+    by_others = f"Columns behind {names_in_words(others)} were placed by those times." if others else ""
+    by_rows = (
+        f"{names_in_words(on_own_rows)}: values in some of the rows only, whose times are theirs."
+        if on_own_rows
+        else ""
+    )
     return channels, [remark, by_others, by_rows]
-
-
-def _listed(names: Sequence[str]) -> str:
-    more = f" and {len(names) - _SHOWN} more" if len(names) > _SHOWN else ""
-    return f"{', '.join(names[:_SHOWN])}{more}"
 
 
 def _rows(

@@ -4,7 +4,6 @@ Read here and not by the package IMCtermite, which has to be compiled where it i
 masks, signals that stand in turn and fractions of a second of a date, and prints values with nine decimals.
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import datetime
 from functools import partial
@@ -15,12 +14,11 @@ from numpy.typing import NDArray
 
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import RecordingError
-from shaftprint.escape import printable
 from shaftprint.recording._channel import Channel
 from shaftprint.recording._recording import Recording
 from shaftprint.recording.readers._clock import SampleClock, clock_of_times, on_clock
 from shaftprint.recording.readers._damage import told_as_damage
-from shaftprint.recording.readers._gather import Gathered, unique_names
+from shaftprint.recording.readers._gather import Gathered, names_in_words, unique_names
 from shaftprint.recording.readers._hints import expect_hints
 from shaftprint.recording.readers._opened import Opened
 from shaftprint.recording.readers._time_scale import expect_time_unit
@@ -33,7 +31,6 @@ from shaftprint.units import plain_unit
 NAME = "imc"
 
 _EVEN, _OVER_X = 1, (2, 3)
-_LISTED = 5
 
 
 def is_mine(path: Path) -> bool:
@@ -92,7 +89,7 @@ class _Source:
         undated = [name for name, date in zip(names, dates, strict=True) if date is None]
         if began is not None and undated:
             gathered.remarks.append(
-                f"Channels without a date begin at second 0, that of the others: {_listed(undated)}."
+                f"Channels without a date begin at second 0, that of the others: {names_in_words(undated)}."
             )
         zones = {each.trigger.zone_min for _, each, _ in named if each.trigger is not None and each.trigger.zone_min}
         if zones:
@@ -106,7 +103,7 @@ class _Source:
 
     def _passed_over(self) -> dict[str, str]:
         names = [name or "unnamed" for name in self.layout.single_values]
-        single = {"single values and texts": f"{len(names)} of them: {_listed(names)}"} if names else {}
+        single = {"single values and texts": f"{len(names)} of them: {names_in_words(names)}"} if names else {}
         unknown = self.layout.unknown.items()
         return single | {f"blocks {key}": f"{count} of them, which are not known here" for key, count in unknown}
 
@@ -169,8 +166,3 @@ class _Source:
             found = f'the unit "{unit}"' if unit else "no unit (if it is time, pass time_unit= or --time-unit)"
             raise RecordingError(f"expected an x axis of time, found {found}")
         return second
-
-
-def _listed(names: Sequence[str]) -> str:
-    more = f" and {len(names) - _LISTED} more" if len(names) > _LISTED else ""
-    return f"{', '.join(printable(name) for name in names[:_LISTED])}{more}"
