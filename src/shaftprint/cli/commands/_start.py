@@ -15,7 +15,7 @@ from shaftprint.cli._lying_files import LyingFiles, lying_files
 from shaftprint.cli._next import VESSEL_FILE, after_drive, free, plan_words, print_steps, rated_rpm_of
 from shaftprint.cli._option_sections import SectionedCommand
 from shaftprint.cli._recorded_sensors import is_of_no_ship, recorded_sensors, with_recorded
-from shaftprint.cli._terminal import answer, print_findings
+from shaftprint.cli._terminal import answer, echo, print_findings
 from shaftprint.cli._vessel_file import write_from_card
 from shaftprint.cli.output._fingerprint_file import fingerprint_at
 from shaftprint.errors import ShaftprintError
@@ -126,7 +126,7 @@ def _asked(said: Mapping[str, object], recorded: Mapping[str, object]) -> dict[s
     except click.Abort:
         if sys.stdin.isatty():
             raise
-        click.echo(err=True)
+        echo(err=True)
         raise click.UsageError(
             "expected an answer, found the end of what was typed; state the main particulars as options, with --yes."
         ) from None
