@@ -358,11 +358,3 @@ def test_the_columns_of_a_table_are_named_by_the_caller(save):
         assert np.array_equal(torque.values(0, 300), table[:, 2])
         assert recording.channel("U").values(7, 9).tolist() == table[7:9, 1].tolist()
         assert "found an array of 300 x 2; say what its columns are (--columns)" in recording.left_out["other"]
-
-
-def test_trajectories_of_a_modelica_tool_are_named(tmp_path):
-    path = tmp_path / "result.mat"
-    content = {"dataInfo": np.zeros((4, 3)), "data_1": np.zeros((3, 2)), "data_2": np.zeros((3, 50))}
-    scipy.io.savemat(path, content, format="4")
-    with pytest.raises(RecordingError, match=r'trajectories of a Modelica tool; .* outputFormat = "csv"'):
-        read_recording(path)

@@ -44,7 +44,7 @@ class Hole:
     row: int
     """First row after it, counted from 0."""
     missing: int
-    """Samples that are missing before that row."""
+    """Samples that are missing before that row; -1 where it has the time of the row before, whose place it takes."""
     jump_s: float
     """How far the times jump besides [s]; 0 where whole samples are missing."""
 
@@ -128,18 +128,19 @@ def on_clock(channel: Channel, clock: SampleClock) -> Channel:
     )
 
 
-def clock_of_times(path: Path, name: str, count: int, read: Times) -> SampleClock:
+def clock_of_times(path: Path, name: str, count: int, read: Times, *, joins_doubled: bool = False) -> SampleClock:
     """Return the clock of a column of times, or the times themselves where they are those of messages.
 
     A bus, a network or a program that polls passes values on about when their sender likes. Where such times stay
     within half a step of a clock, the clock is returned with the times beside it; where they do not, the times with
     the period of their sender, the mean of the steps that are near the median.
 
-    ``path``, ``name``, ``count``, ``read``: as for `uniform_clock`. Raises RecordingError if the times are neither
-    those of a clock nor those of messages: they go back, or have no usual step.
+    ``path``, ``name``, ``count``, ``read``: as for `uniform_clock`. ``joins_doubled``: whether of two rows of one time,
+    as simulation tools write them at events, the later counts; else the clock is set back there. Raises RecordingError
+    if the times are neither those of a clock nor those of messages: they go back, or have no usual step.
     """
     try:
-        clock, off_s = _uniform_clock(path, name, count, read)
+        clock, off_s = _uniform_clock(path, name, count, read, joins_doubled=joins_doubled)
     except RecordingError:
         other = _rounded_clock(count, read) or _message_clock(count, read)
         if other is None:
@@ -228,7 +229,9 @@ def uniform_clock(path: Path, name: str, count: int, read: Times) -> SampleClock
     return clock
 
 
-def _uniform_clock(path: Path, name: str, count: int, read: Times) -> tuple[SampleClock, float]:
+def _uniform_clock(
+    path: Path, name: str, count: int, read: Times, *, joins_doubled: bool = False
+) -> tuple[SampleClock, float]:
     """Return the clock, and the standard deviation of the times about it [s]."""
     if count < 2:
         raise RecordingError(f"{path}, {name}: expected at least 2 rows of times, found {count}.")
@@ -238,7 +241,7 @@ def _uniform_clock(path: Path, name: str, count: int, read: Times) -> tuple[Samp
     step = float(np.median(steps)) if steps.size else np.nan
     if not step > 0.0:
         raise RecordingError(f"{path}, {name}: expected ascending times, found a step of {step:g} s.")
-    holes = _holes(path, name, count, read, step)
+    holes = _holes(path, name, count, read, step, joins_doubled=joins_doubled)
     # when each stretch would begin on the clock, were nothing missing and no jump
     rows = np.array([0, *(hole.row for hole in holes)])
     missing = np.cumsum([0, *(hole.missing for hole in holes)])
@@ -266,7 +269,7 @@ def _uniform_clock(path: Path, name: str, count: int, read: Times) -> tuple[Samp
     return clock, float(np.sqrt(max(squares / count - (total / count) ** 2, 0.0)))
 
 
-def _holes(path: Path, name: str, count: int, read: Times, step: float) -> tuple[Hole, ...]:
+def _holes(path: Path, name: str, count: int, read: Times, step: float, *, joins_doubled: bool) -> tuple[Hole, ...]:
     """Return the places where a step is not the others'.
 
     Raises RecordingError if there are too many of them, a time is not a number, or more is missing than there is.
@@ -287,7 +290,7 @@ def _holes(path: Path, name: str, count: int, read: Times, step: float) -> tuple
     jitter = float(np.max(np.abs(np.diff(read(begin, min(begin + 1001, end))) - exact), initial=0.0))
     holes = []
     for row, jump in zip(rows.tolist(), jumps.tolist(), strict=True):
-        places = max(round(jump / exact), 1)
+        places = max(round(jump / exact), 0 if joins_doubled and jump == 0.0 else 1)
         remainder = jump - places * exact
         allowed = _WHOLE * exact + jitter * (2.0 + places / (end - begin))
         holes.append(Hole(row=row, missing=places - 1, jump_s=0.0 if abs(remainder) <= allowed else remainder))

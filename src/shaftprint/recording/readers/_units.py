@@ -7,6 +7,7 @@ _SECONDS = {
     "msec": 1e-3, "usec": 1e-6, "nsec": 1e-9, "millis": 1e-3, "micros": 1e-6, "nanos": 1e-9, "mins": 60.0,
     "millisecond": 1e-3, "microsecond": 1e-6, "nanosecond": 1e-9, "minute": 60.0, "hr": 3600.0, "hour": 3600.0,
     "day": 86_400.0, "sekunde": 1.0, "sekunden": 1.0, "minuten": 60.0, "stunden": 3600.0, "tage": 86_400.0,
+    "unix": 1.0, "unix time": 1.0, "posix": 1.0, "epoch": 1.0,
 }  # fmt: skip
 
 

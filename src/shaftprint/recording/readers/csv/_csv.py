@@ -23,6 +23,7 @@ from shaftprint.recording.readers.can._log import begins_as_log
 from shaftprint.recording.readers.csv._dates import dates, has_offset, is_date
 from shaftprint.recording.readers.csv._edge_list import edge_channels
 from shaftprint.recording.readers.csv._header import Header, looks_like_a_table, read_header
+from shaftprint.recording.readers.csv._long_form import expect_no_frames
 from shaftprint.recording.readers.csv._row_clocks import sampled, scale_of_rows
 from shaftprint.recording.readers.csv._rows import LONGEST_LINE, Unpacked, unpack
 from shaftprint.recording.readers.imc._blocks import BEGIN as BEGIN_OF_IMC
@@ -35,7 +36,6 @@ _UTF_16 = (b"\xff\xfe", b"\xfe\xff")
 _UTF_32 = (b"\xff\xfe\0\0", b"\0\0\xfe\xff")
 # text with a grammar of its own
 _LABVIEW = b"LabVIEW Measurement"
-_FRAMES = b"timestamp,arbitration_id,extended,remote,error,dlc,data"
 # no row of a table begins so; a fingerprint or the truth of a simulated recording does
 _JSON = b"{"
 _WINDOWS = "cp1252"
@@ -76,11 +76,7 @@ def read(path: Path, **hints: object) -> Recording:
 
     Raises RecordingError if header, a row or the clock cannot be used.
     """
-    if (first_bytes(path) or b"").startswith(_FRAMES):
-        raise RecordingError(
-            f"{path}: expected columns of values, found the frames of a CAN bus, as python-can writes them into a CSV "
-            "file; make a log of them, can_logconvert FILE log.blf, and give that with its DBC file (--dbc)."
-        )
+    expect_no_frames(path, (first_bytes(path) or b"").decode("utf-8", "replace").splitlines())
     lines = what_lines_are(first_bytes(path) or b"")
     if lines:
         raise RecordingError(f"{path}: expected columns of values, found {lines}.")

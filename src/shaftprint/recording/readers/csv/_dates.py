@@ -33,8 +33,10 @@ _DAY_ALONE = re.compile(
 _NAME_FIRST = re.compile(
     rf"{_WEEKDAY}(?P<name>[A-Za-z]{{3}})[a-z]*\.? (?P<day>\d\d?),? (?P<year>\d{{4}})[T ,]+{_CLOCK}{_ZONED}"
 )
-_FORMS = (_ISO, _DAY_FIRST, _BASIC, _DAY_ALONE, _NAME_FIRST)
-_NAMED = (_DAY_FIRST, _DAY_ALONE, _NAME_FIRST)
+# with the month's name within, as Boost writes dates
+_NAME_WITHIN = re.compile(rf"(?P<year>\d{{4}})[- ](?P<name>[A-Za-z]{{3}})[a-z]*[- ](?P<day>\d\d?)[T ]+{_CLOCK}{_ZONED}")
+_FORMS = (_ISO, _DAY_FIRST, _BASIC, _DAY_ALONE, _NAME_FIRST, _NAME_WITHIN)
+_NAMED = (_DAY_FIRST, _DAY_ALONE, _NAME_FIRST, _NAME_WITHIN)
 _MONTHS = {
     name: number
     for number, names in enumerate(

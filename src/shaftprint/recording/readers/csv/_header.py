@@ -1,5 +1,6 @@
 """The first lines of a text file: what separates the columns, what they are called, in which unit, which are times."""
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from datetime import datetime
@@ -23,11 +24,12 @@ from shaftprint.recording.readers.csv._fields import (
 )
 from shaftprint.recording.readers.csv._head_beside import head_beside
 from shaftprint.recording.readers.csv._head_facts import HeadFacts, head_facts, is_fact
+from shaftprint.recording.readers.csv._long_form import expect_a_column_a_signal
 from shaftprint.recording.readers.csv._scope_export import began_of_export, width_of_export
 from shaftprint.recording.readers.csv._table import Table, find_table
 from shaftprint.recording.readers.csv._time_columns import TimeColumns, expect_no_words_as_times, time_columns
 from shaftprint.recording.readers.csv._time_titles import is_time_title
-from shaftprint.recording.readers.csv._titles import counts_rows, name_and_unit, titles_and_units
+from shaftprint.recording.readers.csv._titles import counts_rows, name_and_unit, titles_and_units, told_apart_by_remarks
 from shaftprint.units import plain_unit
 
 # Titles of a column that counts the rows.
@@ -35,13 +37,9 @@ _COUNTERS = (
     "", "no", "no.", "nr", "nr.", "number", "index", "#", "sequence", "record", "sample", "samples", "point", "row",
     "id", "rn", "scan", "stepcount", "step", "count", "store no.", "counter", "zeile", "unnamed: 0",
 )  # fmt: skip
-# Titles of a column that says of which signal a row is, and of the values.
-_SIGNALS = (
-    "varname", "tag", "tagname", "tag name", "name", "signal", "channel", "variable", "sensor", "parameter", "point",
-    "pointname", "item", "_field", "field", "_measurement", "measurement", "series", "metric", "entity_id",
-)  # fmt: skip
-_VALUES = ("value", "varvalue", "wert", "messwert", "state")
 _SHOWN = 80
+# a value as it is shown: 25.5 kN m
+_WITH_UNIT = re.compile(r"[+-]?\d+([.,]\d+)? ?[A-Za-z°%µ][^\d]*")
 # An example of names for as many columns as this names each.
 _MOST_NAMED = 12
 
@@ -153,7 +151,7 @@ def read_header(
     names = [printable(name if is_time_title(name) else name.replace("/", "|")) for name, _ in parsed]
     names = ["" if kind == GAP and is_fact(name) else name for name, kind in zip(names, table.kinds, strict=True)]
     units = [plain_unit(unit) for _, unit in parsed]
-    _expect_a_column_a_signal(path, table, names)
+    expect_a_column_a_signal(path, table, names)
     facts = head_facts([line for line in lines[: table.first] if line.strip()], table.delimiter)
     times = time_columns(table, [name for name, _ in parsed], units, has_rate=has_rate)
     where = f"{path}, line {max(table.first, 1)}"
@@ -168,7 +166,7 @@ def read_header(
     if not set(kept) - {times.place} and (has_rate or len(names) > 1):
         reasons = "".join(f"; {name}: {reason}" for name, reason in left_out.items())
         raise RecordingError(f"{where}: expected a channel besides the time, found none{reasons[:_SHOWN]}.")
-    names = told_apart(names)
+    names = told_apart(told_apart_by_remarks(titles, names))
     decimal = decimal or _decimal(path, table, [place for place in kept if place not in times.stamps])
     _expect_other_delimiter(path, table, decimal)
     return Header(
@@ -239,6 +237,12 @@ def _lone(path: Path, lines: Sequence[str], delimiter: str | None, width: int) -
         )
     mark = delimiter or marks[0]
     count = len(split_row(titles, mark))
+    with_unit = next((field for line in lines for field in split_row(line, mark) if _WITH_UNIT.fullmatch(field)), None)
+    if with_unit is not None:
+        raise RecordingError(
+            f'{path}: expected numbers, found "{printable(with_unit)[:_SHOWN]}"; write the values without their units, '
+            "which may change from row to row (Grafana: switch off Formatted data)."
+        )
     return Table(
         delimiter=mark, first=lines.index(titles) + 1 if titles else 0, width=count, kinds=NUMBER * count, rows=()
     )
@@ -319,22 +323,6 @@ def _chosen(table: Table, names: Sequence[str], times: TimeColumns) -> tuple[lis
         else:
             left_out[shown] = "name it with columns= (--columns)"
     return kept, left_out
-
-
-def _expect_a_column_a_signal(path: Path, table: Table, names: Sequence[str]) -> None:
-    """Refuse rows that each hold one value of one signal, which stand in turn.
-
-    Raises RecordingError if a column says of which signal the values of another are.
-    """
-    values = next((name for name in names if name.lower().strip("_") in _VALUES), None)
-    for place, name in enumerate(names):
-        signals = list(dict.fromkeys(row[place] for row in table.rows if row[place]))
-        if values is not None and table.kinds[place] == TEXT and name.lower() in _SIGNALS and len(signals) > 1:
-            raise RecordingError(
-                f"{path}, column {name}: expected a column for each signal, found the values of "
-                f'{printable(", ".join(signals))[:_SHOWN]} in turn in one, "{values}"; write a column for each, in '
-                f'pandas: table.pivot_table(index=TIME, columns="{name}", values="{values}").to_csv(...).'
-            )
 
 
 def _skipped(table: Table, names: Sequence[str]) -> int:

@@ -193,13 +193,16 @@ def _clock(
     if rows > 1:
         remark = f"{name}: {rows} rows have each stamp; the rows are placed by the rate of {rate_hz:g} Hz."
         return SampleClock(rate_hz=cast(float, rate_hz), start_s=0.0), remark
-    clock = clock_of_times(path, name, count, read)
+    clock = clock_of_times(path, name, count, read, joins_doubled=True)
     if rate_hz is not None and abs(clock.rate_hz / rate_hz - 1.0) > _RATE_AGREEMENT:
         raise RecordingError(
             f"{path}: expected one sample rate, found {clock.rate_hz:g} Hz in {name} and {rate_hz:g} Hz in the hint."
         )
     if stated_hz and rate_hz is None and abs(clock.rate_hz / stated_hz - 1.0) > _STATED_AGREEMENT:
         return clock, f"{name}: a rate of {clock.rate_hz:g} Hz, which counts; the lines above say {stated_hz:g} Hz."
+    doubled = sum(hole.missing < 0 for hole in clock.holes)
+    if doubled:
+        return clock, f"{name}: {doubled} rows have the time of the row before, as at events, and count in its place."
     return clock, _change_of_hour(name, clock, read, done)
 
 

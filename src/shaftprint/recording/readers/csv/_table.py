@@ -75,7 +75,7 @@ def _table(lines: Sequence[str], delimiter: str, width: int) -> tuple[float, Tab
     size = max(sizes, default=0.0)
     if size <= 0.0:
         return None
-    of_table = tables[sizes.index(size)]
+    of_table = _below_the_titles(lines, delimiter, tables[sizes.index(size)])
     count = len(of_table[0].kinds)
     places = [place for run in of_table for place in run.places]
     fields = [split_row(lines[place], delimiter) for place in places[:_ROWS]]
@@ -87,6 +87,18 @@ def _table(lines: Sequence[str], delimiter: str, width: int) -> tuple[float, Tab
         kinds="".join(map(_kind_of, zip(*rows, strict=True))),
         rows=rows,
     )
+
+
+def _below_the_titles(lines: Sequence[str], delimiter: str, runs: list[_Run]) -> list[_Run]:
+    """Return the runs of a table without a row of numbers above its titles, as of channels' numbers."""
+    first = runs[0].places
+    if len(runs) == 1 or len(first) > 1:
+        return runs
+    between = (kinds_of(split_row(line, delimiter)) for line in lines[first[0] + 1 : runs[1].places[0]])
+    are_titles = any(
+        len(kinds) == len(runs[0].kinds) and not set(kinds) - {GAP, TEXT} and TEXT in kinds for kinds in between
+    )
+    return runs[1:] if are_titles else runs
 
 
 def _are_alike(one: _Run, other: _Run) -> bool:

@@ -103,8 +103,8 @@ def _other_dates(table: Table, names: Sequence[str], first: TimeColumns) -> int 
     """Return the first column of dates that are others than those of the rows, with columns of their own behind it."""
     lead = first.stamps[0]
     for place in range(max(first.stamps) + 2, table.width - 1):
-        may_be = _is_titled(names, place) or names[place] == names[lead]
-        if may_be and table.kinds[place] == DATE and any(row[place] not in ("", row[lead]) for row in table.rows):
+        is_alike = table.kinds[place] == table.kinds[lead] in (DATE, DAY_TIME)
+        if is_alike and any(row[place] not in ("", row[lead]) for row in table.rows):
             return place
     return None
 

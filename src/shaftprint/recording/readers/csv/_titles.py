@@ -27,6 +27,8 @@ _UNITS = frozenset(
         "m/s", "m/s^2", "m/s²", "m/s2", "mm/s", "Hz", "kHz", "rpm", "rad", "deg", "rad/s", "deg/s", "rev", "rev/s",
         "degC", "°C", "°", "bar", "mbar", "Pa", "kPa", "MPa", "hPa", "kW", "MW", "VA", "var", "%", "s", "ms", "us",
         "ns", "min", "kn", "L/h", "kg", "kJ", "Ohm", "ohm", "kOhm", "dB", "um/m", "µm/m", "mV/V", "counts", "-", "#",
+        "km/h", "kph", "mph", "/min", "kg/h", "kg/s", "g/s", "mg/s", "g/h", "g/kWh", "g/l", "l/min", "m3/h", "m³/h",
+        "ppm", "psi", "inHg", "mmHg", "°F", "degF", "ft", "lb", "lbf", "lb-ft", "ft-lb", "lbft", "hp", "kWh",
     }
 )  # fmt: skip
 _LETTER_UNITS = frozenset({"m", "g", "C", "t", "h", "A", "K", "W", "J"})
@@ -66,7 +68,8 @@ def titles_and_units(lines: Sequence[str], table: Table) -> tuple[list[str], lis
     if not rows:
         return [_fields(above[-1], table), []] if above else [[], []]  # type: ignore[return-value]
     place = _place_of_titles(rows)
-    units = rows[place - 1] if place > 0 and _are_units(rows[place - 1], rows[place]) else []
+    # words may stand between titles and units
+    units = next((row for row in reversed(rows[:place]) if _are_units(row, rows[place])), [])
     return rows[place], [_unit(field) for field in units]
 
 
@@ -165,6 +168,24 @@ def counts_rows(fields: Sequence[str]) -> bool:
     """Return whether fields are whole numbers that step by one."""
     numbers = [int(field) if field.isdecimal() else -1 for field in fields]
     return len(numbers) > 1 and numbers[0] >= 0 and numbers == list(range(numbers[0], numbers[0] + len(numbers)))
+
+
+def told_apart_by_remarks(titles: Sequence[str], names: Sequence[str]) -> list[str]:
+    """Return names, of which several are equal with what only one of their titles says in brackets.
+
+    ``titles``, ``names``: of each column, as `name_and_unit` gives the name: of ``Temp, °C (S/N: 1, LBL: 5)`` and
+    ``Temp, °C (S/N: 1, LBL: 25)`` come ``Temp (LBL: 5)`` and ``Temp (LBL: 25)``.
+    """
+    remarks = []
+    for title in titles:
+        match = IN_BRACKETS.fullmatch(printable(title).strip())
+        remarks.append(match["unit"].split(", ") if match is not None and _REMARK in match["unit"] else [])
+    told = []
+    for name, remark in zip(names, remarks, strict=True):
+        alike = [other for other, of_name in zip(remarks, names, strict=True) if of_name == name]
+        own = [part for part in remark if not all(part in other for other in alike)]
+        told.append(f"{name} ({', '.join(own)})" if own else name)
+    return told
 
 
 def name_and_unit(title: str) -> tuple[str, str]:

@@ -9,7 +9,6 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
-from shaftprint.errors import RecordingError
 from shaftprint.recording._channel import Source
 from shaftprint.recording._recording import Recording
 from shaftprint.recording._spool import Spool
@@ -17,6 +16,7 @@ from shaftprint.recording.readers._damage import told_as_damage
 from shaftprint.recording.readers._hints import rate_hint
 from shaftprint.recording.readers._time_scale import expect_time_unit
 from shaftprint.recording.readers._vectors import Vector
+from shaftprint.recording.readers.matlab import _modelica
 from shaftprint.recording.readers.matlab._objects import keep_objects
 from shaftprint.recording.readers.matlab._v5_headers import MatHeader, headers_of
 from shaftprint.recording.readers.matlab._variables import (
@@ -41,8 +41,6 @@ _HEADER_BYTES = 128
 _REAL = "fiub"
 _DEEPEST = 4
 _LONGEST_NAME = 64
-# What OpenModelica and Dymola keep trajectories in.
-_OF_MODELICA = {"dataInfo", "data_1", "data_2"}
 
 
 def is_mine(path: Path) -> bool:
@@ -66,14 +64,12 @@ def read(path: Path, **hints: object) -> Recording:
     rate = rate_hint(path, hints, {"columns": str, "time_unit": str})
     unit = expect_time_unit(path, hints.get("time_unit"))
     with told_as_damage(path, "MATLAB"):
+        if {header.name for header in _headers(path)} >= _modelica.VARIABLES:
+            trajectories = _modelica.read_trajectories(path, rate_hz=rate)
+            return trajectories.recording(_modelica.NAME, lambda: None)
         spool = Spool(path, ())
         try:
             gathered = gather_variables(path, _survey(path, spool, titles_of(hints)), rate_hz=rate, time_unit=unit)
-            if gathered.left_out.keys() >= _OF_MODELICA and not gathered.channels:
-                raise RecordingError(
-                    f"{path}: expected channels on a clock, found the trajectories of a Modelica tool; write them as "
-                    'CSV (OpenModelica: outputFormat = "csv"; Dymola: DataFiles.convertMATtoCSV).'
-                )
             spool.finish()
             return gathered.recording_from_second_zero(NAME, spool.close)
         except BaseException:

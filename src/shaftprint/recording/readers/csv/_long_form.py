@@ -1,0 +1,73 @@
+"""Tables that are no columns of signals: rows of one value each, and rows of frames of a CAN bus."""
+
+import re
+from collections.abc import Sequence
+from pathlib import Path
+
+from shaftprint.errors import RecordingError
+from shaftprint.escape import printable
+from shaftprint.recording.readers.csv._fields import NUMBER, TEXT
+from shaftprint.recording.readers.csv._table import Table
+
+# Words in the title of a column that says of which signal a row is, and of the values; fused ones are taken apart.
+_SIGNALS = frozenset(
+    {
+        "tag", "signal", "channel", "variable", "var", "sensor", "parameter", "param", "point", "item", "field", "pid",
+        "measurement", "metric", "series", "entity", "node", "quantity", "name", "attribute", "register", "topic",
+        "key", "spn", "pgn", "messstelle", "kanal", "signalname", "variablenname",
+    }
+)  # fmt: skip
+_VALUES = frozenset({"value", "val", "wert", "messwert", "state", "reading", "valeur", "valor", "waarde"})
+# what such a column says else
+_OTHERWISE = frozenset({"status", "quality", "alarm", "mode", "unit", "units", "type", "code", "count", "source"})
+_ID = "id"
+_WORD = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-zäöüß]+")
+_FUSED = re.compile(r"(tag|var|signal|channel|sensor|node|point|item|entity|messstellen)(name|id|value|val|wert)")
+# titles of the bytes of a frame: D0, Data1, Byte 0
+_BYTES = re.compile(r"(?<![A-Za-z])(data|d|b|byte)[ _]?[01](?!\d)", re.IGNORECASE)
+_HEAD, _SHOWN = 30, 80
+
+
+def expect_a_column_a_signal(path: Path, table: Table, names: Sequence[str]) -> None:
+    """Refuse rows that each hold one value of one signal, which stand in turn.
+
+    Raises RecordingError if a column says of which signal the values of another are.
+    """
+    words = [_words(name) for name in names]
+    values = [place for place, of_name in enumerate(words) if of_name & _VALUES and not of_name & _OTHERWISE]
+    if len(values) != 1 or table.kinds[values[0]] != NUMBER:
+        return
+    for place, of_name in enumerate(words):
+        may_be = of_name & _SIGNALS and not of_name & _OTHERWISE and place != values[0]
+        # a number is a name only where the title says so: TagId
+        if not may_be or (table.kinds[place] != TEXT and not (table.kinds[place] == NUMBER and _ID in of_name)):
+            continue
+        signals = list(dict.fromkeys(row[place] for row in table.rows if row[place]))
+        if 1 < len(signals) <= max(len(table.rows) // 2, 2):
+            raise RecordingError(
+                f"{path}, column {names[place]}: expected a column for each signal, found the values of "
+                f'{printable(", ".join(signals))[:_SHOWN]} in turn in one, "{names[values[0]]}"; write a column for '
+                f'each, in pandas: table.pivot_table(index=TIME, columns="{names[place]}", '
+                f'values="{names[values[0]]}").to_csv(...).'
+            )
+
+
+def expect_no_frames(path: Path, lines: Sequence[str]) -> None:
+    """Refuse rows of frames of a bus, whose bytes are no values.
+
+    Raises RecordingError if titles name identifier, length and bytes.
+    """
+    for line in lines[:_HEAD]:
+        words = set(re.findall(r"[a-z]+", line.lower()))
+        has_length = "dlc" in words or (words & {"len", "length"} and _BYTES.search(line) is not None)
+        if words & {"id", "identifier"} and has_length and (_BYTES.search(line) is not None or "data" in words):
+            raise RecordingError(
+                f"{path}: expected columns of values, found the frames of a CAN bus; make a log of them as ASC, BLF or "
+                "TRC in the program that wrote them (python-can: can_logconvert FILE log.blf), and give that with its "
+                "DBC file (--dbc)."
+            )
+
+
+def _words(title: str) -> frozenset[str]:
+    apart = _FUSED.sub(r"\1 \2", " ".join(_WORD.findall(title)).lower())
+    return frozenset(apart.split()) | {word.removesuffix("s") for word in apart.split()}

@@ -1,0 +1,136 @@
+"""Tables that are no columns of signals, and columns with times of their own, as historians and programs write them."""
+
+import numpy as np
+import pytest
+
+from shaftprint.errors import RecordingError
+from shaftprint.recording import read_recording
+
+COUNT = 200
+AT = [f"2026-03-05T09:{k // 120:02d}:{k // 2 % 60:02d}.{500 * (k % 2):03d}" for k in range(COUNT)]
+
+
+def _read(folder, text, **hints):
+    path = folder / "log.csv"
+    path.write_text(text)
+    return read_recording(path, **hints)
+
+
+def _in_turn(form, signals):
+    return "".join(form.format(at=at, t=0.5 * k, one=signals[k % 2], y=k % 7 + 20.5) for k, at in enumerate(AT))
+
+
+@pytest.mark.parametrize(
+    ("titles", "form", "signals"),
+    [
+        ('"SECONDS";"PID";"VALUE";"UNITS";', '"{t}";"{one}";"{y}";"rpm";\n', ("Engine RPM", "Speed")),
+        ("DateTime,TagName,TagVal,TagQuality", "{at},{one},{y},Good\n", ("Torque", "Speed")),
+        ("NodeId,Timestamp,Value,StatusCode", "{one},{at}Z,{y},Good\n", ("ns=2;s=Torque", "ns=2;s=Speed")),
+        ("TimeStamp,TagId,Value,Quality", "{at},{one},{y},192\n", (103, 104)),
+        ("time,sensor_id,value", "{t},{one},{y}\n", (1, 2)),
+    ],
+)
+def test_values_of_several_signals_in_turn_are_no_channel(tmp_path, titles, form, signals):
+    with pytest.raises(RecordingError, match=f"expected a column for each signal, found the values of {signals[0]}"):
+        _read(tmp_path, f"{titles}\n{_in_turn(form, signals)}")
+
+
+@pytest.mark.parametrize(
+    ("titles", "row"),
+    [
+        # one signal alone, words that are a state, two columns of values, and numbers that count
+        ("time,tag,value", "{k},Torque,{k}.5"),
+        ("time,channel status,value", "{k},{word},{k}.5"),
+        ("time,signal,value a,value b", "{k},{word},{k}.5,{k}.5"),
+        ("time,point,value", "{k},{k},{k}.5"),
+    ],
+)
+def test_other_tables_with_such_words_are_read(tmp_path, titles, row):
+    rows = "".join(row.format(k=k, word=("on", "off too")[k % 2]) + "\n" for k in range(COUNT))
+    with _read(tmp_path, f"{titles}\n{rows}") as recording:
+        values = next(one for name, one in recording.channels.items() if name.startswith("value"))
+        assert values.values(0, 3).tolist() == [0.5, 1.5, 2.5]
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "Time,Channel,ID,Flags,DLC,Data0,Data1,Counter\n" + "0.01,0,217056256,2,2,240,255,1\n" * 5,
+        " Chn Identifier Flg   DLC  D0...1       Time     Dir\n" + " 0    0CF00400 X       2  F0  FF     0.01 R\n" * 5,
+        "timestamp;id;len;byte 0;byte 1\n" + "0.1;0CF00400;2;240;255\n" * 5,
+    ],
+)  # fmt: skip
+def test_frames_of_a_bus_in_a_table_are_no_channels(tmp_path, text):
+    with pytest.raises(RecordingError, match="found the frames of a CAN bus; make a log of them as ASC, BLF or TRC"):
+        _read(tmp_path, text)
+
+
+def test_values_with_their_units_behind_are_told(tmp_path):
+    rows = "".join(f"{at},{k % 7 + 0.5} kN m,{k} rpm\n" for k, at in enumerate(AT))
+    with pytest.raises(RecordingError, match=r'found "0\.5 kN m"; write the values without their units'):
+        _read(tmp_path, f"Time,Torque,Speed\n{rows}")
+
+
+@pytest.mark.parametrize(
+    "form", ["2026-03-05 09:00:{s:02d}.{f}00", "03/05/2026 09:00:{s:02d}.{f}00", "09:00:{s:02d}.{f}00"]
+)
+def test_a_column_behind_dates_of_another_title_is_not_on_the_first(tmp_path, form):
+    def at(k):
+        return form.format(s=k // 10, f=k % 10)
+
+    rows = "".join(f"{at(k)},{k},{at(k + 1)},{k}\n" for k in range(COUNT))
+    with _read(tmp_path, f"Torque Time,Torque,Speed Time,Speed\n{rows}") as recording:
+        assert list(recording.channels) == ["Torque"]
+        assert recording.left_out["Speed"].startswith("it has dates of its own in front, in column 3")
+
+
+def test_rows_doubled_at_events_take_the_place_of_those_before(tmp_path):
+    """As FMPy and OpenModelica write them: before and after the event, and the end twice."""
+    rows = [*range(51), *range(50, COUNT), COUNT - 1]
+    text = "".join(f"{0.01 * k:.2f},{n}\n" for n, k in enumerate(rows))
+    with _read(tmp_path, f"time,y\n{text}") as recording:
+        y = recording.channel("y")
+        assert (y.rate_hz, y.count, y.clock_jumps) == (100.0, COUNT, ())
+        assert y.values(48, 53).tolist() == [48, 49, 51, 52, 53]
+        assert y.values(50, 51).tolist() == [51]
+        assert y.values(COUNT - 2, COUNT).tolist() == [COUNT - 1, COUNT + 1]
+        assert recording.remarks == (
+            "column time: 2 rows have the time of the row before, as at events, and count in its place.",
+        )
+
+
+def test_numbers_of_channels_above_the_titles_are_no_row(tmp_path):
+    rows = "".join(f"{0.05 * k:.2f},{k},{k % 3}\n" for k in range(COUNT))
+    head = "CSV Log File\n\n[Channel Information]\n0,12,2126\nOffset,Engine RPM,Torque\ns,rpm,Nm\n\n[Channel Data]\n"
+    with _read(tmp_path, head + rows) as recording:
+        assert {name: one.unit for name, one in recording.channels.items()} == {"Engine RPM": "rpm", "Torque": "N m"}
+        assert np.array_equal(recording.channel("Engine RPM").values(0, 4), [0, 1, 2, 3])
+
+
+def test_units_may_stand_two_rows_below_the_titles(tmp_path):
+    rows = "".join(f",{0.5 * k:.2f},{k},{0.5 * k + 0.1:.2f},{k % 3},\n" for k in range(COUNT))
+    head = "Marker,TIME,Loc. IDE1,TIME,Loc. IDE2,\n,STAMP,Engine RPM,STAMP,Engine torque,\n,, /min,, Nm,\n"
+    with _read(tmp_path, head + rows) as recording:
+        assert {name: one.unit for name, one in recording.channels.items()} == {"Loc. IDE1": "/min", "Loc. IDE2": "N m"}
+
+
+def test_equal_titles_are_told_apart_by_what_stands_behind_their_units(tmp_path):
+    rows = "".join(f"{k},{k},{2 * k},{3 * k}\n" for k in range(COUNT))
+    titles = '"Time [s]","Temp, °C (LGR S/N: 1, LBL: 5)","Temp, °C (LGR S/N: 1, LBL: 25)","Lux (LGR S/N: 1)"\n'
+    with _read(tmp_path, titles + rows) as recording:
+        assert list(recording.channels) == ["Temp (LBL: 5)", "Temp (LBL: 25)", "Lux"]
+        assert recording.channel("Temp (LBL: 25)").unit == "°C"
+
+
+def test_unix_time_as_a_unit_counts_from_1970(tmp_path):
+    rows = "".join(f"{1_772_701_200 + 0.02 * k:.2f},{k}\n" for k in range(COUNT))
+    with _read(tmp_path, f"timestamp,rpm\nunix time,rpm\n{rows}") as recording:
+        assert recording.began.isoformat() == "2026-03-05T09:00:00+00:00"
+        assert recording.channel("rpm").rate_hz == pytest.approx(50.0, rel=1e-6)
+
+
+def test_dates_with_the_name_of_the_month_in_their_middle(tmp_path):
+    rows = "".join(f"2026-Mar-05 09:00:{k // 10:02d}.{k % 10}00000,{k}\n" for k in range(COUNT))
+    with _read(tmp_path, f"timestamp,M_s\n{rows}") as recording:
+        assert recording.began.isoformat() == "2026-03-05T09:00:00"
+        assert recording.channel("M_s").rate_hz == 10.0
