@@ -54,3 +54,14 @@ def test_threads_may_begin_at_once():
     for trace in traces[1:]:
         np.testing.assert_array_equal(trace.outputs["y"], traces[0].outputs["y"])
         np.testing.assert_array_equal(trace.derivatives["y"], traces[0].derivatives["y"])
+
+
+@pytest.mark.slow
+def test_what_all_structures_share_is_compiled_once(tmp_path):
+    another = SCRIPT.replace('outputs={"y": lag}', 'outputs={"y": lag * lag}')
+    for script in (SCRIPT, another):
+        environment = {**os.environ, "SHAFTPRINT_CACHE": str(tmp_path)}
+        subprocess.run([sys.executable, "-c", script], env=environment, check=True)
+    compiled = [path.name for path in tmp_path.rglob("*.nbc")]
+    assert len([name for name in compiled if ".advance-" in name]) == 2
+    assert len([name for name in compiled if ".begin-" in name]) == 1

@@ -7,6 +7,7 @@ import importlib.util
 import os
 import sys
 import threading
+from collections.abc import Iterable
 from pathlib import Path
 from types import ModuleType
 
@@ -48,6 +49,14 @@ def module_of(text: str) -> ModuleType:
     # of several threads that want the same kernels the first makes them, so that they are compiled once
     with _MAKING:
         return sys.modules[name] if name in sys.modules else _made(text, name)
+
+
+def imported_from(text: str, names: Iterable[str]) -> str:
+    """Return the line by which one text of ours takes names that another defines, and make the module of that other.
+
+    Its name hangs on its text, so that what was compiled with another text is not taken for this one's.
+    """
+    return f"from {module_of(text).__name__} import {', '.join(names)}\n"
 
 
 def _made(text: str, name: str) -> ModuleType:

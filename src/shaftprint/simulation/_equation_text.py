@@ -24,7 +24,8 @@ from numpy import cos, exp, log, sin, sqrt, tanh
 
 from shaftprint.kernels._compiled import compiled
 
-INNER = njit(error_model="numpy", fastmath={"contract"}, no_cpython_wrapper=True, no_cfunc_wrapper=True)
+HOW = {"error_model": "numpy", "fastmath": {"contract"}, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+INNER, PLACED = njit(**HOW), njit(**HOW, forceinline=True)
 OUTER = compiled(error_model="numpy", fastmath={"contract"}, nogil=True)
 
 

@@ -9,6 +9,7 @@ takes twice the time.
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from shaftprint.models.equations._formula import Formula
 from shaftprint.simulation._equation_text import LANES, LEAVES, EquationText, indented
 from shaftprint.simulation._loop_invariants import FormulaSlopes
 from shaftprint.simulation._text import statements
@@ -36,6 +37,10 @@ STAGES = (
 )
 
 
+# What of the list of derivatives stands where differs from stage to stage.
+PLACES = ("states", "past", "past_rate", "before", "after")
+
+
 class StageText:
     """The stages of one program: states ``x`` at the node and ``s`` at a stage, rates ``k``, derivatives ``d``."""
 
@@ -46,8 +51,11 @@ class StageText:
         self.slopes = FormulaSlopes(self.rates)
 
     def functions(self) -> list[str]:
-        """Return the functions of numbers that give the rates, without and with their derivatives."""
-        return [self._function("rates", along=False), self._function("rates_along", along=True)] if self.rates else []
+        """Return the functions of numbers that give the rates, without and with their derivatives, and of a stage."""
+        if not self.rates:
+            return []
+        texts = [self._function("rates", along=False), self._function("rates_along", along=True)]
+        return [*texts, self._stage_function()]
 
     def constants(self) -> list[str]:
         """Return the lines that give constants their names, once a simulation."""
@@ -88,24 +96,50 @@ class StageText:
 
     def _stage_along(self, stage: Stage) -> list[str]:
         """Return the same for derivatives: in rows of the list ``w`` for node, stage and the sum up to here."""
-        lines = [f"g{i} = {self._rate_along(i, stage)}" for i in range(len(self.rates))]
-        for i in range(len(self.rates)):
-            node, at_stage, total = (_lane(self.starts[kind] + i) for kind in ("state", "stage", "total"))
-            before = node if stage.number == 1 else total
-            lines.append(f"{total if stage.ahead else node} = {before} + {stage.share} * g{i}")
-            if stage.ahead:
-                lines.append(f"{at_stage} = {node} + {stage.ahead} * g{i}")
-        return _over_lanes(lines)
+        return [f"stage_along(w, {self._slopes()}STAGE_{stage.number}, {stage.share}, {stage.ahead or '0.0'})"]
 
-    def _rate_along(self, state: int, stage: Stage) -> str:
+    def _places(self, stage: Stage) -> tuple[int, ...]:
+        """Return where in ``w`` stand states and late signals of a stage, and the sum of rates before and behind it."""
+        node, at_stage, total = (LANES * self.starts[kind] for kind in ("state", "stage", "total"))
+        is_first, is_last = stage.number == 1, not stage.ahead
+        return (
+            node if is_first else at_stage,
+            *(LANES * self._late(kind, stage.time) for kind in ("past", "past rate")),
+            node if is_first else total,
+            node if is_last else total,
+        )
+
+    def _stage_function(self) -> str:
+        """Return the function that takes derivatives of all states through a stage, compiled once for the four.
+
+        It is written into the kernel where it is called, so that places are constants there.
+        """
+        places = {"state": "states", "past": "past", "past rate": "past_rate"}
+        lines = [f"g{i} = {self._rate_along(i, places)}" for i in range(len(self.rates))]
+        for i in range(len(self.rates)):
+            row = f"{LANES * i} + lane"
+            node, at_stage = (_lane(self.starts[kind] + i) for kind in ("state", "stage"))
+            # those of the next stage go on from the node, which the last stage overwrites
+            lines.append(f"{at_stage} = {node} + ahead * g{i}")
+            lines.append(f"w[after + {row}] = w[before + {row}] + share * g{i}")
+        body = [*(f"{name} = places[{i}]" for i, name in enumerate(PLACES)), *_over_lanes(lines)]
+        constants = "".join(f"STAGE_{stage.number} = np.array({self._places(stage)})\n" for stage in STAGES)
+        head = f"@PLACED\ndef stage_along(w, {self._slopes()}places, share, ahead):"
+        return f"{constants}\n\n{head}\n{indented(body)}"
+
+    def _slopes(self) -> str:
+        return "".join(f"d{i}, " for i in range(len(self.slopes.entries)))
+
+    def _rate_along(self, state: int, places: Mapping[str, str]) -> str:
         """Return the derivative along a lane of how fast a state changes."""
-        starts = self.starts | {kind: self._late(kind, stage.time) for kind in ("past", "past rate")}
-        if stage.number > 1:
-            starts["state"] = self.starts["stage"]
+
+        def row(leaf: Formula) -> str:
+            if leaf.operation not in places:
+                return _lane(self.starts[leaf.operation] + leaf.place)
+            return f"w[{places[leaf.operation]} + {LANES * leaf.place} + lane]"
+
         terms = [
-            f"d{number} * {_lane(starts[leaf.operation] + leaf.place)}"
-            for number, (owner, leaf) in enumerate(self.slopes.entries)
-            if owner == state
+            f"d{number} * {row(leaf)}" for number, (owner, leaf) in enumerate(self.slopes.entries) if owner == state
         ]
         return " + ".join(terms) or "0.0"
 
