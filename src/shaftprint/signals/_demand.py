@@ -11,7 +11,7 @@ import numpy as np
 from shaftprint.arrays import FloatArray
 from shaftprint.signals._channels import find_channel
 from shaftprint.signals._signals import SetPointDelay
-from shaftprint.signals.excitation._quantum import steps_of_sine
+from shaftprint.signals.excitation._quantum import steps_of_lines
 from shaftprint.signals.kinds._message_reading import MessageReading, read_messages
 from shaftprint.units import MILLI
 
@@ -89,7 +89,7 @@ def _line(sine: "Sine", came: MessageReading, readings: "Readings") -> tuple[flo
         return None
     step = came.messages.step
     if step:
-        shown = shown - step * steps_of_sine(time_s, shown / step, sine.frequency_hz)
+        shown = shown - step * steps_of_lines(time_s, shown / step, (sine.frequency_hz,))
     begin, end = (round((instant - clock.start_s) * clock.rate_hz) for instant in (sine.settled_s, sine.window_stop_s))
     grid_s = clock.start_s + np.arange(begin, end) / clock.rate_hz
     asked, _ = _sine(grid_s - sine.settled_s, readings.set_point[begin:end], omega_rad_s)

@@ -320,7 +320,7 @@ def _about_lines(readings: Readings, campaign: Campaign) -> Readings:
 
 
 def _without_steps_in_place(readings: Readings, campaign: Campaign) -> None:
-    """Take out of a set point what the steps of its messages make of the sines of a campaign."""
+    """Take out of a set point what the steps of its messages make of the sines and legs of a campaign."""
     reading, clock = readings.by_name["n_set"], readings.clock
     sent = reading.sent
     if clock.mode == "thesis" or sent is None or not isinstance(reading, SetPointMessages) or not reading.step_v:

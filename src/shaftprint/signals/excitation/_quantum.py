@@ -1,17 +1,19 @@
-"""What the steps of messages do to the sines of a set point, taken out by their course.
+"""What the steps of messages do to the sines and legs of a set point, taken out by their course.
 
 A slow sine in steps is no sine with noise: one of ``a`` steps is wrong by up to ``2 J_1(2 pi a) / pi`` of a step, 0.3 %
 at 15 steps, in the same sense at every line of that amplitude (W. R. Bennett, "Spectra of quantized signals", Bell
-System Technical Journal 27 (1948)). Where the sine that was put out is known, so is what rounding makes of each of its
-values; with noise of deviation ``s`` before rounding, that is
+System Technical Journal 27 (1948)). The lines of a leg are wrong as if by chance, but by the same in each of its
+periods, so that no scatter of the periods tells. Where the course that was put out is known, so is what rounding makes
+of each of its values; with noise of deviation ``s`` before rounding, that is
 
 ``e(u) = sum_n (-1)^n / (pi n) exp(-2 pi^2 n^2 s^2) sin(2 pi n u)``, all in steps
 
-(B. Widrow and I. Kollar, "Quantization Noise", 2008, chapter 4). The sine is fitted, the errors of its values are taken
-from the messages, and so again.
+(B. Widrow and I. Kollar, "Quantization Noise", 2008, chapter 4). The course is fitted, the errors of its values are
+taken from the messages, and so again.
 """
 
 import math
+from collections.abc import Callable, Sequence
 
 import numpy as np
 import scipy
@@ -19,18 +21,19 @@ import scipy
 from shaftprint.arrays import FloatArray
 from shaftprint.campaign._campaign import Campaign
 from shaftprint.campaign._excitations import Staircase
+from shaftprint.campaign._leg import Leg
 from shaftprint.campaign._setpoint import setpoint
 
-# So many rounds, each half of the way: the error of a sine of few steps hangs on itself.
+# So many rounds, each half of the way: the error of a course of few steps hangs on itself.
 _ROUNDS, _SHARE = 12, 0.5
-# With noise above so many steps nothing is left to take out; below, rounding is that of the sine alone.
+# With noise above so many steps nothing is left to take out; below, rounding is that of the course alone.
 _MOST_NOISE, _LEAST_NOISE = 0.4, 0.02
 # Terms whose factor is below exp(-18) are left out.
 _TERMS_BY_NOISE = 1.2
-# What is left must be smaller than so much of the variance that was there, else it is another course than a sine.
+# What is left must be smaller than so much of the variance that was there, else it is another course.
 _LEAST_GAIN = 0.8
 _FEWEST_MESSAGES = 30
-# A sine from crest to trough of fewer steps says nothing.
+# A course from crest to trough of fewer steps says nothing.
 _FEWEST_STEPS = 1.0
 
 
@@ -44,7 +47,7 @@ def take_out_steps(
     rate_hz: float,
     start_s: float,
 ) -> None:
-    """Take out of a set point, in place, what the steps of its messages make of sines and of levels between them.
+    """Take out of a set point, in place, what the steps of its messages make of sines, legs and levels between them.
 
     ``set_point_v``: the set point on the grid [V], shape (samples,). ``time_s``, ``shown_v``: time [s], ascending, and
     value [V] of its messages, shape (messages,). ``campaign``: what was asked. ``step_v``: step of the values [V].
@@ -52,15 +55,20 @@ def take_out_steps(
     """
     error_v = np.zeros(time_s.size)
     middles, lengths = [], []
-    for sine in campaign.sines:
-        inside = slice(*np.searchsorted(time_s, [sine.start_s, sine.stop_s]))
-        if time_s[inside].size < _FEWEST_MESSAGES:
+    courses = (
+        *((sine, (sine.frequency_hz,), sine.window_stop_s, campaign.offset_v) for sine in campaign.sines),
+        *((leg, _frequencies_hz(leg), leg.stop_s, leg.level_v) for leg in campaign.legs),
+    )
+    for course, frequencies_hz, stop_s, level_v in courses:
+        inside = slice(*np.searchsorted(time_s, [course.start_s, course.stop_s]))
+        if time_s[inside].size < _FEWEST_MESSAGES * len(frequencies_hz):
             continue
-        error_v[inside] = step_v * steps_of_sine(time_s[inside], shown_v[inside] / step_v, sine.frequency_hz)
-        window = slice(*np.searchsorted(time_s, [sine.settled_s, sine.window_stop_s]))
+        asked = course.value_at(time_s[inside]) / step_v if isinstance(course, Leg) else None
+        error_v[inside] = step_v * steps_of_lines(time_s[inside], shown_v[inside] / step_v, frequencies_hz, asked)
+        window = slice(*np.searchsorted(time_s, [course.settled_s, stop_s]))
         if error_v[window].any():
-            middles.append(float(np.mean(shown_v[window] - error_v[window])))
-            lengths.append(sine.window_s)
+            middles.append(float(np.mean(shown_v[window] - error_v[window])) - level_v + campaign.offset_v)
+            lengths.append(stop_s - course.settled_s)
     if not middles:
         return
     middle_v = float(np.average(middles, weights=lengths))
@@ -75,7 +83,7 @@ def _error_of_levels(
 ) -> FloatArray:
     """Return what rounding adds to levels that stand still [V], shape (messages,); zeros where the set point moves.
 
-    A level lies anywhere within its step. About the middle of the sines, which they know, it lies where the campaign
+    A level lies anywhere within its step. About the middle of sines and legs, which they know, it lies where the campaign
     has it; where that would be rounded to another value, as near to it as the value allows.
     """
     stands = np.ones(time_s.size, dtype=np.bool_)
@@ -89,29 +97,54 @@ def _error_of_levels(
     return np.where(stands, error_v.clip(-0.5 * step_v, 0.5 * step_v), 0.0)
 
 
-def steps_of_sine(time_s: FloatArray, shown: FloatArray, frequency_hz: float) -> FloatArray:
-    """Return what rounding adds to each value of a sine; zeros where the values follow none.
+def _frequencies_hz(leg: Leg) -> tuple[float, ...]:
+    return tuple(line / leg.length_of_period_s for line in leg.lines)
+
+
+def steps_of_lines(
+    time_s: FloatArray, shown: FloatArray, frequencies_hz: Sequence[float], asked: FloatArray | None = None
+) -> FloatArray:
+    """Return what rounding adds to each value of a sum of sines; zeros where the values follow none.
 
     ``time_s``: times of the values [s], shape (values,). ``shown``: the values in steps, all of them whole numbers
-    apart, shape (values,). ``frequency_hz``: frequency of the sine [Hz]; where its clock differs, it may turn by some
-    hundredths of a period.
+    apart, shape (values,). ``frequencies_hz``: frequencies of the sines [Hz]; where their clock differs, they may turn
+    by some hundredths of a period. ``asked``: what was asked for at those times, in steps, shape (values,): many sines
+    of few steps are found from there alone, as each of them may take some of the rounding.
     """
-    design = _design(time_s, frequency_hz)
-    inverse = np.linalg.pinv(design)
     # the grid of the steps goes through every value
     values = shown - shown[0]
-    plain = values - design @ (inverse @ values)
-    course = design @ (inverse @ values)
-    error, noise = np.zeros_like(values), 0.0
+    fitted = _fit_of(_design(time_s, frequencies_hz))
+    plain = values - fitted(values)
+    error = np.zeros_like(values)
+    if asked is not None:
+        slow, late = _slow(time_s), np.gradient(asked, time_s)
+        error = _explained(values, _fit_of(np.column_stack([np.ones(slow.size), slow, asked, late, slow * late])), error)
+    error = _explained(values, fitted, error)
+    course = fitted(values - error)
+    is_better = np.ptp(course) > _FEWEST_STEPS and (values - error - course).var() < _LEAST_GAIN * plain.var()
+    return error if is_better else np.zeros_like(values)
+
+
+def _explained(values: FloatArray, fitted: Callable[[FloatArray], FloatArray], error: FloatArray) -> FloatArray:
+    """Return the error of values by the rounding of the course that is fitted to them; zeros where noise hides it."""
+    course = fitted(values - error)
     for _ in range(_ROUNDS):
         noise = _noise(values, course)
         if noise > _MOST_NOISE:
             return np.zeros_like(values)
-        error += _SHARE * (rounding_error(course, noise) - error)
-        course = design @ (inverse @ (values - error))
-    left = values - error - course
-    is_better = np.ptp(course) > _FEWEST_STEPS and left.var() < _LEAST_GAIN * plain.var()
-    return error if is_better else np.zeros_like(values)
+        error = error + _SHARE * (rounding_error(course, noise) - error)
+        course = fitted(values - error)
+    return error
+
+
+def _fit_of(design: FloatArray) -> Callable[[FloatArray], FloatArray]:
+    """Return what gives the least-squares course of values along the columns of a design."""
+    factor = scipy.linalg.cho_factor(design.T @ design)
+    return lambda values: np.asarray(design @ scipy.linalg.cho_solve(factor, design.T @ values))
+
+
+def _slow(time_s: FloatArray) -> FloatArray:
+    return np.asarray(2.0 * (time_s - time_s[0]) / (time_s[-1] - time_s[0]) - 1.0)
 
 
 def rounding_error(values: FloatArray, noise: float = 0.0) -> FloatArray:
@@ -128,12 +161,12 @@ def rounding_error(values: FloatArray, noise: float = 0.0) -> FloatArray:
     return error
 
 
-def _design(time_s: FloatArray, frequency_hz: float) -> FloatArray:
-    """Return offset, drift and a sine that may slowly change, shape (values, 6)."""
-    phase = 2.0 * np.pi * frequency_hz * (time_s - time_s[0])
-    slow = 2.0 * (time_s - time_s[0]) / (time_s[-1] - time_s[0]) - 1.0
-    waves = (np.cos(phase), np.sin(phase))
-    return np.column_stack([np.ones(time_s.size), slow, *waves, *(slow * wave for wave in waves)])
+def _design(time_s: FloatArray, frequencies_hz: Sequence[float]) -> FloatArray:
+    """Return offset, drift and sines that may slowly change, shape (values, 2 + 4 sines)."""
+    phase = 2.0 * np.pi * np.outer(time_s - time_s[0], frequencies_hz)
+    slow = _slow(time_s)
+    waves = np.hstack([np.cos(phase), np.sin(phase)])
+    return np.column_stack([np.ones(time_s.size), slow, waves, slow[:, None] * waves])
 
 
 def _noise(values: FloatArray, course: FloatArray) -> float:
