@@ -14,13 +14,14 @@ taken from the messages, and so again.
 
 import math
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 import scipy
 
 from shaftprint.arrays import FloatArray
 from shaftprint.campaign._campaign import Campaign
-from shaftprint.campaign._excitations import Staircase
+from shaftprint.campaign._excitations import Sine, Staircase
 from shaftprint.campaign._leg import Leg
 from shaftprint.campaign._setpoint import setpoint
 
@@ -55,20 +56,19 @@ def take_out_steps(
     """
     error_v = np.zeros(time_s.size)
     middles, lengths = [], []
-    courses = (
-        *((sine, (sine.frequency_hz,), sine.window_stop_s, campaign.offset_v) for sine in campaign.sines),
-        *((leg, _frequencies_hz(leg), leg.stop_s, leg.level_v) for leg in campaign.legs),
-    )
-    for course, frequencies_hz, stop_s, level_v in courses:
+    for course in (*map(_of_sine, campaign.sines), *map(_of_leg, campaign.legs)):
         inside = slice(*np.searchsorted(time_s, [course.start_s, course.stop_s]))
-        if time_s[inside].size < _FEWEST_MESSAGES * len(frequencies_hz):
+        if time_s[inside].size < _FEWEST_MESSAGES * len(course.frequencies_hz):
             continue
-        asked = course.value_at(time_s[inside]) / step_v if isinstance(course, Leg) else None
-        error_v[inside] = step_v * steps_of_lines(time_s[inside], shown_v[inside] / step_v, frequencies_hz, asked)
-        window = slice(*np.searchsorted(time_s, [course.settled_s, stop_s]))
+        asked = None if course.value_at is None else course.value_at(time_s[inside]) / step_v
+        error_v[inside] = step_v * steps_of_lines(
+            time_s[inside], shown_v[inside] / step_v, course.frequencies_hz, asked
+        )  # fmt: skip
+        window = slice(*np.searchsorted(time_s, course.window_s))
         if error_v[window].any():
-            middles.append(float(np.mean(shown_v[window] - error_v[window])) - level_v + campaign.offset_v)
-            lengths.append(stop_s - course.settled_s)
+            level_v = 0.0 if course.level_v is None else course.level_v - campaign.offset_v
+            middles.append(float(np.mean(shown_v[window] - error_v[window])) - level_v)
+            lengths.append(course.window_s[1] - course.window_s[0])
     if not middles:
         return
     middle_v = float(np.average(middles, weights=lengths))
@@ -83,8 +83,8 @@ def _error_of_levels(
 ) -> FloatArray:
     """Return what rounding adds to levels that stand still [V], shape (messages,); zeros where the set point moves.
 
-    A level lies anywhere within its step. About the middle of sines and legs, which they know, it lies where the campaign
-    has it; where that would be rounded to another value, as near to it as the value allows.
+    A level lies anywhere within its step. About the middle of sines and legs, which they know, it lies where the
+    campaign has it; where that would be rounded to another value, as near to it as the value allows.
     """
     stands = np.ones(time_s.size, dtype=np.bool_)
     for item in campaign.excitations:
@@ -97,8 +97,37 @@ def _error_of_levels(
     return np.where(stands, error_v.clip(-0.5 * step_v, 0.5 * step_v), 0.0)
 
 
-def _frequencies_hz(leg: Leg) -> tuple[float, ...]:
-    return tuple(line / leg.length_of_period_s for line in leg.lines)
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class _Course:
+    """A sum of sines that a set point follows for some time."""
+
+    start_s: float
+    stop_s: float
+    window_s: tuple[float, float]
+    """When it is analysed [s]."""
+    frequencies_hz: tuple[float, ...]
+    level_v: float | None = None
+    """Its middle [V]; that of the campaign where not given."""
+    value_at: Callable[[FloatArray], FloatArray] | None = None
+    """What is asked for at times [s]; not given of a single sine, which is found without."""
+
+
+def _of_sine(sine: Sine) -> _Course:
+    window_s = (sine.settled_s, sine.window_stop_s)
+    return _Course(
+        start_s=sine.start_s, stop_s=sine.stop_s, window_s=window_s, frequencies_hz=(sine.frequency_hz,)
+    )  # fmt: skip
+
+
+def _of_leg(leg: Leg) -> _Course:
+    return _Course(
+        start_s=leg.start_s,
+        stop_s=leg.stop_s,
+        window_s=(leg.settled_s, leg.stop_s),
+        frequencies_hz=tuple(line / leg.length_of_period_s for line in leg.lines),
+        level_v=leg.level_v,
+        value_at=leg.value_at,
+    )
 
 
 def steps_of_lines(
@@ -118,7 +147,8 @@ def steps_of_lines(
     error = np.zeros_like(values)
     if asked is not None:
         slow, late = _slow(time_s), np.gradient(asked, time_s)
-        error = _explained(values, _fit_of(np.column_stack([np.ones(slow.size), slow, asked, late, slow * late])), error)
+        few = np.column_stack([np.ones(slow.size), slow, asked, late, slow * late])
+        error = _explained(values, _fit_of(few), error)
     error = _explained(values, fitted, error)
     course = fitted(values - error)
     is_better = np.ptp(course) > _FEWEST_STEPS and (values - error - course).var() < _LEAST_GAIN * plain.var()
