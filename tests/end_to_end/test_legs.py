@@ -209,6 +209,20 @@ def test_a_zero_of_the_gauge_is_found_and_spoils_nothing(trial, tmp_path):
     assert found.p_value > 0.01
 
 
+def test_a_test_that_broke_off_behind_its_first_leg_gives_a_result(trial, tmp_path):
+    """The slope of the set point's line is then told by slow lines, at which the speed lags already."""
+    planned = load_campaign("12min")
+    alone = planned.model_copy(update={"multisines": planned.multisines[:1], "staircases": ()})
+    # a governor that is slower than that of the plan
+    tug = Tug(proportional_gain=3.0, integral_gain_per_s=2.2)
+    truth = sail(trial.vessel, alone, tmp_path / "one.nc", tug=tug, seed=22)
+    survey = run(tmp_path / "one.nc", trial.vessel, alone, rng=np.random.default_rng(1))
+    assert 0.01 < survey.signals.dc_scale_std < 0.03
+    assert survey.fingerprint.verdict.trustworthy
+    true = as_measured(truth, survey.signals)
+    assert max(abs(one.value - true[one.name]) / one.std for one in survey.identification.parameters) < 3.5
+
+
 def test_one_leg_can_be_chosen(trial, voyage):
     path, truth = voyage
     both = measure(path, trial)

@@ -19,12 +19,15 @@ from shaftprint.identify.likelihood._known import SHARE_ROUNDING, priors_from_ve
 from shaftprint.identify.likelihood._prior import Prior
 from shaftprint.identify.search._settings import Settings
 from shaftprint.models._structure import Structure
-from shaftprint.signals._signals import SetPointCalibration, Signals
+from shaftprint.signals._signals import Signals
 from shaftprint.signals._working_points import WorkingPoint
 from shaftprint.survey._measurement import Measurement, pairs_of
 from shaftprint.survey._progress import SILENT, Progress
 from shaftprint.units import rev_s_from_rpm
 from shaftprint.vessel._vessel import Vessel
+
+# Scales of the set point that the levels tell better than this are left to the fit: a lever bends by as much.
+WELL_KNOWN_SCALE = 0.004
 
 
 def priors_of(
@@ -36,7 +39,7 @@ def priors_of(
         _from_messages(known, structure, vessel, signals)
         | _from_demand(structure, vessel, signals)
         | _from_machine(structure, signals)
-        | _from_levels(structure, signals.calibration)
+        | _from_levels(structure, signals)
     )
     return known | measured | dict(stated or {})
 
@@ -91,12 +94,20 @@ def _from_machine(structure: Structure, signals: Signals) -> dict[str, Prior]:
     return {one.name: prior for one in structure.free if one.role == ShipRole.MACHINE_SHARE}
 
 
-def _from_levels(structure: Structure, line: SetPointCalibration) -> dict[str, Prior]:
-    """Return the bend of the set point's line by its steady levels, in which the vessel file's is counted."""
-    if not np.isfinite(line.bend_std):
-        return {}
-    prior = Prior(mean=line.bend, std=line.bend_std, sources={"set-point bend": line.bend_std})
-    return {one.name: prior for one in structure.free if one.role == ShipRole.SET_POINT_BEND}
+def _from_levels(structure: Structure, signals: Signals) -> dict[str, Prior]:
+    """Return what the steady levels tell of the set point's line: its bend, and its scale where that is told roughly.
+
+    In the bend that of the vessel file is counted. Where the slope rests on two levels or more it is known well enough
+    that its scale is to be found by the fit alone; a leg at one level tells it by its slow lines.
+    """
+    line, scale_std = signals.calibration, signals.dc_scale_std
+    told = {}
+    if np.isfinite(line.bend_std):
+        bend = Prior(mean=line.bend, std=line.bend_std, sources={"set-point bend": line.bend_std})
+        told[ShipRole.SET_POINT_BEND] = bend
+    if scale_std > WELL_KNOWN_SCALE:
+        told[ShipRole.SET_POINT_SCALE] = Prior(mean=1.0, std=scale_std, sources={"set-point line": scale_std})
+    return {one.name: told[one.role] for one in structure.free if one.role in told}
 
 
 def stated_working_point(vessel: Vessel) -> WorkingPoint:

@@ -38,7 +38,8 @@ def _small_margins(evidence: Evidence, numbers: Mapping[str, Estimate], not_trus
     small = small_margins(evidence)
     told = [words for name, words in small.items() if name not in not_trusted]
     hidden = [name for name in small if name in not_trusted]
-    ranges = [f"the {name} is between {_range(numbers[name])}" for name in hidden if name in numbers]
+    known = [name for name in hidden if name in numbers and math.isfinite(numbers[name].std)]
+    ranges = [f"the {name} is between {_range(numbers[name])}" for name in known]
     sentences = [f"The stability margins are small: {listed(told)}."] if told else []
     if hidden:
         reach = f": {listed(ranges)}" if ranges else ""

@@ -39,8 +39,11 @@ _LARGEST_DEPARTURE, _MOST_LINES, _FEWEST_LINES = 0.4, 9, 3
 _LEAST_STD = 2e-3
 # Means of the load are this long [s], and shorter where there would be fewer.
 _BLOCK_S, _FEWEST_BLOCKS = 10.0, 12
-# Deviation of a slope that rests on the slowest line alone, at which the speed may lag already.
-_ROUGH_STD = 0.05
+# Deviation of a slope that rests on lines at which the speed departs further: of three lines in 300 drawn loops, at
+# periods of 25 to 45 s.
+_ROUGH_STD = 0.02
+# The same of the slowest line alone, at which the speed may lag already.
+_LAGGING_STD = 0.05
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -233,16 +236,18 @@ def _slope_of_slow_lines(samples: LegSamples, channel: str) -> tuple[float, floa
     residual = np.sum(np.abs(speed - ratio[:, np.newaxis] * volts) ** 2, axis=1)
     std = np.sqrt(residual / (2.0 * (periods.periods - 1)) / power) / abs(rough)
     follows = np.abs(ratio / rough - 1.0) <= _LARGEST_DEPARTURE
-    count = int(np.argmin(follows)) if not follows.all() else follows.size
-    if count < _FEWEST_LINES:
-        return rough, _ROUGH_STD * abs(rough)
+    following = int(np.argmin(follows)) if not follows.all() else follows.size
+    if follows.size < _FEWEST_LINES:
+        return rough, _LAGGING_STD * abs(rough)
+    count = max(following, _FEWEST_LINES)
     lines = LowLines(
         omega_rad_s=2.0 * np.pi * np.array(harmonics[:count]) / periods.period_s,
         ratio=ratio[:count] / rough,
         std=np.maximum(std[:count], 1e-7),
     )
     value, value_std = zero_frequency_ratio(lines)
-    return rough * value, abs(rough) * float(np.hypot(value_std, _LEAST_STD))
+    least = _LEAST_STD if following >= _FEWEST_LINES else _ROUGH_STD
+    return rough * value, abs(rough) * float(np.hypot(value_std, least))
 
 
 def _amplitudes(
