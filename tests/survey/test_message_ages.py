@@ -25,7 +25,7 @@ def prior():
         nothing = SimpleNamespace(bend_std=float("inf"))
         signals = SimpleNamespace(
             working_point=stated_working_point(vessel), mode="shaftprint", channels={"M_s": torque}, excitations={},
-            engine_speed=speed, rate_hz=200.0, set_point_delay=None, calibration=nothing,
+            engine_speed=speed, rate_hz=200.0, set_point_delay=None, calibration=nothing, dc_scale_std=0.0,
         )  # fmt: skip
         return priors_of(structure("GAUGE-CLOSED"), vessel, signals)["t_gauge"]
 
