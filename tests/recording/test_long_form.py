@@ -134,3 +134,11 @@ def test_dates_with_the_name_of_the_month_in_their_middle(tmp_path):
     with _read(tmp_path, f"timestamp,M_s\n{rows}") as recording:
         assert recording.began.isoformat() == "2026-03-05T09:00:00"
         assert recording.channel("M_s").rate_hz == 10.0
+
+
+def test_rows_of_another_table_above_the_titles_are_told(tmp_path):
+    """As on a card whose clusters were given to the next file."""
+    first = "".join(f"05-03-2026 09:00:{k:02d},{k}.5,{k}.25\n" for k in range(50))
+    second = "".join(f"2026-03-05 10:00:{k // 10:02d}.{k % 10},{k}.5\n" for k in range(COUNT))
+    with pytest.raises(RecordingError, match=r"line 2: expected one table, found \d\d rows of another above line 5"):
+        _read(tmp_path, f"Timestamp,M_0,M_1\n{first}05-03-2026 09:00:50,5.1,044\n{second}")

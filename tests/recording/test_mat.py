@@ -358,3 +358,14 @@ def test_the_columns_of_a_table_are_named_by_the_caller(save):
         assert np.array_equal(torque.values(0, 300), table[:, 2])
         assert recording.channel("U").values(7, 9).tolist() == table[7:9, 1].tolist()
         assert "found an array of 300 x 2; say what its columns are (--columns)" in recording.left_out["other"]
+
+
+def test_an_element_longer_than_its_variable_is_damage(tmp_path):
+    path = tmp_path / "damaged.mat"
+    scipy.io.savemat(path, {"M_s": TORQUE, "fs": 500.0})
+    content = path.read_bytes()
+    tag = struct.pack("<2I", 9, 8 * TORQUE.size)
+    assert content.count(tag) == 1
+    path.write_bytes(content.replace(tag, struct.pack("<2I", 9, 80 * TORQUE.size)))
+    with pytest.raises(RecordingError, match=r"expected an element of a variable at byte .*, found type 9, "):
+        read_recording(path)

@@ -24,7 +24,7 @@ from shaftprint.recording.readers.csv._fields import (
 )
 from shaftprint.recording.readers.csv._head_beside import head_beside
 from shaftprint.recording.readers.csv._head_facts import HeadFacts, head_facts, is_fact
-from shaftprint.recording.readers.csv._long_form import expect_a_column_a_signal
+from shaftprint.recording.readers.csv._long_form import expect_a_column_a_signal, expect_one_table
 from shaftprint.recording.readers.csv._scope_export import began_of_export, width_of_export
 from shaftprint.recording.readers.csv._table import Table, find_table
 from shaftprint.recording.readers.csv._time_columns import TimeColumns, expect_no_words_as_times, time_columns
@@ -140,6 +140,8 @@ def read_header(
     beside = head_beside(lines)
     lines = lines if beside is None else beside.rows
     table = _expect_table(path, lines, delimiter, (0 if renamed else len(asked)) or width_of_export(lines))
+    if beside is None:
+        expect_one_table(path, lines, table)
     units: list[str]
     titles, units = (asked + [""] * (table.width - len(asked)), []) if asked and not renamed else ([], [])
     if not titles:

@@ -1,4 +1,4 @@
-"""Tables that are no columns of signals: rows of one value each, and rows of frames of a CAN bus."""
+"""Tables that are no columns of signals: rows of one value each, rows of frames of a CAN bus, two tables in one."""
 
 import re
 from collections.abc import Sequence
@@ -6,7 +6,7 @@ from pathlib import Path
 
 from shaftprint.errors import RecordingError
 from shaftprint.escape import printable
-from shaftprint.recording.readers.csv._fields import NUMBER, TEXT
+from shaftprint.recording.readers.csv._fields import DATE, DAY_TIME, GAP, NUMBER, TEXT, kinds_of, split_row
 from shaftprint.recording.readers.csv._table import Table
 
 # Words in the title of a column that says of which signal a row is, and of the values; fused ones are taken apart.
@@ -26,6 +26,8 @@ _FUSED = re.compile(r"(tag|var|signal|channel|sensor|node|point|item|entity|mess
 # titles of the bytes of a frame: D0, Data1, Byte 0
 _BYTES = re.compile(r"(?<![A-Za-z])(data|d|b|byte)[ _]?[01](?!\d)", re.IGNORECASE)
 _HEAD, _SHOWN = 30, 80
+# Fewer rows of numbers may stand in a head.
+_ROWS = 4
 
 
 def expect_a_column_a_signal(path: Path, table: Table, names: Sequence[str]) -> None:
@@ -50,6 +52,27 @@ def expect_a_column_a_signal(path: Path, table: Table, names: Sequence[str]) -> 
                 f'each, in pandas: table.pivot_table(index=TIME, columns="{names[place]}", '
                 f'values="{names[values[0]]}").to_csv(...).'
             )
+
+
+def expect_one_table(path: Path, lines: Sequence[str], table: Table) -> None:
+    """Refuse a file whose first rows are not of the table that has the most.
+
+    Raises RecordingError if rows of numbers stand above the titles.
+    """
+    above = [
+        number
+        for number, line in enumerate(lines[: table.first], start=1)
+        if line.strip() and _is_row(kinds_of(split_row(line, table.delimiter)))
+    ]
+    if len(above) >= _ROWS:
+        raise RecordingError(
+            f"{path}, line {above[0]}: expected one table, found {len(above)} rows of another above line "
+            f"{table.first + 1}, from which on most rows are; save each in a file of its own."
+        )
+
+
+def _is_row(kinds: str) -> bool:
+    return len(kinds) > 1 and NUMBER in kinds and not set(kinds) - {NUMBER, DATE, DAY_TIME, GAP}
 
 
 def expect_no_frames(path: Path, lines: Sequence[str]) -> None:

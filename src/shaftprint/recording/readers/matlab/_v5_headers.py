@@ -23,6 +23,9 @@ _CLASSES = {
     18: "object",
 }  # fmt: skip
 _LOGICAL = 0x0200
+# Types of elements besides variables.
+_TYPES = frozenset({1, 2, 3, 4, 5, 6, 7, 9, 12, 13, 16, 17, 18})
+_DEEPEST = 50
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -60,9 +63,26 @@ def headers_of(path: Path) -> Iterator[MatHeader]:
                 header = _header(_begin_of(file, kind == _PACKED, length), order)
             except struct.error:
                 raise ValueError(f"the variable at byte {begin - 8} is cut off in its header") from None
+            if kind == _MATRIX and not header.is_object:
+                _expect_known_types(file, begin, begin + length, order)
             if header.name:
                 yield header
             file.seek(begin + length)
+
+
+def _expect_known_types(file: BinaryIO, begin: int, end: int, order: str, depth: int = 0) -> None:
+    """Refuse a variable that is not packed where an element in it is of a type that there is not, or longer than it."""
+    at = begin
+    while at < end:
+        file.seek(at)
+        first, length = struct.unpack(f"{order}2I", file.read(8))
+        is_short = bool(first >> 16)
+        kind, length = (first & 0xFFFF, first >> 16) if is_short else (first, length)
+        if (kind != _MATRIX and kind not in _TYPES) or (not is_short and at + 8 + length > end) or depth > _DEEPEST:
+            raise ValueError(f"expected an element of a variable at byte {at}, found type {kind}, {length} bytes")
+        if kind == _MATRIX:
+            _expect_known_types(file, at + 8, at + 8 + length, order, depth + 1)
+        at += 8 if is_short else 8 + (length + 7) // 8 * 8
 
 
 def _begin_of(file: BinaryIO, is_packed: bool, length: int) -> bytes:
