@@ -32,7 +32,7 @@ _SPELLINGS = {
     "mv/v": "mV/V", "mv / v": "mV/V", "percentage": "%",
     "knm": "kN m", "kn·m": "kN m", "kn.m": "kN m", "percent": "%", "pct": "%", "kt": "kn", "kts": "kn", "knot": "kn",
     "knots": "kn", "rpm": "rpm", "1/min": "rpm", "min-1": "rpm", "min^-1": "rpm", "rev/min": "rpm", "r/min": "rpm",
-    "u/min": "rpm", "rps": "rev/s", "rad/sec": "rad/s", "milliampere": "mA", "ma": "mA",
+    "min⁻¹": "rpm", "u/min": "rpm", "rps": "rev/s", "rad/sec": "rad/s", "milliampere": "mA", "ma": "mA",
     "degree": "deg", "degrees": "deg", "°": "deg", "°/s": "deg/s", "radian": "rad", "radians": "rad", "turn": "rev",
     "turns": "rev", "revolution": "rev", "revolutions": "rev", "count": "counts", "cts": "counts", "tick": "counts",
     "ticks": "counts",

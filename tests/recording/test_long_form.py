@@ -129,8 +129,21 @@ def test_unix_time_as_a_unit_counts_from_1970(tmp_path):
         assert recording.channel("rpm").rate_hz == pytest.approx(50.0, rel=1e-6)
 
 
-def test_dates_with_the_name_of_the_month_in_their_middle(tmp_path):
-    rows = "".join(f"2026-Mar-05 09:00:{k // 10:02d}.{k % 10}00000,{k}\n" for k in range(COUNT))
+def test_dates_that_stay_are_not_the_times(tmp_path):
+    """As InfluxDB exports a table: begin and end of the query stand in front of the time of each row."""
+    begin, end = "2026-03-05T09:00:00Z", "2026-03-05T10:00:00Z"
+    rows = "".join(f",,0,{begin},{end},{at}Z,{k},{k % 3},shaft\n" for k, at in enumerate(AT))
+    head = "#group,false,false,true,true,false,false,false,true\n#default,_result,,,,,,,\n"
+    with _read(tmp_path, f"{head},result,table,_start,_stop,_time,rpm,torque,_measurement\n{rows}") as recording:
+        assert recording.began.isoformat() == "2026-03-05T09:00:00+00:00"
+        speed = recording.channel("rpm")
+        assert (speed.rate_hz, speed.count, speed.values(0, 3).tolist()) == (2.0, COUNT, [0, 1, 2])
+        assert "_start" in recording.left_out
+
+
+@pytest.mark.parametrize("form", ["2026-Mar-05 09:00:{s:02d}.{f}00000", "20260305 09:00:{s:02d}.{f}"])
+def test_dates_with_the_name_of_the_month_in_their_middle_or_without_separators(tmp_path, form):
+    rows = "".join(f"{form.format(s=k // 10, f=k % 10)},{k}\n" for k in range(COUNT))
     with _read(tmp_path, f"timestamp,M_s\n{rows}") as recording:
         assert recording.began.isoformat() == "2026-03-05T09:00:00"
         assert recording.channel("M_s").rate_hz == 10.0

@@ -30,6 +30,7 @@ ROWS = {
     "Actisense": lambda s, c: f"A{_clock(s, '')} 17FF2 1F200 {c.hex().upper()}",
     "canboat": lambda s, c: f"{_date(s)}Z,2,127488,23,255,8,{c.hex(',')}",
     "canboat, a hyphen in the date": lambda s, c: f"{_date(s, '%Y-%m-%d-%H:%M:%S')},2,127488,23,255,8,{c.hex(',')}",
+    "canboat, of a Signal K server": lambda s, c: f"1772754985000;A;{_date(s)}Z,2,127488,23,255,8,{c.hex(',')}",
     "SavvyCAN": lambda s, c: f"{round(1e6 * s) + 166_000_000},09F20017,true,Rx,0,8,{c.hex(',').upper()},",
 }
 
@@ -49,7 +50,11 @@ def test_every_kind_gives_the_same_values_at_the_same_times(tmp_path, kind):
         assert speed.values(0, COUNT) == pytest.approx(RPM)
         stamps = speed.stamps_s(0, COUNT)
         assert stamps - stamps[0] == pytest.approx(TIMES - TIMES[0], abs=1e-6)
-        dates = {"canboat": BEGAN, "canboat, a hyphen in the date": BEGAN.replace(tzinfo=None)}
+        dates = {
+            "canboat": BEGAN,
+            "canboat, of a Signal K server": BEGAN,
+            "canboat, a hyphen in the date": BEGAN.replace(tzinfo=None),
+        }
         assert recording.began == dates.get(kind)
         assert not any("rows" in name for name in recording.left_out)
 

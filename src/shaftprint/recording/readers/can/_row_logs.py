@@ -13,8 +13,10 @@ _ACTISENSE = re.compile(
     r"A(?P<time>\d{6}\.\d+)\s+(?P<from>[0-9A-F]{2})(?P<to>[0-9A-F]{2})(?P<priority>[0-7])\s+(?P<pgn>[0-9A-F]{5})\s+"
     r"(?P<data>(?:[0-9A-F]{2})+)\s*"
 )
-# 2026-03-05T08:15:07.204Z,2,129025,21,255,8,ff,00,12,34: priority, group, sender, receiver, length
+# 2026-03-05T08:15:07.204Z,2,129025,21,255,8,ff,00,12,34: priority, group, sender, receiver, length; a server of
+# Signal K logs it behind milliseconds since 1970 and a letter
 _CANBOAT = re.compile(
+    r"(?:\d{13};[\w-]+;)?"
     r"(?P<date>\d{4}-\d\d-\d\d)[-T ](?P<time>\d\d:\d\d:\d\d[.,]\d+)(?P<zone>Z|[+-]\d\d:?\d\d)?,(?P<priority>[0-7]),"
     r"(?P<pgn>\d{1,6}),(?P<from>\d{1,3}),(?P<to>\d{1,3}),(?P<length>\d{1,3})(?P<data>(?:,[0-9A-Fa-f]{2})+)\s*"
 )

@@ -35,7 +35,8 @@ _NAME_FIRST = re.compile(
 )
 # with the month's name within, as Boost writes dates
 _NAME_WITHIN = re.compile(rf"(?P<year>\d{{4}})[- ](?P<name>[A-Za-z]{{3}})[a-z]*[- ](?P<day>\d\d?)[T ]+{_CLOCK}{_ZONED}")
-_FORMS = (_ISO, _DAY_FIRST, _BASIC, _DAY_ALONE, _NAME_FIRST, _NAME_WITHIN)
+_COMPACT = re.compile(rf"(?P<year>(?:19|20)\d\d)(?P<month>\d\d)(?P<day>\d\d)[T ]+{_CLOCK}{_ZONED}")
+_FORMS = (_ISO, _DAY_FIRST, _BASIC, _DAY_ALONE, _NAME_FIRST, _NAME_WITHIN, _COMPACT)
 _NAMED = (_DAY_FIRST, _DAY_ALONE, _NAME_FIRST, _NAME_WITHIN)
 _MONTHS = {
     name: number

@@ -122,6 +122,8 @@ def _is_of_next(names: Sequence[str], place: int) -> bool:
 def _first_times(table: Table, names: Sequence[str], units: Sequence[str], *, has_rate: bool) -> TimeColumns:
     kinds = table.kinds
     dated = [place for place, kind in enumerate(kinds) if kind == DATE]
+    # one that stays is the begin of an export where another goes on: _start, _stop, _time
+    dated = [place for place in dated if len({row[place] for row in table.rows}) > 1] or dated
     hours = [place for place, kind in enumerate(kinds) if kind == DAY_TIME]
     titled = [place for place, name in enumerate(names) if kinds[place] in (NUMBER, GAP) and is_time_title(name)]
     # 20260305 beside a time of day
