@@ -33,6 +33,8 @@ _SPELLINGS = {
     "knm": "kN m", "kn·m": "kN m", "kn.m": "kN m", "percent": "%", "pct": "%", "kt": "kn", "kts": "kn", "knot": "kn",
     "knots": "kn", "rpm": "rpm", "1/min": "rpm", "min-1": "rpm", "min^-1": "rpm", "rev/min": "rpm", "r/min": "rpm",
     "min⁻¹": "rpm", "u/min": "rpm", "rps": "rev/s", "rad/sec": "rad/s", "milliampere": "mA", "ma": "mA",
+    "mv": "mV", "millivolt": "mV", "millivolts": "mV", "µv": "uV", "μv": "uV", "uv": "uV", "a": "A", "amp": "A",
+    "ampere": "A", "µa": "uA", "μa": "uA", "ua": "uA",
     "degree": "deg", "degrees": "deg", "°": "deg", "°/s": "deg/s", "radian": "rad", "radians": "rad", "turn": "rev",
     "turns": "rev", "revolution": "rev", "revolutions": "rev", "count": "counts", "cts": "counts", "tick": "counts",
     "ticks": "counts",
@@ -51,6 +53,23 @@ REV_S_PER_UNIT: Mapping[str, float] = MappingProxyType(
 
 NM_PER_UNIT: Mapping[str, float] = MappingProxyType({"N m": 1.0, "kN m": 1000.0})
 """Torque for one unit of those in which telemetries give it [N m]."""
+
+_QUANTITIES: tuple[Mapping[str, float], ...] = tuple(
+    MappingProxyType(dict(units))
+    for units in (
+        {"V": 1.0, "mV": 1e-3, "uV": 1e-6, "kV": 1e3},
+        {"A": 1.0, "mA": 1e-3, "uA": 1e-6, "kA": 1e3},
+        {"rad/s": 1.0, "deg/s": math.pi / 180.0, "rpm": 2.0 * math.pi / SECONDS_PER_MINUTE, "rev/s": 2.0 * math.pi},
+        {"rad": 1.0, "mrad": 1e-3, "deg": math.pi / 180.0, "rev": 2.0 * math.pi},
+        {**NM_PER_UNIT, "mN m": 1e-3, "N cm": 1e-2},
+        {"N": 1.0, "kN": 1e3, "mN": 1e-3},
+        {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6},
+        {"m/s": 1.0, "cm/s": 1e-2, "mm/s": 1e-3, "kn": M_S_PER_KNOT, "km/h": 1e3 / SECONDS_PER_HOUR},
+        {"-": 1.0, "%": 1e-2},
+    )
+)
+"""Size of each unit in the first of its quantity."""
+_ANYWHERE = ("rad", "m", "degC", "K")
 
 _Number = TypeVar("_Number", float, NDArray[np.float64])
 
@@ -75,3 +94,16 @@ def plain_unit(text: str) -> str:
     """Return a unit as vessel files write it; one that they do not know as it is."""
     text = text.strip().strip("\0").strip()
     return _SPELLINGS.get(text.lower(), text)
+
+
+def zero_is_anywhere(unit: str) -> bool:
+    """Return whether a sensor of a unit has its zero where it was put, as an encoder or a thermometer has."""
+    return any(unit_factor(unit, one) is not None for one in _ANYWHERE)
+
+
+def unit_factor(given: str, wanted: str) -> float | None:
+    """Return what a number in one unit is multiplied by to be in another; None where they are of other quantities."""
+    one, other = plain_unit(given), plain_unit(wanted)
+    if one == other:
+        return 1.0
+    return next((units[one] / units[other] for units in _QUANTITIES if one in units and other in units), None)

@@ -32,6 +32,22 @@ def test_the_set_point_of_the_file_is_that_of_the_recording(run, tmp_path, recor
     assert "exists" in again.stderr
 
 
+def test_a_set_point_in_messages_shows_its_tests_too(run, tmp_path):
+    random, campaign = np.random.default_rng(1), load_campaign("5min")
+    time = np.arange(0.0, campaign.duration_s, 0.02)
+    time = time + random.uniform(-0.008, 0.008, time.size)
+    time = np.round(time[random.random(time.size) > 0.01], 4) + 1.0
+    volts = 0.02 * np.round(setpoint(campaign, time) / 0.02)
+    rows = [f"{second:.4f},{volt:.2f}" for second, volt in zip(time.tolist(), volts.tolist(), strict=True)]
+    log, path = tmp_path / "bus.csv", tmp_path / "test.toml"
+    log.write_text("\n".join(["time [s],U_setpoint [V]", *rows]))
+    result = run("new", "campaign", "--from", log, "--vessel", "stan-tug-1205", "-o", path)
+    assert result.exit_code == 0, result.stderr
+    assert result.output.splitlines()[0] == f"{path}: multisines: M1, M2."
+    apart = setpoint(load_campaign(path), time) - setpoint(campaign, time)
+    assert np.sqrt(np.mean(apart**2)) < 0.02
+
+
 def test_what_cannot_be_asked_together(run, tmp_path, recording):
     path = tmp_path / "test.toml"
     for words, reason in (

@@ -5,9 +5,9 @@ import re
 import pytest
 
 from shaftprint.drive import load_drive
-from shaftprint.drive._unit_factors import unit_factor
 from shaftprint.errors import SettingsError
 from shaftprint.settings import write_template
+from shaftprint.units import unit_factor
 
 MOTOR = """\
 name = "bench 3"

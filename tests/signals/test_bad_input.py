@@ -8,7 +8,7 @@ import pytest
 from shaftprint.campaign import Campaign
 from shaftprint.errors import SignalError
 from shaftprint.recording import Recording
-from shaftprint.signals import prepare_signals
+from shaftprint.signals import inspect_channels, prepare_signals
 from shaftprint.signals._scale_reasons import torque_beside_file
 
 
@@ -64,13 +64,34 @@ def test_a_file_without_units_is_told_how_to_get_them(spoiled, vessel, campaign)
     )
 
 
+def test_a_file_without_units_whose_volts_are_too_large_is_not_told_to_say_volts(spoiled, vessel, campaign):
+    recording = spoiled(units={"U_setpoint": ""}, U_setpoint=lambda counts: 1000.0 * counts.astype(float))
+    sentence = r'and values around 4\d\d\d, too large for V; if they are mV, .*--unit "U_setpoint=mV"`\.$'
+    refused(recording, vessel, campaign, sentence)
+
+
+def test_another_unit_of_the_same_quantity_is_converted(ship, spoiled, vessel, campaign):
+    def in_thousandths(counts):
+        return 1000.0 * counts.astype(float)
+
+    recording = spoiled(units={"U_setpoint": "mV", "M_s": "mV"}, U_setpoint=in_thousandths, M_s=in_thousandths)
+    found, sound = (prepare_signals(one, vessel, campaign) for one in (recording, ship.recording()))
+    assert found.shaft_torque_nm == pytest.approx(sound.shaft_torque_nm, rel=1e-6)
+    assert found.calibration.slope_rev_s_per_v == pytest.approx(sound.calibration.slope_rev_s_per_v, rel=1e-6)
+    assert {report.unit for report in inspect_channels(recording, vessel)} == {"V"}
+    levels = {report.channel: report.lowest for report in inspect_channels(recording, vessel)}
+    assert -7.0 < levels["U_setpoint"] < -5.0
+
+
 def test_wrong_unit(spoiled, vessel, campaign):
     refused(
-        spoiled(units={"U_setpoint": "mV"}),
+        spoiled(units={"U_setpoint": "mA"}),
         vessel,
         campaign,
-        r'channel U_setpoint: expected the unit "V" for the set point, found "mV"',
+        r'channel U_setpoint: expected the unit "V" for the set point, found "mA"',
     )
+    # volts that are called mV
+    refused(spoiled(units={"U_setpoint": "mV"}), vessel, campaign, "1/1000 as much, as with mV for V")
 
 
 def test_empty_channel(ship, vessel, campaign):
@@ -326,7 +347,9 @@ def test_the_unit_of_a_set_point_is_named_where_another_fits(spoiled, vessel, ca
     # the demanded speed in a channel that was entered as volts
     recording = spoiled(U_setpoint=lambda counts: -250.0 * counts.astype(np.float64))
     sentence = r'channel U_setpoint: expected a set point in V, found 1\d\d\d.*; unit = "rpm" with its v_per_unit in '
-    refused(recording, vessel, campaign, sentence)
+    refused(
+        recording, vessel, campaign, sentence + r"sensors\.set_point would fit, or v_per_unit = 0\.001 where these a"
+    )
 
 
 def test_a_table_that_does_not_reach_the_working_point(ship, vessel, campaign):

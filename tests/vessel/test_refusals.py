@@ -41,8 +41,8 @@ from shaftprint.vessel._shaft_torque import ShaftTorqueSensor
         ('name = "Entrained water"', 'name = "Propeller, dry"', "its own name, found Propeller, dry twice"),
         (
             'unit = "V"                          #',
-            'unit = "mV" #',
-            r"sensors\.shaft_torque\.unit: expected 'V', 'mA', '%', 'mV/V', 'N m' or 'kN m', found 'mV'",
+            'unit = "bar" #',
+            r"sensors\.shaft_torque\.unit: expected 'V', 'mA', '%', 'mV/V', 'N m' or 'kN m', found 'bar'",
         ),
         ("cylinders = 6", "cylinders = 6.5", "cylinders: expected a whole number"),
         ("# [sensors.rack]", '[sensors.rack]\nchannel = "X"', r"sensors\.rack\.cycle_s: expected a value, found none"),

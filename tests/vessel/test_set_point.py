@@ -20,6 +20,11 @@ def sensor(unit, **fields):
         ("mA", {"v_per_unit": 0.625, "v_at_zero": -12.5}, 12.0),
         ("percent", {"v_per_unit": -0.1}, 50.0),
         ("1/min", {"v_per_unit": -0.004, "v_at_zero": -0.2}, 1200.0),
+        # the readings of channels in these units are converted as the file gives them
+        ("mV", {}, -5.0),
+        ("millivolts", {"v_per_unit": 0.002}, -2.5),
+        ("A", {"v_per_unit": 625.0, "v_at_zero": -12.5}, 12.0),
+        ("µA", {"v_per_unit": 0.000625, "v_at_zero": -12.5}, 12.0),
     ],
 )
 def test_five_volts_below_zero_in_every_unit(unit, fields, reading):
@@ -43,6 +48,11 @@ def test_five_volts_below_zero_in_every_unit(unit, fields, reading):
 def test_what_is_no_set_point_is_refused(unit, fields, sentence):
     with pytest.raises(ValidationError, match=sentence):
         sensor(unit, **fields)
+
+
+def test_a_table_in_millivolts_is_that_in_volts():
+    found = sensor("mV", table_rpm=[[0.0, 500.0], [5000.0, 1500.0]])
+    assert found == sensor("V", table_rpm=[[0.0, 500.0], [5.0, 1500.0]])
 
 
 def test_a_table_becomes_a_line_that_touches_it():

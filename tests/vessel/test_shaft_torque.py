@@ -82,6 +82,12 @@ def test_what_does_not_fit_together_is_refused(unit, fields, sentence):
         gauge(unit, **fields)
 
 
+def test_a_gauge_in_milliampere_or_millivolt_by_other_names():
+    in_ma = gauge("mA", scale_nm_per_unit=312.5, reading_at_zero=4.0)
+    assert gauge("A", scale_nm_per_unit=312_500.0, reading_at_zero=0.004) == in_ma
+    assert gauge("mV", scale_nm_per_unit=0.5) == gauge("V", scale_nm_per_unit=500.0)
+
+
 @pytest.mark.parametrize(
     ("stated", "fields", "reading", "unit"),
     [

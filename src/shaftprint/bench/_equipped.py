@@ -11,12 +11,12 @@ from shaftprint.catalogue._linear_drives import along_a_line, unit_along
 from shaftprint.catalogue._shipped import shipped_structure
 from shaftprint.drive._drive import Drive
 from shaftprint.drive._signals import KnownParameter, Signal
-from shaftprint.drive._unit_factors import unit_factor
 from shaftprint.errors import SettingsError
 from shaftprint.identify.likelihood._prior import Prior
 from shaftprint.models._parameter import Parameter
 from shaftprint.models._structure import Structure
 from shaftprint.spelling import meant
+from shaftprint.units import unit_factor
 
 # So many standard deviations of what is known lie within the bounds of the search.
 WITHIN = 6.0

@@ -9,7 +9,6 @@ from shaftprint.bench._equipped import EquippedDrive
 from shaftprint.bench._held_values import kept_for
 from shaftprint.digits import rounded, stated
 from shaftprint.drive._signals import Signal
-from shaftprint.drive._unit_factors import zero_is_anywhere
 from shaftprint.identify.fit._estimate import Estimate
 from shaftprint.identify.fit._identification import Identification
 from shaftprint.identify.fit._optima import WITHIN
@@ -19,6 +18,7 @@ from shaftprint.reasons import Reason
 from shaftprint.time_domain._output_error import OutputError
 from shaftprint.time_domain._record import Record
 from shaftprint.time_domain._record_fit import RecordFit
+from shaftprint.units import zero_is_anywhere
 
 REQUIREMENTS = Requirements(largest_excess=4.0)
 """What is asked of a fit of a drive. Its structure holds friction and whatever else acts, so that no misfit is taken

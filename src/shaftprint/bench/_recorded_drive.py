@@ -11,11 +11,11 @@ from shaftprint.arrays import FloatArray
 from shaftprint.catalogue._drives import DRIVES, SIGNAL_UNITS
 from shaftprint.catalogue._linear_drives import unit_along
 from shaftprint.catalogue._shipped import shipped_structure
-from shaftprint.drive._unit_factors import unit_factor
 from shaftprint.errors import RecordingError
 from shaftprint.escape import printable, toml_string
 from shaftprint.recording._channel import Channel
 from shaftprint.recording._read import read_recording
+from shaftprint.units import unit_factor
 
 # Words in the names of channels that ask a controller for something, and in those of others that are put in.
 _ASKED = ("set", "setpoint", "soll", "sollwert", "demand", "command", "cmd", "reference", "ref", "target")

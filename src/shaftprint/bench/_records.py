@@ -13,7 +13,6 @@ from shaftprint.bench._equipped import EquippedDrive
 from shaftprint.bench._hold import jumps
 from shaftprint.bench._wrapped import turn_of, unwrapped
 from shaftprint.drive._signals import Signal, Stretch
-from shaftprint.drive._unit_factors import unit_factor
 from shaftprint.errors import RecordingError
 from shaftprint.recording._channel import Channel
 from shaftprint.recording._messages import judge_messages
@@ -21,6 +20,7 @@ from shaftprint.recording._read import read_recording
 from shaftprint.recording._recording import Recording
 from shaftprint.signals._at_rate import at_rate
 from shaftprint.time_domain._record import Record, record_from_arrays
+from shaftprint.units import unit_factor
 
 # Uneven channels whose rates differ by less come from one sender, or from senders of one kind.
 _SAME_SENDER = 1.2

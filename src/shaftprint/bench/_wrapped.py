@@ -3,7 +3,7 @@
 import numpy as np
 
 from shaftprint.arrays import FloatArray
-from shaftprint.drive._unit_factors import unit_factor
+from shaftprint.units import unit_factor
 
 # An angle begins again where it steps by more than half a turn, and nearer to half a turn its sense would be a guess.
 HALF, SURE = 0.5, 0.4

@@ -205,7 +205,7 @@ def file_inputs(
         if uneven:
             raise RecordingError(
                 f"{path}: expected inputs at one rate, found messages at times of their own in {', '.join(uneven)}; "
-                "resample the file."
+                "put them on one: shaftprint convert --rate."
             )
         clocks = {(channel.rate_hz, channel.start_s, channel.count) for channel in channels.values()}
         if len(clocks) != 1:

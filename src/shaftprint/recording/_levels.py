@@ -22,6 +22,8 @@ FEWEST_CROSSINGS = 4
 class Levels:
     """Levels of one raw channel in its unit."""
 
+    unit: str
+    """Unit of the channel; empty where the file does not say."""
     lowest: float
     """Smallest value [unit]; not a number where there is none."""
     mean: float
@@ -62,6 +64,7 @@ class Tally:
         if self.channel.scale < 0.0:
             ends, at_ends = ends[::-1], at_ends[::-1]
         return Levels(
+            unit=self.channel.unit,
             lowest=ends[0],
             mean=self._value(self._total / self._count) if has_samples else np.nan,
             highest=ends[1],

@@ -1,6 +1,7 @@
 """Finding the channels that the vessel file names, and reading them block by block."""
 
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
@@ -8,6 +9,7 @@ from numpy.typing import NDArray
 
 from shaftprint.errors import SignalError
 from shaftprint.recording._messages import judge_messages
+from shaftprint.units import unit_factor
 
 if TYPE_CHECKING:
     from shaftprint.recording._channel import Channel
@@ -23,6 +25,10 @@ _SPOTS = 4
 _SPOT_SAMPLES = 65_536
 # Enough to tell the unit of a channel by what it shows.
 _GLANCE_SAMPLES = 4_096
+# Values beyond are too large for a unit, and are likely in its thousandth.
+_TOO_LARGE = {"V": (100.0, "mV"), "mA": (100.0, "uA")}
+# The unit of a share may be that of a channel that lacks one.
+_NO_QUANTITY = ("%", "-")
 
 
 class MissingChannel(SignalError):
@@ -38,7 +44,7 @@ def find_channel(
     way_out: str = "correct the name there",
     takes_messages: bool = False,
 ) -> "Channel":
-    """Return a channel that holds samples in the expected unit.
+    """Return a channel that holds samples in the expected unit, into which one of the same quantity is converted.
 
     ``recording``: where to look. ``name``: name of the channel, from the vessel file. ``unit``: unit that the vessel
     file gives for it; spaces and multiplication dots do not count. ``use``: what the channel is needed for, in words.
@@ -54,9 +60,11 @@ def find_channel(
     channel = recording.channels[name]
     if not channel.unit:
         raise SignalError(
-            f'{recording.path}, channel {name}: expected the unit "{unit}" for the {use}, found a file without it; '
-            f'say it with `shaftprint convert --unit "{name}={unit}"`.'
+            f'{recording.path}, channel {name}: expected the unit "{unit}" for the {use}, found a file without it'
+            f"{_unit_to_say(channel, unit)}."
         )
+    if (factor := _factor(channel.unit, unit)) is not None:
+        channel = replace(channel, unit=unit, scale=factor * channel.scale, offset=factor * channel.offset)
     if _plain(channel.unit) != _plain(unit):
         has_it = [one for one, other in recording.channels.items() if _plain(other.unit) == _plain(unit)]
         other = f"{has_it[0]} has it: take that one, or " if len(has_it) == 1 else ""
@@ -79,7 +87,7 @@ def expect_one_clock(channel: "Channel", use: str) -> None:
     if channel.is_uneven:
         raise SignalError(
             f"channel {channel.name}: expected samples at one rate for {use}, found "
-            f"{judge_messages(channel).sentence}; log it at one rate, or resample the file."
+            f"{judge_messages(channel).sentence}; log it at one rate."
         )
 
 
@@ -148,6 +156,25 @@ def _finite(counts: Counts) -> Counts:
         return counts
     missing = np.isnan(counts)
     return counts[~missing] if missing.any() else counts
+
+
+def _factor(given: str, wanted: str) -> float | None:
+    """Return what values in a unit are multiplied by to be in the one that is wanted, where that is another."""
+    if _plain(given) == _plain(wanted) or wanted in _NO_QUANTITY:
+        return None
+    return unit_factor(given, wanted)
+
+
+def _unit_to_say(channel: "Channel", unit: str) -> str:
+    """Return how to say the unit of a channel without one: that which was expected, if its values can be in it."""
+    highest, thousandth = _TOO_LARGE.get(unit, (np.inf, ""))
+    middle = abs(middle_of(channel))
+    if not middle > highest:
+        return f'; say it with `shaftprint convert --unit "{channel.name}={unit}"`'
+    return (
+        f" and values around {middle:.4g}, too large for {unit}; if they are {thousandth}, say it with "
+        f'`shaftprint convert --unit "{channel.name}={thousandth}"`'
+    )
 
 
 def _plain(unit: str) -> str:

@@ -28,10 +28,13 @@ def describe_set_point(recording: "Recording", vessel: "Vessel", *, name: str | 
     campaign file can describe.
     """
     sensor = vessel.sensors.set_point
-    channel = find_channel(recording, sensor.channel, unit=sensor.unit, use="set point")
-    # samples as they are: a filter would ring where the set point jumps
-    every = max(round(channel.rate_hz / _LOOKED_HZ), 1)
-    clock = replace(clock_of(channel, channel.rate_hz / every), mode="thesis")
+    channel = find_channel(recording, sensor.channel, unit=sensor.unit, use="set point", takes_messages=True)
+    if channel.is_uneven:
+        clock = clock_of(channel, _LOOKED_HZ)
+    else:
+        # samples as they are: a filter would ring where the set point jumps
+        every = max(round(channel.rate_hz / _LOOKED_HZ), 1)
+        clock = replace(clock_of(channel, channel.rate_hz / every), mode="thesis")
     volts = read_set_point(channel, sensor, clock, speed_rpm=vessel.working_point.engine_speed_rpm).values
     try:
         return described(

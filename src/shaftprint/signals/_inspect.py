@@ -12,7 +12,7 @@ from shaftprint.signals._channel_signals import ChannelRole
 from shaftprint.signals._gaps import Gap
 from shaftprint.signals._signals import Repair
 from shaftprint.signals.kinds._pick_up import PulseReading
-from shaftprint.units import rpm_from_rev_s
+from shaftprint.units import rpm_from_rev_s, unit_factor
 
 if TYPE_CHECKING:
     from shaftprint.recording._channel import Channel
@@ -116,6 +116,8 @@ def _report(source: "Source[Any]", readings: ChannelReadings, levels: Levels) ->
             source.kind.judge(source, reading)
         except SignalError as error:
             problem = error
+    # a raw channel is in the unit of the file
+    factor = unit_factor(levels.unit, channel.unit) or 1.0
     return ChannelReport(
         channel=channel.name,
         use=source.kind.use,
@@ -123,9 +125,9 @@ def _report(source: "Source[Any]", readings: ChannelReadings, levels: Levels) ->
         rate_hz=channel.rate_hz,
         start_s=channel.start_s,
         duration_s=channel.duration_s,
-        lowest=levels.lowest,
-        highest=levels.highest,
-        mean=levels.mean,
+        lowest=factor * levels.lowest,
+        highest=factor * levels.highest,
+        mean=factor * levels.mean,
         pulses=_pulse_report(channel, source.sensor, reading) if isinstance(reading, PulseReading) else None,
         faults=() if reading is None else tuple(reading.repairs),
         gaps=() if reading is None else tuple(sorted(reading.gaps, key=lambda gap: gap.start_s)),

@@ -1,7 +1,7 @@
 """The set point of the speed: what is put out to the governor, as it was recorded."""
 
 from itertools import pairwise
-from typing import Annotated, Literal, Self, TypeAlias
+from typing import Annotated, Any, Literal, Self, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -9,7 +9,7 @@ from pydantic import Field, model_validator
 
 from shaftprint.arrays import FloatArray
 from shaftprint.settings import Name, NotNegativeNumber, Number, PositiveNumber, Settings
-from shaftprint.vessel._plain_unit import PLAIN_UNIT
+from shaftprint.vessel._plain_unit import PLAIN_UNIT, in_volts_or_milliamperes
 from shaftprint.vessel._usual import BEND_OF_DEMAND_STD, BEND_STD
 
 # What a channel can show in a unit; in rpm, by how much more or less than the speed of the working point.
@@ -31,7 +31,7 @@ class SetPointSensor(Settings):
     channel: Name
     """Name of the channel in the recording."""
     unit: SetPointUnit
-    """Unit of the channel."""
+    """Unit of the channel; mV is read as V, A and uA as mA."""
     v_per_unit: Number | None = None
     """Volts of the campaign for one unit of the channel [V per unit]; 1 where it is not given for a channel in V."""
     v_at_zero: Number | None = None
@@ -52,6 +52,11 @@ class SetPointSensor(Settings):
     """Time by which messages are late behind what they show [s]; 0 for samples of a voltage."""
     is_obeyed: bool = False
     """Whether messages are the demand itself, each of which the governor holds until the next, not a report of it."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _in_volts_or_milliamperes(cls, content: Any) -> Any:
+        return in_volts_or_milliamperes(content, per_unit="v_per_unit", readings=("table_rpm",))
 
     @model_validator(mode="after")
     def _can_be_volts(self) -> Self:

@@ -12,7 +12,7 @@ from shaftprint.arrays import FloatArray
 from shaftprint.settings import Name, NotNegativeNumber, Number, PositiveNumber, Settings
 from shaftprint.units import MILLI, NM_PER_UNIT
 from shaftprint.vessel._current_loop import ALIVE_MA
-from shaftprint.vessel._plain_unit import PLAIN_UNIT, as_plain_unit
+from shaftprint.vessel._plain_unit import PLAIN_UNIT, as_plain_unit, in_volts_or_milliamperes
 from shaftprint.vessel._usual import GAUGE_SCALE_STD, GAUGE_ZERO_SHARE, LATENCY_STD_S
 
 # A gauge whose channel is in kN m has a scale of about 1000 N m a unit; this much less is a forgotten factor.
@@ -81,7 +81,7 @@ class ShaftTorqueSensor(Settings):
     channel: Name
     """Name of the channel in the recording."""
     unit: TorqueUnit
-    """Unit of the channel; Nm and kNm are read as N m and kN m."""
+    """Unit of the channel; Nm and kNm are read as N m and kN m, mV as V, A and uA as mA."""
     scale_nm_per_unit: Number
     """Torque for one unit of the channel [N m per unit]; negative where the gauge is mounted reversed. Where it is not
     given: 1 and 1000 for a channel in N m and kN m, and that of ``shaft``."""
@@ -109,6 +109,7 @@ class ShaftTorqueSensor(Settings):
     @classmethod
     def _scale_that_follows(cls, content: Any) -> Any:
         """Fill in the scale where unit or shaft tell it."""
+        content = in_volts_or_milliamperes(content, per_unit="scale_nm_per_unit", readings=("reading_at_zero",))
         if not isinstance(content, Mapping):
             return content
         of_unit = NM_PER_UNIT.get(as_plain_unit(content.get("unit")))

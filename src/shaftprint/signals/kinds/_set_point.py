@@ -18,7 +18,7 @@ from shaftprint.signals.conditioning._outliers import FaultLimits, fault_limits
 from shaftprint.signals.kinds._kind import ChannelKind, Source, SteadyState, conditioned_on
 from shaftprint.signals.kinds._message_reading import expect_within, read_messages
 from shaftprint.signals.kinds._splined_messages import comes_in_messages, splined
-from shaftprint.units import rpm_from_rev_s
+from shaftprint.units import MILLI, rpm_from_rev_s
 from shaftprint.vessel._set_point import SetPointSensor
 
 if TYPE_CHECKING:
@@ -27,6 +27,8 @@ if TYPE_CHECKING:
 
 # Of a percentage, values above say "error" and "not available" (SAE J1939-71).
 _HIGHEST_PERCENT = 101.0
+# What the middle of a set point in mV is at least; below it is a share.
+_FEWEST_MILLIVOLTS = 101.0
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -85,12 +87,19 @@ def read_set_point(channel: "Channel", sensor: SetPointSensor, clock: "Clock", *
         line = "" if unit == "V" else " with its v_per_unit"
         raise SignalError(
             f"channel {channel.name}: expected a set point in {sensor.unit}, found {middle:.4g}; "
-            f'unit = "{unit}"{line} in sensors.set_point would fit.'
+            f'unit = "{unit}"{line} in sensors.set_point would fit{_milli_words(middle, sensor)}.'
         )
     if comes_in_messages(channel, clock):
         return _read_messages(channel, sensor, clock)
     reading = read_voltage(channel, clock)
     return replace(reading, values=sensor.volts(reading.values))
+
+
+def _milli_words(middle: float, sensor: SetPointSensor) -> str:
+    """Return that a set point in V may be one in mV which was called V, where it is too large for V."""
+    if sensor.unit != "V" or abs(middle) < _FEWEST_MILLIVOLTS:
+        return ""
+    return f", or v_per_unit = {sensor.slope_v / MILLI:g} where these are mV"
 
 
 def _read_messages(channel: "Channel", sensor: SetPointSensor, clock: "Clock") -> SetPointMessages:

@@ -159,7 +159,7 @@ def expect_moving_torque(
             raise SignalError(
                 f"channel {sensor.channel}: expected the torque to move during {excitation.name}, "
                 f"found it dead near {float(torque_nm[first]):.0f} N m from "
-                f"{excitation.start_s:.1f} s on; check the gauge and its telemetry."
+                f"{excitation.start_s:.1f} s on; check the gauge, its telemetry and the unit of the channel."
             )
 
 
