@@ -66,11 +66,12 @@ def test_a_wrong_number_of_strips_is_no_swap(ship, vessel):
     wrong = vessel.model_copy(update={"sensors": vessel.sensors.model_copy(update={"speed": speed})})
     (sentence,) = contradictions(inspect_channels(ship.recording(), wrong), wrong)
     assert "swapped" not in sentence
-    assert "check gearbox.ratio and pulses_per_revolution in the vessel file" in sentence
+    assert "as with 4 pulses of n_e4 where 3 are stated; check pulses_per_revolution in the vessel file" in sentence
 
 
 def test_a_wrong_gear_ratio_is_no_swap(ship, vessel):
     wrong = vessel.model_copy(update={"gearbox": vessel.gearbox.model_copy(update={"ratio": 4.5})})
     (sentence,) = contradictions(inspect_channels(ship.recording(), wrong), wrong)
     assert "swapped" not in sentence
-    assert "as with a gear ratio of 3.82 instead of 4.5; check gearbox.ratio" in sentence
+    assert "as with a gear ratio of 3.82 instead of 4.5; check gearbox.ratio and pulses_" in sentence
+    assert "pulses of" not in sentence

@@ -309,6 +309,36 @@ def test_channels_that_are_swapped_are_no_gear_ratio(found, words):
     assert ("swapped" in str(refused.value)) != ("gear ratio" in str(refused.value))
 
 
+@pytest.mark.parametrize(
+    ("teeth", "ratio", "found", "words"),
+    [
+        # eight strips stated as six, with either pick-up first; a ratio of 5.2 stated as 4.8
+        ({"e": ("engine", 1), "s": ("propeller", 6)}, 5.2, 4 / 3, "as with 8 pulses of s where 6 are stated, or as "),
+        (
+            {"e": ("engine", 4), "s": ("propeller", 6)},
+            5.2,
+            2.0,
+            "with 2 pulses of e where 4 are stated, or as with 12 ",
+        ),
+        (
+            {"e": ("engine", 1), "s": ("propeller", 8)},
+            4.8,
+            4.8 / 5.2,
+            "found s / e = 0.9231, as with a gear ratio of 5",
+        ),
+        # on one shaft no ratio is to blame
+        ({"e": ("engine", 2), "s": ("engine", 3)}, 5.2, 4 / 3, "3 are stated; check pulses_per_revolution in the"),
+        # a third pick-up that agrees with one of the two
+        ({"e": ("engine", 2), "s": ("propeller", 3), "t": ("engine", 1)}, 5.2, 4 / 3, "as with 4 pulses of s where 3"),
+    ],
+)
+def test_a_count_that_is_whole_is_named_before_the_ratio(teeth, ratio, found, words):
+    values = {"e": 20.0, "s": 20.0 * found, "t": 20.0}
+    speeds = tuple(SimpleNamespace(name=name, channel=name, values=np.full(5, values[name]), gaps=()) for name in teeth)
+    with pytest.raises(SignalError, match=words.replace(".", r"\.")):
+        compare_speeds(speeds, pick_ups(ratio=ratio, **teeth), rate_hz=1.0, start_s=0.0)
+
+
 def test_two_sensors_of_one_shaft_have_no_gear_ratio_to_blame():
     vessel = pick_ups(a=("engine", 1), b=("engine", 1))
     speeds = tuple(

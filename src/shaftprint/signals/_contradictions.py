@@ -9,7 +9,7 @@ from shaftprint.digits import in_nm
 from shaftprint.signals._inspect import ChannelReport, PulseReport
 from shaftprint.signals._scale_reasons import scale_reasons, torque_beside_file
 from shaftprint.signals._working_points import WorkingPoint
-from shaftprint.signals.kinds._compare import are_alike, engine_turns, swapped_pick_ups
+from shaftprint.signals.kinds._compare import are_alike, engine_turns, swapped_pick_ups, what_would_agree
 from shaftprint.signals.levels._working_point import direction_words
 
 if TYPE_CHECKING:
@@ -55,8 +55,7 @@ def _of_speeds(reports: Sequence[ChannelReport], vessel: "Vessel") -> tuple[str,
     if len(sensors) < 2 or are_alike(speeds):
         return ()
     swap = swapped_pick_ups(sensors, {channel: one.per_second for channel, one in pulses.items()}, vessel)
-    wrong = f"{_in_words(sensors, speeds, vessel)}; check gearbox.ratio and pulses_per_revolution in the vessel file."
-    return (swap or wrong,)
+    return (swap or _in_words(sensors, speeds, vessel),)
 
 
 def _lost_share(report: ChannelReport) -> float:
@@ -70,16 +69,17 @@ def _engine_speed(sensor: "SpeedSensor", pulses: PulseReport, vessel: "Vessel") 
 
 
 def _in_words(sensors: Sequence["SpeedSensor"], found: Sequence[float], vessel: "Vessel") -> str:
-    """Return how far the two pick-ups that differ most are apart."""
+    """Return how far the two pick-ups that differ most are apart, and what to check."""
     speeds = {sensor.name: speed for sensor, speed in zip(sensors, found, strict=True)}
     shafts = {sensor.name: sensor.shaft for sensor in sensors}
     low, high = min(speeds, key=speeds.__getitem__), max(speeds, key=speeds.__getitem__)
     sentence = f"expected one engine speed, found {low} = {speeds[low]:.4g} and {high} = {speeds[high]:.4g} rev/s"
-    if shafts[low] == shafts[high]:
-        return sentence
-    apart = speeds[low] / speeds[high]
-    ratio = vessel.gearbox.ratio * (apart if shafts[high] == "propeller" else 1.0 / apart)
-    return f"{sentence}, as with a gear ratio of {ratio:.4g} instead of {vessel.gearbox.ratio:g}"
+    ratio = ""
+    if shafts[low] != shafts[high]:
+        apart = speeds[low] / speeds[high]
+        ratio = f"{vessel.gearbox.ratio * (apart if shafts[high] == 'propeller' else 1.0 / apart):.4g}"
+    like, check = what_would_agree(speeds, vessel, ratio=ratio)
+    return f"{sentence}{like}; {check}."
 
 
 def _of_torque(reports: Sequence[ChannelReport], vessel: "Vessel") -> tuple[str, ...]:

@@ -25,6 +25,8 @@ _BLOCK_S = 5.0
 # A wrong ratio is the same all the time: what goes from one tenth of the time to the other by more than this share of
 # the difference is none.
 _STEADY, _BOTH_SIDES = 0.3, 0.5
+# A count is whole within this share of it, and within so many of its teeth.
+_WHOLE, _MOST_OFF_WHOLE = 1e-3, 0.05
 
 
 def compare_speeds(
@@ -71,17 +73,52 @@ def compare_speeds(
             f"channels {first.channel} and {other.channel}: expected the same engine-side speed, "
             f"found {other.name} / {first.name} = {ratio:.4f}"
         )
+        fitting = ""
         if shafts[first.name] != shafts[other.name]:
             # the propeller side was multiplied by the ratio
             power = -1.0 if shafts[other.name] == "propeller" else 1.0
-            message += (
-                f", as with a gear ratio of {vessel.gearbox.ratio * ratio**power:.4f} "
-                f"instead of {vessel.gearbox.ratio:g}"
-            )
+            fitting = f"{vessel.gearbox.ratio * ratio**power:.4f}"
+        like, check = what_would_agree({first.name: 1.0, **steady}, vessel, ratio=fitting)
         if abs(ratio - 1.0) > LARGEST_DIFFERENCE:
-            raise SignalError(f"{message}; check gearbox.ratio{_counted(vessel)} in the vessel file.")
-        findings.append(message)
+            raise SignalError(f"{message}{like}; {check}.")
+        findings.append(f"{message}{like}")
     return tuple(findings)
+
+
+def what_would_agree(speeds: Mapping[str, float], vessel: "Vessel", *, ratio: str) -> tuple[str, str]:
+    """Return with which counts, or which gear ratio, pick-ups that contradict each other agree, and what to check.
+
+    A count that is whole explains a difference that no one could make of a ratio by chance: it comes first.
+
+    ``speeds``: engine speed that each one gives, by its name, in any one unit. ``ratio``: the gear ratio that fits, in
+    words; empty where both are on one shaft.
+    """
+    counts = [
+        f"{count} pulses of {sensor.name} where {sensor.pulses_per_revolution} "
+        f"{'is' if sensor.pulses_per_revolution == 1 else 'are'} stated"
+        for sensor in vessel.sensors.speed
+        if (count := _count_that_fits(sensor, speeds))
+    ]
+    fields = f"pulses_per_revolution{_of_encoder(vessel)}"
+    gear = [f"a gear ratio of {ratio} instead of {vessel.gearbox.ratio:g}"] if ratio else []
+    like = "".join(f"{', or' if k else ','} as with {one}" for k, one in enumerate([*counts, *gear]))
+    if not ratio:
+        return like, f"check {fields} in the vessel file"
+    return (
+        like,
+        f"check {f'{fields} and gearbox.ratio' if counts else f'gearbox.ratio and {fields}'} in the vessel file",
+    )
+
+
+def _count_that_fits(sensor: "SpeedSensor", speeds: Mapping[str, float]) -> int | None:
+    """Return the whole number of pulses with which a pick-up agrees with all others; None if there is none."""
+    others = [speed for name, speed in speeds.items() if name != sensor.name]
+    is_counted = sensor.wheel is None and (sensor.gives_pulses or sensor.unit == "Hz")
+    if sensor.name not in speeds or not others or not is_counted or not are_alike(others):
+        return None
+    fitting = sensor.pulses_per_revolution * speeds[sensor.name] / float(np.mean(others))
+    count = round(fitting)
+    return count if count and abs(fitting - count) < min(_WHOLE * count, _MOST_OFF_WHOLE) else None
 
 
 def _swap_of(first: SpeedReading, ratios: Mapping[str, float], vessel: "Vessel") -> str:
@@ -151,8 +188,6 @@ def _ratios(first: SpeedReading, other: SpeedReading, *, rate_hz: float, start_s
     return found
 
 
-def _counted(vessel: "Vessel") -> str:
-    """Return the fields by which turns are counted, to follow another field."""
-    if any(sensor.unit == "counts" for sensor in vessel.sensors.speed):
-        return ", pulses_per_revolution and counts_per_revolution"
-    return " and pulses_per_revolution"
+def _of_encoder(vessel: "Vessel") -> str:
+    """Return the field by which an encoder counts turns, to follow that of pulses."""
+    return " or counts_per_revolution" if any(one.unit == "counts" for one in vessel.sensors.speed) else ""
