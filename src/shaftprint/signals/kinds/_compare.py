@@ -94,7 +94,7 @@ def what_would_agree(speeds: Mapping[str, float], vessel: "Vessel", *, ratio: st
     words; empty where both are on one shaft.
     """
     counts = [
-        f"{count} pulses of {sensor.name} where {sensor.pulses_per_revolution} "
+        f"{count} {'pulse' if count == 1 else 'pulses'} of {sensor.name} where {sensor.pulses_per_revolution} "
         f"{'is' if sensor.pulses_per_revolution == 1 else 'are'} stated"
         for sensor in vessel.sensors.speed
         if (count := _count_that_fits(sensor, speeds))
