@@ -6,7 +6,7 @@ one loop over the lanes of a stage, which the compiler makes vectors of; written
 takes twice the time.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from shaftprint.models.equations._formula import Formula
@@ -51,11 +51,10 @@ class StageText:
         self.slopes = FormulaSlopes(self.rates)
 
     def functions(self) -> list[str]:
-        """Return the functions of numbers that give the rates, without and with their derivatives, and of a stage."""
+        """Return the functions that give the rates, and that take the derivatives through a stage besides."""
         if not self.rates:
             return []
-        texts = [self._function("rates", along=False), self._function("rates_along", along=True)]
-        return [*texts, self._stage_function()]
+        return [self._rates(), self._rates_along()]
 
     def constants(self) -> list[str]:
         """Return the lines that give constants their names, once a simulation."""
@@ -83,20 +82,14 @@ class StageText:
             "state": "x{}" if stage.number == 1 else "s{}",
             **{kind: f"{LEAVES[kind]}{stage.time}" for kind in ("input", "past", "past rate")},
         }
-        results = [f"k{stage.number}_{i}" for i in states]
-        if along:
-            results += [f"d{i}" for i in range(len(self.slopes.entries))]
-        function = "rates_along" if along else "rates"
-        lines = [f"({', '.join(results)},) = {function}({', '.join(self._names(names))})"]
-        if along:
-            lines += self._stage_along(stage)
+        results = ", ".join(f"k{stage.number}_{i}" for i in states)
+        function = (
+            f"rates_along(w, STAGE_{stage.number}, {stage.share}, {stage.ahead or '0.0'}, " if along else "rates("
+        )
+        lines = [f"({results},) = {function}{', '.join(self._names(names))})"]
         if stage.ahead:
             lines += [f"s{i} = x{i} + {stage.ahead} * k{stage.number}_{i}" for i in states]
         return lines
-
-    def _stage_along(self, stage: Stage) -> list[str]:
-        """Return the same for derivatives: in rows of the list ``w`` for node, stage and the sum up to here."""
-        return [f"stage_along(w, {self._slopes()}STAGE_{stage.number}, {stage.share}, {stage.ahead or '0.0'})"]
 
     def _places(self, stage: Stage) -> tuple[int, ...]:
         """Return where in ``w`` stand states and late signals of a stage, and the sum of rates before and behind it."""
@@ -109,39 +102,43 @@ class StageText:
             node if is_last else total,
         )
 
-    def _stage_function(self) -> str:
-        """Return the function that takes derivatives of all states through a stage, compiled once for the four.
+    def _rates(self) -> str:
+        lines, results = statements(self.rates, LEAVES)
+        return f"@INNER\ndef rates({', '.join(self._names({}))}):\n{indented([*lines, _returned(results)])}"
 
-        It is written into the kernel where it is called, so that places are constants there.
+    def _rates_along(self) -> str:
+        """Return the function that gives the rates and takes the derivatives of all states through a stage.
+
+        Derivatives stand in rows of the list ``w`` for node, stage and the sum of the rates up to here. The function is
+        compiled once for the four stages and written into the kernel where it is called, so that ``places`` are
+        constants there.
         """
-        places = {"state": "states", "past": "past", "past rate": "past_rate"}
-        lines = [f"g{i} = {self._rate_along(i, places)}" for i in range(len(self.rates))]
-        for i in range(len(self.rates)):
+        count = len(self.rates)
+        lines, results = statements([*self.rates, *self.slopes.formulas], LEAVES)
+        along = [f"g{i} = {self._rate_along(i, results[count:])}" for i in range(count)]
+        for i in range(count):
             row = f"{LANES * i} + lane"
             node, at_stage = (_lane(self.starts[kind] + i) for kind in ("state", "stage"))
             # those of the next stage go on from the node, which the last stage overwrites
-            lines.append(f"{at_stage} = {node} + ahead * g{i}")
-            lines.append(f"w[after + {row}] = w[before + {row}] + share * g{i}")
-        body = [*(f"{name} = places[{i}]" for i, name in enumerate(PLACES)), *_over_lanes(lines)]
+            along.append(f"{at_stage} = {node} + ahead * g{i}")
+            along.append(f"w[after + {row}] = w[before + {row}] + share * g{i}")
+        places = [f"{name} = places[{i}]" for i, name in enumerate(PLACES)]
         constants = "".join(f"STAGE_{stage.number} = np.array({self._places(stage)})\n" for stage in STAGES)
-        head = f"@PLACED\ndef stage_along(w, {self._slopes()}places, share, ahead):"
+        head = f"@PLACED\ndef rates_along(w, places, share, ahead, {', '.join(self._names({}))}):"
+        body = [*lines, *places, *_over_lanes(along), _returned(results[:count])]
         return f"{constants}\n\n{head}\n{indented(body)}"
 
-    def _slopes(self) -> str:
-        return "".join(f"d{i}, " for i in range(len(self.slopes.entries)))
-
-    def _rate_along(self, state: int, places: Mapping[str, str]) -> str:
-        """Return the derivative along a lane of how fast a state changes."""
+    def _rate_along(self, state: int, factors: Sequence[str]) -> str:
+        """Return the derivative along a lane of how fast a state changes, by the derivative to each leaf."""
+        places = {"state": "states", "past": "past", "past rate": "past_rate"}
 
         def row(leaf: Formula) -> str:
             if leaf.operation not in places:
                 return _lane(self.starts[leaf.operation] + leaf.place)
             return f"w[{places[leaf.operation]} + {LANES * leaf.place} + lane]"
 
-        terms = [
-            f"d{number} * {row(leaf)}" for number, (owner, leaf) in enumerate(self.slopes.entries) if owner == state
-        ]
-        return " + ".join(terms) or "0.0"
+        entries = zip(factors, self.slopes.entries, strict=True)
+        return " + ".join(f"{factor} * {row(leaf)}" for factor, (owner, leaf) in entries if owner == state) or "0.0"
 
     def _carried(self, *, along: bool) -> list[str]:
         """Return how late signals at the end of a step become those at the start of the next."""
@@ -169,10 +166,9 @@ class StageText:
         every = LEAVES | dict(names)
         return [every[kind].format(index) for kind in LEAVES for index in range(self.counts[kind])]
 
-    def _function(self, name: str, *, along: bool) -> str:
-        lines, results = statements([*self.rates, *(self.slopes.formulas if along else [])], LEAVES)
-        body = [*lines, f"return ({', '.join(results)},)"]
-        return f"@INNER\ndef {name}({', '.join(self._names({}))}):\n{indented(body)}"
+
+def _returned(results: Sequence[str]) -> str:
+    return f"return ({', '.join(results)},)"
 
 
 def _lane(row: int) -> str:
