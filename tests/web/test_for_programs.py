@@ -59,7 +59,7 @@ def test_the_wall_shows_those_first_that_need_somebody(site):
     told = site.person("reader-all").get("/api/v1/kiosk").json
     assert [(one["ship"], one["word"]) for one in told["lines"]] == [
         ("Ada", "changed: propeller"),
-        ("Hidden", "unchanged since 2025-03"),
+        ("Hidden", "no change seen since 2025-03"),
     ]
     assert (told["look"], told["more"]) == ("look", 0)
     page = site.person("reader-hidden").get("/kiosk").text

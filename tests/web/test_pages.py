@@ -24,7 +24,7 @@ def stands(site, found=None, *, now=NOW, overdue_days=365, **changed):
 
 def test_words_of_a_line(site):
     assert stands(site).word == "being judged"
-    assert stands(site, {}).word == "unchanged since 2025-03"
+    assert stands(site, {}).word == "no change seen since 2025-03"
     changed = stands(site, {"causes": [STEP]})
     assert (changed.word, changed.look) == ("changed: propeller", "look")
     assert changed.note == "4.20 ± 0.80 %, seen on 2026-03-01"
@@ -49,7 +49,7 @@ def test_a_line_is_overdue_after_its_days_and_not_before(site):
     newest = datetime(2026, 3, 1, 9, tzinfo=UTC)
     assert stands(site, {}, now=newest + timedelta(days=365)).kind == "unchanged"
     late = stands(site, {}, now=newest + timedelta(days=366))
-    assert (late.kind, late.note) == ("test overdue", "unchanged since 2025-03")
+    assert (late.kind, late.note) == ("test overdue", "no change seen since 2025-03")
     # what is not judged yet is not told as overdue, but beside it
     unknown = stands(site, now=newest + timedelta(days=366))
     assert (unknown.kind, unknown.overdue) == ("being judged", True)

@@ -91,7 +91,7 @@ def _said(line: LineNow, found: tuple[str, dict[str, Any]] | None) -> tuple[str,
         return "cannot be told", "one test only", "open", "from two tests on a change can be seen"
     if summary.get("because"):
         return "cannot be told", "cannot be told", "open", summary["because"]
-    return "unchanged", f"unchanged since {str(summary.get('since'))[:7]}", "fine", ""
+    return "unchanged", f"no change seen since {str(summary.get('since'))[:7]}", "fine", ""
 
 
 def change_words(cause: dict[str, Any]) -> str:
