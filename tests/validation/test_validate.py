@@ -307,6 +307,18 @@ def test_records_of_the_identification_are_marked_and_do_not_count(made, campaig
     assert any("was identified from C11, which does not count" in finding for finding in found.findings)
 
 
+def test_where_noise_hides_everything_nothing_is_proved(signals_from, campaign, made):
+    _, values = made
+    rng, from_volts, model = np.random.default_rng(1), _volts(campaign), structure("CL4")
+    speed, torque = linear_prediction(model, model.vector(values), from_volts, rate_hz=RATE_HZ)[0]
+    hidden = signals_from(
+        from_volts, np.roll(speed, 1) + 0.12 * rng.standard_normal(speed.size), np.roll(torque, 1) + 0.6 * rng.standard_normal(speed.size)
+    )
+    found = validate(model_of(model, values), hidden, campaign, rng=np.random.default_rng(6), records=("C11",))
+    assert {c.outcome for c in found.comparisons} == {"undecided"}
+    assert found.headline == "nothing is proved: noise hides how well the linear model meets what was recorded"
+
+
 def test_a_structure_is_taken_with_its_default_values(made, campaign):
     signals, _ = made
     found = validate(structure("CL4"), signals, campaign, rng=np.random.default_rng(6), records=("C11",))

@@ -267,7 +267,9 @@ def headline_of(comparisons: Sequence[ExcerptComparison], *, linear: bool) -> st
     failed = [c for c in judged if c.outcome == "fails"]
     model = "the linear model" if linear else "the model"
     if not failed:
-        undecided = any(c.outcome == "undecided" for c in judged)
+        undecided = sum(c.outcome == "undecided" for c in judged)
+        if undecided == len(judged):
+            return f"nothing is proved: noise hides how well {model} meets what was recorded"
         return f"{model} holds{' as far as the noise lets see' if undecided else ''}"
     heights = [c.excerpt.height_v for c in failed if c.excerpt.height_v is not None]
     if not heights:
