@@ -311,9 +311,8 @@ def test_where_noise_hides_everything_nothing_is_proved(signals_from, campaign, 
     _, values = made
     rng, from_volts, model = np.random.default_rng(1), _volts(campaign), structure("CL4")
     speed, torque = linear_prediction(model, model.vector(values), from_volts, rate_hz=RATE_HZ)[0]
-    hidden = signals_from(
-        from_volts, np.roll(speed, 1) + 0.12 * rng.standard_normal(speed.size), np.roll(torque, 1) + 0.6 * rng.standard_normal(speed.size)
-    )
+    noise = rng.standard_normal((2, speed.size))
+    hidden = signals_from(from_volts, np.roll(speed, 1) + 0.12 * noise[0], np.roll(torque, 1) + 0.6 * noise[1])
     found = validate(model_of(model, values), hidden, campaign, rng=np.random.default_rng(6), records=("C11",))
     assert {c.outcome for c in found.comparisons} == {"undecided"}
     assert found.headline == "nothing is proved: noise hides how well the linear model meets what was recorded"
