@@ -20,6 +20,7 @@ ReasonKind: TypeAlias = Literal[
     "prior",
     "record",
     "gear ratio",
+    "propeller",
     "misfit",
     "contradicting data",
     "suspect",

@@ -11,6 +11,7 @@ from shaftprint.campaign import load_campaign
 from shaftprint.cli import _after_test
 from shaftprint.cli._after_test import after_test
 from shaftprint.errors import FingerprintError
+from shaftprint.reasons import Reason
 from shaftprint.vessel import load_vessel
 
 CARD = (
@@ -98,8 +99,10 @@ def quantity(name):
     return SimpleNamespace(std=STDS[name])
 
 
-def following(campaign, *, reading=(), trustworthy=True, asked="short"):
-    fingerprint = SimpleNamespace(verdict=SimpleNamespace(trustworthy=trustworthy), quantity=quantity)
+def following(campaign, *, reading=(), trustworthy=True, asked="short", kind="set-point shape"):
+    reasons = () if trustworthy else (Reason(kind=kind, sentence=""),)
+    verdict = SimpleNamespace(trustworthy=trustworthy, reasons=reasons)
+    fingerprint = SimpleNamespace(verdict=verdict, quantity=quantity)
     return after_test(
         ("log.csv", "ship.toml", str(campaign)),
         ("result", fingerprint),
@@ -116,9 +119,10 @@ def test_a_test_is_validated_and_then_the_next_one_is_planned(here):
         *("--fingerprint", "result"),
     )
     assert then[:5] == ("plan", "--vessel", "ship.toml", "--after", "result")
-    assert following("test.toml", trustworthy=False, reading=COLUMNS) == [
-        ("inspect", "log.csv", "--vessel", "ship.toml", "--campaign", "test.toml", *COLUMNS)
-    ]
+    # inspect led here, and says the same again
+    assert following("test.toml", trustworthy=False, reading=COLUMNS) == []
+    ((*plan,),) = following("test.toml", trustworthy=False, kind="too few data")
+    assert plan[:3] == ["plan", "--vessel", "ship.toml"]
     # validate has no option for what the file does not say
     convert, validate, plan = following("test.toml", reading=COLUMNS)
     assert [str(word) for word in convert] == ["convert", "log.csv", *COLUMNS, "-o", "log.nc"]

@@ -1,5 +1,6 @@
 """A folder of results is written whole or not at all, and nobody's files are lost."""
 
+import os
 from pathlib import Path
 
 import click
@@ -52,6 +53,16 @@ def test_own_results_are_replaced_and_notes_are_kept(tmp_path):
     assert (place / "more.txt").read_text() == "new"
     assert (place / "my notes.txt").read_text() == "mine"
     assert not (place / "gone.txt").exists()
+
+
+def test_it_is_said_which_results_were_replaced(tmp_path, capsys):
+    place = tmp_path / "out"
+    _write(place, ["x.txt"], text="old")
+    assert capsys.readouterr().err == ""
+    os.utime(place / ".shaftprint", (1_770_000_000, 1_770_000_000))
+    _write(place, ["x.txt"])
+    (said,) = capsys.readouterr().err.splitlines()
+    assert said.startswith(f"{place}: replaced the results of 2026-02-0")
 
 
 def test_folder_of_others_is_refused_unless_forced(tmp_path):

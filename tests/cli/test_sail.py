@@ -34,7 +34,7 @@ def test_existing_recording_is_kept_unless_forced(run, tmp_path, brief_campaign)
     path.write_text("mine")
     result = run("sail", "stan-tug-1205", brief_campaign, "-o", path)
     assert result.exit_code == 1
-    assert "exists already" in result.stderr
+    assert "exists already; choose another name or replace it with --force" in result.stderr
     assert path.read_text() == "mine"
     assert run("sail", "stan-tug-1205", brief_campaign, "-o", path, "--force").exit_code == 0
     assert path.read_bytes()[:4] == b"\x89HDF"

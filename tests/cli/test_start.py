@@ -219,3 +219,37 @@ def test_a_drive_is_known_by_its_recording_and_then_by_its_file(run, here):
     said = run("start")
     assert following(said) == identified
     assert "Drive file: log.toml." in said.output
+
+
+def test_all_that_is_missing_is_said_at_once_with_what_lies_there(run, here):
+    logged(here, *BUS)
+    run("new", "vessel", "my ship.toml")
+    run("new", "campaign", "test.toml")
+    said = run("identify")
+    assert said.exit_code == 2
+    words = " ".join(said.stderr.split())
+    assert "Missing: RECORDINGS, --vessel, --campaign and --output." in words
+    assert "Here lie log.csv (recording), my ship.toml (vessel file), test.toml (campaign file)." in words
+    # of one thing how to come by it is said, as before
+    alone = run("identify", "log.csv", "--vessel", "my ship.toml", "-o", "out")
+    assert "Missing option '--campaign'. Write one with" in " ".join(alone.stderr.split())
+
+
+@pytest.mark.parametrize("settings_first", [False, True])
+def test_a_recording_and_a_vessel_file_that_are_swapped_are_told(run, here, settings_first):
+    logged(here, *BUS)
+    run("new", "vessel", "my ship.toml")
+    option = ("--vessel", "log.csv")
+    words = (*option, "my ship.toml") if settings_first else ("my ship.toml", *option)
+    for command, more in (("identify", ("--campaign", "short", "-o", "out")), ("inspect", ())):
+        said = run(command, *words, *more)
+        assert said.exit_code == 2
+        assert "my ship.toml is a vessel file and log.csv is none: they are swapped." in " ".join(said.stderr.split())
+
+
+@pytest.mark.parametrize(("typed", "advice"), [("1,325", "write 1.325 with a decimal point, or 1325"), ("5,2", "5.2")])
+def test_a_comma_in_a_number_is_told(run, here, typed, advice):
+    said = run("new", "vessel", "y.toml", "--power-kw", typed)
+    assert said.exit_code == 2
+    assert f"'{typed}' has a comma: " in said.stderr
+    assert advice in " ".join(said.stderr.split())

@@ -1,5 +1,6 @@
 """What a test contradicts of the vessel file, against what was stated of it."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import pytest
@@ -55,3 +56,46 @@ def test_a_gauge_that_shows_too_little_is_told_by_the_torque_over_the_square_of_
 def test_a_coefficient_of_a_propeller_series_contradicts_nothing_within_what_it_is_known_to(factor, doubts):
     propeller = TUG.propeller.model_copy(update={"torque_coefficient_std": 0.15 * TUG.propeller.torque_coefficient})
     assert len(_reasons(factor, TUG.model_copy(update={"propeller": propeller}))) == doubts
+
+
+def _of_diameter(diameter_m, *, load=1.0, inertia=1.0):
+    """Reasons of a ship whose file states another diameter than its propeller has, of which all else is right."""
+    propeller = TUG.propeller.model_copy(update={"diameter_m": diameter_m})
+    vessel = TUG.model_copy(update={"propeller": propeller})
+    rev_s = rev_s_from_rpm(vessel.working_point.engine_speed_rpm)
+    torque_nm = load * vessel.working_point.shaft_torque_nm
+    point = WorkingPoint(
+        engine_speed_rev_s=rev_s,
+        shaft_torque_nm=torque_nm,
+        engine_speed_std_rev_s=0.0,
+        shaft_torque_std_nm=0.0,
+        set_point_v=-5.0,
+        load_std=0.0,
+    )
+    found = vessel.coefficient_of(torque_nm, rev_s)
+    coefficient, behind = _numbers(1.0, vessel)
+    numbers = (
+        replace(coefficient, value=found, std=0.01 * found),
+        replace(behind, value=inertia * behind.value, expected_std=1.0),
+    )
+    return contradictions(numbers, SimpleNamespace(working_point=point, levels_rpm=(), legs=()), vessel, CAMPAIGN)
+
+
+@pytest.mark.parametrize("diameter_m", [0.9, 1.2, 10.5])
+def test_another_diameter_is_named_first_where_torque_and_inertia_are_as_stated(diameter_m):
+    (reason,) = _of_diameter(diameter_m)
+    assert (reason.kind, reason.where) == ("propeller", "K_Q")
+    assert reason.sentence.startswith(
+        f"The torque fits a propeller of 1.05 m, and diameter_m is {diameter_m:g} m: K_Q is "
+    )
+    assert "while the torque and I_dn are as the vessel file says; check diameter_m" in reason.sentence
+
+
+@pytest.mark.parametrize(("diameter_m", "load"), [(1.05, 1.3), (1.0, 1.0), (1.1, 1.0)])
+def test_a_fouled_propeller_and_a_diameter_within_its_reach_speak_against_nothing(diameter_m, load):
+    assert _of_diameter(diameter_m, load=load) == ()
+
+
+def test_torque_and_inertia_that_are_off_alike_are_the_gauge():
+    (reason,) = _of_diameter(1.05, load=0.5, inertia=0.5)
+    assert reason.kind == "gauge scale"

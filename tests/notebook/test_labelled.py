@@ -108,13 +108,16 @@ def test_numbers_of_a_fingerprint_have_interval_unit_meaning_and_kind():
         physical=(inertia,),
         margins=(),
         calibration=(),
+        verdict=SimpleNamespace(not_trusted={"t_d": "the data set no lower end to it"}),
     )
     frame = fingerprint.to_pandas()
     assert list(frame.index) == ["K_p", "t_d", "I_dn"]
     assert list(frame["kind"]) == ["parameter", "parameter", "physical value"]
     assert frame.loc["K_p", "meaning"] == "gain of governor"
     assert tuple(frame.loc["K_p", ["lower_95", "upper_95"]]) == (3.8, 5.4)
-    assert np.isnan(frame.loc["t_d", "lower_95"]), "a bound of the search is no end of an interval"
+    assert tuple(frame.loc["t_d", ["lower_95", "lower_at_bound", "upper_at_bound"]]) == (0.0, True, False)
+    assert list(frame["trusted"]) == [True, False, True]
+    assert list(frame["doubt"]) == ["", "the data set no lower end to it", ""]
     assert np.isnan(frame.loc["t_d", "std"]), "at a bound the standard deviation says nothing"
     assert frame.loc["I_dn", "upper_95"] == pytest.approx(17.0 + 1.959964 * 0.5)
     assert (frame.loc["I_dn", "expected"], frame.loc["I_dn", "unit"]) == (16.0, "kg m2")

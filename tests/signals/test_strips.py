@@ -1,12 +1,15 @@
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from shaftprint.errors import SignalError
 from shaftprint.signals import find_strips
+from shaftprint.signals._signals import StripAngles
 from shaftprint.signals.pulses._pulses import number_pulses
 from shaftprint.signals.pulses._strips import renumbered, revolutions
+from shaftprint.tables._signals import strip_table
 
 # table 3.4 of the thesis, scaled to a whole turn
 TABLE_3_4 = np.array([90.40, 87.24, 90.74, 91.64]) / 360.02
@@ -119,3 +122,15 @@ def test_fewer_pulses_than_a_few_turns():
     train = number_pulses(np.arange(24.0) * 100.0, channel="P")
     with pytest.raises(SignalError, match="steady revolutions"):
         find_strips(train, 8, channel="P")
+
+
+def test_angles_that_differ_by_chance_alone_are_even():
+    """Eight strips: what a shaft with even ones showed, and the same with one that is clearly off."""
+    found_deg = np.array([45.0167, 44.9994, 44.9871, 44.9916, 44.9954, 44.9969, 45.0052, 45.0077])
+    std_rev = np.full(8, 0.0085) / 360.0
+    even = StripAngles(channel="n", angle_rev=found_deg / found_deg.sum(), std_rev=std_rev)
+    assert even.are_even
+    off_deg = found_deg + 0.05 * np.eye(8)[0] - 0.05 * np.eye(8)[1]
+    assert not StripAngles(channel="n", angle_rev=off_deg / off_deg.sum(), std_rev=std_rev).are_even
+    table = strip_table(SimpleNamespace(strips=(even,), mode="shaftprint"))
+    assert table.note == "The strips of n are even within 0.04 %."

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from contextlib import suppress
 from pathlib import Path
 
-from shaftprint.cli._next import plan_after, read_by_all
+from shaftprint.cli._next import first_plan, plan_after, read_by_all
 from shaftprint.errors import FingerprintError, ShaftprintError
 from shaftprint.late import late
 
@@ -15,6 +15,10 @@ with late():
     from shaftprint.design.files import _plan_folder, _plan_json
     from shaftprint.fingerprint._fingerprint import Fingerprint
     from shaftprint.vessel._vessel import Vessel
+
+
+# Of these reasons another test is the cure, or another structure.
+_LACKS_LINES, _OTHER_STRUCTURE = {"too few data", "gap"}, {"misfit", "suspect"}
 
 
 def after_test(
@@ -26,10 +30,11 @@ def after_test(
     reading: Sequence[object] = (),
     own: Sequence[object] = (),
 ) -> list[tuple[object, ...]]:
-    """Return the next commands of a test, the first to be done first.
+    """Return the next commands of a test, the first to be done first; none where something has to be mended before.
 
-    A test that cannot be used is looked at. Another one is validated, where there is what it can be validated on; then
-    its plan goes on where wishes of it are not met, or the next test is planned.
+    A test that cannot be used is made anew where it lacks lines, and other structures are tried where one does not
+    explain it; else its verdict says what to mend. Another one is validated, where there is what it can be validated
+    on; then its plan goes on where wishes of it are not met, or the next test is planned.
 
     ``files``: recording, vessel and campaign file. ``found``: where the result is, and its fingerprint. ``ship``,
     ``asked``: what is in the vessel and the campaign file. ``reading``: options with what the recording does not say
@@ -38,7 +43,11 @@ def after_test(
     recording, vessel, campaign = files
     result, fingerprint = found
     if not fingerprint.verdict.trustworthy:
-        return [("inspect", recording, "--vessel", vessel, "--campaign", campaign, *reading)]
+        kinds = {reason.kind for reason in fingerprint.verdict.reasons[:1]}
+        if kinds & _OTHER_STRUCTURE:
+            readable, steps = read_by_all(recording, reading)
+            return [*steps, ("compare-structures", readable, "--vessel", vessel, "--campaign", campaign)]
+        return [first_plan(vessel, ship)] if kinds & _LACKS_LINES else []
     plan = _with_open_wishes(Path(campaign), fingerprint)
     is_validated = bool(asked.staircases or asked.chirps)
     readable, steps = read_by_all(recording, reading if is_validated or plan else ())

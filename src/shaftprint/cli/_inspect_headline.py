@@ -15,8 +15,10 @@ with late():
     from shaftprint.campaign._campaign import Campaign
     from shaftprint.identify.judgement._line_quality import good_lines
     from shaftprint.identify.judgement._phrases import listed
+    from shaftprint.signals._scale_reasons import propeller_reason
     from shaftprint.signals._signals import Signals
     from shaftprint.spectra._spectra import Spectra
+    from shaftprint.vessel._vessel import Vessel
 
 
 # GAUGE-CLOSED has about ten free parameters and a line gives four numbers: twice what is needed at the least.
@@ -24,6 +26,8 @@ FEWEST_LINES = 5
 # Where governed lines of this size cross over: there delay, lag and proportional gain show.
 CROSSOVER_RAD_S = (1.0, 12.0)
 FEWEST_AT_CROSSOVER = 2
+GOOD = "Good enough"
+"""How the headline of a recording that may be identified begins."""
 _NO_NAMES = ("channel", "expected", "sensors", "the ")
 """How sentences begin that may begin with a capital; others begin with the name of a file or a sensor."""
 
@@ -44,7 +48,7 @@ def headline(parts: Sequence[Spectra], *, planned: int = 0, worst: str = "", los
         return f"Not good enough: {counts}{missing}.{of_lost or advice}{f' {worst}' if worst else ''}"
     if worst:
         return f"Not as it is. {worst} Else {counts}, where the loop crosses over.{of_lost}"
-    return f"Good enough{', as far as it goes' if lost else ''}: {counts}, where the loop crosses over.{of_lost}"
+    return f"{GOOD}{', as far as it goes' if lost else ''}: {counts}, where the loop crosses over.{of_lost}"
 
 
 def lost_parts(campaign: Campaign, signals: Signals, parts: Sequence[Spectra]) -> tuple[str, ...]:
@@ -59,6 +63,13 @@ def lost_parts(campaign: Campaign, signals: Signals, parts: Sequence[Spectra]) -
         elif left[leg.name] < leg.periods:
             words.append(f"{leg.name} has {left[leg.name]} of its {leg.periods} periods")
     return tuple(words)
+
+
+def of_propeller(signals: Signals, ship: Vessel) -> tuple[str, ...]:
+    """Return that the torque belongs to a propeller of another size: the recording is as good as it is."""
+    point = signals.working_point
+    reason = propeller_reason(ship.coefficient_of(point.shaft_torque_nm, point.engine_speed_rev_s), point, ship)
+    return () if reason is None else (reason.sentence,)
 
 
 def lines_of(campaign: Campaign) -> int:

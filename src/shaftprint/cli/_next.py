@@ -39,10 +39,10 @@ def print_next(*words: object, label: str = "Next:") -> None:
 
 
 def print_steps(*commands: Sequence[object]) -> None:
-    """Print the next commands, the first to be done first."""
-    first, *others = commands
-    print_next(*first)
-    lines = [command_line(*words) for words in others]
+    """Print the next commands, the first to be done first; nothing where there are none."""
+    for words in commands[:1]:
+        print_next(*words)
+    lines = [command_line(*words) for words in commands[1:]]
     if lines:
         give("then", lines)
     for line in lines:
@@ -89,6 +89,12 @@ def plan_words(vessel: object, *, has_lever: bool, rated_rpm: float | None) -> t
     """
     lever = () if has_lever else ("--rpm-per-volt", "RPM", "--offset", "VOLT")
     return ("plan", "--vessel", vessel, *_size(rated_rpm), *lever, "-o", free("plan"))
+
+
+def first_plan(vessel: object, ship: Vessel) -> tuple[object, ...]:
+    """Return the words of ``plan`` for the first test of a ship, by its vessel file and what is in it."""
+    has_lever = ship.sensors.set_point.volts_for(ship.working_point.engine_speed_rpm) is not None
+    return plan_words(vessel, has_lever=has_lever, rated_rpm=rated_rpm_of(ship))
 
 
 def plan_after(result: object, vessel: object, ship: Vessel) -> tuple[object, ...]:

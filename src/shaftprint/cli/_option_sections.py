@@ -1,12 +1,18 @@
 """Commands with many options, whose help has them under what they are for, below an example."""
 
+import re
 from collections.abc import Mapping, Sequence
 from typing import Any
 
 import click
 
+from shaftprint.cli._missing_files import missing_words, swapped_words
+
 WIDEST_COLUMN = 30
 """Letters that the names of options have beside their help."""
+
+
+_COMMA = re.compile(r"^'(-?\d+),(\d+)' is not a valid")
 
 
 class SectionedCommand(click.Command):
@@ -19,6 +25,32 @@ class SectionedCommand(click.Command):
         """
         super().__init__(*args, **attributes)
         self.example, self.sections = example, sections
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        """Read the options; what is missing is said at once, and that numbers have a decimal point."""
+        typed = list(args)
+        try:
+            rest = super().parse_args(ctx, args)
+        except click.MissingParameter:
+            words = missing_words(self, ctx, typed)
+            if not words:
+                raise
+            raise click.UsageError(words, ctx) from None
+        except click.BadParameter as error:
+            found = _COMMA.search(error.message)
+            if found is None:
+                raise
+            whole, behind = found.groups()
+            raise click.BadParameter(
+                f"'{whole},{behind}' has a comma: write {whole}.{behind} with a decimal point, or {whole}{behind} if "
+                "it stands between thousands.",
+                ctx,
+                error.param,
+            ) from None
+        swapped = swapped_words(self, ctx)
+        if swapped:
+            raise click.UsageError(swapped, ctx)
+        return rest
 
     def format_help_text(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Write what the command does, and how it is called."""

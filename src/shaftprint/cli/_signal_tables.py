@@ -10,6 +10,7 @@ from shaftprint.late import late
 with late():
     import numpy as np
 
+    from shaftprint.signals._inspect import ChannelReport, PulseReport
     from shaftprint.signals._signals import Signals
     from shaftprint.spectra._spectra import Spectra
     from shaftprint.tables._signals import (
@@ -21,6 +22,10 @@ with late():
         strip_table,
     )
     from shaftprint.units import rpm_from_rev_s
+
+
+# More strips than this are teeth, of which the worst is named.
+_MOST_STRIPS = 12
 
 
 def print_signals(signals: Signals) -> None:
@@ -56,3 +61,27 @@ def _print_steady_state(signals: Signals) -> None:
         f"scale that makes n / n_set go to 1: {scale}\n",
     ):
         say(plain_letters(sentence), indent="  ")
+
+
+def sensor_row(report: ChannelReport) -> tuple[str, ...]:
+    """Return the row of a channel of the vessel file: what it is used for, and what it shows."""
+    pulses = report.pulses
+    between = (report.lowest, report.highest) if pulses is None else (pulses.low, pulses.high)
+    kinds = sorted({fault.kind for fault in report.faults})
+    counts = [f"{sum(fault.kind == kind for fault in report.faults)} x {kind}" for kind in kinds]
+    return (
+        report.channel,
+        report.use,
+        f"{between[0]:.3g} to {between[1]:.3g} {report.unit}",
+        "" if pulses is None else f"{pulses.per_second:.3f}",
+        "" if pulses is None else f"{pulses.speed_rpm:.2f}",
+        "" if pulses is None else _strips_in_words(pulses),
+        ", ".join(counts) or "none",
+    )
+
+
+def _strips_in_words(pulses: PulseReport) -> str:
+    angles = pulses.strip_angles_deg
+    if len(angles) > _MOST_STRIPS:
+        return f"{len(angles)} teeth, errors up to {abs(pulses.largest_error_deg):.2f}"
+    return "" if len(angles) == 1 else ", ".join(f"{angle:.2f}" for angle in angles)

@@ -3,7 +3,8 @@
 A torque gauge that shows ``f`` times the torque makes the inertia behind it and the torque coefficient ``f`` times too
 large, both alike. A propeller that is fouled or bent changes the torque coefficient and not the inertia. So a torque
 coefficient that is off alone is a finding about the ship; off by the same factor as the inertia, it is the gauge; off
-by the square of its factor, it is the speed (``scale_reasons`` of the room ``signals``).
+by the square of its factor, it is the speed (``scale_reasons`` of the room ``signals``). One that is off by more than a
+ship changes, where the torque is not, is of a propeller of another size than the file says.
 """
 
 import math
@@ -12,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from shaftprint.identify.fit._estimate import Estimate
 from shaftprint.reasons import Reason
-from shaftprint.signals._scale_reasons import FAR, scale_reasons, what_fits
+from shaftprint.signals._scale_reasons import FAR, propeller_reason, scale_reasons, what_fits
 from shaftprint.signals.levels._speed_scale import ScaleEvidence, load_over_expected
 
 if TYPE_CHECKING:
@@ -50,9 +51,13 @@ def contradictions(
     if coefficient is None or inertia is None or abs(coefficient.log) <= FAR * coefficient.std:
         return ()
     apart = abs(inertia.log - coefficient.log)
-    nearer_to_it = apart < abs(inertia.log) and apart < ALIKE * math.hypot(inertia.std, coefficient.std)
-    if not nearer_to_it:
-        return ()
+    within = ALIKE * math.hypot(inertia.std, coefficient.std)
+    if not (apart < abs(inertia.log) and apart < within):
+        confirmed_by = "I_dn" if apart > within and abs(inertia.log) < ALIKE * inertia.std else ""
+        of_propeller = propeller_reason(
+            named["K_Q"].value, signals.working_point, vessel, std=coefficient.std, confirmed_by=confirmed_by
+        )
+        return () if of_propeller is None else (of_propeller,)
     torque = load_over_expected(signals.working_point, vessel)
     return (
         Reason(

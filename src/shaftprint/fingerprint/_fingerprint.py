@@ -168,7 +168,8 @@ class Fingerprint(Labelled, LineFingerprint):
     def labelled(self) -> LabelledData:
         """Return a row for each number, with its interval and what was expected; and the covariance of parameters."""
         facts = {"vessel": self.conditions.vessel, "campaign": self.conditions.campaign, "structure": self.structure}
-        return labelled_numbers(self.numbers, np.array(self.covariance), facts | {"created": self.created.isoformat()})
+        facts |= {"created": self.created.isoformat()}
+        return labelled_numbers(self.numbers, np.array(self.covariance), facts, doubts=self.verdict.not_trusted)
 
     def multiplied(self, number: Estimate) -> Estimate | None:
         """Return the parameter of which a physical value is a multiple; None where it is none.
@@ -183,30 +184,39 @@ class Fingerprint(Labelled, LineFingerprint):
 
 
 def labelled_numbers(
-    numbers: Mapping[str, Sequence[Estimate]], covariance: FloatArray, facts: Mapping[str, str]
+    numbers: Mapping[str, Sequence[Estimate]],
+    covariance: FloatArray,
+    facts: Mapping[str, str],
+    *,
+    doubts: Mapping[str, str],
 ) -> LabelledData:
     """Return a row for each number; what is not known is nan.
 
     ``numbers``: the numbers by what they are. ``covariance``: covariance of the parameters, shape (parameters,
-    parameters). ``facts``: on the whole.
+    parameters). ``facts``: on the whole. ``doubts``: why numbers are not to be used, by name.
     """
     kinds = [kind for kind, quantities in numbers.items() for _ in quantities]
     rows = [quantity for quantities in numbers.values() for quantity in quantities]
-    ends = [quantity.limits_95 for quantity in rows]
+    ends = [quantity.ends_95 for quantity in rows]
+    doubted = [doubts.get(quantity.name, quantity.doubt) for quantity in rows]
     columns: dict[str, tuple[Sequence[Any], str]] = {
         "value": ([one.value for one in rows], "estimate"),
         "std": ([_number(one.stated_std) for one in rows], "standard deviation"),
-        "lower_95": ([lower for lower, _ in ends], "lower end of the 95 % interval; nan where the data set none"),
-        "upper_95": ([upper for _, upper in ends], "upper end of the 95 % interval; nan where the data set none"),
+        "lower_95": ([lower for lower, _ in ends], "lower end of the 95 % interval"),
+        "upper_95": ([upper for _, upper in ends], "upper end of the 95 % interval"),
+        "lower_at_bound": ([one.interval_open[0] for one in rows], "whether the lower end is a bound of the search"),
+        "upper_at_bound": ([one.interval_open[1] for one in rows], "whether the upper end is a bound of the search"),
         "at_bound": ([one.at_bound for one in rows], "whether the search stopped at a bound"),
         "expected": ([_number(one.expected) for one in rows], "value from the vessel file"),
         "expected_std": ([_number(one.expected_std) for one in rows], "standard deviation of that value"),
+        "trusted": ([not doubt for doubt in doubted], "whether the number may be used"),
     }
     texts = {
         "number": [one.name for one in rows],
         "kind": kinds,
         "unit": [one.unit for one in rows],
         "meaning": [one.meaning for one in rows],
+        "doubt": doubted,
     }
     uncertain = [one.name for one in numbers["parameter"]]
     return labelled_rows("number", texts, columns, uncertain=uncertain, covariance=covariance, facts=facts)

@@ -165,12 +165,7 @@ def _torque_coefficient(
     slope: tuple[str, float] | None, working_point: "WorkingPoint", vessel: "Vessel"
 ) -> PhysicalNumber:
     """Return the torque coefficient, with name and value of the slope of the load where the fit was free to find it."""
-    shaft_rev_s = working_point.engine_speed_rev_s / vessel.gearbox.ratio
-    shown = (
-        working_point.shaft_torque_nm
-        * vessel.propeller.relative_rotative_efficiency
-        / (vessel.water_density_kg_m3 * shaft_rev_s**2 * vessel.propeller.diameter_m**5)
-    )
+    shown = vessel.coefficient_of(working_point.shaft_torque_nm, working_point.engine_speed_rev_s)
     value = shown if slope is None else shown * slope[1] / IDEAL_SLOPE
     shares = _shares_of_coefficient(working_point, vessel, finds_zero=slope is not None)
     return PhysicalNumber(

@@ -33,6 +33,8 @@ _USUAL, _LEAST = 0.15, 0.1
 _OF_PITCH = 0.7
 # So many standard deviations are no chance.
 FAR = 3.5
+# Fouling, damage and the load of a day change the logarithm of a torque coefficient by no more.
+_MOST_OF_SHIP = math.log(1.4)
 # Torque at one speed goes with this power of the diameter.
 _OF_DIAMETER = 5.0
 
@@ -137,6 +139,42 @@ def torque_beside_file(points: Sequence["WorkingPoint"], vessel: "Vessel") -> st
         f"{rpm_from_rev_s(point.engine_speed_rev_s):.4g} rpm by working_point of the vessel file, found "
         f"{_rounded(found_nm)} N m, {load:.2f} times that{further}, "
         f"{away:.1f} standard deviations of what is stated; check {what_fits(load, vessel, std[0])}."
+    )
+
+
+def propeller_reason(
+    coefficient: float, point: "WorkingPoint", vessel: "Vessel", *, std: float | None = None, confirmed_by: str = ""
+) -> Reason | None:
+    """Return that the torque belongs to a propeller of another size; None where gauge, gear or ship may be the cause.
+
+    The torque coefficient is far from what is stated, by more than fouling, damage or the load of a day make of it, and
+    the torque itself is that of the working point, or something else confirms the scale of the gauge.
+
+    ``coefficient``: the torque coefficient that was found. ``point``: mean speed and torque. ``std``: standard
+    deviation of its logarithm over the stated one; by what is stated where it is None. ``confirmed_by``: what confirms
+    the scale of the gauge besides.
+    """
+    if vessel.is_underway or vessel.pitch is not None or not coefficient > 0.0:
+        return None
+    load, factor = load_over_expected(point, vessel), coefficient / vessel.torque_coefficient
+    is_far = abs(math.log(factor)) > max(_MOST_OF_SHIP, FAR * (_std_of_load(point, vessel) if std is None else std))
+    like_file = load > 0.0 and abs(math.log(load)) < min(abs(math.log(factor)) / 2.0, _MOST_OF_SHIP)
+    if not is_far or not (like_file or confirmed_by):
+        return None
+    by = " and ".join([*(["the torque"] if like_file else []), *([confirmed_by] if confirmed_by else [])])
+    diameter_m = vessel.propeller.diameter_m
+    shafts = {one.shaft for one in vessel.sensors.speed}
+    further = [*([] if len(shafts) > 1 else ["gearbox.ratio"]), *(["whether the ship took way"] if load < 0.8 else [])]
+    check = ["diameter_m", "pitch_ratio", "torque_coefficient of the propeller", *further]
+    return Reason(
+        kind="propeller",
+        where="K_Q",
+        sentence=(
+            f"The torque fits a propeller of {diameter_m * factor ** (1.0 / _OF_DIAMETER):.3g} m, and diameter_m is "
+            f"{diameter_m:g} m: K_Q is {coefficient:.4g} in place of {vessel.torque_coefficient:.4g}, while {by} "
+            f"{'are' if ' and ' in by else 'is'} as the vessel file says; check {', '.join(check[:-1])} and "
+            f"{check[-1]}."
+        ),
     )
 
 

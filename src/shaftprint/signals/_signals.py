@@ -8,6 +8,7 @@ from typing import Any, Literal
 import numpy as np
 
 from shaftprint.arrays import FloatArray
+from shaftprint.distributions import chi_square_quantile
 from shaftprint.errors import SignalError
 from shaftprint.notebook._labelled import Labelled, LabelledData, Variable
 from shaftprint.notebook._shown import Shown
@@ -22,6 +23,8 @@ from shaftprint.units import rpm_from_rev_s
 
 # More strips than this are teeth, of which the worst is named.
 _MOST_LISTED = 12
+# Errors of angles that are together smaller than chance makes them in this share of shafts with even strips are none.
+_BY_CHANCE = 0.99
 
 _UNITS = {
     "n_set": ("rev/s", "set point of the engine speed"),
@@ -92,6 +95,13 @@ class StripAngles:
     def worst(self) -> int:
         """Which angle has the largest error."""
         return int(np.argmax(np.abs(self.error_rev)))
+
+    @property
+    def are_even(self) -> bool:
+        """Whether the errors of all angles together are no more than chance makes of those of even strips."""
+        error, std = self.error_rev, self.std_rev
+        away = np.divide(error, std, out=np.full(error.shape, np.inf), where=std > 0.0)
+        return float(np.sum(away**2)) < chi_square_quantile(_BY_CHANCE, self.angle_rev.size - 1)
 
     @property
     def are_many(self) -> bool:

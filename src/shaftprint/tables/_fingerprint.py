@@ -108,9 +108,7 @@ def _ends(quantity: "Estimate") -> tuple[float, ...]:
 
 def limits(quantity: "Estimate") -> tuple[float, float]:
     """Return the 95 % interval of a quantity: the profile's, or else that of its standard deviation."""
-    if quantity.interval_95 is not None:
-        return quantity.interval_95
-    return quantity.value - NORMAL_95 * quantity.std, quantity.value + NORMAL_95 * quantity.std
+    return quantity.ends_95
 
 
 def _interval_text(quantity: "Estimate", factor: float) -> str:

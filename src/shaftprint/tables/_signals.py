@@ -10,7 +10,7 @@ from shaftprint.units import MILLI, SECONDS_PER_MINUTE
 
 if TYPE_CHECKING:
     from shaftprint.signals._channel_signals import SpeedSignal
-    from shaftprint.signals._signals import Repair, Signals
+    from shaftprint.signals._signals import Repair, Signals, StripAngles
     from shaftprint.spectra._spectra import Spectra
 
 DEGREES_PER_REV = 360.0
@@ -90,13 +90,25 @@ def strip_table(signals: "Signals") -> Table:
                     f"{plain(PERCENT * error / (angle - error), 2)} %",
                 )
             )
+    even = [one for one in signals.strips if one.are_even]
     removed = "not removed (thesis mode)" if signals.mode == "thesis" else "removed from the speed"
     return Table(
         title="Angles between the reflection strips (thesis, table 3.4)",
         columns=(*texts("channel"), *numbers("strip", "angle to the next [deg]", "error of an even spacing")),
         rows=tuple(rows),
-        note=f"The uneven angles are {removed}.",
+        note=" ".join(
+            [
+                *(f"The strips of {one.channel} are even within {_largest(one)} %." for one in even),
+                *([f"The uneven angles are {removed}."] if len(even) < len(signals.strips) else []),
+            ]
+        ),
     )
+
+
+def _largest(strips: "StripAngles") -> str:
+    """Return the largest error of the angles of a shaft, in percent of an even one."""
+    error = float(strips.error_rev[strips.worst])
+    return plain(abs(PERCENT * error / (float(strips.angle_rev[strips.worst]) - error)), 2)
 
 
 def window_table(spectra: "Spectra") -> Table:

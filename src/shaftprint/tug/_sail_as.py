@@ -44,7 +44,9 @@ def sail_as(
         return sail(vessel, campaign, path, tug=tug, seed=seed, overwrite=overwrite, progress=progress)
     for file in (path, truth_path(path)):
         if file.exists() and not overwrite:
-            raise RecordingError(f"{file} exists already; choose another name or delete it first.")
+            raise RecordingError(
+                f"{file} exists already; choose another name, or replace it: overwrite=True (--force)."
+            )
     try:
         with tempfile.TemporaryDirectory(prefix=".shaftprint-", dir=path.parent) as folder:
             native = Path(folder) / "recording.nc"

@@ -185,6 +185,16 @@ class Vessel(Shown, Settings):
         has_own = is_astern and propeller.astern_torque_coefficient is not None
         return propeller.astern_torque_coefficient_std if has_own else propeller.torque_coefficient_std
 
+    def coefficient_of(self, torque_nm: float, engine_speed_rev_s: float) -> float:
+        """Return the torque coefficient ``K_Q = M eta_R / (rho n^2 D^5)`` of a torque at the propeller shaft.
+
+        ``torque_nm``: the torque [N m]. ``engine_speed_rev_s``: speed of the engine [rev/s].
+        """
+        propeller = self.propeller
+        shaft_rev_s = engine_speed_rev_s / self.gearbox.ratio
+        force = self.water_density_kg_m3 * shaft_rev_s * shaft_rev_s * propeller.diameter_m**5
+        return torque_nm * propeller.relative_rotative_efficiency / force
+
     def driving_torque_nm(self, reading: ArrayLike) -> FloatArray:
         """Return the shaft torque [N m] of readings of the gauge, positive as it drives the propeller the way it turns.
 

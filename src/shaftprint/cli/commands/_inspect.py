@@ -9,12 +9,12 @@ from pathlib import Path
 import click
 
 from shaftprint.cli._found_tests import print_found_tests, write_proposal
-from shaftprint.cli._inspect_headline import headline, lines_of, lost_parts
+from shaftprint.cli._inspect_headline import GOOD, headline, lines_of, lost_parts, of_propeller
 from shaftprint.cli._limit_uses import print_limit_uses
 from shaftprint.cli._next import VESSEL_FILE, free, print_next, print_steps, read_by_all, vessel_file_near
 from shaftprint.cli._option_sections import SectionedCommand
 from shaftprint.cli._options import NAMES, READING_SECTION, hints_of, reading_options, reading_words
-from shaftprint.cli._signal_tables import print_lines, print_signals
+from shaftprint.cli._signal_tables import print_lines, print_signals, sensor_row
 from shaftprint.cli._terminal import answer, details, echo, is_detailed, print_findings, say
 from shaftprint.cli._vessel_file import print_disagreements
 from shaftprint.cli.output._progress import no_progress_option, progress
@@ -37,7 +37,7 @@ with late():
     from shaftprint.recording._recording import Recording
     from shaftprint.signals._channel_readings import ChannelReadings, read_channels
     from shaftprint.signals._contradictions import contradictions
-    from shaftprint.signals._inspect import ChannelReport, PulseReport, channel_reports
+    from shaftprint.signals._inspect import ChannelReport, channel_reports
     from shaftprint.signals._prepare import find_tests, prepare_signals
     from shaftprint.signals._signals import Signals
     from shaftprint.signals.excitation._found_test import FoundTest
@@ -52,8 +52,6 @@ with late():
 _MOST_GAPS = 20
 # Rows of a table that is read, and not looked up.
 _MOST_LINES = 40
-# More strips than this are teeth, of which the worst is named.
-_MOST_STRIPS = 12
 
 
 @click.command(
@@ -104,7 +102,7 @@ def command(
             return
         test = None if planned is None else _tested(opened, ship, planned, readings, clocks, hidden=no_progress)
         reports = channel_reports(readings, levels)
-        _print_answer(test, reports, ship, missing=readings.missing)
+        good = _print_answer(test, reports, ship, missing=readings.missing)
         _print_channels(opened, levels)
         print_tables([clock_map_table(clocks)])
         _print_sensors(reports)
@@ -112,7 +110,7 @@ def command(
             write_proposal(test.tests, test.planned, output)
         if test is not None:
             _print_test(test)
-    _print_next(recording, reading, ("--vessel", vessel), campaign, output, test)
+    _print_next(recording, reading, ("--vessel", vessel), campaign, output, test, good=good)
     # with the campaign as recorded what was asked for is there
     if test is not None and test.refusal is not None and output is None:
         raise test.refusal
@@ -138,8 +136,10 @@ def _print_next(
     campaign: str | None,
     output: Path | None,
     test: _Test | None,
+    *,
+    good: bool,
 ) -> None:
-    """Print the next command; none where the recording can only be made anew."""
+    """Print the next command; none where something has to be mended, or the recording made anew."""
     files = (recording, *reading, *vessel)
     if test is None or campaign is None:
         readable, steps = read_by_all(recording, reading)
@@ -148,7 +148,7 @@ def _print_next(
         print_next("inspect", *files, "--campaign", output)
     elif any(one.is_found and one.differences for one in test.tests):
         print_next("inspect", *files, "--campaign", campaign, "-o", free("campaign-as-recorded.toml"))
-    elif test.refusal is None:
+    elif good:
         print_next("identify", *files, "--campaign", campaign, "-o", free("result"))
 
 
@@ -228,9 +228,10 @@ def _print_proposal(opened: Recording, seen: Sequence[Seen], clocks: Sequence[Lo
 
 def _print_answer(
     test: _Test | None, reports: Sequence[ChannelReport], ship: Vessel, *, missing: Sequence[str] = ()
-) -> None:
-    """Print whether the recording is good enough, and what is wrong with its sensors."""
+) -> bool:
+    """Print whether the recording is good enough, and what is wrong with its sensors; return whether it is."""
     signals, asked = (None, None) if test is None else (test.signals, test.planned)
+    is_good = False
     wrong = contradictions(reports, ship, signals=signals, campaign=asked)
     against = (
         () if test is None else dict.fromkeys(reason.sentence for one in test.parts for reason in one.response.reasons)
@@ -239,6 +240,7 @@ def _print_answer(
     problems = [
         *missing,
         *wrong,
+        *(() if signals is None or wrong else of_propeller(signals, ship)),
         *against,
         *held,
         *(report.problem for report in reports if report.problem is not None),
@@ -247,13 +249,16 @@ def _print_answer(
         refusal = "" if test.refusal is None else str(test.refusal)
         lost = () if test.signals is None else lost_parts(test.planned, test.signals, test.parts)
         worst = next(iter((*wrong, *against)), "") or refusal
-        answer(headline(test.parts, planned=lines_of(test.planned), worst=worst, lost=lost))
+        said = headline(test.parts, planned=lines_of(test.planned), worst=worst, lost=lost)
+        is_good = said.startswith(GOOD)
+        answer(said)
         echo()
         # said above; what refuses the test says the same once more, and ends the command
         problems = [problem for problem in problems if problem != worst]
         if worst and not problems:
-            return
+            return is_good
     print_findings("Problems" if test is None or not worst else "Further problems", problems, is_answer=True)
+    return is_good
 
 
 def _read(watch: LevelWatch, ship: Vessel, *, partly: bool, hidden: bool) -> ChannelReadings:
@@ -338,33 +343,10 @@ def _print_sensors(reports: Sequence[ChannelReport]) -> None:
         *numbers("pulses [1/s]", "speed [rpm]"),
         *texts("strip angles [deg]", "faults"),
     )
-    print_table(Table(title="Sensors of the vessel file", columns=columns, rows=tuple(map(_sensor_row, reports))))
+    print_table(Table(title="Sensors of the vessel file", columns=columns, rows=tuple(map(sensor_row, reports))))
     gaps = [gap.sentence for report in reports for gap in report.gaps]
     if gaps:
         print_findings("Gaps, which cost the windows that they touch", _first_of(gaps))
-
-
-def _sensor_row(report: ChannelReport) -> tuple[str, ...]:
-    pulses = report.pulses
-    between = (report.lowest, report.highest) if pulses is None else (pulses.low, pulses.high)
-    kinds = sorted({fault.kind for fault in report.faults})
-    counts = [f"{sum(fault.kind == kind for fault in report.faults)} x {kind}" for kind in kinds]
-    return (
-        report.channel,
-        report.use,
-        f"{between[0]:.3g} to {between[1]:.3g} {report.unit}",
-        "" if pulses is None else f"{pulses.per_second:.3f}",
-        "" if pulses is None else f"{pulses.speed_rpm:.2f}",
-        "" if pulses is None else _strips_in_words(pulses),
-        ", ".join(counts) or "none",
-    )
-
-
-def _strips_in_words(pulses: PulseReport) -> str:
-    angles = pulses.strip_angles_deg
-    if len(angles) > _MOST_STRIPS:
-        return f"{len(angles)} teeth, errors up to {abs(pulses.largest_error_deg):.2f}"
-    return "" if len(angles) == 1 else ", ".join(f"{angle:.2f}" for angle in angles)
 
 
 def _print_lines(spectra: Spectra, legs: Sequence[LegMeasurement]) -> None:

@@ -13,6 +13,7 @@ from shaftprint.cli._options import output_options, starboard_option
 from shaftprint.cli._sail_both import sail_both_lines
 from shaftprint.cli._terminal import answer, echo
 from shaftprint.cli._vessel_file import print_disagreements
+from shaftprint.cli.output._file_to_write import expect_free
 from shaftprint.cli.output._progress import no_progress_option, progress
 from shaftprint.late import late
 
@@ -106,6 +107,8 @@ def command(
     if output.is_dir():
         raise click.ClickException(f"{output}: expected a file for the recording, found a folder; add a file name.")
     expect_known_ending(output, format=chosen_format)
+    for file in (output, truth_path(output)):
+        expect_free(file, force=force)
     rates_hz = dict(map(_rate, rates))
     if starboard is not None:
         if rates_hz or jitter or lost:

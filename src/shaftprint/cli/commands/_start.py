@@ -12,7 +12,7 @@ import click
 from shaftprint.cli._after_test import after_test
 from shaftprint.cli._card_options import CARD_SECTIONS, ask_card, card_of, card_options, stated_of
 from shaftprint.cli._lying_files import LyingFiles, lying_files
-from shaftprint.cli._next import VESSEL_FILE, after_drive, free, plan_words, print_steps, rated_rpm_of
+from shaftprint.cli._next import VESSEL_FILE, after_drive, first_plan, free, print_steps
 from shaftprint.cli._option_sections import SectionedCommand
 from shaftprint.cli._recorded_sensors import is_of_no_ship, recorded_sensors, with_recorded
 from shaftprint.cli._terminal import answer, echo, print_findings
@@ -142,9 +142,7 @@ def _next(vessel: Path, lying: LyingFiles) -> list[tuple[object, ...]]:
     ship = load_vessel(vessel)
     if not lying.recordings:
         if not lying.campaigns:
-            sensor = ship.sensors.set_point
-            has_lever = sensor.volts_for(ship.working_point.engine_speed_rpm) is not None
-            return [plan_words(vessel, has_lever=has_lever, rated_rpm=rated_rpm_of(ship))]
+            return [first_plan(vessel, ship)]
         return [("sail", vessel, lying.campaigns[-1], "-o", free("sailed.nc"))]
     recording = lying.recordings[-1]
     files = (recording, "--vessel", vessel)
@@ -161,4 +159,5 @@ def _next(vessel: Path, lying: LyingFiles) -> list[tuple[object, ...]]:
         fingerprint = fingerprint_at(result)
     except ShaftprintError:
         return [("show", result)]
-    return after_test((recording, vessel, campaign), (result, fingerprint), ship, load_campaign(campaign))
+    following = after_test((recording, vessel, campaign), (result, fingerprint), ship, load_campaign(campaign))
+    return following or [("show", result)]

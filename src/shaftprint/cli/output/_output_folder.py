@@ -2,10 +2,12 @@
 
 import contextlib
 from collections.abc import Iterator
+from datetime import UTC, datetime
 from pathlib import Path, PurePosixPath
 
 import click
 
+from shaftprint.cli._terminal import echo
 from shaftprint.publication._journal import CONTROL_NAMES, is_inner
 from shaftprint.publication._publish import publish, staged
 
@@ -43,7 +45,15 @@ def output_folder(path: Path, *, of: str, force: bool) -> Iterator[Path]:
         yield staging
         _mark(staging, of)
         command, earlier = _earlier(path)
+        made = _made(path) if command == of else ""
         publish(staging, discards=earlier if command == of else ())
+    if made:
+        echo(f"{path}: replaced the results of {made}.", err=True)
+
+
+def _made(path: Path) -> str:
+    """Return when the results in a folder were made, by the clock of this computer."""
+    return datetime.fromtimestamp((path / MARKER).stat().st_mtime, UTC).astimezone().strftime("%Y-%m-%d %H:%M")
 
 
 def _expect_ours(path: Path, of: str, *, force: bool) -> None:

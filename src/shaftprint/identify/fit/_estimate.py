@@ -66,10 +66,15 @@ class Estimate:
     @property
     def limits_95(self) -> tuple[float, float]:
         """95 % interval: of the profile likelihood where there is one, else to first order; nan for an open end."""
-        half = NORMAL_95 * self.std
-        ends = self.interval_95 or (self.value - half, self.value + half)
-        lower, upper = (math.nan if is_open else end for end, is_open in zip(ends, self.interval_open, strict=True))
+        ends = zip(self.ends_95, self.interval_open, strict=True)
+        lower, upper = (math.nan if is_open else end for end, is_open in ends)
         return lower, upper
+
+    @property
+    def ends_95(self) -> tuple[float, float]:
+        """95 % interval, of the profile likelihood where there is one, or to first order; an open end is its bound."""
+        half = NORMAL_95 * self.std
+        return self.interval_95 or (self.value - half, self.value + half)
 
     @property
     def trusted(self) -> bool:

@@ -40,6 +40,7 @@ AFFECTED: Mapping[ReasonKind, tuple[frozenset[Basis], str]] = {
     "prior": (ALL - {"speed", "set point"}, "it depends on a prior that the data contradict"),
     "record": (ALL, "it depends on how its records were taken"),
     "gear ratio": (frozenset(("torque", "governor")), "it depends on the gear ratio"),
+    "propeller": (frozenset(("size",)), "it depends on the diameter of the propeller"),
     "too few data": (ALL, WHOLE),
     "gap": (ALL, WHOLE),
     "misfit": (ALL, WHOLE),
@@ -65,7 +66,10 @@ def basis_of(number: Estimate) -> frozenset[Basis]:
         return ALL
     form = number.role.physical
     in_newton_metres = form is not None and number.unit == form.unit
-    return number.role.basis | {"torque"} if in_newton_metres else number.role.basis
+    # a torque without a unit is over rho n^2 D^5
+    is_coefficient = number.unit == "-" and "torque" in number.role.basis and not number.role.of_sensor
+    added: frozenset[Basis] = frozenset(("torque",) if in_newton_metres else ("size",) if is_coefficient else ())
+    return number.role.basis | added
 
 
 def depends_on(number: Estimate, kind: ReasonKind) -> bool:

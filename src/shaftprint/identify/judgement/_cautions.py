@@ -11,7 +11,6 @@ from shaftprint.identify.judgement._evidence import Evidence, gain_reserve, loop
 from shaftprint.identify.judgement._line_quality import crossings_rad_s
 from shaftprint.identify.judgement._phrases import listed, probability
 from shaftprint.identify.judgement._prior_contradictions import off_nominal, strange_priors
-from shaftprint.identify.judgement._search_words import wrong_basin_words
 
 # A fit that is better than this probability allows has less noise than its covariance says.
 TOO_GOOD = 0.999
@@ -30,7 +29,6 @@ def cautions_of(evidence: Evidence, numbers: Mapping[str, Estimate], not_trusted
         *strange_priors(evidence.identification),
         *_too_good(evidence),
         *_unweighted(evidence),
-        *wrong_basin_words(evidence.search.optima),
     )
 
 

@@ -98,7 +98,9 @@ def sail_service(
     )
     there = [file for file in (*files, truth_path(folder / "log.nc")) if file.exists()]
     if there and not overwrite:
-        raise RecordingError(f"{there[0]} exists already; choose another folder or delete it first.")
+        raise RecordingError(
+            f"{there[0]} exists already; choose another folder, or replace it: overwrite=True (--force)."
+        )
     draws = np.random.default_rng((seed, 37))
     logged_hz = vessel.logger.sample_rate_hz
     rate_hz = logged_hz * max(_OVER, np.ceil(_LEAST_HZ / logged_hz))

@@ -71,6 +71,10 @@ _WORDS: "Mapping[ReasonKind, tuple[str, str]]" = {
         "The gear ratio is not what the vessel file says.",
         "Check gear ratio and pulses per revolution in the vessel file, then identify once more.",
     ),
+    "propeller": (
+        "The torque fits a propeller of another size than the vessel file says.",
+        "Check diameter and pitch of the propeller in the vessel file, then identify once more.",
+    ),
     "elastic coupling": (
         "The shaft line twists in a coupling, which the model does not know.",
         "Identify once more with the model of an elastic line; the next page names it.",
