@@ -228,7 +228,7 @@ def test_all_that_is_missing_is_said_at_once_with_what_lies_there(run, here):
     said = run("identify")
     assert said.exit_code == 2
     words = " ".join(said.stderr.split())
-    assert "Missing: RECORDINGS, --vessel, --campaign and --output." in words
+    assert "Missing: RECORDING, --vessel, --campaign and --output." in words
     assert "Here lie log.csv (recording), my ship.toml (vessel file), test.toml (campaign file)." in words
     # of one thing how to come by it is said, as before
     alone = run("identify", "log.csv", "--vessel", "my ship.toml", "-o", "out")

@@ -2,6 +2,7 @@ import math
 from dataclasses import replace
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
 from shaftprint.catalogue import structure
@@ -81,6 +82,9 @@ def test_tables_of_the_signals(signals, spectra):
     assert "Mean of" not in hidden.note
     strips = strip_table(signals)
     assert strips.rows[1][2:] == ("87.240 ± 0.030", "−3.07 %")
+    assert strips.note == "The uneven angles are removed from the speed."
+    even = replace(signals.strips[0], angle_rev=np.array([0.2501, 0.2499, 0.25, 0.25]), std_rev=np.full(4, 1e-4))
+    assert strip_table(replace(signals, strips=[even])).note == f"The strips of {even.channel} are even within 0.04 %."
     levels = calibration_table(signals)
     assert [row[2] for row in levels.rows] == ["1.20", "−1.80", "0.60"]
     assert "slope −250.97 ± 0.60 rpm/V" in levels.note

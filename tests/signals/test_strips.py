@@ -1,15 +1,12 @@
 from dataclasses import replace
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from shaftprint.errors import SignalError
-from shaftprint.signals import find_strips
-from shaftprint.signals._signals import StripAngles
+from shaftprint.signals import StripAngles, find_strips
 from shaftprint.signals.pulses._pulses import number_pulses
 from shaftprint.signals.pulses._strips import renumbered, revolutions
-from shaftprint.tables._signals import strip_table
 
 # table 3.4 of the thesis, scaled to a whole turn
 TABLE_3_4 = np.array([90.40, 87.24, 90.74, 91.64]) / 360.02
@@ -132,5 +129,3 @@ def test_angles_that_differ_by_chance_alone_are_even():
     assert even.are_even
     off_deg = found_deg + 0.05 * np.eye(8)[0] - 0.05 * np.eye(8)[1]
     assert not StripAngles(channel="n", angle_rev=off_deg / off_deg.sum(), std_rev=std_rev).are_even
-    table = strip_table(SimpleNamespace(strips=(even,), mode="shaftprint"))
-    assert table.note == "The strips of n are even within 0.04 %."

@@ -60,7 +60,8 @@ def _paths(params: Mapping[str, Any]) -> tuple[Path, ...]:
 
 
 def _is_lacking(value: Any) -> bool:
-    return not isinstance(value, str | int | float | Path) and not value
+    # what was not typed is nothing, or a mark of click's own
+    return not (isinstance(value, str | tuple | list) and value)
 
 
 def _lies_there(parameter: click.Parameter, lying: LyingFiles) -> Path | None:
@@ -77,4 +78,6 @@ def _noun(name: str | None) -> str:
 
 def _name(parameter: click.Parameter) -> str:
     """Return a parameter as it is typed."""
-    return max(parameter.opts, key=len) if isinstance(parameter, click.Option) else (parameter.name or "").upper()
+    if isinstance(parameter, click.Option):
+        return max(parameter.opts, key=len)
+    return (parameter.metavar or parameter.name or "").upper().rstrip(".")
