@@ -143,7 +143,8 @@ def test_pick_up_with_wrong_number_of_pulses(short_trip, refused, tmp_path):
     path.write_text(shipped.replace("pulses_per_revolution = 1\n", "pulses_per_revolution = 2\n", 1), encoding="utf-8")
     sentence = refused(short_trip.path, vessel=path)
     assert sentence.startswith("channels PTM_e and PTM_1: expected the same engine-side speed, found n_e1 / n_e = 2.0")
-    assert sentence.endswith("check gearbox.ratio and pulses_per_revolution in the vessel file.")
+    assert "as with 1 pulse of n_e where 2 are stated, or" in sentence
+    assert sentence.endswith("check pulses_per_revolution and gearbox.ratio in the vessel file.")
 
 
 def test_rack_that_was_not_logged(short_trip, refused):

@@ -78,7 +78,7 @@ def test_hints_settle_what_the_file_leaves_open(tmp_path):
     with pytest.raises(RecordingError, match=r"expected text in ascii, found .*; pass encoding="):
         read_recording(latin, encoding="ascii")
     with read_recording(latin) as recording:
-        assert recording.channel("a").unit == "µV"
+        assert recording.channel("a").unit == "uV"
         assert "no UTF-8 and was read as cp1252 (--encoding)" in " ".join(recording.remarks)
     thousands = _file(tmp_path, "time [s];a [V]\n0,0;1.000\n0,1;2.000\n", name="thousands.csv")
     with pytest.raises(RecordingError, match="found both in the first rows; pass decimal="):

@@ -86,7 +86,7 @@ def test_text_in_utf_16(tmp_path):
     path = tmp_path / "log.txt"
     path.write_text("time [s]\tM_s [µV]\n0,5\t1,25\n0,6\t1,5\n0,7\t-2e-3\n", encoding="utf-16")
     channel, values, _ = _read(path)
-    assert (channel.unit, values) == ("µV", TORQUE)
+    assert (channel.unit, values) == ("uV", TORQUE)
 
 
 @pytest.mark.parametrize(

@@ -93,10 +93,10 @@ def test_what_was_found_is_known_of_the_latency(vessel):
     found = SetPointDelay(channel="Desired", delay_s=0.052, std_s=0.0003, lines=9)
     of_test = {"working_point": point, "mode": "shaftprint", "excitations": {}, "calibration": UNBENT}
     of_test["channels"] = {"M_s": SimpleNamespace(value_rate_hz=2000.0)}
-    signals = SimpleNamespace(set_point_delay=found, **of_test)
+    signals = SimpleNamespace(set_point_delay=found, dc_scale_std=0.0, **of_test)
     known = vessel_with_demand(vessel, latency_s=0.01, latency_std_s=0.0004)
     prior = priors_of(structure("GAUGE-CLOSED"), known, signals)["t_sp"]
     assert (prior.mean, prior.std) == (0.052, pytest.approx(0.0005))
     assert prior.sources == {"demand noise": 0.0003, "demand latency": 0.0004}
-    without = SimpleNamespace(set_point_delay=None, **of_test)
+    without = SimpleNamespace(set_point_delay=None, dc_scale_std=0.0, **of_test)
     assert "t_sp" not in priors_of(structure("GAUGE-CLOSED"), known, without)
