@@ -15,6 +15,14 @@ WIDEST_COLUMN = 30
 _COMMA = re.compile(r"^'(-?\d+),(\d+)' is not a valid")
 
 
+class MissingParameters(click.MissingParameter):
+    """All that a command lacks, in words of their own."""
+
+    def format_message(self) -> str:
+        """Return the words alone."""
+        return self.message
+
+
 class SectionedCommand(click.Command):
     """A command whose help begins with an example, and names what is needed first."""
 
@@ -35,7 +43,7 @@ class SectionedCommand(click.Command):
             words = missing_words(self, ctx, typed)
             if not words:
                 raise
-            raise click.UsageError(words, ctx) from None
+            raise MissingParameters(words, ctx) from None
         except click.BadParameter as error:
             found = _COMMA.search(error.message)
             if found is None:
