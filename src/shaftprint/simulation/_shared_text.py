@@ -153,14 +153,19 @@ def vary_along(rows, varying, is_first, at):
 
 
 @SHARED
+def nodes(node, mask, lates, j):
+    # where a late signal of four nodes in a row stands
+    i_0, i_1 = (node & mask) * lates + j, ((node + 1) & mask) * lates + j
+    return i_0, i_1, ((node + 2) & mask) * lates + j, ((node + 3) & mask) * lates + j
+
+
+@SHARED
 def look_back(v, history, first, weight, change, k, mask, at):
     for j in range(at[LATES]):
         for t in range(2):
             own = t * at[LATES] + j
-            h_0 = history[((k + first[j, t]) & mask) * at[LATES] + j]
-            h_1 = history[((k + first[j, t] + 1) & mask) * at[LATES] + j]
-            h_2 = history[((k + first[j, t] + 2) & mask) * at[LATES] + j]
-            h_3 = history[((k + first[j, t] + 3) & mask) * at[LATES] + j]
+            i_0, i_1, i_2, i_3 = nodes(k + first[j, t], mask, at[LATES], j)
+            h_0, h_1, h_2, h_3 = history[i_0], history[i_1], history[i_2], history[i_3]
             g_0, g_1, g_2, g_3 = weight[j, t, 0], weight[j, t, 1], weight[j, t, 2], weight[j, t, 3]
             c_0, c_1, c_2, c_3 = change[j, t, 0], change[j, t, 1], change[j, t, 2], change[j, t, 3]
             v[at[LATE_0] + own] = g_0 * h_0 + g_1 * h_1 + g_2 * h_2 + g_3 * h_3
@@ -172,10 +177,7 @@ def look_back_along(rows, w_history, v, first, weight, k, mask, at):
     for j in range(at[LATES]):
         for t in range(2):
             own = t * at[LATES] + j
-            i_0 = ((k + first[j, t]) & mask) * at[LATES] + j
-            i_1 = ((k + first[j, t] + 1) & mask) * at[LATES] + j
-            i_2 = ((k + first[j, t] + 2) & mask) * at[LATES] + j
-            i_3 = ((k + first[j, t] + 3) & mask) * at[LATES] + j
+            i_0, i_1, i_2, i_3 = nodes(k + first[j, t], mask, at[LATES], j)
             g_0, g_1, g_2, g_3 = weight[j, t, 0], weight[j, t, 1], weight[j, t, 2], weight[j, t, 3]
             moving = v[at[LATE_RATE_0] + own]
             for lane in range(LANES):
@@ -190,10 +192,7 @@ def look_back_at_changes(rows, history, w_history, first, change, bend, k, mask,
     for j in range(at[LATES]):
         for t in range(2):
             own = t * at[LATES] + j
-            i_0 = ((k + first[j, t]) & mask) * at[LATES] + j
-            i_1 = ((k + first[j, t] + 1) & mask) * at[LATES] + j
-            i_2 = ((k + first[j, t] + 2) & mask) * at[LATES] + j
-            i_3 = ((k + first[j, t] + 3) & mask) * at[LATES] + j
+            i_0, i_1, i_2, i_3 = nodes(k + first[j, t], mask, at[LATES], j)
             h_0, h_1, h_2, h_3 = history[i_0], history[i_1], history[i_2], history[i_3]
             b_0, b_1, b_2, b_3 = bend[j, t, 0], bend[j, t, 1], bend[j, t, 2], bend[j, t, 3]
             c_0, c_1, c_2, c_3 = change[j, t, 0], change[j, t, 1], change[j, t, 2], change[j, t, 3]
