@@ -81,6 +81,16 @@ def test_steps_are_taken_out_of_a_leg(steps, most):
     assert np.std(without) < min(0.35 * np.std(raw), most)
 
 
+def test_lines_that_few_messages_do_not_tell_apart_are_left():
+    """Even messages, 5 a second: 3.4 Hz looks like 1.6 Hz."""
+    time = 0.2 * np.arange(1500)
+    true = 9.0 * np.sin(2.0 * np.pi * 0.13 * time) + 0.3 * np.sin(2.0 * np.pi * 3.4 * time)
+    shown = np.rint(true)
+    left = shown - steps_of_lines(time, shown, (0.13, 1.6, 3.4))
+    assert np.std(left - true) < 0.5 * np.std(shown - true)
+    assert not steps_of_lines(time, shown, (3.4,)).any()
+
+
 @pytest.mark.parametrize("noise", [0.1, 0.2, 0.35, 0.6])
 def test_steps_that_noise_has_spread_are_left(noise):
     """What is taken out is never worse than what was there."""

@@ -34,6 +34,8 @@ _TERMS_BY_NOISE = 1.2
 # What is left must be smaller than so much of the variance that was there, else it is another course.
 _LEAST_GAIN = 0.8
 _FEWEST_MESSAGES = 30
+# Lines up to so much of the rate of the messages are told apart.
+_OF_RATE = 0.45
 # A course from crest to trough of fewer steps says nothing.
 _FEWEST_STEPS = 1.0
 
@@ -140,9 +142,14 @@ def steps_of_lines(
     by some hundredths of a period. ``asked``: what was asked for at those times, in steps, shape (values,): many sines
     of few steps are found from there alone, as each of them may take some of the rounding.
     """
+    # what is faster looks like a slower line
+    highest_hz = _OF_RATE * (time_s.size - 1) / (time_s[-1] - time_s[0])
+    slower_hz = [hertz for hertz in frequencies_hz if hertz < highest_hz]
+    if not slower_hz:
+        return np.zeros_like(shown)
     # the grid of the steps goes through every value
     values = shown - shown[0]
-    fitted = _fit_of(_design(time_s, frequencies_hz))
+    fitted = _fit_of(_design(time_s, slower_hz))
     plain = values - fitted(values)
     error = np.zeros_like(values)
     if asked is not None:
