@@ -1,11 +1,16 @@
-"""What a word that is not known was probably meant to be."""
+"""Words in sentences: several together, and what one that is not known was probably meant to be."""
 
 import difflib
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 # Names of files share an ending and are chosen to be alike: more letters have to agree than in a word.
 _WORD, _FILE = 0.6, 0.75
+
+
+def listed(names: Sequence[str]) -> str:
+    """Return ``a``, ``a and b`` or ``a, b and c``."""
+    return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} and {names[-1]}"
 
 
 def meant(word: str, known: Iterable[str], *, likeness: float = _WORD) -> str:

@@ -14,10 +14,10 @@ with late():
 
     from shaftprint.campaign._campaign import Campaign
     from shaftprint.identify.judgement._line_quality import good_lines
-    from shaftprint.identify.judgement._phrases import listed
     from shaftprint.signals._scale_reasons import propeller_reason
     from shaftprint.signals._signals import Signals
     from shaftprint.spectra._spectra import Spectra
+    from shaftprint.spelling import listed
     from shaftprint.vessel._vessel import Vessel
 
 

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 with late():
     from shaftprint.cli import _lying_files
     from shaftprint.file_kinds import kind_of_file
+    from shaftprint.spelling import listed
 
 _KINDS = {"vessel": "vessels", "campaign": "campaigns"}
 _RECORDINGS = ("recording", "recordings")
@@ -31,7 +32,7 @@ def missing_words(command: click.Command, ctx: click.Context, typed: list[str]) 
     lying = _lying_files.lying_files(Path())
     there = {one.name: path for one in missing if (path := _lies_there(one, lying)) is not None}
     names = [_name(one) for one in missing]
-    words = f"Missing: {', '.join(names[:-1])} and {names[-1]}."
+    words = f"Missing: {listed(names)}."
     if there:
         words += f" Here lie {', '.join(f'{path} ({_noun(name)})' for name, path in there.items())}."
     return f"{words} `shaftprint start` says what comes next." if there else words

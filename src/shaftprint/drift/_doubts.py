@@ -14,7 +14,7 @@ from shaftprint.arrays import BoolArray, FloatArray
 from shaftprint.catalogue._roles import ShipRole
 from shaftprint.drift._single_test import SingleTest, is_share
 from shaftprint.identify.judgement._affected_numbers import AFFECTED, depends_on
-from shaftprint.identify.judgement._phrases import listed
+from shaftprint.spelling import listed
 
 if TYPE_CHECKING:
     from shaftprint.drift._dated import DatedTest

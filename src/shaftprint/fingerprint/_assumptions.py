@@ -9,10 +9,10 @@ from shaftprint.catalogue._roles import ShipRole
 from shaftprint.digits import stated
 from shaftprint.identify.fit._identification import Identification
 from shaftprint.identify.judgement._clock_drift import unseen_drift
-from shaftprint.identify.judgement._phrases import listed
 from shaftprint.identify.search._conditional_minimum import Conditional
 from shaftprint.identify.uncertainty._profile import Interval
 from shaftprint.models._combination import Combination
+from shaftprint.spelling import listed
 from shaftprint.units import MILLI
 
 if TYPE_CHECKING:

@@ -9,6 +9,7 @@ from shaftprint.limits._candidates import STRUCTURE_LIMITS, Kind, parameters_of
 from shaftprint.limits.prediction._prediction_error import PredictedTorque
 from shaftprint.notebook._shown import Shown
 from shaftprint.notebook._summary import Summary, shortened
+from shaftprint.spelling import listed
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
@@ -93,5 +94,4 @@ class LimitFit(Shown):
                 f"{self.reached} What lies beyond was not asked for."
             )
         named = [f"a {kind.value}" for kind in self.kinds]
-        listed = named[0] if len(named) == 1 else f"{', '.join(named[:-1])} and {named[-1]}"
-        return f"Governor and engine show {listed}: a linear model does not hold where they act."
+        return f"Governor and engine show {listed(named)}: a linear model does not hold where they act."

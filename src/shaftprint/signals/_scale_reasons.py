@@ -16,6 +16,7 @@ from shaftprint.signals.levels._speed_scale import (
     scale_doubt,
     scale_evidence,
 )
+from shaftprint.spelling import listed
 from shaftprint.units import rpm_from_rev_s
 
 if TYPE_CHECKING:
@@ -172,8 +173,7 @@ def propeller_reason(
         sentence=(
             f"The torque fits a propeller of {diameter_m * factor ** (1.0 / _OF_DIAMETER):.3g} m, and diameter_m is "
             f"{diameter_m:g} m: K_Q is {coefficient:.4g} in place of {vessel.torque_coefficient:.4g}, while {by} "
-            f"{'are' if ' and ' in by else 'is'} as the vessel file says; check {', '.join(check[:-1])} and "
-            f"{check[-1]}."
+            f"{'are' if ' and ' in by else 'is'} as the vessel file says; check {listed(check)}."
         ),
     )
 
@@ -214,7 +214,7 @@ def what_fits(load: float, vessel: "Vessel", std: float = 0.0) -> str:
         causes.append(f"gearbox.ratio ({gearbox.ratio:g} is stated, {gearbox.ratio / load**0.5:.3g} would fit)")
     if std and load < 1.0 and not vessel.is_underway:
         causes.append("whether the ship took way")
-    return ", ".join(causes[:-1]) + f" and {causes[-1]}"
+    return listed(causes)
 
 
 def _told(beside: Mapping[str, float], ending: str) -> str:

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from shaftprint.spelling import listed
 from shaftprint.validation._model import Model
 from shaftprint.validation._settings import ValidationSettings
 from shaftprint.validation._step_comparison import StepNumber
@@ -55,8 +56,7 @@ def outcome_sentences(
 
 
 def _listed(names: Sequence[str]) -> str:
-    once = list(dict.fromkeys(names))
-    return once[0] if len(once) == 1 else f"{', '.join(once[:-1])} and {once[-1]}"
+    return listed(list(dict.fromkeys(names)))
 
 
 def _place(comparison: ExcerptComparison) -> str:

@@ -9,8 +9,9 @@ from shaftprint.digits import stated
 from shaftprint.identify.fit._estimate import Estimate
 from shaftprint.identify.judgement._evidence import Evidence, gain_reserve, loop_delay_s
 from shaftprint.identify.judgement._line_quality import crossings_rad_s
-from shaftprint.identify.judgement._phrases import listed, probability
+from shaftprint.identify.judgement._phrases import probability
 from shaftprint.identify.judgement._prior_contradictions import off_nominal, strange_priors
+from shaftprint.spelling import listed
 
 # A fit that is better than this probability allows has less noise than its covariance says.
 TOO_GOOD = 0.999

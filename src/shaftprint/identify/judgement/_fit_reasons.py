@@ -7,8 +7,9 @@ from shaftprint.identify.fit._optima import WITHIN
 from shaftprint.identify.judgement._evidence import Evidence
 from shaftprint.identify.judgement._line_quality import gap_at_crossing
 from shaftprint.identify.judgement._misfit import explained, misfit_words
-from shaftprint.identify.judgement._phrases import listed, probability
+from shaftprint.identify.judgement._phrases import probability
 from shaftprint.identify.judgement._search_words import rival_words
+from shaftprint.spelling import listed
 
 
 def too_few_good_data(evidence: Evidence) -> str:

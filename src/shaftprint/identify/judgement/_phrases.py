@@ -3,6 +3,8 @@
 import math
 from collections.abc import Collection, Sequence
 
+from shaftprint.spelling import listed
+
 # Below this a probability is given by its order of magnitude; below the smallest only as smaller than that.
 EXACT, SMALLEST = 1e-4, 1e-12
 
@@ -13,11 +15,6 @@ def probability(p: float) -> str:
         return f"p = {p:.1g}" if p < 10.0 * EXACT else f"p = {p:.2g}"
     order = -12 if p < SMALLEST else math.floor(math.log10(p)) + 1
     return f"p < 1e{order}"
-
-
-def listed(names: Sequence[str]) -> str:
-    """Return ``a``, ``a and b`` or ``a, b and c``."""
-    return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} and {names[-1]}"
 
 
 def spans(names: Collection[str], order: Sequence[str]) -> str:

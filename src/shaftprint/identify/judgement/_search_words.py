@@ -4,7 +4,8 @@ import numpy as np
 
 from shaftprint.identify.fit._identification import Identification
 from shaftprint.identify.fit._optima import SAME_COST, WITHIN, Optimum, is_passed_over, is_rival
-from shaftprint.identify.judgement._phrases import listed, number
+from shaftprint.identify.judgement._phrases import number
+from shaftprint.spelling import listed
 
 # How many optima, and how many parameters of a rival, a sentence names.
 NAMED = 4

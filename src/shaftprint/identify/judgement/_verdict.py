@@ -36,7 +36,7 @@ from shaftprint.identify.judgement._fit_reasons import (
 )
 from shaftprint.identify.judgement._hold_out_lines import not_predicted
 from shaftprint.identify.judgement._number_precision import KNOWN_POORLY, doubts_of, share_of
-from shaftprint.identify.judgement._phrases import listed, probability
+from shaftprint.identify.judgement._phrases import probability
 from shaftprint.identify.judgement._prior_contradictions import beyond_priors, contradicted_priors
 from shaftprint.identify.judgement._requirements import Requirements
 from shaftprint.identify.judgement._suspects import NOT_LINEAR, Suspect, is_gross, suspects_of
@@ -45,6 +45,7 @@ from shaftprint.identify.uncertainty._profile import profile as find_profile
 from shaftprint.notebook._shown import Shown
 from shaftprint.notebook._summary import Summary, shortened
 from shaftprint.reasons import Reason, ReasonKind
+from shaftprint.spelling import listed
 
 if TYPE_CHECKING:
     from shaftprint.spectra.lines._signal_to_noise import SignalToNoise

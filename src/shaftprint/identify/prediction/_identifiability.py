@@ -11,6 +11,7 @@ from shaftprint.identify.prediction._lost_directions import Direction, direction
 from shaftprint.identify.prediction._null_space import null_space
 from shaftprint.models._combination import Combination
 from shaftprint.models._structure import Structure
+from shaftprint.spelling import listed
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -53,7 +54,7 @@ class Identifiability:
         lines = [self._found()]
         if self.also:
             lines.append(
-                f"{_and([c.name for c in self.also])} {'follow' if len(self.also) > 1 else 'follows'} from these."
+                f"{listed([c.name for c in self.also])} {'follow' if len(self.also) > 1 else 'follows'} from these."
             )
         if self.lost:
             silent = [d for d in self.directions if len(d.parameters) == 1]
@@ -61,7 +62,7 @@ class Identifiability:
             lines += [f"{d.sentence}." for d in silent]
             hidden = [name for name in self.lost if all(name not in d.parameters for d in silent)]
             if hidden:
-                lines.append(f"{_and(hidden)} cannot be found on their own: {'; '.join(d.sentence for d in moving)}.")
+                lines.append(f"{listed(hidden)} cannot be found on their own: {'; '.join(d.sentence for d in moving)}.")
                 lines.append(_way_out(moving))
         return tuple(lines)
 
@@ -72,14 +73,14 @@ class Identifiability:
 
     def _found(self) -> str:
         free = len(self.structure.free)
-        start = f"From {_and(self.outputs)} a test finds"
+        start = f"From {listed(self.outputs)} a test finds"
         if self.rank == free:
             what = "the free parameter" if free == 1 else f"all {free} free parameters"
             return f"{start} {what} of {self.structure.name}: {', '.join(self.names)}."
         names = list(self.names)
         if self.unnamed:
             noun = "combination" if self.unnamed == 1 else "combinations"
-            names.append(f"{self.unnamed} {noun} of {_and(self.lost)} without a short formula")
+            names.append(f"{self.unnamed} {noun} of {listed(self.lost)} without a short formula")
         numbers = "1 number" if self.rank == 1 else f"{self.rank} numbers"
         count = "1 free parameter" if free == 1 else f"{free} free parameters"
         return f"{start} {numbers} for the {count} of {self.structure.name}: {', '.join(names) or 'nothing'}."
@@ -130,9 +131,5 @@ def identifiability(
 
 def _way_out(directions: Sequence[Direction]) -> str:
     if len(directions) == 1:
-        return f"One of {_and(directions[0].parameters)} known from elsewhere makes all of them known."
+        return f"One of {listed(directions[0].parameters)} known from elsewhere makes all of them known."
     return f"{len(directions)} of them must be known from elsewhere to find the rest."
-
-
-def _and(names: Sequence[str]) -> str:
-    return f"{', '.join(names[:-1])} and {names[-1]}" if len(names) > 1 else names[0]

@@ -14,6 +14,7 @@ from shaftprint.models._blocks import SecondOrderLag
 from shaftprint.models._combination import Combination
 from shaftprint.models._delays import Delay
 from shaftprint.models._parameter import Parameter
+from shaftprint.spelling import listed
 
 # Two parameters cannot be separated when they correlate more than this ...
 CORRELATED = 0.9
@@ -40,11 +41,11 @@ class Group:
         """It in words."""
         how = f"correlation {self.correlation:.2f}" if len(self.names) == 2 else "correlations up to "
         how += "" if len(self.names) == 2 else f"{abs(self.correlation):.2f}"
-        start = f"With these lines {_and(self.names)} cannot be separated ({how})"
+        start = f"With these lines {listed(self.names)} cannot be separated ({how})"
         if not self.known:
             return f"{start}."
         known_numbers = [f"{e.name} is known to {100.0 * _share(e):.2g} %" for e in self.known]
-        return f"{start}; {_and(known_numbers)}."
+        return f"{start}; {listed(known_numbers)}."
 
 
 def inseparable_groups(
@@ -172,7 +173,3 @@ def _lag_time(omega_n: str, zeta: str) -> FormulaTerm:
         parts=1,
         order=1,
     )
-
-
-def _and(names: Sequence[str]) -> str:
-    return f"{', '.join(names[:-1])} and {names[-1]}" if len(names) > 1 else names[0]

@@ -10,6 +10,7 @@ from shaftprint.arrays import FloatArray
 from shaftprint.identify.prediction._combinations import CombinationSlopes, lost_terms
 from shaftprint.identify.prediction._formulas import FormulaTerm
 from shaftprint.identify.prediction._null_space import NullSpace, null_directions
+from shaftprint.spelling import listed
 
 # A component below this share of the largest is none.
 TOLERANCE = 1e-6
@@ -91,7 +92,7 @@ def _sentence(
 ) -> str:
     structure = slopes.null.structure
     if len(moving) == 1:
-        return f"{moving[0]} does not show in {_and(outputs)}"
+        return f"{moving[0]} does not show in {listed(outputs)}"
     singles = {p.name: column for column, p in enumerate(structure.free)}
     amounts = along[:, [singles[name] for name in moving]]
     if len({structure.free[singles[name]].unit for name in moving}) == 1 and _is_steady(amounts / amounts[:, :1]):
@@ -102,7 +103,7 @@ def _sentence(
     if scaled is not None:
         moved, kept = scaled
         words = _up_and_down(list(moved), np.array(list(moved.values())))
-        with_kept = f", with {_and(kept)} kept," if kept else ""
+        with_kept = f", with {listed(kept)} kept," if kept else ""
         return f"{words} by the same factor{with_kept} leave every response unchanged"
     return f"{_up_and_down(moving, amounts[0] * np.sign(amounts[0, 0]))} together leave every response unchanged"
 
@@ -153,8 +154,4 @@ def _up_and_down(names: Sequence[str], signs: FloatArray) -> str:
     turned = signs * np.sign(signs[0])
     up = [name for name, sign in zip(names, turned, strict=True) if sign > 0]
     down = [name for name, sign in zip(names, turned, strict=True) if sign < 0]
-    return f"{_and(up)} up and {_and(down)} down" if down else f"{_and(up)} up"
-
-
-def _and(names: Sequence[str]) -> str:
-    return f"{', '.join(names[:-1])} and {names[-1]}" if len(names) > 1 else names[0]
+    return f"{listed(up)} up and {listed(down)} down" if down else f"{listed(up)} up"

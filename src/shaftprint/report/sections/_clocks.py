@@ -1,11 +1,11 @@
 """The clocks of loggers that were merged, in words: how they were, how well that is known, and what it does."""
 
 import math
-from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from shaftprint.digits import plain, rounded, with_deviation
 from shaftprint.fingerprint._clock_influence import NOTABLE_SHIFT
+from shaftprint.spelling import listed
 from shaftprint.tables._recording import clock_deviations
 from shaftprint.units import MILLI, PPM
 
@@ -27,7 +27,7 @@ def clock_sentences(clock: "LoggerClock", influence: "ClockInfluence") -> str:
     behind = "behind" if fit.map.offset_s >= 0.0 else "ahead of"
     slow = "slow" if fit.map.drift >= 0.0 else "fast"
     return (
-        f"{_listed(clock.channels)} {'was' if len(clock.channels) == 1 else 'were'} logged by {clock.logger}, whose "
+        f"{listed(clock.channels)} {'was' if len(clock.channels) == 1 else 'were'} logged by {clock.logger}, whose "
         f"clock was {offset} ms {behind} that of {clock.reference} at {plain(fit.map.middle_s, 0)} s and ran {drift} "
         f"ppm {slow}. {_rest(fit)} {_influence(influence)}"
     )
@@ -49,7 +49,7 @@ def _rest(fit: "Alignment") -> str:
 def _influence(effect: "ClockInfluence") -> str:
     if not effect.moved:
         return "The result does not depend on it: it moves none of set point, speed and torque against the others."
-    outputs, degrees = _listed(effect.moved), math.degrees(effect.phase_rad)
+    outputs, degrees = listed(effect.moved), math.degrees(effect.phase_rad)
     words = (
         f"An error of that size turns the phase of {outputs} over the set point by {rounded(degrees, 2)}° at "
         f"{effect.line} ({rounded(effect.frequency_hz, 3)} Hz), the highest line that was used. All lines together "
@@ -59,7 +59,3 @@ def _influence(effect: "ClockInfluence") -> str:
     if effect.shift > NOTABLE_SHIFT:
         return f"{words} The standard deviations of this report do not hold it and are too small."
     return f"{words} The standard deviations of this report do not hold it."
-
-
-def _listed(names: Sequence[str]) -> str:
-    return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} and {names[-1]}"
