@@ -26,8 +26,6 @@ FEWEST_LINES = 5
 # Where governed lines of this size cross over: there delay, lag and proportional gain show.
 CROSSOVER_RAD_S = (1.0, 12.0)
 FEWEST_AT_CROSSOVER = 2
-GOOD = "Good enough"
-"""How the headline of a recording that may be identified begins."""
 _NO_NAMES = ("channel", "expected", "sensors", "the ")
 """How sentences begin that may begin with a capital; others begin with the name of a file or a sensor."""
 
@@ -48,7 +46,12 @@ def headline(parts: Sequence[Spectra], *, planned: int = 0, worst: str = "", los
         return f"Not good enough: {counts}{missing}.{of_lost or advice}{f' {worst}' if worst else ''}"
     if worst:
         return f"Not as it is. {worst} Else {counts}, where the loop crosses over.{of_lost}"
-    return f"{GOOD}{', as far as it goes' if lost else ''}: {counts}, where the loop crosses over.{of_lost}"
+    return f"Good enough{', as far as it goes' if lost else ''}: {counts}, where the loop crosses over.{of_lost}"
+
+
+def is_good_enough(parts: Sequence[Spectra], *, worst: str = "") -> bool:
+    """Return whether a recording may be identified as it is; arguments as of ``headline``."""
+    return bool(parts) and not worst and not _counted(parts, 0)[1]
 
 
 def lost_parts(campaign: Campaign, signals: Signals, parts: Sequence[Spectra]) -> tuple[str, ...]:

@@ -162,7 +162,7 @@ def propeller_reason(
     like_file = load > 0.0 and abs(math.log(load)) < min(abs(math.log(factor)) / 2.0, _MOST_OF_SHIP)
     if not is_far or not (like_file or confirmed_by):
         return None
-    by = " and ".join([*(["the torque"] if like_file else []), *([confirmed_by] if confirmed_by else [])])
+    agreeing = [*(["the torque"] if like_file else []), *([confirmed_by] if confirmed_by else [])]
     diameter_m = vessel.propeller.diameter_m
     shafts = {one.shaft for one in vessel.sensors.speed}
     further = [*([] if len(shafts) > 1 else ["gearbox.ratio"]), *(["whether the ship took way"] if load < 0.8 else [])]
@@ -172,8 +172,9 @@ def propeller_reason(
         where="K_Q",
         sentence=(
             f"The torque fits a propeller of {diameter_m * factor ** (1.0 / _OF_DIAMETER):.3g} m, and diameter_m is "
-            f"{diameter_m:g} m: K_Q is {coefficient:.4g} in place of {vessel.torque_coefficient:.4g}, while {by} "
-            f"{'are' if ' and ' in by else 'is'} as the vessel file says; check {listed(check)}."
+            f"{diameter_m:g} m: K_Q is {coefficient:.4g} in place of {vessel.torque_coefficient:.4g}, while "
+            f"{listed(agreeing)} {'is' if len(agreeing) == 1 else 'are'} as the vessel file says; "
+            f"check {listed(check)}."
         ),
     )
 

@@ -15,6 +15,7 @@ from shaftprint.identify.comparison._comparison import StructureComparison
 from shaftprint.identify.fit._fit_of import fit_of
 from shaftprint.identify.fit._identification import Identification
 from shaftprint.identify.judgement._affected_numbers import by_weight
+from shaftprint.identify.judgement._prior_contradictions import NOMINAL
 from shaftprint.identify.likelihood._known import SHARE_ROUNDING, priors_from_vessel
 from shaftprint.identify.likelihood._prior import Prior
 from shaftprint.identify.search._settings import Settings
@@ -25,9 +26,6 @@ from shaftprint.survey._measurement import Measurement, pairs_of
 from shaftprint.survey._progress import SILENT, Progress
 from shaftprint.units import rev_s_from_rpm
 from shaftprint.vessel._vessel import Vessel
-
-# Scales of the set point that the levels tell better than this are left to the fit: a lever bends by as much.
-WELL_KNOWN_SCALE = 0.004
 
 
 def priors_of(
@@ -105,7 +103,8 @@ def _from_levels(structure: Structure, signals: Signals) -> dict[str, Prior]:
     if np.isfinite(line.bend_std):
         bend = Prior(mean=line.bend, std=line.bend_std, sources={"set-point bend": line.bend_std})
         told[ShipRole.SET_POINT_BEND] = bend
-    if scale_std > WELL_KNOWN_SCALE:
+    # a lever bends by as much
+    if scale_std > NOMINAL[ShipRole.SET_POINT_SCALE][1]:
         told[ShipRole.SET_POINT_SCALE] = Prior(mean=1.0, std=scale_std, sources={"set-point line": scale_std})
     return {one.name: told[one.role] for one in structure.free if one.role in told}
 

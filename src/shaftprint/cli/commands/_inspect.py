@@ -9,7 +9,7 @@ from pathlib import Path
 import click
 
 from shaftprint.cli._found_tests import print_found_tests, write_proposal
-from shaftprint.cli._inspect_headline import GOOD, headline, lines_of, lost_parts, of_propeller
+from shaftprint.cli._inspect_headline import headline, is_good_enough, lines_of, lost_parts, of_propeller
 from shaftprint.cli._limit_uses import print_limit_uses
 from shaftprint.cli._next import VESSEL_FILE, free, print_next, print_steps, read_by_all, vessel_file_near
 from shaftprint.cli._option_sections import SectionedCommand
@@ -249,9 +249,8 @@ def _print_answer(
         refusal = "" if test.refusal is None else str(test.refusal)
         lost = () if test.signals is None else lost_parts(test.planned, test.signals, test.parts)
         worst = next(iter((*wrong, *against)), "") or refusal
-        said = headline(test.parts, planned=lines_of(test.planned), worst=worst, lost=lost)
-        is_good = said.startswith(GOOD)
-        answer(said)
+        is_good = is_good_enough(test.parts, worst=worst)
+        answer(headline(test.parts, planned=lines_of(test.planned), worst=worst, lost=lost))
         echo()
         # said above; what refuses the test says the same once more, and ends the command
         problems = [problem for problem in problems if problem != worst]

@@ -58,18 +58,19 @@ def take_out_steps(
     """
     error_v = np.zeros(time_s.size)
     middles, lengths = [], []
-    for course in (*map(_of_sine, campaign.sines), *map(_of_leg, campaign.legs)):
+    sines = [_of_sine(sine, campaign.offset_v) for sine in campaign.sines]
+    for course in (*sines, *map(_of_leg, campaign.legs)):
         inside = slice(*np.searchsorted(time_s, [course.start_s, course.stop_s]))
         if time_s[inside].size < _FEWEST_MESSAGES * len(course.frequencies_hz):
             continue
         asked = None if course.value_at is None else course.value_at(time_s[inside]) / step_v
         error_v[inside] = step_v * steps_of_lines(
             time_s[inside], shown_v[inside] / step_v, course.frequencies_hz, asked
-        )  # fmt: skip
+        )
         window = slice(*np.searchsorted(time_s, course.window_s))
         if error_v[window].any():
-            level_v = 0.0 if course.level_v is None else course.level_v - campaign.offset_v
-            middles.append(float(np.mean(shown_v[window] - error_v[window])) - level_v)
+            about_v = course.level_v - campaign.offset_v
+            middles.append(float(np.mean(shown_v[window] - error_v[window])) - about_v)
             lengths.append(course.window_s[1] - course.window_s[0])
     if not middles:
         return
@@ -108,17 +109,20 @@ class _Course:
     window_s: tuple[float, float]
     """When it is analysed [s]."""
     frequencies_hz: tuple[float, ...]
-    level_v: float | None = None
-    """Its middle [V]; that of the campaign where not given."""
+    level_v: float
+    """Its middle [V]."""
     value_at: Callable[[FloatArray], FloatArray] | None = None
     """What is asked for at times [s]; not given of a single sine, which is found without."""
 
 
-def _of_sine(sine: Sine) -> _Course:
-    window_s = (sine.settled_s, sine.window_stop_s)
+def _of_sine(sine: Sine, level_v: float) -> _Course:
     return _Course(
-        start_s=sine.start_s, stop_s=sine.stop_s, window_s=window_s, frequencies_hz=(sine.frequency_hz,)
-    )  # fmt: skip
+        start_s=sine.start_s,
+        stop_s=sine.stop_s,
+        window_s=(sine.settled_s, sine.window_stop_s),
+        frequencies_hz=(sine.frequency_hz,),
+        level_v=level_v,
+    )
 
 
 def _of_leg(leg: Leg) -> _Course:

@@ -64,12 +64,14 @@ def read(path: Path, **hints: object) -> Recording:
     rate = rate_hint(path, hints, {"columns": str, "time_unit": str})
     unit = expect_time_unit(path, hints.get("time_unit"))
     with told_as_damage(path, "MATLAB"):
-        if {header.name for header in _headers(path)} >= _modelica.VARIABLES:
+        headers = tuple(_headers(path))
+        if {header.name for header in headers} >= _modelica.VARIABLES:
             trajectories = _modelica.read_trajectories(path, rate_hz=rate)
             return trajectories.recording(_modelica.NAME, lambda: None)
         spool = Spool(path, ())
         try:
-            gathered = gather_variables(path, _survey(path, spool, titles_of(hints)), rate_hz=rate, time_unit=unit)
+            variables = _survey(path, headers, spool, titles_of(hints))
+            gathered = gather_variables(path, variables, rate_hz=rate, time_unit=unit)
             spool.finish()
             return gathered.recording_from_second_zero(NAME, spool.close)
         except BaseException:
@@ -97,11 +99,11 @@ def _is_v4(begin: bytes) -> bool:
     return False
 
 
-def _survey(path: Path, spool: Spool, titles: tuple[str, ...]) -> MatVariables:
+def _survey(path: Path, headers: Iterable[MatHeader], spool: Spool, titles: tuple[str, ...]) -> MatVariables:
     """Load one variable after the other and keep its numbers on disk."""
     variables = MatVariables(titles=titles)
     objects: dict[str, str] = {}
-    for header in _headers(path):
+    for header in headers:
         name = header.name
         if header.is_object:
             objects[name] = header.kind
