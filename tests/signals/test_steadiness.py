@@ -217,6 +217,7 @@ def test_scatter_that_grows_with_the_frequency_is_no_change_of_the_amplitude(siz
                     test=np.repeat(np.arange(10), 6),
                     kinds=("sine",) * 10,
                     frequency_hz=hertz[::6],
+                    rounding=np.zeros(10),
                 )
             )
         )

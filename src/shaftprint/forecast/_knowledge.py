@@ -15,7 +15,7 @@ from shaftprint.design.inputs._known_ship import (
 )
 from shaftprint.design.inputs._lever import lever_of_sensor
 from shaftprint.design.inputs._limits import Limits, limits_from_vessel, usual_speeds
-from shaftprint.design.inputs._set_point_line import SetPointLine, line_of_fingerprint
+from shaftprint.design.inputs._set_point_line import SetPointLine, line_of_fingerprint, line_of_sensor
 from shaftprint.design.inputs._stated_limits import StatedLimit, limits_with, set_point_rpm_of
 from shaftprint.design.motion._motion import expect_motion
 from shaftprint.errors import RequestError
@@ -221,7 +221,7 @@ def _noise(stated: _Stated, ship: AssumedShip) -> tuple[Mapping[float, NoiseLeve
 def _line(stated: _Stated) -> SetPointLine:
     known = stated.recorded.line if stated.recorded is not None else None
     known = line_of_fingerprint(stated.ship.first_test) if stated.ship.first_test is not None else known
-    known = _line_of_sensor(stated.vessel) if known is None else known
+    known = line_of_sensor(stated.vessel) if known is None else known
     slope, offset_v = stated.ship.slope_rpm_per_v, stated.ship.offset_v
     slope = slope if slope is not None else getattr(known, "slope_rpm_per_v", None)
     offset_v = offset_v if offset_v is not None else getattr(known, "offset_v", None)
@@ -236,14 +236,6 @@ def _line(stated: _Stated) -> SetPointLine:
         )
     lever = lever_of_sensor(stated.vessel.sensors.set_point)
     return SetPointLine(slope_rpm_per_v=slope, offset_v=offset_v, lever=lever)
-
-
-def _line_of_sensor(vessel: Vessel) -> SetPointLine | None:
-    """Return the line that the vessel file states of the lever about its working point; None where it states none."""
-    sensor = vessel.sensors.set_point
-    offset_v = sensor.volts_for(vessel.working_point.engine_speed_rpm)
-    slope = None if offset_v is None else sensor.slope_rpm_per_v(offset_v)
-    return None if offset_v is None or slope is None else SetPointLine(slope_rpm_per_v=slope, offset_v=offset_v)
 
 
 def _limits(stated: _Stated, line: SetPointLine) -> Limits:

@@ -2,11 +2,14 @@
 
 from collections.abc import Mapping
 from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING
 
 from shaftprint.reasons import Reason
 from shaftprint.signals._channel_signals import SpeedSignal
 from shaftprint.signals._order_scale import reasons_of_orders
+from shaftprint.signals.excitation._quantum import left_by_steps
+from shaftprint.signals.kinds._set_point import SetPointMessages
 from shaftprint.signals.levels._set_point_steadiness import expect_steady_set_point
 from shaftprint.signals.levels._steadiness import expect_steady_gauge
 
@@ -27,6 +30,11 @@ def changes_of_set_point(vessel: "Vessel", campaign: "Campaign", readings: "Read
     clock = readings.clock
     if clock.mode == "thesis":
         return ()
+    reading = readings.by_name["n_set"]
+    sent = reading.sent
+    rounding = None
+    if sent is not None and isinstance(reading, SetPointMessages):
+        rounding = partial(left_by_steps, time_s=sent.time_s, step_v=reading.step_v)
     return expect_steady_set_point(
         campaign.of_input(),
         readings.set_point,
@@ -34,6 +42,7 @@ def changes_of_set_point(vessel: "Vessel", campaign: "Campaign", readings: "Read
         start_s=clock.start_s,
         channel=vessel.sensors.set_point.channel,
         coverage=readings.coverage,
+        rounding=rounding,
     )
 
 

@@ -3,6 +3,7 @@
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from shaftprint.errors import SettingsError
 from shaftprint.tug._coupling import stated_coupling
 from shaftprint.tug._pitch_actuation import PitchActuation, pitch_torque
 from shaftprint.tug._pitch_series import steepened, torque_over_pitch
@@ -72,20 +73,31 @@ def like_stan_tug_1205(vessel: Vessel, *, offset_v: float = _AT_THE_QUAY_V) -> T
 
 
 def with_lever_of(tug: Tug, vessel: Vessel, campaign: "Campaign") -> Tug:
-    """Return a simulated ship with the lever for which a campaign was made; as it is where nothing is said of that.
+    """Return a simulated ship with the lever for which a campaign was made, or that of its vessel file.
 
-    At the offset of the campaign it asks for ``offset_rpm``, or for the working speed of the vessel file.
+    At the offset of the campaign it asks for ``offset_rpm``, or for the working speed of the vessel file. The ship
+    stays as it is where neither file says what the lever asks for.
 
-    ``tug``: the simulated ship. ``vessel``: its vessel file. ``campaign``: what is put out.
+    ``tug``: the simulated ship. ``vessel``: its vessel file. ``campaign``: what is put out. Raises SettingsError if the
+    offset of the campaign is beyond the lever of the vessel file.
     """
-    slope = campaign.slope_rpm_per_v
-    if slope is None:
-        return tug
+    sensor, slope, offset_v = vessel.sensors.set_point, campaign.slope_rpm_per_v, campaign.offset_v
     at_offset_rpm = vessel.working_point.engine_speed_rpm if campaign.offset_rpm is None else campaign.offset_rpm
+    if slope is None:
+        slope, asked_rpm = sensor.slope_rpm_per_v(offset_v), sensor.asked_rpm(offset_v)
+        if slope is None or asked_rpm is None:
+            return tug
+        if not sensor.covers(offset_v) or asked_rpm <= 0.0:
+            raise SettingsError(
+                f"{campaign.name}: expected offset_v within the lever of {vessel.name}, found {offset_v:g} V, which is "
+                f"{float(sensor.reading(offset_v)):g} {sensor.unit} and asks for {asked_rpm:g} rpm; make a test for "
+                "this lever, with `shaftprint new campaign --test short --vessel FILE` or `shaftprint plan`."
+            )
+        at_offset_rpm = asked_rpm
     return replace(
         tug,
         set_point_slope_rpm_per_v=slope,
-        set_point_intercept_rpm=at_offset_rpm - slope * campaign.offset_v,
+        set_point_intercept_rpm=at_offset_rpm - slope * offset_v,
         set_point_offset_v=0.0,
     )
 

@@ -22,6 +22,7 @@ from shaftprint.late import late
 with late():
     from shaftprint.bench._recorded_drive import recorded_drive
     from shaftprint.campaign._file_text import campaign_text
+    from shaftprint.forecast._shipped_test import shipped_test
     from shaftprint.recording._read import read_recording
     from shaftprint.settings import write_template
     from shaftprint.signals._describe_recording import describe_set_point
@@ -60,7 +61,10 @@ _CALLED = {"vessel": "a vessel", "campaign": "a campaign", "conditions": "the co
     help="A recording: the campaign file says what its set point shows, with --vessel; the drive file begins with its "
     "channels.",
 )
-@click.option("--vessel", help=f"Vessel file of that recording, {NAMES} stan-tug-1205: says which channel it is.")
+@click.option(
+    "--vessel",
+    help=f"Vessel file of that recording or test, {NAMES} stan-tug-1205: says which channel and which lever it is.",
+)
 @click.option("-o", "--output", type=click.Path(path_type=Path), help="The file, in place of FILE.")
 @card_options
 def command(
@@ -75,7 +79,7 @@ def command(
     """Write a commented vessel, campaign, conditions or drive file to fill in.
 
     FILE must not exist yet. It can be loaded as it stands; every key carries its unit in its name. The campaigns of
-    --test are made for the Stan Tug 1205: predict says what they would ask of another ship.
+    --test are made for the Stan Tug 1205; with --vessel they move the lever of that ship, about its working speed.
 
     With --from RECORDING and --vessel the campaign file says what the recorded set point shows, each sine, multisine,
     binary sequence, chirp, staircase and ramp with its times; what is none of these is named. A drive file --from
@@ -111,8 +115,19 @@ def command(
         write_recorded_campaign(recorded, vessel, path)
         print_next("inspect", recorded, "--vessel", vessel, "--campaign", path)
         return
+    if test is not None and vessel is not None:
+        ship = load_vessel(vessel)
+        campaign = shipped_test(test, ship, title=f"{TESTS[test]}, {ship.name}")
+        text = campaign_text(campaign, remarks=f"{TESTS[test]}, for the lever of {vessel}.")
+        write_bytes(path, text.encode(), noun="campaign file", error=SettingsError)
+        answer(f"{path}: {TESTS[test]}, for the lever of {vessel}.")
+        print_next("predict", "--vessel", vessel, "--campaign", path)
+        print_next("sail", vessel, path, "-o", free("sailed.nc"), label="Tried:")
+        return
     if recorded is not None or vessel is not None:
-        raise click.UsageError("--from needs --vessel, which says what is in the recording, and --vessel --from.")
+        raise click.UsageError(
+            "--from needs --vessel, which says what is in the recording, and --vessel --from or --test."
+        )
     if card is not None:
         write_from_card(card, path)
         has_lever = bool(card.lever.pairs) or card.lever.unit == "rpm"
@@ -120,6 +135,8 @@ def command(
         return
     write_template(kind, path, shipped=test)
     answer(f"{path}: {_CALLED[kind]} to fill in." if test is None else f"{path}: {TESTS[test]}, for the Stan Tug 1205.")
+    if test is not None:
+        echo("With --vessel FILE it is made for the lever of another ship.")
     if kind == "vessel":
         print_next("inertia", path)
 

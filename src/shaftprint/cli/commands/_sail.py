@@ -78,14 +78,14 @@ def command(
     """Simulate the test of a ship and write the raw recording of its logger.
 
     VESSEL and CAMPAIGN (the test) are files, or names of shipped ones such as stan-tug-1205 and thesis. Governor,
-    delays and noise are those of the Stan Tug 1205; gains are scaled with the inertia. At -5 V the lever asks for the
-    working speed of the vessel file. With a ship speed in its working point the ship sails free, and the lever asks
-    for the working speed at the voltage of the campaign. A campaign that states slope_rpm_per_v is sailed with that
-    lever: at its offset it asks for offset_rpm, or for the working speed. What was put into the recording goes to a
-    file of its own beside it, which nothing that identifies will open. The recording is written as the logger of its
-    ending writes it: what that loses is said, and logs of a CAN bus get a DBC file beside them. With --messages the
-    shaft torque, a speed in rpm or a set point in % or rpm come over a bus. With --starboard both lines of a ship are
-    sailed in one recording; each propeller feels the wash of the other, and both the same sea.
+    delays and noise are those of the Stan Tug 1205; gains are scaled with the inertia. The lever is that of the
+    campaign (slope_rpm_per_v; at its offset it asks for offset_rpm, or for the working speed), or of the vessel file
+    (table_rpm, or rpm as its unit). Without these -5 V asks for the working speed. With a ship speed in its working
+    point the ship sails free, and the lever asks for the working speed at the voltage of the campaign. What was put
+    into the recording goes to a file of its own beside it, which nothing that identifies will open. The recording is
+    written as the logger of its ending writes it: what that loses is said, and logs of a CAN bus get a DBC file beside
+    them. With --messages the shaft torque, a speed in rpm or a set point in % or rpm come over a bus. With --starboard
+    both lines of a ship are sailed in one recording; each propeller feels the wash of the other, and both the same sea.
 
     With --service HOURS the ship works: a crew with habits of its own moves the lever, lets the engine idle and takes
     the clutch out, and no campaign is given. What its logger keeps goes into the folder of --output, a file an hour,
@@ -123,7 +123,7 @@ def command(
         tug = with_lever_of(usual, trial.vessel, trial.campaign)
         tug = in_messages(tug, trial.vessel, rates_hz=rates_hz, jitter=jitter / 100.0, lost=lost / 100.0)
         remarks: list[str] = []
-        sail_as(
+        truth = sail_as(
             trial.vessel,
             trial.campaign,
             output,
@@ -137,7 +137,10 @@ def command(
     for remark in remarks:
         echo(f"{output}: {remark}", err=True)
     answer(f"{output}: the raw recording of {trial.campaign.duration_s:g} s.")
-    answer(f"{truth_path(output)}: what was put into it.")
+    answer(
+        f"{truth_path(output)}: what was put into it, normalised at {truth.engine_speed_rpm:.0f} rpm and "
+        f"{truth.shaft_torque_nm:.0f} N m."
+    )
     print_next("inspect", output, "--vessel", vessel, "--campaign", campaign)
 
 

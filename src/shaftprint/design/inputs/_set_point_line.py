@@ -11,6 +11,7 @@ from shaftprint.notebook._shown import Shown
 
 if TYPE_CHECKING:
     from shaftprint.fingerprint._fingerprint import Fingerprint
+    from shaftprint.vessel._vessel import Vessel
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, repr=False)
@@ -49,3 +50,11 @@ def line_of_fingerprint(fingerprint: "Fingerprint") -> SetPointLine:
     intercept = fingerprint.quantity("set-point intercept").value
     offset_v = (fingerprint.conditions.engine_speed.value - intercept) / slope if slope else math.nan
     return SetPointLine(slope_rpm_per_v=slope, offset_v=offset_v)
+
+
+def line_of_sensor(vessel: "Vessel") -> SetPointLine | None:
+    """Return the line that the vessel file states of the lever about its working point; None where it states none."""
+    sensor = vessel.sensors.set_point
+    offset_v = sensor.volts_for(vessel.working_point.engine_speed_rpm)
+    slope = None if offset_v is None else sensor.slope_rpm_per_v(offset_v)
+    return None if offset_v is None or slope is None else SetPointLine(slope_rpm_per_v=slope, offset_v=offset_v)

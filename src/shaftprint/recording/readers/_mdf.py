@@ -28,7 +28,7 @@ from shaftprint.recording.readers._mdf_values import by_formula, is_worked_out_h
 from shaftprint.recording.readers._opened import Opened
 from shaftprint.recording.readers.can._channels import Decoded, decoded
 from shaftprint.recording.readers.can._database import Database
-from shaftprint.recording.readers.can._log import add_signals, database_of, expect_known
+from shaftprint.recording.readers.can._log import add_signals, database_of, expect_known, words_of_beside
 from shaftprint.units import plain_unit
 
 NAME = "MDF"
@@ -60,7 +60,7 @@ def read(path: Path, **hints: object) -> Recording:
     Raises RecordingError if the file is damaged or no channel can be used.
     """
     rate = rate_hint(path, hints, {"dbc": (str, Path)})
-    database = database_of(hints)
+    database = database_of(path, hints)
     asammdf = library(path, "asammdf", NAME)
     _close_in_silence(asammdf)
     _expect_version(path)
@@ -80,7 +80,8 @@ def read(path: Path, **hints: object) -> Recording:
             gathered = _gather(path, file, opened, rate, database, closing)
             gathered.left_out.update(remarks(said, "asammdf"))
             gathered.remarks.extend([FINISHED_HERE] * is_finished_here)
-            return gathered.recording_from_its_zero(f"{NAME} {file.version}", opened.close, _date(file))
+            format = f"{NAME} {file.version}{words_of_beside(path, hints)}"
+            return gathered.recording_from_its_zero(format, opened.close, _date(file))
     except BaseException:
         opened.close()
         raise

@@ -46,7 +46,7 @@ def write_bus_log(path: Path, sent: Sequence[Sent], *, began: datetime | None, o
     ):
         dbc.write_bytes(_dbc(canmatrix, sent))
         _WRITERS[path.suffix.lower()](can, part, frames, began)
-    remarks.append(f"{dbc_path(path).name} beside it says what the frames hold; read the log with it (--dbc).")
+    remarks.append(f"{dbc_path(path).name} beside it says what the frames hold; it is read with the log.")
     return tuple(remarks)
 
 

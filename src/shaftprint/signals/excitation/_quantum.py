@@ -38,6 +38,8 @@ _FEWEST_MESSAGES = 30
 _OF_RATE = 0.45
 # A course from crest to trough of fewer steps says nothing.
 _FEWEST_STEPS = 1.0
+# Phases of a period that are told apart.
+_PHASES = 400
 
 
 def take_out_steps(
@@ -79,6 +81,18 @@ def take_out_steps(
     begin, end = (int(np.ceil((instant - start_s) * rate_hz)) for instant in (time_s[0], time_s[-1]))
     places = np.arange(max(begin, 0), min(end, set_point_v.size))
     set_point_v[places] -= scipy.interpolate.CubicSpline(time_s, error_v)(start_s + places / rate_hz)
+
+
+def left_by_steps(sine: Sine, time_s: FloatArray, *, step_v: float) -> float:
+    """Return the standard deviation of what steps leave in the amplitude of a sine at most, as a share of it.
+
+    Messages that come at the same phases in every period show the same steps again, which no course tells apart.
+
+    ``time_s``: times of the messages [s], shape (messages,). ``step_v``: step of the values [V].
+    """
+    inside_s = time_s[slice(*np.searchsorted(time_s, [sine.settled_s, sine.window_stop_s]))]
+    phases = np.unique(np.rint(_PHASES * ((sine.frequency_hz * inside_s) % 1.0))).size
+    return step_v / sine.amplitude_v / math.sqrt(6.0 * max(phases, 1))
 
 
 def _error_of_levels(

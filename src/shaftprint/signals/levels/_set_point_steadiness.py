@@ -8,7 +8,8 @@ scatter that it shows itself, so that what was set by hand is none:
 - within a line, what its stretches show (in a leg its periods), whatever the line as a whole is;
 - from line to line, the recorded over the asked amplitude. A set point that is held or filtered falls smoothly with the
   frequency, and between legs, which hold the same lines, not at all. Values that are sent some time after they were
-  taken scatter in proportion to the frequency; how much, the stretches within the lines show.
+  taken scatter in proportion to the frequency; how much, the stretches within the lines show. What the steps of
+  messages leave in a sine is the same in all of its stretches.
 
 The stretch in which the change lies is left out: it is of neither amplitude.
 
@@ -17,6 +18,7 @@ A staircase ahead of the sines is not looked at: they get their scale from the s
 Generator and channel look alike here. Where the generator put out more, the responses are right.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING, Literal, TypeAlias
@@ -83,6 +85,8 @@ class Amplitudes:
     """What each test is."""
     frequency_hz: FloatArray
     """Frequency of each test [Hz]; 0 where it has none of its own, shape (tests,)."""
+    rounding: FloatArray
+    """Standard deviation of what the steps of messages leave in the logarithm of each test, shape (tests,)."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -105,14 +109,19 @@ def expect_steady_set_point(
     start_s: float,
     channel: str,
     coverage: Coverage = EVERYTHING,
+    rounding: Callable[["Sine"], float] | None = None,
 ) -> tuple[Reason, ...]:
     """Return a reason where the amplitude of the set point changes within the tests.
 
     ``campaign``: what was asked of the ship; its sines and legs are used. ``set_point_v``: the set point on the grid
     [V], shape (samples,). ``rate_hz``, ``start_s``: the grid. ``channel``: name of its channel. ``coverage``: what the
-    recording covers; stretches in a gap are left out.
+    recording covers; stretches in a gap are left out. ``rounding``: standard deviation of what the steps of messages
+    leave in the amplitude of a sine, as a share of it; none where the set point is not sent in steps.
     """
-    change = change_of(amplitudes_of(campaign, set_point_v, rate_hz=rate_hz, start_s=start_s, coverage=coverage))
+    amplitudes = amplitudes_of(
+        campaign, set_point_v, rate_hz=rate_hz, start_s=start_s, coverage=coverage, rounding=rounding
+    )
+    change = change_of(amplitudes)
     if change is None:
         return ()
     first_s, last_s = change.between_s
@@ -133,11 +142,18 @@ def expect_steady_set_point(
 
 
 def amplitudes_of(
-    campaign: "Campaign", set_point_v: FloatArray, *, rate_hz: float, start_s: float, coverage: Coverage = EVERYTHING
+    campaign: "Campaign",
+    set_point_v: FloatArray,
+    *,
+    rate_hz: float,
+    start_s: float,
+    coverage: Coverage,
+    rounding: Callable[["Sine"], float] | None,
 ) -> Amplitudes:
     """Return the amplitude of every line of a campaign, stretch by stretch.
 
-    ``campaign``, ``set_point_v``, ``rate_hz``, ``start_s``, ``coverage``: as of ``expect_steady_set_point``.
+    ``campaign``, ``set_point_v``, ``rate_hz``, ``start_s``, ``coverage``, ``rounding``: as of
+    ``expect_steady_set_point``.
     """
     cut = _Cut(
         values=set_point_v,
@@ -146,23 +162,25 @@ def amplitudes_of(
         stop_s=start_s + set_point_v.size / rate_hz,
         coverage=coverage,
     )
-    tests: list[tuple[float, Kind, float, list[_Row]]] = [
-        *((sine.start_s, "sine", sine.frequency_hz, cut.of_sine(sine)) for sine in campaign.sines),
-        *((leg.start_s, "leg", 0.0, cut.of_leg(leg)) for leg in campaign.legs),
+    left = (lambda _: 0.0) if rounding is None else rounding
+    tests: list[tuple[float, Kind, float, float, list[_Row]]] = [
+        *((sine.start_s, "sine", sine.frequency_hz, left(sine), cut.of_sine(sine)) for sine in campaign.sines),
+        *((leg.start_s, "leg", 0.0, 0.0, cut.of_leg(leg)) for leg in campaign.legs),
     ]
     heard = [
-        (kind, hertz, [row for row in rows if row[2] > _SILENT])
-        for _, kind, hertz, rows in sorted(tests, key=lambda test: test[0])
+        (kind, hertz, share, [row for row in rows if row[2] > _SILENT])
+        for _, kind, hertz, share, rows in sorted(tests, key=lambda test: test[0])
     ]
-    heard = [test for test in heard if test[2]]
-    table = np.array([row for _, _, rows in heard for row in rows]).reshape(-1, 3)
+    heard = [test for test in heard if test[3]]
+    table = np.array([row for *_, rows in heard for row in rows]).reshape(-1, 3)
     return Amplitudes(
         start_s=table[:, 0],
         stop_s=table[:, 1],
         log_ratio=np.log(table[:, 2]),
-        test=np.repeat(np.arange(len(heard)), [len(rows) for _, _, rows in heard]).astype(np.int64),
-        kinds=tuple(kind for kind, _, _ in heard),
-        frequency_hz=np.array([hertz for _, hertz, _ in heard]),
+        test=np.repeat(np.arange(len(heard)), [len(rows) for *_, rows in heard]).astype(np.int64),
+        kinds=tuple(kind for kind, *_ in heard),
+        frequency_hz=np.array([hertz for _, hertz, *_ in heard]),
+        rounding=np.array([share for _, _, share, _ in heard]),
     )
 
 
@@ -301,7 +319,8 @@ def _compared(amplitudes: Amplitudes, scatter: FloatArray, before: int, after: i
             centred = of_values - of_values.mean(), of_course - of_course.mean()
             parts.append((*centred, float(np.hypot(_OF_STRETCHES, scatter[test]))))
         else:
-            expected = float(np.hypot(_OF_SINES, scatter[test] / np.sqrt(of_values.size)))
+            scattered = float(np.hypot(scatter[test] / np.sqrt(of_values.size), amplitudes.rounding[test]))
+            expected = float(np.hypot(_OF_SINES, scattered))
             means.append((kind, expected, amplitudes.frequency_hz[test], of_values.mean(), of_course[0]))
     of_sines = np.array([row[1:] for row in means if row[0] == "sine"]).reshape(-1, 4)
     if len(of_sines):

@@ -36,13 +36,13 @@ def begins_as_log(path: Path, begin: bytes) -> bool:
 def read(path: Path, **hints: object) -> Recording:
     """Open a log of frames; its signals are laid into a temporary file, which is deleted when it is closed.
 
-    Hints: ``dbc``, the DBC or ARXML file that says what the frames hold; without it the messages of engines, gearboxes
-    and rudders by SAE J1939 and NMEA 2000 are read.
+    Hints: ``dbc``, the DBC or ARXML file that says what the frames hold. Without it that beside the log is taken, its
+    name with ``.dbc`` behind; without one the messages of engines, gearboxes and rudders by SAE J1939 and NMEA 2000.
 
     Raises RecordingError if the file is damaged or holds no message that is known.
     """
     expect_hints(path, hints, {"dbc": (str, Path)})
-    database = database_of(hints)
+    database = database_of(path, hints)
     with contextlib.ExitStack() as stack, told_as_damage(path, NAME):
         log = _open(path, stack)
         taken = decoded(path, log, database)
@@ -51,18 +51,26 @@ def read(path: Path, **hints: object) -> Recording:
         expect_known(path, taken, database)
         gathered = Gathered(path=path)
         add_signals(gathered, taken, unique_names(list(taken.named)))
-        return gathered.recording(f"{NAME} ({log.kind})", opened.close, log.began)
+        return gathered.recording(f"{NAME} ({log.kind}){words_of_beside(path, hints)}", opened.close, log.began)
     except BaseException:
         opened.close()
         raise
 
 
-def database_of(hints: Mapping[str, object]) -> Database:
-    """Return what the hint ``dbc`` names, or the messages that need no file.
+def database_of(path: Path, hints: Mapping[str, object]) -> Database:
+    """Return what the hint ``dbc`` names, else what lies beside a log, else the messages that need no file.
 
     Raises RecordingError if that file cannot be read.
     """
-    return known_messages() if hints.get("dbc") is None else read_database(Path(str(hints["dbc"])))
+    if hints.get("dbc") is not None:
+        return read_database(Path(str(hints["dbc"])))
+    return read_database(dbc_path(path)) if dbc_path(path).is_file() else known_messages()
+
+
+def words_of_beside(path: Path, hints: Mapping[str, object]) -> str:
+    """Return what is said where the DBC file beside a log was taken."""
+    taken = hints.get("dbc") is None and dbc_path(path).is_file()
+    return f" with {dbc_path(path).name} beside it" if taken else ""
 
 
 def expect_known(path: Path, taken: Decoded, database: Database) -> None:
@@ -79,16 +87,15 @@ def expect_known(path: Path, taken: Decoded, database: Database) -> None:
             f"{path}: expected messages that {database.name} knows, found none of them in the log{in_brackets}; take "
             "the DBC file of this ship."
         )
-    beside = dbc_path(path)
     raise RecordingError(
         f"{path}: expected messages of engine, gearbox or rudder by SAE J1939 or NMEA 2000, found none of them in the "
-        f"log{in_brackets}; give the DBC file that says what the frames hold, dbc= (--dbc"
-        f"{f' {beside.name}' if beside.is_file() else ''} of shaftprint convert)."
+        f"log{in_brackets}; give the DBC file that says what the frames hold, dbc= (--dbc), "
+        f"or lay it beside as {dbc_path(path).name}."
     )
 
 
 def dbc_path(path: Path) -> Path:
-    """Return the DBC file that is written beside a log."""
+    """Return the DBC file that is written and looked for beside a log."""
     return path.with_name(f"{path.name}.dbc")
 
 
