@@ -86,7 +86,7 @@ def test_labels_carry_units_and_the_legend_states_the_coverage(identification, r
     assert chart.panels[0].y.title == "magnitude [dB]"
     assert chart.panels[2].y.title == "phase [deg]"
     assert chart.panels[2].x.title == "frequency [rad/s]"
-    assert as_plain(chart.panels[0].title) == "n / n_set"
+    assert as_plain(chart.panels[0].title) == "engine speed n / n_set"
     assert legend(chart) == [
         "GAUGE-CLOSED, 95 % band",
         "GAUGE-CLOSED",
@@ -118,18 +118,33 @@ def test_the_panel_below_a_fit_shows_its_residuals_in_deviations_of_the_data(ide
 
 
 def test_the_band_below_a_fit_is_that_of_the_model_in_deviations_of_the_data(fits):
-    """OL1 has one parameter: its band is |dH/dtau| 1.96 std(tau), along and across the response, over the data's."""
+    """OL1 has one parameter: its band is |dH/dtau| 1.96 std(tau), along and across the model, over the data's."""
     fit = fits["OL1"]
     panel = fit_chart(fit).panels[2]
     omega = fit.response.omega_rad_s[fit.fitted]
     tau = fit.values[fit.structure.names.index("tau_n")]
     slope = -1j * omega / (1j * omega * tau + 2.0)
     half = 1.959964 * np.sqrt(fit.covariance[0, 0]) * np.abs(slope.real)
-    size = np.abs(fit.response.response[0, 0, fit.fitted])
-    unit = (fit.response.response[0, 0, fit.fitted] / size).view(np.float64).reshape(-1, 2)
+    model = fit.structure.response(fit.values, 1j * omega)[0]
+    size = np.abs(model)
+    unit = (model / size).view(np.float64).reshape(-1, 2)
     std = np.sqrt(np.einsum("li,lij,lj->l", unit, fit.response.covariance[fit.fitted], unit))
     band = mark(panel, "model band, magnitude", Band)
     np.testing.assert_allclose(band.upper, half * size / std, rtol=1e-6)
+
+
+def test_a_line_of_noise_alone_does_not_stand_at_plus_one_below_a_fit(identification):
+    """Where noise is twenty times the response its residual points anywhere; along itself it would always be +1."""
+    data, rng = identification.response, np.random.default_rng(3)
+    noise = 20.0 * np.abs(data.response).max()
+    values = noise * (rng.standard_normal(data.response.shape) + 1j * rng.standard_normal(data.response.shape))
+    covariance = np.broadcast_to(noise**2 * np.eye(data.covariance.shape[1]), data.covariance.shape)
+    noisy = replace(identification.experiments[0], response=replace(data, response=values, covariance=covariance))
+    drowned = replace(identification, parts=(noisy,))
+    for panel in fit_chart(drowned).panels[4:]:
+        along = marks(panel, "residual, magnitude", Points)[0].y
+        assert (along < -0.1).sum() >= 3
+        assert (along > 0.1).sum() >= 3
 
 
 def test_phase_of_data_follows_the_closest_model(identification, response):

@@ -64,7 +64,7 @@ def shipped_test(name: str, vessel: "Vessel", *, title: str) -> Campaign:
     shown = [reading for reading, _ in sensor.table_rpm or ()]
     if shown and not shown[0] <= lowest < highest <= shown[-1]:
         raise RequestError(
-            f"{vessel.name}: expected a lever that reaches from {lowest:.4g} to {highest:.4g} {sensor.unit}, as far as "
+            f"{vessel.name}: expected a lever that reaches from {lowest:.5g} to {highest:.5g} {sensor.unit}, as far as "
             f"the test {name} goes about {working_rpm:g} rpm, found table_rpm from {shown[0]:g} to {shown[-1]:g} "
             f"{sensor.unit}; choose another engine_speed_rpm of the working point, or let `shaftprint plan` make a "
             "test within its limits."

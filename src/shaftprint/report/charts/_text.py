@@ -10,6 +10,17 @@ from shaftprint.plain_table import Symbol
 
 Text: TypeAlias = str | tuple[str, ...]
 """A text, a ``Symbol``, or parts of both one after the other."""
+CHANNELS = {
+    "n": "engine speed",
+    "M_s": "shaft torque",
+    "n_set": "set point of the engine speed",
+    "e": "set point of the engine speed less engine speed",
+    "X": "fuel rack",
+    "v_s": "speed of the ship",
+    "theta": "pitch",
+    "M_m": "torque of the electric machine",
+}
+"""What the channels of a ship's responses are."""
 
 
 def quantity(name: str, unit: str = "") -> Text:
@@ -18,8 +29,9 @@ def quantity(name: str, unit: str = "") -> Text:
 
 
 def over(output: str, cause: str) -> Text:
-    """Return the title of a response, output over input."""
-    return (Symbol(output), " / ", Symbol(cause))
+    """Return the title of a response, output over input, with the words for an output of a ship."""
+    words = (f"{CHANNELS[output]} ",) if output in CHANNELS else ()
+    return (*words, Symbol(output), " / ", Symbol(cause))
 
 
 def joined(*texts: Text) -> Text:

@@ -13,7 +13,7 @@ from shaftprint.report.charts._marks import Band, Mark, Points
 from shaftprint.report.charts._text import over
 from shaftprint.report.figures._bode import Column, columns_chart, frequency_scale
 from shaftprint.report.figures._residuals import LEAST_STD, explained_band, unexplained
-from shaftprint.report.figures._uncertainty import measured_points
+from shaftprint.report.figures._uncertainty import stds_along_and_across
 from shaftprint.units import decibel
 
 if TYPE_CHECKING:
@@ -27,7 +27,7 @@ def fit_chart(identification: "Identification", *, aliasing_limit_hz: float | No
     """Return a fitted model with its 95 % band through the measured response, and the residuals below.
 
     On the scale of the response band and residuals are often thinner than a line: the lowest panel shows both, along
-    the response and across it, over the standard deviation of each measured line.
+    the model and across it, over the standard deviation of each measured line.
 
     Parameters
     ----------
@@ -48,8 +48,12 @@ def fit_chart(identification: "Identification", *, aliasing_limit_hz: float | No
 def _remainder(identification: "Identification", curve: Curve, channel: int, column: Column) -> Panel:
     """Return what the model leaves of one channel, in standard deviations of the data."""
     data, fitted = identification.response, identification.fitted
-    points, remainder = measured_points(data, channel), unexplained(identification)[channel]
-    turned = remainder / data.response.reshape(len(data.outputs) * len(data.inputs), -1)[channel]
+    remainder = unexplained(identification)[channel]
+    # along the model: along what was measured a line that is nothing but noise would always stand at +1
+    model = data.response.reshape(len(data.outputs) * len(data.inputs), -1)[channel] - remainder
+    size = np.abs(model)
+    along_std, across_std = stds_along_and_across(data, channel, model)
+    turned = remainder * model.conj() / size
     omega = data.omega_rad_s[fitted]
     span = column.whole_span()
     marks: list[Mark] = [explained_band(span)]
@@ -57,8 +61,8 @@ def _remainder(identification: "Identification", curve: Curve, channel: int, col
     halves = _model_halves(curve, channel, omega / (2.0 * np.pi))
     for shade, (name, values, std, half) in enumerate(
         (
-            ("magnitude", turned.real, points.radial_std, halves[0]),
-            ("phase", turned.imag, points.turning_std, halves[1]),
+            ("magnitude", turned.real, along_std, size[fitted] * halves[0]),
+            ("phase", turned.imag, across_std, size[fitted] * halves[1]),
         ),
         start=2,
     ):

@@ -34,8 +34,6 @@ class MeasuredPoints:
     """Half length of the phase's error bar [deg], shape (lines,); 180 where nothing is known of it."""
     radial_std: FloatArray
     """Standard deviation along the response over its size [-], shape (lines,)."""
-    turning_std: FloatArray
-    """Standard deviation across the response over its size [-], shape (lines,)."""
 
 
 def measured_points(response: "FrequencyResponse", channel: int) -> MeasuredPoints:
@@ -44,17 +42,10 @@ def measured_points(response: "FrequencyResponse", channel: int) -> MeasuredPoin
     The interval of the magnitude is ``|H| -/+ t s`` along the response, that of the phase ``asin(t s / |H|)`` with the
     standard deviation ``s`` across it: both stay right where noise is as large as the response.
     """
-    count = len(response.outputs) * len(response.inputs)
-    values: ComplexArray = response.response.reshape(count, -1)[channel]
-    pair = [channel, count + channel]
-    covariance = response.covariance[:, pair][:, :, pair]
+    values: ComplexArray = response.response.reshape(len(response.outputs) * len(response.inputs), -1)[channel]
     size = np.abs(values)
-    along = np.stack([values.real, values.imag], axis=-1) / size[:, None]
-    across = np.stack([-along[:, 1], along[:, 0]], axis=-1)
     factor = _quantile(response.degrees_of_freedom)
-    radial_std, turning_std = (
-        np.sqrt(np.einsum("li,lij,lj->l", way, covariance, way)) / size for way in (along, across)
-    )
+    radial_std, turning_std = (std / size for std in stds_along_and_across(response, channel, values))
     radial, turning = factor * radial_std, factor * turning_std
     with np.errstate(divide="ignore"):
         below = -decibel(np.maximum(1.0 - radial, 0.0))
@@ -65,8 +56,23 @@ def measured_points(response: "FrequencyResponse", channel: int) -> MeasuredPoin
         above_db=decibel(1.0 + radial),
         phase_half_deg=np.where(turning < 1.0, np.degrees(np.arcsin(np.minimum(turning, 1.0))), 180.0),
         radial_std=radial_std,
-        turning_std=turning_std,
     )
+
+
+def stds_along_and_across(
+    response: "FrequencyResponse", channel: int, direction: ComplexArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return the standard deviations of one response along and across a direction, each of shape (lines,).
+
+    ``direction``: complex numbers of any size that point there, shape (lines,).
+    """
+    count = len(response.outputs) * len(response.inputs)
+    pair = [channel, count + channel]
+    covariance = response.covariance[:, pair][:, :, pair]
+    along = np.stack([direction.real, direction.imag], axis=-1) / np.abs(direction)[:, None]
+    across = np.stack([-along[:, 1], along[:, 0]], axis=-1)
+    first, second = (np.sqrt(np.einsum("li,lij,lj->l", way, covariance, way)) for way in (along, across))
+    return first, second
 
 
 def _quantile(degrees_of_freedom: FloatArray) -> FloatArray:

@@ -5,20 +5,11 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from shaftprint.plain_table import MEANING, Symbol, Table
+from shaftprint.report.charts._text import CHANNELS
 
 if TYPE_CHECKING:
     from shaftprint.report.sections._sections import Inputs, Section
 
-CHANNELS = {
-    "n": "engine speed",
-    "M_s": "shaft torque",
-    "n_set": "set point of the engine speed",
-    "e": "set point of the engine speed less engine speed",
-    "X": "fuel rack",
-    "v_s": "speed of the ship",
-    "theta": "pitch",
-    "M_m": "torque of the electric machine",
-}
 SHARES = {"n", "M_s", "n_set", "e"}
 """Channels whose deviations are over their own value at the working point."""
 

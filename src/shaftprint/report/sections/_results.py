@@ -138,7 +138,8 @@ def fit_section(inputs: Inputs) -> Section:
                 caption=(
                     "Identified model with its 95 % band (covariance of the parameters) and measured response with "
                     f"95 % intervals; pale points may be noise alone, hollow ones are not used. {symbols}"
-                    "Below, what the model leaves and its band, in standard deviations of each measured point."
+                    "A band that is not seen is thinner than its line: the lowest row magnifies it, beside what the "
+                    "model leaves, in standard deviations of each measured point."
                 ),
                 alt="Bode diagram of the identified model through the measured points of all outputs.",
                 chart=lambda: fit_chart(inputs.identification, aliasing_limit_hz=inputs.aliasing_limit_hz),
