@@ -16,6 +16,7 @@
     ├── ValidationError       a model that cannot be held against a record
     ├── ServiceError          logs of ordinary service that cannot be used, or show nothing
     ├── FingerprintError      a fingerprint file that cannot be read or compared
+    │   └── NoSuchNumberError a name that is none of its numbers; a KeyError too
     ├── PublicationError      a folder into which results cannot be put, or not as a whole
     ├── ReportError           a report that cannot be written
     ├── StoreError            a store of fingerprints that cannot be used, or a record that it refuses
@@ -84,6 +85,14 @@ class ServiceError(ShaftprintError):
 
 class FingerprintError(ShaftprintError):
     """A fingerprint file cannot be read or compared."""
+
+
+class NoSuchNumberError(FingerprintError, KeyError):
+    """A name that none of the numbers of a fingerprint has."""
+
+    def __str__(self) -> str:
+        """Return the sentence, where a KeyError would show it as a text in quotes."""
+        return Exception.__str__(self)
 
 
 class PublicationError(ShaftprintError):

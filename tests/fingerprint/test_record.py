@@ -240,8 +240,35 @@ def test_line_that_is_fitted_in_spite_of_a_remark_keeps_it(fit, take):
 def test_quantity_is_found_by_name_wherever_it_stands(fingerprint):
     for name in ("K_p", "t_d + t_sp", "I_dn", "gain margin", "set-point scale"):
         assert fingerprint.quantity(name).name == name
-    with pytest.raises(FingerprintError, match=r"has no 'K_P'; it has .*K_p, .*I_dn"):
+    with pytest.raises(FingerprintError, match=r"has no 'K_P'. Did you mean K_p\? It has .*K_p, .*I_dn"):
         fingerprint.quantity("K_P")
+
+
+def test_a_fingerprint_is_read_like_a_table_of_its_numbers(fingerprint):
+    """Every name of its table is an item, those of the working point too; a wrong one is a KeyError in plain words."""
+    for name in (*fingerprint.to_pandas().index, "n_0", "M_s0"):
+        assert fingerprint[name].name == name
+        assert name in fingerprint
+        assert name in fingerprint._ipython_key_completions_()
+    assert fingerprint["n_0"].value == fingerprint.conditions.engine_speed.value
+    with pytest.raises(KeyError) as raised:
+        fingerprint["gain_margin"]
+    assert str(raised.value).startswith("the fingerprint has no 'gain_margin'. Did you mean gain margin?")
+    with pytest.raises(KeyError, match="held at"):
+        fingerprint[next(iter(fingerprint.held))]
+    with pytest.raises(AttributeError, match=r"its numbers are items: fingerprint\['K_p'\]"):
+        _ = fingerprint.K_p
+
+
+def test_a_number_says_its_value_its_interval_and_why_it_is_not_to_be_used(fingerprint):
+    doubted = next(iter(fingerprint.verdict.not_trusted))
+    assert fingerprint.verdict.not_trusted[doubted] in str(fingerprint[doubted])
+    assert not fingerprint[doubted].trusted
+    inertia = fingerprint["I_dn"]
+    words = str(inertia).split()
+    assert words[:2] == ["I_dn", "value"]
+    assert float(words[2]) == pytest.approx(inertia.value, rel=2e-3)
+    assert "kg m2" in str(inertia)
 
 
 def test_prior_is_kept_in_its_own_unit(fit, take, truth):

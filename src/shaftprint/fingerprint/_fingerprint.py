@@ -161,6 +161,10 @@ class Fingerprint(Labelled, LineFingerprint):
         }
 
     @property
+    def _of_working_point(self) -> Sequence[Estimate]:
+        return (self.conditions.engine_speed, self.conditions.shaft_torque)
+
+    @property
     def noise_at_speeds(self) -> dict[float, NoiseLevels]:
         """The noise by engine speed [rpm], as planning takes it."""
         return {spectrum.engine_speed_rpm: spectrum.levels() for spectrum in self.noise}

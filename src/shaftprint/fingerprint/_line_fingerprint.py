@@ -6,14 +6,15 @@ has in ``DriveFingerprint``.
 
 from abc import abstractmethod
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from datetime import datetime
-from typing import ClassVar, Literal, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self
 
 import numpy as np
 from pydantic import AwareDatetime, model_validator
 
 from shaftprint.arrays import FloatArray
-from shaftprint.errors import FingerprintError
+from shaftprint.errors import FingerprintError, NoSuchNumberError
 from shaftprint.fingerprint._conditions import Tested
 from shaftprint.fingerprint._covariance_check import covariance_fault
 from shaftprint.fingerprint._joint_numbers import JointNumbers
@@ -25,6 +26,7 @@ from shaftprint.identify.likelihood._prior import Prior
 from shaftprint.identify.uncertainty._budget import BudgetRow
 from shaftprint.notebook._shown import Shown
 from shaftprint.records import Record
+from shaftprint.spelling import meant
 
 
 class SourceFile(Record):
@@ -130,18 +132,56 @@ class LineFingerprint(Shown, Record):
         """Every parameter by its name, held ones too."""
         return self.held | {quantity.name: quantity.value for quantity in self.parameters}
 
-    def quantity(self, name: str) -> Estimate:
-        """Return one of its numbers by its name.
+    @property
+    def by_name(self) -> dict[str, Estimate]:
+        """All numbers by their names, those of the working point too."""
+        every = [*self._of_working_point, *(quantity for kind in self.numbers.values() for quantity in kind)]
+        return {quantity.name: quantity for quantity in every}
 
-        Raises FingerprintError if there is none of that name.
+    @property
+    def _of_working_point(self) -> Sequence[Estimate]:
+        return ()
+
+    if not TYPE_CHECKING:  # or every attribute would be one for the type checker
+
+        def __getattr__(self, name: str) -> Any:
+            """Say where a number or a picture is that was looked for as an attribute."""
+            try:
+                return super().__getattr__(name)
+            except AttributeError as error:
+                if name in ("bode", "plot"):
+                    raise AttributeError(f"{error}; sp.report.plot(fingerprint) draws it.") from None
+                if not name.startswith("_") and name in self.by_name:
+                    raise AttributeError(f"{error}; its numbers are items: fingerprint[{name!r}].") from None
+                raise
+
+    def __getitem__(self, name: str) -> Estimate:
+        """Return one of its numbers, as ``quantity`` does."""
+        return self.quantity(name)
+
+    def __contains__(self, name: object) -> bool:
+        """Return whether one of its numbers has a name."""
+        return name in self.by_name
+
+    def _ipython_key_completions_(self) -> list[str]:
+        """Return what a session completes behind a bracket."""
+        return [*self.by_name]
+
+    def quantity(self, name: str) -> Estimate:
+        """Return one of its numbers by its name, as tables have it; its ``doubt`` is what the verdict says of it.
+
+        Raises NoSuchNumberError, which is a KeyError, if there is none of that name.
         """
-        quantities = [quantity for kind in self.numbers.values() for quantity in kind]
-        for quantity in quantities:
-            if quantity.name == name:
-                return quantity
-        raise FingerprintError(
-            f"the fingerprint has no {name!r}; it has {', '.join(quantity.name for quantity in quantities)}."
-        )
+        by_name = self.by_name
+        if name in by_name:
+            found = by_name[name]
+            return replace(found, doubt=self.verdict.not_trusted.get(name, found.doubt))
+        if name in self.held:
+            raise NoSuchNumberError(
+                f"expected one of the numbers that were found, found {name!r}, which was held at {self.held[name]:g}; "
+                "take it from held."
+            )
+        raise NoSuchNumberError(f"the fingerprint has no {name!r}.{meant(name, by_name)} It has {', '.join(by_name)}.")
 
     def multiplied(self, number: Estimate) -> Estimate | None:
         """Return the parameter of which a physical value is a multiple; None where it is none."""

@@ -4,16 +4,19 @@ import math
 from dataclasses import dataclass
 from typing import Final
 
+from shaftprint.digits import interval, plain_letters, stated, to_digit_of
 from shaftprint.distributions import NORMAL_95
 from shaftprint.models._role import Role
+from shaftprint.notebook._shown import Shown
+from shaftprint.notebook._summary import Summary
 
 # An end of the interval further than this share of its width from the end that a standard deviation gives: only the
 # interval is shown.
 ENDS_ALIKE: Final = 0.25
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Estimate:
+@dataclass(frozen=True, kw_only=True, slots=True, repr=False)
+class Estimate(Shown):
     """A number with its unit and uncertainty."""
 
     name: str
@@ -43,6 +46,23 @@ class Estimate:
     files with the limits only."""
     doubt: str = ""
     """Why it is not to be used, beside what the verdict says; empty where it may be."""
+
+    def summary(self) -> Summary:
+        """Return value, 95 % interval, what it is, what was expected, and why it is not to be used."""
+        lower, upper = self.ends_95
+        # where the interval says something else than the deviation it gives the digits
+        std = (upper - lower) / (2.0 * NORMAL_95) if self.stated_std is None else self.stated_std
+        unit = "" if self.unit == "-" else f" {self.unit}"
+        alone = plain_letters(f"{to_digit_of(self.value, std)}{unit}{' (at its bound)' if self.at_bound else ''}")
+        expected, known = self.expected, self.expected_std
+        facts = {
+            "value": alone if self.stated_std is None else stated(self.value, std, self.unit),
+            "95 % interval": plain_letters(f"{interval(lower, upper, std)}{unit}"),
+            "meaning": self.meaning,
+            "expected": "" if expected is None else stated(expected, 0.0 if known is None else known, self.unit),
+            "not to be used": self.doubt,
+        }
+        return Summary(title=self.name, facts=facts)
 
     @property
     def stated_std(self) -> float | None:
