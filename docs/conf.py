@@ -30,6 +30,7 @@ extensions = [
     "mathml",
     "generated_reference",
     "glossary_tables",
+    "made_once",
     "no_requests",
     "short_types",
 ]
