@@ -92,14 +92,17 @@ def outcome(trouble: str, seed: int, hours: float, template: Fingerprint) -> dic
             day = fit_service(Path(place) / "segments.csv", vessel, fingerprint=old, now=datetime.now(UTC))
         except ShaftprintError as error:
             return said | {"refused": str(error).replace(place, "")}
+    if not day.fingerprint.verdict.trustworthy:
+        return said | {"refused": day.fingerprint.verdict.reason}
     z = (day.fit.theta - np.array([true[name] for name in FREE])) / day.fit.std
-    return said | {"z": dict(zip(FREE, z.tolist(), strict=True)), "trusted": day.fingerprint.verdict.trustworthy}
+    return said | {"z": dict(zip(FREE, z.tolist(), strict=True))}
 
 
 def report(outcomes: Sequence[Mapping[str, Any]]) -> str:
     """Return the table of all outcomes."""
     text = [
-        "| what is wrong | hours | refused | fitted: intervals that hold | largest error / deviation | first words |",
+        "| what is wrong | hours | refused, or not trusted | fitted: intervals that hold | largest error / deviation "
+        "| first words |",
         "|---|---|---|---|---|---|",
     ]
     for trouble in ALL:

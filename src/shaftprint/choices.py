@@ -45,6 +45,8 @@ MESSAGES: Final = ("torque", "speed", "set-point")
 SERVICE_TROUBLES: Final = (
     *("lever-late", "lever-early", "trims", "trims-a-little", "trims-at-moves", "load-controller"),
     *("hidden-load-controller", "lever-once-a-second", "deadband", "orders", "astern", "clutch-out"),
+    *("lever-bent", "lever-play", "dynamic-inflow", "gains-by-speed", "delay-in-turns", "governor-deadband"),
+    *("demand-rate-limit", "smoke-limiter"),
 )
 """What may be wrong with the logs of a simulated ship in service."""
 STATED_LIMITS: Final = (

@@ -7,7 +7,14 @@ import pytest
 
 from shaftprint.service._gather import StillMeans, lever_line
 from shaftprint.service._segment import LeverLine, Segment
-from shaftprint.service._vetting import lever_follows_load, off_the_line, speed_is_off, torque_is_held, way_on
+from shaftprint.service._vetting import (
+    lever_follows_load,
+    off_the_line,
+    play_of_lever,
+    speed_is_off,
+    torque_is_held,
+    way_on,
+)
 
 
 def still(gain, *, count=600, seed=3):
@@ -66,6 +73,21 @@ def test_way_on_shows_in_the_torque_across_moves(exponent, is_refused):
     found = way_on([segment(*rng.uniform(12.0, 26.0, 2), exponent, rng) for _ in range(40)])
     assert found.value == pytest.approx(exponent - 2.0, abs=0.05)
     assert bool(found.refused) == is_refused
+
+
+def test_bend_of_the_lever_is_measured_as_far_as_its_scatter_tells_it():
+    rng = np.random.default_rng(3)
+    stretch = np.repeat(np.arange(40.0), 6)
+    lever = np.repeat(rng.uniform(-7.0, -3.0, 40), 6)
+    moved = lever + 5.0
+    speed = 20.0 - 4.183 * moved * (1.0 + 0.5 * 0.004 * moved) + 0.005 * rng.standard_normal(lever.size)
+    still = StillMeans(lever_v=lever, speed_rev_s=speed, load=np.ones(lever.size), stretch=stretch)
+    line = lever_line(still)
+    assert line.bend_per_v == pytest.approx(0.004, rel=0.15)
+    assert line.speed_rev_s(lever) == pytest.approx(speed, abs=0.02)
+    # a line that scatters by a tenth of its speed tells no bend
+    loose = lever_line(replace(still, speed_rev_s=speed + np.repeat(0.15 * rng.standard_normal(40), 6)))
+    assert abs(loose.bend_per_v) < 0.01
 
 
 def test_line_of_the_lever_is_found_beside_a_stretch_that_is_off():
@@ -145,3 +167,38 @@ def test_a_move_to_a_speed_that_is_not_reached_is_not_used(rpm, is_off):
     lever = np.where(time < 3.0, -4.5, -6.0 - rpm / 60.0 / 4.0)
     one = replace(one, lever_v=lever)
     assert bool(speed_is_off(one, LINE)) == is_off
+
+
+def moved(rng, *, play_rpm, count=40):
+    """Return segments of a lever with play, that moves up and down and is mended by a fifth now and then."""
+    made, volts, followed = [], -4.7, -4.7
+    half_v = 0.5 * play_rpm / 240.0
+    for _ in range(count):
+        lever = np.full(1400, volts)
+        ways = [rng.choice([-1.0, 1.0]) * rng.uniform(0.1, 0.6)]
+        ways += [-0.2 * ways[0]] * int(rng.uniform() < 0.3)
+        for place, way in zip((100, 160), ways, strict=False):
+            lever[place:] = lever[place - 1] + way
+        for level in (lever[110], lever[-1]):
+            followed = float(np.clip(followed, level - half_v, level + half_v))
+        volts = lever[-1] if abs(lever[-1] + 4.7) < 0.8 else -4.7
+        made.append(
+            Segment(
+                log="log", start_s=0.0, move_s=1.0, move_end_s=2.0, rate_hz=50.0, every=1, lever_v=lever,
+                speed_rev_s=np.full(1000, -4.0 * followed + 5e-3 * rng.standard_normal()),
+                torque_nm=np.ones(1000), state="ahead",
+            )
+        )  # fmt: skip
+    return made
+
+
+def test_play_of_the_lever_is_measured_and_refused():
+    rng = np.random.default_rng(4)
+    found = play_of_lever(moved(rng, play_rpm=4.0), LINE)
+    assert 2.0 * abs(found.value) == pytest.approx(4.0, rel=0.1)
+    assert "the lever has play" in found.refused
+    assert not play_of_lever(moved(rng, play_rpm=0.0), LINE).refused
+
+
+def test_a_few_moves_tell_no_play():
+    assert np.isnan(play_of_lever(moved(np.random.default_rng(4), play_rpm=4.0, count=8), LINE).value)

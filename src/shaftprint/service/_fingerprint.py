@@ -136,7 +136,7 @@ def fingerprint_of_service(
         vessel_fields=vessel_fields(vessel),
         calibration=(),
         quality=_quality(fit),
-        verdict=_verdict(every, used=len(segments), of=of, seconds=seconds, stable=stable),
+        verdict=_verdict(every, used=len(segments), of=of, seconds=seconds, stable=stable, misfit=fit.misfit.reason),
         findings=_findings(fit, segments, of, line),
     )
 
@@ -214,7 +214,7 @@ def _quality(fit: ServiceFit) -> Quality:
     )
 
 
-def _verdict(numbers: Sequence[Estimate], *, used: int, of: int, seconds: float, stable: bool) -> Verdict:
+def _verdict(numbers: Sequence[Estimate], *, used: int, of: int, seconds: float, stable: bool, misfit: str) -> Verdict:
     doubts = {}
     for one in numbers:
         share = one.std / abs(one.value) if one.value else np.inf
@@ -222,10 +222,15 @@ def _verdict(numbers: Sequence[Estimate], *, used: int, of: int, seconds: float,
             doubts[one.name] = f"known to {100.0 * share:.0f} % only" if np.isfinite(share) else "not known"
     trusted = tuple(one.name for one in numbers if one.name not in doubts)
     of_line = any(one.name in trusted and one.role is not None and one.role.is_of_line for one in numbers)
-    usable = of_line and stable
+    usable = of_line and stable and not misfit
     words = f"{used} segments of {seconds:.0f} s around {of} moves of the lever in ordinary service"
     if not stable:
         reason = f"The loop that explains {words} is not stable, as a line in service is."
+    elif misfit:
+        reason = (
+            f"The model is not this line: {misfit}, by {words}. Make a test (shaftprint plan), whose lines tell which "
+            "structure holds."
+        )
     elif not of_line:
         reason = f"No number of the line is known well enough by {words}; give more logs."
     else:
@@ -248,5 +253,7 @@ def _findings(fit: ServiceFit, segments: Sequence[Segment], of: int, line: Lever
         f"({line.stretches} stretches).",
         f"The scatter of the segments tells the deviations with {np.min(fit.freedom):.0f} degrees of freedom and more; "
         "intervals are as much wider.",
+        f"What is left of speed and torque follows the lever {fit.misfit.speed:.1f} and {fit.misfit.torque:.1f} times "
+        "as much as noise does.",
         f"The fit took {fit.steps} steps; the last was {fit.last_step:.1g} standard deviations long.",
     )

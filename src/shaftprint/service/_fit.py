@@ -21,6 +21,7 @@ from shaftprint.arrays import BoolArray, FloatArray, frozen_bool, frozen_float
 from shaftprint.catalogue._gauge import GAUGE_K_I, GAUGE_K_P, GAUGE_OMEGA_N, GAUGE_ZETA, T_D, T_SP, TAU_DN, TAU_UP
 from shaftprint.distributions import NORMAL_95, deviations
 from shaftprint.errors import ServiceError
+from shaftprint.service._misfit import Misfit, misfit_of
 from shaftprint.service._model import FREE, ServiceModel
 from shaftprint.service._progress import Progress, Reached
 from shaftprint.service._score import Score, Simulated, noise_of, scores, simulated
@@ -59,6 +60,10 @@ _LEAST: Mapping[str, float] = MappingProxyType(
 # A step changes none of those that are above zero by more than this share of itself: delay, lag and gain lie in a
 # valley that bends, and a longer one ends at a line that hunts.
 _LONGEST_SHARE = 0.25
+_OTHER_LINE = (
+    "begin from a fingerprint of this line (--fingerprint). If that does not help, the line is not the model: gains "
+    "over the speed from a table, or a rate limit of the demand behind the lever; make a test (shaftprint plan)."
+)
 FLOOR: Mapping[str, float] = MappingProxyType({GAUGE_K_P.name: 0.003, GAUGE_K_I.name: 0.003, TAU_DN.name: 0.002})
 """Share of each number below which its standard deviation does not fall, however long the service."""
 FLOOR_S: Mapping[str, float] = MappingProxyType({T_D.name: 1e-3, T_SP.name: 1e-3})
@@ -89,6 +94,8 @@ class ServiceFit:
     """Steps that were taken."""
     last_step: float
     """Size of the last one, over the standard deviation in its direction."""
+    misfit: Misfit
+    """What the segments hold that the model leaves."""
 
     @property
     def std(self) -> FloatArray:
@@ -172,7 +179,7 @@ def fit_segments(
                 break
             raise ServiceError(
                 f"service: expected a fit that comes to rest within {_MOST_STEPS} steps, found one whose last step was "
-                f"{size:.2g} standard deviations long; begin from a fingerprint of this line (--fingerprint)."
+                f"{size:.2g} standard deviations long; {_OTHER_LINE}"
             )
         number, before = number + 1, size
         sums = sums_of(each, model, theta)
@@ -186,7 +193,7 @@ def fit_segments(
                 break
             raise ServiceError(
                 "service: expected a fit that comes nearer to the segments with each step, found none that does; "
-                "begin from a fingerprint of this line (--fingerprint)."
+                + _OTHER_LINE
             )
         theta, runs, each = found
         if any(one.meets_limit for one in runs):
@@ -217,6 +224,7 @@ def fit_segments(
         counts_at_start=counts_at_start,
         steps=number,
         last_step=size,
+        misfit=misfit_of(runs, whitening, model, theta, sums.prior),
     )
 
 

@@ -38,6 +38,8 @@ MEAN_S = 5.0
 _FEWEST, _LEAST_RANGE = 5, 0.05
 # Scatter of the still stretches about the line beyond which the lever is not what the governor follows, over the speed.
 _LARGEST_SPREAD = 0.013
+# Levers and their cards bend by so much: the slope changes by this share a volt.
+_BEND_STD_PER_V = 0.004
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -254,12 +256,16 @@ def lever_line(still: StillMeans) -> LeverLine:
             f"{needed} at several speeds ahead, found {levels.shape[0]} between {low:.0f} and {high:.0f} rpm; give "
             "logs of hours in which the speed was changed."
         )
-    keep = np.ones(weight.size, dtype=np.bool_)
+    keep, bend, spread = np.ones(weight.size, dtype=np.bool_), 0.0, 0.0
     for _ in range(3):
         middle = np.average(levels[keep], axis=0, weights=weight[keep])
         moved = levels - middle
         slope = float(np.sum((weight * moved[:, 0] * moved[:, 1])[keep]) / np.sum((weight * moved[:, 0] ** 2)[keep]))
-        left = moved[:, 1] - slope * moved[:, 0]
+        if spread > 0.0:
+            middle_rev_s, slope, bend = _bent(moved[keep], weight[keep], slope, spread)
+            middle = middle + np.array([0.0, middle_rev_s])
+            moved = levels - middle
+        left = moved[:, 1] - slope * moved[:, 0] * (1.0 + 0.5 * bend * moved[:, 0])
         spread = 1.4826 * float(np.median(np.abs(left[keep])))
         keep = np.abs(left) <= max(5.0 * spread, 1e-9)
     if spread > _LARGEST_SPREAD * middle[1]:
@@ -274,4 +280,21 @@ def lever_line(still: StillMeans) -> LeverLine:
         middle_rev_s=float(middle[1]),
         spread_rpm=spread * SECONDS_PER_MINUTE,
         stretches=int(keep.sum()),
+        bend_per_v=bend,
     )
+
+
+def _bent(moved: FloatArray, weight: FloatArray, slope: float, spread: float) -> tuple[float, float, float]:
+    """Return speed in the middle, slope there and bend of a line, as far as its scatter tells the bend.
+
+    ``moved``: set points and speeds from the middle, shape (stretches, 2). ``weight``: length of each. ``slope``: that
+    of the straight line. ``spread``: scatter of a stretch of usual length.
+    """
+    volts, speed = moved.T
+    rows = np.stack([np.ones(volts.size), volts, 0.5 * slope * volts**2], axis=1)
+    precision = weight / (np.mean(weight) * spread**2)
+    known = np.diag([0.0, 0.0, _BEND_STD_PER_V**-2])
+    middle, new_slope, bend = np.linalg.solve(
+        rows.T @ (precision[:, None] * rows) + known, rows.T @ (precision * speed)
+    )
+    return float(middle), float(new_slope), float(bend * slope / new_slope)

@@ -24,6 +24,7 @@ from shaftprint.service._vetting import (
     Found,
     lever_follows_load,
     off_the_line,
+    play_of_lever,
     shift_of_lever,
     speed_is_off,
     torque_is_held,
@@ -206,7 +207,7 @@ def _judged(
     usable = [one for one in gathered.segments if not one.reason]
     still = gathered.still
     held = torque_is_held(still, line, speed_rev_s=model.engine_speed_rev_s)
-    found = [off_the_line(still, line), held, lever_follows_load(still), way_on(usable)]
+    found = [off_the_line(still, line), held, lever_follows_load(still), way_on(usable), play_of_lever(usable, line)]
     each: dict[int, Score] = {}
     loud: set[int] = set()
     if usable:

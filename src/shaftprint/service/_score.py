@@ -147,7 +147,7 @@ def scores(runs: Sequence[Simulated], whitening: Whitening) -> list[Score]:
 def _score(run: Simulated, whitening: Whitening) -> Score:
     rows = np.concatenate([run.residuals[None], run.slopes, run.beside])
     white = whitening.whitened(rows, [slice(0, run.record.samples)])
-    free = len(FREE)
+    free = len(run.slopes)
     left = _left(white[: 1 + free], white[1 + free :]).reshape(1 + free, -1)
     count = left.shape[1] - len(run.beside)
     power = float(left[0] @ left[0]) / count

@@ -11,7 +11,7 @@ from shaftprint.time_domain._record import Record
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class LeverLine:
-    """The speed that the lever asks for, found where it stands still."""
+    """The speed that the lever asks for, found where it stands still: a line that may bend."""
 
     slope_rev_s_per_v: float
     """Speed for one volt [rev/s per V]."""
@@ -23,10 +23,13 @@ class LeverLine:
     """Scatter of the still stretches about the line [rpm]."""
     stretches: int
     """How many there were."""
+    bend_per_v: float = 0.0
+    """Share by which the slope grows for one volt, from the middle on [1/V]."""
 
     def speed_rev_s(self, volts: FloatArray) -> FloatArray:
         """Return the speed [rev/s] that set points [V] ask for, of any shape."""
-        return np.asarray(self.middle_rev_s + self.slope_rev_s_per_v * (volts - self.middle_v))
+        moved = volts - self.middle_v
+        return np.asarray(self.middle_rev_s + self.slope_rev_s_per_v * moved * (1.0 + 0.5 * self.bend_per_v * moved))
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

@@ -8,6 +8,7 @@ closed-loop dynamic-stochastic systems, Technometrics 16, 1974). So each of thes
 - by which shift of the lever does the log agree best with an earlier fingerprint?
 - does the speed follow the lever wherever it stands still, and give way to the load nowhere?
 - does the torque go with the square of the speed across moves, as it does at the quay?
+- is the speed the same from whichever side the lever came?
 
 Somebody who trims against the load only when he moves the lever anyway is seen by none of them.
 """
@@ -47,6 +48,9 @@ _OFF, _OFF_STD, _OFF_SHARE, _SETTLED_S, _END_S = 0.017, 6.0, 0.1, 15.0, 5.0
 # that than to nothing is no governor's doing. How often a sound log may be refused, and the least degrees of freedom.
 _HELD, _HELD_RATE, _FEWEST_HELD = -0.25, 1e-3, 8
 _BEFORE_SAMPLES, _AFTER_S, _UNTIL_S = 40, 4.0, 9.0
+# A lever came from where it was this share of its move away. Half of its play counts from so many standard deviations
+# and this share of the speed on, told by so many moves.
+_LAST_WAY, _PLAY_STD, _PLAY, _FEWEST_ENDS = 0.1, 5.0, 6e-4, 12
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -227,14 +231,49 @@ def speed_is_off(segment: Segment, line: LeverLine) -> str:
 
     ``segment``: a usable segment. ``line``: what the lever asks for.
     """
+    off_rpm = _off_at_end_rpm(segment, line)
+    if off_rpm is not None and abs(off_rpm) > farthest_rpm(line):
+        return "the speed does not come to what the lever asks for: a limit acts, or a load controller"
+    return ""
+
+
+def _off_at_end_rpm(segment: Segment, line: LeverLine) -> float | None:
+    """Return how far the speed is at the end from what the lever asks for [rpm]; None where it has not settled."""
     if segment.start_s + segment.seconds - segment.move_end_s < _SETTLED_S:
-        return ""
+        return None
     last = round(_END_S * segment.rate_hz / segment.every)
     # beyond the last sample there is the margin of the filter, and perhaps the next move
     asked = float(line.speed_rev_s(segment.lever_v[[-1 - Decimator(every=segment.every).half]])[0])
-    if abs(rpm_from_rev_s(float(np.mean(segment.speed_rev_s[-last:])) - asked)) > farthest_rpm(line):
-        return "the speed does not come to what the lever asks for: a limit acts, or a load controller"
-    return ""
+    return rpm_from_rev_s(float(np.mean(segment.speed_rev_s[-last:])) - asked)
+
+
+def play_of_lever(segments: Sequence[Segment], line: LeverLine) -> Found:
+    """Return by how much the speed hangs on the side from which the lever came, half of its play [rpm].
+
+    Speed that the lever does not give while it takes up its play is missing in each move that turns back.
+
+    ``segments``: usable segments. ``line``: what the lever asks for.
+    """
+    what = "speed by the side from which the lever came"
+    rows = []
+    for segment in segments:
+        off_rpm = _off_at_end_rpm(segment, line)
+        asked = line.speed_rev_s(segment.lever_v[: segment.lever_v.size - Decimator(every=segment.every).half])
+        away = np.flatnonzero(np.abs(asked - asked[-1]) > _LAST_WAY * np.ptp(asked))
+        if off_rpm is not None and away.size:
+            rows.append((float(np.sign(asked[-1] - asked[away[-1]])), off_rpm))
+    if len(rows) < _FEWEST_ENDS:
+        return Found(what=what, value=float("nan"), unit="rpm")
+    side, off = np.array(rows).T
+    play, std = _through_zero(side - side.mean(), off - off.mean())
+    refused = ""
+    if abs(play) > _PLAY_STD * std and abs(play) > _PLAY * rpm_from_rev_s(line.middle_rev_s):
+        refused = (
+            f"where the lever was moved up to where it stands, the speed is {2.0 * abs(play):.1f} +/- {2.0 * std:.1f} "
+            f"rpm {'lower' if play < 0.0 else 'higher'} than where it was moved down to there: the lever has play "
+            "between its sensor and the governor; log the demand that the control unit takes."
+        )
+    return Found(what=what, value=play, unit="rpm", refused=refused)
 
 
 def way_on(segments: Sequence[Segment]) -> Found:

@@ -160,6 +160,11 @@ def _astern(values: Mapping[str, FloatArray], rate_hz: float, names: Channels) -
     return {**values, names.torque: np.where(backs, -_ASTERN_SHARE, 1.0) * torque}
 
 
+def _with(**changes: float) -> Callable[[Tug], Tug]:
+    """Return what makes a ship another one than the model of service."""
+    return lambda tug: replace(tug, **changes)  # type: ignore[arg-type]
+
+
 def _stronger_orders(tug: Tug) -> Tug:
     noise = tug.noise
     return replace(tug, noise=replace(noise, **{name: 2.0 * getattr(noise, name) for name in _ORDERS}))
@@ -178,5 +183,13 @@ TROUBLES: Mapping[str, Trouble] = {
     "orders": Trouble(ship=_stronger_orders),
     "astern": Trouble(crew=lambda habits: replace(habits, idles_per_hour=12.0, declutched=0.0), logged=_astern),
     "clutch-out": Trouble(crew=lambda habits: replace(habits, idles_per_hour=12.0, declutched=1.0)),
+    "lever-bent": Trouble(ship=_with(set_point_bend_per_v=0.004)),
+    "lever-play": Trouble(ship=_with(set_point_hysteresis_v=0.02)),
+    "dynamic-inflow": Trouble(ship=_with(inflow_gain=1.0)),
+    "gains-by-speed": Trouble(ship=_with(governor_gain_exponent=0.5)),
+    "delay-in-turns": Trouble(ship=_with(governor_delay_exponent=-1.0)),
+    "governor-deadband": Trouble(ship=_with(governor_deadband_rpm=3.0)),
+    "demand-rate-limit": Trouble(ship=_with(demand_rate_limit_rpm_per_s=300.0)),
+    "smoke-limiter": Trouble(ship=_with(unboosted_torque_share=0.55)),
 }
 """Troubles by name; names are those of ``choices.SERVICE_TROUBLES``."""

@@ -1,0 +1,130 @@
+"""A line that is not the model is told from one that is, by segments that are simulated with what the model lacks."""
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+
+from shaftprint.arrays import frozen_bool, frozen_float
+from shaftprint.service._fit import fit_segments
+from shaftprint.service._misfit import Misfit, Trend
+from shaftprint.service._model import FREE, service_model
+from shaftprint.time_domain._decimator import Decimator
+from shaftprint.time_domain._record import Record
+from shaftprint.time_domain._simulator import ExactDelays, on_record
+from shaftprint.vessel import load_vessel
+
+RATE_HZ, EVERY = 20.0, 5
+NOISE = 0.003
+
+
+@cache
+def model():
+    return service_model(load_vessel("stan-tug-1205-service"))
+
+
+def changed(**shares):
+    """Return the true numbers with some of them changed by a share."""
+    return np.array([model().values[name] * (1.0 + shares.get(name, 0.0)) for name in FREE])
+
+
+def records(rng, truth, *, sees=lambda outputs: outputs, count=60):
+    """Return segments of moves from and to many speeds, each of the line that ``truth(level, swing)`` says.
+
+    ``sees``: what the channels show of speed and torque, both of shape (samples,).
+    """
+    decimator = Decimator(every=EVERY)
+    made = []
+    for k in range(count):
+        first, swing = rng.uniform(-0.25, 0.15), rng.uniform(0.02, 0.12) * rng.choice([-1.0, 1.0])
+        samples = round(15.0 * RATE_HZ)
+        fine = np.arange((samples - 1) * EVERY + 2 * decimator.half + 1)
+        drive = first + swing * (fine >= decimator.half + 2.0 * RATE_HZ * EVERY)
+        blank = frozen_float(np.zeros(samples))
+        record = Record(
+            name=f"move {k}", rate_hz=RATE_HZ, start_s=0.0, inputs={"n_set": frozen_float(decimator.filtered(drive))},
+            outputs={"n": blank, "M_s": blank}, used=frozen_bool(np.ones(samples, dtype=np.bool_)),
+            drive={"n_set": frozen_float(drive)}, every=EVERY, load=1.0,
+            engine_speed_rev_s=model().engine_speed_rev_s, shaft_torque_nm=model().shaft_torque_nm,
+        )  # fmt: skip
+        vector = model().vector(truth(np.log1p(first + 0.5 * swing), abs(swing)), 1.0)
+        run = on_record(ExactDelays(), model().structure, vector, record, ())
+        names = tuple(model().structure.outputs)
+        outputs = sees({name: run[0, :, names.index(name)] for name in ("n", "M_s")})
+        made.append(
+            replace(
+                record,
+                outputs={
+                    name: frozen_float(values + NOISE * rng.standard_normal(samples))
+                    for name, values in outputs.items()
+                },
+            )
+        )
+    return made
+
+
+def found(seed, truth, *, line=None, **options):
+    """Return what is found of a fit to segments."""
+    return fit_segments(records(np.random.default_rng(seed), truth, **options), line or model()).misfit
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(3))
+def test_nothing_speaks_against_a_line_that_is_the_model(seed):
+    assert found(seed, lambda level, swing: changed()).reason == ""
+
+
+def test_numbers_that_are_not_those_of_the_start_are_no_other_line():
+    assert found(1, lambda level, swing: changed(K_p=0.03, t_d=-0.05, tau_dn=0.01)).reason == ""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("truth", "words"),
+    [
+        (lambda level, swing: changed(K_p=0.3 * level, K_i=0.3 * level), "the gains of the governor hang on the speed"),
+        (lambda level, swing: changed(t_d=-level), "the delay of the governor hangs on the speed"),
+        (
+            lambda level, swing: changed(K_p=0.1 * np.log(swing / 0.06), K_i=0.1 * np.log(swing / 0.06)),
+            "the gains of the governor hang on the size of the move",
+        ),
+    ],
+)
+def test_numbers_that_hang_on_speed_or_move_are_named(truth, words):
+    assert found(2, truth).reason.startswith(words)
+
+
+@pytest.mark.slow
+def test_how_gains_go_with_the_speed_is_measured():
+    trend = found(3, lambda level, swing: changed(K_p=0.2 * level, K_i=0.2 * level)).trends[0]
+    assert trend.size == pytest.approx(0.2, abs=4.0 * trend.std)
+    assert trend.std < 0.05
+
+
+def test_a_torque_behind_a_filter_is_no_gauge_that_is_late_by_a_stated_time():
+    def filtered(outputs):
+        torque = outputs["M_s"].copy()
+        for k in range(1, torque.size):
+            torque[k] = torque[k - 1] + (outputs["M_s"][k] - torque[k - 1]) * (1.0 - np.exp(-1.0 / (RATE_HZ * 0.1)))
+        return {**outputs, "M_s": torque}
+
+    misfit = found(4, lambda *_: changed(), sees=filtered)
+    assert misfit.reason.startswith("the latency of the gauge would be")
+    assert misfit.torque > 3.0 > misfit.chance
+
+
+@pytest.mark.slow
+def test_an_inertia_far_from_that_of_the_vessel_file_is_named():
+    std = model().prior_std["tau_up"]
+    off = replace(model(), known={**model().known, "tau_up": model().known["tau_up"] + 8.0 * std})
+    reason = found(5, lambda *_: changed(), line=off).reason
+    assert "the inertia ahead of the gauge would be" in reason
+    assert "below what the vessel file states" in reason
+
+
+def test_what_is_too_small_to_matter_is_no_reason_however_long_the_service():
+    trend = Trend(what="the gains", along="hang on the speed", by="a table", size=0.01, std=1e-4, gain=1e4, least=0.04)
+    misfit = Misfit(speed=1.0, torque=1.0, chance=1.0, gain=0.0, trends=(trend,), pulled=())
+    assert misfit.reason == ""
+    assert replace(misfit, trends=(replace(trend, size=0.05),)).reason.startswith("the gains hang on the speed")
