@@ -21,12 +21,15 @@ def test_the_verdict_comes_first(run, demo):
     assert told.count("known to this share of the value only") == 1
     assert "The stability margins are small: a gain margin of 1." in shown
     assert "Verdict: trustworthy" in result.output
-    # mostly its prior, and so among those that are not trusted: what was found says so too
+    # mostly its prior, and so among those that are not trusted: it stands behind those that may be used, and says why
+    usable, unusable = result.output.split("Found too, but not to be used")
+    assert "(I_dn)" in usable
+    assert "Engine, coupling" in unusable
     found = next(
         words for words in " ".join(result.output.split()).split(" * ") if words.startswith("Engine, coupling")
     )
     assert "with the prior of the vessel file" in found
-    assert "; not to be used: the test adds almost nothing to what was known before" in found
+    assert "; the test adds almost nothing to what was known before" in found
 
 
 def test_the_report_of_the_demo_says_which_structure_the_data_want(demo):

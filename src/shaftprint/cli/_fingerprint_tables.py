@@ -66,7 +66,10 @@ def print_found(
             sentences += (f"{ASSUMED} {_points(len(verdict.assumptions))} that no recording can show; {where}.",)
     _print_verdict(fingerprint, sentences, line)
     if verdict.trustworthy:
-        print_findings("What was found", [*found_sentences(fingerprint, truth), *further], is_answer=True)
+        usable, unusable = found_sentences(fingerprint, truth)
+        print_findings("What was found", [*usable, *further], is_answer=True)
+        if unusable:
+            print_findings("Found too, but not to be used", unusable, is_answer=True)
     if lists:
         print_findings("By name; `shaftprint show` says what each name means", lists, is_answer=True)
     with details():

@@ -19,23 +19,25 @@ MOST_PARAMETERS = 12
 """So many parameters are told where a structure has none of the numbers that have words of their own."""
 
 
-def found_sentences(fingerprint: Fingerprint, truth: Mapping[str, float]) -> list[str]:
-    """Return what was found, a sentence for each number: its truth where that is known, why it is not to be used.
+def found_sentences(fingerprint: Fingerprint, truth: Mapping[str, float]) -> tuple[list[str], list[str]]:
+    """Return what was found, and what was found but is not to be used and why, a sentence for each number.
 
     A structure with none of the numbers that have words here is told by its parameters.
+
+    ``truth``: true values by name, where they are known.
     """
     there = {one.name: one for kind in fingerprint.numbers.values() for one in kind}
     doubts = fingerprint.verdict.not_trusted
-    sentences = []
+    usable, unusable = [], []
     for name in [name for name in SENTENCES if name in there]:
         quantity = there[name]
         given = _given(quantity, fingerprint) or ("" if name in truth else _beside(quantity))
         true = _true(quantity, truth[name]) if name in truth else ""
-        doubt = f"; not to be used: {doubts[name]}" if name in doubts else ""
+        doubt = f"; {doubts[name]}" if name in doubts else ""
         words = SENTENCES[name] or quantity.meaning.capitalize()
         symbol = "" if words.lower().startswith(name) else f" ({name})"
-        sentences.append(f"{words}{symbol}: {_value(quantity)}{given}{true}{doubt}.")
-    return sentences or _of_parameters(fingerprint.parameters, doubts)
+        (unusable if doubt else usable).append(f"{words}{symbol}: {_value(quantity)}{given}{true}{doubt}.")
+    return (usable, unusable) if usable or unusable else (_of_parameters(fingerprint.parameters, doubts), [])
 
 
 def drive_sentences(fingerprint: DriveFingerprint) -> list[str]:
