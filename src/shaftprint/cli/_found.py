@@ -102,7 +102,7 @@ SENTENCES: Mapping[str, str | None] = {
     "t_d + t_sp": "Total delay from the set point to the fuel",
     "K_p": None,
     "K_i": None,
-    "K_p / K_i": "The governor's reset time",
+    "K_p / K_i": "Governor reset time",
     "gain margin": "Gain margin: the governor gain may grow by this factor before the speed oscillates",
     "delay margin": "Delay margin: this much more delay in the loop makes the speed oscillate",
 }
