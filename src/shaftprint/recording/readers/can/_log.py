@@ -64,13 +64,20 @@ def database_of(path: Path, hints: Mapping[str, object]) -> Database:
     """
     if hints.get("dbc") is not None:
         return read_database(Path(str(hints["dbc"])))
-    return read_database(dbc_path(path)) if dbc_path(path).is_file() else known_messages()
+    return read_database(dbc_path(path)) if _is_beside(path) else known_messages()
 
 
 def words_of_beside(path: Path, hints: Mapping[str, object]) -> str:
     """Return what is said where the DBC file beside a log was taken."""
-    taken = hints.get("dbc") is None and dbc_path(path).is_file()
-    return f" with {dbc_path(path).name} beside it" if taken else ""
+    return f" with {dbc_path(path).name} beside it" if hints.get("dbc") is None and _is_beside(path) else ""
+
+
+def _is_beside(path: Path) -> bool:
+    try:
+        return dbc_path(path).is_file()
+    except OSError:
+        # with the ending the name is longer than a name may be
+        return False
 
 
 def expect_known(path: Path, taken: Decoded, database: Database) -> None:
