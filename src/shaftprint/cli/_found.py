@@ -28,7 +28,8 @@ def found_sentences(fingerprint: Fingerprint, truth: Mapping[str, float]) -> tup
     """
     there = {one.name: one for kind in fingerprint.numbers.values() for one in kind}
     doubts = fingerprint.verdict.not_trusted
-    usable, unusable = [], []
+    usable: list[str] = []
+    unusable: list[str] = []
     for name in [name for name in SENTENCES if name in there]:
         quantity = there[name]
         given = _given(quantity, fingerprint) or ("" if name in truth else _beside(quantity))
