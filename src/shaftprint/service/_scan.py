@@ -20,8 +20,10 @@ from shaftprint.service._model import FREE, ServiceModel, service_model
 from shaftprint.service._score import Score, noise_of, scores, simulated
 from shaftprint.service._segment import LeverLine, Segment
 from shaftprint.service._segment_file import USED, write_segments
+from shaftprint.service._start import begun
 from shaftprint.service._vetting import (
     Found,
+    beside_full_load,
     lever_follows_load,
     off_the_line,
     play_of_lever,
@@ -156,6 +158,8 @@ def scan(
         for one in gathered.left_out
     )
     seconds = dict(gathered.seconds)
+    still, at_full_load = beside_full_load(gathered.still, vessel)
+    gathered = replace(gathered, still=still)
     try:
         line = lever_line(gathered.still)
     except ServiceError as error:
@@ -163,7 +167,8 @@ def scan(
             segments=gathered.segments, line=None, seconds=seconds, left_out=left_out, found=(), refused=str(error),
             accuracy={}, values={}, rows=(), facts={}, spans_s=gathered.spans_s,
         )  # fmt: skip
-    segments, found, each = _judged(gathered, line, model)
+    segments, found, each, model = _judged(gathered, line, model)
+    found = (at_full_load, *found)
     simulated_ones = [one for one in each if one is not None]
     beside = [one for one in simulated_ones if not one.meets_limit]
     used = sum(not one.reason for one in segments)
@@ -196,8 +201,8 @@ def scan(
 
 def _judged(
     gathered: Gathered, line: LeverLine, model: ServiceModel
-) -> tuple[tuple[Segment, ...], tuple[Found, ...], list[Score | None]]:
-    """Return segments with their reasons, what was found of the whole log, and what each segment tells."""
+) -> tuple[tuple[Segment, ...], tuple[Found, ...], list[Score | None], ServiceModel]:
+    """Return segments with their reasons, what was found of the whole log, what each tells, and at which numbers."""
     gathered = replace(
         gathered,
         segments=tuple(
@@ -207,14 +212,17 @@ def _judged(
     usable = [one for one in gathered.segments if not one.reason]
     still = gathered.still
     held = torque_is_held(still, line, speed_rev_s=model.engine_speed_rev_s)
-    found = [off_the_line(still, line), held, lever_follows_load(still), way_on(usable), play_of_lever(usable, line)]
+    play = play_of_lever(usable, line)
+    found = [off_the_line(still, line), held, lever_follows_load(still), way_on(usable), play]
     each: dict[int, Score] = {}
     loud: set[int] = set()
     if usable:
         # what a long log tells is told by segments spread over it: each costs a simulation
         every = max(-(-len(usable) // _MOST_SIMULATED), 1)
         chosen = usable[::every]
-        runs = simulated(model.records(chosen, line), model, model.theta)
+        records = model.records(chosen, line)
+        model = begun(model, records)
+        runs = simulated(records, model, model.theta)
         if model.is_of_fingerprint:
             found.append(shift_of_lever(runs, model))
         each = dict(zip(map(id, chosen), scores(runs, noise_of(runs)), strict=True))
@@ -226,7 +234,7 @@ def _judged(
         for one in gathered.segments
     )
     kept = [each.get(id(one)) if not new.reason else None for one, new in zip(gathered.segments, segments, strict=True)]
-    return segments, tuple(found), kept
+    return segments, tuple(found), kept, model
 
 
 def _accuracy(each: Sequence[Score], model: ServiceModel, *, used: int) -> tuple[dict[str, float], dict[str, float]]:

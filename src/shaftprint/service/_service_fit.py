@@ -20,6 +20,7 @@ from shaftprint.service._model import FREE, ServiceModel, service_model
 from shaftprint.service._progress import progress_of
 from shaftprint.service._segment import LeverLine, Segment
 from shaftprint.service._segment_file import read_segments
+from shaftprint.service._start import begun
 
 if TYPE_CHECKING:
     from shaftprint.campaign._trial_conditions import TrialConditions
@@ -127,6 +128,7 @@ def fit_service(
         for segments, line, *_ in days
         for record in model.records([one for one in segments if not one.reason], line)
     ]
+    model = begun(model, records)
     kept = None if progress is None else progress_of(Path(progress), paths, model)
     fit = fit_segments(records, model, progress=kept)
     used = tuple(one for one, counts in zip(given, fit.counts, strict=True) if counts)

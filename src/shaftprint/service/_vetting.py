@@ -15,10 +15,11 @@ Somebody who trims against the load only when he moves the lever anyway is seen 
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shaftprint.arrays import FloatArray
+from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.catalogue._gauge import T_SP
 from shaftprint.distributions import deviations
 from shaftprint.service._gather import MEAN_S, StillMeans
@@ -27,6 +28,9 @@ from shaftprint.service._score import Simulated
 from shaftprint.service._segment import LeverLine, Segment
 from shaftprint.time_domain._decimator import Decimator
 from shaftprint.units import rpm_from_rev_s
+
+if TYPE_CHECKING:
+    from shaftprint.vessel._vessel import Vessel
 
 LATEST_S = 0.02
 """Shift of the lever's clock from which on a log is refused [s]."""
@@ -44,6 +48,8 @@ _WAY, _WAY_STD, _LEAST_MOVE = 0.1, 4.0, 0.08
 # Where the lever stands still the speed is what it asks for, within this share of it and so many deviations of its
 # line; elsewhere less than this share of the time. After a move that takes so long, and a mean over so much of the end.
 _OFF, _OFF_STD, _OFF_SHARE, _SETTLED_S, _END_S = 0.017, 6.0, 0.1, 15.0, 5.0
+# From this share of what the engine gives at a speed on it is at its limit.
+_FULL_LOAD = 0.95
 # A governor holds the speed whatever the load; where the torque l n^2 is held, the speed goes with l^-1/2. Nearer to
 # that than to nothing is no governor's doing. How often a sound log may be refused, and the least degrees of freedom.
 _HELD, _HELD_RATE, _FEWEST_HELD = -0.25, 1e-3, 8
@@ -140,6 +146,23 @@ def _left_open_s(runs: Sequence[Simulated], model: ServiceModel) -> float:
     moved = sum(one @ one[late] for one in columns)
     towards = moved / moved[late]
     return float(np.sqrt(max(towards @ model.covariance @ towards, 0.0)))
+
+
+def beside_full_load(still: StillMeans, vessel: "Vessel") -> tuple[StillMeans, Found]:
+    """Return what stands still below the torque that the engine gives at most, and the share of the rest [%].
+
+    There the engine holds its torque and no speed, as a tug does that pulls with all it has: nothing of that is a
+    controller behind the lever. ``still``: means. ``vessel``: the installation, with its full-load curve.
+    """
+    point = vessel.working_point
+    rpm = rpm_from_rev_s(still.speed_rev_s)
+    torque_nm = still.load * point.driving_torque_nm / vessel.gearbox.shaft_over_brake
+    torque_nm = torque_nm * (rpm / point.engine_speed_rpm) ** 2
+    full_nm = np.array([vessel.machine.full_load_nm(float(one)) for one in rpm])
+    below = torque_nm < _FULL_LOAD * full_nm
+    share = float(np.mean(~below)) if below.size else float("nan")
+    kept = {name: frozen_float(getattr(still, name)[below]) for name in ("lever_v", "speed_rev_s", "load", "stretch")}
+    return StillMeans(**kept), Found(what="time of a still lever at full load", value=100.0 * share, unit="%")
 
 
 def off_the_line(still: StillMeans, line: LeverLine) -> Found:

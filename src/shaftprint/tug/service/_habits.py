@@ -15,11 +15,15 @@ from shaftprint.vessel._vessel import Vessel
 _BEFORE_S = 30.0
 # The clutch is not moved while the lever is.
 _SETTLED_S = 4.0
+# The rated speed of the engines for which habits are given; at others they are in proportion [rpm].
+_RATED_RPM = 1800.0
+# A crew at the quay asks for no more than this share of what the engine gives.
+_OF_FULL_LOAD = 0.9
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Habits:
-    """How often, how far and how fast somebody moves the lever."""
+    """How often, how far and how fast somebody moves the lever, of an engine whose rated speed is 1800 rpm."""
 
     shortest_hold_s: float = 15.0
     """Shortest time for which the lever is left alone [s]; times are evenly spread over their logarithm."""
@@ -76,7 +80,9 @@ def lever_course(
     rng
         Source of what happens to be done.
     """
-    end_s, (lowest, highest) = SECONDS_PER_HOUR * hours, habits.speeds_rpm
+    in_proportion = vessel.machine.rated_speed_rpm / _RATED_RPM
+    end_s, lowest = SECONDS_PER_HOUR * hours, in_proportion * habits.speeds_rpm[0]
+    highest = min(in_proportion * habits.speeds_rpm[1], _highest_rpm(vessel))
     engine = vessel.engine
     idle = 0.5 * lowest if engine is None or engine.idle_speed_rpm is None else engine.idle_speed_rpm
     corners = [(0.0, 0.5 * (lowest + highest))]
@@ -85,7 +91,7 @@ def lever_course(
 
     def move(to_rpm: float) -> None:
         nonlocal time_s, level
-        rate = math.exp(rng.uniform(*np.log(habits.hand_rpm_per_s)))
+        rate = in_proportion * math.exp(rng.uniform(*np.log(habits.hand_rpm_per_s)))
         corners.append((time_s, level))
         time_s += max(abs(to_rpm - level) / rate, 0.02)
         corners.append((time_s, to_rpm))
@@ -107,7 +113,7 @@ def lever_course(
             time_s += stay_s
             move(float(rng.uniform(lowest, 0.5 * (lowest + highest))))
         elif rng.uniform() < habits.corrections:
-            step = float(rng.uniform(*habits.correction_rpm)) * (1.0 if rng.uniform() < 0.5 else -1.0)
+            step = in_proportion * float(rng.uniform(*habits.correction_rpm)) * (1.0 if rng.uniform() < 0.5 else -1.0)
             move(_within(level + step, lowest, highest))
         else:
             move(float(rng.uniform(lowest, highest)))
@@ -126,6 +132,16 @@ def lever_course(
         corner_v=tuple(volts.tolist()),
         declutched_s=tuple(declutched),
     )
+
+
+def _highest_rpm(vessel: Vessel) -> float:
+    """Return the speed at which the propeller of the working point takes nearly what the engine gives [rpm]."""
+    point = vessel.working_point
+    rpm = np.linspace(0.0, 1.0, 1001)[1:] * vessel.machine.rated_speed_rpm
+    taken = point.driving_torque_nm / vessel.gearbox.shaft_over_brake * (rpm / point.engine_speed_rpm) ** 2
+    given = np.array([vessel.machine.full_load_nm(float(one)) for one in rpm])
+    beyond = np.flatnonzero((taken > _OF_FULL_LOAD * given) & (rpm > point.engine_speed_rpm))
+    return float(rpm[beyond[0]] if beyond.size else rpm[-1])
 
 
 def _within(speed_rpm: float, lowest: float, highest: float) -> float:
