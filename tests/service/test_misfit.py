@@ -6,16 +6,14 @@ from functools import cache
 import numpy as np
 import pytest
 
-from shaftprint.arrays import frozen_bool, frozen_float
 from shaftprint.service._fit import fit_segments
 from shaftprint.service._misfit import Misfit, Trend
 from shaftprint.service._model import FREE, service_model
-from shaftprint.time_domain._decimator import Decimator
-from shaftprint.time_domain._record import Record
-from shaftprint.time_domain._simulator import ExactDelays, on_record
+from shaftprint.service._score import simulated
+from shaftprint.service._segment import LeverLine, Segment
 from shaftprint.vessel import load_vessel
 
-RATE_HZ, EVERY = 20.0, 5
+RATE_HZ = 20.0
 NOISE = 0.003
 
 
@@ -29,39 +27,33 @@ def changed(**shares):
     return np.array([model().values[name] * (1.0 + shares.get(name, 0.0)) for name in FREE])
 
 
-def records(rng, truth, *, sees=lambda outputs: outputs, count=60):
+def segment(drive, speed_rev_s, torque_nm):
+    """Return a move of the lever, which asks for shares of the speed, and what was measured."""
+    return Segment(
+        log="log", start_s=0.0, move_s=2.0, move_end_s=2.0, rate_hz=RATE_HZ, every=1, lever_v=np.asarray(drive),
+        speed_rev_s=speed_rev_s, torque_nm=torque_nm, state="ahead",
+    )  # fmt: skip
+
+
+def records(rng, truth, *, sees=lambda torque: torque, count=60):
     """Return segments of moves from and to many speeds, each of the line that ``truth(level, swing)`` says.
 
-    ``sees``: what the channels show of speed and torque, both of shape (samples,).
+    ``sees``: what the channel shows of the torque, shape (samples,).
     """
-    decimator = Decimator(every=EVERY)
-    made = []
-    for k in range(count):
+    n_0, m_0 = model().engine_speed_rev_s, model().shaft_torque_nm
+    line = LeverLine(slope_rev_s_per_v=n_0, middle_v=0.0, middle_rev_s=n_0, spread_rpm=0.1, stretches=20)
+    samples, made = round(15.0 * RATE_HZ), []
+    for _ in range(count):
         first, swing = rng.uniform(-0.25, 0.15), rng.uniform(0.02, 0.12) * rng.choice([-1.0, 1.0])
-        samples = round(15.0 * RATE_HZ)
-        fine = np.arange((samples - 1) * EVERY + 2 * decimator.half + 1)
-        drive = first + swing * (fine >= decimator.half + 2.0 * RATE_HZ * EVERY)
-        blank = frozen_float(np.zeros(samples))
-        record = Record(
-            name=f"move {k}", rate_hz=RATE_HZ, start_s=0.0, inputs={"n_set": frozen_float(decimator.filtered(drive))},
-            outputs={"n": blank, "M_s": blank}, used=frozen_bool(np.ones(samples, dtype=np.bool_)),
-            drive={"n_set": frozen_float(drive)}, every=EVERY, load=1.0,
-            engine_speed_rev_s=model().engine_speed_rev_s, shaft_torque_nm=model().shaft_torque_nm,
-        )  # fmt: skip
-        vector = model().vector(truth(np.log1p(first + 0.5 * swing), abs(swing)), 1.0)
-        run = on_record(ExactDelays(), model().structure, vector, record, ())
-        names = tuple(model().structure.outputs)
-        outputs = sees({name: run[0, :, names.index(name)] for name in ("n", "M_s")})
-        made.append(
-            replace(
-                record,
-                outputs={
-                    name: frozen_float(values + NOISE * rng.standard_normal(samples))
-                    for name, values in outputs.items()
-                },
-            )
-        )
-    return made
+        drive = first + swing * (np.arange(samples) >= 2.0 * RATE_HZ)
+        # at the speed and torque of the working point what is left is the simulation itself
+        at_rest = model().records([segment(drive, np.full(samples, n_0), np.full(samples, m_0))], line)
+        (run,) = simulated(at_rest, model(), truth(np.log1p(first + 0.5 * swing), abs(swing)))
+        speed = -run.residuals[:, 0] / run.weight
+        torque = (1.0 + speed) ** 2 - 1.0 - run.residuals[:, 1] / run.weight
+        noise = NOISE * rng.standard_normal((2, samples))
+        made.append(segment(drive, n_0 * (1.0 + speed + noise[0]), m_0 * (1.0 + sees(torque) + noise[1])))
+    return model().records(made, line)
 
 
 def found(seed, truth, *, line=None, **options):
@@ -103,11 +95,11 @@ def test_how_gains_go_with_the_speed_is_measured():
 
 
 def test_a_torque_behind_a_filter_is_no_gauge_that_is_late_by_a_stated_time():
-    def filtered(outputs):
-        torque = outputs["M_s"].copy()
-        for k in range(1, torque.size):
-            torque[k] = torque[k - 1] + (outputs["M_s"][k] - torque[k - 1]) * (1.0 - np.exp(-1.0 / (RATE_HZ * 0.1)))
-        return {**outputs, "M_s": torque}
+    def filtered(torque):
+        shown = torque.copy()
+        for k in range(1, shown.size):
+            shown[k] = shown[k - 1] + (torque[k] - shown[k - 1]) * (1.0 - np.exp(-1.0 / (RATE_HZ * 0.1)))
+        return shown
 
     misfit = found(4, lambda *_: changed(), sees=filtered)
     assert misfit.reason.startswith("the latency of the gauge would be")
