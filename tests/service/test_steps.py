@@ -1,7 +1,5 @@
 """A step of the fit to segments: as far as the curvature of one point is a guide."""
 
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
 
@@ -23,6 +21,21 @@ def test_a_step_goes_its_way_but_no_farther_than_a_quarter_of_a_gain_or_lag(monk
     theta = np.array([HERE[name] for name in FREE])
     asked = 0.01 * theta
     asked[FREE.index("omega_n")] *= -100.0 * share
-    sums = SimpleNamespace(step=asked)
-    tried, _, _ = _fit._stepped([], [], sums, None, theta, None, None, guided=False)
+    tried, _, _ = _fit._stepped([], [], None, asked, None, theta, None, None, guided=False)
     assert (tried - theta) / asked == pytest.approx(min(1.0, 0.25 / share))
+
+
+def test_what_stands_at_its_bound_stays_there_and_no_other_number_makes_up_for_it():
+    """A delay at zero that the slope pulls further down drew the latency of the set point with it."""
+    theta = np.array([HERE[name] for name in FREE])
+    delay, latency = FREE.index("t_d"), FREE.index("t_sp")
+    theta[delay] = 0.0
+    information = np.eye(len(FREE))
+    information[delay, latency] = information[latency, delay] = 0.95
+    slope = np.zeros(len(FREE))
+    slope[delay] = -1.0
+    sums = _fit.Sums(slope=slope, information=information, prior=np.zeros_like(information))
+    assert sums.step[latency] > 5.0
+    assert np.all(sums.step_from(theta) == 0.0)
+    theta[delay] = 0.1
+    assert sums.step_from(theta) == pytest.approx(sums.step)

@@ -114,6 +114,25 @@ class Sums:
     prior: FloatArray
     """That of what is known beforehand, shape (free, free)."""
 
+    def step_from(self, theta: FloatArray) -> FloatArray:
+        """Return where the likelihood is greatest, as seen from parameters and beside their bounds, shape (free,).
+
+        What stands at its bound and would go beyond stays there, so that the others do not make up for it.
+        ``theta``: the parameters, shape (free,). Raises ServiceError if the segments do not tell all of them.
+        """
+        least = np.array([_LEAST.get(name, -np.inf) for name in FREE])
+        moves = np.ones(len(FREE), dtype=np.bool_)
+        for _ in FREE:
+            step = np.zeros(len(FREE))
+            step[moves] = Sums(
+                slope=self.slope[moves], information=self.information[np.ix_(moves, moves)], prior=self.prior
+            ).step
+            beyond = moves & (theta <= least) & (step < 0.0)
+            if not beyond.any():
+                break
+            moves &= ~beyond
+        return step
+
     @property
     def step(self) -> FloatArray:
         """Where the likelihood is greatest, as seen from the parameters, shape (free,).
@@ -183,11 +202,11 @@ def fit_segments(
             )
         number, before = number + 1, size
         sums = sums_of(each, model, theta)
-        step = sums.step
+        step = sums.step_from(theta)
         size = float(np.sqrt(step @ sums.information @ step))
         # from afar the filter still holds what the start leaves, and its misfit is no guide
         is_rough = number <= _MOST_NOISES or size < _SHORT
-        found = _stepped(runs, each, sums, model, theta, whitening, simulator, guided=not is_rough)
+        found = _stepped(runs, each, sums, step, model, theta, whitening, simulator, guided=not is_rough)
         if found is None:
             if size < _ROUGH:
                 break
@@ -232,6 +251,7 @@ def _stepped(
     runs: Sequence[Simulated],
     each: Sequence[Score],
     sums: Sums,
+    whole: FloatArray,
     model: ServiceModel,
     theta: FloatArray,
     whitening: Whitening,
@@ -239,10 +259,10 @@ def _stepped(
     *,
     guided: bool,
 ) -> tuple[FloatArray, list[Simulated], list[Score]] | None:
-    """Return what lies a step on, halved until it is no worse where the misfit is a guide; None if it never is."""
+    """Return what lies a whole step on, halved until it is no worse where the misfit is a guide; None if it never is."""
     positive = np.array([_LEAST.get(name, 0.0) > 0.0 for name in FREE])
-    share = float(np.max(np.abs(sums.step[positive]) / theta[positive], initial=_LONGEST_SHARE))
-    step, misfit = sums.step * (_LONGEST_SHARE / share), _misfit(each, sums, model, theta)
+    share = float(np.max(np.abs(whole[positive]) / theta[positive], initial=_LONGEST_SHARE))
+    step, misfit = whole * (_LONGEST_SHARE / share), _misfit(each, sums, model, theta)
     for _ in range(_HALVINGS):
         tried = _within(theta + step)
         try:

@@ -41,7 +41,7 @@ _RAMP = "a rate limit of the demand behind the lever, or a deadband of the gover
 # What goes with what, what does that, and the least of it that is worth a word.
 _TRENDS = (
     (_GAINS, "hang on the speed", "a governor that takes its gains from a table over the speed", 0.04),
-    ("the delay of the governor", "hangs on the speed", "an injection that counts in turns of the engine", 0.2),
+    ("the delay of the governor", "hangs on the speed", "an injection that counts in turns of the engine", 0.014),
     ("the scale of the lever", "hangs on the speed", "a lever whose line bends", 0.003),
     (_GAINS, "hang on the size of the move", _RAMP, 0.015),
     (_LATENCY, "hangs on the size of the move", _RAMP, 1.5e-3),
@@ -62,7 +62,7 @@ class Trend:
     by: str
     """What does that."""
     size: float
-    """Power with which it goes, or share by which it changes; of a latency seconds."""
+    """Power with which it goes, or share by which it changes; of times seconds."""
     std: float
     """Its standard deviation."""
     gain: float
@@ -189,7 +189,7 @@ def _trends(run: Simulated, theta: FloatArray, level: float, swing: float) -> Fl
     return np.stack(
         [
             level * gains,
-            level * theta[t_d] * run.slopes[t_d],
+            level * run.slopes[t_d],
             level * run.slopes[scale],
             swing * gains,
             swing * late,

@@ -82,7 +82,10 @@ class Crew:
         first = equilibrium(plant, Demand(tug, vessel, campaign, start_s=0.0, step_s=1.0 / self._rate_hz).first)
         load = plant.propeller_nm_s2
         self.process = process
-        cycle_s = tug.torque_cycle_s
+        cycle_s, averaging_s = tug.torque_cycle_s, 0.0
+        if cycle_s is not None and tug.torque_is_mean:
+            # a mean makes late by half of its length, which the latency of the telemetry has room for
+            averaging_s = min(cycle_s - 1.0 / self._rate_hz, 2.0 * vessel.sensors.shaft_torque.latency_s)
         gauge = TorqueGauge(
             tug.noise,
             vessel,
@@ -92,12 +95,12 @@ class Crew:
             duration_s=duration_s,
             rate_hz=self._rate_hz,
             rng=torque,
-            averaging_s=cycle_s - 1.0 / self._rate_hz if cycle_s is not None and tug.torque_is_mean else 0.0,
+            averaging_s=averaging_s,
         )
         self._gauge: TorqueGauge | TorqueMessages = gauge
         if cycle_s is not None:
             times = MessageTimes(Bus.of(tug), cycle_s=cycle_s, rng=of_torque)
-            self._gauge = TorqueMessages(gauge, times, is_mean=tug.torque_is_mean, rate_hz=self._rate_hz)
+            self._gauge = TorqueMessages(gauge, times, averaging_s=averaging_s, rate_hz=self._rate_hz)
         self._helm = self._stand_by_helm(set_point)
         self._speeds = [
             self._stand_by_shaft(sensor, rng) for sensor, rng in zip(vessel.sensors.speed, speeds, strict=True)

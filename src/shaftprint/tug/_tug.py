@@ -145,7 +145,8 @@ class Tug:
     torque_cycle_s: float | None = None
     """Time from one message to the next with the shaft torque [s]; ``None``: the logger samples its telemetry."""
     torque_is_mean: bool = True
-    """Whether each of those messages holds the mean since the one before, not the torque of one instant."""
+    """Whether each of those messages holds the mean since the one before, not the torque of one instant; a mean is no
+    longer than twice the latency of the vessel file, of which its half is a part."""
     message_jitter: float = 0.0
     """Standard deviation of the time of a message on the CAN bus about its cycle, over the cycle; evenly spread, below
     0.28. Messages with jitter or losses are recorded with times of their own."""

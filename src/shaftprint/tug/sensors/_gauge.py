@@ -197,14 +197,14 @@ class TorqueGauge:
 class TorqueMessages:
     """Stream of the raw counts of a torque that its telemetry sends message by message."""
 
-    def __init__(self, gauge: TorqueGauge, times: MessageTimes, *, is_mean: bool, rate_hz: float) -> None:
+    def __init__(self, gauge: TorqueGauge, times: MessageTimes, *, averaging_s: float, rate_hz: float) -> None:
         self.channel, self.scale, self.offset = gauge.channel, gauge.scale, gauge.offset
         self.times = times
         """When its messages come."""
         self._gauge = gauge
         self._stream = MessageStream(times, latency_s=0.0, rate_hz=rate_hz)
         self._tail: FloatArray = np.empty(0)
-        self._length = max(round(times.cycle_s * rate_hz), 1) if is_mean else 1
+        self._length = round(averaging_s * rate_hz) + 1
         self._first: float | None = None
 
     def next(self, stretch: Stretch) -> NDArray[np.int16]:
