@@ -259,7 +259,7 @@ def _stepped(
     *,
     guided: bool,
 ) -> tuple[FloatArray, list[Simulated], list[Score]] | None:
-    """Return what lies a whole step on, halved until it is no worse where the misfit is a guide; None if it never is."""
+    """Return what lies a step on, halved until it is no worse where the misfit is a guide; None if it never is."""
     positive = np.array([_LEAST.get(name, 0.0) > 0.0 for name in FREE])
     share = float(np.max(np.abs(whole[positive]) / theta[positive], initial=_LONGEST_SHARE))
     step, misfit = whole * (_LONGEST_SHARE / share), _misfit(each, sums, model, theta)
