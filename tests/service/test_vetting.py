@@ -5,9 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from shaftprint.errors import ServiceError
 from shaftprint.service._gather import StillMeans, lever_line
 from shaftprint.service._segment import LeverLine, Segment
 from shaftprint.service._vetting import (
+    beside_full_load,
     lever_follows_load,
     off_the_line,
     play_of_lever,
@@ -15,6 +17,12 @@ from shaftprint.service._vetting import (
     torque_is_held,
     way_on,
 )
+from shaftprint.vessel import load_vessel
+
+
+@pytest.fixture(scope="module")
+def vessel():
+    return load_vessel("stan-tug-1205-service")
 
 
 def still(gain, *, count=600, seed=3):
@@ -202,3 +210,25 @@ def test_play_of_the_lever_is_measured_and_refused():
 
 def test_a_few_moves_tell_no_play():
     assert np.isnan(play_of_lever(moved(np.random.default_rng(4), play_rpm=4.0, count=8), LINE).value)
+
+
+def test_full_pull_is_no_load_controller(vessel):
+    """Where the engine gives all it has it holds the torque and no speed; below it holds the speed."""
+    rng = np.random.default_rng(7)
+    point = vessel.working_point
+    at_point_nm = point.driving_torque_nm / vessel.gearbox.shaft_over_brake
+    asked = np.repeat(rng.uniform(900.0, 1780.0, 40), 5)
+    load = 1.6 + 0.05 * rng.standard_normal(asked.size)
+    full = np.sqrt(vessel.machine.full_load_nm(1600.0) / (load * at_point_nm)) * point.engine_speed_rpm
+    shown = np.minimum(asked, full)
+    still = StillMeans(
+        lever_v=-asked / 240.0, speed_rev_s=shown / 60.0, load=load, stretch=np.repeat(np.arange(40.0), 5)
+    )
+    kept, found = beside_full_load(still, vessel)
+    torque_nm = load * (shown / point.engine_speed_rpm) ** 2 * at_point_nm
+    full_nm = np.array([vessel.machine.full_load_nm(one) for one in shown])
+    assert found.value == pytest.approx(100.0 * np.mean(torque_nm > 0.95 * full_nm))
+    assert 5.0 < found.value < 60.0
+    assert lever_line(kept).spread_rpm < 1.0
+    with pytest.raises(ServiceError, match="expected a speed that follows the lever"):
+        lever_line(still)

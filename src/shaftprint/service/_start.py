@@ -51,10 +51,10 @@ def begun(model: ServiceModel, records: Sequence[Record], simulator: Simulator |
         ),
     ]
     models = [replace(model, values={**model.values, **values}) for values in tried]
-    return min(models, key=lambda one: _misfit(one, some, simulator or ExactDelays()))
+    return min(models, key=lambda one: _left_of_speed(one, some, simulator or ExactDelays()))
 
 
-def _misfit(model: ServiceModel, records: Sequence[Record], simulator: Simulator) -> float:
+def _left_of_speed(model: ServiceModel, records: Sequence[Record], simulator: Simulator) -> float:
     """Return the sum of the logarithms of what is left of the speed of each record, beside its mean."""
     place = tuple(model.structure.outputs).index("n")
     theta = np.array([model.values[name] for name in FREE])
