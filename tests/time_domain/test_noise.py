@@ -146,3 +146,18 @@ def test_portmanteau_rejects_colour_and_keeps_its_level():
 def test_stretches_too_short_for_a_lag_say_nothing_of_it():
     left = np.random.default_rng(11).standard_normal((30, 1))
     assert 0.0 < whiteness_p_value(left, lags=5, fitted=0, lengths=[3] * 10) <= 1.0
+
+
+@pytest.mark.parametrize("often", [3, 5, 8])
+def test_noise_that_is_drift_alone_still_has_a_filter(often):
+    """Its best autoregression has all poles at one: the covariance of samples in a row has no inverse."""
+    for seed in range(4):
+        drift = np.random.default_rng(seed).standard_normal((3000, 2))
+        for _ in range(often):
+            drift = lfilter([1.0], [1.0, -0.99], drift, axis=0)
+        drift /= drift.std(axis=0)
+        drift += 1e-7 * np.random.default_rng(seed + 9).standard_normal(drift.shape)
+        white = Whitening(noise=estimate_noise(drift, [slice(0, 3000)], max_order=40)).whitened(
+            drift[None], [slice(0, 3000)]
+        )
+        assert np.isfinite(white).all()

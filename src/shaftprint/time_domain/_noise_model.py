@@ -64,6 +64,16 @@ class NoiseModel:
         blocks = total.reshape(self.order, self.outputs, self.order, self.outputs)[::-1, :, ::-1]
         return np.asarray(blocks.reshape(size, size))
 
+    @property
+    def can_be_whitened(self) -> bool:
+        """Whether its covariances have an inverse: of noise that is sharp peaks or drift alone rounding leaves none."""
+        try:
+            with np.errstate(over="ignore", invalid="ignore"):
+                np.linalg.cholesky(self.covariance)
+                return bool(np.isfinite(np.linalg.cholesky(self.start_up)).all())
+        except np.linalg.LinAlgError:
+            return False
+
     def driven(self, innovations: FloatArray) -> FloatArray:
         """Return what innovations give that follow each other from rest, both of shape (rows, samples, outputs)."""
         noise = innovations.copy()
@@ -99,7 +109,7 @@ def estimate_noise(residuals: FloatArray, stretches: Sequence[slice], *, max_ord
     Orders are compared by the equations of Yule and Walker, solved order by order (Whittle, On the fitting of
     multivariate autoregressions, and the approximate canonical factorization of a spectral density matrix, 1963). The
     chosen one is estimated by least squares, which does not flatten sharp peaks; where that gives no stable noise the
-    solution of Yule and Walker, always stable, stays.
+    solution of Yule and Walker, always stable, stays, or one of a lower order.
 
     ``residuals``: shape (samples, outputs). ``stretches``: where they count. ``max_order``: highest order to try.
     Raises IdentificationError if an output has no noise at all, or outputs are the same.
@@ -120,11 +130,13 @@ def estimate_noise(residuals: FloatArray, stretches: Sequence[slice], *, max_ord
     fits = _whittle(lags)
     penalty = outputs**2 * np.log(count)
     order = int(np.argmin([count * np.linalg.slogdet(s)[1] + p * penalty for p, (_, s) in enumerate(fits)]))
-    coefficients, covariance = fits[order]
     least = _least_squares(kept, order) if order else None
-    if least is not None:
-        coefficients, covariance = least
-    return NoiseModel(coefficients=frozen_float(coefficients), covariance=frozen_float(covariance))
+    tried = (*(() if least is None else (least,)), *reversed(fits[: order + 1]))
+    models = (
+        NoiseModel(coefficients=frozen_float(coefficients), covariance=frozen_float(covariance))
+        for coefficients, covariance in tried
+    )
+    return next(one for one in models if not one.order or one.can_be_whitened)
 
 
 def _autocovariances(kept: Sequence[FloatArray], highest: int, count: int) -> FloatArray:
@@ -174,7 +186,10 @@ def _least_squares(kept: Sequence[FloatArray], order: int) -> tuple[FloatArray, 
         )
     if count <= 2 * size:
         return None
-    table = np.linalg.solve(product, cross)
+    try:
+        table = np.linalg.solve(product, cross)
+    except np.linalg.LinAlgError:
+        return None
     covariance = (square - table.T @ cross) / (count - size)
     coefficients = table.reshape(order, outputs, outputs).swapaxes(1, 2)
     if np.abs(np.linalg.eigvals(_companion(coefficients))).max() > LARGEST_POLE:
