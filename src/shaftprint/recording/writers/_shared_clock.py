@@ -34,7 +34,8 @@ def on_one_clock(path: Path, channels: Iterable[Channel]) -> tuple[Channel, ...]
             f"{item.name} ({item.rate_hz:g} Hz from {item.start_s:g} s, {item.count})" for item in shared
         )
         raise RecordingError(
-            f"{path}: expected channels on one clock, found {listed}; write_recording keeps each channel's own."
+            f"{path}: expected channels on one clock, found {listed}; bring them onto one (shaftprint convert --rate), "
+            "or write .nc, .mf4 or .tdms, where each keeps its own."
         )
     return shared
 
