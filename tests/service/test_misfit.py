@@ -112,7 +112,7 @@ def test_an_inertia_far_from_that_of_the_vessel_file_is_named():
     off = replace(model(), known={**model().known, "tau_up": model().known["tau_up"] + 8.0 * std})
     reason = found(5, lambda *_: changed(), line=off).reason
     assert "the inertia ahead of the gauge would be" in reason
-    assert "below what the vessel file states" in reason
+    assert "below what is known of it, as with a rate limit of the demand" in reason
 
 
 def test_what_is_too_small_to_matter_is_no_reason_however_long_the_service():

@@ -228,7 +228,7 @@ def _verdict(numbers: Sequence[Estimate], *, used: int, of: int, seconds: float,
         reason = f"The loop that explains {words} is not stable, as a line in service is."
     elif misfit:
         reason = (
-            f"The model is not this line: {misfit}, by {words}. Make a test (shaftprint plan), whose lines tell which "
+            f"The model is not this line: {misfit} ({words}). Make a test (shaftprint plan), whose lines tell which "
             "structure holds."
         )
     elif not of_line:

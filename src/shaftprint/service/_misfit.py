@@ -18,7 +18,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from shaftprint.arrays import FloatArray
-from shaftprint.catalogue._gauge import C_SET, GAUGE_K_I, GAUGE_K_P, T_D, T_GAUGE, T_SP, TAU_UP
+from shaftprint.catalogue._gauge import C_SET, GAUGE_K_I, GAUGE_K_P, T_D, T_GAUGE, T_SP, TAU_UP, G
 from shaftprint.distributions import f_tail
 from shaftprint.service._model import FREE, ServiceModel
 from shaftprint.service._score import Simulated, scores
@@ -48,7 +48,13 @@ _TRENDS = (
     (_GAINS, "hang on the direction of the move", "a smoke limiter, or a turbocharger that comes late", 0.008),
     (_LATENCY, "hangs on the direction of the move", "a rate limit that is another upwards than downwards", 1.5e-3),
 )
-_STATED = {TAU_UP.name: "inertia ahead of the gauge", T_GAUGE.name: "latency of the gauge"}
+# What of the vessel file may be contradicted, and what does that beside a wrong entry.
+_STATED = {
+    TAU_UP.name: ("inertia ahead of the gauge", "a rate limit of the demand, or a delay that hangs on the speed"),
+    T_GAUGE.name: ("latency of the gauge", "dynamic inflow, or a filter in the channel of the torque"),
+    C_SET.name: ("scale of the set point", "a set point that is not what the governor follows"),
+    G.name: ("slope of the engine torque with speed", "an engine whose torque is limited at each speed"),
+}
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -113,8 +119,8 @@ class Misfit:
         found += [
             (
                 far**2,
-                f"the {_STATED.get(name, name)} would be {abs(far):.0f} standard deviations "
-                f"{'above' if far > 0.0 else 'below'} what the vessel file states",
+                f"the {_STATED[name][0]} would be {abs(far):.0f} standard deviations "
+                f"{'above' if far > 0.0 else 'below'} what is known of it, as with {_STATED[name][1]}",
             )
             for name, far in self.pulled
             if abs(far) > _PULLED
