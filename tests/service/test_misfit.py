@@ -117,6 +117,6 @@ def test_an_inertia_far_from_that_of_the_vessel_file_is_named():
 
 def test_what_is_too_small_to_matter_is_no_reason_however_long_the_service():
     trend = Trend(what="the gains", along="hang on the speed", by="a table", size=0.01, std=1e-4, gain=1e4, least=0.04)
-    misfit = Misfit(speed=1.0, torque=1.0, chance=1.0, gain=0.0, trends=(trend,), pulled=())
+    misfit = Misfit(speed=1.0, torque=1.0, chance=1.0, gain=0.0, hanging=1.0, trends=(trend,), pulled=())
     assert misfit.reason == ""
     assert replace(misfit, trends=(replace(trend, size=0.05),)).reason.startswith("the gains hang on the speed")

@@ -17,6 +17,7 @@ from shaftprint.catalogue._gauge import K_Q, TAU_UP
 from shaftprint.catalogue._roles import ShipRole
 from shaftprint.catalogue._shipped import shipped_structure
 from shaftprint.choices import CLOSED_LOOPS
+from shaftprint.digits import stated
 from shaftprint.errors import ServiceError
 from shaftprint.fingerprint._conditions import Conditions, conditions_stated
 from shaftprint.fingerprint._fingerprint import Fingerprint, Quality
@@ -42,6 +43,7 @@ from shaftprint.service._ship_numbers import (
     physical_numbers_of,
     quantity_of,
 )
+from shaftprint.signals._scale_reasons import FAR
 from shaftprint.units import SECONDS_PER_MINUTE
 
 if TYPE_CHECKING:
@@ -53,6 +55,8 @@ ORDINARY_SERVICE = "ordinary service"
 STRUCTURE = CLOSED_LOOPS["engine"]
 # A number is known well enough to this share of it; a set-point scale or a slope near nothing to this much.
 _WELL_ENOUGH, _WELL_ENOUGH_NEAR_NOTHING = 0.15, 0.1
+# From so many standard deviations on what the vessel file expects is worth a word.
+_STRANGE = 2.5
 ASSUMPTIONS = (
     "Nobody trims the lever against the load at the moments at which he moves it anyway: no log shows that.",
     "The ship lies at the quay or makes little way, and its propeller takes the square of the speed.",
@@ -215,11 +219,20 @@ def _quality(fit: ServiceFit) -> Quality:
 
 
 def _verdict(numbers: Sequence[Estimate], *, used: int, of: int, seconds: float, stable: bool, misfit: str) -> Verdict:
-    doubts = {}
+    doubts, cautions = {}, []
     for one in numbers:
         share = one.std / abs(one.value) if one.value else np.inf
         if share > _WELL_ENOUGH and one.std > _WELL_ENOUGH_NEAR_NOTHING * (one.unit == "-" and abs(one.value) < 1.0):
             doubts[one.name] = f"known to {100.0 * share:.0f} % only" if np.isfinite(share) else "not known"
+        far = _from_file(one)
+        if far > _STRANGE:
+            cautions.append(
+                f"{one.name} is {stated(one.value, one.std, one.unit)} where the vessel file has "
+                f"{stated(one.expected or 0.0, one.expected_std or 0.0, one.unit)}, {far:.1f} standard deviations "
+                "away: check the gear ratio, the scale of the torque gauge and the propeller."
+            )
+        if far > FAR:
+            doubts[one.name] = f"{far:.1f} standard deviations from the vessel file"
     trusted = tuple(one.name for one in numbers if one.name not in doubts)
     of_line = any(one.name in trusted and one.role is not None and one.role.is_of_line for one in numbers)
     usable = of_line and stable and not misfit
@@ -238,12 +251,19 @@ def _verdict(numbers: Sequence[Estimate], *, used: int, of: int, seconds: float,
     return Verdict(
         trustworthy=usable,
         reason=reason,
-        sentences=(reason, *ASSUMPTIONS),
+        sentences=(reason, *cautions, *ASSUMPTIONS),
         trusted=trusted if usable else (),
         not_trusted=doubts if usable else {one.name: "no number may be used" for one in numbers},
         loop=None,
         assumptions=ASSUMPTIONS,
     )
+
+
+def _from_file(one: Estimate) -> float:
+    """Return how many standard deviations a number is from what the vessel file expects; 0 where it expects nothing."""
+    if one.expected is None or not one.expected_std:
+        return 0.0
+    return abs(one.value - one.expected) / float(np.hypot(one.std, one.expected_std))
 
 
 def _findings(fit: ServiceFit, segments: Sequence[Segment], of: int, line: LeverLine) -> tuple[str, ...]:

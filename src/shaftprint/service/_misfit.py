@@ -99,6 +99,8 @@ class Misfit:
     """How often noise alone leaves as much of either."""
     gain: float
     """What twice the logarithm of the likelihood gains where both may follow the lever as they like."""
+    hanging: float
+    """How often noise alone makes all trends together as large as they are."""
     trends: tuple[Trend, ...]
     """What goes with what."""
     pulled: tuple[tuple[str, float], ...]
@@ -108,7 +110,10 @@ class Misfit:
     def reason(self) -> str:
         """What speaks against the model, the likeliest cause first; empty where nothing does."""
         # whether there is a cause the scatter says, which of them the likelihood
-        found = [(one.gain, one.words) for one in self.trends if one.z > _FAR and abs(one.size) > one.least]
+        worth = [one for one in self.trends if abs(one.size) > one.least]
+        found = [(one.gain, one.words) for one in worth if one.z > _FAR]
+        if not found and worth and self.hanging < _CHANCE:
+            found = [max((one.gain, one.words) for one in worth)]
         if self.chance < _CHANCE:
             follows = (
                 f"what is left of the {'speed' if self.speed > self.torque else 'torque'} still follows the lever "
@@ -155,9 +160,9 @@ def misfit_of(
     count, lags = len(_TRENDS), len(_LAGS_S) - 1
     inner = information[free:, free:] - taken @ information[:free, free:]
     answers = slice(count, count + 2 * lags)
-    speed, torque = (
-        float(total[part] @ np.linalg.solve(covariance[part, part], total[part])) / lags
-        for part in (slice(count, count + lags), slice(count + lags, count + 2 * lags))
+    hanging, speed, torque = (
+        float(total[part] @ np.linalg.solve(covariance[part, part], total[part])) / (part.stop - part.start)
+        for part in (slice(0, count), slice(count, count + lags), slice(count + lags, count + 2 * lags))
     )
     curvature, std = np.diag(inner), np.sqrt(np.diag(covariance))
     of_noise = np.linalg.inv(information[:free, :free] + prior)
@@ -165,6 +170,7 @@ def misfit_of(
         speed=speed,
         torque=torque,
         chance=min(2.0 * f_tail(max(speed, torque), float(lags), float(max(len(runs) - lags, 1))), 1.0),
+        hanging=f_tail(hanging, float(count), float(max(len(runs) - count, 1))),
         trends=tuple(
             Trend(
                 what=what,
