@@ -82,6 +82,15 @@ def test_a_torque_of_the_other_side_of_the_gear_is_a_scale_of_the_gauge(factor, 
     assert f": {fitting} would fit." in reason.sentence
 
 
+@pytest.mark.parametrize("factor", [1.5, 2 / 3])
+def test_a_lever_whose_line_asks_for_another_speed_is_no_wrong_count(factor):
+    """A turned lever: the torque belongs to the speed that is shown, and the set point asks for another."""
+    (reason,) = reasons_of(one_pick_up(), "12min", factor * TESTS["12min"])
+    assert reason.kind == "set-point scale"
+    assert reason.where == "U_setpoint"
+    assert "asks for 1361 rpm, and speed and torque agree on" in reason.sentence
+
+
 @pytest.mark.parametrize("factor", [0.5, 0.8, 1.25, 2.0])
 def test_a_gauge_that_is_off_by_another_factor_is_no_speed(factor):
     assert reasons_of(one_pick_up(), "12min", 1361.37, of_torque=factor, inertia_std=0.1) == ()

@@ -34,6 +34,8 @@ _USUAL, _LEAST = 0.15, 0.1
 _OF_PITCH = 0.7
 # So many standard deviations are no chance.
 FAR = 3.5
+# A torque belongs to a speed within so many standard deviations of its load, and to no speed so many away.
+_AGREES, _FAR_OFF = 1.0, 3.0
 # Fouling, damage and the load of a day change the logarithm of a torque coefficient by no more.
 _MOST_OF_SHIP = math.log(1.4)
 # Torque at one speed goes with this power of the diameter.
@@ -69,6 +71,19 @@ def scale_reasons(
     expected_rpm, load = vessel.working_point.engine_speed_rpm, load_over_expected(point, vessel)
     found_rpm = rpm_from_rev_s(point.engine_speed_rev_s)
     asked_rpm = expected_rpm if campaign is None else asked_speed(point, vessel, campaign)[0]
+    if _torque_agrees(load, doubt.factor, _std_of_load(point, vessel)):
+        channel = vessel.sensors.set_point.channel
+        return (
+            Reason(
+                kind="set-point scale",
+                where=channel,
+                sentence=(
+                    f"The set point is in doubt: {channel} asks for {asked_rpm:.4g} rpm, and speed and torque agree on "
+                    f"{found_rpm:.4g} rpm; check the line of the lever (table_rpm of sensors.set_point, and its sign), "
+                    "and the offset of the campaign."
+                ),
+            ),
+        )
     by = "vessel file" if campaign is None or campaign.offset_rpm is None else "campaign"
     torque = (
         f"{in_nm(point.shaft_torque_nm)} belong to {found_rpm * load**0.5:.4g} rpm and the {by} has" if load > 0.0
@@ -85,6 +100,17 @@ def scale_reasons(
             ),
         ),
     )
+
+
+def _torque_agrees(load: float, factor: float, std: float) -> bool:
+    """Return whether the torque belongs to the speed as it is shown, and cannot to one that is off by a factor.
+
+    Then it is the set point that asks for another speed: its line, not the speed. ``load``: torque over the square of
+    the speed, over that of the vessel file, with the deviation ``std`` of its logarithm.
+    """
+    if not load > 0.0:
+        return False
+    return abs(math.log(load)) < _AGREES * std < _FAR_OFF * std < abs(math.log(load) + 2.0 * math.log(factor))
 
 
 def _between_legs(
