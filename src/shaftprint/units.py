@@ -28,9 +28,10 @@ MILLI, PPM = 1e3, 1e6
 # Ways in which loggers and people write the units that vessel files know.
 _SPELLINGS = {
     "volt": "V", "volts": "V", "v": "V", "nm": "N m", "n·m": "N m", "n*m": "N m", "n.m": "N m", "newton metre": "N m",
-    "newton-meter": "N m", "newton meters": "N m",
+    "n-m": "N m", "newton-meter": "N m", "newton meters": "N m",
     "mv/v": "mV/V", "mv / v": "mV/V", "percentage": "%",
-    "knm": "kN m", "kn·m": "kN m", "kn.m": "kN m", "percent": "%", "pct": "%", "kt": "kn", "kts": "kn", "knot": "kn",
+    "knm": "kN m", "kn·m": "kN m", "kn.m": "kN m", "kn-m": "kN m", "percent": "%", "pct": "%", "kt": "kn",
+    "kts": "kn", "knot": "kn",
     "knots": "kn", "rpm": "rpm", "1/min": "rpm", "min-1": "rpm", "min^-1": "rpm", "rev/min": "rpm", "r/min": "rpm",
     "min⁻¹": "rpm", "u/min": "rpm", "rps": "rev/s", "rad/sec": "rad/s", "milliampere": "mA", "ma": "mA",
     "mv": "mV", "millivolt": "mV", "millivolts": "mV", "µv": "uV", "μv": "uV", "uv": "uV", "a": "A", "amp": "A",

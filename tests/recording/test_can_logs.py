@@ -7,7 +7,7 @@ import sys
 import threading
 import warnings
 import zlib
-from datetime import datetime
+from datetime import UTC, datetime, timedelta
 
 import can
 import numpy as np
@@ -137,6 +137,22 @@ def test_what_candump_shows_is_read_as_what_it_logs(tmp_path, dbc, row):
     (tmp_path / "log.txt").write_text("\n".join(one.partition(")")[2] for one in rows), encoding="utf-8")
     with pytest.raises(RecordingError, match="expected times in front of the frames"):
         read_recording(tmp_path / "log.txt", dbc=dbc)
+
+
+def test_times_of_candump_may_be_dates_or_the_steps_between_frames(tmp_path, dbc):
+    """-t d showed times that go back, which no reader placed; -t A was no known format."""
+    began = datetime.fromtimestamp(BEGAN_S, UTC).replace(tzinfo=None)
+    dates = [f"{began + timedelta(seconds=round(float(t), 6)):%Y-%m-%d %H:%M:%S.%f}" for t in TIMES]
+    for stamps, date in (([f"{step:010.6f}" for step in np.diff(TIMES, prepend=TIMES[0])], None), (dates, began)):
+        rows = [
+            f" ({stamp})  can0  0CF00400   [8]  {c.tobytes().hex(' ').upper()}\n"
+            for stamp, c in zip(stamps, CONTENT, strict=True)
+        ]
+        (tmp_path / "log.log").write_text("".join(rows), encoding="utf-8")
+        with read_recording(tmp_path / "log.log", dbc=dbc) as recording:
+            assert recording.channel("EngineSpeed").stamps_s(0, 400) == pytest.approx(TIMES - TIMES[0], abs=2e-4)
+            assert values(recording, "ActualEnginePercentTorque") == pytest.approx(TORQUE)
+            assert recording.began == (date and date + timedelta(seconds=round(float(TIMES[0]), 6)))
 
 
 ASC_ROW = "   {time:.6f} 1  CF00400x       Rx   d 8 {bytes}\n"

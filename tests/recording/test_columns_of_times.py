@@ -86,18 +86,67 @@ def test_what_has_times_of_no_clock_is_left_out_with_the_reason(tmp_path):
         assert recording.left_out["n_e"].startswith("column time (2): expected ascending times")
 
 
-def test_columns_with_dates_of_their_own_are_left_out(tmp_path):
-    def rows(step):
-        return "".join(
-            f"2026-03-05 09:00:{k // 10:02d}.{k % 10};{k};2026-03-05 09:00:{step * k // 10:02d}.{step * k % 10};{k}\n"
-            for k in range(COUNT)
-        )
+def _date(second):
+    return f"2026-03-05 {9 + int(second) // 3600:02d}:{int(second) // 60 % 60:02d}:{second % 60:06.3f}"
 
-    with _read(tmp_path, f"Timestamp;A;Timestamp;B\n{rows(2)}") as recording:
+
+def _dated(count, slow, step, later, row="{first};{k};{second};{k}"):
+    """Rows of two pairs, of which the second has ``slow`` rows and begins later."""
+    return "".join(
+        row.format(k=k, first=_date(0.1 * k), second=_date(later + step * k)) + "\n"
+        if k < slow
+        else f"{_date(0.1 * k)};{k};;\n"
+        for k in range(count)
+    )
+
+
+@pytest.mark.parametrize(
+    ("titles", "count"),
+    [
+        ("Timestamp;A;Timestamp;B", COUNT),
+        ("A;;B;", COUNT),
+        ("Date;Time;A;Date;Time;B", COUNT),
+        ("Zeit;A;Zeit;B", 60_000),
+    ],
+)
+def test_columns_with_dates_of_their_own_are_on_those(tmp_path, titles, count):
+    """So far these were left out; long files are read by the compiled rows."""
+    slow = count // 2
+    rows = _dated(count, slow, 0.2, 0.05)
+    rows = rows.replace(" ", ";").replace(";;\n", ";;;\n") if titles.startswith("Date") else rows
+    with _read(tmp_path, f"{titles}\n{rows}") as recording:
+        first, second = recording.channels.values()
+        assert (first.name, first.rate_hz, first.start_s, first.count) == ("A", 10.0, 0.0, count)
+        assert (second.name, second.rate_hz, second.count) == ("B", 5.0, slow)
+        assert second.start_s == pytest.approx(0.05)
+        assert np.array_equal(second.values(slow - 3, slow), np.arange(slow - 3.0, slow))
+        assert recording.began == datetime.fromisoformat("2026-03-05T09:00")
+        assert any("were placed by those times" in remark for remark in recording.remarks)
+
+
+def test_rows_that_lack_the_second_pair_are_read(tmp_path):
+    """The compiled rows took the dates of the next row for those that were missing."""
+    rows = _dated(60_000, 30_000, 0.2, 0.05).replace(";;\n", "\n")
+    with _read(tmp_path, f"Timestamp;A;Timestamp;B\n{rows}") as recording:
+        assert [(one.rate_hz, one.count) for one in recording.channels.values()] == [(10.0, 60_000), (5.0, 30_000)]
+
+
+def test_the_first_of_two_columns_of_dates_may_end_earlier(tmp_path):
+    rows = "".join(
+        f"{_date(float(k)) if k < 20 else ''};{k if k < 20 else ''};{_date(0.1 * k)};{k}\n" for k in range(COUNT)
+    )
+    with _read(tmp_path, f"Timestamp;A;Timestamp;B\n{rows}") as recording:
+        assert [(one.rate_hz, one.count) for one in recording.channels.values()] == [(1.0, 20), (10.0, COUNT)]
+
+
+def test_dates_again_are_no_further_times_where_they_stay_or_are_called_otherwise(tmp_path):
+    same = _dated(COUNT, COUNT, 0.1, 0.0)
+    with _read(tmp_path, f"Timestamp;A;Timestamp;B\n{same}") as recording:
+        assert [one.rate_hz for one in recording.channels.values()] == [10.0, 10.0]
+        assert recording.remarks == ()
+    with _read(tmp_path, f"Timestamp;A;Received at;B\n{_dated(COUNT, COUNT, 0.1, 0.07)}") as recording:
         assert list(recording.channels) == ["A"]
         assert "dates of its own in front" in recording.left_out["B"]
-    with _read(tmp_path, f"Timestamp;A;Timestamp;B\n{rows(1)}") as recording:
-        assert list(recording.channels) == ["A", "B"]
 
 
 HEAD = (

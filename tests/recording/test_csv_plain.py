@@ -104,7 +104,9 @@ def test_a_single_column_at_a_rate(tmp_path):
 def test_a_rate_beside_times_must_be_theirs(tmp_path):
     path = _written(tmp_path, "time,M_s\n0.5,1.25\n0.6,1.5\n0.7,-0.002\n")
     assert _torque(path, sample_rate_hz=10.0)[1] == TORQUE
-    with pytest.raises(RecordingError, match=r"expected one sample rate, found 10 Hz in column time and 2000 Hz"):
+    with pytest.raises(
+        RecordingError, match=r"one sample rate, found column time 10 Hz, the hint sample_rate_hz 2000 Hz"
+    ):
         read_recording(path, sample_rate_hz=2000.0)
 
 

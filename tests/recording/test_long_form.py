@@ -27,6 +27,7 @@ def _in_turn(form, signals):
         ("DateTime,TagName,TagVal,TagQuality", "{at},{one},{y},Good\n", ("Torque", "Speed")),
         ("NodeId,Timestamp,Value,StatusCode", "{one},{at}Z,{y},Good\n", ("ns=2;s=Torque", "ns=2;s=Speed")),
         ("TimeStamp,TagId,Value,Quality", "{at},{one},{y},192\n", (103, 104)),
+        ("context,path,value,timestamp", "self,{one},{y},{at}Z\n", ("propulsion.port.torque", "propulsion.port.speed")),
         ("time,sensor_id,value", "{t},{one},{y}\n", (1, 2)),
     ],
 )
@@ -74,14 +75,15 @@ def test_values_with_their_units_behind_are_told(tmp_path):
 @pytest.mark.parametrize(
     "form", ["2026-03-05 09:00:{s:02d}.{f}00", "03/05/2026 09:00:{s:02d}.{f}00", "09:00:{s:02d}.{f}00"]
 )
-def test_a_column_behind_dates_of_another_title_is_not_on_the_first(tmp_path, form):
+def test_a_column_behind_dates_of_another_title_is_on_those(tmp_path, form):
     def at(k):
         return form.format(s=k // 10, f=k % 10)
 
     rows = "".join(f"{at(k)},{k},{at(k + 1)},{k}\n" for k in range(COUNT))
     with _read(tmp_path, f"Torque Time,Torque,Speed Time,Speed\n{rows}") as recording:
-        assert list(recording.channels) == ["Torque"]
-        assert recording.left_out["Speed"].startswith("it has dates of its own in front, in column 3")
+        torque, speed = recording.channels.values()
+        assert (torque.rate_hz, torque.start_s, speed.rate_hz) == (10.0, 0.0, 10.0)
+        assert speed.start_s == pytest.approx(0.1)
 
 
 def test_rows_doubled_at_events_take_the_place_of_those_before(tmp_path):
@@ -105,6 +107,12 @@ def test_numbers_of_channels_above_the_titles_are_no_row(tmp_path):
     with _read(tmp_path, head + rows) as recording:
         assert {name: one.unit for name, one in recording.channels.items()} == {"Engine RPM": "rpm", "Torque": "N m"}
         assert np.array_equal(recording.channel("Engine RPM").values(0, 4), [0, 1, 2, 3])
+
+
+def test_numbers_of_channels_may_stand_between_titles_and_units(tmp_path):
+    rows = "".join(f"{0.1 * k:.1f};{k % 5}.5;{k % 7}.5\n" for k in range(COUNT))
+    with _read(tmp_path, f"recorder_time;speed;torque\n1;2;3\ns;1/min;Nm\n{rows}") as recording:
+        assert [(one.name, one.unit) for one in recording.channels.values()] == [("speed", "rpm"), ("torque", "N m")]
 
 
 def test_units_may_stand_two_rows_below_the_titles(tmp_path):
@@ -155,3 +163,47 @@ def test_rows_of_another_table_above_the_titles_are_told(tmp_path):
     second = "".join(f"2026-03-05 10:00:{k // 10:02d}.{k % 10},{k}.5\n" for k in range(COUNT))
     with pytest.raises(RecordingError, match=r"line 2: expected one table, found \d\d rows of another above line 5"):
         _read(tmp_path, f"Timestamp,M_0,M_1\n{first}05-03-2026 09:00:50,5.1,044\n{second}")
+
+
+@pytest.mark.parametrize(
+    ("titles", "one", "form"),
+    [
+        ("MMSI,BaseDateTime,SOG", (367000001, 367000002), "{one},{at},{y}"),
+        ("time,engine,rpm", (1, 2), "{t},{one},{y}"),
+        ("time,Vessel name,rpm", ("Anna", "Berta"), "{t},{one},{y}"),
+    ],
+)
+def test_rows_of_several_ships_or_engines_are_no_channel(tmp_path, titles, one, form):
+    """So far the speeds of both were one channel, without a word."""
+    with pytest.raises(RecordingError, match=f"expected the rows of one, found those of {one[0]}, {one[1]} in turn"):
+        _read(tmp_path, f"{titles}\n" + _in_turn(f"{form}\n", one))
+
+
+@pytest.mark.parametrize("title", ["Engine speed", "Drive state", "Ship length"])
+def test_whole_numbers_of_an_engine_are_a_channel(tmp_path, title):
+    with _read(tmp_path, f"time,{title},rpm\n" + _in_turn("{t},{one},{y}\n", (1499, 1500))) as recording:
+        assert list(recording.channels) == [title, "rpm"]
+
+
+@pytest.mark.parametrize(
+    "row", ["millis:{t},torque:{y},rpm:15{y}", "Time: {t} s, Torque: {y} Nm", "T={t} M={y}", "{clock} -> {y},{y}"]
+)
+def test_names_beside_values_are_told_with_what_to_do(tmp_path, row):
+    text = "".join(row.format(t=0.5 * k, y=k % 7 + 20.5, clock=at[11:]) + "\n" for k, at in enumerate(AT))
+    with pytest.raises(RecordingError, match=r"expected values alone below one row of titles, found .*; .* sed "):
+        _read(tmp_path, text)
+
+
+@pytest.mark.parametrize("front", ["{at}Z,", "{at}\t", "\\s:ER0001,c:17727012{k:02d}*5A\\"])
+def test_sentences_of_nmea_0183_behind_a_stamp_are_told(tmp_path, front):
+    text = "".join(front.format(at=at, k=k % 60) + f"$ERRPM,S,1,{k}.5,10.0,A*2B\n" for k, at in enumerate(AT))
+    with pytest.raises(RecordingError, match="found sentences of NMEA 0183"):
+        _read(tmp_path, text)
+
+
+def test_frames_with_their_bytes_in_one_column_are_told(tmp_path):
+    """Bytes without letters were a channel called Data."""
+    for titles in ("Timestamp;Type;ID;Data", "TimestampEpoch;BusChannel;ID;IDE;DLC;DataBytes"):
+        row = ";".join(["17727012{k:02d}.5", *("0" * titles.count(";")), ""])[:-1]
+        with pytest.raises(RecordingError, match="found the frames of a CAN bus"):
+            _read(tmp_path, f"{titles}\n" + "".join(row.format(k=k) + "\n" for k in range(90)))

@@ -101,5 +101,5 @@ def test_what_fits_no_trajectory_is_told(tmp_path, more, told):
 
 def test_a_rate_that_is_not_that_of_the_times_is_told(tmp_path):
     path = _save(tmp_path / "result.mat", TIME, _columns())
-    with pytest.raises(RecordingError, match="found 100 Hz by its times and 50 Hz by the hint"):
+    with pytest.raises(RecordingError, match="found variable time 100 Hz, the hint sample_rate_hz 50 Hz"):
         read_recording(path, sample_rate_hz=50.0)

@@ -58,7 +58,7 @@ def test_points_have_names_and_what_is_no_time_is_left_out(tmp_path):
 
 def test_a_rate_beside_the_step(tmp_path):
     assert _read(tmp_path, _set(), sample_rate_hz=51200.1).channel("shaft torque").rate_hz == 51200.1
-    with pytest.raises(RecordingError, match=r"found a step of 1\.95313e-05 s and 100 Hz in the hint"):
+    with pytest.raises(RecordingError, match=r"a step of 1\.95313e-05 s 51199\.9 Hz, the hint sample_rate_hz 100 Hz"):
         _read(tmp_path, _set(), sample_rate_hz=100.0)
 
 

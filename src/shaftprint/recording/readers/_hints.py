@@ -8,6 +8,8 @@ from typing import cast
 
 from shaftprint.errors import RecordingError
 
+OF_HINT = "the hint sample_rate_hz"
+
 
 def expect_hints(path: Path, hints: Mapping[str, object], accepted: Mapping[str, type | tuple[type, ...]]) -> None:
     """Refuse hints that a reader does not know or that are of the wrong type.
@@ -35,6 +37,18 @@ def rate_hint(
     if not (math.isfinite(rate) and rate > 0.0):
         raise RecordingError(f"{path}: the hint sample_rate_hz cannot be {rate:g}.")
     return rate
+
+
+def expect_one_rate(path: Path, rates: Mapping[str, float], agreement: float) -> None:
+    """Refuse sample rates that contradict each other.
+
+    ``rates``: each by what says it, that of the caller by `OF_HINT` [Hz]. ``agreement``: the share by which they may be
+    apart. Raises RecordingError if they are further apart.
+    """
+    rate_hz, *others = rates.values()
+    if not all(abs(other - rate_hz) <= agreement * abs(rate_hz) for other in others):
+        listed = ", ".join(f"{name} {value:g} Hz" for name, value in rates.items())
+        raise RecordingError(f"{path}: expected one sample rate, found {listed}.")
 
 
 def _listed(accepted: Mapping[str, object]) -> str:

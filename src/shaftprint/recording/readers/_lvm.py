@@ -21,7 +21,7 @@ from shaftprint.recording._spool import Spool
 from shaftprint.recording.readers._clock import on_clock
 from shaftprint.recording.readers._epoch import LATER_THAN_ANY_TEST_S
 from shaftprint.recording.readers._gather import Gathered, told_apart
-from shaftprint.recording.readers._hints import rate_hint
+from shaftprint.recording.readers._hints import OF_HINT, expect_one_rate, rate_hint
 from shaftprint.recording.readers._packed import CANNOT_BE_UNPACKED, damaged_gzip, first_bytes, open_unpacked
 from shaftprint.recording.readers._printed_rate import rate_of_step
 from shaftprint.recording.readers._segment_clock import clock_of_segments
@@ -274,10 +274,8 @@ class _Source:
             raise RecordingError("expected one Delta_X for all segments, found several")
         pieces = self._seconds(place, [stop - start for start, stop in filled], printed, rate_hz)
         clock = clock_of_segments(self.path, name, pieces, rate_hz, self.remarks)
-        if self.hint_hz is not None and clock.rate_hz != self.hint_hz:
-            raise RecordingError(
-                f"expected one sample rate, found {clock.rate_hz:g} Hz in its times and {self.hint_hz:g} Hz in the hint"
-            )
+        if self.hint_hz is not None:
+            expect_one_rate(self.path, {"its times": clock.rate_hz, OF_HINT: self.hint_hz}, 0.0)
         if printed is None and self.hint_hz is None and rate_hz is not None:
             step = _of(head, "Delta_X", place)
             if abs(rate_hz * float(step.replace(",", ".")) - 1.0) > 1e-9:

@@ -21,7 +21,7 @@ from shaftprint.recording.readers._units import seconds_in
 
 TIME_NAMES = (
     "time", "t", "timestamp", "timestamps", "time stamp", "zeit", "tijd", "temps", "elapsed", "elapsed time", "millis",
-    "micros", "__time", "lv time stamp", "cumulative time", "total time", "test time", "run time",
+    "micros", "__time", "lv time stamp", "cumulative time", "total time", "test time", "run time", "ms_today",
 )  # fmt: skip
 # A name with its unit: Time (ms), time_us, t [s], Zeit in ms. Beside one letter alone d is no day: t_d is a delay.
 _WITH_UNIT = re.compile(r"(?P<name>[a-z ]+?)[ _]*(?:[\[(]|(?<=[ _])|\bin )[ ]*(?P<unit>[a-zµμ]+)[\])]?", re.IGNORECASE)
@@ -122,7 +122,7 @@ def unit_in_name(name: str) -> str | None:
     """Return the unit that stands in the name of a time, empty where none does; None where it is no time's name."""
     plain = name.strip()
     if plain.lower() in TIME_NAMES:
-        return {"millis": "ms", "micros": "us"}.get(plain.lower(), "")
+        return {"millis": "ms", "micros": "us", "ms_today": "ms"}.get(plain.lower(), "")
     match = _WITH_UNIT.fullmatch(plain)
     if match is None or match["name"].strip(" _").lower() not in TIME_NAMES or seconds_in(match["unit"]) is None:
         return None

@@ -17,7 +17,7 @@ from shaftprint.recording.readers._clock import SampleClock, clock_of_times, on_
 from shaftprint.recording.readers._damage import told_as_damage
 from shaftprint.recording.readers._extra import library
 from shaftprint.recording.readers._gather import Gathered, unique_names
-from shaftprint.recording.readers._hints import rate_hint
+from shaftprint.recording.readers._hints import OF_HINT, expect_one_rate, rate_hint
 from shaftprint.recording.readers._printed_rate import rate_of_step
 from shaftprint.units import plain_unit
 
@@ -154,8 +154,8 @@ def _even_clock(
         raise RecordingError(
             f"expected a positive step of the times, found {step:g}; pass sample_rate_hz= (--sample-rate)"
         )
-    if hint_hz is not None and abs(hint_hz * step - 1.0) > 1e-4:
-        raise RecordingError(f"expected one sample rate, found a step of {step:g} s and {hint_hz:g} Hz in the hint")
+    if hint_hz is not None:
+        expect_one_rate(path, {f"a step of {step:g} s": 1.0 / step, OF_HINT: hint_hz}, 1e-4)
     if hint_hz is None and abs(rate_hz * step - 1.0) > 1e-9:
         remarks.append(
             f"The rate of {rate_hz:.9g} Hz is the roundest one whose step is printed as {printed} s; pass another with "

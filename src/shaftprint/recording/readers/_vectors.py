@@ -12,6 +12,7 @@ from shaftprint.errors import RecordingError
 from shaftprint.recording._channel import Channel, Source
 from shaftprint.recording.readers._clock import SampleClock, on_clock
 from shaftprint.recording.readers._gather import Gathered, unique_names
+from shaftprint.recording.readers._hints import OF_HINT, expect_one_rate
 from shaftprint.recording.readers._time_scale import TimeScale, is_capital, other_times, time_scale, unit_in_name
 from shaftprint.recording.readers._units import seconds_in
 from shaftprint.units import plain_unit
@@ -141,16 +142,14 @@ def _clock(
             starts += [float(source[key]) for key in _STARTS if key in source]
     rates = {**({} if time is None or of_times is None else {time.name: of_times.rate_hz}), **stated}
     if hint_hz is not None:
-        rates["the hint sample_rate_hz"] = hint_hz
+        rates[OF_HINT] = hint_hz
     if not rates:
         raise RecordingError(
             f"{path}: expected a clock, that is a vector time or t of {vector.count} seconds or a scalar "
             "sample_rate_hz or fs, found none; pass sample_rate_hz= (--sample-rate of shaftprint convert)."
         )
     rate = next(iter(rates.values()))
-    if not all(abs(other - rate) <= _RATE_AGREEMENT * abs(rate) for other in rates.values()):
-        listed = ", ".join(f"{name} {value:g} Hz" for name, value in rates.items())
-        raise RecordingError(f"{path}: expected one sample rate, found {listed}.")
+    expect_one_rate(path, rates, _RATE_AGREEMENT)
     starts += [float(of_file[key]) for key in _STARTS if key in of_file]
     start_s = starts[0] if starts else 0.0
     if of_times is None:

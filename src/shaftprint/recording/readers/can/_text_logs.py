@@ -3,7 +3,7 @@
 import re
 from collections.abc import Callable, Iterator, Mapping
 from datetime import UTC, datetime, timedelta
-from itertools import chain
+from itertools import chain, pairwise
 from pathlib import Path
 from typing import Any, TextIO
 
@@ -42,10 +42,13 @@ _TRC_VERSIONS = ("1.0", "1.1", "1.3", "2.0", "2.1")
 _CANDUMP = re.compile(r"\(\d+\.\d+\)\s+\S+\s+[0-9A-Fa-f]+#")
 # what candump shows on a terminal, with or without times: (1780308000.25)  can0  0CF00400   [8]  F0 A5 9B
 _SHOWN = re.compile(
-    r"\s*(?:\((?P<time>\d+\.\d+)\)\s+)?(?P<bus>[a-z]\w*)\s+(?:[TR]X\s+\S+\s+\S+\s+|[TR]X\s+)?(?P<id>[0-9A-F]{3,8})\s+"
+    r"\s*(?:\((?P<time>\d+\.\d+|\d{4}-\d\d-\d\d \d\d:\d\d:\d\d\.\d+)\)\s+)?"
+    r"(?P<bus>[a-z]\w*)\s+(?:[TR]X\s+\S+\s+\S+\s+|[TR]X\s+)?(?P<id>[0-9A-F]{3,8})\s+"
     r"\[(?P<length>\d+)\]\s+(?P<data>(?:[0-9A-F]{2}\s*)+|remote request)"
 )
 _FIRST_LINES, _REMARK = 12, "#"
+# So many lines tell whether times are steps; stamps of several buses may go back here and there.
+_SEEN_LINES, _STEPS, _BACK = 1000, 3, 0.1
 _CUT = "rows at the cut end of the file"
 # How a row with a frame, or a part of one, begins.
 _ROW_BEGINS = re.compile(r"\s*(?:[\d(]|A\d)")
@@ -88,7 +91,7 @@ def open_text_log(path: Path, kind: str, file: TextIO, library: Any) -> FrameLog
         zero_s, log.began = reader.start_time.timestamp(), reader.start_time.replace(tzinfo=None)
     elif kind not in (_ASC, _TRC) and first.timestamp > LATER_THAN_ANY_TEST_S:
         zero_s, log.began = first.timestamp, datetime.fromtimestamp(first.timestamp, UTC)
-        if isinstance(lines, _RowLines) and not lines.has_zone:
+        if not lines.has_zone:
             log.began = log.began.replace(tzinfo=None)
     elif isinstance(lines, _AscLines):
         log.began = lines.began
@@ -115,6 +118,8 @@ class _Lines:
         self.rows = 0
         self.last = ""
         self.last_is_row = False
+        self.has_zone = True
+        """Whether dates of the lines say the zone."""
 
     def __iter__(self) -> "_Lines":
         return self
@@ -150,6 +155,25 @@ class _Lines:
 class _CandumpLines(_Lines):
     """Lines of candump, those that it shows on a terminal as those that it logs."""
 
+    def __init__(self, path: Path, file: TextIO) -> None:
+        super().__init__(path, file)
+        begin = file.tell()
+        shown = [_SHOWN.match(file.readline()) for _ in range(_SEEN_LINES)]
+        file.seek(begin)
+        times = [one["time"] for one in shown if one is not None and one["time"] is not None]
+        self.has_zone = not any("-" in time for time in times)
+        self._is_of_steps = self.has_zone and _are_steps([float(time) for time in times])
+        self._last_s = 0.0
+
+    def _seconds(self, time: str) -> str:
+        """Return the time in front of a row, which may be a date of the computer or a step from the row before."""
+        if "-" in time:
+            return f"{datetime.fromisoformat(time).replace(tzinfo=UTC).timestamp():.6f}"
+        if self._is_of_steps:
+            self._last_s += float(time)
+            return f"{self._last_s:.6f}"
+        return time
+
     def changed(self, line: str) -> str:
         shown = _SHOWN.match(line)
         if shown is None:
@@ -160,7 +184,14 @@ class _CandumpLines(_Lines):
             )
         data = "R" if shown["data"].startswith("r") else "".join(shown["data"].split())
         mark = "##0" if int(shown["length"]) > _CLASSIC else "#"
-        return f"({shown['time']}) {shown['bus']} {shown['id']}{mark}{data}\n"
+        return f"({self._seconds(shown['time'])}) {shown['bus']} {shown['id']}{mark}{data}\n"
+
+
+def _are_steps(times: list[float]) -> bool:
+    """Return whether times are those since the row before (-t d): they go back all the time, or stay."""
+    back = sum(later < before for before, later in pairwise(times[1:]))
+    stays = len(times) > _STEPS and times[1] > 0.0 and len(set(times[1:])) == 1
+    return stays or back > _BACK * len(times)
 
 
 class _RowLines(_Lines):
@@ -170,17 +201,14 @@ class _RowLines(_Lines):
         super().__init__(path, file)
         self._of = Rows(kind)
         self._frames: list[str] = []
+        self.has_zone = False
 
     def __next__(self) -> str:
         return self._frames.pop(0) if self._frames else super().__next__()
 
-    @property
-    def has_zone(self) -> bool:
-        """Whether their dates say the zone."""
-        return self._of.has_zone
-
     def changed(self, line: str) -> str:
         lines = self._of.lines_of(line)
+        self.has_zone = self._of.has_zone
         is_remark = not line.strip() or line.startswith(_REMARK)
         self.rows += len(lines) or not is_remark
         self._frames = lines[1:]

@@ -31,13 +31,21 @@ _DAY_ALONE = re.compile(
 )
 # Nov 21, 2026
 _NAME_FIRST = re.compile(
-    rf"{_WEEKDAY}(?P<name>[A-Za-z]{{3}})[a-z]*\.? (?P<day>\d\d?),? (?P<year>\d{{4}})[T ,]+{_CLOCK}{_ZONED}"
+    rf"{_WEEKDAY}(?P<name>[A-Za-z]{{3}})[a-z]*\.? (?P<day>\d\d?),? (?P<year>\d{{4}})[T ,]+(?:@ )?{_CLOCK}{_ZONED}"
+)
+# Thu Mar  5 09:00:00 CET 2026, as C and Java print dates; Thu Mar 05 2026 09:00:00 GMT+0100, as JavaScript does
+_YEAR_LAST = re.compile(
+    rf"{_WEEKDAY}(?P<name>[A-Za-z]{{3}}) +(?P<day>\d\d?) {_CLOCK}(?: (?P<zone>UTC|GMT)| [A-Z]{{3,4}})? "
+    r"(?P<year>\d{4})"
+)
+_SCRIPT = re.compile(
+    rf"{_WEEKDAY}(?P<name>[A-Za-z]{{3}}) (?P<day>\d\d) (?P<year>\d{{4}}) {_CLOCK} GMT(?P<zone>[+-]\d{{4}})(?: \(.*\))?"
 )
 # with the month's name within, as Boost writes dates
 _NAME_WITHIN = re.compile(rf"(?P<year>\d{{4}})[- ](?P<name>[A-Za-z]{{3}})[a-z]*[- ](?P<day>\d\d?)[T ]+{_CLOCK}{_ZONED}")
 _COMPACT = re.compile(rf"(?P<year>(?:19|20)\d\d)(?P<month>\d\d)(?P<day>\d\d)[T ]+{_CLOCK}{_ZONED}")
-_FORMS = (_ISO, _DAY_FIRST, _BASIC, _DAY_ALONE, _NAME_FIRST, _NAME_WITHIN, _COMPACT)
-_NAMED = (_DAY_FIRST, _DAY_ALONE, _NAME_FIRST, _NAME_WITHIN)
+_FORMS = (_ISO, _DAY_FIRST, _BASIC, _DAY_ALONE, _NAME_FIRST, _NAME_WITHIN, _COMPACT, _YEAR_LAST, _SCRIPT)
+_NAMED = (_DAY_FIRST, _DAY_ALONE, _NAME_FIRST, _NAME_WITHIN, _YEAR_LAST, _SCRIPT)
 _MONTHS = {
     name: number
     for number, names in enumerate(
@@ -46,7 +54,6 @@ _MONTHS = {
     )
     for name in names.split()
 }
-_ZONE = re.compile(r"\s?(Z|UTC|GMT|[+-]\d\d(?::?\d\d)?)$")
 
 
 def _parts(text: str) -> re.Match[str] | None:
@@ -62,7 +69,8 @@ def is_date(text: str) -> bool:
 
 def has_offset(text: str) -> bool:
     """Return whether a date says how far its clock is from UTC."""
-    return _ZONE.search(text[8:]) is not None
+    parts = _parts(text)
+    return parts is not None and parts["zone"] is not None
 
 
 def dates(path: Path, texts: Sequence[str]) -> "np.ndarray[tuple[int], np.dtype[np.datetime64]]":

@@ -19,6 +19,9 @@ _GAPS = (
     "#value!", "#div/0!", "#num!", "ol", "+ol", "-ol", "ovld", "over", "+over", "-over", "overload",
     "overrange", "over range", "underrange", "overflow", "burnout", "burn out", "b.o.", "invalid", "bad", "no data",
     "nodata", "err", "error", "fault", "?", "off", "∞", "+∞", "-∞",
+    # historians
+    "(null)", "i/o timeout", "pt created", "calc failed", "comm fail", "scan off", "shutdown", "intf shut",
+    "bad input", "bad data", "not connect", "no result", "no sample", "configure",
 )  # fmt: skip
 OVERLOAD = 9.89e37
 """From here on a number is none: instruments write 9.9e37 for an overload and 9.91e37 for no value (SCPI 1999)."""

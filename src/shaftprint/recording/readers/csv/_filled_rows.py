@@ -1,5 +1,6 @@
 """Columns with a value in some of the rows only: those of a slower clock, or of messages of their own."""
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -37,6 +38,18 @@ def own_rows(read: Source, count: int, *, is_uneven: bool) -> IntArray | None:
     if is_uneven or (usual > 1 and np.count_nonzero(apart == usual) >= _ALIKE * apart.size):
         return rows
     return None
+
+
+def rows_with_values(reads: Sequence[Source], count: int) -> IntArray:
+    """Return the rows in which any of some columns has a value."""
+    blocks = ((start, min(start + _BLOCK, count)) for start in range(0, count, _BLOCK))
+    rows: IntArray = np.concatenate(
+        [
+            start + np.flatnonzero(np.any([np.isfinite(read(start, stop)) for read in reads], axis=0))
+            for start, stop in blocks
+        ]
+    )
+    return rows
 
 
 def only(read: Source, rows: IntArray) -> Times:

@@ -24,12 +24,23 @@ from shaftprint.recording.readers.csv._fields import (
 )
 from shaftprint.recording.readers.csv._head_beside import head_beside
 from shaftprint.recording.readers.csv._head_facts import HeadFacts, head_facts, is_fact
-from shaftprint.recording.readers.csv._long_form import expect_a_column_a_signal, expect_one_table
+from shaftprint.recording.readers.csv._long_form import (
+    expect_a_column_a_signal,
+    expect_one_table,
+    expect_plain_values,
+    expect_rows_of_one,
+)
 from shaftprint.recording.readers.csv._scope_export import began_of_export, width_of_export
 from shaftprint.recording.readers.csv._table import Table, find_table
 from shaftprint.recording.readers.csv._time_columns import TimeColumns, expect_no_words_as_times, time_columns
 from shaftprint.recording.readers.csv._time_titles import is_time_title
-from shaftprint.recording.readers.csv._titles import counts_rows, name_and_unit, titles_and_units, told_apart_by_remarks
+from shaftprint.recording.readers.csv._titles import (
+    counts_rows,
+    name_and_unit,
+    of_pairs,
+    titles_and_units,
+    told_apart_by_remarks,
+)
 from shaftprint.units import plain_unit
 
 # Titles of a column that counts the rows.
@@ -66,8 +77,8 @@ class Header:
     """Which of the columns that are read holds the times; None where there is none."""
     time_unit: str | None
     """Unit of the times, empty where the file gives none; None where times are dates, or there are none."""
-    more_times: tuple[tuple[int, str], ...] = ()
-    """Further columns of times among those that are read, each with its unit: the columns behind it are its own."""
+    more_times: tuple[tuple[int, str | None], ...] = ()
+    """Further columns of times among those that are read, each with its unit, None of dates: those behind are on it."""
     is_whole: bool = False
     """Whether rows have all fields, the last a number: one that is shorter is damaged."""
     first_line: int = 1
@@ -99,6 +110,12 @@ class Header:
     def dated(self) -> bool:
         """Whether times are dates or times of day."""
         return bool(self.stamps)
+
+    @property
+    def more_dates(self) -> tuple[tuple[int, ...], ...]:
+        """Columns of the file that hold dates of the columns behind them, as many as make those of the rows."""
+        size, first = len(self.stamp_texts), (self.places[column] for column, unit in self.more_times if unit is None)
+        return tuple(tuple(range(place, place + size)) for place in first)
 
     @property
     def stamp_texts(self) -> tuple[int, ...]:
@@ -137,6 +154,7 @@ def read_header(
     """
     asked = [] if columns is None else [title.strip() for title in columns.split(",")]
     renamed = bool(asked) and all("=" in title for title in asked)
+    expect_plain_values(path, lines)
     beside = head_beside(lines)
     lines = lines if beside is None else beside.rows
     table = _expect_table(path, lines, delimiter, (0 if renamed else len(asked)) or width_of_export(lines))
@@ -147,6 +165,7 @@ def read_header(
     if not titles:
         titles, units = titles_and_units(lines, table) if beside is None else (list(beside.names), list(beside.units))
         _expect_titles(path, lines, table, titles)
+        titles = of_pairs(titles, table)
     if renamed:
         titles = _renamed(path, titles, asked)
     parsed = [name_and_unit(title) for title in titles] if not units else list(zip(titles, units, strict=True))
@@ -154,6 +173,7 @@ def read_header(
     names = ["" if kind == GAP and is_fact(name) else name for name, kind in zip(names, table.kinds, strict=True)]
     units = [plain_unit(unit) for _, unit in parsed]
     expect_a_column_a_signal(path, table, names)
+    expect_rows_of_one(path, table, names)
     facts = head_facts([line for line in lines[: table.first] if line.strip()], table.delimiter)
     times = time_columns(table, [name for name, _ in parsed], units, has_rate=has_rate)
     where = f"{path}, line {max(table.first, 1)}"
@@ -164,11 +184,11 @@ def read_header(
             f'{where}: expected a column "time [s]", found "{"; ".join(titles)[:_SHOWN]}"; name the columns, columns='
             f' (--columns "{proposal[:_SHOWN]}"), or pass sample_rate_hz= (--sample-rate) where there are no times.'
         )
+    names = told_apart(told_apart_by_remarks(titles, names))
     kept, left_out = _chosen(table, names, times)
     if not set(kept) - {times.place} and (has_rate or len(names) > 1):
         reasons = "".join(f"; {name}: {reason}" for name, reason in left_out.items())
         raise RecordingError(f"{where}: expected a channel besides the time, found none{reasons[:_SHOWN]}.")
-    names = told_apart(told_apart_by_remarks(titles, names))
     decimal = decimal or _decimal(path, table, [place for place in kept if place not in times.stamps])
     _expect_other_delimiter(path, table, decimal)
     return Header(
@@ -305,7 +325,7 @@ def _chosen(table: Table, names: Sequence[str], times: TimeColumns) -> tuple[lis
     for place, kind in enumerate(table.kinds):
         name = names[place]
         shown = name or f"column {place + 1}, which has no title"
-        if place == times.place:
+        if place == times.place or place in dict(times.more):
             kept.append(place)
         elif place in times.stamps or (times.fraction or (-1,))[0] == place or (not name and kind == GAP):
             continue

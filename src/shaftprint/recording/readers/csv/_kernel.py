@@ -173,5 +173,8 @@ def rows_of(text, delimiter, decimal, width, least, targets, numbers, texts, odd
         for missing in range(column, width):
             if targets[missing] >= 0:
                 numbers[targets[missing], row] = np.nan
+            elif targets[missing] == AS_TEXT:
+                texts[kept, 0], texts[kept, 1] = at, at
+                kept += 1
         row += 1
     return row, kept, strange

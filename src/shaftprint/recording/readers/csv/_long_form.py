@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Sequence
+from itertools import pairwise
 from pathlib import Path
 
 from shaftprint.errors import RecordingError
@@ -14,18 +15,43 @@ _SIGNALS = frozenset(
     {
         "tag", "signal", "channel", "variable", "var", "sensor", "parameter", "param", "point", "item", "field", "pid",
         "measurement", "metric", "series", "entity", "node", "quantity", "name", "attribute", "register", "topic",
-        "key", "spn", "pgn", "messstelle", "kanal", "signalname", "variablenname",
+        "key", "path", "spn", "pgn", "messstelle", "kanal", "signalname", "variablenname",
     }
 )  # fmt: skip
 _VALUES = frozenset({"value", "val", "wert", "messwert", "state", "reading", "valeur", "valor", "waarde"})
 # what such a column says else
 _OTHERWISE = frozenset({"status", "quality", "alarm", "mode", "unit", "units", "type", "code", "count", "source"})
 _ID = "id"
+# Words in the title of a column that says of which ship, engine or logger the whole row is; its numbers change in turn.
+_SENDERS = frozenset(
+    {
+        "mmsi", "imo", "ship", "vessel", "schiff", "device", "logger", "asset", "machine", "engine", "motor", "shaft",
+        "drive", "instance", "unit", "side", "station", "host", "sender",
+    }
+)  # fmt: skip
+_NUMBERED = frozenset({_ID, "no", "nr", "number", "name"})
+_MOST_SENDERS, _IN_TURN = 8, 0.25
 _WORD = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-zäöüß]+")
 _FUSED = re.compile(r"(tag|var|signal|channel|sensor|node|point|item|entity|messstellen)(name|id|value|val|wert)")
 # titles of the bytes of a frame: D0, Data1, Byte 0
 _BYTES = re.compile(r"(?<![A-Za-z])(data|d|b|byte)[ _]?[01](?!\d)", re.IGNORECASE)
-_HEAD, _SHOWN = 30, 80
+_HEAD, _SHOWN, _MOST = 30, 80, 0.9
+_BESIDE_VALUES = (
+    (
+        re.compile(r"\b[A-Za-z_]+\s?[:=]\s?[+-]?\d"),
+        2,
+        "names in front of them",
+        "print the values alone, or take the names out, sed -E 's/[A-Za-z_. ]+[:=] ?//g', and name the columns with "
+        "columns= (--columns).",
+    ),
+    (
+        re.compile(r"\d\d:\d\d:\d\d\.\d{3} -> "),
+        1,
+        "the times of a serial monitor",
+        "make columns of them, sed 's/ -> /,/', and name these with columns= (--columns).",
+    ),
+)
+"""How lines show names beside values, how often in each, what that is, and what to do."""
 # Fewer rows of numbers may stand in a head.
 _ROWS = 4
 
@@ -52,6 +78,49 @@ def expect_a_column_a_signal(path: Path, table: Table, names: Sequence[str]) -> 
                 f'each, in pandas: table.pivot_table(index=TIME, columns="{names[place]}", '
                 f'values="{names[values[0]]}").to_csv(...).'
             )
+
+
+def expect_plain_values(path: Path, lines: Sequence[str]) -> None:
+    """Refuse rows with names in front of the values, or with the arrow of a serial monitor.
+
+    Raises RecordingError if nearly all lines are such.
+    """
+    filled = [line for line in lines if line.strip()]
+    for pattern, fewest, found, remedy in _BESIDE_VALUES:
+        if len(filled) > _ROWS and sum(len(pattern.findall(line)) >= fewest for line in filled) >= _MOST * len(filled):
+            raise RecordingError(
+                f"{path}: expected values alone below one row of titles, found {found}, "
+                f'"{printable(filled[-2])[:30]}"; {remedy}'
+            )
+
+
+def expect_rows_of_one(path: Path, table: Table, names: Sequence[str]) -> None:
+    """Refuse rows of several ships or engines in turn, which would be one channel.
+
+    Raises RecordingError if a column says of which a row is.
+    """
+    for place, name in enumerate(names):
+        words = _words(name)
+        fields = [row[place] for row in table.rows if row[place]]
+        several = list(dict.fromkeys(fields))
+        if (
+            table.kinds[place] not in (TEXT, NUMBER)
+            or not words & _SENDERS
+            or words - _SENDERS - _NUMBERED
+            or len(several) < 2
+        ):
+            continue
+        changes = sum(one != other for one, other in pairwise(fields))
+        is_id = bool(words & {"mmsi", "imo", _ID})
+        if not is_id and (len(several) > _MOST_SENDERS or changes < _IN_TURN * len(fields)):
+            continue
+        if table.kinds[place] == NUMBER and not all(field.isdecimal() for field in several):
+            continue
+        raise RecordingError(
+            f"{path}, column {name}: expected the rows of one, found those of "
+            f"{printable(', '.join(several))[:_SHOWN]} in turn; write a file for each, in pandas: "
+            f'for one, rows in table.groupby("{name}"): rows.to_csv(f"{{one}}.csv").'
+        )
 
 
 def expect_one_table(path: Path, lines: Sequence[str], table: Table) -> None:
@@ -81,8 +150,9 @@ def expect_no_frames(path: Path, lines: Sequence[str]) -> None:
     Raises RecordingError if titles name identifier, length and bytes.
     """
     for line in lines[:_HEAD]:
-        words = set(re.findall(r"[a-z]+", line.lower()))
+        words = {word.replace("databytes", "data") for word in re.findall(r"[a-z]+", line.lower())}
         has_length = "dlc" in words or (words & {"len", "length"} and _BYTES.search(line) is not None)
+        has_length = has_length or words == {"timestamp", "type", "id", "data"}
         if words & {"id", "identifier"} and has_length and (_BYTES.search(line) is not None or "data" in words):
             raise RecordingError(
                 f"{path}: expected columns of values, found the frames of a CAN bus; make a log of them as ASC, BLF or "

@@ -7,14 +7,22 @@ from typing import cast
 
 import numpy as np
 
+from shaftprint.arrays import IntArray
 from shaftprint.errors import RecordingError
 from shaftprint.recording._channel import Channel, Times
 from shaftprint.recording._spool import Spool
 from shaftprint.recording.readers._clock import SampleClock, clock_of_times, on_clock
 from shaftprint.recording.readers._gather import names_in_words
+from shaftprint.recording.readers._hints import OF_HINT, expect_one_rate
 from shaftprint.recording.readers._time_scale import TimeScale, time_scale
 from shaftprint.recording.readers._units import seconds_in
-from shaftprint.recording.readers.csv._filled_rows import clock_of_rows, may_have_own_rows, only, own_rows
+from shaftprint.recording.readers.csv._filled_rows import (
+    clock_of_rows,
+    may_have_own_rows,
+    only,
+    own_rows,
+    rows_with_values,
+)
 from shaftprint.recording.readers.csv._header import Header
 from shaftprint.recording.readers.csv._rows import Unpacked
 
@@ -86,6 +94,10 @@ def sampled(
     if header.more_times and header.time_column is not None:
         count = _filled(spool, header.time_column, count)
     first, remark = _rows(path, header, read, done, count, rate_hz)
+    events = None if read is None or header.more_times else _without_events(path, header, spool, done, first, read)
+    if events is not None:
+        first, valued = events
+        remark = f"Rows without a value, at times of no sample, were left out: {count - valued.size}."
     own, others, on_own_rows, channels = first, list[str](), list[str](), {}
     for number, (name, unit) in enumerate(zip(header.names, header.units, strict=True)):
         if number == header.time_column or name in done.left_out:
@@ -96,7 +108,9 @@ def sampled(
             others += [name] if own != first else []
             continue
         source, rows = spool.source(number), own
-        if own is first and read is not None and may_have_own_rows(done.filled[name], count):
+        if events is not None:
+            source = only(source, valued)
+        elif own is first and read is not None and may_have_own_rows(done.filled[name], count):
             is_uneven = isinstance(first, RecordingError) or first.clock.is_uneven
             filled = own_rows(source, count, is_uneven=is_uneven)
             clock = None if filled is None else clock_of_rows(path, name, filled, read)
@@ -126,6 +140,26 @@ def sampled(
     return channels, [remark, by_others, by_rows]
 
 
+def _without_events(
+    path: Path, header: Header, spool: Spool, done: Unpacked, first: _Rows | RecordingError, read: Times
+) -> tuple[_Rows, IntArray] | None:
+    """Return rows and places of those with a value, where the others, as of a logger's events, are off their clock."""
+    columns = [
+        column
+        for column, name in enumerate(header.names)
+        if column != header.time_column and name not in done.left_out and done.filled[name]
+    ]
+    if not columns or any(done.filled[header.names[column]] == done.count for column in columns):
+        return None
+    rows = rows_with_values([spool.source(column) for column in columns], done.count)
+    clock = None if rows.size == done.count else clock_of_rows(path, header.names[header.time_column or 0], rows, read)
+    if not isinstance(clock, SampleClock) or clock.is_uneven:
+        return None
+    if isinstance(first, _Rows) and not first.clock.is_uneven and len(first.clock.holes) <= len(clock.holes):
+        return None
+    return _Rows(clock=clock, count=rows.size), rows
+
+
 def _rows(
     path: Path, header: Header, read: Times | None, done: Unpacked, count: int, rate_hz: float | None
 ) -> tuple[_Rows | RecordingError, str]:
@@ -146,11 +180,15 @@ def _further(
     path: Path, header: Header, spool: Spool, count: int, number: int, first: TimeScale, asked: str
 ) -> _Rows | RecordingError | None:
     """Return the rows of a further column of times, or why they have no clock; nothing where it is a channel."""
-    unit = dict(header.more_times).get(number)
-    if unit is None:
+    units = dict(header.more_times)
+    if number not in units:
         return None
+    unit = units[number]
     try:
         filled = _filled(spool, number, count)
+        if unit is None:
+            clock = clock_of_times(path, f"column {header.names[number]}", filled, spool.source(number))
+            return _Rows(clock=clock, count=filled)
         scale = _scale(path, header, spool, number, unit, filled, asked)
         if bool(scale.since_1970_s) != bool(first.since_1970_s):
             # the same times by another clock
@@ -194,10 +232,8 @@ def _clock(
         remark = f"{name}: {rows} rows have each stamp; the rows are placed by the rate of {rate_hz:g} Hz."
         return SampleClock(rate_hz=cast(float, rate_hz), start_s=0.0), remark
     clock = clock_of_times(path, name, count, read, joins_doubled=True)
-    if rate_hz is not None and abs(clock.rate_hz / rate_hz - 1.0) > _RATE_AGREEMENT:
-        raise RecordingError(
-            f"{path}: expected one sample rate, found {clock.rate_hz:g} Hz in {name} and {rate_hz:g} Hz in the hint."
-        )
+    if rate_hz is not None:
+        expect_one_rate(path, {name: clock.rate_hz, OF_HINT: rate_hz}, _RATE_AGREEMENT)
     if stated_hz and rate_hz is None and abs(clock.rate_hz / stated_hz - 1.0) > _STATED_AGREEMENT:
         return clock, f"{name}: a rate of {clock.rate_hz:g} Hz, which counts; the lines above say {stated_hz:g} Hz."
     doubled = sum(hole.missing < 0 for hole in clock.holes)

@@ -5,6 +5,7 @@ from collections import deque
 from collections.abc import Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, field
+from itertools import chain
 from pathlib import Path
 from typing import IO, TypeAlias
 
@@ -94,6 +95,7 @@ class _Unpacking:
     def __init__(self, path: Path, header: Header, spool: Spool) -> None:
         self.path, self.header, self.spool = path, header, spool
         self.done = Unpacked(stamps=Stamps(path, header) if header.dated else None)
+        self.more = [Stamps(path, header, lead=self.done.stamps, places=places) for places in header.more_dates]
         self.done.filled = dict.fromkeys(header.names, 0)
         self.marks = [Marks() for _ in header.places]
         self.mistakes: list[tuple[int, list[str]]] = []
@@ -128,13 +130,21 @@ class _Unpacking:
         header, rows = self.header, len(next(iter(columns.values())))
         if self.done.stamps is not None and rows:
             try:
-                columns[header.places[header.time_column or 0]] = self.done.stamps.seconds(columns)
+                seconds = {
+                    place: stamps.seconds(columns)
+                    for place, stamps in zip(
+                        (header.places[header.time_column or 0], *(places[0] for places in header.more_dates)),
+                        (self.done.stamps, *self.more),
+                        strict=True,
+                    )
+                }
             except RecordingError:
                 if parsed is None or parsed.result() is None:
                     raise
                 # a row whose date is none: a second look leaves it out
                 self._take(block, None)
                 return
+            columns.update(seconds)
         if header.fraction is not None:
             time, (place, unit_s) = header.places[header.time_column or 0], header.fraction
             columns[time] = np.asarray(columns[time], dtype=np.float64) + unit_s * np.asarray(
@@ -157,7 +167,7 @@ class _Unpacking:
     def _texts(self) -> list[int]:
         """Return the columns of the file that are kept as text."""
         beside = [] if self.header.dates_beside is None else [self.header.dates_beside]
-        return [*self.header.stamp_texts, *beside]
+        return [*self.header.stamp_texts, *chain.from_iterable(self.header.more_dates), *beside]
 
     @property
     def _numbers(self) -> list[int]:
@@ -274,7 +284,8 @@ class _Unpacking:
     def _has_time(self, fields: Sequence[str]) -> bool:
         header = self.header
         if header.stamps:
-            return all(is_stamp(fields[place]) for place in header.stamp_texts)
+            stamps = [fields[place] for place in (*header.stamp_texts, *chain.from_iterable(header.more_dates))]
+            return all(is_stamp(one) or (not one and header.more_dates) for one in stamps) and any(stamps)
         if header.time_column is None:
             return True
         return number(header.pointed(fields[header.places[header.time_column]])) is not None

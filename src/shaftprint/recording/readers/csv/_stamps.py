@@ -34,8 +34,12 @@ def is_stamp(field: str) -> bool:
 class Stamps:
     """The stamps of a file, one block of rows after the other."""
 
-    def __init__(self, path: Path, header: Header) -> None:
-        self._path, self._header = path, header
+    def __init__(self, path: Path, header: Header, *, lead: "Stamps | None" = None, places: Sequence[int] = ()) -> None:
+        """``lead``, ``places``: for further dates, the stamps whose first they count from, and their columns."""
+        self._path, self._lead = path, lead
+        self._texts = header.stamp_texts if lead is None else tuple(places)
+        self._milliseconds = header.milliseconds if lead is None else None
+        self._may_end = bool(header.more_times)
         self._first: np.datetime64 | None = None
         self._in_utc = False
         self._first_s: float | None = None
@@ -60,16 +64,23 @@ class Stamps:
         return self._first_s if self.began is None and not self._has_spans else None
 
     def seconds(self, columns: Mapping[int, FloatArray | Sequence[str]]) -> FloatArray:
-        """Return the seconds of rows since the first of the file.
+        """Return the seconds of rows since the first of the file; not a number where columns have ended.
 
         Raises RecordingError if a stamp is no date or no time of day.
         """
-        header = self._header
-        parts = (columns[place] for place in header.stamp_texts)
+        parts = (columns[place] for place in self._texts)
         texts = [" ".join(of_row).strip().strip('"') for of_row in zip(*parts, strict=True)]
-        milliseconds = (
-            0.0 if header.milliseconds is None else np.asarray(columns[header.milliseconds], dtype=np.float64)
-        )
+        if self._may_end and not all(texts):
+            seconds = np.full(len(texts), np.nan)
+            filled = [row for row, text in enumerate(texts) if text]
+            if filled:
+                seconds[filled] = self.seconds(
+                    {place: [columns[place][row] for row in filled] for place in self._texts}
+                )
+            return seconds
+        if self._lead is not None:
+            self._first, self._in_utc = self._lead._first, self._lead._in_utc
+        milliseconds = 0.0 if self._milliseconds is None else np.asarray(columns[self._milliseconds], dtype=np.float64)
         if self._first is None and (self._first_s is not None or not is_date(texts[0])):
             return self._of_day(texts, 1e-3 * milliseconds)
         when = dates(self._path, texts) + np.rint(1e3 * np.nan_to_num(milliseconds)).astype("timedelta64[us]")
@@ -93,7 +104,7 @@ class Stamps:
         self._expect_day_after_day(texts, np.diff(seconds // _DAY_S, prepend=(before_s or 0.0) // _DAY_S))
         self._last_s = float(seconds[-1])
         if self._first_s is None:
-            self._first_s = float(seconds[0])
+            self._first_s = float(seconds[0]) if self._lead is None else self._lead._first_s or 0.0
         return seconds - self._first_s
 
     def _expect_day_after_day(self, texts: Sequence[str], midnights: FloatArray) -> None:
@@ -103,6 +114,12 @@ class Stamps:
         """
         if self._first_s is None:
             self.ambiguous_date = self._last_date = ambiguous_date(texts[0])
+            if self._lead is not None and self.ambiguous_date != self._lead.ambiguous_date:
+                raise RecordingError(
+                    f"{self._path}: expected columns that begin on one day, found {self._lead.ambiguous_date} and "
+                    f"{self.ambiguous_date}, of which day and month cannot be told apart; write the dates as in ISO "
+                    "8601."
+                )
         if not self.ambiguous_date:
             return
         for text, midnight in zip(texts, midnights.tolist(), strict=True):

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from pathlib import Path
+from typing import cast
 
 import numpy as np
 
@@ -47,8 +48,8 @@ class TimeColumns:
     """Column of dates beside times that are numbers."""
     fraction: tuple[int, float] | None = None
     """Column of what is beyond the whole seconds of the times, and its unit [s]."""
-    more: tuple[tuple[int, str], ...] = ()
-    """Further columns of times, each with its unit: the columns behind it are on those."""
+    more: tuple[tuple[int, str | None], ...] = ()
+    """Further columns of times, each with its unit, None of dates: the columns behind it are on those."""
     other_dates: int | None = None
     """Column of dates that are others than those of the rows."""
     remark: str = ""
@@ -81,8 +82,9 @@ def time_columns(table: Table, names: Sequence[str], units: Sequence[str], *, ha
     if first.place is None:
         return first
     if first.stamps:
-        return replace(first, other_dates=_other_dates(table, names, first))
-    return replace(first, more=_more(table, names, units, first.place))
+        first = replace(first, more=_more_dates(table, names, first))
+        return first if first.more else replace(first, other_dates=_other_dates(table, names, first))
+    return replace(first, more=_more(table, names, units, cast(int, first.place)))
 
 
 def _more(table: Table, names: Sequence[str], units: Sequence[str], first: int) -> tuple[tuple[int, str], ...]:
@@ -91,20 +93,39 @@ def _more(table: Table, names: Sequence[str], units: Sequence[str], first: int) 
     before = first
     for place in range(first + 2, table.width - 1):
         unit = _of_time(units[place]) or unit_in_name(names[place]) or ""
-        may_be = _is_titled(names, place) or names[place] == names[first] or _is_of_next(names, place)
         is_of_time = table.kinds[place] == NUMBER and (not unit or seconds_in(unit) is not None)
-        if may_be and is_of_time and place > before + 1 and _ascends([row[place] for row in table.rows], _MOST):
+        ascends = is_of_time and _ascends([row[place] for row in table.rows], _MOST)
+        if ascends and _may_be_further(names, place, first) and place > before + 1:
             more.append((place, unit))
             before = place
     return tuple(more)
 
 
+def _may_be_further(names: Sequence[str], place: int, first: int) -> bool:
+    return _is_titled(names, place) or names[place] == names[first] or _is_of_next(names, place)
+
+
+def _more_dates(table: Table, names: Sequence[str], first: TimeColumns) -> tuple[tuple[int, None], ...]:
+    """Return further columns of dates, or of dates and times of day, that go on in front of columns of their own."""
+    lead, size = first.stamps[0], len(first.stamps)
+    form = table.kinds[lead : lead + size]
+    if first.stamps != tuple(range(lead, lead + size)) or set(form) - {DATE, DAY_TIME}:
+        return ()
+    places = [
+        place
+        for place in range(lead + size + 1, table.width - size)
+        if table.kinds[place : place + size] == form
+        and table.kinds[place - 1] not in (DATE, DAY_TIME)
+        and _may_be_further(names, place, lead)
+    ]
+    return tuple((one, None) for one in places if len({row[one : one + size] for row in table.rows}) > 1)
+
+
 def _other_dates(table: Table, names: Sequence[str], first: TimeColumns) -> int | None:
     """Return the first column of dates that are others than those of the rows, with columns of their own behind it."""
-    lead = first.stamps[0]
     for place in range(max(first.stamps) + 2, table.width - 1):
-        is_alike = table.kinds[place] == table.kinds[lead] in (DATE, DAY_TIME)
-        if is_alike and any(row[place] not in ("", row[lead]) for row in table.rows):
+        alike = [stamp for stamp in first.stamps if table.kinds[place] == table.kinds[stamp] in (DATE, DAY_TIME)]
+        if alike and any(row[place] not in ("", *(row[stamp] for stamp in alike)) for row in table.rows):
             return place
     return None
 
@@ -123,13 +144,14 @@ def _first_times(table: Table, names: Sequence[str], units: Sequence[str], *, ha
     kinds = table.kinds
     dated = [place for place, kind in enumerate(kinds) if kind == DATE]
     # one that stays is the begin of an export where another goes on: _start, _stop, _time
-    dated = [place for place in dated if len({row[place] for row in table.rows}) > 1] or dated
+    dated = [place for place in dated if len({row[place] for row in table.rows} - {""}) > 1] or dated
     hours = [place for place, kind in enumerate(kinds) if kind == DAY_TIME]
     titled = [place for place, name in enumerate(names) if kinds[place] in (NUMBER, GAP) and is_time_title(name)]
     # 20260305 beside a time of day
     titled = [
         place for place in titled if not hours or not all(_COMPACT_DAY.fullmatch(row[place]) for row in table.rows)
     ]
+    titled = [place for place in titled if not _is_of_second(table, place, hours, units)]
     plain = [place for place in titled if not is_capital(names[place])] or titled
     whole = _whole_seconds(table, names)
     if whole is not None and (not plain or plain[0] == whole.place):
@@ -207,13 +229,27 @@ def _stamps(
         (
             place
             for place, name in enumerate(names)
-            if table.kinds[place] == NUMBER and (name.lower() in MILLISECONDS or (not name and units[place] == "ms"))
+            if table.kinds[place] == NUMBER
+            and (
+                name.lower() in MILLISECONDS
+                or (not name and units[place] == "ms")
+                or _is_of_second(table, place, stamps[-1:], units)
+            )
         ),
         None,
     )
     if thousandths is None or any("." in part.rpartition(":")[2] for part in parts):
         return TimeColumns(place=lead, stamps=tuple(stamps))
     return TimeColumns(place=lead, stamps=(*stamps, thousandths), milliseconds=thousandths)
+
+
+def _is_of_second(table: Table, place: int, hours: Sequence[int], units: Sequence[str]) -> bool:
+    """Return whether numbers are milliseconds that begin again with each second of the times of day before them."""
+    rows = [(row[place - 1], row[place]) for row in table.rows]
+    if place - 1 not in hours or units[place] != "ms" or not all(part.isdecimal() for _, part in rows):
+        return False
+    changes = [(first != second, int(after) <= int(before)) for (first, before), (second, after) in pairwise(rows)]
+    return (True, True) in changes and all(is_next == begins for is_next, begins in changes)
 
 
 def _of_time(unit: str) -> str:

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 from shaftprint.escape import csv_cell_text, printable
 from shaftprint.recording.readers._units import seconds_in
-from shaftprint.recording.readers.csv._fields import GAP, WHITE_SPACE, is_number, split_row
+from shaftprint.recording.readers.csv._fields import DATE, DAY_TIME, GAP, WHITE_SPACE, is_number, split_row
 from shaftprint.recording.readers.csv._head_facts import is_fact, plain_key
 from shaftprint.recording.readers.csv._scope_export import titles_of_export
 from shaftprint.recording.readers.csv._table import Table
@@ -35,7 +35,9 @@ _LETTER_UNITS = frozenset({"m", "g", "C", "t", "h", "A", "K", "W", "J"})
 _TIME_FORMATS = re.compile(r"[hHmMsSydDYtT:./ _-]+|ts|abs|rel|date|time", re.IGNORECASE)
 _HIGHEST = 12
 # Lines of a head that hold titles and units without standing above their columns (Yokogawa, Hioki, LabChart).
-_NAMES = ("tracename", "trace name", "signal", "channeltitle", "channel title", "channel titles", "channel names")
+_NAMES = (
+    "tag", "tracename", "trace name", "signal", "channeltitle", "channel title", "channel titles", "channel names",
+)  # fmt: skip
 _UNIT_ROWS = ("vunit", "v unit", "unit", "units", "vert units", "vertical units", "unitname", "channel units")
 # what stands in brackets is no unit, but says what something is
 _REMARK = ": "
@@ -70,7 +72,33 @@ def titles_and_units(lines: Sequence[str], table: Table) -> tuple[list[str], lis
     place = _place_of_titles(rows)
     # words may stand between titles and units
     units = next((row for row in reversed(rows[:place]) if _are_units(row, rows[place])), [])
-    return rows[place], [_unit(field) for field in units]
+    return _with_words(rows[place], [row for row in rows[:place] if row is not units]), [
+        _unit(field) for field in units
+    ]
+
+
+def _with_words(titles: list[str], below: Sequence[Sequence[str]]) -> list[str]:
+    """Return titles, of which several are equal with the words of a row below them: device above, quantity below."""
+    for row in below if len(set(titles)) < len(titles) else ():
+        joined = [
+            title if is_time_title(title) else f"{title} {word}".strip()
+            for title, word in zip(titles, row, strict=True)
+        ]
+        if len(set(joined)) == len(joined) and not any(map(is_number, row)):
+            return joined
+    return titles
+
+
+def of_pairs(titles: list[str], table: Table) -> list[str]:
+    """Return titles, of which those above dates belong to the values behind, as historians lay out one tag each."""
+    dated = [place for place, kind in enumerate(table.kinds) if kind in (DATE, DAY_TIME)]
+    pairs = all(titles[place] and not is_time_title(titles[place]) for place in dated)
+    if not dated or not pairs or any("".join([*titles, "-"][place + 1 : place + 2]) for place in dated):
+        return titles
+    moved = list(titles)
+    for place in dated:
+        moved[place : place + 2] = ["time", titles[place]]
+    return moved
 
 
 def _named_rows(above: Sequence[str], table: Table) -> tuple[list[str], list[str]] | None:
@@ -103,7 +131,9 @@ def _place_of_titles(rows: Sequence[Sequence[str]]) -> int:
     )
     if timed is not None and (timed > 0 or len(rows) == 1 or not _are_units(rows[0], rows[1])):
         return timed
-    return 1 if len(rows) > 1 and _are_units(rows[0], rows[1]) else 0
+    place = 1 if len(rows) > 1 and _are_units(rows[0], rows[1]) else 0
+    # numbers of channels may stand below their names
+    return place + (len(rows) > place + 1 and all(map(is_number, rows[place])))
 
 
 def _are_units(row: Sequence[str], above: Sequence[str]) -> bool:

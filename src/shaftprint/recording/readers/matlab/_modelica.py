@@ -15,6 +15,7 @@ from shaftprint.errors import RecordingError
 from shaftprint.recording._channel import Channel
 from shaftprint.recording.readers._clock import SampleClock, clock_of_times, on_clock
 from shaftprint.recording.readers._gather import Gathered, names_in_words, unique_names
+from shaftprint.recording.readers._hints import OF_HINT, expect_one_rate
 from shaftprint.units import plain_unit
 
 NAME = "Modelica trajectories (MATLAB v4)"
@@ -126,11 +127,8 @@ def _rows_that_count(times: FloatArray) -> tuple[NDArray[np.bool_], list[str]]:
 
 def _clock(path: Path, times: FloatArray, rate_hz: float | None) -> SampleClock:
     clock = clock_of_times(path, "variable time", times.size, lambda start, stop: times[start:stop])
-    if rate_hz is not None and not np.isclose(rate_hz, clock.rate_hz, rtol=1e-6):
-        raise RecordingError(
-            f"{path}: expected one sample rate, found {clock.rate_hz:g} Hz by its times and {rate_hz:g} Hz by the hint "
-            "sample_rate_hz."
-        )
+    if rate_hz is not None:
+        expect_one_rate(path, {"variable time": clock.rate_hz, OF_HINT: rate_hz}, 1e-6)
     return clock
 
 
