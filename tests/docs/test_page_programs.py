@@ -58,7 +58,7 @@ def test_make_has_the_target(words):
 def test_pip_installs_what_is_there(words):
     assert words[0] == "install"
     for word in words[1:]:
-        extra = re.fullmatch(r"shaftprint\[(\w+)\]", word)
+        extra = re.fullmatch(r"(?:shaftprint|\.)\[(\w+)\]", word)
         known = word in ("-r", "-e", "--require-hashes", "--no-deps", "--no-build-isolation")
         assert known or extra or (ROOT / word).exists(), word
         if extra:

@@ -102,9 +102,10 @@ def test_messages_of_nmea_2000(source, tmp_path):
     assert np.max(np.abs(0.25 * np.array(counts) - newest)) <= 0.125
     assert {one.data[0] for one in messages} == {0}
     # without the DBC file the standard says what the speed is
+    (tmp_path / "log.log.dbc").rename(tmp_path / "elsewhere.dbc")
     with read_recording(tmp_path / "log.log") as recording:
         assert recording.channel("Engine speed").rate_hz == pytest.approx(10.0)
-    with read_recording(tmp_path / "log.log", dbc=tmp_path / "log.log.dbc") as recording:
+    with read_recording(tmp_path / "log.log", dbc=tmp_path / "elsewhere.dbc") as recording:
         assert set(recording.channels) == {"M_s", "U", "n_e", "slow"}
         # ten times a second: every tenth sample
         assert np.array_equal(
@@ -124,7 +125,8 @@ def test_a_fast_packet_of_nmea_2000(tmp_path):
     assert frames[0][1] == 26
     # the last byte of the packet, the sixth of its fourth frame, is the torque: 0 %, then 5 % half a second later
     assert [frames[3][6], frames[7][6]] == [0, 5]
-    for hints in ({}, {"dbc": tmp_path / "log.blf.dbc"}):
+    (tmp_path / "log.blf.dbc").rename(tmp_path / "elsewhere.dbc")
+    for hints in ({}, {"dbc": tmp_path / "elsewhere.dbc"}):
         with read_recording(tmp_path / "log.blf", **hints) as recording:
             channel = recording.channel("percent_torque" if hints else "Percent engine torque")
             assert channel.values(0, channel.count).tolist() == [5.0 * k % 100.0 for k in range(24)]
@@ -225,5 +227,9 @@ def test_a_log_without_a_date_has_none(source, tmp_path):
         write_by_ending(tmp_path / name, [source.channel("slow")])
         with read_recording(tmp_path / name, dbc=tmp_path / f"{name}.dbc") as recording:
             assert (recording.began, recording.channel("slow").start_s) == (None, pytest.approx(0.5))
-        with pytest.raises(RecordingError, match=rf"--dbc {name}\.dbc of"):
+        # the file beside it is read with it; away from there it is asked for
+        with read_recording(tmp_path / name) as recording:
+            assert set(recording.channels) == {"slow"}
+        (tmp_path / f"{name}.dbc").rename(tmp_path / "elsewhere.dbc")
+        with pytest.raises(RecordingError, match="--dbc"):
             read_recording(tmp_path / name)
