@@ -14,6 +14,7 @@ import tempfile
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
@@ -28,7 +29,9 @@ from benchmarks.result_tables import write_between_marks
 from shaftprint.arrays import FloatArray
 from shaftprint.catalogue._shipped import shipped_structure
 from shaftprint.distributions import NORMAL_95
-from shaftprint.service import scan
+from shaftprint.errors import ShaftprintError
+from shaftprint.fingerprint import Fingerprint
+from shaftprint.service import ServiceDay, fit_service, scan
 from shaftprint.service._fingerprint import STRUCTURE
 from shaftprint.service._fit import fit_segments
 from shaftprint.service._model import FREE, ServiceModel, service_model
@@ -112,6 +115,31 @@ def sailed(seed: int, hours: float, folder: Path, habits: Habits | None = None) 
             "scan_s": scanned_s,
         },
     )
+
+
+def said_of(
+    files: Sequence[Path], vessel: Vessel, place: Path, fingerprint: Fingerprint | None = None
+) -> tuple[dict[str, Any], ServiceDay | None]:
+    """Return what scan and fit say of logs, and their fit where it may be used; what lies between goes into a folder.
+
+    Where it may not, ``refused`` says why.
+    """
+    said: dict[str, Any] = {}
+    try:
+        found = scan(files, vessel, fingerprint=fingerprint)
+        said = {
+            "found": {one.what: one.value for one in found.found},
+            "used": len(found.used),
+            "moves": len(found.segments),
+        }
+        if found.refused:
+            return said | {"refused": found.refused}, None
+        found.write(place / "segments.csv")
+        day = fit_service(place / "segments.csv", vessel, fingerprint=fingerprint, now=datetime.now(UTC))
+    except ShaftprintError as error:
+        return said | {"refused": str(error).replace(str(place), "")}, None
+    verdict = day.fingerprint.verdict
+    return (said, day) if verdict.trustworthy else (said | {"refused": verdict.reason}, None)
 
 
 def outcome(seed: int, hours: float, folder: Path, habits: Habits | None = None) -> dict[str, Any]:

@@ -11,7 +11,6 @@ import sys
 import tempfile
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
@@ -24,11 +23,9 @@ sys.path.insert(0, str(ROOT))
 
 from benchmarks.kept_outcomes import kept
 from benchmarks.result_tables import write_between_marks
-from benchmarks.service import add_options, true_numbers
+from benchmarks.service import add_options, said_of, true_numbers
 from shaftprint.cli import shaftprint
 from shaftprint.distributions import NORMAL_95
-from shaftprint.errors import ShaftprintError
-from shaftprint.service import fit_service, scan
 from shaftprint.service._model import OVER_TORQUE
 from shaftprint.tug import Tug, sail_service
 from shaftprint.tug._like_stan_tug import like_stan_tug_1205
@@ -98,23 +95,17 @@ def outcome(seed: int, hours: float) -> dict[str, Any]:
             raise RuntimeError(made.output)
         vessel = load_vessel(file)
         files, truth = sail_service(vessel, Path(place) / "logs", hours=hours, seed=seed, tug=drawn(vessel, rng))
-        said = {"seed": seed, "hours": hours, "card": " ".join(words)}
-        try:
-            found = scan(files, vessel)
-            if found.refused:
-                return said | {"refused": found.refused}
-            found.write(Path(place) / "segments.csv")
-            day = fit_service(Path(place) / "segments.csv", vessel, now=datetime.now(UTC)).fingerprint
-        except ShaftprintError as error:
-            return said | {"refused": str(error).replace(place, "")}
-    if not day.verdict.trustworthy:
-        return said | {"refused": day.verdict.reason}
-    load = day.conditions.shaft_torque.value / vessel.working_point.driving_torque_nm
+        said, day = said_of(files, vessel, Path(place))
+    said |= {"seed": seed, "hours": hours, "card": " ".join(words)}
+    if day is None:
+        return said
+    found = day.fingerprint
+    load = found.conditions.shaft_torque.value / vessel.working_point.driving_torque_nm
     true = true_numbers(truth)
     scaled = {name: value / (load if name in OVER_TORQUE else 1.0) for name, value in true.items()}
     return said | {
-        "z": {one.name: (one.value - scaled[one.name]) / one.std for one in day.parameters},
-        "trusted": list(day.verdict.trusted),
+        "z": {one.name: (one.value - scaled[one.name]) / one.std for one in found.parameters},
+        "trusted": list(found.verdict.trusted),
     }
 
 

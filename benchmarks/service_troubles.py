@@ -24,9 +24,8 @@ sys.path.insert(0, str(ROOT))
 
 from benchmarks.kept_outcomes import kept
 from benchmarks.result_tables import write_between_marks
-from benchmarks.service import VESSEL, add_options, drawn, true_numbers
+from benchmarks.service import VESSEL, add_options, drawn, said_of, true_numbers
 from shaftprint.choices import SERVICE_TROUBLES
-from shaftprint.errors import ShaftprintError
 from shaftprint.fingerprint import Fingerprint, read_fingerprint, write_fingerprint
 from shaftprint.service import fit_service, scan
 from shaftprint.service._model import FREE
@@ -78,22 +77,10 @@ def outcome(trouble: str, seed: int, hours: float, template: Fingerprint) -> dic
         )  # fmt: skip
         true = true_numbers(truth)
         old = earlier(template, true, np.random.default_rng((seed, 6)))
-        said: dict[str, Any] = {"trouble": trouble, "seed": seed}
-        try:
-            found = scan(files, vessel, fingerprint=old)
-            said |= {
-                "found": {one.what: one.value for one in found.found},
-                "used": len(found.used),
-                "moves": len(found.segments),
-            }
-            if found.refused:
-                return said | {"refused": found.refused}
-            found.write(Path(place) / "segments.csv")
-            day = fit_service(Path(place) / "segments.csv", vessel, fingerprint=old, now=datetime.now(UTC))
-        except ShaftprintError as error:
-            return said | {"refused": str(error).replace(place, "")}
-    if not day.fingerprint.verdict.trustworthy:
-        return said | {"refused": day.fingerprint.verdict.reason}
+        said, day = said_of(files, vessel, Path(place), old)
+    said |= {"trouble": trouble, "seed": seed}
+    if day is None:
+        return said
     z = (day.fit.theta - np.array([true[name] for name in FREE])) / day.fit.std
     return said | {"z": dict(zip(FREE, z.tolist(), strict=True))}
 

@@ -224,7 +224,7 @@ def _verdict(numbers: Sequence[Estimate], *, used: int, of: int, seconds: float,
         share = one.std / abs(one.value) if one.value else np.inf
         if share > _WELL_ENOUGH and one.std > _WELL_ENOUGH_NEAR_NOTHING * (one.unit == "-" and abs(one.value) < 1.0):
             doubts[one.name] = f"known to {100.0 * share:.0f} % only" if np.isfinite(share) else "not known"
-        far = _from_file(one)
+        far = (one.deviations_from_expected or 0.0) if one.expected_std else 0.0
         if far > _STRANGE:
             cautions.append(
                 f"{one.name} is {stated(one.value, one.std, one.unit)} where the vessel file has "
@@ -257,13 +257,6 @@ def _verdict(numbers: Sequence[Estimate], *, used: int, of: int, seconds: float,
         loop=None,
         assumptions=ASSUMPTIONS,
     )
-
-
-def _from_file(one: Estimate) -> float:
-    """Return how many standard deviations a number is from what the vessel file expects; 0 where it expects nothing."""
-    if one.expected is None or not one.expected_std:
-        return 0.0
-    return abs(one.value - one.expected) / float(np.hypot(one.std, one.expected_std))
 
 
 def _findings(fit: ServiceFit, segments: Sequence[Segment], of: int, line: LeverLine) -> tuple[str, ...]:

@@ -124,9 +124,7 @@ class Sums:
         moves = np.ones(len(FREE), dtype=np.bool_)
         for _ in FREE:
             step = np.zeros(len(FREE))
-            step[moves] = Sums(
-                slope=self.slope[moves], information=self.information[np.ix_(moves, moves)], prior=self.prior
-            ).step
+            step[moves] = _solved(self.information[np.ix_(moves, moves)], self.slope[moves])
             beyond = moves & (theta <= least) & (step < 0.0)
             if not beyond.any():
                 break
@@ -139,16 +137,25 @@ class Sums:
 
         Raises ServiceError if the segments do not tell all parameters.
         """
-        size = np.sqrt(np.diag(self.information))
-        if np.all(np.isfinite(size)) and np.all(size > 0.0):
-            scaled = self.information / np.outer(size, size)
-            if np.linalg.cond(scaled) < _WORST:
-                return np.asarray(np.linalg.solve(scaled, self.slope / size) / size)
-        raise ServiceError(
-            "service: expected segments that tell all numbers of the line, found none left that do: speed and torque "
-            "do not follow the lever as a governor does; begin from a fingerprint of this line (--fingerprint), or log "
-            "the demand that the control unit takes."
-        )
+        return _solved(self.information, self.slope)
+
+
+def _solved(information: FloatArray, slope: FloatArray) -> FloatArray:
+    """Return the step to the greatest likelihood, shape (numbers,).
+
+    ``information``: curvature, shape (numbers, numbers). ``slope``: shape (numbers,). Raises ServiceError if the
+    segments do not tell all of them.
+    """
+    size = np.sqrt(np.diag(information))
+    if np.all(np.isfinite(size)) and np.all(size > 0.0):
+        scaled = information / np.outer(size, size)
+        if np.linalg.cond(scaled) < _WORST:
+            return np.asarray(np.linalg.solve(scaled, slope / size) / size)
+    raise ServiceError(
+        "service: expected segments that tell all numbers of the line, found none left that do: speed and torque "
+        "do not follow the lever as a governor does; begin from a fingerprint of this line (--fingerprint), or log "
+        "the demand that the control unit takes."
+    )
 
 
 def sums_of(each: Sequence[Score], model: ServiceModel, theta: FloatArray) -> Sums:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from shaftprint.arrays import FloatArray, frozen_float
+from shaftprint.arrays import BoolArray, FloatArray, frozen_float
 from shaftprint.errors import ServiceError
 from shaftprint.service._log import RECORD_HZ, Block, LeftOut, blocks
 from shaftprint.service._moves import (
@@ -54,6 +54,15 @@ class StillMeans:
     """Torque over the square of the speed, over that of the working point, shape (means,)."""
     stretch: FloatArray
     """Number of the still stretch of each, shape (means,)."""
+
+    def only(self, kept: BoolArray) -> "StillMeans":
+        """Return some of them, those of ``kept``, shape (means,)."""
+        return StillMeans(
+            lever_v=frozen_float(self.lever_v[kept]),
+            speed_rev_s=frozen_float(self.speed_rev_s[kept]),
+            load=frozen_float(self.load[kept]),
+            stretch=frozen_float(self.stretch[kept]),
+        )
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

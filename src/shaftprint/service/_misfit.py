@@ -20,6 +20,8 @@ import numpy as np
 from shaftprint.arrays import FloatArray
 from shaftprint.catalogue._gauge import C_SET, GAUGE_K_I, GAUGE_K_P, T_D, T_GAUGE, T_SP, TAU_UP, G
 from shaftprint.distributions import f_tail
+from shaftprint.identify.judgement._prior_contradictions import from_prior
+from shaftprint.identify.likelihood._prior import Prior
 from shaftprint.service._model import FREE, ServiceModel
 from shaftprint.service._score import Simulated, scores
 from shaftprint.time_domain._whitening import Whitening
@@ -32,8 +34,8 @@ _FREEDOM = 2.0
 _MOST = 2
 # Times after a move between which what is left has a mean of its own [s].
 _LAGS_S = (0.0, 0.15, 0.5, 1.5, 5.0)
-# A prior that the data hardly sharpen leaves nothing to divide by; so many deviations from it are no chance.
-_LEAST_SHARE, _PULLED = 0.3, 4.0
+# So many deviations from what was known are no chance.
+_PULLED = 4.0
 # A move is no smaller than this share of the speed, where its logarithm is taken.
 _LEAST_SWING = 0.01
 _GAINS, _LATENCY = "the gains of the governor", "the latency of the set point"
@@ -227,11 +229,8 @@ def _answers(run: Simulated) -> FloatArray:
 
 
 def _pulls(model: ServiceModel, theta: FloatArray, of_noise: FloatArray) -> Iterator[tuple[str, float]]:
-    """Yield the numbers that the vessel file states, with the distance from there in standard deviations.
-
-    That has the variance ``p^2 - s^2`` of prior and estimate, since the estimate is the best mean of prior and data.
-    """
+    """Yield the numbers that the vessel file states, with the distance from there in standard deviations."""
     for name, prior_std in model.prior_std.items():
         place = FREE.index(name)
-        spread = max(prior_std**2 - of_noise[place, place], (_LEAST_SHARE * prior_std) ** 2)
-        yield name, float((theta[place] - model.known[name]) / np.sqrt(spread))
+        prior = Prior(model.known[name], prior_std)
+        yield name, from_prior(float(theta[place]), float(np.sqrt(of_noise[place, place])), prior)

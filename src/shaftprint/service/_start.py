@@ -11,7 +11,7 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.catalogue._gauge import GAUGE_K_I, GAUGE_K_P, GAUGE_OMEGA_N, T_D, TAU_DN, TAU_UP
-from shaftprint.service._model import FREE, ServiceModel
+from shaftprint.service._model import ServiceModel
 from shaftprint.time_domain._record import Record
 from shaftprint.time_domain._simulator import ExactDelays, Simulator, on_record
 
@@ -57,10 +57,9 @@ def begun(model: ServiceModel, records: Sequence[Record], simulator: Simulator |
 def _left_of_speed(model: ServiceModel, records: Sequence[Record], simulator: Simulator) -> float:
     """Return the sum of the logarithms of what is left of the speed of each record, beside its mean."""
     place = tuple(model.structure.outputs).index("n")
-    theta = np.array([model.values[name] for name in FREE])
     total = 0.0
     for record in records:
-        run = on_record(simulator, model.structure, model.vector(theta, record.load), record, ())
+        run = on_record(simulator, model.structure, model.vector(model.theta, record.load), record, ())
         if run is None:
             return np.inf
         left: FloatArray = record.outputs["n"] - run[0, :, place]

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shaftprint.arrays import FloatArray, frozen_float
+from shaftprint.arrays import FloatArray
 from shaftprint.catalogue._gauge import T_SP
 from shaftprint.distributions import deviations
 from shaftprint.service._gather import MEAN_S, StillMeans
@@ -158,11 +158,9 @@ def beside_full_load(still: StillMeans, vessel: "Vessel") -> tuple[StillMeans, F
     rpm = rpm_from_rev_s(still.speed_rev_s)
     torque_nm = still.load * point.driving_torque_nm / vessel.gearbox.shaft_over_brake
     torque_nm = torque_nm * (rpm / point.engine_speed_rpm) ** 2
-    full_nm = np.array([vessel.machine.full_load_nm(float(one)) for one in rpm])
-    below = torque_nm < _FULL_LOAD * full_nm
+    below = torque_nm < _FULL_LOAD * np.interp(rpm, *vessel.machine.full_load)
     share = float(np.mean(~below)) if below.size else float("nan")
-    kept = {name: frozen_float(getattr(still, name)[below]) for name in ("lever_v", "speed_rev_s", "load", "stretch")}
-    return StillMeans(**kept), Found(what="time of a still lever at full load", value=100.0 * share, unit="%")
+    return still.only(below), Found(what="time of a still lever at full load", value=100.0 * share, unit="%")
 
 
 def off_the_line(still: StillMeans, line: LeverLine) -> Found:

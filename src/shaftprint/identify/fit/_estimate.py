@@ -65,6 +65,14 @@ class Estimate(Shown):
         return Summary(title=self.name, facts=facts)
 
     @property
+    def deviations_from_expected(self) -> float | None:
+        """How many standard deviations of both it is from what was expected; None where that is not known."""
+        spread = math.hypot(self.std, self.expected_std or 0.0)
+        if self.expected is None or not 0.0 < spread < math.inf:
+            return None
+        return abs(self.value - self.expected) / spread
+
+    @property
     def stated_std(self) -> float | None:
         """The standard deviation where it tells what the interval tells; None where only the interval should be shown.
 

@@ -13,6 +13,7 @@ from shaftprint.digits import stated
 from shaftprint.identify.fit._estimate import Estimate
 from shaftprint.identify.fit._identification import Identification
 from shaftprint.identify.judgement._phrases import number
+from shaftprint.identify.likelihood._prior import Prior
 from shaftprint.models._role import Role
 from shaftprint.reasons import Reason, ReasonKind
 
@@ -66,6 +67,11 @@ def off_nominal(identification: Identification) -> tuple[Estimate, ...]:
     )
 
 
+def from_prior(value: float, std: float, prior: Prior) -> float:
+    """Return how many standard deviations an estimate is above what was known of it, with its sign."""
+    return float((value - prior.mean) / np.sqrt(max(prior.std**2 - std**2, (LEAST_SHARE * prior.std) ** 2)))
+
+
 def _distances(identification: Identification) -> Iterator[tuple[Estimate, float, str, str, str]]:
     """Return each parameter of which something is assumed, how many deviations it is away, and that in words."""
     priors = identification.settings.priors
@@ -73,9 +79,8 @@ def _distances(identification: Identification) -> Iterator[tuple[Estimate, float
     for estimate in identification.parameters:
         if estimate.name in priors:
             prior = priors[estimate.name]
-            spread = np.sqrt(max(prior.std**2 - estimate.std**2, (LEAST_SHARE * prior.std) ** 2))
             assumed = f"the prior is {stated(prior.mean, prior.std, estimate.unit)}"
-            distance = abs(estimate.value - prior.mean) / spread
+            distance = abs(from_prior(estimate.value, estimate.std, prior))
         elif estimate.role in NOMINAL and estimate.std > 0.0:
             nominal, std = NOMINAL[estimate.role]
             assumed = f"the nominal value is {number(nominal, estimate.unit)}"

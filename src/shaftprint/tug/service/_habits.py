@@ -139,7 +139,7 @@ def _highest_rpm(vessel: Vessel) -> float:
     point = vessel.working_point
     rpm = np.linspace(0.0, 1.0, 1001)[1:] * vessel.machine.rated_speed_rpm
     taken = point.driving_torque_nm / vessel.gearbox.shaft_over_brake * (rpm / point.engine_speed_rpm) ** 2
-    given = np.array([vessel.machine.full_load_nm(float(one)) for one in rpm])
+    given = np.interp(rpm, *vessel.machine.full_load)
     beyond = np.flatnonzero((taken > _OF_FULL_LOAD * given) & (rpm > point.engine_speed_rpm))
     return float(rpm[beyond[0]] if beyond.size else rpm[-1])
 

@@ -24,15 +24,7 @@ def doubt_of(fingerprint: "Fingerprint", name: str) -> str:
     return f"It cannot be told: {own}."
 
 
-def deviations_apart(quantity: "Estimate") -> float | None:
-    """Return how many standard deviations of both a number is from the vessel file; None where that is not known."""
-    spread = (quantity.std**2 + (quantity.expected_std or 0.0) ** 2) ** 0.5
-    if quantity.expected is None or not 0.0 < spread < float("inf"):
-        return None
-    return float(abs(quantity.value - quantity.expected) / spread)
-
-
 def is_off(quantity: "Estimate") -> bool:
     """Return whether a number is farther from the vessel file than its deviations let expect."""
-    apart = deviations_apart(quantity)
+    apart = quantity.deviations_from_expected
     return bool(quantity.expected) and apart is not None and apart > TOO_FAR

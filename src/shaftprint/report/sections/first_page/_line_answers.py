@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 from shaftprint.digits import plain, unit_text, with_deviation
 from shaftprint.fingerprint._vessel_fields import INERTIA
 from shaftprint.report.sections._cover import Card, State
-from shaftprint.report.sections.first_page._doubts import FAR, TOO_FAR, deviations_apart, doubt_of, is_off
+from shaftprint.report.sections.first_page._doubts import FAR, TOO_FAR, doubt_of, is_off
 from shaftprint.report.sections.first_page._number_table import shown
 from shaftprint.tables._fingerprint import expected_text, value_text
 
@@ -67,7 +67,7 @@ def inertia(fingerprint: "Fingerprint") -> list[Card]:
         f"Measured {with_deviation(quantity.value, quantity.std)} {unit_text(quantity.unit)}, in the vessel file "
         f"{expected_text(quantity)}{_by(fingerprint)}."
     )
-    apart, doubt = deviations_apart(quantity), doubt_of(fingerprint, "I_dn")
+    apart, doubt = quantity.deviations_from_expected, doubt_of(fingerprint, "I_dn")
     if doubt or apart is None:
         return [Card(question=question, state="open", sentence=f"{doubt} {words}".strip(), action=NOT_TOLD)]
     if apart <= FAR:
