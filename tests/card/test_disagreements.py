@@ -5,6 +5,8 @@ import math
 import pytest
 
 from shaftprint.card import disagreements
+from shaftprint.card._card import Card
+from shaftprint.card._write import write_vessel
 from shaftprint.settings import write_template
 from shaftprint.vessel import load_vessel
 
@@ -114,6 +116,54 @@ def test_more_than_the_rated_power_below_full_load(changed):
     assert power.is_contradiction
     assert "rated power of 50 kW" in power.expected
     assert "57.72 kW" in power.found
+
+
+@pytest.mark.parametrize(
+    ("power_kw", "times", "is_contradiction"),
+    [
+        # Ka4-70 takes 0.0560555 * 1025 * 7.8534^2 * 1.05^5 = 4522.8 N m at 1800 rpm: 230.1 kW behind 3.82 and 0.97
+        (110.5, "2.08", False),
+        (73.0, None, True),
+        (663.0, "0.347", False),
+        (1326.0, "0.174", True),
+    ],
+)
+def test_propeller_that_is_not_of_this_engine(tmp_path, power_kw, times, is_contradiction):
+    found = [one for one in disagreements(of_card(tmp_path, rated_power_kw=power_kw)) if one.is_contradiction or times]
+    if times is None:
+        # 1.39 times the full load at two thirds of rated speed: the working point says it, once
+        assert [one.field for one in found] == ["working_point.shaft_torque_nm"]
+        return
+    (propeller,) = found
+    assert (propeller.field, propeller.is_contradiction) == ("propeller", is_contradiction)
+    assert propeller.expected == f"one that asks for about the {power_kw:g} kW of the engine at the rated 1800 rpm"
+    assert propeller.found.startswith(f"one that asks there for {times} times as much, 230.1 kW,")
+    assert "at bollard pull" in propeller.found
+    assert "gearbox.ratio, propeller.diameter_m" in propeller.advice
+    assert ("ship_speed_m_s" in propeller.advice) == (power_kw < 221.0)
+
+
+def test_heavy_propeller_says_the_speed_that_it_lets_the_engine_reach(tmp_path):
+    """542.5 N m (n / 1200)^2 meet 586.2 * 1.13 N m, the flat of the usual curve, at 1200 * sqrt(1.2211)."""
+    (found,) = disagreements(of_card(tmp_path, rated_power_kw=110.5))
+    assert "is turned at no more than 1326 rpm of the engine" in found.found
+
+
+def test_propellers_of_built_ships_are_of_their_engines(tmp_path):
+    """A propeller for free sailing takes about 1.5 times the rated power at bollard pull; a pitch may be small."""
+    tug = {"rated_power_kw": 1325.0, "rated_speed_rpm": 1600.0, "diameter_m": 2.1, "gear_ratio": 5.2}
+    assert disagreements(of_card(tmp_path, **tug, blades=4, pitch_ratio=0.95, in_nozzle=False)) == ()
+    fine = load_vessel("nifs-research-vessel")
+    point = fine.working_point.model_copy(update={"shaft_torque_nm": 0.2 * fine.working_point.shaft_torque_nm})
+    found = disagreements(fine.model_copy(update={"working_point": point}))
+    assert "propeller" not in {one.field for one in found}
+
+
+def of_card(folder, **changed):
+    """The vessel of a card, the Stan Tug's but for what is stated."""
+    card = {"rated_power_kw": 221.0, "rated_speed_rpm": 1800.0, "cylinders": 6, "diameter_m": 1.05, "blades": 3}
+    card |= {"pitch_ratio": 1.11, "gear_ratio": 3.82, "in_nozzle": True}
+    return write_vessel(Card(**card | changed), folder / "card.toml")
 
 
 def test_horse_power_in_the_place_of_kilowatts(changed):

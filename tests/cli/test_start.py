@@ -46,6 +46,15 @@ def test_a_card_is_asked_for_step_by_step(run, here):
     assert "--rpm-per-volt" not in words
 
 
+def test_a_propeller_of_another_engine_is_told_again(run, here):
+    """1325 kW turn this propeller at 1.5 times their power, 1000 kW at twice."""
+    wrong = (CARD[0], 1000, *CARD[2:])
+    for said in (("--yes", *wrong), ()):
+        result = run("start", *said)
+        following(result)
+        assert "propeller: expected one that asks for about the 1000 kW" in " ".join(result.output.split())
+
+
 @pytest.mark.parametrize(
     ("unit", "pairs", "slope"),
     [

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from shaftprint.card._disagreement import Disagreement
+from shaftprint.card._engine_load import CURVE_TOLERANCE, engine_load, propeller_law
 from shaftprint.card._first_mode import first_mode
 from shaftprint.card._series import open_water_curve, series_torque, tested_pitch
 from shaftprint.digits import in_nm
@@ -17,20 +18,19 @@ from shaftprint.vessel._wheel import SAMPLES_A_TOOTH
 _ROUNDED_RATIO, _WRONG_RATIO = 0.005, 0.02
 # Tips of propellers that are built, at rated speed [m/s]: 20 to 45, with a wide margin.
 _TIP_SPEEDS = (5.0, 100.0)
-# Full-load curves and efficiencies are known to some per cent.
-_CURVE_TOLERANCE = 1.1
 _FINDING, _CONTRADICTION = 1.25, 2.0
+_TORQUES = ("working_point.shaft_torque_nm", "propeller.torque_coefficient", "propeller.astern_torque_coefficient")
 
 
 def disagreements(vessel: Vessel, *, is_recorded: bool = False) -> tuple[Disagreement, ...]:
     """Return what in a vessel file contradicts the rest of it or is strange beside it, contradictions first.
 
     Held against each other are gear ratio, engine and propeller speed; working speed, idle and highest speed; working
-    torque, full-load curve, rated power and full scale of the gauge; what a clutch holds and the full-load curve;
-    working torque, torque coefficient and propeller series; a controllable pitch and the series; underway the speed of
-    the ship, at which thrust is to meet resistance; inertias and stiffnesses of the links; the pulses of a pick-up at
-    the highest speed and the rate of the logger. A torque that is off by a factor of two contradicts the series, by a
-    quarter it is strange; so are pulses that are shown at the working point.
+    torque, full-load curve, rated power and full scale of the gauge; what a clutch holds and the full-load curve; the
+    power of the propeller at rated speed; working torque, torque coefficient and propeller series; a controllable pitch
+    and the series; underway the speed of the ship, at which thrust is to meet resistance; inertias and stiffnesses of
+    the links; the pulses of a pick-up at the highest speed and the rate of the logger. A torque that is off by a factor
+    of two contradicts the series, by a quarter it is strange; so are pulses that are shown at the working point.
 
     ``is_recorded``: whether there is a recording, which shows itself how the logger took the pulses.
     """
@@ -40,7 +40,7 @@ def disagreements(vessel: Vessel, *, is_recorded: bool = False) -> tuple[Disagre
         _tip_speed,
         _working_speed,
         _full_load_curve,
-        _engine_load,
+        engine_load,
         _clutch,
         *of_propeller,
         _pitch,
@@ -49,6 +49,9 @@ def disagreements(vessel: Vessel, *, is_recorded: bool = False) -> tuple[Disagre
         *(() if is_recorded else (_pulses,)),
     )
     found = [disagreement for check in checks for disagreement in check(vessel)]
+    # a torque that is contradicted, or already more than the engine has, says nothing about rated speed
+    if not any(one.is_contradiction and one.field in _TORQUES for one in found):
+        found += propeller_law(vessel)
     return tuple(sorted(found, key=lambda one: not one.is_contradiction))
 
 
@@ -123,7 +126,7 @@ def _full_load_curve(vessel: Vessel) -> Iterator[Disagreement]:
     apart = _apart(at_rated_nm, machine.rated_torque_nm)
     # a motor may have torque in hand, which an engine's curve has not
     in_hand = vessel.motor is not None and at_rated_nm > machine.rated_torque_nm
-    if apart > _CURVE_TOLERANCE and not in_hand:
+    if apart > CURVE_TOLERANCE and not in_hand:
         yield Disagreement(
             field="engine.full_load_torque_nm" if vessel.motor is None else "motor.maximum_torque_nm",
             expected=f"{in_nm(machine.rated_torque_nm)} at {machine.rated_speed_rpm:g} rpm, as "
@@ -154,34 +157,6 @@ def _clutch(vessel: Vessel) -> Iterator[Disagreement]:
             advice="correct it, in N m at the engine's side: such a clutch slips at full load",
             is_contradiction=True,
         )
-
-
-def _engine_load(vessel: Vessel) -> Iterator[Disagreement]:
-    """Hold the working torque against the full-load curve; where that has room, its power against the rated one."""
-    point, machine = vessel.working_point, vessel.machine
-    brake_nm = vessel.engine_share * point.driving_torque_nm / vessel.gearbox.shaft_over_brake
-    power_kw = 2.0 * math.pi * rev_s_from_rpm(point.engine_speed_rpm) * brake_nm / 1000.0
-    highest_nm = machine.full_load_nm(point.engine_speed_rpm)
-    if brake_nm > highest_nm:
-        load, expected = (
-            brake_nm / highest_nm,
-            f"at most {in_nm(highest_nm)} at the {machine.word}, its full load",
-        )
-        found = f"{in_nm(brake_nm)} there"
-    elif power_kw > machine.rated_power_kw and vessel.motor is None:
-        load, expected = power_kw / machine.rated_power_kw, f"at most the rated power of {machine.rated_power_kw:g} kW"
-        found = f"{power_kw:.4g} kW at the {machine.word}"
-    else:
-        return
-    limit = "the full-load curve" if vessel.motor is None else "motor.maximum_torque_nm"
-    yield Disagreement(
-        field="working_point.shaft_torque_nm",
-        expected=f"{expected} at {point.engine_speed_rpm:g} rpm",
-        found=f"{found} with {point.shaft_torque_nm:g} N m at the shaft",
-        advice="correct the torque (N m at the propeller shaft) or what it was worked out from (diameter_m and "
-        f"pitch_ratio of [propeller]), gearbox.ratio, {limit} or rated_power_kw",
-        is_contradiction=load > _CURVE_TOLERANCE,
-    )
 
 
 def _series(vessel: Vessel) -> Iterator[Disagreement]:

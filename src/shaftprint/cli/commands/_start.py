@@ -16,7 +16,7 @@ from shaftprint.cli._next import VESSEL_FILE, after_drive, first_plan, free, pri
 from shaftprint.cli._option_sections import SectionedCommand
 from shaftprint.cli._recorded_sensors import is_of_no_ship, recorded_sensors, with_recorded
 from shaftprint.cli._terminal import answer, echo, print_findings
-from shaftprint.cli._vessel_file import write_from_card
+from shaftprint.cli._vessel_file import print_disagreements, write_from_card
 from shaftprint.cli.output._fingerprint_file import fingerprint_at
 from shaftprint.errors import ShaftprintError
 from shaftprint.late import late
@@ -47,6 +47,8 @@ def command(folder: Path, *, yes: bool, **said: object) -> None:
     lying = lying_files(folder)
     _print(lying)
     vessel = lying.vessels[-1] if lying.vessels else None
+    if vessel is not None:
+        print_disagreements(load_vessel(vessel), str(vessel), is_recorded=bool(lying.recordings))
     is_said = bool(stated_of(said))
     if vessel is None:
         recorded = recorded_sensors(lying.recordings[-1]) if lying.recordings and not lying.drives else {}
