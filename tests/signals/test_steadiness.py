@@ -224,6 +224,32 @@ def test_scatter_that_grows_with_the_frequency_is_no_change_of_the_amplitude(siz
     assert sum(one is not None for one in found) == named
 
 
+@pytest.mark.parametrize(("inertia_s", "load"), [(0.06, 0.0), (0.06, -0.04)])
+def test_a_small_inertia_and_a_load_of_its_own_at_each_speed_are_no_gain(two_speeds, inertia_s, load):
+    """What the pieces say of the gain between the two speeds scatters as it states, and the inertia is right."""
+    time, volts = put_out(two_speeds)
+    border_s = np.linspace(10.0, 425.0, 42)
+    of_second = (border_s[1:] > 220.0).astype(float)[:, np.newaxis]
+    apart, found_s = [], []
+    for seed in range(12):
+        speed, torque = ship(volts, inertia_s=inertia_s, load=np.where(time > 218.0, load, 0.0), seed=seed)
+        gains = fast_gains(
+            volts,
+            speed,
+            torque,
+            rate_hz=RATE_HZ,
+            start_s=0.0,
+            border_s=border_s,
+            whole=np.ones(41, dtype=np.bool_),
+        )
+        along, power = gains.of_courses(of_second)
+        apart.append(along.item() / np.sqrt(power.item()))
+        # at the mean speed and torque
+        found_s.append(gains.inertia_s * (torque / 1500.0).mean() / (speed / 20.0).mean())
+    assert np.sqrt(np.mean(np.square(apart))) < 1.3
+    assert np.mean(found_s) == pytest.approx(inertia_s, rel=0.02)
+
+
 def test_loads_in_windows_are_means_and_hold_three_signals_at_most():
     count = 400_000
     torque = np.repeat([1.0, 3.0], count // 2)

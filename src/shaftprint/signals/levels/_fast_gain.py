@@ -5,8 +5,9 @@ with the gain of the gauge alone. With ``u`` the speed and ``q = u^2``, both ove
 
     m = g (tau_dn du/dt + smaller terms) + k q + lags of q + noise
 
-whose numbers are fitted once, to the whole recording, and ``g`` and ``k`` then to each piece of it. The second
-derivative takes what is late, the third a line that twists a little, the lags a slipstream that follows the propeller.
+whose numbers are fitted once, to the whole recording, with a ``k`` of its own in each piece of it, and ``g`` then to
+each. The second derivative takes what is late, in the load by the derivative of ``q``; the third a line that twists a
+little, the lags a slipstream that follows the propeller.
 What disturbs the ship moves the speed as well, so that least squares would take noise for gain: the equations are
 weighted with the motion that the set point makes, by the mean response of the recording (instrumental variables;
 L. Ljung, "System Identification", 1999, section 7.6). A piece in which nothing is moved tells nothing and says so. The
@@ -32,7 +33,7 @@ _FORGOTTEN = 1e-17
 _ORDER, _ROUNDS = 20, 3
 # Pieces on either side whose noise counts as that of a piece.
 _AROUND = 4
-# Terms that accelerate the shaft, the first ones; the others are the propeller's.
+# Parts and terms that accelerate the shaft, the first ones; the others are the propeller's.
 _OF_GAIN = 3
 # By how much the load of a piece may differ from that of the whole.
 _LOAD_STD = 0.05
@@ -55,6 +56,8 @@ class FastGains:
     """Sums over each piece for the common terms and for its own gain, the load of the piece taken out: their products
     with each other, and last with what the common terms leave, over the variance of the noise, shape (pieces, terms
     + 1, terms + 2)."""
+    scatter: FloatArray
+    """Covariance of what the common terms leave in them, shape (pieces, terms + 1, terms + 1)."""
     inertia_s: float
     """Inertia behind the gauge, a time: ``tau_dn`` at the mean speed and torque [s]."""
 
@@ -66,7 +69,8 @@ class FastGains:
     @property
     def std(self) -> FloatArray:
         """Its standard deviation; very large where nothing moves fast, shape (pieces,)."""
-        return np.asarray(np.maximum(self.told[:, -1, -2], _NO_NEWS) ** -0.5)
+        news, known = self.scatter[:, -1, -1], np.maximum(self.told[:, -1, -2], _NO_NEWS)
+        return np.asarray(np.where(news > 0.0, np.sqrt(news) / known, _NO_NEWS**-0.5))
 
     def of_courses(self, courses: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return what the pieces say of the size ``a`` of a change of the gain, whatever the common terms are.
@@ -77,17 +81,20 @@ class FastGains:
         own, common = self.told[:, -1, :], self.told[:, :-1, :].sum(axis=0)
         of_terms, against_terms = courses.T @ own[:, :-2], self.told[:, :-1, -2].T @ courses
         size = np.sqrt(np.maximum(np.abs(np.diag(common)), np.finfo(np.float64).tiny))
-        scaled = common[:, :-2] / np.outer(size, size)
-        absorbed, *_ = np.linalg.lstsq(
-            scaled, np.column_stack([against_terms, common[:, -1]]) / size[:, np.newaxis], rcond=_NOTHING
-        )
-        rest = of_terms / size @ absorbed
-        along = courses.T @ own[:, -1] - rest[:, -1]
+        inverse = np.linalg.pinv(common[:, :-2] / np.outer(size, size), rcond=_NOTHING) / np.outer(size, size)
+        taken = of_terms @ inverse
+        along = courses.T @ own[:, -1] - taken @ common[:, -1]
         alone = courses.T**2 @ own[:, -2]
-        power = alone - np.diagonal(rest)
+        power = alone - np.sum(taken * against_terms.T, axis=1)
+        # weights are not the terms themselves: what varies is not what is told
+        varies = courses.T**2 @ self.scatter[:, -1, -1] - 2.0 * np.sum(
+            courses.T @ self.scatter[:, -1, :-1] * taken, axis=1
+        )
+        varies += np.sum(taken @ self.scatter[:, :-1, :-1].sum(axis=0) * taken, axis=1)
         # what the common terms explain as well is no change
-        is_told = power > _TOLD_SHARE * alone
-        return np.where(is_told, along, 0.0), np.where(is_told, power, 0.0)
+        is_told = (power > _TOLD_SHARE * alone) & (varies > 0.0)
+        share = np.where(is_told, power / np.where(is_told, varies, 1.0), 0.0)
+        return along * share, power * share
 
 
 def fast_gains(
@@ -115,46 +122,88 @@ def fast_gains(
     used = np.zeros(count, dtype=np.bool_)
     for piece in of_use:
         used[piece] = True
-    columns, motion, values = _terms(set_point, speed, torque, rate_hz=rate_hz, step=step)
-    square = columns[:, _OF_GAIN].copy()
-    common = _solved(columns, motion, values, of_use)
-    of_noise = columns, motion, values
+    parts, motion, values = _parts_of_torque(set_point, speed, torque, rate_hz=rate_hz, step=step)
+    terms, of_noise = _first_terms(parts, motion, values, of_use), (parts, motion, values)
     for _ in range(_ROUNDS):
-        # what is late is so in the load as well, which goes with the square of the speed and not as the speed does
-        late_s = common[1] / common[0] if common[0] else 0.0
-        columns[:, _OF_GAIN] = square + late_s * np.gradient(square) * rate
-        white = _whitening(values - columns @ common, used)
+        white = _whitening(values - parts @ _shares(terms), used)
         # freed before the next are made, which are as large
         del of_noise
-        of_noise = (_filtered(white, columns), _filtered(white, motion), _filtered(white, values))
-        common = _solved(*of_noise, of_use)
-    columns, motion, values = of_noise
-    left = values - columns @ common
-    variance = _variance(left, pieces, whole)
-    told = np.zeros((len(pieces), common.size + 1, common.size + 2))
+        of_noise = (_filtered(white, parts), _filtered(white, motion), _filtered(white, values))
+        terms = terms + _step(_told(*of_noise, terms, pieces, whole)[0])
+    told, scatter = _told(*of_noise, terms, pieces, whole)
+    return FastGains(start_s=border_s[:-1], stop_s=border_s[1:], told=told, scatter=scatter, inertia_s=float(terms[0]))
+
+
+def _shares(terms: FloatArray) -> FloatArray:
+    """Return what the torque has of each part: what is late is so in the torque that accelerates and in the load."""
+    inertia, late_s, twist, *load = terms
+    return np.array([inertia, inertia * late_s, twist, load[0] * late_s, *load])
+
+
+def _slopes_of_shares(terms: FloatArray) -> FloatArray:
+    """Return the slopes of the shares by the terms, by the load of a piece, and by its gain, (parts, terms + 2)."""
+    inertia, late_s, _, *load = terms
+    shares = _shares(terms)
+    slopes = np.zeros((shares.size, terms.size + 2))
+    slopes[:2, 0], slopes[[1, _OF_GAIN], 1], slopes[2, 2] = (1.0, late_s), (inertia, load[0]), 1.0
+    slopes[[_OF_GAIN, _OF_GAIN + 1], _OF_GAIN] = late_s, 1.0
+    slopes[_OF_GAIN + 2 :, _OF_GAIN + 1 : -2] = np.eye(len(_LAGS_S))
+    slopes[_OF_GAIN:, -2], slopes[:_OF_GAIN, -1] = shares[_OF_GAIN:], shares[:_OF_GAIN]
+    return slopes
+
+
+def _first_terms(parts: FloatArray, motion: FloatArray, values: FloatArray, pieces: Sequence[slice]) -> FloatArray:
+    """Return terms that are right for a load that is not late."""
+    kept = np.arange(parts.shape[1]) != _OF_GAIN
+    products = sum((motion[of].T @ parts[of] for of in pieces), np.zeros((kept.size, kept.size)))
+    against = sum((motion[of].T @ values[of] for of in pieces), np.zeros(kept.size))
+    terms = np.asarray(np.linalg.lstsq(products[np.ix_(kept, kept)], against[kept], rcond=None)[0])
+    terms[1] /= terms[0] or 1.0
+    return terms
+
+
+def _told(
+    parts: FloatArray,
+    motion: FloatArray,
+    values: FloatArray,
+    terms: FloatArray,
+    pieces: list[slice],
+    whole: BoolArray,
+) -> tuple[FloatArray, FloatArray]:
+    """Return what each piece tells of the common terms and of its own gain, and its scatter, as in ``FastGains``."""
+    left = values - parts @ _shares(terms)
+    variance, slopes = _variance(left, pieces, whole), _slopes_of_shares(terms)
+    told = np.zeros((len(pieces), terms.size + 1, terms.size + 2))
+    scatter = np.zeros((len(pieces), terms.size + 1, terms.size + 1))
     for row in np.flatnonzero(whole & (variance > 0.0)).tolist():
-        piece = pieces[row]
-        terms, moved = (_with_parts(of[piece], common) for of in (columns, motion))
-        sums = moved.T @ np.column_stack([terms, left[piece]]) / variance[row]
-        # the load of the piece is its own
-        sums[-1, -2] += _LOAD_STD**-2.0
-        apart = np.delete(sums - np.outer(sums[:, -2], sums[-1]) / sums[-1, -2], -2, axis=1)[:-1]
+        moved = motion[pieces[row]] @ slopes
+        sums = moved.T @ np.column_stack([parts[pieces[row]] @ slopes, left[pieces[row]], moved]) / variance[row]
+        sums, products = np.split(sums, [terms.size + 3], axis=1)
+        # the load of the piece is its own: one that differs between two speeds would pass for lags of it
+        sums[-2, -3] += _LOAD_STD**-2.0
+        products[-2, -2] += _LOAD_STD**-2.0
+        without = np.delete(np.eye(terms.size + 2), -2, axis=0)
+        without[:, -2] = -np.delete(sums[:, -3], -2) / sums[-2, -3]
+        apart = np.delete(without @ sums, -3, axis=1)
         # where the motion is not what the set point makes, its weights say nothing
         if apart[-1, -2] > 0.0 and sums[-1, -2] > 0.0:
-            told[row] = apart
-    return FastGains(start_s=border_s[:-1], stop_s=border_s[1:], told=told, inertia_s=float(common[0]))
+            told[row], scatter[row] = apart, without @ products @ without.T
+    return told, scatter
 
 
-def _with_parts(terms: FloatArray, common: FloatArray) -> FloatArray:
-    """Return terms, what accelerates the shaft of them together, and what the propeller takes."""
-    parts = terms[:, :_OF_GAIN] @ common[:_OF_GAIN], terms[:, _OF_GAIN:] @ common[_OF_GAIN:]
-    return np.column_stack([terms, *parts])
+def _step(told: FloatArray) -> FloatArray:
+    """Return by how much the common terms are off where each piece has a load of its own, shape (terms,)."""
+    common = told[:, :-1, :].sum(axis=0)
+    return np.asarray(np.linalg.lstsq(common[:, :-2], common[:, -1], rcond=None)[0])
 
 
-def _terms(
+def _parts_of_torque(
     set_point: FloatArray, speed: FloatArray, torque: FloatArray, *, rate_hz: float, step: int
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return the terms of the torque, the same of the motion that the set point makes, and the torque."""
+    """Return the parts of the torque, the same of the motion that the set point makes, and the torque.
+
+    The parts are derivatives of the speed, and its square: the derivative of that, itself, and behind lags.
+    """
     rate = rate_hz / step
     relative = speed / speed.mean()
     square, moved = _means(relative**2, step), _means(relative, step)
@@ -164,14 +213,16 @@ def _terms(
         relative = _slopes(relative, rate_hz)
         derivatives.append(_means(relative, step))
     del relative
-    columns = np.column_stack([*derivatives, square, *_lags(square, rate)])
-    motion = _motion(_means(set_point, step), moved, rate)
+    parts = np.column_stack([*derivatives, np.gradient(square) * rate, square, *_lags(square, rate)])
+    motion = 1.0 + _motion(_means(set_point, step), moved, rate)
     of_motion = [np.gradient(motion) * rate]
     for _ in range(_OF_GAIN - 1):
         of_motion.append(np.gradient(of_motion[-1]) * rate)
+    # at each speed the load is as steep as it is there
+    motion *= motion
     return (
-        columns,
-        np.column_stack([*of_motion, 2.0 * motion, *_lags(2.0 * motion, rate)]),
+        parts,
+        np.column_stack([*of_motion, np.gradient(motion) * rate, motion, *_lags(motion, rate)]),
         _means(torque, step) / torque.mean(),
     )
 
@@ -227,13 +278,6 @@ def _motion(set_point: FloatArray, speed: FloatArray, rate_hz: float) -> FloatAr
 def _parts(values: FloatArray, begins: IntArray, length: int) -> FloatArray:
     """Return the differences of values in parts of the recording, shape (parts, length)."""
     return np.asarray(np.diff(values, prepend=values[0])[begins[:, np.newaxis] + np.arange(length)])
-
-
-def _solved(columns: FloatArray, motion: FloatArray, values: FloatArray, pieces: Sequence[slice]) -> FloatArray:
-    """Return the numbers of the terms, from the sums over pieces: together they would be as large as the columns."""
-    products = sum((motion[of].T @ columns[of] for of in pieces), np.zeros((columns.shape[1], columns.shape[1])))
-    against = sum((motion[of].T @ values[of] for of in pieces), np.zeros(columns.shape[1]))
-    return np.asarray(np.linalg.lstsq(products, against, rcond=None)[0])
 
 
 def _whitening(noise: FloatArray, used: BoolArray) -> FloatArray:
