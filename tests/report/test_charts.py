@@ -65,7 +65,7 @@ def test_marks_are_traces_of_their_panel():
     assert (line["x"], line["line"]["color"], line["line"]["dash"]) == ([1.0, 10.0, 100.0], "@1", "dash")
     assert (points["error_y"]["arrayminus"], points["error_y"]["array"]) == ([0.5, 5.0, 50.0], [2.0, 20.0, 200.0])
     assert (points["marker"]["color"], points["text"]) == ("@paper", ["a", "b", "c"])
-    assert (bars["x"], bars["xaxis"], bars["marker"]["pattern"]["shape"]) == ([1.0, 10.0, 100.0], "x2", "/")
+    assert (bars["x"], bars["xaxis"], bars["marker"]["pattern"]["shape"]) == ([1.0, 10.0, 100.0], "x2", "+")
     assert fields["marker"]["color"] == ["@=1.000", "@=-0.900", "@paper", "@=0.100"]
     assert fields["insidetextfont"]["color"] == ["@on=1.000", "@on=-0.900", "@ink", "@on=0.100"]
     (limit,), (words,) = content["shapes"], content["words"]
@@ -81,6 +81,16 @@ def test_lines_whose_colour_comes_again_have_other_dashes():
     chart = Chart(panels=[Panel(marks=[Line(x=X, y=X, name=f"line {k}", shade=k) for k in range(8)])])
     looks = [(trace["line"]["color"], trace["line"]["dash"]) for trace in json.loads(chart_script(chart))["data"]]
     assert len(set(looks)) == 8
+
+
+def test_bars_are_told_apart_without_their_colours():
+    """Twelve sources of a budget on a printer without colours: no two have one texture on one ground."""
+    bars = [Bars(places=X, lengths=X, starts=0.0 * X, name=f"source {k}", shade=k) for k in range(12)]
+    chart = Chart(panels=[Panel(marks=bars)])
+    patterns = [trace["marker"]["pattern"] for trace in json.loads(chart_script(chart))["data"]]
+    assert len({(pattern["shape"], pattern["bgcolor"] == "@paper") for pattern in patterns}) == 12
+    drawn = [group.patches[0] for group in draw(chart).axes[0].containers]
+    assert len({(bar.get_hatch(), bar.get_facecolor()[:3] == (1.0, 1.0, 1.0)) for bar in drawn}) == 12
 
 
 def test_a_name_stands_in_the_legend_once():
@@ -179,7 +189,7 @@ def test_a_picture_shows_the_same():
     assert first.get_ylabel() == r"$M_{\mathrm{s}}$ [N·m]"
     assert first.get_title(loc="left") == "all kinds"
     assert [bar.get_width() for bar in second.patches] == X.tolist()
-    assert second.patches[0].get_hatch() == "////"
+    assert second.patches[0].get_hatch() == "++++"
     assert [label.get_text() for label in second.get_yticklabels()] == [r"$K_{\mathrm{p}}$", "b", "c"]
     assert [text.get_text() for text in third.texts] == ["1", "2", "?", "4"]
 

@@ -347,6 +347,26 @@ def test_print_has_every_chart_in_light_colours_and_no_buttons(visit, report, tm
         assert len(re.findall(rb"/Type\s*/Page\b", pdf)) >= 5
 
 
+def test_the_printed_report_is_small_and_its_bars_keep_their_textures(visit, report):
+    """Patterns became bitmaps as large as the bars: 5 to 14 MB for a report."""
+    with visit(report) as found:
+        found.show("budget")
+        patterned = "list => list.filter(e => e.style.fill.startsWith('url')).length"
+        assert found.page.eval_on_selector_all("#plot-budget .pattern_filled", patterned) > 0
+        pdf = found.page.pdf(format="A4")
+        found.wait_for("document.querySelectorAll('#plot-budget .texture').length === 0")
+        assert len(pdf) < 2e6
+        assert len(re.findall(rb"/FontFile2", pdf)) > 0, "resources of the file are readable"
+        assert re.findall(rb"/Subtype\s*/Image|/PatternType", pdf) == []
+        found.page.evaluate("window.dispatchEvent(new Event('beforeprint'))")
+        textures = found.page.evaluate(
+            "[...document.querySelectorAll('#plot-budget .legendpoints')]"
+            ".map(e => e.querySelector('.texture g g')?.innerHTML ?? '')"
+        )
+        assert len(set(textures)) == len(textures) > 3
+        assert found.messages == []
+
+
 def test_a_chart_is_no_wider_than_the_paper(visit, report):
     with visit(report) as found:
         found.show("fit")

@@ -18,6 +18,7 @@ Axis: TypeAlias = Literal["x", "y"]
 
 DASHES: tuple[Dash, ...] = ("solid", "dash", "dashdot", "dot", "longdash", "longdashdot")
 MARKERS: tuple[Marker, ...] = ("circle", "square", "triangle-up", "diamond", "triangle-down", "cross")
+TEXTURES = ("", "/", ".", "\\", "-", "x", "|", "+")
 COLOURS = 6
 
 
@@ -29,6 +30,14 @@ def dash_of(shade: Shade) -> Dash:
 def marker_of(shade: Shade) -> Marker:
     """Return the marker of points: that of their place among others, a circle otherwise."""
     return MARKERS[shade % len(MARKERS)] if isinstance(shade, int) else "circle"
+
+
+def texture_of(shade: Shade) -> tuple[str, bool]:
+    """Return the texture of a bar, that of its place among others, and whether it is pale, as a second round is."""
+    if not isinstance(shade, int):
+        return "", False
+    again = shade // len(TEXTURES)
+    return TEXTURES[(shade + again) % len(TEXTURES)], again % 2 == 1
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -108,7 +117,7 @@ class Bars:
     name: Text = ""
     """What the legend calls them; nothing leaves them out."""
     shade: Shade = 0
-    """Their colour; places beyond the number of colours are hatched."""
+    """Their colour and texture."""
     upright: bool = True
     """Whether they stand upright or lie."""
     width: float = 0.7

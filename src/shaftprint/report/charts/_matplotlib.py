@@ -29,6 +29,7 @@ from shaftprint.report.charts._marks import (
     Words,
     dash_of,
     marker_of,
+    texture_of,
 )
 from shaftprint.report.charts._text import Text, as_mathtext, as_plain
 
@@ -51,7 +52,8 @@ GRID = "#d9d9d9"
 
 PAINTS = ("#003f6b", "#b03a00", "#007a5a", "#b0508c", "#3f98d0", "#d99000")
 NAMED = {"data": "#000000", "ink": "#000000", "soft": "#b9b9b9", "reference": "#7a7a7a", "early": "#e08a4a"}
-HATCHES = ("", "////", "....")
+# How often a texture is repeated in an inch.
+DENSE = 4
 MARKERS = {
     "circle": "o",
     "square": "s",
@@ -225,8 +227,9 @@ def _draw_points(axes: Axes, mark: Points, label: str) -> None:
 
 
 def _draw_bars(axes: Axes, mark: Bars, label: str) -> None:
-    hatch = HATCHES[mark.shade // COLOURS % len(HATCHES)] if isinstance(mark.shade, int) else ""
-    looks: dict[str, Any] = {"color": _paint(mark.shade), "hatch": hatch, "edgecolor": "white", "linewidth": 0.4}
+    texture, is_pale = texture_of(mark.shade)
+    ground, lines = ("white", _paint(mark.shade)) if is_pale else (_paint(mark.shade), "white")
+    looks: dict[str, Any] = {"color": ground, "hatch": DENSE * texture, "edgecolor": lines, "linewidth": 0.4}
     if mark.upright:
         axes.bar(mark.places, mark.lengths, bottom=mark.starts, width=mark.width, label=label, **looks)
     else:

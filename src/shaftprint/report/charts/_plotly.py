@@ -26,13 +26,14 @@ from shaftprint.report.charts._marks import (
     dash_of,
     marker_of,
     runs,
+    texture_of,
 )
 from shaftprint.report.charts._packed import Json, line_data, numbers, plain_json
 from shaftprint.report.charts._text import Text, as_html, as_plain
 
 # Kinds of traces that a report may draw: plotly's script on the page has no others.
 TRACE_TYPES = ("bar", "scatter")
-PATTERNS = ("", "/", ".")
+TEXTURE_PX = 7
 SYMBOLS = {"x": "x-thin", "plus": "cross-thin"}
 BAR_PX = 1.2
 WORDS_PX = 6
@@ -183,7 +184,9 @@ def _points(mark: Points) -> Json:
 
 def _bars(mark: Bars) -> Json:
     along, across = ("y", "x") if mark.upright else ("x", "y")
-    pattern = PATTERNS[mark.shade // COLOURS % len(PATTERNS)] if isinstance(mark.shade, int) else ""
+    texture, is_pale = texture_of(mark.shade)
+    shade = _colour(mark.shade)
+    ground, lines = ("@paper", shade) if is_pale else (shade, "@paper")
     return {
         "type": "bar",
         "orientation": "v" if mark.upright else "h",
@@ -191,7 +194,10 @@ def _bars(mark: Bars) -> Json:
         across: numbers(mark.places),
         "base": numbers(mark.starts),
         "width": mark.width,
-        "marker": {"color": _colour(mark.shade), "pattern": {"shape": pattern}},
+        "marker": {
+            "color": shade,
+            "pattern": {"shape": texture, "size": TEXTURE_PX, "solidity": 0.2, "bgcolor": ground, "fgcolor": lines},
+        },
         "hovertemplate": f"%{{customdata:.3~g}}<extra>{as_html(mark.name)}</extra>",
         "customdata": numbers(mark.lengths),
     }

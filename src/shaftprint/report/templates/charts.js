@@ -40,6 +40,7 @@
   const look = () => root.dataset.look || (darkScreen.matches ? "dark" : "light");
   // Kept when plotly is there, and when the last chart that was asked for is drawn.
   let library;
+  let textures = 0;
   let queue = Promise.resolve();
 
   // ---- data and colours
@@ -104,6 +105,8 @@
     const { place, chart } = entry;
     const layout = layoutOf(chart, size, COLOURS[shade], coloured);
     entry.width = layout.width;
+    // Plotly would take them for its own bars.
+    for (const old of place.querySelectorAll(".texture")) old.remove();
     const data = fitted(coloured(chart.data, COLOURS[shade]), chart, size.width);
     const drawn = window.Plotly.react(place, data, layout, CONFIG);
     // On paper the drawing becomes as wide as the page.
@@ -114,6 +117,39 @@
       performance.mark("plot drawn");
     }
     return drawn;
+  }
+
+  // A browser prints a pattern as a bitmap as large as what it fills, megabytes for a chart: paper gets its colour and
+  // its lines themselves, tile by tile, until the chart is drawn again.
+  function drawTextures(place) {
+    for (const bar of place.querySelectorAll(".pattern_filled")) {
+      const pattern = document.getElementById(bar.style.fill.match(/#([^")]+)/)?.[1]);
+      const [ground, ...lines] = pattern ? pattern.children : [];
+      if (!ground) continue;
+      const scale = Number(pattern.getAttribute("patternTransform")?.match(/scale\(([^)]+)\)/)?.[1] ?? 1);
+      const [wide, high] = ["width", "height"].map((side) => parseFloat(pattern.getAttribute(side)) * scale);
+      const box = bar.getBBox();
+      const made = (name, attributes) => {
+        const element = document.createElementNS("http://www.w3.org/2000/svg", name);
+        for (const [key, value] of Object.entries(attributes)) element.setAttribute(key, value);
+        return element;
+      };
+      const id = `texture-${place.dataset.plot}-${textures += 1}`;
+      const clip = made("clipPath", { id });
+      clip.append(made("path", { d: bar.getAttribute("d") }));
+      const drawn = made("g", { class: "texture", transform: bar.getAttribute("transform") ?? "" });
+      const tiles = made("g", { "clip-path": `url(#${id})` });
+      for (let x = Math.floor(box.x / wide) * wide; x < box.x + box.width; x += wide) {
+        for (let y = Math.floor(box.y / high) * high; y < box.y + box.height; y += high) {
+          const tile = made("g", { transform: `translate(${x} ${y}) scale(${scale})` });
+          tile.append(...lines.map((line) => line.cloneNode()));
+          tiles.append(tile);
+        }
+      }
+      bar.style.fill = ground.getAttribute("fill");
+      drawn.append(clip, tiles);
+      bar.after(drawn);
+    }
   }
 
   // Without its data, or without plotly, words stand in place of a chart.
@@ -155,7 +191,11 @@
   // Paper is light, has its own width and what is not folded.
   function drawForPaper() {
     if (!window.Plotly) return;
-    for (const [name, entry] of charts) if (entry.chart && !isFolded(entry.place)) draw(name, "light", paper(entry));
+    for (const [name, entry] of charts) {
+      if (!entry.chart || isFolded(entry.place)) continue;
+      draw(name, "light", paper(entry));
+      drawTextures(entry.place);
+    }
   }
 
   function drawAgain() {
