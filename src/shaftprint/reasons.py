@@ -32,6 +32,9 @@ ReasonKind: TypeAlias = Literal[
 ]
 """What is in doubt. Which numbers depend on it says the table of the room ``identify``."""
 
+OTHER_SHIP = "whether the vessel file is of this ship"
+"""What to check where numbers are as far off as only another ship's file makes them."""
+
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Reason:

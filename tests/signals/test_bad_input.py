@@ -316,8 +316,8 @@ def test_unknown_mode(ship, vessel, campaign):
 @pytest.mark.parametrize(
     ("fields", "factor", "unit"),
     [
-        ({"unit": "N m", "scale_nm_per_unit": 1.0}, 0.5, 'unit = "kN m" with scale_nm_per_unit = 1000'),
-        ({"unit": "kN m", "scale_nm_per_unit": 1000.0}, 500.0, 'unit = "N m" with scale_nm_per_unit = 1'),
+        ({"unit": "N m", "scale_nm_per_unit": 1.0}, 0.5, "kN m would fit, with scale_nm_per_unit = 1000 in"),
+        ({"unit": "kN m", "scale_nm_per_unit": 1000.0}, 500.0, "N m would fit, for which the recording and"),
     ],
 )
 def test_the_unit_of_a_torque_is_named_where_another_fits(spoiled, vessel, campaign, fields, factor, unit):
@@ -327,14 +327,38 @@ def test_the_unit_of_a_torque_is_named_where_another_fits(spoiled, vessel, campa
         recording,
         with_gauge(vessel, **fields),
         campaign,
-        rf"channel M_s: expected a torque around 1725 N m, found .* N m; {unit} in sensors\.shaft_torque would fit",
+        rf"channel M_s: expected a torque around 1725 N m by working_point of the vessel file, found .* N m with the "
+        rf"unit .*; {unit} sensors\.shaft_torque.*; check whether the vessel file is of this ship too",
+    )
+
+
+def test_a_torque_of_another_ship_is_not_called_another_unit(spoiled, vessel, campaign):
+    """Twenty times the torque, in N m as the recording says: 34,500 N m are no 34 % of anything."""
+    recording = spoiled(M_s=lambda counts: 10.0 * counts.astype(np.float64), units={"M_s": "kN m"})
+    refused(
+        recording,
+        with_gauge(vessel, unit="kN m", scale_nm_per_unit=1000.0),
+        campaign,
+        r"channel M_s: expected a torque around 1725 N m by working_point of the vessel file and within the full scale "
+        r"of \d+ N m, found 3\d{4} N m; check whether the vessel file is of this ship, gearbox\.ratio and the scale",
+    )
+
+
+def test_a_torque_of_another_ship_that_the_gauge_cuts_off_in_part(spoiled, vessel, campaign):
+    """Three times the torque, near a full scale of 5500 N m."""
+    refused(
+        spoiled(M_s=lambda counts: 1.5 * counts.astype(np.float64), units={"M_s": "kN m"}),
+        with_gauge(vessel, unit="kN m", scale_nm_per_unit=1000.0, full_scale_nm=5500.0),
+        campaign,
+        r"channel M_s: .* of the samples saturated .*The torque is around 4\d{3} N m, 1725 N m at the working point of "
+        r"the vessel file: check whether the vessel file is of this ship, gearbox\.ratio and the scale",
     )
 
 
 def test_a_current_loop_that_was_entered_as_a_voltage(spoiled, vessel, campaign):
     # 4 to 20 mA for 0 to 5000 N m
     recording = spoiled(M_s=lambda counts: 4.0 * 3200.0 + 1.6 * counts.astype(np.float64))
-    refused(recording, vessel, campaign, 'unit = "mA" with scale_nm_per_unit = 312.5 and reading_at_zero = 4 in')
+    refused(recording, vessel, campaign, "mA would fit, with scale_nm_per_unit = 312.5 and reading_at_zero = 4 in")
 
 
 def with_set_point(vessel, **fields):
@@ -346,10 +370,16 @@ def with_set_point(vessel, **fields):
 def test_the_unit_of_a_set_point_is_named_where_another_fits(spoiled, vessel, campaign):
     # the demanded speed in a channel that was entered as volts
     recording = spoiled(U_setpoint=lambda counts: -250.0 * counts.astype(np.float64))
-    sentence = r'channel U_setpoint: expected a set point in V, found 1\d\d\d.*; unit = "rpm" with its v_per_unit in '
-    refused(
-        recording, vessel, campaign, sentence + r"sensors\.set_point would fit, or v_per_unit = 0\.001 where these a"
+    sentence = r"channel U_setpoint: expected a set point in V, found 1\d\d\d.*; rpm would fit, if recording and "
+    sentence += (
+        r"sensors\.set_point state it, with v_per_unit for one rpm, or V with v_per_unit = 0\.001 where these are mV"
     )
+    refused(recording, vessel, campaign, sentence)
+    # what is advised is read
+    in_mv = spoiled(U_setpoint=lambda counts: 1000.0 * counts.astype(np.float64))
+    found = prepare_signals(in_mv, with_set_point(vessel, v_per_unit=0.001), campaign)
+    of_volts = prepare_signals(spoiled(), vessel, campaign).working_point
+    assert found.working_point.engine_speed_rev_s == pytest.approx(of_volts.engine_speed_rev_s, rel=1e-6)
 
 
 def test_a_table_that_does_not_reach_the_working_point(ship, vessel, campaign):

@@ -1,5 +1,7 @@
 """The torque gauge in every unit that telemetries have: the scale that follows, and what is refused."""
 
+import re
+
 import pytest
 from pydantic import ValidationError
 
@@ -91,19 +93,47 @@ def test_a_gauge_in_milliampere_or_millivolt_by_other_names():
 @pytest.mark.parametrize(
     ("stated", "fields", "reading", "unit"),
     [
-        ("N m", {}, 1.7, 'unit = "kN m" with scale_nm_per_unit = 1000'),
-        ("kN m", {}, 1700.0, 'unit = "N m" with scale_nm_per_unit = 1'),
-        ("V", {"scale_nm_per_unit": 500.0}, 1700.0, 'unit = "N m" with scale_nm_per_unit = 1'),
-        ("V", {"scale_nm_per_unit": 500.0}, 9.5, 'unit = "mA" with scale_nm_per_unit = 312.5 and reading_at_zero = 4'),
-        ("V", {"scale_nm_per_unit": 500.0}, 14.8, 'unit = "mA" with scale_nm_per_unit = 625 and reading_at_zero = 12'),
-        ("V", {"scale_nm_per_unit": 500.0}, 34.0, 'unit = "%" with scale_nm_per_unit = 50'),
-        ("mA", {"scale_nm_per_unit": 312.5, "reading_at_zero": 4.0}, 3.45, 'unit = "V" with scale_nm_per_unit = 500'),
+        ("N m", {}, 1.7, "kN m would fit, with scale_nm_per_unit = 1000 in"),
+        ("kN m", {}, 1700.0, "N m would fit, for which the recording and"),
+        ("V", {"scale_nm_per_unit": 500.0}, 1700.0, "N m would fit, with scale_nm_per_unit = 1 in"),
+        (
+            "V",
+            {"scale_nm_per_unit": 500.0},
+            9.5,
+            "mA would fit, with scale_nm_per_unit = 312.5 and reading_at_zero = 4 in",
+        ),
+        (
+            "V",
+            {"scale_nm_per_unit": 500.0},
+            14.8,
+            "mA would fit, with scale_nm_per_unit = 625 and reading_at_zero = 12 in",
+        ),
+        ("V", {"scale_nm_per_unit": 500.0}, 34.0, "% would fit, with scale_nm_per_unit = 50 in"),
+        (
+            "mA",
+            {"scale_nm_per_unit": 312.5, "reading_at_zero": 4.0},
+            3.45,
+            "V would fit, with scale_nm_per_unit = 500 in",
+        ),
         ("N m", {}, 400.0, None),
+        # 24 kN m of another ship: 24 % of a full scale of 5000 N m would be 1200 N m, 9.5 mA 1725 N m
+        ("kN m", {}, 34.0, None),
+        ("kN m", {}, 9.5, None),
+        ("N m", {}, 34.0, None),
     ],
 )
 def test_the_unit_that_would_fit_is_named(stated, fields, reading, unit):
     sensor = gauge(stated, **fields)
-    assert sensor.unit_that_fits(float(sensor.torque_nm(reading)), 1725.0) == unit
+    fits = sensor.scale_that_fits(float(sensor.torque_nm(reading)), 1725.0)
+    assert fits is None if unit is None else fits.startswith(unit)
+
+
+@pytest.mark.parametrize(("stated", "reading"), [("N m", 1.7), ("V", 1700.0), ("V", 9.5), ("V", 14.8), ("V", 34.0)])
+def test_what_would_fit_shows_the_torque_that_is_expected(stated, reading):
+    sensor = gauge(stated, **({"scale_nm_per_unit": 500.0} if stated == "V" else {}))
+    fits = sensor.scale_that_fits(float(sensor.torque_nm(reading)), 1725.0)
+    fields = {name: float(value) for name, value in re.findall(r"(\w+) = ([\d.]+)", fits)}
+    assert gauge(stated, **fields).torque_nm(reading) == pytest.approx(1725.0, rel=0.02)
 
 
 def test_the_template_has_a_shaft_that_can_be_used(tmp_path):

@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from shaftprint.digits import in_nm
-from shaftprint.reasons import Reason
+from shaftprint.reasons import OTHER_SHIP, Reason
 from shaftprint.signals.kinds._compare import LARGEST_DIFFERENCE
 from shaftprint.signals.levels._speed_scale import (
     ScaleDoubt,
@@ -40,6 +40,8 @@ _AGREES, _FAR_OFF = 1.0, 3.0
 _MOST_OF_SHIP = math.log(1.4)
 # Torque at one speed goes with this power of the diameter.
 _OF_DIAMETER = 5.0
+# Logarithm of a factor of the torque beyond what a propeller that was replaced makes.
+_OF_ANOTHER_SHIP = math.log(2.0)
 
 
 def scale_reasons(
@@ -241,6 +243,8 @@ def what_fits(load: float, vessel: "Vessel", std: float = 0.0) -> str:
         causes.append(f"gearbox.ratio ({gearbox.ratio:g} is stated, {gearbox.ratio / load**0.5:.3g} would fit)")
     if std and load < 1.0 and not vessel.is_underway:
         causes.append("whether the ship took way")
+    if abs(log) > _OF_ANOTHER_SHIP:
+        causes.insert(0, OTHER_SHIP)
     return listed(causes)
 
 

@@ -148,6 +148,8 @@ class SetPointSensor(Settings):
         """
         if self.unit == "counts":
             return None
+        # of volts with a v_per_unit those of the campaign are told, such as of mV that a logger calls V
+        reading = float(self.volts(reading)) if self.unit == "V" else reading
         reach = _REACH | {"rpm": (speed_rpm / _AROUND_SPEED, speed_rpm * _AROUND_SPEED)}
         fitting = [unit for unit, (lowest, highest) in reach.items() if lowest <= reading <= highest]
         return None if self.unit in fitting or not fitting else fitting[0]

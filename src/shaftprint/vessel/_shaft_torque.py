@@ -172,10 +172,12 @@ class ShaftTorqueSensor(Settings):
         beyond = np.asarray(reading, dtype=np.float64) - self.live_zero
         return self.scale_nm_per_unit * beyond - self.zero_nm
 
-    def unit_that_fits(self, torque_nm: float, expected_nm: float) -> str | None:
-        """Return the unit, in words, in which the channel would show the torque that is expected; None if none would.
+    def scale_that_fits(self, torque_nm: float, expected_nm: float) -> str | None:
+        """Return what, in words, would give the torque that is expected if the unit of the recording were wrong.
 
-        Telemetries give full scale as 10 V, 100 %, or 20 mA from 4 or from 12 mA on.
+        None if nothing would. Telemetries give full scale as 10 V, 100 %, or 20 mA from 4 or from 12 mA on. A recording
+        says itself what unit a channel has: one that says a torque is not called a share of full scale, which some of
+        all torques would fit.
 
         ``torque_nm``: the torque that was found [N m], as the gauge counts it. ``expected_nm``: the one that was
         expected [N m], below 0 of a shaft that turns astern.
@@ -194,12 +196,14 @@ class ShaftTorqueSensor(Settings):
             shown_nm = scale * (reading - zero)
             if unit == self.unit or not lowest <= reading <= highest:
                 continue
+            if self.unit in NM_PER_UNIT and unit not in NM_PER_UNIT:
+                continue
             if not 1.0 / _NEAR < shown_nm / expected_nm < _NEAR:
                 continue
-            if unit in NM_PER_UNIT:
-                return f'unit = "{unit}" with scale_nm_per_unit = {scale:g}'
+            if self.unit == "kN m":
+                return f"{unit} would fit, for which the recording and sensors.shaft_torque have to state it"
             start = f" and reading_at_zero = {zero:g}" if zero else ""
-            return f'unit = "{unit}" with scale_nm_per_unit = {scale:.5g}{start}'
+            return f"{unit} would fit, with scale_nm_per_unit = {scale:.5g}{start} in sensors.shaft_torque"
         return None
 
 

@@ -111,7 +111,7 @@ def expect_campaign(
         raise SignalError(
             f"channel {channel}: expected a set point that moves by {expected:g} V, found it between "
             f"{lowest:.4g} and {highest:.4g} V from start to end; check that the channel is the set "
-            "point and that the test was made."
+            "point, that the test was made, and that campaign and vessel file are of this ship."
         )
     held = [item for item in campaign.excitations if not coverage.missing(item.start_s, item.stop_s)]
     slow = [item for item in held if not _is_fast(item)] or held

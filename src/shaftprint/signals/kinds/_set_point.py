@@ -84,10 +84,10 @@ def read_set_point(channel: "Channel", sensor: SetPointSensor, clock: "Clock", *
     middle = middle_of(channel)
     unit = sensor.unit_that_fits(middle, speed_rpm)
     if unit is not None:
-        line = "" if unit == "V" else " with its v_per_unit"
+        line = "" if unit == "V" else f", with v_per_unit for one {unit}"
         raise SignalError(
             f"channel {channel.name}: expected a set point in {sensor.unit}, found {middle:.4g}; "
-            f'unit = "{unit}"{line} in sensors.set_point would fit{_milli_words(middle, sensor)}.'
+            f"{unit} would fit, if recording and sensors.set_point state it{line}{_milli_words(middle, sensor)}."
         )
     if comes_in_messages(channel, clock):
         return _read_messages(channel, sensor, clock)
@@ -99,7 +99,7 @@ def _milli_words(middle: float, sensor: SetPointSensor) -> str:
     """Return that a set point in V may be one in mV which was called V, where it is too large for V."""
     if sensor.unit != "V" or abs(middle) < _FEWEST_MILLIVOLTS:
         return ""
-    return f", or v_per_unit = {sensor.slope_v / MILLI:g} where these are mV"
+    return f", or V with v_per_unit = {sensor.slope_v / MILLI:g} where these are mV"
 
 
 def _read_messages(channel: "Channel", sensor: SetPointSensor, clock: "Clock") -> SetPointMessages:

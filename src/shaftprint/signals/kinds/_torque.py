@@ -10,6 +10,7 @@ from shaftprint.campaign._campaign import Campaign
 from shaftprint.campaign._excitations import Sine
 from shaftprint.digits import in_nm
 from shaftprint.errors import SignalError
+from shaftprint.reasons import OTHER_SHIP
 from shaftprint.signals._channel_signals import ChannelSignal
 from shaftprint.signals._channels import middle_of
 from shaftprint.signals._gaps import EVERYTHING, Coverage
@@ -35,6 +36,9 @@ _LARGEST_SATURATED_SHARE = 1e-3
 # Less than this part of the torque at the working point, or more than this multiple, is not the load of another day. A
 # recording may idle for most of its time.
 _SMALL_PART, _MULTIPLE = 0.1, 2.5
+# Beyond this multiple a gauge at full scale is not the whole cause.
+_LARGER = 1.5
+_CHECK = f"{OTHER_SHIP}, gearbox.ratio and the scale of the gauge"
 
 # Seconds whose torque is beyond this share of the usual one, on both sides of nothing in this share of the time.
 _CLEAR, _BOTH_SIGNS = 0.3, 0.05
@@ -68,7 +72,7 @@ class ShaftTorque(ChannelKind[ShaftTorqueSensor]):
 
     def judge(self, source: Source[ShaftTorqueSensor], reading: Reading) -> tuple[str, ...]:
         """Return a finding where crests are cut off; too many are refused."""
-        return *reading.findings, *judge_saturation(source.channel, reading.repairs)
+        return *reading.findings, *judge_saturation(source.channel, reading.repairs, source.vessel)
 
     def signal(self, source: Source[ShaftTorqueSensor], reading: Reading, steady: SteadyState) -> ChannelSignal:
         """Return the torque over that of the working point."""
@@ -97,25 +101,34 @@ def torque_limits(channel: "Channel", sensor: ShaftTorqueSensor) -> FaultLimits:
 
 
 def expect_unit(channel: "Channel", vessel: "Vessel") -> None:
-    """Check by stretches all over the recording that the torque is not one of another unit than the vessel file states.
+    """Check by stretches all over the recording that the torque is not one of another unit than is stated.
 
     Raises SignalError if it is a small part or a multiple of what is expected, and would be as expected in another
-    unit; the message names it.
+    unit that can be meant by the one that the recording states; the message names it. Raises it too where the torque
+    is a multiple beyond full scale.
     """
     sensor, expected = vessel.sensors.shaft_torque, vessel.working_point.shaft_torque_nm
     torque = float(sensor.torque_nm(middle_of(channel)))
-    unit = sensor.unit_that_fits(torque, expected)
+    fitting = sensor.scale_that_fits(torque, expected)
     # a torque of the other sign is no other unit: that it has the other sign is said with the working point
-    if unit is not None and torque / expected > 0.0 and not _SMALL_PART < torque / expected < _MULTIPLE:
+    if fitting is not None and torque / expected > 0.0 and not _SMALL_PART < torque / expected < _MULTIPLE:
         raise SignalError(
-            f"channel {channel.name}: expected a torque around {in_nm(expected)}, found {in_nm(torque)}; {unit} in "
-            "sensors.shaft_torque would fit."
+            f"channel {channel.name}: expected a torque around {in_nm(expected)} by working_point of the vessel file, "
+            f"found {in_nm(torque)} with the unit {sensor.unit} that the recording states; {fitting}; check "
+            f"{OTHER_SHIP} too."
+        )
+    # half of the samples saturated would leave gaps in place of a torque
+    if abs(torque) > max(sensor.full_scale_nm, _MULTIPLE * abs(expected)):
+        raise SignalError(
+            f"channel {channel.name}: expected a torque around {in_nm(expected)} by working_point of the vessel file "
+            f"and within the full scale of {in_nm(sensor.full_scale_nm)}, found {in_nm(torque)}; check {_CHECK}."
         )
 
 
-def judge_saturation(channel: "Channel", repairs: Sequence[Repair]) -> tuple[str, ...]:
+def judge_saturation(channel: "Channel", repairs: Sequence[Repair], vessel: "Vessel") -> tuple[str, ...]:
     """Return a finding where crests of the torque are cut off at full scale.
 
+    ``channel``, ``repairs``: the torque, and what was replaced in it. ``vessel``: what is expected of it.
     Raises SignalError if more than a thousandth of the samples are.
     """
     saturated = [repair for repair in repairs if repair.kind == "saturated"]
@@ -124,10 +137,18 @@ def judge_saturation(channel: "Channel", repairs: Sequence[Repair]) -> tuple[str
     count = sum(repair.count for repair in saturated)
     where = f"from {saturated[0].time_s:.1f} s on"
     if count > _LARGEST_SATURATED_SHARE * channel.count:
+        expected_nm = vessel.working_point.driving_torque_nm
+        torque_nm = vessel.driving_torque_nm(middle_of(channel))
+        other = (
+            f" The torque is around {in_nm(float(torque_nm))}, {in_nm(expected_nm)} at the working point of the vessel "
+            f"file: check {_CHECK}."
+            if float(torque_nm) > _LARGER * expected_nm
+            else ""
+        )
         raise SignalError(
             f"channel {channel.name}: expected a torque within full scale, found "
             f"{count / channel.count:.1%} of the samples saturated {where}; check full_scale_nm in "
-            "the vessel file or choose a larger range of the telemetry."
+            f"the vessel file or choose a larger range of the telemetry.{other}"
         )
     return (f"channel {channel.name} reaches full scale {where}: {count} samples are cut off there",)
 
