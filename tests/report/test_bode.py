@@ -6,7 +6,7 @@ from tests.report.marks import legend, mark, marks
 
 from shaftprint.catalogue import structure
 from shaftprint.report import Curve, bode_chart, fit_chart
-from shaftprint.report.charts._marks import Band, Line, Points
+from shaftprint.report.charts._marks import Band, Line, Points, Words
 from shaftprint.report.charts._text import as_plain
 from shaftprint.report.figures._residuals import normalised_residuals
 from shaftprint.report.figures._traces import measured_phase_deg, trace_of
@@ -235,3 +235,46 @@ def test_lines_that_may_be_noise_alone_are_pale_and_have_no_interval(identificat
     assert np.isfinite(seen.y - seen.bars[0]).all()
     assert seen.bars[0].max() < 200.0
     assert pale.x.size + seen.x.size == noisy.used.sum()
+
+
+def with_one_line_away(response, factor, place=5):
+    """The response with one line ``factor`` times as large."""
+    values = response.response.copy()
+    values[:, :, place] *= factor
+    return replace(response, response=values)
+
+
+@pytest.mark.parametrize("modelled", [True, False])
+@pytest.mark.parametrize(("factor", "word"), [(1e4, "1 point above"), (1e-9, "1 point below")])
+def test_one_stray_line_does_not_stretch_the_axis_and_is_told(identification, response, modelled, factor, word):
+    """A line 80 dB above, or 180 dB below, would leave the resonance a fifth of the height."""
+    curves = [Curve.of(identification)] if modelled else []
+    before = bode_chart(curves, data=response).panels[0]
+    panel = bode_chart(curves, data=with_one_line_away(response, factor)).panels[0]
+    assert np.ptp(panel.y.span) < np.ptp(before.y.span) + 16.0
+    assert [m.text for m in panel.marks if isinstance(m, Words)] == [word]
+    (edge,) = marks(panel, "beyond the axis", Points)
+    assert edge.x == pytest.approx(response.omega_rad_s[5:6])
+    assert panel.y.span[0] < edge.y[0] < panel.y.span[1]
+    assert [m for m in before.marks if isinstance(m, Words)] == []
+
+
+def test_points_that_a_wrong_model_does_not_meet_are_all_on_the_axis(identification, response):
+    """Where more than a few are far from the model they are what there is to see."""
+    values = 1e3 * response.response
+    covariance = 1e6 * response.covariance
+    panel = bode_chart(
+        [Curve.of(identification)], data=replace(response, response=values, covariance=covariance)
+    ).panels[0]
+    points = marks(panel, "data, 95 %", Points)[0]
+    assert points.y.min() > panel.y.span[0]
+    assert points.y.max() < panel.y.span[1]
+
+
+def test_the_last_line_of_a_steep_response_is_no_stray_one(response):
+    """40 dB a decade, without a model to tell."""
+    omega = response.omega_rad_s
+    fall = np.broadcast_to(1.0 / (1.0 + (omega / omega[2]) ** 3), response.response.shape).astype(complex)
+    small = 1e-12 * np.broadcast_to(np.eye(response.covariance.shape[1]), response.covariance.shape)
+    panel = bode_chart(data=replace(response, response=fall, covariance=small)).panels[0]
+    assert [m for m in panel.marks if isinstance(m, Words)] == []

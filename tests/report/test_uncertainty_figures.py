@@ -107,3 +107,31 @@ def test_the_smallest_measured_step_stands_beside_the_model_over_its_height(iden
     assert measured.y[measured.x > 1.0].mean() == pytest.approx(1.0, abs=0.02)
     assert measured.y[measured.x < 0.3].mean() == pytest.approx(0.0, abs=0.02)
     assert not marks(step_chart(identification, signals=replace(signals, step_delays=())).panels[0], "measured")
+
+
+def test_the_step_that_is_shown_is_the_one_about_the_working_point(identification, signals):
+    """The torque of a step from 1 to 1.4 rises by 2.4 for 1, that from 0.8 to 1.2 by 2, though it came later."""
+    steps = [replace(signals.step_delays[0], set_point_time_s=at, speed_time_s=at + 0.4) for at in (230.0, 250.0)]
+    time = signals.start_s + np.arange(signals.samples) / signals.rate_hz
+    share = np.select([time < 230.0, time < 240.0, time < 250.0, time < 260.0], [1.0, 1.4, 0.8, 1.2], 1.0)
+    moved = replace(signals, step_delays=tuple(steps))
+    moved = moved.with_channel("n_set", values=share * signals.working_point.engine_speed_rev_s)
+    moved = moved.with_channel("M_s", values=share**2 * signals.working_point.shaft_torque_nm)
+    measured = mark(step_chart(identification, signals=moved).panels[1], "measured, smallest step")
+    assert measured.y[-1] == pytest.approx(2.0, abs=0.01)
+
+
+def test_a_measured_step_has_a_band_with_its_noise(identification, signals):
+    """A torque that swings by 5 % at 2 Hz before a step of known height: 1.96 times the root of a half of that."""
+    swing = np.sin(2.0 * np.pi * 2.0 * np.arange(signals.samples) / signals.rate_hz)
+    noise = 0.05 * signals.working_point.shaft_torque_nm * swing
+    noisy = signals.with_channel("M_s", values=signals.working_point.shaft_torque_nm + noise)
+    step = min(noisy.step_delays, key=lambda one: one.set_point_time_s)
+    at = round((step.set_point_time_s - noisy.start_s) * noisy.rate_hz)
+    levels = noisy.set_point_rev_s[[at - 200, at + 200]] / noisy.working_point.engine_speed_rev_s
+    panel = step_chart(identification, signals=noisy).panels[1]
+    wide, model = mark(panel, "95 % band with noise", Band), mark(panel, "95 % band, at each time", Band)
+    share = 1.959964 * 0.05 * np.sqrt(0.5) / abs(np.diff(levels)[0])
+    expected = np.hypot(share, 0.5 * (model.upper - model.lower))
+    np.testing.assert_allclose(0.5 * (wide.upper - wide.lower), expected, rtol=0.05)
+    assert not marks(step_chart(identification).panels[1], "95 % band with noise")

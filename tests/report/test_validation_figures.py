@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from tests.report.marks import mark, names
+from tests.report.marks import mark, marks, names
 
 from shaftprint.report import validation_chart, validation_summary_chart
 from shaftprint.report.charts._marks import Band
@@ -39,11 +39,21 @@ def test_a_model_line_is_the_model(validations):
 
 
 def test_the_band_is_two_deviations_wide(validations):
-    band = mark(validation_chart(validations[:1], "St1", "step at 230").panels[0], "95 % band", Band)
+    band = mark(validation_chart(validations[:1], "St1", "step at 230").panels[0], "95 % band of", Band)
     traces = validations[0].of("St1", "step at 230").traces
     at = np.searchsorted(traces.time_s, band.x)
     np.testing.assert_allclose(band.upper - band.lower, 2.0 * 1.959964 * traces.model_std[0, at], rtol=1e-5)
     np.testing.assert_allclose(0.5 * (band.upper + band.lower), traces.model[0, at], atol=1e-12)
+
+
+def test_the_band_with_noise_is_as_wide_as_model_and_noise_together(validations):
+    """The made torque has white noise of 5 % at 50 Hz: below 4 Hz the root of 4 in 25 of it, 2 %."""
+    traces = validations[0].of("St1", "whole").traces
+    band = mark(validation_chart(validations[:1], "St1", "whole").panels[1], "95 % band with noise", Band)
+    model = np.interp(band.x, traces.time_s, traces.model_std[1])
+    noise = np.sqrt((0.5 * (band.upper - band.lower) / 1.959964) ** 2 - model**2)
+    np.testing.assert_allclose(noise, 0.02, rtol=0.3)
+    assert not marks(validation_chart(validations, "St1", "whole").panels[1], "95 % band with noise")
 
 
 def test_the_set_point_stands_beside_the_speed_only(validations):
@@ -65,7 +75,7 @@ def test_with_a_working_point_speed_is_in_rpm_and_torque_in_newton_metres(valida
     ):
         for name in ("measured", "GAUGE-CLOSED"):
             np.testing.assert_allclose(mark(panel, name).y / level, 1.0 + mark(plain, name).y, rtol=1e-9)
-        band, of_plain = mark(panel, "95 % band", Band), mark(plain, "95 % band", Band)
+        band, of_plain = mark(panel, "95 % band of", Band), mark(plain, "95 % band of", Band)
         np.testing.assert_allclose(band.upper - band.lower, level * (of_plain.upper - of_plain.lower), rtol=1e-6)
 
 

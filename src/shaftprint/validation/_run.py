@@ -168,9 +168,8 @@ class Run:
         ``settled_share`` is the share of a step's height within which it has settled.
         """
         there = self.excerpt(excerpt)
-        # the median: a step spends most of its excerpt at the level that it ends at
-        load = max(1.0 + float(np.median(self.measured_smooth[1, there])), LEAST_LOAD)
-        variance = self._noise_variance(there.stop - there.start, load)
+        load = self._load(there)
+        variance = _noise_variance(self.data.raw_noise, there.stop - there.start, load)
         noise = self.data.noise.like(there.stop - there.start, load)
         return [
             (
@@ -200,14 +199,22 @@ class Run:
         model = self.smooth[row, self.excerpt(excerpt)]
         return while_settling(model, time_s, settled_share=settled_share, highest_hz=self.data.highest_hz)
 
-    def _noise_variance(self, samples: int, load: float) -> list[float]:
-        """Return the variance of the noise of all frequencies in an excerpt, of speed and of torque."""
-        noise = self.data.raw_noise
-        pieces = noise.like(samples, load).pieces
-        return [
-            float(np.mean(pieces[:, row] ** 2)) + load**2 * float(noise.offset_variance[row])
-            for row in range(len(OUTPUTS))
-        ]
+    def noise_std(self, excerpt: Excerpt) -> FloatArray:
+        """Return the standard deviation of the noise of speed and torque through the low-pass, shape (2,)."""
+        there = self.excerpt(excerpt)
+        return np.sqrt(_noise_variance(self.data.noise, there.stop - there.start, self._load(there)))
+
+    def _load(self, there: slice) -> float:
+        """Return the load of an excerpt: the median, since a step spends most of its time at the level it ends at."""
+        return max(1.0 + float(np.median(self.measured_smooth[1, there])), LEAST_LOAD)
+
+
+def _noise_variance(noise: QuietNoise, samples: int, load: float) -> list[float]:
+    """Return the variance of the noise in an excerpt, of speed and of torque, with what it is off on average."""
+    pieces = noise.like(samples, load).pieces
+    return [
+        float(np.mean(pieces[:, row] ** 2)) + load**2 * float(noise.offset_variance[row]) for row in range(len(OUTPUTS))
+    ]
 
 
 def run_model(

@@ -248,6 +248,7 @@ def _traces(excerpt: Excerpt, run: Run, model: Model) -> ExcerptTraces:
         measured=frozen_float(run.measured_smooth[:, there].copy()),
         model=frozen_float(run.smooth[:, there].copy()),
         model_std=frozen_float(np.sqrt(np.maximum(variance, 0.0))),
+        noise_std=frozen_float(run.noise_std(excerpt)),
     )
 
 

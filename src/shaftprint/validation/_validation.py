@@ -27,6 +27,8 @@ class ExcerptTraces(Shown):
     """Speed and torque of the model, shape (2, samples)."""
     model_std: FloatArray
     """Standard deviation of the model by its parameters, shape (2, samples)."""
+    noise_std: FloatArray
+    """Standard deviation of the noise of speed and torque, shape (2,)."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)

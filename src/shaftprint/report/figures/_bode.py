@@ -12,6 +12,7 @@ from shaftprint.identify.uncertainty._band import model_band
 from shaftprint.report.charts._chart import Chart, Panel, Scale
 from shaftprint.report.charts._marks import Band, Line, Mark, Points, Shade, Straight
 from shaftprint.report.charts._text import Text, joined, over
+from shaftprint.report.figures._bode_range import FAR_DB, FAR_DEG, axis_span, beside, beyond_marks, bulk_of
 from shaftprint.report.figures._phase import TURN_DEG, WRAPPED_SPAN_DEG, reads_better_wrapped, wrapped, wrapped_line
 from shaftprint.report.figures._traces import Trace, channel_of, measured_phase_deg, trace_of
 from shaftprint.report.figures._uncertainty import measured_points
@@ -24,11 +25,8 @@ GRID_POINTS = 301
 # Bands are smoother than lines: every third point will do, and keeps the file small.
 BAND_STEP = 3
 DEFAULT_SPAN = (0.02, 300.0)
-# How much wider than the data the picture is, and how far models may leave the data before the axis lets them go.
+# How much wider than the data the picture is.
 WIDER = 1.4
-BEYOND_DB = 15.0
-BEYOND_DEG = 90.0
-ROOM = 0.06
 # Points of several responses at one frequency stand side by side, this factor apart.
 SIDEWAYS = 1.12
 # Stands for an error bar without end.
@@ -147,6 +145,9 @@ def _panels(column: Column, aliasing_limit_hz: float | None, *, is_first: bool) 
         _add_model(pair, column, curve, trace, shade, wraps=wraps)
     for place, label in enumerate(column.data):
         _add_data(pair, column, traces, place, label, wraps=wraps)
+    ends = limits[0], WRAPPED_SPAN_DEG if wraps else limits[1]
+    for marks, end in zip(pair, ends, strict=True):
+        marks.extend(beyond_marks([m for m in marks if isinstance(m, Points)], end, span))
     if aliasing_limit_hz is not None and 2.0 * np.pi * aliasing_limit_hz < span[1]:
         text = f"aliasing limit of the speed, {aliasing_limit_hz:.2f} Hz"
         for marks in pair:
@@ -154,7 +155,7 @@ def _panels(column: Column, aliasing_limit_hz: float | None, *, is_first: bool) 
     level = "magnitude [dB re 1 s]" if column.output == "E_n" else "magnitude [dB]"
     turn = Scale(
         title="phase [deg]" if is_first else "",
-        span=WRAPPED_SPAN_DEG if wraps else limits[1],
+        span=ends[1],
         step=TURN_STEP_DEG if wraps or np.ptp(limits[1]) > 2.0 * TURN_STEP_DEG else None,
     )
     return (
@@ -162,7 +163,7 @@ def _panels(column: Column, aliasing_limit_hz: float | None, *, is_first: bool) 
             title=column.title,
             marks=pair[0],
             x=frequency_scale(span),
-            y=Scale(title=level if is_first else "", span=limits[0]),
+            y=Scale(title=level if is_first else "", span=ends[0]),
         ),
         Panel(marks=pair[1], x=frequency_scale(span), y=turn),
     )
@@ -247,25 +248,21 @@ def _seen_with(phase_deg: FloatArray, used: BoolArray) -> FloatArray:
 def _limits(
     column: Column, traces: Sequence[Trace], span: tuple[float, float]
 ) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Return the ends of both vertical axes: all points, and the models as far as they are not far from them."""
-    magnitudes, phases = [np.empty(0)], [np.empty(0)]
+    """Return the ends of both vertical axes: the bulk of the points, and the models as far as they are not far."""
+    measured: tuple[list[FloatArray], list[FloatArray]] = ([], [])
     for response in column.data.values():
-        inside = (response.omega_rad_s >= span[0]) & (response.omega_rad_s <= span[1])
         index = channel_of(response.outputs, response.inputs, column.output, column.cause)
-        magnitudes.append(measured_points(response, index).magnitude_db[inside])
-        phases.append(_seen_with(measured_phase_deg(response, index, traces), response.used)[inside])
+        points, at = measured_points(response, index), np.log(response.omega_rad_s)
+        phase = _seen_with(measured_phase_deg(response, index, traces), response.used)
+        inside = (response.omega_rad_s >= span[0]) & (response.omega_rad_s <= span[1])
+        lines = [(np.log(trace.omega_rad_s), trace.magnitude_db, trace.phase_deg) for trace in traces]
+        for place, (values, half, far) in enumerate(
+            ((points.magnitude_db, points.below_db, FAR_DB), (phase, points.phase_half_deg, FAR_DEG))
+        ):
+            modelled = np.array([np.interp(at, line[0], line[1 + place]) for line in lines])
+            expected = modelled if lines else beside(at, values, response.used & (half < far))
+            measured[place].append(values[inside & bulk_of(values, half, response.used, expected, far)])
     seen = [(trace.omega_rad_s >= span[0]) & (trace.omega_rad_s <= span[1]) for trace in traces]
     levels = [t.magnitude_db[i] for t, i in zip(traces, seen, strict=True)]
     turns = [t.phase_deg[i] for t, i in zip(traces, seen, strict=True)]
-    return _around(magnitudes, levels, BEYOND_DB), _around(phases, turns, BEYOND_DEG)
-
-
-def _around(points: Sequence[FloatArray], lines: Sequence[FloatArray], beyond: float) -> tuple[float, float]:
-    measured = np.concatenate(points)
-    drawn = np.concatenate([*lines, np.empty(0)])
-    drawn = drawn[np.isfinite(drawn)]
-    if measured.size:
-        drawn = np.clip(drawn, measured.min() - beyond, measured.max() + beyond)
-    drawn = np.concatenate([drawn, measured])
-    room = ROOM * max(float(np.ptp(drawn)), 1.0)
-    return float(drawn.min()) - room, float(drawn.max()) + room
+    return axis_span(measured[0], levels, FAR_DB), axis_span(measured[1], turns, FAR_DEG)

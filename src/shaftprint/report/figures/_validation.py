@@ -73,6 +73,8 @@ def validation_chart(
     for row, ((output, words), axis) in enumerate(zip(WHAT, _axes(working_point), strict=True)):
         marks = _data(validations[0], shown[0], row, axis, set_point=set_point and row == 0)
         for shade, (validation, parts) in enumerate(zip(validations, shown, strict=True)):
+            if len(validations) == 1:
+                marks += _with_noise(validation, parts, row, axis)
             marks += _model(validation, parts, row, axis, shade)
         panels.append(
             Panel(
@@ -125,6 +127,20 @@ def _data(
             time, wanted = envelope(traces.time_s[few], axis.of(traces.set_point[few]))
             name = joined("set point ", Symbol("n_set"))
             marks.append(Line(x=time, y=wanted, name=name, shade="reference", width=1.4))
+    return marks
+
+
+def _with_noise(validation: "Validation", parts: "list[ExcerptComparison]", row: int, axis: _Axis) -> list[Mark]:
+    """Return where the samples lie that a right model lets expect: its own band and the noise of the recording."""
+    wide = deviations(validation.settings.coverage)
+    marks: list[Mark] = []
+    for part in parts:
+        traces = part.traces
+        half = wide * np.hypot(traces.model_std[row], traces.noise_std[row])
+        every = slice(None, None, max(1, half.size // BAND_POINTS))
+        lower, upper = (axis.of(traces.model[row, every] + sign * half[every]) for sign in (-1.0, 1.0))
+        text = f"{PERCENT * validation.settings.coverage:g} % band with noise"
+        marks.append(Band(x=traces.time_s[every], lower=lower, upper=upper, name=text, shade="reference"))
     return marks
 
 

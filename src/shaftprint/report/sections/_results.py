@@ -23,6 +23,7 @@ from shaftprint.tables._fingerprint import (
     physical_table,
     truth_of_combinations,
 )
+from shaftprint.validation._settings import ValidationSettings
 
 if TYPE_CHECKING:
     from shaftprint.fingerprint._fingerprint import Fingerprint
@@ -155,7 +156,8 @@ def model_step(inputs: Inputs) -> Picture:
         name="step",
         caption=(
             "What the identified linear model does after a step of its input, delays exact, with its 95 % band "
-            "at each time, and the smallest measured step over its height."
+            "at each time, and the smallest measured step over its height, without what is faster than "
+            f"{ValidationSettings().highest_hz:g} Hz; noise lets it lie in the wide band."
         ),
         alt="Response of every output to a step of the input, with a band around it.",
         chart=lambda: step_chart(inputs.identification, signals=inputs.signals),
