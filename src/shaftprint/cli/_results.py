@@ -78,13 +78,23 @@ class Report:
     pictures: bool
     """Whether the charts are written as pictures, too."""
 
-    def write(self, folder: Path, recording: Path, survey: Survey, *, hints: Mapping[str, Any], steps: Steps) -> None:
+    def write(
+        self,
+        folder: Path,
+        recording: Path,
+        survey: Survey,
+        *,
+        hints: Mapping[str, Any],
+        steps: Steps,
+        truth: Mapping[str, float] | None = None,
+    ) -> None:
         """Write the results of a survey into a folder."""
         write_results(
             folder,
             recording,
             survey,
             steps=steps,
+            truth=truth,
             pictures=self.pictures,
             previous=self.about.previous,
             pdf=self.about.pdf,

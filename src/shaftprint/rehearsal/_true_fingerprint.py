@@ -1,11 +1,13 @@
 """The truth of a simulated recording under the names of a fingerprint, to be printed beside the estimates."""
 
+import math
 from collections.abc import Mapping
 
 import numpy as np
 
 from shaftprint.catalogue._roles import ShipRole
 from shaftprint.models._margins import margins
+from shaftprint.models._parameter import Parameter
 from shaftprint.models._structure import Structure
 from shaftprint.signals._signals import Signals, StripAngles
 from shaftprint.tug._truth import StripTruth, Truth
@@ -18,9 +20,13 @@ def fingerprint_truth(truth: Truth, structure: Structure, signals: Signals) -> d
     """Return what is true by the names of parameters, combinations, physical values, margins and calibration.
 
     ``truth``: what was put into the recording. ``structure``: the structure that was identified. ``signals``: their
-    working point is the one at which the estimates are normalised.
+    working point is the one at which the estimates are normalised. What hangs on a free parameter that the truth does
+    not have is left out.
     """
-    values = structure.vector(_parameters(truth, structure, signals))
+    known = _parameters(truth, structure, signals)
+    # sensors are as the vessel file says; of what else was fitted the default is no truth: nan passes through
+    unknown = {p.name: math.nan for p in structure.parameters if p.name not in known and _is_of_ship(p)}
+    values = structure.vector(known | unknown)
     named = dict(zip(structure.names, values.tolist(), strict=True))
     arrays = {name: np.asarray(value) for name, value in named.items()}
     combinations = {combination.name: float(combination.of(arrays)) for combination in structure.combinations}
@@ -31,16 +37,19 @@ def fingerprint_truth(truth: Truth, structure: Structure, signals: Signals) -> d
     if "coupling_stiffness_nm_rad" in truth.physical:
         physical["k"] = truth.physical["coupling_stiffness_nm_rad"]
         physical["d"] = truth.physical["coupling_damping_nm_s_rad"]
-    linear = margins(structure, values)
-    return {
-        **named,
-        **combinations,
-        **physical,
-        "gain margin": linear.gain_margin,
-        "phase margin": float(np.degrees(linear.phase_margin_rad)),
-        "delay margin": linear.delay_margin_s,
-        **_calibration(truth, signals),
-    }
+    found = named | combinations | physical | _calibration(truth, signals)
+    if not unknown:
+        linear = margins(structure, values)
+        found |= {
+            "gain margin": linear.gain_margin,
+            "phase margin": float(np.degrees(linear.phase_margin_rad)),
+            "delay margin": linear.delay_margin_s,
+        }
+    return {name: value for name, value in found.items() if not math.isnan(value)}
+
+
+def _is_of_ship(parameter: Parameter) -> bool:
+    return not (parameter.held or (parameter.role and parameter.role.of_sensor))
 
 
 def _parameters(truth: Truth, structure: Structure, signals: Signals) -> dict[str, float]:

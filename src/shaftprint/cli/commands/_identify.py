@@ -43,6 +43,7 @@ with late():
     from shaftprint.cli._identify_both import identify_both_lines
     from shaftprint.fingerprint._json_file import write_fingerprint
     from shaftprint.fingerprint._sources import structure_sources
+    from shaftprint.rehearsal._true_fingerprint import fingerprint_truth
     from shaftprint.report.sections._black_box import black_box_sentence
     from shaftprint.survey._everything import with_everything
     from shaftprint.survey._fit_options import FitOptions
@@ -52,6 +53,7 @@ with late():
     from shaftprint.survey._trial import load_trial
     from shaftprint.tables._legs import leg_test_table
     from shaftprint.tables._structures import fits_table
+    from shaftprint.tug._truth import read_truth
 
 
 @click.command(
@@ -63,7 +65,7 @@ with late():
         "Test": ("--leg", "--starboard", "--tested-at", "--conditions", "--previous"),
         "Model": ("--structure", "--with", "--prior", "--free", "--hold"),
         "Fit": ("--mode", "--unweighted", "--starts", "--seed"),
-        "Report": ("--no-report", "--figures", "--pdf"),
+        "Report": ("--no-report", "--figures", "--pdf", "--truth"),
         **READING_SECTION,
     },
 )
@@ -94,6 +96,14 @@ with late():
     is_flag=True,
     help="Write the fingerprint alone: without page, validation and comparison of structures, in a few seconds.",
 )
+@click.option(
+    "--truth",
+    "truth_file",
+    type=click.Path(path_type=Path),
+    metavar="FILE",
+    help="Truth file that `sail` wrote beside a simulated recording: its numbers are printed beside those that were "
+    "found, at the same working point.",
+)
 @fit_options
 @results_options("Folder for the results.")
 @report_options
@@ -109,6 +119,7 @@ def command(
     legs: tuple[str, ...],
     more: str | None,
     no_report: bool,
+    truth_file: Path | None,
     options: FitOptions,
     results: Results,
     about: ReportOptions,
@@ -131,6 +142,8 @@ def command(
         raise click.UsageError("--no-report is for ships, and a drive has a page that is made at once: leave it out.")
     if no_report and (figures or about.pdf):
         raise click.UsageError("--no-report goes with neither --figures nor --pdf: leave one of them out.")
+    if truth_file is not None and (not of_ship or starboard is not None):
+        raise click.UsageError("--truth goes with neither --drive nor --starboard: leave one of them out.")
     if starboard is not None and (more is not None or legs or options.mode != "shaftprint"):
         raise click.UsageError("--starboard goes with neither --with nor --leg, and with signals of shaftprint.")
     hints = hints_of(**said)
@@ -154,7 +167,8 @@ def command(
             recording, vessels, campaign, names, options, results, about=about, report=report, hints=hints
         )
         return
-    # before the folder is made: a mistake in a settings file leaves none
+    # before the folder is made: a mistake in a file leaves none
+    truth = None if truth_file is None else read_truth(truth_file)
     trial, rng = load_trial(vessel, campaign), np.random.default_rng(options.seed)
     print_disagreements(trial.vessel, vessel, is_recorded=True)
     structures = options.structures(names or (default_structure(trial.vessel, trial.campaign),), trial.vessel)
@@ -176,8 +190,9 @@ def command(
                 hints=hints,
                 progress=steps,
             )
+        true = None if truth is None else fingerprint_truth(truth, survey.identification.structure, survey.signals)
         # the answer first: what follows takes as long again
-        print_found(survey.fingerprint)
+        print_found(survey.fingerprint, truth=true)
         with results.progress() as steps:
             survey = _with_more(survey, more, rng=rng, steps=steps)
         _print_line(survey)
@@ -188,7 +203,7 @@ def command(
                 survey = judged(survey, rng=rng, progress=steps)
             _print_judgement(survey)
             with results.progress() as steps:
-                report.write(folder, recording, survey, hints=hints, steps=steps)
+                report.write(folder, recording, survey, truth=true, hints=hints, steps=steps)
     print_paths(results.output, report=report is not None)
     following = after_test(
         (recording, vessel, campaign),

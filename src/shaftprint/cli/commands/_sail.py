@@ -139,7 +139,7 @@ def command(
     answer(f"{output}: the raw recording of {trial.campaign.duration_s:g} s.")
     answer(
         f"{truth_path(output)}: what was put into it, normalised at {truth.engine_speed_rpm:.0f} rpm and "
-        f"{truth.shaft_torque_nm:.0f} N m."
+        f"{truth.shaft_torque_nm:.0f} N m; `identify --truth` sets it beside what is found, at the speed of the test."
     )
     print_next("inspect", output, "--vessel", vessel, "--campaign", campaign)
 
