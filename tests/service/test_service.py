@@ -187,9 +187,23 @@ def test_days_are_fitted_and_watched_from_the_command_line(worked, vessel, tmp_p
     def run(*words):
         return CliRunner().invoke(shaftprint, ["service", *words, "--vessel", "stan-tug-1205-service", "--no-progress"])
 
-    assert run("fit", "a.csv", "-o", "first").exit_code == 0
+    first = run("fit", "a.csv", "-o", "first")
+    assert first.exit_code == 0, first.output
+    told = " ".join(first.output.split())
+    assert "Trusted: " in told
+    assert "Not trusted: " in told
+    assert (
+        first.output.rstrip()
+        .splitlines()[-1]
+        .endswith("shaftprint service fit OTHER --vessel stan-tug-1205-service --fingerprint first -o other-day")
+    )
     again = run("fit", "b.csv", "--fingerprint", "first", "-o", "second")
     assert again.exit_code == 0, again.output
+    assert (
+        again.output.rstrip()
+        .splitlines()[-1]
+        .endswith("shaftprint service watch second --vessel stan-tug-1205-service --against first")
+    )
     kept = {"fingerprint.json", "scores.csv", "values.json", "scores-against.csv", "values-against.json"}
     assert kept <= {one.name for one in (tmp_path / "second").iterdir()}
     assert not list(tmp_path.glob(".second*"))
@@ -198,6 +212,31 @@ def test_days_are_fitted_and_watched_from_the_command_line(worked, vessel, tmp_p
     assert watched.exit_code == 0, watched.output
     assert "No change is seen in 1 day of service" in watched.output
     assert "gives no alarm" in " ".join(watched.output.split())
+
+
+@pytest.mark.slow
+def test_a_scan_says_the_next_command(worked, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    words = ["service", "scan", str(worked[0][0]), "--vessel", "stan-tug-1205-service", "--no-progress"]
+    seen = CliRunner().invoke(shaftprint, words)
+    assert seen.output.rstrip().splitlines()[-1].endswith(f"{words[2]} --vessel stan-tug-1205-service -o segments.csv")
+    kept = CliRunner().invoke(shaftprint, [*words, "-o", "monday.csv"])
+    assert (
+        kept.output.rstrip()
+        .splitlines()[-1]
+        .endswith("shaftprint service fit monday.csv --vessel stan-tug-1205-service -o day")
+    )
+
+
+@pytest.mark.parametrize(("name", "found"), [("tug_scan", "none"), ("tug.npz", "'.npz'")])
+def test_a_table_without_its_ending_is_refused_before_a_log_is_read(tmp_path, name, found):
+    words = ["service", "scan", str(tmp_path / "log.nc"), "--vessel", "stan-tug-1205-service", "--no-progress"]
+    refused = CliRunner().invoke(shaftprint, [*words, "-o", str(tmp_path / name)])
+    assert refused.exit_code == 1
+    told = " ".join(refused.output.split())
+    assert f"expected a file with the ending .csv, found {found}; take " in told
+    assert told.endswith(f"{name.partition('.')[0]}.csv.")
+    assert not list(tmp_path.iterdir())
 
 
 def test_a_folder_for_the_page_that_cannot_be_is_refused_before_a_log_is_read(tmp_path):

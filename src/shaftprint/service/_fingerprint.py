@@ -24,7 +24,7 @@ from shaftprint.fingerprint._fingerprint import Fingerprint, Quality
 from shaftprint.fingerprint._sources import source_of
 from shaftprint.fingerprint._vessel_fields import TVC, vessel_fields
 from shaftprint.identify.fit._estimate import Estimate
-from shaftprint.identify.judgement._verdict import Verdict
+from shaftprint.identify.judgement._verdict import Verdict, trusted_in_words
 from shaftprint.identify.likelihood._prior import PRIOR_OF, Prior
 from shaftprint.identify.uncertainty._budget import Budget
 from shaftprint.models._nyquist import is_stable
@@ -251,7 +251,12 @@ def _verdict(numbers: Sequence[Estimate], *, used: int, of: int, seconds: float,
     return Verdict(
         trustworthy=usable,
         reason=reason,
-        sentences=(reason, *cautions, *ASSUMPTIONS),
+        sentences=(
+            reason,
+            *(trusted_in_words(trusted, doubts) if usable else ()),
+            *cautions,
+            *(f"Assumed: {assumption}" for assumption in ASSUMPTIONS),
+        ),
         trusted=trusted if usable else (),
         not_trusted=doubts if usable else {one.name: "no number may be used" for one in numbers},
         loop=None,

@@ -18,6 +18,18 @@ def expect_no_input(output: Path, *inputs: Path | None) -> None:
             )
 
 
+def expect_ending(output: Path, ending: str) -> None:
+    """Check that the name of a file to write has its ending, without which no command knows it again.
+
+    ``ending``: with its dot. Raises click.ClickException if it has another.
+    """
+    if output.suffix.lower() != ending:
+        raise click.ClickException(
+            f"{output}: expected a file with the ending {ending}, found "
+            f"{f'{output.suffix!r}' if output.suffix else 'none'}; take {output.with_name(output.stem + ending)}."
+        )
+
+
 def expect_free(output: Path, *, force: bool) -> None:
     """Check that a file can be written where it belongs.
 

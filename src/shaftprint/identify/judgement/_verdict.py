@@ -188,7 +188,7 @@ def assess(
         headline,
         # the headline has said the first
         *(reason.sentence for reason in every if reason.sentence not in headline),
-        *_lists(trusted, not_trusted, rejected=bool(of_fit)),
+        *(() if of_fit else trusted_in_words(trusted, not_trusted)),
         *cautions,
         *(f"Assumed: {assumption}" for assumption in assumptions),
     )
@@ -272,9 +272,9 @@ def _data_words(evidence: Evidence) -> str:
     return listed(words)
 
 
-def _lists(trusted: tuple[str, ...], not_trusted: Mapping[str, str], *, rejected: bool) -> list[str]:
-    """Return which numbers are trusted and which are not; nothing where the fit as a whole is not."""
-    if rejected or not trusted:
+def trusted_in_words(trusted: tuple[str, ...], not_trusted: Mapping[str, str]) -> list[str]:
+    """Return which numbers are trusted and which are not, in sentences; nothing where none is."""
+    if not trusted:
         return []
     return [f"Trusted: {listed(trusted)}.", *([f"Not trusted: {_worded(not_trusted)}."] if not_trusted else [])]
 

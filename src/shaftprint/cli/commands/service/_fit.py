@@ -8,9 +8,11 @@ from pathlib import Path
 import click
 
 from shaftprint.cli._dates import Moment
-from shaftprint.cli._fingerprint_tables import print_fingerprint
+from shaftprint.cli._fingerprint_tables import print_found
+from shaftprint.cli._next import first_plan, free, print_next
 from shaftprint.cli._options import vessel_option
 from shaftprint.cli._results import print_paths
+from shaftprint.cli._vessel_file import print_disagreements
 from shaftprint.cli.output._fingerprint_file import FINGERPRINT, fingerprint_at
 from shaftprint.cli.output._output_folder import force_option, output_folder
 from shaftprint.cli.output._progress import no_progress_option, progress
@@ -72,6 +74,7 @@ def command(
     for again.
     """
     installation = load_vessel(vessel)
+    print_disagreements(installation, vessel, is_recorded=True)
     earlier = None if fingerprint is None else fingerprint_at(fingerprint)
     stated = None if conditions is None else load_trial_conditions(conditions)
     # the name of "." is that of the folder
@@ -88,5 +91,11 @@ def command(
         for name, text in day.files(against=earlier is not None).items():
             (folder / name).write_text(text, encoding="utf-8")
     reached.unlink(missing_ok=True)
-    print_fingerprint(day.fingerprint)
+    print_found(day.fingerprint)
     print_paths(output, report=False)
+    if not day.fingerprint.verdict.trustworthy:
+        print_next(*first_plan(vessel, installation))
+    elif fingerprint is None:
+        print_next("service", "fit", "OTHER", "--vessel", vessel, "--fingerprint", output, "-o", free("other-day"))
+    else:
+        print_next("service", "watch", output, "--vessel", vessel, "--against", fingerprint)

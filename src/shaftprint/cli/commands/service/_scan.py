@@ -10,9 +10,11 @@ from pathlib import Path
 import click
 
 from shaftprint.cli._command_group import NOT_REACHED
+from shaftprint.cli._next import first_plan, free, print_next
 from shaftprint.cli._options import vessel_option
 from shaftprint.cli._terminal import answer, print_findings, say
-from shaftprint.cli.output._file_to_write import expect_free
+from shaftprint.cli._vessel_file import print_disagreements
+from shaftprint.cli.output._file_to_write import expect_ending, expect_free
 from shaftprint.cli.output._fingerprint_file import REPORT, fingerprint_at
 from shaftprint.cli.output._json import give
 from shaftprint.cli.output._output_folder import output_folder
@@ -70,12 +72,14 @@ def command(
     value, a lever that follows the load, a ship with way on, or a clock that is off ends with code 3 and the cause.
     """
     if output is not None:
+        expect_ending(output, ".csv")
         expect_free(output, force=force)
         expect_free(channel_file(output), force=force)
     # a folder that cannot be written is refused before a week of logs is read
     place = contextlib.nullcontext() if page is None else output_folder(page, of="service scan", force=force)
     with place as folder:
         installation = load_vessel(vessel)
+        print_disagreements(installation, vessel, is_recorded=True)
         earlier = None if fingerprint is None else fingerprint_at(fingerprint)
         with progress(hidden=no_progress) as steps:
             steps.begin("Reading", total=1.0)
@@ -95,6 +99,13 @@ def command(
         say(f"{page / REPORT}: the moves in their places.")
     if found.refused:
         context.exit(NOT_REACHED)
+    against = () if fingerprint is None else ("--fingerprint", fingerprint)
+    if not found.used:
+        print_next(*first_plan(vessel, installation))
+    elif output is None:
+        print_next("service", "scan", *logs, "--vessel", vessel, *against, "-o", free("segments.csv"))
+    else:
+        print_next("service", "fit", output, "--vessel", vessel, *against, "-o", free("day"))
 
 
 def _as_given(found: Scan) -> dict[str, object]:
