@@ -1,14 +1,18 @@
 """What the page on the output of commands states of all of them."""
 
+import importlib
 import re
+from pathlib import Path
 
 import click
 import pytest
 from click.testing import CliRunner
 from pages import PAGES
 
-from shaftprint.cli import shaftprint
+from shaftprint.cli import commands, shaftprint
+from shaftprint.cli._command_group import INTERRUPTED
 
+COMMANDS = Path(commands.__file__).parent
 PAGE = PAGES["docs/command-output.md"]
 
 
@@ -32,6 +36,31 @@ def test_members_of_the_object_are_those_of_the_page():
 def test_a_command_ends_as_the_page_states(arguments, code):
     assert CliRunner().invoke(shaftprint, arguments).exit_code == code
     assert str(code) in first_cells("## How a command ends")
+
+
+def told_with(code):
+    """Return the commands that the row of an exit code names."""
+    (row,) = re.findall(rf"^\| {code} \| (.+) \|$", PAGE, flags=re.MULTILINE)
+    return {" ".join(word for word in one.split() if word[0] != "-") for one in re.findall(r"`([^`]+)`", row)}
+
+
+def test_every_exit_code_of_a_command_is_in_the_table():
+    """A command leaves by ``context.exit`` with a named code; which names there are is read from its file."""
+    ending: dict[int, set[str]] = {}
+    for path in COMMANDS.rglob("_*.py"):
+        names = re.findall(r"context\.exit\((\w+)", path.read_text(encoding="utf-8"))
+        module = importlib.import_module(
+            ".".join(("shaftprint.cli.commands", *path.relative_to(COMMANDS).with_suffix("").parts))
+        )
+        for name in names:
+            value = getattr(module, name)
+            words = (*path.relative_to(COMMANDS).parent.parts, path.stem.removeprefix("_").replace("_", "-"))
+            for code in value.values() if isinstance(value, dict) else (value,):
+                ending.setdefault(code, set()).add(" ".join(words))
+    assert {3, 4} <= set(ending)
+    told = {code: told_with(code) for code in ending}
+    assert told == ending
+    assert {"0", "1", "2", str(INTERRUPTED), *map(str, ending)} == set(first_cells("## How a command ends"))
 
 
 @pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])

@@ -40,7 +40,8 @@ def _conditions(fingerprint: "Fingerprint") -> str:
         f"{conditions.vessel}, test “{conditions.campaign}”. Working point: engine speed "
         f"{with_deviation(speed.value, speed.std)} {unit_text(speed.unit)}, shaft torque "
         f"{with_deviation(torque.value, torque.std)} {unit_text(torque.unit)}. The structure {fingerprint.structure} "
-        f"was fitted to {len(conditions.lines_used)} of {total} spectral lines."
+        f"was fitted to {len(conditions.lines_used)} of {total} spectral lines, each weighted by its noise; those that "
+        "are clear of it the verdict counts as good."
     )
 
 

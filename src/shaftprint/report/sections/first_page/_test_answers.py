@@ -117,7 +117,8 @@ def measured(fingerprint: "Fingerprint") -> Card:
     conditions, quality = fingerprint.conditions, fingerprint.quality
     used, left_out = len(conditions.lines_used), len(conditions.lines_left_out)
     repairs = sum(quality.repairs.values())
-    words = f"{used} of {used + left_out} test frequencies went into the fit"
+    # which of them are clear of the noise the verdict counts
+    words = f"{used} of {used + left_out} test frequencies went into the fit, each weighted by its noise"
     words += f", {repairs} {'place was' if repairs == 1 else 'places were'} repaired." if repairs else "; no repairs."
     many = left_out > LEFT_OUT * (used + left_out)
     remarks = len(quality.remarks)
