@@ -27,7 +27,9 @@ def printed_tables() -> Iterator[Callable[[str], list[Table]]]:
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(Table, "__post_init__", remembered)
-        yield lambda output: [table for table in tables if table.rows and _shown(table.title) in output]
+        yield lambda output: [
+            table for table in tables if table.rows and _shown(table.title) in " ".join(output.split())
+        ]
 
 
 def expect_all_readable(tables: Sequence[Table]) -> None:

@@ -54,6 +54,16 @@ def test_tables_of_quick_commands(tables_of, demo, tmp_path, name):
     _expect_output_readable(tables_of, QUICK[name], demo[0], tmp_path)
 
 
+@pytest.mark.parametrize(("columns", "widest"), [("80", 80), ("100", 100), ("", 100)])
+@pytest.mark.parametrize("name", ["show", "structures", "inertia beside a fingerprint", "predict"])
+def test_no_line_is_wider_than_the_terminal(run, demo, monkeypatch, name, columns, widest):
+    """Titles and notes too; in a file or a pipe a line has 100 letters, whatever reads it."""
+    monkeypatch.setenv("COLUMNS", columns)
+    result = run(*(word.format(demo=demo[0]) for word in QUICK[name]))
+    assert result.exit_code == 0, result.stderr
+    assert [line for line in result.stdout.splitlines() if len(line) > widest] == []
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("name", [pytest.param(one, marks=pytest.mark.long) if one == "plan" else one for one in SLOW])
 def test_tables_of_commands_that_calculate(tables_of, demo, tmp_path, name):

@@ -4,13 +4,15 @@ from shaftprint.cli.output._tables import print_table, print_tables
 from shaftprint.tables import Symbol, Table, numbers, texts
 
 
-def test_table_in_a_file_is_not_folded(capsys):
-    long = "a meaning of many words " * 5
+def test_a_table_in_a_file_has_lines_of_a_hundred_letters(capsys):
+    long = "a meaning of many words " * 3
     columns = (*texts("name"), *numbers("value [rad/s]"))
     print_table(Table(title="Title [s]", columns=columns, rows=((long, "1.5"), ("b [x]", "20"))))
     lines = [line.rstrip() for line in capsys.readouterr().out.splitlines()]
     assert lines[0] == "Title [s]"
     assert any(line.strip().startswith(long.strip()) and line.endswith("1.5") for line in lines)
+    print_table(Table(title="Title [s]", columns=columns, rows=((2 * long, "1.5"),)))
+    assert max(map(len, capsys.readouterr().out.splitlines())) <= 100
     # markup in a cell is text, and numbers stand to the right
     place = next(line for line in lines if "b [x]" in line)
     assert place.endswith(" 20")

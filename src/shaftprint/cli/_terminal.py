@@ -19,8 +19,8 @@ import click
 
 from shaftprint.escape import printable, terminal_line
 
-WIDTH_OF_PROSE, WIDTH_OF_TABLES = 100, 200
-"""Width of sentences and of tables that go into a file or a pipe; a terminal has its own [letters]."""
+WIDTH = 100
+"""Width of what goes into a file or a pipe; a terminal has its own [letters]."""
 NARROWEST = 40
 _KEY = "shaftprint.output"
 
@@ -90,14 +90,14 @@ def is_detailed() -> bool:
     return chosen.document is not None or chosen.workbook is not None or (chosen.verbose and not chosen.quiet)
 
 
-def width(*, without_terminal: int) -> int:
-    """Return how many letters a line may have: COLUMNS where it is set, else the terminal's, else the number given."""
+def width() -> int:
+    """Return how many letters a line may have: COLUMNS where it is set, else those of the terminal, else 100."""
     stated = os.environ.get("COLUMNS", "")
     if stated.isdecimal() and int(stated) > 0:
         return max(int(stated), NARROWEST)
     if not sys.stdout.isatty():
-        return without_terminal
-    return max(shutil.get_terminal_size((without_terminal, 24)).columns, NARROWEST)
+        return WIDTH
+    return max(shutil.get_terminal_size((WIDTH, 24)).columns, NARROWEST)
 
 
 def _put(text: str = "", *, err: bool = False) -> None:
@@ -175,7 +175,8 @@ def print_findings(title: str, findings: Sequence[str], *, is_answer: bool = Fal
 
 def print_lines_of_table(title: str, lines: Sequence[str]) -> None:
     """Print a table that is laid out already, its title in bold on a terminal."""
-    for line in (click.style(printable(title), bold=True), "", *map(printable, lines), ""):
+    headed = [click.style(line, bold=True) for line in _wrapped(title, "", "").split("\n")]
+    for line in (*headed, "", *map(printable, lines), ""):
         _put(_with_letters_of_the_stream(line))
 
 
@@ -201,7 +202,7 @@ def print_document() -> None:
 def _wrapped(text: str, first: str, following: str) -> str:
     lines = textwrap.wrap(
         printable(text.rstrip("\n")),
-        width(without_terminal=WIDTH_OF_PROSE),
+        width(),
         initial_indent=first,
         subsequent_indent=following,
         break_long_words=False,

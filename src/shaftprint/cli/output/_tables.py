@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from itertools import pairwise
 
-from shaftprint.cli._terminal import WIDTH_OF_TABLES, output, print_lines_of_table, say, width
+from shaftprint.cli._terminal import output, print_lines_of_table, say, width
 from shaftprint.cli.output._json import table_json
 from shaftprint.cli.output._layout import table_lines
 from shaftprint.digits import plain_letters
@@ -28,6 +28,6 @@ def print_table(table: Table, *, noted: bool = True) -> None:
         return
     if chosen.answers_only:
         return
-    print_lines_of_table(plain_letters(table.title), table_lines(table, width(without_terminal=WIDTH_OF_TABLES)))
+    print_lines_of_table(plain_letters(table.title), table_lines(table, width()))
     if noted and table.note:
         say(f"{plain_letters(table.note)}\n")

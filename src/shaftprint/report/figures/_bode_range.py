@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from shaftprint.arrays import BoolArray, FloatArray
-from shaftprint.report.charts._marks import Mark, Points, Words
+from shaftprint.report.charts._marks import Mark, Marker, Points, Words
 
 # So far from the models, or from the lines beside it, a point is stray: a factor of 6, a quarter of a turn.
 FAR_DB = 15.0
@@ -84,11 +84,12 @@ def beyond_marks(points: Sequence[Points], span: tuple[float, float], across: tu
     x = np.concatenate([np.empty(0), *(mark.x for mark in points)])
     values = np.concatenate([np.empty(0), *(mark.y for mark in points)])
     seen = (x >= across[0]) & (x <= across[1])
-    inset = 0.4 * ROOM * (span[1] - span[0])
-    for beyond, at, marker, word in (
+    inset = ROOM * (span[1] - span[0])
+    ends: tuple[tuple[BoolArray, float, Marker, str], ...] = (
         (values > span[1], span[1] - inset, "triangle-up", "above"),
         (values < span[0], span[0] + inset, "triangle-down", "below"),
-    ):
+    )
+    for beyond, at, marker, word in ends:
         stray = x[beyond & seen]
         if not stray.size:
             continue
