@@ -34,3 +34,26 @@ def test_without_the_word_no_browser_is_opened_and_no_store_is_made(run, tmp_pat
     run("serve", "--store", str(tmp_path / "yard.db"), "--state", tmp_path / "server")
     assert opened == []
     assert not (tmp_path / "yard.db").exists()
+
+
+def test_all_that_is_missing_is_named_at_once(run, tmp_path, monkeypatch):
+    """For other computers it needs users and a store; each file that was named and is not there is told with them."""
+    monkeypatch.chdir(tmp_path)
+    words = ("--alerts", "alerts.toml", "--folder", "logs", "--certificate", "tls.pem", "--key", "tls.key")
+    asked = run("serve", "--listen", "0.0.0.0:8099", *words)
+    assert (asked.exit_code, asked.stdout) == (1, "")
+    for part in (
+        "needs --users FILE",
+        "found none at logs",
+        "at tls.pem",
+        "at tls.key",
+        "alerts.toml: expected",
+        "store init",
+    ):
+        assert part in asked.stderr
+    assert "users.toml: expected a file of users" in run("serve", "--users", "users.toml", *words).stderr
+
+
+def test_packages_that_are_missing_are_named_together(run, monkeypatch):
+    monkeypatch.setattr(_serve, "find_spec", lambda name: None)
+    assert "expected the packages starlette, uvicorn, argon2, itsdangerous and sqlalchemy, found" in run("serve").stderr

@@ -147,7 +147,7 @@ def test_a_time_stated_against_the_document_is_refused(file_store, put):
 
 
 def test_a_ship_that_nobody_states_is_not_guessed(file_store, put):
-    with pytest.raises(StoreError, match=r"^one.json: expected the name of its ship, found none; state it with --ship"):
+    with pytest.raises(StoreError, match=r"^one.json: expected the name of its ship and its shaft line, found none of"):
         put(file_store, ship=None)
     with pytest.raises(StoreError, match=r"expected its shaft line, found none; state it with --line"):
         put(file_store, ship=None, stated=Stated(ship="Meander"))

@@ -83,8 +83,20 @@ def test_an_export_of_one_store_is_imported_into_another(yard, run):
 @pytest.mark.parametrize(
     ("words", "code", "sentence"),
     [
-        (("add", "result-2025"), 1, "state the zone with --time-zone"),
-        (("add", "result-2025", "--time-zone", "UTC"), 1, "state it with --ship"),
+        (
+            ("add", "result-2025"),
+            1,
+            "expected the name of its ship, its shaft line and the offset of 2025-07-01 09:30:00 from UTC, found none "
+            "of them; state them with --ship, --line and --time-zone, such as Europe/Amsterdam.",
+        ),
+        (("add", "result-2025", "--time-zone", "UTC"), 1, "state them with --ship and --line."),
+        (("add", "result-2025", "--ship", "Meander", "--time-zone", "UTC"), 1, "state it with --line."),
+        (("add", "result-2025", "--ship", "Meander", "--line", "port"), 1, "state the zone with --time-zone"),
+        (
+            ("add", "result-2025", "--store", "nowhere.db"),
+            1,
+            "make one with shaftprint store init. result-2025/fingerprint.json: expected the name of its ship, its",
+        ),
         (("add", "result-2025", "result-2026", "--tested-at", "2026-01-01"), 2, "each test has its own time"),
         (("add", "result-2025", "--time-zone", "Europe/Amsterdm"), 2, "found 'Europe/Amsterdm'"),
         (("event", "Meander", "docking", "--at", "2026-01-01"), 2, "--at: expected an offset such as +02:00"),

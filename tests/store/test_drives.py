@@ -72,7 +72,9 @@ def test_what_was_not_stated_is_asked_for(tmp_path, program):
 
 def test_a_drive_with_a_name_that_is_too_long_is_called_by_its_user(tmp_path, program):
     (path, *_) = files(tmp_path, drive="m" * 101)
-    assert "expected the name of its ship, found none; state it with --ship" in program("store", "add", path, code=1)
+    assert "the name of its ship and its shaft line, found none of them; state them" in program(
+        "store", "add", path, code=1
+    )
     assert "of motor, bench is kept" in program("store", "add", path, "--ship", "motor", "--line", "bench")
 
 

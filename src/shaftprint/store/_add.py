@@ -1,10 +1,11 @@
 """Fingerprints are put into a store: each test once, each identification of it kept."""
 
+from collections.abc import Sequence
 from datetime import datetime, tzinfo
 from pathlib import Path
 
 from shaftprint.arguments import refusing_none
-from shaftprint.errors import StoreError
+from shaftprint.errors import ShaftprintError, StoreError
 from shaftprint.files import reason
 from shaftprint.publication._publish import complete
 from shaftprint.spelling import meant_beside
@@ -54,6 +55,22 @@ def add(
     file = Path(path)
     complete(file.parent)
     return add_document(store, _content(file), named=str(file), now=now, stated=stated, zone=zone)
+
+
+def refusals(
+    paths: Sequence[Path], *, now: datetime, stated: Stated = NOTHING_STATED, zone: tzinfo | None = None
+) -> list[str]:
+    """Return why fingerprints of files could not be put into any store, in sentences.
+
+    ``paths``: files of fingerprints. ``now``, ``stated``, ``zone``: as for ``add``.
+    """
+    found = []
+    for file in paths:
+        try:
+            record_of(_content(file), stated, zone=zone, named=str(file), now=now)
+        except ShaftprintError as refusal:
+            found.append(str(refusal))
+    return found
 
 
 def add_document(

@@ -13,7 +13,7 @@ from shaftprint.errors import StoreError
 from shaftprint.late import late
 from shaftprint.store._document import document_sha256, expect_length
 from shaftprint.store._nouns import StoredNumber, Trial
-from shaftprint.store._stated import Stated, possible_time, ship_of, time_of_test
+from shaftprint.store._stated import Stated, expect_stated, possible_time, ship_of, time_of_test
 from shaftprint.store._text import LONGEST_TEXT, expect_short
 
 with late():
@@ -69,6 +69,7 @@ def record_of(
     expect_length(document, named=named)
     fingerprint = parse_fingerprint(document, named=named)
     conditions = fingerprint.tested
+    expect_stated(conditions, stated, zone, named=named)
     tested_at = time_of_test(conditions, stated.tested_at, zone, named=named, now=now)
     needs_time = conditions.tested_at is None or conditions.tested_at.tzinfo is None
     kept = replace(stated, tested_at=tested_at if needs_time else None)

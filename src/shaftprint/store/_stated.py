@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from shaftprint.errors import StoreError
 from shaftprint.late import late
+from shaftprint.spelling import listed
 from shaftprint.store._text import expect_short
 from shaftprint.zones import in_zone, possible, utc_text
 
@@ -47,12 +48,36 @@ def utc_iso(moment: datetime) -> str:
     return moment.astimezone(UTC).isoformat(timespec="microseconds").replace("+00:00", "Z")
 
 
+def expect_stated(conditions: Tested, stated: Stated, zone: tzinfo | None, *, named: str) -> None:
+    """Refuse a fingerprint of which neither its document nor who puts it in says ship, line and time.
+
+    Raises StoreError, which names all that is missing at once.
+    """
+    ship, shown = conditions.ship, stated.tested_at or conditions.tested_at
+    missing = [
+        (noun, option)
+        for is_missing, noun, option in (
+            ((None if ship is None else ship.name) is None and stated.ship is None, "the name of its ship", "--ship"),
+            ((None if ship is None else ship.line) is None and stated.line is None, "its shaft line", "--line"),
+            (shown is None, "the time of the test", "--tested-at, such as 2026-03-31T09:30+02:00"),
+        )
+        if is_missing
+    ]
+    if not missing:
+        return
+    if shown is not None and shown.tzinfo is None and zone is None:
+        missing.append((f"the offset of {shown.isoformat(sep=' ')} from UTC", "--time-zone, such as Europe/Amsterdam"))
+    nouns, options = zip(*missing, strict=True)
+    found, it = ("none", "it") if len(missing) == 1 else ("none of them", "them")
+    raise StoreError(f"{named}: expected {listed(nouns)}, found {found}; state {it} with {listed(options)}.")
+
+
 def time_of_test(
     conditions: Tested, stated: datetime | None, zone: tzinfo | None, *, named: str, now: datetime | None = None
 ) -> datetime:
-    """Return when a test was made: as its document says, else as stated; nothing is guessed.
+    """Return when a test was made: as its document says, else as stated, one of which says it; nothing is guessed.
 
-    Raises StoreError if neither says an instant, they differ, or nothing can have been tested then.
+    Raises StoreError if it is no instant, they differ, or nothing can have been tested then.
     """
     return possible_time(_time_of_test(conditions, stated, zone, named=named), now=now, named=named)
 
@@ -78,11 +103,7 @@ def _time_of_test(conditions: Tested, stated: datetime | None, zone: tzinfo | No
                 f"{utc_text(instant)}; leave --tested-at out, or correct the conditions and identify once more."
             )
         return instant
-    if shown is None:
-        raise StoreError(
-            f"{named}: expected the time of the test, found none; state it with --tested-at, such as "
-            "2026-03-31T09:30+02:00."
-        )
+    assert shown is not None  # noqa: S101 - expect_stated has refused it
     return _instant(shown, zone, named=named)
 
 
@@ -103,7 +124,7 @@ def _instant(shown: datetime, zone: tzinfo | None, *, named: str) -> datetime:
 def ship_of(conditions: Tested, stated: Stated, *, named: str) -> ShipIdentity:
     """Return ship and line of a fingerprint: as its document says, what it leaves open as stated.
 
-    Raises StoreError if neither says it, or they differ.
+    Raises StoreError if they differ.
     """
     if stated.imo_number is not None and not is_imo_number(stated.imo_number):
         raise StoreError(
@@ -129,8 +150,6 @@ def ship_of(conditions: Tested, stated: Stated, *, named: str) -> ShipIdentity:
 
 
 def _agreed(document: str | None, stated: str | None, option: str, noun: str, *, named: str) -> str:
-    if document is None and stated is None:
-        raise StoreError(f"{named}: expected {noun}, found none; state it with {option}.")
     if document is not None and stated not in (None, document):
         raise StoreError(
             f"{named}: it states {document!r} as {noun}, and {option} says {stated!r}; leave {option} out."

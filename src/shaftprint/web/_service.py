@@ -10,7 +10,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Self
 
-from shaftprint.errors import ServerError
+from shaftprint.errors import ServerError, ShaftprintError
 from shaftprint.files import reason
 from shaftprint.store._store import Store, open_store
 from shaftprint.web._alerts import Alerts, read_alerts
@@ -72,12 +72,10 @@ class Service:
         Raises ServerError if the users, the alerts, a folder or the server's own folder cannot be used; StoreError if
         the store cannot be used.
         """
-        _expect_there(serving)
-        users = None
-        if serving.users is not None:
-            if not read_users(serving.users):
-                raise ServerError(f"{serving.users}: expected one user at least, found none.")
-            users = Users(path=serving.users)
+        found = refusals(serving)
+        if found:
+            raise found[0] if len(found) == 1 else ServerError(" ".join(map(str, found)))
+        users = None if serving.users is None else Users(path=serving.users)
         alerts = None if serving.alerts is None else read_alerts(serving.alerts)
         store = open_store(serving.store)
         try:
@@ -127,13 +125,40 @@ def _scratch(serving: Serving) -> Path:
     return serving.state / "scratch"
 
 
-def _expect_there(serving: Serving) -> None:
-    for folder in serving.folders:
-        if not folder.is_dir():
-            raise ServerError(f"--folder: expected a folder, found none at {folder}.")
-    for file in serving.certificate or ():
-        if not file.is_file():
-            raise ServerError(f"--certificate and --key: expected a file, found none at {file}.")
+def refusals(serving: Serving) -> list[ShaftprintError]:
+    """Return all for which a server of these settings cannot be begun: each file that is missing or cannot be read."""
+    found: list[ShaftprintError] = [
+        *(
+            ServerError(f"--folder: expected a folder, found none at {folder}.")
+            for folder in serving.folders
+            if not folder.is_dir()
+        ),
+        *(
+            ServerError(f"--certificate and --key: expected a file, found none at {file}.")
+            for file in serving.certificate or ()
+            if not file.is_file()
+        ),
+    ]
+    for read in (_expect_users, _expect_alerts, _expect_store):
+        try:
+            read(serving)
+        except ShaftprintError as refusal:
+            found.append(refusal)
+    return found
+
+
+def _expect_users(serving: Serving) -> None:
+    if serving.users is not None and not read_users(serving.users):
+        raise ServerError(f"{serving.users}: expected one user at least, found none.")
+
+
+def _expect_alerts(serving: Serving) -> None:
+    if serving.alerts is not None:
+        read_alerts(serving.alerts)
+
+
+def _expect_store(serving: Serving) -> None:
+    open_store(serving.store).close()
 
 
 def _take_away_leftovers(state: Path) -> None:

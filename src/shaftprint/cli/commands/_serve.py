@@ -2,6 +2,7 @@
 
 import webbrowser
 from contextlib import suppress
+from dataclasses import replace
 from functools import partial
 from importlib.util import find_spec
 from pathlib import Path
@@ -13,10 +14,12 @@ from shaftprint.cli._store_options import store_option
 from shaftprint.cli._terminal import answer, echo, say
 from shaftprint.errors import ServerError, StoreError
 from shaftprint.late import late
+from shaftprint.spelling import listed
 
 with late():
     from shaftprint.store._store import create_store
     from shaftprint.web._server import serve
+    from shaftprint.web._service import refusals
     from shaftprint.web._settings import Serving, listen_at
     from shaftprint.web.access import _password, _users
     from shaftprint.web.access._person import Person
@@ -98,10 +101,9 @@ def command(
         return
     if (certificate is None) != (key is None):
         raise click.UsageError("--certificate and --key belong together: state both, or neither.")
-    serving = Serving(
+    local = Serving(
         store=url,
         state=state,
-        listen=listen_at(listen),
         users=users,
         folders=folders,
         alerts=alerts,
@@ -112,6 +114,12 @@ def command(
         overdue_days=overdue_days,
         most_upload=most_upload * _MEGABYTE,
     )
+    where = listen_at(listen)
+    try:
+        serving = replace(local, listen=where)
+    except ServerError as refusal:
+        # what else is missing is said with it
+        raise ServerError(" ".join(map(str, [refusal, *refusals(local)]))) from None
     if not serving.listen.is_local and not serving.is_secure:
         say("Passwords and pages go over the network as they are: state --certificate and --key, or --behind-tls.\n")
     if is_opened:
@@ -131,7 +139,8 @@ def _begun(address: str, *, is_opened: bool) -> None:
 def _expect_packages() -> None:
     missing = [name for name in _NEEDED if find_spec(name) is None]
     if missing:
-        raise ServerError(f'serve: expected the package {missing[0]}, found none; pip install "shaftprint[web]".')
+        packages = f"the package{'s' if len(missing) > 1 else ''} {listed(missing)}"
+        raise ServerError(f'serve: expected {packages}, found none; pip install "shaftprint[web]".')
 
 
 def _add(users: Path | None, name: str, role: str, ships: tuple[str, ...]) -> None:

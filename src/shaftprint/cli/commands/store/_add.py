@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager
 from datetime import UTC, datetime, tzinfo
 from pathlib import Path
 
@@ -12,12 +14,14 @@ from shaftprint.cli._store_options import moment_option, opened_store, store_opt
 from shaftprint.cli._terminal import answer
 from shaftprint.cli.output._fingerprint_file import any_fingerprint_at, fingerprint_file
 from shaftprint.cli.output._json import give
+from shaftprint.errors import StoreError
 from shaftprint.late import late
 
 with late():
-    from shaftprint.store._add import add
+    from shaftprint.store._add import add, refusals
     from shaftprint.store._nouns import Added
     from shaftprint.store._stated import Stated
+    from shaftprint.store._store import Store
 
 
 SHOWN_HASH = 12
@@ -55,7 +59,7 @@ def command(
         raise click.UsageError(f"--tested-at: expected one RESULT, found {len(results)}; each test has its own time.")
     stated = Stated(ship=ship, imo_number=imo, line=line, tested_at=tested_at, class_name=class_name)
     outcomes = []
-    with opened_store(url) as store:
+    with _opened(url, [fingerprint_file(place) for place in results], stated, zone) as store:
         for place in results:
             if place.is_dir():
                 # a folder whose page shows another fingerprint is refused
@@ -64,6 +68,18 @@ def command(
             outcomes.append(added)
             answer(f"{place}: {_in_words(added)}")
     give("added", outcomes)
+
+
+@contextmanager
+def _opened(url: str, files: list[Path], stated: Stated, zone: tzinfo | None) -> Iterator[Store]:
+    """Open the store; where that fails, say at once what the fingerprints lack too."""
+    with ExitStack() as stack:
+        try:
+            store = stack.enter_context(opened_store(url))
+        except StoreError as refusal:
+            others = refusals(files, now=datetime.now(UTC), stated=stated, zone=zone)
+            raise StoreError(" ".join([str(refusal), *others])) from None
+        yield store
 
 
 def _in_words(added: Added) -> str:
