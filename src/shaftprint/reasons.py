@@ -10,6 +10,7 @@ ReasonKind: TypeAlias = Literal[
     "set-point band",
     "clipping",
     "gauge steadiness",
+    "engine limit",
     "legs apart",
     "elastic coupling",
     "gauge scale",

@@ -1,8 +1,13 @@
 """A shipped test for the lever of a card: in percent or milliamperes, turned, too short; no edit of a file."""
 
+import re
+from pathlib import Path
+
 import pytest
 
 from shaftprint.campaign import load_campaign
+from shaftprint.forecast import ShipBeforeTest, predict_test
+from shaftprint.vessel import load_vessel
 
 CARD = (
     *("--yes", "--power-kw", 634, "--rated-rpm", 1600, "--cylinders", 6, "--ratio", 5.04, "--diameter-m", 1.6),
@@ -15,9 +20,10 @@ def ship(run, tmp_path, monkeypatch):
     """A folder with the vessel file of a card."""
     monkeypatch.chdir(tmp_path)
 
-    def written(*lever, unit="%"):
+    def written(*lever, unit="%", more=()):
         readings = [word for reading in lever for word in ("--lever", reading)]
-        assert run("start", *CARD, "--lever-unit", unit, *readings).exit_code == 0
+        Path("vessel.toml").unlink(missing_ok=True)
+        assert run("start", *CARD, *more, "--lever-unit", unit, *readings).exit_code == 0
         return "vessel.toml"
 
     return written
@@ -47,6 +53,41 @@ def test_a_shipped_test_moves_the_lever_of_the_ship(run, ship, unit, lever, slop
         assert campaign.sines[0].amplitude_v * abs(slope) == pytest.approx(0.12732 * 1066.7, rel=1e-3)
 
 
+def test_a_shipped_test_is_smaller_where_the_propeller_is_heavy(run, ship):
+    """1.78 m take 1.7 times the torque of 1.6 m; 1.95 m leave nothing at the higher speed."""
+    made = {}
+    for diameter_m in (1.6, 1.78):
+        vessel = ship("0=600", "100=1600", more=("--diameter-m", diameter_m))
+        result = run("new", "campaign", "--test", "12min", "--vessel", vessel, f"{diameter_m}.toml")
+        assert result.exit_code == 0, result.output
+        made[diameter_m] = load_campaign(f"{diameter_m}.toml")
+        # the lighter one comes near to the motoring torque, as the tug does
+        assert " N m of the limit " in " ".join(result.output.split())
+    light, heavy = made.values()
+    shares = {
+        round(b / a, 2)
+        for one, other in zip(light.legs, heavy.legs, strict=True)
+        for a, b in zip(one.amplitudes_v, other.amplitudes_v, strict=True)
+        if a > 0.05
+    }
+    assert len(shares) == 1
+    assert 0.3 <= shares.pop() < 0.9
+    assert [leg.level_v for leg in heavy.legs] == [leg.level_v for leg in light.legs]
+    predicted = predict_test(heavy, ShipBeforeTest(vessel=load_vessel(vessel)))
+    assert not any(use.is_beyond for use in predicted.limits if use.is_torque)
+    result = run(
+        "new",
+        "campaign",
+        "--test",
+        "12min",
+        "--vessel",
+        ship("0=600", "100=1600", more=("--diameter-m", 1.95)),
+        "x.toml",
+    )
+    assert result.exit_code == 2
+    assert "choose a lower engine_speed_rpm of the working point" in result.stderr
+
+
 def test_a_lever_that_is_too_short_or_not_known_is_refused(run, ship):
     vessel = ship("0=1000", "100=1600")
     result = run("new", "campaign", "--test", "short", "--vessel", vessel, "test.toml")
@@ -63,3 +104,21 @@ def test_a_test_beyond_the_lever_is_not_sailed(run, ship):
     result = run("sail", ship("0=600", "100=1600"), "short", "-o", "sailed.nc")
     assert result.exit_code == 1
     assert "found -5 V, which is -50 % and asks for 100 rpm" in result.stderr
+
+
+@pytest.mark.slow
+def test_a_test_that_drives_the_engine_to_full_load_is_not_good_enough(run, ship):
+    """The test of a ship with a propeller of 1.6 m, sailed with one of 1.87 m."""
+    vessel = ship("0=600", "100=1600")
+    assert run("new", "campaign", "--test", "5min", "--vessel", vessel, "test.toml").exit_code == 0
+    vessel = ship("0=600", "100=1600", more=("--diameter-m", 1.87))
+    text = Path(vessel).read_text(encoding="utf-8")
+    Path(vessel).write_text(re.sub("full_scale_nm = .*", "full_scale_nm = 60000.0", text), encoding="utf-8")
+    result = run("sail", vessel, "test.toml", "-o", "sailed.nc", "--no-progress")
+    assert result.exit_code == 0, result.output
+    result = run("inspect", "sailed.nc", "--vessel", vessel, "--campaign", "test.toml", "--no-progress")
+    words = " ".join(result.output.split())
+    assert words.startswith("Not as it is. By the vessel file the engine was at a limit: M1 beyond full load for ")
+    result = run("identify", "sailed.nc", "--vessel", vessel, "--campaign", "test.toml", "-o", "found", "--no-progress")
+    words = " ".join(result.output.split())
+    assert words.startswith("Verdict: not trustworthy * By the vessel file the engine was at a limit: M1 beyond")

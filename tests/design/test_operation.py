@@ -9,7 +9,7 @@ from tests.tug.ideal_signals import simulate_signals
 
 from shaftprint.campaign import Campaign, load_campaign
 from shaftprint.design import expected_operation, limit_uses, limits_from_vessel, recorded_operation
-from shaftprint.design.operation._limit_use import stated_limits
+from shaftprint.design.operation._limit_use import limit_reasons, stated_limits
 from shaftprint.design.operation._operation import Operation
 from shaftprint.errors import DesignError
 from shaftprint.tug import Tug, like_stan_tug_1205, normalised_truth
@@ -112,6 +112,24 @@ def test_says_which_excitation_leaves_which_limit(ship):
     assert after["rate of the set point"].is_beyond
     before = uses_of(operation, limits, "before the first excitation")
     assert not any(use.is_beyond for use in before.values())
+
+
+@pytest.mark.parametrize(("beyond_s", "told"), [(0.0, 0), (10.0, 0), (14.0, 1)])
+def test_an_engine_at_full_load_for_more_than_a_twentieth_of_a_leg_is_told(ship, beyond_s, told):
+    """M1 runs for 300 s; 5000 N m are more than the tug's engine gives at 1000 rpm."""
+    campaign = multisine(100.0, 0.1, periods=3)
+    (leg,) = campaign.legs
+    time = np.arange(0.0, campaign.duration_s, 0.1)
+    torque = np.where((time >= leg.start_s + 10.0) & (time < leg.start_s + 10.0 + beyond_s), 5000.0, 100.0)
+    speed = np.full(time.size, 1000.0)
+    operation = Operation(campaign=campaign, time_s=time, set_point_rpm=speed, speed_rpm=speed, brake_torque_nm=torque)
+    uses = limit_uses(operation, stated_limits(ship))
+    reasons = limit_reasons(uses, ["M1"])
+    assert len(reasons) == told
+    for reason in reasons:
+        assert reason.kind == "engine limit"
+        assert f"M1 beyond full load for 14 s of {leg.stop_s - leg.start_s:.0f} s, with 5000 of " in reason.sentence
+    assert limit_reasons(uses, ["M2"]) == ()
 
 
 def test_what_is_not_stated_is_not_held_against_a_test(ship, truth):

@@ -7,7 +7,11 @@ import numpy as np
 from shaftprint.campaign._campaign import Campaign, load_campaign
 from shaftprint.campaign._setpoint import setpoint
 from shaftprint.design.inputs._set_point_line import line_of_sensor
+from shaftprint.design.operation._limit_use import LimitUse, limit_uses, stated_limits
+from shaftprint.digits import plain
 from shaftprint.errors import RequestError
+from shaftprint.forecast._predict import expected_motion
+from shaftprint.forecast._ship_before_test import ShipBeforeTest
 from shaftprint.settings import Settings
 
 if TYPE_CHECKING:
@@ -23,12 +27,57 @@ _Noun = TypeVar("_Noun", bound=Settings)
 _LOOKED_AT_HZ: Final = 100.0
 
 
-def shipped_test(name: str, vessel: "Vessel", *, title: str) -> Campaign:
+# Of what a torque limit allows so much is kept free: governor and inertia are not known before a test. Smaller than
+# this share of the tug's, amplitudes tell too little.
+_SPARE: Final = 0.1
+_LEAST_SHARE: Final = 0.3
+_TRIED: Final = 8
+
+
+def shipped_test(name: str, vessel: "Vessel", *, title: str) -> tuple[Campaign, str]:
     """Return a shipped campaign in volts of a ship's own lever, its speeds in the same share of the working speed.
 
+    Amplitudes are in that share too, or smaller where engine or ship would come to a limit; which, is returned beside
+    it, and nothing where they are not.
+
     ``name``: one of `load_campaign`. ``title``: name of the campaign. Raises RequestError if the vessel file does not
-    say which speed the lever asks for, or its lever does not reach as far.
+    say which speed the lever asks for, its lever does not reach as far, or its limits leave too little.
     """
+    hindered: LimitUse | None = None
+    for share in np.linspace(1.0, _LEAST_SHARE, _TRIED).tolist():
+        campaign = _of_share(name, vessel, title=title, share=share)
+        reached = _reached(campaign, vessel)
+        if reached is None:
+            return campaign, "" if hindered is None else (
+                f"Amplitudes are {100.0 * share:.0f} % of the usual ones: with those {hindered.excitation} would come "
+                f"to {_of_limit(hindered)}."
+            )
+        hindered = reached if hindered is None else hindered
+    assert reached is not None  # noqa: S101 - the last share was hindered
+    raise RequestError(
+        f"{vessel.name}: expected limits within which the test {name} moves the ship about "
+        f"{vessel.working_point.engine_speed_rpm:g} rpm, found that {reached.excitation} comes to {_of_limit(reached)} "
+        f"with {100.0 * _LEAST_SHARE:.0f} % of its amplitudes; choose a lower engine_speed_rpm of the working point, "
+        "correct the limits, or let `shaftprint plan` make a test within them."
+    )
+
+
+def _reached(campaign: Campaign, vessel: "Vessel") -> LimitUse | None:
+    """Return the limit of speed that an excitation leaves, or of torque that it comes near to; None where none."""
+    motion = expected_motion(campaign, ShipBeforeTest(vessel=vessel), campaign.slope_rpm_per_v or 1.0)
+    tests = [*(one.name for one in campaign.sines), *(one.name for one in campaign.legs)]
+    uses = [use for use in limit_uses(motion, stated_limits(vessel)) if use.excitation in tests]
+    near = [use for use in uses if use.is_torque and use.left < _SPARE * abs(use.allowed)]
+    near += [use for use in uses if use.limit in ("highest speed", "lowest speed") and use.is_beyond]
+    return min(near, key=lambda use: use.left / abs(use.allowed), default=None)
+
+
+def _of_limit(use: LimitUse) -> str:
+    return f"{plain(abs(use.value), 0)} of {plain(abs(use.allowed), 0)} {use.unit} of the limit {use.limit}"
+
+
+def _of_share(name: str, vessel: "Vessel", *, title: str, share: float) -> Campaign:
+    """Return a shipped campaign for a lever, with a share of its amplitudes."""
     sensor, working_rpm = vessel.sensors.set_point, vessel.working_point.engine_speed_rpm
     line = line_of_sensor(vessel)
     if line is None:
@@ -46,15 +95,18 @@ def shipped_test(name: str, vessel: "Vessel", *, title: str) -> Campaign:
     def size(of_tug: float) -> float:
         return round(abs(volts_for_volt) * of_tug, _DIGITS)
 
+    def swing(of_tug: float) -> float:
+        return size(share * of_tug)
+
     changed: dict[str, Any] = {"name": title, "offset_v": volts(made.offset_v)}
     changed["slope_rpm_per_v"] = round(line.slope_rpm_per_v, _DIGITS)
     at_offset_rpm = _MADE_AT_RPM + _MADE_FOR_RPM_PER_V * (made.offset_v - _MADE_AT_V)
     changed["offset_rpm"] = round(larger * at_offset_rpm, _DIGITS)
     if made.ramp_v_per_s is not None:
         changed["ramp_v_per_s"] = size(made.ramp_v_per_s)
-    changed["sines"] = tuple(_with(one, amplitude_v=size(one.amplitude_v)) for one in made.sines)
+    changed["sines"] = tuple(_with(one, amplitude_v=swing(one.amplitude_v)) for one in made.sines)
     changed["multisines"] = tuple(
-        _with(one, level_v=volts(one.level_v), amplitudes_v=tuple(map(size, one.amplitudes_v)))
+        _with(one, level_v=volts(one.level_v), amplitudes_v=tuple(map(swing, one.amplitudes_v)))
         for one in made.multisines
     )
     changed["staircases"] = tuple(_with(one, levels_v=tuple(map(volts, one.levels_v))) for one in made.staircases)

@@ -4,17 +4,20 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from shaftprint.digits import plain, plain_letters
+from shaftprint.identify.judgement._requirements import Requirements
 from shaftprint.late import late
 from shaftprint.survey._measurement import Measurement
 from shaftprint.survey._trial import Trial
 
 with late():
-    from shaftprint.design.operation._limit_use import limit_uses, stated_limits
+    from shaftprint.design.operation._limit_use import limit_reasons, limit_uses, stated_limits
     from shaftprint.design.operation._recorded import recorded_operation
     from shaftprint.limits._limit_hints import limit_hints
 
 if TYPE_CHECKING:
     from shaftprint.design.operation._limit_use import LimitUse
+    from shaftprint.identify.fit._identification import Identification
+    from shaftprint.reasons import Reason
 
 
 def hints_of(
@@ -29,11 +32,26 @@ def hints_of(
     """
     if not measurement.legs:
         return limit_hints(measurement.spectra.harmonics, failed_steps, named=named)
-    operation = recorded_operation(measurement.signals, trial.campaign, trial.vessel)
     names = {leg.name for leg in measurement.legs}
-    uses = [use for use in limit_uses(operation, stated_limits(trial.vessel)) if use.excitation in names]
+    uses = [use for use in _uses(measurement, trial) if use.excitation in names]
     of_sines = limit_hints(measurement.spectra.harmonics, failed_steps, named=named) if trial.campaign.sines else ()
     return (*_of_legs(uses), *of_sines)
+
+
+def reasons_of_limits(fit: "Identification", measurement: Measurement, trial: Trial) -> "tuple[Reason, ...]":
+    """Return that the engine was at a limit, where a fit does not explain its data.
+
+    A limit that is stated too low speaks against no fit that does.
+    """
+    if fit.p_value is None or fit.p_value >= Requirements().lowest_p_value:
+        return ()
+    names = [*(one.name for one in trial.campaign.sines), *(leg.name for leg in measurement.legs)]
+    return limit_reasons(_uses(measurement, trial), names)
+
+
+def _uses(measurement: Measurement, trial: Trial) -> "tuple[LimitUse, ...]":
+    operation = recorded_operation(measurement.signals, trial.campaign, trial.vessel)
+    return limit_uses(operation, stated_limits(trial.vessel))
 
 
 def _of_legs(uses: "Sequence[LimitUse]") -> tuple[str, ...]:

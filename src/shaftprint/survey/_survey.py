@@ -44,7 +44,7 @@ from shaftprint.survey._elastic_line import (
 from shaftprint.survey._fits import comparisons_of, fit, priors_of
 from shaftprint.survey._legs import LegTest, fitted_legs, leg_tests
 from shaftprint.survey._legs_apart import LegAlone, apart_reasons, legs_alone
-from shaftprint.survey._limit_hints import hints_of
+from shaftprint.survey._limit_hints import hints_of, reasons_of_limits
 from shaftprint.survey._measurement import Measurement, measure, of_legs
 from shaftprint.survey._noise import noise_at_speeds
 from shaftprint.survey._of_vessel import at_speeds, default_structure, expect_one_speed, of_vessel
@@ -335,7 +335,12 @@ def _of_fits(
         trial,
         tests,
         now=now,
-        reasons=(*apart_reasons(fits[0], alone), *([] if offer is None else [offer.reason]), *twisted),
+        reasons=(
+            *reasons_of_limits(fits[0], measurement, trial),
+            *apart_reasons(fits[0], alone),
+            *([] if offer is None else [offer.reason]),
+            *twisted,
+        ),
         # a twist between two sensors is measured, and no other cause explains more
         explained_share=1.0 if twisted else 0.0 if offer is None else offer.share,
     )

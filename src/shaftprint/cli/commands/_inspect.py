@@ -22,11 +22,12 @@ from shaftprint.cli.output._tables import print_table, print_tables
 from shaftprint.errors import ShaftprintError, SignalError
 from shaftprint.late import late
 from shaftprint.plain_table import Table, numbers, texts
+from shaftprint.reasons import Reason
 
 with late():
     from shaftprint.campaign._campaign import Campaign, load_campaign
     from shaftprint.clocks._logger_clock import LoggerClock, logger_clocks
-    from shaftprint.design.operation._limit_use import LimitUse, limit_uses, stated_limits
+    from shaftprint.design.operation._limit_use import LimitUse, limit_reasons, limit_uses, stated_limits
     from shaftprint.design.operation._recorded import recorded_operation
     from shaftprint.fingerprint._clock_influence import clock_findings, clock_influences
     from shaftprint.limits._limit_hints import limit_hints
@@ -182,6 +183,13 @@ class _Test:
             return ()
         return (*([self.spectra] if self.planned.sines else []), *(leg.spectra for leg in self.legs))
 
+    @property
+    def reasons(self) -> tuple[Reason, ...]:
+        """What speaks against its lines."""
+        names = [*(one.name for one in self.planned.sines), *(leg.name for leg in self.legs)]
+        of_lines = (reason for one in self.parts for reason in one.response.reasons)
+        return (*of_lines, *limit_reasons(self.uses, names))
+
 
 def _tested(
     opened: Recording,
@@ -233,9 +241,7 @@ def _print_answer(
     signals, asked = (None, None) if test is None else (test.signals, test.planned)
     is_good = False
     wrong = contradictions(reports, ship, signals=signals, campaign=asked)
-    against = (
-        () if test is None else dict.fromkeys(reason.sentence for one in test.parts for reason in one.response.reasons)
-    )
+    against = () if test is None else dict.fromkeys(reason.sentence for reason in test.reasons)
     held = [report.held for report in reports if report.held is not None and report.held not in against]
     problems = [
         *missing,

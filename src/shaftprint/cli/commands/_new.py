@@ -117,10 +117,12 @@ def command(
         return
     if test is not None and vessel is not None:
         ship = load_vessel(vessel)
-        campaign = shipped_test(test, ship, title=f"{TESTS[test]}, {ship.name}")
+        campaign, smaller = shipped_test(test, ship, title=f"{TESTS[test]}, {ship.name}")
         text = campaign_text(campaign, remarks=f"{TESTS[test]}, for the lever of {vessel}.")
         write_bytes(path, text.encode(), noun="campaign file", error=SettingsError)
         answer(f"{path}: {TESTS[test]}, for the lever of {vessel}.")
+        if smaller:
+            answer(smaller)
         print_next("predict", "--vessel", vessel, "--campaign", path)
         print_next("sail", vessel, path, "-o", free("sailed.nc"), label="Tried:")
         return

@@ -1,7 +1,7 @@
 """The noun ``LimitUse`` and its verb: how near a test comes to each limit, and whether it leaves it."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -13,12 +13,18 @@ from shaftprint.design.inputs._limits import NO_MOTORING, Curve, Limits, limits_
 from shaftprint.design.operation._operation import Operation
 from shaftprint.digits import plain, plain_letters
 from shaftprint.notebook._shown import Shown
+from shaftprint.reasons import Reason
 
 if TYPE_CHECKING:
     from shaftprint.vessel._vessel import Vessel
 
 # A barred range may be crossed, but not for longer [s].
 CROSSING_S = 2.0
+# What the engine gives; a gauge at full scale shows less than there is.
+_OF_ENGINE = ("full load", "full rack", "motoring torque", "zero fuel")
+# An engine at a limit for more than this share of an excitation bends its lines by more than their noise: 3 % of five
+# minutes moved a gain by one standard deviation.
+_BENDS = 0.04
 # A torque is at its limit where less than this share of it is left.
 REACHED = 0.02
 
@@ -43,11 +49,18 @@ class LimitUse(Shown):
     """Unit of all three."""
     beyond_s: float
     """How long this excitation is beyond the limit, in all [s]."""
+    of_s: float
+    """How long this excitation runs [s]."""
 
     @property
     def is_beyond(self) -> bool:
         """Whether the limit is left."""
         return self.beyond_s > 0.0
+
+    @property
+    def is_torque(self) -> bool:
+        """Whether it limits what the engine gives: beyond it the engine does not follow its governor."""
+        return self.limit in _OF_ENGINE
 
     @property
     def is_reached(self) -> bool:
@@ -104,10 +117,31 @@ def limit_uses(operation: Operation, limits: Limits) -> tuple[LimitUse, ...]:
     return tuple(uses)
 
 
+def limit_reasons(uses: Sequence[LimitUse], excitations: Sequence[str]) -> tuple[Reason, ...]:
+    """Return that the engine was at a limit so long in some excitations that no linear line explains them.
+
+    ``uses``: from `limit_uses`, of a recording. ``excitations``: names of those that are used.
+    """
+    bent = [use for use in uses if use.excitation in excitations and use.is_torque and use.beyond_s > _BENDS * use.of_s]
+    if not bent:
+        return ()
+    where = "; ".join(
+        f"{use.excitation} beyond {use.limit} for {use.beyond_s:.0f} s of {use.of_s:.0f} s, with "
+        f"{plain(use.value, 0)} of {plain(use.allowed, 0)} {use.unit} at {use.time_s:.1f} s"
+        for use in bent
+    )
+    sentence = (
+        f"By the vessel file the engine was at a limit: {where}. There it does not follow its governor. Repeat the "
+        "test with smaller amplitudes or at a lower speed, or correct limits and upstream inertia in the vessel file "
+        "if the engine may give that."
+    )
+    return (Reason(kind="engine limit", where=bent[0].excitation, sentence=plain_letters(sentence)),)
+
+
 def _nearest(rule: _Rule, excitation: str, running: BoolArray, time_s: FloatArray) -> LimitUse:
-    places = np.flatnonzero(running)
+    places, step_s = np.flatnonzero(running), float(time_s[1] - time_s[0])
     place = places[np.argmin(rule.left[places])]
-    beyond_s = float(np.count_nonzero(rule.left[places] < 0.0)) * float(time_s[1] - time_s[0])
+    beyond_s = float(np.count_nonzero(rule.left[places] < 0.0)) * step_s
     if rule.name.startswith("barred") and beyond_s <= CROSSING_S:
         beyond_s = 0.0
     return LimitUse(
@@ -119,6 +153,7 @@ def _nearest(rule: _Rule, excitation: str, running: BoolArray, time_s: FloatArra
         left=float(rule.left[place]),
         unit=rule.unit,
         beyond_s=beyond_s,
+        of_s=places.size * step_s,
     )
 
 

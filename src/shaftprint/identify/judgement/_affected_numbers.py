@@ -31,6 +31,7 @@ AFFECTED: Mapping[ReasonKind, tuple[frozenset[Basis], str]] = {
         ALL - {"speed", "set point", "delay"},
         "it depends on a torque gauge and a load that stay the same during the test",
     ),
+    "engine limit": (ALL, WHOLE),
     "legs apart": (ALL, WHOLE),
     "elastic coupling": (ALL - {"speed"}, "it depends on a line that does not twist"),
     "gauge scale": (frozenset(("torque", "governor")), "it depends on the scale of the torque gauge"),

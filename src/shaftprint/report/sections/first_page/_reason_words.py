@@ -34,6 +34,10 @@ _WORDS: "Mapping[ReasonKind, tuple[str, str]]" = {
         "The torque gauge or the load did not stay the same during the test.",
         "Check gauge and telemetry, and repeat the test in calm, deep water.",
     ),
+    "engine limit": (
+        "The engine was at its limit for a part of the test.",
+        "Repeat the test with smaller moves of the set point or at a lower speed.",
+    ),
     "legs apart": (
         "The line is not the same at all speeds of the test.",
         "Identify each speed alone; ask an engineer whether the governor has gains or delays that go with the speed.",
