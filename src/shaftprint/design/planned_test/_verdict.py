@@ -8,6 +8,7 @@ import numpy as np
 from shaftprint.design.inputs._wish import numbers_of_line
 from shaftprint.design.plan._band import HELD
 from shaftprint.design.plan._plan import Plan, length_words
+from shaftprint.design.planned_test._hidden import stairs_sentences
 from shaftprint.design.planned_test._rehearsal import Rehearsal
 from shaftprint.design.planned_test._remedies import Remedy
 from shaftprint.digits import stated
@@ -30,6 +31,7 @@ def plan_sentences(plan: Plan, remedies: Sequence[Remedy] = (), rehearsal: Rehea
         *_reach(plan),
         *(_miss(plan, name) for name in sorted(missed, key=lambda name: -missed[name])),
         *_binding(plan),
+        *stairs_sentences(plan),
         *(remedy.sentence for remedy in remedies if missed),
         *(NOT_REHEARSED if rehearsal is None else rehearsal.sentences),
     )

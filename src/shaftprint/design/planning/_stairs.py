@@ -8,10 +8,9 @@ import numpy as np
 from shaftprint.arrays import FloatArray
 from shaftprint.design.motion._bound import Bound
 from shaftprint.design.motion._motion import motion
+from shaftprint.design.motion._stairs import stairs_spectrum
 from shaftprint.design.planning._brief import Brief
 
-# Rate at which steps are seen [Hz]: what governor and engine do to them is far slower.
-_RATE_HZ = 64.0
 # The limit of a rate is left to the control unit, which follows a step as fast as it does.
 _OF_STEPS = "rate of the set point"
 # Possible ships whose steps are looked at.
@@ -37,14 +36,7 @@ def _largest_use(
     brief: Brief, bounds: tuple[Bound, ...], table: FloatArray, shape: FloatArray, dwell_s: float
 ) -> float:
     """Return the largest use of the bounds by a staircase of one, with as long a rest after it."""
-    steps = np.repeat(shape, round(_RATE_HZ * dwell_s))
-    count = 2 * steps.size
-    hertz = np.fft.rfftfreq(count, 1.0 / _RATE_HZ)
-    # smoothed by the Lanczos factor, so that a step of limited band does not overshoot by itself
-    spectrum = np.fft.rfft(steps, n=count) * np.sinc(2.0 * hertz / _RATE_HZ)
-    omega = np.asarray(2.0 * np.pi * hertz, dtype=np.float64)
-    # an integrator has no value at zero, its loop has
-    omega[0] = 1e-3 * omega[1]
+    stairs = stairs_spectrum(shape, dwell_s)
     weights = np.array([bound.weights / bound.free for bound in bounds])
-    responses = motion(brief.structures[0], table, omega)
-    return max(float(np.fft.irfft((weights @ of_ship) * spectrum, n=count, axis=1).max()) for of_ship in responses)
+    responses = motion(brief.structures[0], table, stairs.omega_rad_s)
+    return max(float(stairs.in_time(weights @ of_ship).max()) for of_ship in responses)
