@@ -367,6 +367,26 @@ def test_the_printed_report_is_small_and_its_bars_keep_their_textures(visit, rep
         assert found.messages == []
 
 
+def test_on_a_phone_bars_keep_half_of_the_width_beside_their_names(visit, report):
+    """``governor proportional action`` in one line left them a third."""
+    with visit(report, viewport={"width": 390, "height": 844}) as found:
+        found.show("budget")
+        wide = found.page.evaluate("document.getElementById('plot-budget')._fullLayout.xaxis._length")
+        assert wide > 0.48 * 390 - 32
+
+
+def test_words_of_a_wide_table_are_no_stripe_on_paper(visit, report):
+    with visit(report) as found:
+        found.page.set_viewport_size({"width": 688, "height": 900})
+        found.page.emulate_media(media="print")
+        cells = "table:has(thead th:nth-child(8)) tbody tr:first-child > td:last-child:not(.number)"
+        widths = found.page.eval_on_selector_all(cells, "list => list.map(e => e.getBoundingClientRect().width)")
+        assert widths
+        assert min(widths) > 120.0
+        right = "list => list.map(e => e.getBoundingClientRect().right)"
+        assert max(found.page.eval_on_selector_all("table:has(thead th:nth-child(8))", right)) < 690.0
+
+
 def test_a_chart_is_no_wider_than_the_paper(visit, report):
     with visit(report) as found:
         found.show("fit")

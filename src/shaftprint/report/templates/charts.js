@@ -34,6 +34,7 @@
   const PAPER_PX = 688;
   const PAPER_SHARE = 0.45;
   const BODE_SHARE = 0.7;
+  const NAMES_SHARE = 0.52;
   const root = document.documentElement;
   const charts = new Map();
   const darkScreen = window.matchMedia("(prefers-color-scheme: dark)");
@@ -95,7 +96,7 @@
 
   function paper({ place, chart }) {
     const { x, y } = chart.panels[0];
-    const share = x.log || y.names.length ? BODE_SHARE : PAPER_SHARE;
+    const share = y.names.length ? NAMES_SHARE : x.log ? BODE_SHARE : PAPER_SHARE;
     const saved = (1 - share) * chart.heights.reduce((a, b) => a + b);
     return { width: PAPER_PX, height: parseFloat(place.style.getPropertyValue("--height")) - saved, share };
   }

@@ -15,10 +15,12 @@ window.shaftprintLayout = (() => {
   const LOW = 140;
   // A field of a matrix that is narrower shows its colour only [px].
   const FIELD = 40;
+  // On a phone a name beside a panel has lines of so many px, so that the panel keeps half of the width.
+  const NAMED = 156;
   const FONT = 'system-ui, "Segoe UI", "Liberation Sans", Arial, sans-serif';
 
   const letters = (text) => text.replace(/<[^>]*>|&[^;]*;/g, (tag) => (tag.startsWith("&") ? "x" : "")).length;
-  const longest = (names) => Math.max(0, ...names.map(letters));
+  const longest = (names) => Math.max(0, ...names.flatMap((name) => name.split("<br>")).map(letters));
 
   // A text in as many lines as its room wants; tags hold no spaces.
   function wrapped(text, width) {
@@ -35,8 +37,9 @@ window.shaftprintLayout = (() => {
 
   // Where each panel stands: side by side, or below each other on a phone.
   function cells(chart, narrow) {
+    const named = ({ y, ...others }) => ({ ...others, y: { ...y, names: y.names.map((name) => wrapped(name, NAMED).join("<br>")) } });
     const places = chart.panels.map((panel, index) => ({
-      panel, index, row: Math.floor(index / chart.columns), column: index % chart.columns,
+      panel: narrow ? named(panel) : panel, index, row: Math.floor(index / chart.columns), column: index % chart.columns,
     }));
     for (const cell of places) {
       cell.height = chart.heights[cell.row];
