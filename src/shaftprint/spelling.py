@@ -6,6 +6,9 @@ from pathlib import Path
 
 # Names of files share an ending and are chosen to be alike: more letters have to agree than in a word.
 _WORD, _FILE = 0.6, 0.75
+# What the program and people put beside recordings.
+_NO_RECORDINGS = frozenset((".html", ".json", ".toml", ".js", ".md", ".pdf", ".png", ".svg"))
+_SHOWN = 3
 
 
 def listed(names: Sequence[str]) -> str:
@@ -33,3 +36,14 @@ def meant_beside(path: Path) -> str:
     except OSError:
         return ""
     return meant(path.name, names, likeness=_FILE)
+
+
+def shown_files(folder: Path) -> str:
+    """Return ``: a.nc, b.csv`` of up to three files in a folder that may be recordings, or nothing."""
+    try:
+        names = sorted(one.name for one in folder.iterdir() if one.is_file() and one.suffix not in _NO_RECORDINGS)
+    except OSError:
+        return ""
+    seen = [name for name in names if name.isprintable() and not name.startswith(".")]
+    more = ", ..." if len(seen) > _SHOWN else ""
+    return f": {', '.join(seen[:_SHOWN])}{more}" if seen else ""

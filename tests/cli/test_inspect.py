@@ -117,9 +117,17 @@ def test_file_that_is_no_recording(run, tmp_path, content, message):
 
 
 def test_folder_in_the_place_of_a_recording(run, tmp_path):
+    for name in ("vessel.toml", "monday.csv", "index.html"):
+        (tmp_path / name).write_text("x\n", encoding="utf-8")
     result = run("inspect", tmp_path)
     assert result.exit_code == 1
-    assert "expected a logger file" in result.stderr
+    assert "expected a logger file, found a folder; name the file in it: monday.csv." in result.stderr
+
+
+def test_two_recordings_are_told_how_they_become_one(run, tmp_path):
+    result = run("inspect", tmp_path / "a.nc", tmp_path / "b.nc")
+    assert result.exit_code == 2
+    assert "it takes one recording. `shaftprint join`" in result.stderr
 
 
 def test_truncated_recording(run, recording, tmp_path):

@@ -132,7 +132,7 @@ class CommandGroup(LazyGroup):
             raise click.ClickException(terminal_message(str(error))) from error
         except click.ClickException as error:
             # click says of its own attribute that nobody is to change it
-            vars(error)["message"] = terminal_message(error.message)
+            vars(error)["message"] = terminal_message(f"{error.message}{_advice(error)}")
             raise
         except KeyboardInterrupt:
             echo("Interrupted; nothing is left half-written.", err=True)
@@ -152,6 +152,18 @@ class CommandGroup(LazyGroup):
             raise
         print_document()
         return returned
+
+
+def _advice(error: click.ClickException) -> str:
+    """Return what to do where a second recording was named."""
+    context = error.ctx if isinstance(error, click.UsageError) else None
+    named = () if context is None else tuple(one.name for one in context.command.params)
+    if "recording" not in named or "unexpected extra argument" not in error.message:
+        return ""
+    return (
+        ": it takes one recording. `shaftprint join` puts together what one logger wrote one after the other, "
+        "`shaftprint merge` what two loggers recorded at once."
+    )
 
 
 def _describe(error: OSError) -> str:

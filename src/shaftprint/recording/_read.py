@@ -17,7 +17,7 @@ from shaftprint.recording.readers._outside import read_outside
 from shaftprint.recording.readers._reader import Reader
 from shaftprint.recording.readers._time_scale import FASTEST_HZ, SLOWEST_HZ
 from shaftprint.recording.readers._unread import remedy
-from shaftprint.spelling import meant_beside
+from shaftprint.spelling import meant_beside, shown_files
 
 with late():
     from shaftprint.recording.readers import _all
@@ -54,7 +54,7 @@ def read_recording(path: str | Path, *, readers: Sequence[Reader] | None = None,
     path = Path(path)
     complete(path.parent)
     if path.is_dir():
-        raise RecordingError(f"{path}: expected a logger file, found a folder; name the file in it.")
+        raise RecordingError(f"{path}: expected a logger file, found a folder; name the file in it{shown_files(path)}.")
     if not path.is_file():
         raise RecordingError(f"{path}: expected a logger file, found none there.{meant_beside(path)}")
     try:
