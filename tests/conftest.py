@@ -35,6 +35,12 @@ HERE = Path(__file__).parent
 # the rooms of which the Makefile counts the branches that are tested stand there
 (ROOMS,) = re.findall(r"^ROOMS := (.+)$", (HERE.parent / "Makefile").read_text(encoding="utf-8"), re.MULTILINE)
 CALCULATING = set(ROOMS.split())
+# Of their files these calculate long along few branches, which other files go as well: tracing would only double that.
+UNTRACED = {
+    "models/test_check.py",
+    "models/test_closed_forms.py",
+    "signals/test_simulated_ship.py",
+}
 # independent tests of some seconds each, which any worker may take, and rooms whose files share what is dear to prepare
 ONE_BY_ONE = "tests/wrong_recordings/test_wrong_recordings.py"
 TOGETHER = {"tests/docs", "tests/report", "tests/validation"}
@@ -107,7 +113,8 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> Iterator[None]:
     begins with what asks for no demo, so as not to wait for the one that makes it.
     """
     for item in items:
-        if item.path.relative_to(HERE).parts[0] in CALCULATING:
+        path = item.path.relative_to(HERE)
+        if path.parts[0] in CALCULATING and path.as_posix() not in UNTRACED:
             item.add_marker("calculating")
     # what is left now is run
     yield

@@ -3,6 +3,7 @@
 import contextlib
 from dataclasses import replace
 from datetime import UTC, datetime
+from functools import partial
 
 import numpy as np
 import pytest
@@ -21,6 +22,7 @@ from shaftprint.design import (
     limits_from_vessel,
     write_plan_files,
 )
+from shaftprint.design.planning import _design
 from shaftprint.fingerprint import read_fingerprint, write_fingerprint
 from shaftprint.recording import cut, read_recording, write_csv, write_recording
 from shaftprint.survey import STAN_TUG_NOISE
@@ -141,3 +143,12 @@ def write_last_years(folder, voyage):
         place = folder / f"result-{year}"
         place.mkdir()
         write_fingerprint(first.model_copy(update=changes), place / "fingerprint.json")
+
+
+@pytest.fixture(autouse=True)
+def _plans_with_little_effort(monkeypatch):
+    """Look for a plan with a tenth of the usual effort: it meets what is wished, and need not be the best.
+
+    ``tests/design`` and ``benchmarks/planned_tests.py`` plan with all of it.
+    """
+    monkeypatch.setattr(_design, "Effort", partial(Effort, steps=60, restarts=1))

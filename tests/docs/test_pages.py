@@ -33,10 +33,11 @@ WITH_PYTHON = [page for page in PAGES if python_of(page)]
 WITH_COMMANDS = [page for page in PAGES if commands_of(page)]
 # these sail a test and identify it; the documentation, which .ci/run builds, is built by running them too
 NOTEBOOKS = ("first-fingerprint", "own-structure", "my-csv", "two-speeds", "five-tests")
-LONG = {"docs/thesis-figures.md", "docs/gallery.md"} | {
-    f"docs/tutorials/{name}.md" for name in (*NOTEBOOKS, "logger-file", "two-loggers", "fmu")
+LONG = {"docs/thesis-figures.md", "docs/gallery.md", "docs/command-output.md"} | {
+    f"docs/tutorials/{name}.md"
+    for name in (*NOTEBOOKS, "recording-to-fingerprint", "logger-file", "two-loggers", "fmu")
 }
-SLOW = {"docs/house.md", "docs/planning.md", "docs/command-output.md", "docs/tutorials/recording-to-fingerprint.md"}
+SLOW = {"docs/house.md", "docs/planning.md"}
 DEAR = {"long": LONG, "slow": SLOW}
 # their first lines ask for the short demo
 WITH_DEMO = {"docs/house.md", "docs/library.md"}

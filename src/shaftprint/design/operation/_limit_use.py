@@ -23,8 +23,8 @@ CROSSING_S = 2.0
 # What the engine gives; a gauge at full scale shows less than there is.
 _OF_ENGINE = ("full load", "full rack", "motoring torque", "zero fuel")
 # An engine at a limit for more than this share of an excitation bends its lines by more than their noise: 3 % of five
-# minutes moved a gain by one standard deviation.
-_BENDS = 0.04
+# minutes moved a gain by one standard deviation. Where a fit has failed a quarter of it is the first thing to look at.
+BENDS, MAY_BEND = 0.04, 0.01
 # A torque is at its limit where less than this share of it is left.
 REACHED = 0.02
 
@@ -117,12 +117,16 @@ def limit_uses(operation: Operation, limits: Limits) -> tuple[LimitUse, ...]:
     return tuple(uses)
 
 
-def limit_reasons(uses: Sequence[LimitUse], excitations: Sequence[str]) -> tuple[Reason, ...]:
+def limit_reasons(
+    uses: Sequence[LimitUse], excitations: Sequence[str], *, longest: float = BENDS
+) -> tuple[Reason, ...]:
     """Return that the engine was at a limit so long in some excitations that no linear line explains them.
 
-    ``uses``: from `limit_uses`, of a recording. ``excitations``: names of those that are used.
+    ``uses``: from `limit_uses`, of a recording. ``excitations``: names of those that are used. ``longest``: share of
+    the time of an excitation for which it may be.
     """
-    bent = [use for use in uses if use.excitation in excitations and use.is_torque and use.beyond_s > _BENDS * use.of_s]
+    used = [use for use in uses if use.excitation in excitations and use.is_torque]
+    bent = [use for use in used if use.beyond_s > longest * use.of_s]
     if not bent:
         return ()
     where = "; ".join(
