@@ -3,7 +3,6 @@
 import contextlib
 from dataclasses import replace
 from datetime import UTC, datetime
-from functools import partial
 
 import numpy as np
 import pytest
@@ -22,7 +21,6 @@ from shaftprint.design import (
     limits_from_vessel,
     write_plan_files,
 )
-from shaftprint.design.planning import _design
 from shaftprint.fingerprint import read_fingerprint, write_fingerprint
 from shaftprint.recording import cut, read_recording, write_csv, write_recording
 from shaftprint.survey import STAN_TUG_NOISE
@@ -151,4 +149,5 @@ def _plans_with_little_effort(monkeypatch):
 
     ``tests/design`` and ``benchmarks/planned_tests.py`` plan with all of it.
     """
-    monkeypatch.setattr(_design, "Effort", partial(Effort, steps=60, restarts=1))
+    for name, little in {"steps": 60, "restarts": 1}.items():
+        monkeypatch.setitem(Effort.__init__.__kwdefaults__, name, little)
