@@ -113,13 +113,19 @@ def report(outcomes: Sequence[Mapping[str, Any]]) -> str:
     fitted = [one for one in outcomes if not one["refused"]]
     z = np.array([value for one in fitted for value in one["z"].values()])
     held = np.abs(z) < NORMAL_95
-    refused = [one["refused"] for one in outcomes if one["refused"]]
+    refused = [one for one in outcomes if one["refused"]]
     text = (
         f"{len(outcomes)} ships of 200 to 4000 kW, of which only a card is known, twelve minutes each over a bus: "
         f"{len(fitted)} may be used, and {_PERCENT * held.mean():.0f} % of {held.size} trusted intervals hold (rms z "
         f"{np.sqrt(np.mean(z**2)):.2f}, largest {np.abs(z).max():.1f})."
     )
-    return text + "".join(f" Refused: {one}" for one in refused)
+    if refused:
+        shares = [max(one.get("limited", {"": 0.0}).values()) for one in refused]
+        text += (
+            f" {len(refused)} are refused: their governor, which no card tells, took the engine to a limit for "
+            f"{_PERCENT * min(shares):.0f} to {_PERCENT * max(shares):.0f} % of a leg."
+        )
+    return text
 
 
 def main() -> None:

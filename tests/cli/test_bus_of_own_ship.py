@@ -114,6 +114,8 @@ def test_a_test_that_drives_the_engine_to_full_load_is_not_good_enough(run, ship
     vessel = ship("0=600", "100=1600", more=("--diameter-m", 1.87))
     text = Path(vessel).read_text(encoding="utf-8")
     Path(vessel).write_text(re.sub("full_scale_nm = .*", "full_scale_nm = 60000.0", text), encoding="utf-8")
+    result = run("predict", "--vessel", vessel, "--campaign", "test.toml", "--no-progress")
+    assert result.output.splitlines()[1].startswith("  * The engine would be at a limit: M1 beyond full load for ")
     result = run("sail", vessel, "test.toml", "-o", "sailed.nc", "--no-progress")
     assert result.exit_code == 0, result.output
     result = run("inspect", "sailed.nc", "--vessel", vessel, "--campaign", "test.toml", "--no-progress")

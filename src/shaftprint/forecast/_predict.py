@@ -11,7 +11,7 @@ from shaftprint.catalogue._own_structure import TypedName
 from shaftprint.catalogue._shipped import shipped_structure
 from shaftprint.design.inputs._known_ship import ship_before_test
 from shaftprint.design.operation._expected import expected_operation, inputs_left_out
-from shaftprint.design.operation._limit_use import LimitUse, limit_uses, stated_limits
+from shaftprint.design.operation._limit_use import LimitUse, limit_uses, limit_warnings, stated_limits
 from shaftprint.design.operation._operation import Operation
 from shaftprint.drift._visible import VisibleChange, visible_changes
 from shaftprint.errors import RequestError
@@ -55,6 +55,12 @@ class PredictedTest:
     """How near the test comes to each limit of ship and engine; None without a vessel file."""
     left_out: tuple[str, ...] = ()
     """Inputs whose effect on engine and gauge is not in these limits."""
+
+    @property
+    def at_limits(self) -> tuple[str, ...]:
+        """That the engine would be at a limit where something is measured, in words; empty where it would not."""
+        names = [*(sine.name for sine in self.campaign.sines), *(leg.name for leg in self.campaign.legs)]
+        return limit_warnings(self.limits or (), names)
 
     @property
     def visible(self) -> tuple[VisibleChange, ...]:

@@ -10,7 +10,7 @@ from shaftprint.survey._measurement import Measurement
 from shaftprint.survey._trial import Trial
 
 with late():
-    from shaftprint.design.operation._limit_use import MAY_BEND, limit_reasons, limit_uses, stated_limits
+    from shaftprint.design.operation._limit_use import limit_reasons, limit_uses, stated_limits
     from shaftprint.design.operation._recorded import recorded_operation
     from shaftprint.limits._limit_hints import limit_hints
 
@@ -46,7 +46,7 @@ def reasons_of_limits(fit: "Identification", measurement: Measurement, trial: Tr
     if fit.p_value is None or fit.p_value >= Requirements().lowest_p_value:
         return ()
     names = [*(one.name for one in trial.campaign.sines), *(leg.name for leg in measurement.legs)]
-    return limit_reasons(_uses(measurement, trial), names, longest=MAY_BEND)
+    return limit_reasons(_uses(measurement, trial), names, failed=True)
 
 
 def _uses(measurement: Measurement, trial: Trial) -> "tuple[LimitUse, ...]":

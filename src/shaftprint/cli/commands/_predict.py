@@ -124,7 +124,8 @@ def print_prediction(predicted: PredictedTest) -> None:
     possible, accuracy, intervals = predicted.possible, predicted.accuracy, predicted.intervals
     responses, visible = predicted.responses, predicted.visible
     structure = possible.structure
-    print_findings("What the test will find", accuracy.sentences, is_answer=True)
+    # first what may spoil it
+    print_findings("What the test will find", [*predicted.at_limits, *accuracy.sentences], is_answer=True)
     print_table(_accuracy_table(possible, accuracy, intervals))
     speeds = sum(response.inputs == responses[0].inputs for response in responses)
     at_all = "at all" if speeds == 1 else "at one speed, however long"

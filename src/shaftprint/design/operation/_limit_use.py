@@ -24,7 +24,7 @@ CROSSING_S = 2.0
 _OF_ENGINE = ("full load", "full rack", "motoring torque", "zero fuel")
 # An engine at a limit for more than this share of an excitation bends its lines by more than their noise: 3 % of five
 # minutes moved a gain by one standard deviation. Where a fit has failed a quarter of it is the first thing to look at.
-BENDS, MAY_BEND = 0.04, 0.01
+_BENDS, _MAY_BEND = 0.04, 0.01
 # A torque is at its limit where less than this share of it is left.
 REACHED = 0.02
 
@@ -117,29 +117,41 @@ def limit_uses(operation: Operation, limits: Limits) -> tuple[LimitUse, ...]:
     return tuple(uses)
 
 
-def limit_reasons(
-    uses: Sequence[LimitUse], excitations: Sequence[str], *, longest: float = BENDS
-) -> tuple[Reason, ...]:
+def limit_reasons(uses: Sequence[LimitUse], excitations: Sequence[str], *, failed: bool = False) -> tuple[Reason, ...]:
     """Return that the engine was at a limit so long in some excitations that no linear line explains them.
 
-    ``uses``: from `limit_uses`, of a recording. ``excitations``: names of those that are used. ``longest``: share of
-    the time of an excitation for which it may be.
+    ``uses``: from `limit_uses`, of a recording. ``excitations``: names of those that are used. ``failed``: whether no
+    line explained them.
     """
-    used = [use for use in uses if use.excitation in excitations and use.is_torque]
-    bent = [use for use in used if use.beyond_s > longest * use.of_s]
-    if not bent:
-        return ()
-    where = "; ".join(
-        f"{use.excitation} beyond {use.limit} for {use.beyond_s:.0f} s of {use.of_s:.0f} s, with "
-        f"{plain(use.value, 0)} of {plain(use.allowed, 0)} {use.unit} at {use.time_s:.1f} s"
-        for use in bent
-    )
+    where = _where(uses, excitations, _MAY_BEND if failed else _BENDS)
     sentence = (
         f"By the vessel file the engine was at a limit: {where}. There it does not follow its governor. Repeat the "
         "test with smaller amplitudes or at a lower speed, or correct limits and upstream inertia in the vessel file "
         "if the engine may give that."
     )
-    return (Reason(kind="engine limit", where=bent[0].excitation, sentence=plain_letters(sentence)),)
+    return (Reason(kind="engine limit", sentence=sentence),) if where else ()
+
+
+def limit_warnings(uses: Sequence[LimitUse], excitations: Sequence[str]) -> tuple[str, ...]:
+    """Return that the engine will be at a limit in some excitations; ``uses`` are of a test before it is made."""
+    where = _where(uses, excitations, _BENDS)
+    sentence = (
+        f"The engine would be at a limit: {where}. There it does not follow its governor, and what is predicted does "
+        "not hold. Choose smaller amplitudes or a lower speed."
+    )
+    return (sentence,) if where else ()
+
+
+def _where(uses: Sequence[LimitUse], excitations: Sequence[str], longest: float) -> str:
+    used = [use for use in uses if use.excitation in excitations and use.is_torque]
+    return plain_letters(
+        "; ".join(
+            f"{use.excitation} beyond {use.limit} for {use.beyond_s:.0f} s of {use.of_s:.0f} s, with "
+            f"{plain(use.value, 0)} of {plain(use.allowed, 0)} {use.unit} at {use.time_s:.1f} s"
+            for use in used
+            if use.beyond_s > longest * use.of_s
+        )
+    )
 
 
 def _nearest(rule: _Rule, excitation: str, running: BoolArray, time_s: FloatArray) -> LimitUse:
