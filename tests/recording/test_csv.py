@@ -111,6 +111,21 @@ def test_hints_settle_what_the_file_leaves_open(tmp_path):
             "time [s];a [V]\n0,1;abc\n0,2;1,5\n0,3;def\n0,4;1,6\n0,5;1,7\n",
             r'2 fields or rows cannot be used\.\n  line 2, column 2 .*found "abc"\.\n  line 4, .*found "def"\.$',
         ),
+        (  # ControlDesk: a table of each rate below the one before
+            "\n".join(
+                f"path,,Root/{name}\ntrace_names,,{name}\ntrace_units,s,V\ntrace_values,0,1\n"
+                + "".join(f",{row * step_s:.1f},1\n" for row in range(1, 400))
+                for name, step_s in (("a", 0.1), ("b", 1.0))
+            ),
+            r"\n  Line 405 has words alone, .* write each table into a file of its own\.$",
+        ),
+        (
+            "time [s],a [V],b [V]\n"
+            + "".join(f"{second},1,2\n" for second in range(20))
+            + "\ntime [s],c [V]\n"
+            + "".join(f"{second},1\n" for second in range(20)),
+            r"\n  Line 23 has words alone, .* write each table into a file of its own\.$",
+        ),
         (
             "clock,a [V]\n0,1\n1,2\n",
             r'line 1: expected a column "time \[s\]", found "clock; a \[V\]"; name the columns',

@@ -23,7 +23,18 @@ def wrong_rows(path: Path, rows: Sequence[tuple[int, Sequence[str]]], header: He
         return RecordingError(f"{path}, {mistakes[0]}")
     more = [f"and {len(mistakes) - MOST} more."] if len(mistakes) > MOST else []
     count = f"{len(mistakes)} fields or rows cannot be used."
+    begins = min((line for line, fields in rows if _has_words_alone(fields, header)), default=None)
+    if begins is not None:
+        more.append(
+            f"Line {begins} has words alone, as titles: if another table begins there, as of another rate, write each "
+            "table into a file of its own."
+        )
     return RecordingError("\n  ".join([f"{path}: {count}", *mistakes[:MOST], *more]))
+
+
+def _has_words_alone(fields: Sequence[str], header: Header) -> bool:
+    filled = [header.pointed(field) for field in fields if field.strip()]
+    return len(filled) > 1 and all(number(field) is None and not is_stamp(field) for field in filled)
 
 
 def _mistakes(line: int, fields: Sequence[str], header: Header) -> list[str]:
