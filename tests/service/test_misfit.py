@@ -94,6 +94,17 @@ def test_how_gains_go_with_the_speed_is_measured():
     assert trend.std < 0.05
 
 
+@pytest.mark.slow
+def test_what_a_trend_does_to_other_numbers_is_in_their_deviations():
+    """A delay that goes with the speed draws the gain along, whose scatter does not show it."""
+    truth = changed()
+    fit = fit_segments(records(np.random.default_rng(100), lambda level, swing: changed(t_d=-0.3 * level)), model())
+    place = FREE.index("K_p")
+    off, variance = fit.theta[place] - truth[place], fit.covariance[place, place]
+    assert abs(off) < 2.5 * np.sqrt(variance)
+    assert abs(off) > 5.0 * np.sqrt(variance - fit.misfit.spread[place, place])
+
+
 def test_a_torque_behind_a_filter_is_no_gauge_that_is_late_by_a_stated_time():
     def filtered(torque):
         shown = torque.copy()
@@ -117,6 +128,8 @@ def test_an_inertia_far_from_that_of_the_vessel_file_is_named():
 
 def test_what_is_too_small_to_matter_is_no_reason_however_long_the_service():
     trend = Trend(what="the gains", along="hang on the speed", by="a table", size=0.01, std=1e-4, gain=1e4, least=0.04)
-    misfit = Misfit(speed=1.0, torque=1.0, chance=1.0, gain=0.0, hanging=1.0, trends=(trend,), pulled=())
+    misfit = Misfit(
+        speed=1.0, torque=1.0, chance=1.0, gain=0.0, hanging=1.0, trends=(trend,), pulled=(), spread=np.zeros((1, 1))
+    )
     assert misfit.reason == ""
     assert replace(misfit, trends=(replace(trend, size=0.05),)).reason.startswith("the gains hang on the speed")

@@ -239,9 +239,10 @@ def fit_segments(
     sums = sums_of(each, model, theta)
     of_noise: FloatArray = np.linalg.inv(sums.information).astype(np.float64)
     covariance, freedom = clustered(each, sums, of_noise)
+    misfit = misfit_of(runs, whitening, model, theta, sums.prior)
     return ServiceFit(
         theta=frozen_float(theta),
-        covariance=frozen_float(with_floor(covariance, theta)),
+        covariance=frozen_float(with_floor(covariance, theta) + misfit.spread),
         freedom=frozen_float(freedom),
         of_prior={name: frozen_float(of_noise[:, FREE.index(name)] / std) for name, std in model.prior_std.items()},
         scores=tuple(each),
@@ -250,7 +251,7 @@ def fit_segments(
         counts_at_start=counts_at_start,
         steps=number,
         last_step=size,
-        misfit=misfit_of(runs, whitening, model, theta, sums.prior),
+        misfit=misfit,
     )
 
 

@@ -34,6 +34,10 @@ _FREEDOM = 2.0
 _MOST = 2
 # Times after a move between which what is left has a mean of its own [s].
 _LAGS_S = (0.0, 0.15, 0.5, 1.5, 5.0)
+# The largest of the trends is no chance any more from here on, in two of three fits.
+_MAY_BE = 2.0
+# Numbers that the first of the trends move, those along the speed: gains by a share, the others by the size itself.
+_ALONG_SPEED = ((GAUGE_K_P.name, GAUGE_K_I.name), (T_D.name,), (C_SET.name,))
 # So many deviations from what was known are no chance.
 _PULLED = 4.0
 # A move is no smaller than this share of the speed, where its logarithm is taken.
@@ -107,6 +111,8 @@ class Misfit:
     """What goes with what."""
     pulled: tuple[tuple[str, float], ...]
     """Numbers that the vessel file states, and how many deviations from there they are found."""
+    spread: FloatArray
+    """Covariance that the likeliest trend adds to the free numbers at the working point, shape (free, free)."""
 
     @property
     def reason(self) -> str:
@@ -167,6 +173,7 @@ def misfit_of(
         for part in (slice(0, count), slice(count, count + lags), slice(count + lags, count + 2 * lags))
     )
     curvature, std = np.diag(inner), np.sqrt(np.diag(covariance))
+    sizes = total[:count] / curvature[:count]
     of_noise = np.linalg.inv(information[:free, :free] + prior)
     return Misfit(
         speed=speed,
@@ -187,7 +194,28 @@ def misfit_of(
         ),
         gain=float(total[answers] @ np.linalg.solve(inner[answers, answers], total[answers])),
         pulled=tuple(_pulls(model, theta, of_noise)),
+        spread=_spread(sizes, std[:count] / curvature[:count], taken[:count], theta, float(levels.mean())),
     )
+
+
+def _spread(sizes: FloatArray, stds: FloatArray, taken: FloatArray, theta: FloatArray, mean_level: float) -> FloatArray:
+    """Return what a trend that is too small to be told may have done to the numbers, shape (free, free).
+
+    ``sizes``, ``stds``: of the trends, shape (trends,). ``taken``: what the free numbers take up of each, shape
+    (trends, free). ``mean_level``: logarithm of the mean speed of the segments over that of the working point, for
+    which the numbers are stated.
+    """
+    likeliest = int(np.argmax(np.abs(sizes) / stds))
+    z = abs(sizes[likeliest]) / stds[likeliest]
+    if z < _MAY_BE:
+        return np.zeros((theta.size, theta.size))
+    own = np.zeros(theta.size)
+    if likeliest < len(_ALONG_SPEED):
+        places = [FREE.index(name) for name in _ALONG_SPEED[likeliest]]
+        own[places] = theta[places] if len(places) > 1 else 1.0
+    moved = sizes[likeliest] * (-taken[likeliest] - mean_level * own)
+    # chance makes trends too: what is left of the square of the size
+    return np.asarray((1.0 - z**-2.0) * np.outer(moved, moved))
 
 
 def _trends(run: Simulated, theta: FloatArray, level: float, swing: float) -> FloatArray:
