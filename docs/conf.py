@@ -47,7 +47,8 @@ html_math_renderer = "mathml"
 # Tutorials are run when the pages are built, each in a folder of its own; what fails there fails the build.
 nb_execution_mode = "cache"
 nb_execution_in_temp = True
-nb_execution_timeout = 300
+# a machine that tests beside it takes minutes for a cell of seconds
+nb_execution_timeout = 1800
 nb_execution_raise_on_error = True
 nb_execution_show_tb = True
 nb_merge_streams = True
