@@ -43,6 +43,8 @@ BEGIN, END = (
 )
 RATES_HZ = {"torque": 100.0, "speed": 50.0, "set-point": 50.0}
 _ROUNDS = 4
+# Share of a leg with the engine at a limit by which a refusal is right.
+_AT_LIMITS = 0.005
 _PERCENT = 100.0
 
 
@@ -119,13 +121,15 @@ def report(outcomes: Sequence[Mapping[str, Any]]) -> str:
         f"{len(fitted)} may be used, and {_PERCENT * held.mean():.0f} % of {held.size} trusted intervals hold (rms z "
         f"{np.sqrt(np.mean(z**2)):.2f}, largest {np.abs(z).max():.1f})."
     )
-    if refused:
-        shares = [max(one.get("limited", {"": 0.0}).values()) for one in refused]
+    longest = {one["seed"]: max(one["limited"].values(), default=0.0) for one in refused if "limited" in one}
+    shares = [share for share in longest.values() if share > _AT_LIMITS]
+    if shares:
         text += (
-            f" {len(refused)} are refused: their governor, which no card tells, took the engine to a limit for "
+            f" {len(shares)} are refused: their governor, which no card tells, took the engine to a limit for "
             f"{_PERCENT * min(shares):.0f} to {_PERCENT * max(shares):.0f} % of a leg."
         )
-    return text
+    others = [one["refused"] for one in refused if longest.get(one["seed"], 0.0) <= _AT_LIMITS]
+    return text + "".join(f" Refused: {one}" for one in others)
 
 
 def main() -> None:

@@ -91,6 +91,11 @@ class Campaign(Shown, Settings):
         return tuple(one for one in self.of_input().excitations if isinstance(one, Leg))
 
     @property
+    def measured(self) -> tuple[str, ...]:
+        """Names of its sines and legs, whose lines are measured."""
+        return (*(sine.name for sine in self.sines), *(leg.name for leg in self.legs))
+
+    @property
     def levels_v(self) -> frozenset[float]:
         """Set points about which something that repeats itself is measured [V]: of the legs, and of the sines."""
         of_sines = {self.offset_v} if self.sines else set()

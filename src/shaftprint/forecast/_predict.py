@@ -59,8 +59,7 @@ class PredictedTest:
     @property
     def at_limits(self) -> tuple[str, ...]:
         """That the engine would be at a limit where something is measured, in words; empty where it would not."""
-        names = [*(sine.name for sine in self.campaign.sines), *(leg.name for leg in self.campaign.legs)]
-        return limit_warnings(self.limits or (), names)
+        return limit_warnings(self.limits or (), self.campaign.measured)
 
     @property
     def visible(self) -> tuple[VisibleChange, ...]:

@@ -52,7 +52,7 @@ def shipped_test(name: str, vessel: "Vessel", *, title: str) -> tuple[Campaign, 
                 f"Amplitudes are {100.0 * share:.0f} % of the usual ones: with those {hindered.excitation} would come "
                 f"to {_of_limit(hindered)}."
             )
-        hindered = reached if hindered is None else hindered
+        hindered = hindered or reached
     assert reached is not None  # noqa: S101 - the last share was hindered
     raise RequestError(
         f"{vessel.name}: expected limits within which the test {name} moves the ship about "
@@ -65,10 +65,9 @@ def shipped_test(name: str, vessel: "Vessel", *, title: str) -> tuple[Campaign, 
 def _reached(campaign: Campaign, vessel: "Vessel") -> LimitUse | None:
     """Return the limit of speed that an excitation leaves, or of torque that it comes near to; None where none."""
     motion = expected_motion(campaign, ShipBeforeTest(vessel=vessel), campaign.slope_rpm_per_v or 1.0)
-    tests = [*(one.name for one in campaign.sines), *(one.name for one in campaign.legs)]
-    uses = [use for use in limit_uses(motion, stated_limits(vessel)) if use.excitation in tests]
+    uses = [use for use in limit_uses(motion, stated_limits(vessel)) if use.excitation in campaign.measured]
     near = [use for use in uses if use.is_torque and use.left < _SPARE * abs(use.allowed)]
-    near += [use for use in uses if use.limit in ("highest speed", "lowest speed") and use.is_beyond]
+    near += [use for use in uses if use.is_speed and use.is_beyond]
     return min(near, key=lambda use: use.left / abs(use.allowed), default=None)
 
 

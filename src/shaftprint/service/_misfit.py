@@ -173,49 +173,47 @@ def misfit_of(
         for part in (slice(0, count), slice(count, count + lags), slice(count + lags, count + 2 * lags))
     )
     curvature, std = np.diag(inner), np.sqrt(np.diag(covariance))
-    sizes = total[:count] / curvature[:count]
+    trends = tuple(
+        Trend(
+            what=what,
+            along=along,
+            by=by,
+            least=least,
+            gain=float(total[k] ** 2 / curvature[k]),
+            size=float(total[k] / curvature[k]),
+            std=float(std[k] / curvature[k]),
+        )
+        for k, (what, along, by, least) in enumerate(_TRENDS)
+    )
     of_noise = np.linalg.inv(information[:free, :free] + prior)
     return Misfit(
         speed=speed,
         torque=torque,
         chance=min(2.0 * f_tail(max(speed, torque), float(lags), float(max(len(runs) - lags, 1))), 1.0),
         hanging=f_tail(hanging, float(count), float(max(len(runs) - count, 1))),
-        trends=tuple(
-            Trend(
-                what=what,
-                along=along,
-                by=by,
-                least=least,
-                gain=float(total[k] ** 2 / curvature[k]),
-                size=float(total[k] / curvature[k]),
-                std=float(std[k] / curvature[k]),
-            )
-            for k, (what, along, by, least) in enumerate(_TRENDS)
-        ),
+        trends=trends,
         gain=float(total[answers] @ np.linalg.solve(inner[answers, answers], total[answers])),
         pulled=tuple(_pulls(model, theta, of_noise)),
-        spread=_spread(sizes, std[:count] / curvature[:count], taken[:count], theta, float(levels.mean())),
+        spread=_spread(trends, taken[:count], theta, float(levels.mean())),
     )
 
 
-def _spread(sizes: FloatArray, stds: FloatArray, taken: FloatArray, theta: FloatArray, mean_level: float) -> FloatArray:
+def _spread(trends: Sequence[Trend], taken: FloatArray, theta: FloatArray, mean_level: float) -> FloatArray:
     """Return what a trend that is too small to be told may have done to the numbers, shape (free, free).
 
-    ``sizes``, ``stds``: of the trends, shape (trends,). ``taken``: what the free numbers take up of each, shape
-    (trends, free). ``mean_level``: logarithm of the mean speed of the segments over that of the working point, for
-    which the numbers are stated.
+    ``taken``: what the free numbers take up of each trend, shape (trends, free). ``mean_level``: logarithm of the mean
+    speed of the segments over that of the working point, for which the numbers are stated.
     """
-    likeliest = int(np.argmax(np.abs(sizes) / stds))
-    z = abs(sizes[likeliest]) / stds[likeliest]
-    if z < _MAY_BE:
+    place, trend = max(enumerate(trends), key=lambda numbered: numbered[1].z)
+    if trend.z < _MAY_BE:
         return np.zeros((theta.size, theta.size))
     own = np.zeros(theta.size)
-    if likeliest < len(_ALONG_SPEED):
-        places = [FREE.index(name) for name in _ALONG_SPEED[likeliest]]
-        own[places] = theta[places] if len(places) > 1 else 1.0
-    moved = sizes[likeliest] * (-taken[likeliest] - mean_level * own)
+    if place < len(_ALONG_SPEED):
+        moving = [FREE.index(name) for name in _ALONG_SPEED[place]]
+        own[moving] = theta[moving] if len(moving) > 1 else 1.0
+    moved = trend.size * (-taken[place] - mean_level * own)
     # chance makes trends too: what is left of the square of the size
-    return np.asarray((1.0 - z**-2.0) * np.outer(moved, moved))
+    return np.asarray((1.0 - trend.z**-2.0) * np.outer(moved, moved))
 
 
 def _trends(run: Simulated, theta: FloatArray, level: float, swing: float) -> FloatArray:

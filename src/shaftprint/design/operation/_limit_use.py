@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
 # A barred range may be crossed, but not for longer [s].
 CROSSING_S = 2.0
+_OF_SPEED = ("highest speed", "lowest speed")
 # What the engine gives; a gauge at full scale shows less than there is.
 _OF_ENGINE = ("full load", "full rack", "motoring torque", "zero fuel")
 # An engine at a limit for more than this share of an excitation bends its lines by more than their noise: 3 % of five
@@ -61,6 +62,11 @@ class LimitUse(Shown):
     def is_torque(self) -> bool:
         """Whether it limits what the engine gives: beyond it the engine does not follow its governor."""
         return self.limit in _OF_ENGINE
+
+    @property
+    def is_speed(self) -> bool:
+        """Whether it is the highest or the lowest speed."""
+        return self.limit in _OF_SPEED
 
     @property
     def is_reached(self) -> bool:

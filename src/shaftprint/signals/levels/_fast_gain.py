@@ -172,22 +172,22 @@ def _told(
 ) -> tuple[FloatArray, FloatArray]:
     """Return what each piece tells of the common terms and of its own gain, and its scatter, as in ``FastGains``."""
     left = values - parts @ _shares(terms)
-    variance, slopes = _variance(left, pieces, whole), _slopes_of_shares(terms)
+    variance, slopes, load = _variance(left, pieces, whole), _slopes_of_shares(terms), terms.size
     told = np.zeros((len(pieces), terms.size + 1, terms.size + 2))
     scatter = np.zeros((len(pieces), terms.size + 1, terms.size + 1))
     for row in np.flatnonzero(whole & (variance > 0.0)).tolist():
-        moved = motion[pieces[row]] @ slopes
-        sums = moved.T @ np.column_stack([parts[pieces[row]] @ slopes, left[pieces[row]], moved]) / variance[row]
-        sums, products = np.split(sums, [terms.size + 3], axis=1)
+        shown, moved, rest = parts[pieces[row]] @ slopes, motion[pieces[row]] @ slopes, left[pieces[row]]
+        sums, varies = moved.T @ shown / variance[row], moved.T @ moved / variance[row]
         # the load of the piece is its own: one that differs between two speeds would pass for lags of it
-        sums[-2, -3] += _LOAD_STD**-2.0
-        products[-2, -2] += _LOAD_STD**-2.0
-        without = np.delete(np.eye(terms.size + 2), -2, axis=0)
-        without[:, -2] = -np.delete(sums[:, -3], -2) / sums[-2, -3]
-        apart = np.delete(without @ sums, -3, axis=1)
+        sums[load, load] += _LOAD_STD**-2.0
+        varies[load, load] += _LOAD_STD**-2.0
+        without = np.delete(np.eye(slopes.shape[1]), load, axis=0)
+        without[:, load] = -np.delete(sums[:, load] / sums[load, load], load)
+        own = without @ np.delete(sums, load, axis=1)
         # where the motion is not what the set point makes, its weights say nothing
-        if apart[-1, -2] > 0.0 and sums[-1, -2] > 0.0:
-            told[row], scatter[row] = apart, without @ products @ without.T
+        if own[-1, -1] > 0.0 and sums[-1, -1] > 0.0:
+            told[row] = np.column_stack([own, without @ (moved.T @ rest) / variance[row]])
+            scatter[row] = without @ varies @ without.T
     return told, scatter
 
 
