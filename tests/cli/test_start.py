@@ -234,6 +234,8 @@ def test_all_that_is_missing_is_said_at_once_with_what_lies_there(run, here):
     logged(here, *BUS)
     run("new", "vessel", "my ship.toml")
     run("new", "campaign", "test.toml")
+    # a call that needs neither of them, in the same process, does not change what the next one needs
+    assert run("identify", "log.csv", "--drive", "none.toml", "-o", "out").exit_code
     said = run("identify")
     assert said.exit_code == 2
     words = " ".join(said.stderr.split())

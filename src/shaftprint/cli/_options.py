@@ -43,7 +43,8 @@ class NeededOfShips(click.Option):
     def process_value(self, ctx: click.Context, value: object) -> object:
         """Return the value; None where it is missing beside ``--drive``."""
         # of an option that was not given click holds a mark of its own here
-        self.required = not isinstance(ctx.params.get("drive_file"), Path)
+        if isinstance(ctx.params.get("drive_file"), Path) and self.value_is_missing(value):
+            return None
         return super().process_value(ctx, value)
 
 
