@@ -11,8 +11,6 @@ PIP := $(BIN)/python -m pip --disable-pip-version-check
 PYTHONS := python3.13 python3.12 python3.11 python3.14 python3 python
 PYTHON ?= $(shell for p in $(PYTHONS); do \
 	$$p -c 'import sys, venv, ensurepip; sys.exit(sys.version_info < (3, 11))' 2>/dev/null && echo $$p && break; done)
-# the rooms that calculate: 95 % of their branches together must be tested
-ROOMS := signals spectra models catalogue simulation identify
 
 .DEFAULT_GOAL := help
 .PHONY: help demo demo-fleet test test-slow test-all lint docs bench wheel offline program lock clean
@@ -26,19 +24,17 @@ demo: $(VENV)/run ## Sail the simulated tug and identify it; results in demo/
 demo-fleet: $(VENV)/web ## Eight sister ships over five years in a store; demo-fleet/
 	$(BIN)/shaftprint demo --fleet -o demo-fleet
 
-# Each core has a worker of its own. Tracing doubles the time, so only the quick tests of the calculating rooms are traced,
-# and all others run in one go: what a file prepares is then made once for its quick and its slow tests.
-QUICK := not slow and not long and not wrong_recordings
-TRACED := calculating and $(QUICK)
-PYTEST := $(BIN)/python -m pytest -n auto --dist loadfile --no-loadscope-reorder
+# Each core has a worker of its own.
+PYTEST := pytest -n auto --dist loadfile --no-loadscope-reorder
 test test-slow test-all docs: export OPENBLAS_NUM_THREADS ?= 1
 test: $(VENV)/test ## Run the tests that a change needs
-	$(PYTEST) -m "$(QUICK)"
+	$(BIN)/python -m $(PYTEST) -m "not slow and not long and not wrong_recordings"
 
 test-slow: $(VENV)/test ## Run them, the slow tests and one wrong recording in seven, with the coverage of the calculating rooms
-	$(PYTEST) -m "$(TRACED)" $(ROOMS:%=tests/%) $(ROOMS:%=--cov=shaftprint.%) --cov-report=
-	$(BIN)/python -m coverage report --skip-covered --fail-under 95
-	$(PYTEST) -m "not long and not ($(TRACED))"
+	@mkdir -p build
+	$(BIN)/python -m slipcover --json --out build/coverage.json -m $(PYTEST) -m "not long"
+	$(BIN)/python -m slipcover --merge build/coverage.json --out build/coverage.json --fail-under 95 >build/coverage.txt || { cat build/coverage.txt; exit 1; }
+	@tail -n 1 build/coverage.txt
 
 test-all: test-slow ## Run the long searches and Monte Carlos too, as before a release
 	$(BIN)/python -m pytest -n auto --dist worksteal -m long
@@ -74,7 +70,7 @@ lock: $(VENV)/bin/python ## Choose new versions for requirements/ (needs the net
 	PATH="$(CURDIR)/$(BIN):$$PATH" requirements/lock
 
 clean: ## Delete the environment and everything that was made
-	rm -rf $(VENV) dist build demo demo-fleet .coverage* .pytest_cache .mypy_cache .ruff_cache .hypothesis .import_linter_cache
+	rm -rf $(VENV) dist build demo demo-fleet .pytest_cache .mypy_cache .ruff_cache .hypothesis .import_linter_cache
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +
 
 $(VENV)/bin/python:

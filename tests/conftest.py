@@ -3,7 +3,6 @@
 import gc
 import importlib
 import os
-import re
 import shutil
 import subprocess
 import sys
@@ -31,16 +30,6 @@ QUIET = (
 LONGEST_WAIT_S = 1200.0
 ONE_LINE = 10_000
 MADE_BEFORE_A_SEARCH = 100_000
-HERE = Path(__file__).parent
-# the rooms of which the Makefile counts the branches that are tested stand there
-(ROOMS,) = re.findall(r"^ROOMS := (.+)$", (HERE.parent / "Makefile").read_text(encoding="utf-8"), re.MULTILINE)
-CALCULATING = set(ROOMS.split())
-# Of their files these calculate long along few branches, which other files go as well: tracing would only double that.
-UNTRACED = {
-    "models/test_check.py",
-    "models/test_closed_forms.py",
-    "signals/test_simulated_ship.py",
-}
 # independent tests of some seconds each, which any worker may take, and rooms whose files share what is dear to prepare
 ONE_BY_ONE = "tests/wrong_recordings/test_wrong_recordings.py"
 TOGETHER = {"tests/docs", "tests/report", "tests/validation"}
@@ -51,34 +40,14 @@ settings.register_profile("untimed", deadline=None, suppress_health_check=[Healt
 settings.load_profile("untimed")
 
 
-def pytest_configure(config: pytest.Config) -> None:
+def pytest_configure() -> None:
     """Search for garbage as seldom as the program does, and have numba compile with less of what it does twice.
 
-    Half of the time of the calculating rooms' tests is compiling: it is not traced where branches are counted, for none
-    of its own is and it takes twice as long traced; and a whole run asks once, not at every place, what an operator
-    makes of plain numbers.
+    A whole run asks once, not at every place, what an operator makes of plain numbers.
     """
     gc.set_threshold(MADE_BEFORE_A_SEARCH)
-    is_counted = config.pluginmanager.hasplugin("_cov")
-    if is_counted:
-        _compile_untraced()
-    if is_counted or "PYTEST_XDIST_WORKER" in os.environ:
+    if "PYTEST_XDIST_WORKER" in os.environ:
         _remember_types()
-
-
-def _compile_untraced() -> None:
-    dispatcher: Any = importlib.import_module("numba.core.dispatcher").Dispatcher
-    compiles = dispatcher._compile_for_args
-
-    def untraced(function: Any, *arguments: Any, **options: Any) -> Any:
-        tracer = sys.gettrace()
-        sys.settrace(None)
-        try:
-            return compiles(function, *arguments, **options)
-        finally:
-            sys.settrace(tracer)
-
-    dispatcher._compile_for_args = untraced
 
 
 def _remember_types() -> None:
@@ -107,16 +76,12 @@ def work_unit(nodeid: str) -> str:
 
 @pytest.hookimpl(wrapper=True, tryfirst=True)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> Iterator[None]:
-    """Mark what belongs to the calculating rooms, and put what has many slow tests first, small work last.
+    """Put what has many slow tests first, small work last.
 
     Workers take it in this order (``--no-loadscope-reorder``), so that none has long work left at the end. One of them
     begins with what asks for no demo, so as not to wait for the one that makes it.
     """
-    for item in items:
-        path = item.path.relative_to(HERE)
-        if path.parts[0] in CALCULATING and path.as_posix() not in UNTRACED:
-            item.add_marker("calculating")
-    # what is left now is run
+    # what is left then is run
     yield
     dear = Counter(work_unit(item.nodeid) for item in items if any(item.get_closest_marker(name) for name in DEAR))
     waits = {work_unit(item.nodeid) for item in items if "demo" in getattr(item, "fixturenames", ())}
@@ -194,8 +159,7 @@ def browser() -> Iterator[Any]:
 def demo(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Result]:
     """The folder and the output of one short demo, called as the pages call it.
 
-    It is the dearest thing that tests share: made once for all workers, and without counting coverage, which would
-    double its time. Each worker has its own copy.
+    It is the dearest thing that tests share: made once for all workers. Each worker has its own copy.
     """
     base = tmp_path_factory.getbasetemp()
     place = base / "voyage"
@@ -219,8 +183,7 @@ def demo(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Result]:
 def _sail(place: Path) -> None:
     """Run the short demo in a new folder, its output beside it."""
     place.mkdir()
-    environment = {name: value for name, value in os.environ.items() if not name.startswith("COV")}
-    environment["COLUMNS"] = str(ONE_LINE)
+    environment = os.environ | {"COLUMNS": str(ONE_LINE)}
     done = subprocess.run(
         [sys.executable, "-m", "shaftprint", "demo", "--short"], cwd=place, env=environment, capture_output=True
     )
