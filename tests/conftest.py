@@ -43,7 +43,8 @@ settings.load_profile("untimed")
 def pytest_configure() -> None:
     """Search for garbage as seldom as the program does, and have numba compile with less of what it does twice.
 
-    A whole run asks once, not at every place, what an operator makes of plain numbers.
+    A whole run asks once, not at every place, what an operator makes of plain numbers, and compares the options of two
+    functions by what was set.
     """
     gc.set_threshold(MADE_BEFORE_A_SEARCH)
     if "PYTEST_XDIST_WORKER" in os.environ:
@@ -65,6 +66,10 @@ def _remember_types() -> None:
         return remembered[arguments]
 
     function.get_call_type = resolved
+    options: Any = importlib.import_module("numba.core.targetconfig").TargetConfig
+    as_numba = options.__eq__
+    options.__hash__ = lambda one: hash(type(one))
+    options.__eq__ = lambda one, other: one._values == getattr(other, "_values", None) or as_numba(one, other)
 
 
 def work_unit(nodeid: str) -> str:
