@@ -30,7 +30,7 @@ test test-slow test-all docs: export OPENBLAS_NUM_THREADS ?= 1
 test: $(VENV)/test ## Run the tests that a change needs
 	$(BIN)/python -m $(PYTEST) -m "not slow and not long and not wrong_recordings"
 
-test-slow: $(VENV)/test ## Run them, the slow tests and one wrong recording in seven, with the coverage of the calculating rooms
+test-slow: $(VENV)/test ## Run them, the slow tests and one wrong recording in eight, with the coverage of the calculating rooms
 	@mkdir -p build
 	$(BIN)/python -m slipcover --json --out build/coverage.json -m $(PYTEST) -m "not long"
 	$(BIN)/python -m slipcover --merge build/coverage.json --out build/coverage.json --fail-under 95 >build/coverage.txt || { cat build/coverage.txt; exit 1; }

@@ -18,7 +18,10 @@ def recording(tmp_path_factory):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("asked", "structure"), [({}, "GAUGE-MOTOR"), ({"structure": "GAUGE-CLOSED"}, "GAUGE-CLOSED")])
+@pytest.mark.parametrize(
+    ("asked", "structure"),
+    [({}, "GAUGE-MOTOR"), pytest.param({"structure": "GAUGE-CLOSED"}, "GAUGE-CLOSED", marks=pytest.mark.long)],
+)
 def test_a_job_has_the_structure_of_its_line_where_none_was_named(asked, structure, recording):
     job = job_arguments(
         recording, "e-ferry-ellen", "5min", named="the test", tested_at="2026-03-31T09:30+02:00", **asked

@@ -8,12 +8,12 @@ from tests.wrong_recordings.legs import CASES_OF_LEGS
 from tests.wrong_recordings.trial import ONE_SPEED, TWO_SPEEDS, clean
 
 FAST = tuple(case for case in CASES if case.fast)
-# neighbours in the list are of one kind: of those that are not dear, one in three stands for them before a release
-OFTEN = frozenset(case.name for case in CASES[::3])
+# neighbours in the list are of one kind: of those that are not dear, one in four stands for them before a release
+OFTEN = frozenset(case.name for case in CASES[::4])
 
 
 def marked(case: Case) -> object:
-    """Return a case that is not of every test run: two speeds, other ships, two of three others are for a release."""
+    """Return a case that is not of every test run: two speeds, other ships, three of four others are for a release."""
     often = case.test == ONE_SPEED and not case.ship and case.name in OFTEN
     long = [] if often else [pytest.mark.long]
     return pytest.param(case, id=f"{case.test.file} {case.name}", marks=[pytest.mark.wrong_recordings, *long])

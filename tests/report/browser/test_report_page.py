@@ -322,7 +322,7 @@ def test_far_charts_wait_until_they_are_near(opened):
     assert opened.page.evaluate("document.querySelectorAll('[data-state=drawn]').length") < len(PLOTS)
 
 
-@pytest.mark.parametrize("scheme", ["light", "dark"])
+@pytest.mark.parametrize("scheme", [pytest.param("light", marks=pytest.mark.long), "dark"])
 def test_print_has_every_chart_in_light_colours_and_no_buttons(visit, report, tmp_path, scheme):
     """Charts that were never near the screen too: all of them are drawn before the page is printed."""
     with visit(report, color_scheme=scheme) as found:
