@@ -14,6 +14,7 @@ ReasonKind: TypeAlias = Literal[
     "legs apart",
     "elastic coupling",
     "gauge scale",
+    "gauge zero",
     "speed scale",
     "set-point shape",
     "set-point scale",

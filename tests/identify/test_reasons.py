@@ -100,6 +100,24 @@ def test_a_wrong_scale_of_the_gauge_reaches_what_is_made_of_newton_metres(role, 
     assert depends_on(number, "gauge scale") == in_doubt
 
 
+@pytest.mark.parametrize(
+    ("role", "unit", "in_doubt"),
+    [
+        (ShipRole.TORQUE, "N m", True),
+        (ShipRole.PROPORTIONAL_GAIN, "-", True),
+        (ShipRole.INERTIA_DOWNSTREAM, "s", True),
+        # in the units of the line changes of the torque tell them
+        (ShipRole.INERTIA_DOWNSTREAM, "kg m2", False),
+        (ShipRole.TORQUE, "-", False),
+        (ShipRole.LOAD_SLOPE, "-", False),
+        (ShipRole.TOTAL_DELAY, "s", False),
+    ],
+)
+def test_a_wrong_zero_of_the_gauge_reaches_the_level_of_the_torque_and_what_is_over_it(role, unit, in_doubt):
+    number = Estimate(name="any name", unit=unit, value=1.0, std=0.1, role=role)
+    assert depends_on(number, "gauge zero") == in_doubt
+
+
 def test_a_prior_that_is_pulled_is_named(gauge):
     """A latency that is known to be 12 +/- 2 ms, where the data show 0 to a fraction of that: six deviations."""
     fitted, _ = gauge

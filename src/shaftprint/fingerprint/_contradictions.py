@@ -8,12 +8,15 @@ ship changes, where the torque is not, is of a propeller of another size than th
 """
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from shaftprint.fingerprint._physical import GAUGE_ZERO, PERCENT
 from shaftprint.identify.fit._estimate import Estimate
 from shaftprint.reasons import Reason
 from shaftprint.signals._scale_reasons import FAR, propeller_reason, scale_reasons, what_fits
+from shaftprint.signals.levels._gauge_zero import zero_of_share, zero_reason
 from shaftprint.signals.levels._speed_scale import ScaleEvidence, load_over_expected
 
 if TYPE_CHECKING:
@@ -44,6 +47,19 @@ def contradictions(
     was made, what was tested, and what was asked of it.
     """
     named = {quantity.name: quantity for quantity in physical}
+    off = _by_a_factor(named, signals, vessel, campaign)
+    zero = named.get(GAUGE_ZERO)
+    if off or zero is None:
+        return off
+    torque_nm = signals.working_point.shaft_torque_nm
+    doubt = zero_reason(*zero_of_share(zero.value / PERCENT, zero.std / PERCENT, torque_nm), torque_nm, vessel)
+    return () if doubt is None else (doubt,)
+
+
+def _by_a_factor(
+    named: Mapping[str, Estimate], signals: "Signals", vessel: "Vessel", campaign: "Campaign"
+) -> tuple[Reason, ...]:
+    """Return which factor of speed, torque or propeller explains what is off."""
     coefficient, inertia = (_factor(named.get(name)) for name in ("K_Q", "I_dn"))
     off_by_one_factor = _scales(coefficient, inertia, signals, vessel, campaign)
     if off_by_one_factor:

@@ -1,5 +1,6 @@
 """The verb of the room: from an identification to the record that is kept."""
 
+import math
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -219,6 +220,9 @@ def _conditions(
 
 
 def _working_point(point: "WorkingPoint", vessel: "Vessel") -> tuple[Estimate, Estimate]:
+    """Return speed and torque of the working point; what the gauge shows is off by its scale and its zero as well."""
+    gauge = vessel.sensors.shaft_torque
+    of_gauge = (gauge.scale_std * point.shaft_torque_nm, gauge.zero_std * point.zero_share)
     return (
         Estimate(
             name="n_0",
@@ -232,7 +236,7 @@ def _working_point(point: "WorkingPoint", vessel: "Vessel") -> tuple[Estimate, E
             name="M_s0",
             unit="N m",
             value=point.shaft_torque_nm,
-            std=point.shaft_torque_std_nm,
+            std=math.hypot(point.shaft_torque_std_nm, *of_gauge),
             meaning=f"shaft torque of the working point{', which drives astern' * vessel.working_point.is_astern}",
             role=ShipRole.TORQUE,
         ),

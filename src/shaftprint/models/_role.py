@@ -11,10 +11,12 @@ from typing import Literal, TypeAlias
 
 from shaftprint.normalisation import Normalisation
 
-Basis: TypeAlias = Literal["torque", "inertia", "load", "governor", "delay", "latency", "speed", "set point", "size"]
-"""What a number is made of: torque in N m; inertia over torque; slope of the load; governor and engine, which are told
-apart with the upstream inertia; the sum of the delays; the latency of the gauge; the speed; the set-point line; the
-diameter of the propeller."""
+Basis: TypeAlias = Literal[
+    "torque", "level", "inertia", "load", "governor", "delay", "latency", "speed", "set point", "size"
+]
+"""What a number is made of: torque in N m; its level at the working point, which its changes do not tell; inertia over
+torque; slope of the load; governor and engine, which are told apart with the upstream inertia; the sum of the delays;
+the latency of the gauge; the speed; the set-point line; the diameter of the propeller."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

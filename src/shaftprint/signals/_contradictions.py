@@ -6,10 +6,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shaftprint.digits import in_nm
+from shaftprint.reasons import Reason
 from shaftprint.signals._inspect import ChannelReport, PulseReport
 from shaftprint.signals._scale_reasons import scale_reasons, torque_beside_file
 from shaftprint.signals._working_points import WorkingPoint
 from shaftprint.signals.kinds._compare import are_alike, engine_turns, swapped_pick_ups, what_would_agree
+from shaftprint.signals.levels._gauge_zero import zero_between, zero_reason
 from shaftprint.signals.levels._working_point import direction_words
 
 if TYPE_CHECKING:
@@ -127,11 +129,19 @@ def _of_scales(
         )
         points = (signals.working_point, *(leg.working_point for leg in signals.legs))
         beside = torque_beside_file(tuple(dict.fromkeys(points)), vessel)
+        reasons = reasons or _of_zero(points, vessel)
     else:
         point = _mean_point(reports, vessel)
         reasons = () if point is None else scale_reasons(point, vessel)
     # a speed that is miscounted makes another torque of the same
     return tuple(reason.sentence for reason in reasons) or ((beside,) if beside else ())
+
+
+def _of_zero(points: Sequence[WorkingPoint], vessel: "Vessel") -> tuple[Reason, ...]:
+    """Return what the torque of two speeds says of the zero of the gauge; a pitch that goes with them moves it too."""
+    found = None if vessel.pitch is not None else zero_between(points)
+    reason = None if found is None else zero_reason(*found, points[0].shaft_torque_nm, vessel)
+    return () if reason is None else (reason,)
 
 
 def _mean_point(reports: Sequence[ChannelReport], vessel: "Vessel") -> WorkingPoint | None:

@@ -40,6 +40,7 @@ AFFECTED: Mapping[ReasonKind, tuple[frozenset[Basis], str]] = {
     "gauge latency": (ALL - {"speed", "set point"}, "it depends on the latency of the torque gauge"),
     "prior": (ALL - {"speed", "set point"}, "it depends on a prior that the data contradict"),
     "record": (ALL, "it depends on how its records were taken"),
+    "gauge zero": (frozenset(("level",)), "it depends on the zero of the torque gauge"),
     "gear ratio": (frozenset(("torque", "governor")), "it depends on the gear ratio"),
     "propeller": (frozenset(("size",)), "it depends on the diameter of the propeller"),
     "too few data": (ALL, WHOLE),
@@ -67,10 +68,14 @@ def basis_of(number: Estimate) -> frozenset[Basis]:
         return ALL
     form = number.role.physical
     in_newton_metres = form is not None and number.unit == form.unit
-    # a torque without a unit is over rho n^2 D^5
-    is_coefficient = number.unit == "-" and "torque" in number.role.basis and not number.role.of_sensor
-    added: frozenset[Basis] = frozenset(("torque",) if in_newton_metres else ("size",) if is_coefficient else ())
-    return number.role.basis | added
+    if in_newton_metres:
+        return number.role.basis | {"torque"}
+    if number.role.over_torque:
+        return number.role.basis | {"level"}
+    if "torque" in number.role.basis and not number.role.of_sensor:
+        # a torque without a unit is over rho n^2 D^5, of what goes with the square of the speed
+        return number.role.basis | {"size" if number.unit == "-" else "level"}
+    return number.role.basis
 
 
 def depends_on(number: Estimate, kind: ReasonKind) -> bool:

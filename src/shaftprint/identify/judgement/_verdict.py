@@ -73,6 +73,7 @@ BEFORE_DRIFT: frozenset[ReasonKind] = frozenset(
         "gauge latency",
         "speed scale",
         "gauge scale",
+        "gauge zero",
     )
 )
 

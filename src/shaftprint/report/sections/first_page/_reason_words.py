@@ -47,6 +47,10 @@ _WORDS: "Mapping[ReasonKind, tuple[str, str]]" = {
         "Calibrate the torque gauge, or correct its scale or the propeller's diameter in the vessel file; then "
         "identify once more.",
     ),
+    "gauge zero": (
+        "The torque gauge does not show nothing where there is no torque.",
+        "Take its zero with the shaft standing free, correct it in the vessel file, then identify once more.",
+    ),
     "speed scale": (
         "The speed is off by one factor.",
         "Check how many pulses the pick-up gives in a turn, correct the vessel file, then identify once more.",
