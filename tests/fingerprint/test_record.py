@@ -167,8 +167,8 @@ def test_keeps_what_is_needed_to_judge_it_in_ten_years(fingerprint):
     assert (where.vessel, where.campaign) == ("Stan Tug 1205, port", "Test around -5 V")
     assert where.engine_speed.value == pytest.approx(1183.8)
     assert where.engine_speed.std == pytest.approx(0.6)
-        assert where.shaft_torque.value == 1725.0
-        # 8 N m of the load, 2 % of the gauge's scale, 25 N m of its zero
+    assert where.shaft_torque.value == 1725.0
+    # 8 N m of the load, 2 % of the gauge's scale, 25 N m of its zero
     assert where.shaft_torque.std == pytest.approx((8.0**2 + 34.5**2 + 25.0**2) ** 0.5)
     assert (where.set_point_v, where.speed_channel, where.mode) == (-5.05, "n_e", "shaftprint")
     assert fingerprint.structure == "GAUGE-CLOSED"
