@@ -17,7 +17,7 @@ SHIPS = {
 }
 
 
-@pytest.fixture(scope="module", params=SHIPS)
+@pytest.fixture(scope="module", params=["GAUGE-PITCH", pytest.param("GAUGE-COMBINATOR", marks=pytest.mark.long)])
 def structure(request):
     """The structure that is taken where none is named."""
     return request.param

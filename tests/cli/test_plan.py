@@ -4,6 +4,7 @@ import json
 
 import numpy as np
 import pytest
+from tests.planned import with_little_effort
 
 from shaftprint.campaign import load_campaign
 from shaftprint.design import read_plan
@@ -32,7 +33,9 @@ def planned(tmp_path_factory):
         "--structure", "GAUGE-CLOSED", "--free", "tau_up", "--free", "g",
         "--wish", "tau_dn=1%", "--wish", "t_d + t_sp=0.0005", "--name", 'a "test" <b>', "-o", str(folder),
     ]  # fmt: skip
-    return folder, CliRunner().invoke(shaftprint, words, catch_exceptions=False)
+    with pytest.MonkeyPatch.context() as patch:
+        with_little_effort(patch)
+        return folder, CliRunner().invoke(shaftprint, words, catch_exceptions=False)
 
 
 @pytest.mark.slow

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 from pages import as_run, berth
+from tests.planned import with_little_effort
 
 from shaftprint.catalogue import structure
 from shaftprint.cli import shaftprint
@@ -145,9 +146,4 @@ def write_last_years(folder, voyage):
 
 @pytest.fixture(autouse=True)
 def _plans_with_little_effort(monkeypatch):
-    """Look for a plan with a tenth of the usual effort: it meets what is wished, and need not be the best.
-
-    ``tests/design`` and ``benchmarks/planned_tests.py`` plan with all of it.
-    """
-    for name, little in {"steps": 60, "restarts": 1}.items():
-        monkeypatch.setitem(Effort.__init__.__kwdefaults__, name, little)
+    with_little_effort(monkeypatch)

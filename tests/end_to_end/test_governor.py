@@ -20,7 +20,7 @@ pytestmark = pytest.mark.slow
 
 # Deviations that are stated half as large as they are put a third of the numbers outside their intervals: with seven
 # ships three in a thousand runs miss that, by the count and the largest together.
-SHIPS = 7
+SHIPS = 4
 
 
 def drawn_ship(rng):
@@ -66,11 +66,11 @@ def ships(short_campaign, tmp_path_factory):
 
 
 def test_gains_and_latencies_are_inside_their_intervals(ships):
-    """Of 28 numbers one or two are outside of 95 % intervals, and more than three in five of a hundred runs."""
+    """Of 16 numbers one is outside of 95 % intervals, and more than two in four of a hundred runs."""
     z = np.array([[apart[name] for name in ("K_p", "K_i", "t_sp", "t_rack")] for _, apart in ships])
-    assert np.sum(np.abs(z) > NORMAL_95) <= 3
+    assert np.sum(np.abs(z) > NORMAL_95) <= 2
     assert np.abs(z).max() < 3.5
-    assert np.sum(np.abs(z[:, :2]) > NORMAL_95) <= 2
+    assert np.sum(np.abs(z[:, :2]) > NORMAL_95) <= 1
 
 
 def test_the_gains_are_known_to_a_per_cent_and_the_structure_explains_the_rack(ships):

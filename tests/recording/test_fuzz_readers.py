@@ -22,7 +22,7 @@ from shaftprint.recording.readers._all import READERS
 
 pytest.importorskip("resource", reason="needs limits of memory, which Windows does not have")
 
-INPUTS = int(os.environ.get("SHAFTPRINT_FUZZ", "10"))
+INPUTS = int(os.environ.get("SHAFTPRINT_FUZZ", "6"))
 # A busy machine with a slow disk may let a program wait for longer; a hang is one all the same.
 LONGEST_S = 5.0 if INPUTS >= 2000 else 30.0
 MOST_MEMORY_MB = 1000.0
