@@ -166,7 +166,8 @@ def _record(
                 f"in record {name} {signal.name} is an angle that begins again after {turn:g} {signal.unit}, and goes "
                 "on from turn to turn here."
             )
-        read[signal.name] = raw if whole is None else whole
+        counted = raw if whole is None else whole
+        read[signal.name] = -counted if signal.reversed else counted
     values = {key: one.factors[key] * read[key] for key in channels}
     record = record_from_arrays(
         name,

@@ -8,6 +8,7 @@ down with white noise, on which no wrong model has left its colour, and from the
 Where fewer than ``AGREE`` of them end there, more are drawn, up to ``MOST`` in all.
 """
 
+import copy
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
@@ -18,6 +19,7 @@ import numpy as np
 from shaftprint.arrays import FloatArray, IntArray
 from shaftprint.bench._equipped import EquippedDrive
 from shaftprint.bench._per_record import free_parameters, own_names, with_structures
+from shaftprint.bench._turned_outputs import expect_no_turned_output
 from shaftprint.catalogue._drives import DRIVES
 from shaftprint.identify.fit._identification import Cluster, Identification
 from shaftprint.identify.fit._identify import Optima, searched_optima
@@ -104,11 +106,14 @@ def search_drive(
 
     ``settings``: how to search, with the number of starts that are drawn at first. ``time``: how the records are
     compared with the structure. ``rng``: source of the start values. ``further``: free parameters to start from too,
-    such as the optimum of a structure that this one holds. Raises IdentificationError if there are too few data, or no
-    start reached a model that stays within bounds.
+    such as the optimum of a structure that this one holds. Raises IdentificationError if there are too few data, no
+    start reached a model that stays within bounds, or an output counts the other way round.
     """
     white = _White(one, records, settings, time, rng)
     ends = white.ends(settings.starts)
+    expect_no_turned_output(
+        one, records, white.left_by(ends), lambda turned: _left(one, turned, settings, time, copy.deepcopy(rng))
+    )
     ends = ends.beside(white.made(further))
     ends = ends.beside(white.made(white.frictionless(ends)))
     ends = ends.beside(white.made(white.mirrored(ends)))
@@ -119,6 +124,14 @@ def search_drive(
         ends, tried = ends.beside(white.made(list(white.drawn(MORE)))), tried + MORE
         searched = _coloured(one, records, settings, time, ends, rng)
     return searched
+
+
+def _left(
+    one: EquippedDrive, records: Sequence[Record], settings: Settings, time: TimeSettings, rng: np.random.Generator
+) -> float:
+    """Return the share of the outputs that the first starts leave unexplained."""
+    white = _White(one, records, settings, time, rng)
+    return white.left_by(white.ends(settings.starts))
 
 
 class _White:
@@ -168,6 +181,10 @@ class _White:
             cost=np.array([cluster.cost for cluster in fit.clusters]),
             starts=np.array([cluster.starts for cluster in fit.clusters]),
         )
+
+    def left_by(self, ends: _Ends) -> float:
+        """Return the share of the outputs that the best end leaves unexplained."""
+        return float(ends.cost.min() / sum(term.null_cost for term in self.terms))
 
     def frictionless(self, ends: _Ends) -> list[FloatArray]:
         """Return the optimum without friction, to be found with it from there; nothing where nothing rubs."""

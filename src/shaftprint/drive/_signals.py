@@ -23,6 +23,8 @@ class Signal(Settings):
     zero_std: PositiveNumber | None = None
     """Of an output: standard deviation of the sensor's zero, in the unit. If not given, a tenth of the level is the
     most of what has a zero at rest, and the zero of an angle, a way or a temperature is anywhere."""
+    reversed: bool = False
+    """Of an output: whether the channel counts the other way round than the structure does."""
     lowest: Number | None = None
     """Lowest value that a planned test may ask for or lead to, in the unit."""
     highest: Number | None = None
