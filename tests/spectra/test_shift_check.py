@@ -26,6 +26,17 @@ def test_a_late_pick_up_is_a_gauge_that_comes_too_early():
 
 
 @pytest.mark.parametrize(("name", "given"), LINES)
+def test_a_gauge_behind_a_slow_filter_is_told_from_a_late_one(name, given):
+    """A low-pass of first order: 1 / (1 + j f / 1 Hz)."""
+    response = exact_response(structure(name), given, 0.001)
+    size = np.ones((len(response.outputs), 1, response.omega_rad_s.size), dtype=complex)
+    size[response.outputs.index("M_s"), 0] = 1.0 / (1.0 + 1j * response.omega_rad_s / (2.0 * np.pi * 1.0))
+    (reason,) = shift_reasons(replace(response, response=response.response * size))
+    assert reason.kind == "gauge latency"
+    assert "as behind a low-pass of 1 Hz" in reason.sentence
+
+
+@pytest.mark.parametrize(("name", "given"), LINES)
 def test_a_line_as_it_is_has_no_shift(name, given):
     assert shift_reasons(exact_response(structure(name), given, 0.001)) == ()
 

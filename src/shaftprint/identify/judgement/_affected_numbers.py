@@ -32,12 +32,12 @@ AFFECTED: Mapping[ReasonKind, tuple[frozenset[Basis], str]] = {
         "it depends on a torque gauge and a load that stay the same during the test",
     ),
     "engine limit": (ALL, WHOLE),
+    "gauge latency": (ALL - {"speed", "set point"}, "it depends on the latency of the torque gauge"),
     "legs apart": (ALL, WHOLE),
     "elastic coupling": (ALL - {"speed"}, "it depends on a line that does not twist"),
     "gauge scale": (frozenset(("torque", "governor")), "it depends on the scale of the torque gauge"),
     "set-point shape": (ALL - {"speed"}, "it depends on a set point that was not recorded as it was"),
     "set-point scale": (ALL - {"speed"}, "it depends on the scale of the set point"),
-    "gauge latency": (ALL - {"speed", "set point"}, "it depends on the latency of the torque gauge"),
     "prior": (ALL - {"speed", "set point"}, "it depends on a prior that the data contradict"),
     "record": (ALL, "it depends on how its records were taken"),
     "gauge zero": (frozenset(("level",)), "it depends on the zero of the torque gauge"),
@@ -58,8 +58,10 @@ WEIGHT = {kind: weight for weight, kind in enumerate(AFFECTED)}
 
 
 def by_weight(reasons: Sequence[Reason]) -> tuple[Reason, ...]:
-    """Return reasons, the most important first, each once."""
-    return tuple(sorted(dict.fromkeys(reasons), key=lambda reason: WEIGHT[reason.kind]))
+    """Return reasons, the most important first, each once; of the latency that legs find the first stands for all."""
+    first = {one.where: one for one in reversed(reasons) if one.kind == "gauge latency"}
+    once = dict.fromkeys(one for one in reasons if one.kind != "gauge latency" or one is first[one.where])
+    return tuple(sorted(once, key=lambda reason: WEIGHT[reason.kind]))
 
 
 def basis_of(number: Estimate) -> frozenset[Basis]:
