@@ -11,6 +11,11 @@ from shaftprint.identify.judgement._phrases import probability
 from shaftprint.identify.judgement._search_words import rival_words
 from shaftprint.spelling import listed
 
+# What the delays of a loop are made of.
+_OF_DELAY = frozenset(("delay", "governor"))
+# A delay below it is none [s].
+_NOTHING_S = 1e-5
+
 
 def too_few_good_data(evidence: Evidence) -> str:
     """Return that lines are too few or too noisy for the parameters."""
@@ -82,6 +87,21 @@ def _stopped(fit: Identification) -> str:
         return ""
     bounds = "its bound" if len(names) == 1 else "their bounds"
     return f" {listed(names)} stopped at {bounds}: the data would go on."
+
+
+def late_set_point(evidence: Evidence) -> str:
+    """Return that the line seems to answer before the set point moves: its channel comes late."""
+    fit = evidence.identification
+    delays = [one for one in fit.parameters if one.role is not None and one.role.basis == _OF_DELAY]
+    if not delays or not all(one.at_bound and one.value < _NOTHING_S for one in delays):
+        return ""
+    if explained(fit, rejected=evidence.requirements.lowest_p_value):
+        return ""
+    return (
+        f"The set point comes late: {listed([one.name for one in delays])} stopped at nothing, for speed and torque "
+        "answer before the logged set point moves; look for what delays its channel, such as a filter, a gateway or "
+        "its clock."
+    )
 
 
 def better_when_unstable(evidence: Evidence) -> str:

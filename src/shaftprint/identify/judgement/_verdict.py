@@ -29,6 +29,7 @@ from shaftprint.identify.judgement._evidence import Evidence
 from shaftprint.identify.judgement._fit_reasons import (
     better_when_unstable,
     gap_where_it_matters,
+    late_set_point,
     not_explained,
     not_unique,
     too_few_good_data,
@@ -54,6 +55,7 @@ if TYPE_CHECKING:
 QUESTIONS: tuple[tuple[ReasonKind, Callable[[Evidence], str]], ...] = (
     ("too few data", too_few_good_data),
     ("gap", gap_where_it_matters),
+    ("set-point band", late_set_point),
     ("misfit", not_explained),
     ("contradicting data", contradicting_data),
     ("lines left out", not_predicted),
