@@ -17,7 +17,10 @@ from shaftprint.notebook._summary import Summary
 HOSTILE = "<script>alert(1)</script>\x1b[2J\nK_p & co"
 for found in pkgutil.iter_modules(sp.__path__):
     if found.name not in {"__main__", "cli"}:
-        importlib.import_module(f"shaftprint.{found.name}")
+        room = importlib.import_module(f"shaftprint.{found.name}")
+        # a door loads what stands behind it when it is asked for
+        for behind in getattr(room, "__all__", ()):
+            getattr(room, behind)
 
 
 def every_noun(noun=Shown):
