@@ -1,11 +1,15 @@
 """Pages that come from the code: one a room with tables of its names, one a name, and one for the commands."""
 
+import ast
 import importlib
 import inspect
 import pkgutil
 import re
+from functools import cache
+from itertools import pairwise
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 
 import click
 from page_shell import WIDTH
@@ -40,11 +44,29 @@ def public_names(module: ModuleType) -> tuple[str, ...]:
     return tuple(sorted(own))
 
 
-def first_sentence(value: object) -> str:
-    """Return the first paragraph of a docstring; nothing for a constant."""
-    if not (inspect.isclass(value) or inspect.isroutine(value) or inspect.ismodule(value)):
-        return ""
-    return " ".join((inspect.getdoc(value) or "").split("\n\n")[0].split())
+def first_sentence(module: ModuleType, name: str) -> str:
+    """Return the first paragraph of the docstring of a public name; that of a constant stands below it in its file."""
+    value = getattr(module, name)
+    described = inspect.isclass(value) or inspect.isroutine(value) or inspect.ismodule(value)
+    text = (inspect.getdoc(value) or "") if described else texts_of_constants(module)[name]
+    return " ".join(text.split("\n\n")[0].split())
+
+
+@cache
+def texts_of_constants(module: ModuleType) -> dict[str, str]:
+    """Return what stands below each name that a room or leaf module sets, and in its compiled functions."""
+    files = [Path(place) for place in getattr(module, "__path__", ())]
+    found: dict[str, str] = {}
+    for path in [inner for place in files for inner in sorted(place.rglob("*.py"))] or [Path(str(module.__file__))]:
+        body = ast.parse(path.read_text(encoding="utf-8")).body
+        for statement, below in pairwise([*body, ast.Pass()]):
+            if isinstance(statement, ast.FunctionDef):
+                found.setdefault(statement.name, ast.get_docstring(statement) or "")
+            for target in getattr(statement, "targets", [getattr(statement, "target", None)]):
+                match target, below:
+                    case ast.Name(name), ast.Expr(ast.Constant(str(text))):
+                        found[name] = inspect.cleandoc(text)
+    return found
 
 
 def directive(value: object) -> str:
@@ -54,7 +76,7 @@ def directive(value: object) -> str:
     return "autofunction" if inspect.isroutine(value) else "autodata"
 
 
-HEADINGS = {"autoclass": "Nouns", "autofunction": "Verbs", "autodata": "Values and types"}
+HEADINGS = {"autoclass": "Classes", "autofunction": "Functions", "autodata": "Constants and types"}
 """Headings of the tables of a room, in their order."""
 
 
@@ -85,7 +107,7 @@ def _door(room: str, full: str, names: tuple[str, ...], line: str, pages: dict[s
         # a heading for who looks, not for the contents: the tables are short
         parts.append(f".. rubric:: {heading}\n\n.. list-table::\n   :widths: 30 70\n   :class: summary\n\n")
         parts += [
-            f"   * - :py:obj:`{name} <{full}.{name}>`\n     - {first_sentence(getattr(module, name))}\n"
+            f"   * - :py:obj:`{name} <{full}.{name}>`\n     - {first_sentence(module, name)}\n"
             for name in chosen
         ]
         parts.append("\n")
@@ -166,10 +188,23 @@ def list_rooms(app: Sphinx, page: str, source: list[str]) -> None:
         source[0] = with_rooms(source[0])
 
 
+def break_at_dots(app: Sphinx, page: str, template: str, context: dict[str, Any], doctree: object) -> None:
+    """Let a browser break the full name of a module after its dots, in headings and in the contents of the page."""
+    if page.startswith(FOLDER) and "body" in context:
+        context["body"] = re.sub(r"<h[1-6]>.*?</h[1-6]>", lambda found: with_breaks(found[0]), context["body"], flags=re.S)
+        context["toc"] = with_breaks(context.get("toc", ""))
+
+
+def with_breaks(html: str) -> str:
+    """Return HTML whose dotted names may be broken after each dot; what stands in tags stays."""
+    return re.sub(r"(?<=\w\.)(?=\w)(?![^<]*>)", "<wbr>", html)
+
+
 def setup(app: Sphinx) -> dict[str, bool]:
     """Write the pages before any is read."""
     app.connect("builder-inited", write_pages)
     app.connect("autodoc-process-docstring", keep_dashes)
     app.connect("source-read", link_names)
     app.connect("source-read", list_rooms)
+    app.connect("html-page-context", break_at_dots)
     return {"parallel_read_safe": True, "parallel_write_safe": True}

@@ -102,9 +102,29 @@ def listed_rooms() -> tuple[str, ...]:
     return tuple(sorted((name for name in in_order() if name != "cli"), key=lambda name: name not in offered))
 
 
+TASKS = {
+    "The ship, the drive and the test": (
+        "vessel", "campaign", "drive", "card", "propeller", "torsion", "design", "forecast", "rehearsal", "tug", "live",
+    ),
+    "From a recording to measured responses": ("recording", "clocks", "signals", "spectra"),
+    "Models and what is fitted": (
+        "survey", "identify", "time_domain", "limits", "bench", "service", "models", "catalogue", "simulation",
+    ),
+    "Results": ("fingerprint", "validation", "report", "tables", "notebook", "export"),
+    "Years and fleets": ("drift", "store", "fleet", "web"),
+}  # fmt: skip
+"""Rooms by what a reader wants to do; those that are named in none of them serve the others."""
+FOR_THE_OTHERS = "What the others are built on"
+
+
 def with_rooms(page: str) -> str:
-    """Return the page of the reference with the table of the rooms, and with their pages in its contents."""
-    rows = [f"| [{room}](generated/{room}.rst) | {purpose(room)} |" for room in listed_rooms()]
-    text = page.replace("<!-- rooms -->", "\n".join(["| room | what it is for |", "|---|---|", *rows]))
+    """Return the page of the reference with tables of the rooms, by task, and with their pages in its contents."""
+    named = {room for rooms in TASKS.values() for room in rooms}
+    tasks = TASKS | {FOR_THE_OTHERS: tuple(room for room in listed_rooms() if room not in named)}
+    parts = []
+    for task, rooms in tasks.items():
+        rows = [f"| [{room}](generated/{room}.rst) | {purpose(room)} |" for room in rooms]
+        parts.append("\n".join([f"## {task}\n", "| module | what it is for |", "|---|---|", *rows]))
+    text = page.replace("<!-- rooms -->", "\n\n".join(parts))
     pages = "".join(f"generated/{room}\n" for room in listed_rooms())
     return text.replace("generated/commands\n", f"generated/commands\n{pages}")

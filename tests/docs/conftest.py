@@ -55,6 +55,9 @@ def harbour(demo, tmp_path_factory):
     for name in ("recording.nc", "tug.nc", "last_year.nc", "thesis.nc"):
         berth(voyage / "recording.nc", folder / name)
     berth(voyage / "vessel.toml", folder / "mine.toml")
+    lever = "[sensors.set_point]\ntable_rpm = [[-8.0, 1936.8], [-2.0, 430.8]]\n"
+    text = (voyage / "vessel.toml").read_text(encoding="utf-8").replace("[sensors.set_point]\n", lever)
+    (folder / "vessel.toml").write_text(text, encoding="utf-8")
     for name in ("test.toml", "campaign.toml", "last_year.toml"):
         berth(voyage / "campaign.toml", folder / name)
     berth(voyage, folder / "demo")

@@ -33,6 +33,9 @@ SHOWN = {
     "docs/several-loggers.md": "PTM_1, PTM_4 and M_s were logged",
 }
 
+# How a block begins that shows a dialogue: what is asked, and after the colon what is typed.
+DIALOGUE = "$ shaftprint start\nName of ship"
+
 
 def blocks(page):
     """Return kind and text of every fenced block of a page."""
@@ -43,6 +46,13 @@ def shown(page):
     """Return the block of a page that is no line for a shell."""
     (text,) = (text for kind, text in blocks(page) if kind in SHELL and text.startswith(SHOWN[page]))
     return text
+
+
+def dialogue(page):
+    """Return questions and answers of the dialogue that a page shows."""
+    (text,) = (text for kind, text in blocks(page) if kind in SHELL and text.startswith(DIALOGUE))
+    # the answer is after the last colon; none is what stands in brackets
+    return [tuple(part.strip() for part in line.rpartition(":")[::2]) for line in text.splitlines()[1:]]
 
 
 def python_of(page):
@@ -66,7 +76,7 @@ def _words(line):
 @cache
 def shell_lines(page):
     """Return what a page asks of a shell in its blocks, each line as program and arguments."""
-    texts = [text for kind, text in blocks(page) if kind in SHELL and not text.startswith(SHOWN.get(page, "\0"))]
+    texts = [text for kind, text in blocks(page) if kind in SHELL and not text.startswith((SHOWN.get(page, "\0"), DIALOGUE))]
     lines = "\n".join(texts).replace("\\\n", " ").splitlines()
     return [words for words in map(_words, lines) if words]
 
@@ -97,10 +107,12 @@ WAYS = {page: commands_of(page) for page in ("docs/tutorials/can-file.md",)}
 # A page's command is run as it stands but for this. The campaign of three hours takes too long: the short one is
 # sailed, which has no chirp C11. A word for any file or plan is the name of one that is there. The same identification
 # under the names of two years is run once. What `predict` and `simulate` are given stays, for they sail nothing.
-SUBSTITUTES = {"thesis": "short", "FILE": "recording.nc", "my_plan": "plan"}
+SUBSTITUTES = {"thesis": "short", "FILE": "recording.nc", "my_plan": "plan", "plan/campaign.toml": "test.toml"}
 LEFT_OUT = ["--record", "C11"]
 ONE_YEAR = {"2025.nc": "log.csv", "2026.nc": "log.csv", "result-2025": "result", "result-2026": "result"}
 SAIL_NOTHING = ("predict", "simulate")
+# the vessel file that `start` writes knows the lever, which only a plan asks for
+OF_START = {"vessel.toml": "mine.toml"}
 
 
 def as_run(words):
@@ -111,7 +123,7 @@ def as_run(words):
     if name == "demo":
         # its folder is demo/ anyhow
         return "demo --short"
-    known = SUBSTITUTES | (ONE_YEAR if name == "identify" else {})
+    known = SUBSTITUTES | (ONE_YEAR if name == "identify" else {}) | ({} if name == "plan" else OF_START)
     outputs = {place + 1 for place, word in enumerate(rest) if word == "-o" and name != "identify"}
     line = [word if place in outputs else known.get(word, word) for place, word in enumerate(rest)]
     for place in range(len(line) - 1):

@@ -12,11 +12,13 @@ from xml.etree import ElementTree as ET
 import numpy as np
 import pytest
 from benchmarks.result_tables import read_between_marks, read_rows, shown_table, whole_text, write_between_marks
-from pages import PAGES, ROOT, blocks, python_of, shown
+from click.testing import CliRunner
+from pages import PAGES, ROOT, blocks, dialogue, python_of, shown
 from tests.wrong_recordings import __main__ as wrong_recordings
 
 from shaftprint.bench import equipped
 from shaftprint.campaign import Campaign, CampaignOfBoth, load_campaign
+from shaftprint.cli import shaftprint
 from shaftprint.drive import Drive
 from shaftprint.export import exported_model, write_matlab
 from shaftprint.fingerprint import read_fingerprint
@@ -95,31 +97,36 @@ def test_toml_is_of_a_page_with_a_check_of_its_own():
         "docs/legs.md",
         "docs/pitch.md",
         "docs/serve.md",
-        "docs/tutorials/german-csv.md",
     }
     assert {page.values[0] for page in of("toml")} == known
 
 
-def test_the_sensors_of_the_page_on_a_german_csv_are_those_of_its_file(tmp_path):
+def test_the_dialogue_of_the_page_on_a_german_csv_is_that_of_its_file(tmp_path, monkeypatch):
     page = "docs/tutorials/german-csv.md"
-    ((_, text),) = (block for block in blocks(page) if block[0] == "toml")
-    settings = tomllib.loads(text)
     title, *rows = shown(page).splitlines()
-    # the rows of the page, then as many in their manner that a clock is seen
-    values = rows[-1].partition(";")[2]
-    rows += [f"20.11.2026 09:30:{place // 2000:02d},{place % 2000 * 5:04d};{values}" for place in range(3, 4000)]
-    (tmp_path / "logger.csv").write_text("\n".join([title, *rows]), encoding="cp1252")
-    with read_recording(tmp_path / "logger.csv") as recording:
-        sensors = settings["sensors"]
-        for sensor in (sensors["set_point"], *sensors["speed"], sensors["shaft_torque"]):
-            channel = recording.channel(sensor["channel"])
-            assert channel.unit == sensor["unit"]
-            assert channel.rate_hz == pytest.approx(settings["logger"]["sample_rate_hz"], rel=1e-6)
+    # the rows of the page, then as many in their manner that a clock and both pick-ups are seen
+    for place in range(3, 4000):
+        engine, shaft = ("4,2000" if (hz * place / 2000) % 1.0 < 0.1 else "0,3500" for hz in (20.0, 22.2))
+        clock = f"20.11.2026 09:30:{place // 2000:02d},{place % 2000 * 5:04d}"
+        rows.append(f"{clock};12,0000;{engine};{shaft};3,451250")
+    (tmp_path / "log.csv").write_text("\n".join([title, *rows]), encoding="cp1252")
+    monkeypatch.chdir(tmp_path)
+    typed = dialogue(page)
+    result = CliRunner().invoke(shaftprint, ["start"], input="".join(f"{answer}\n" for _, answer in typed))
+    assert result.exit_code == 0, result.output
+    # all answers are taken, each by its question
+    places = [result.output.index(f"{question}:") for question, _ in typed]
+    assert places == sorted(places)
+    sensors = load_vessel(tmp_path / "vessel.toml").sensors
+    assert [(one.channel, one.pulses_per_revolution) for one in sensors.speed] == [
+        ("Drehzahl Motor", 1),
+        ("Drehzahl Welle", 4),
+    ]
+    assert (sensors.shaft_torque.channel, sensors.shaft_torque.unit) == ("Drehmoment", "kN m")
+    assert sensors.set_point.asked_rpm(sensors.set_point.volts(12.0)) == pytest.approx((620 + 1810) / 2)
+    with read_recording(tmp_path / "log.csv") as recording:
         assert recording.channel("Drehmoment").values(0, 2).tolist() == [3.80625, 3.474687]
         assert recording.began.isoformat() == "2026-11-20T09:30:00"
-    # 4 and 20 mA are the voltages of the comment
-    volts = [sensors["set_point"]["v_per_unit"] * current + sensors["set_point"]["v_at_zero"] for current in (4, 20)]
-    assert volts == [-10.0, 0.0]
 
 
 def test_the_campaign_of_the_page_on_legs_is_one():

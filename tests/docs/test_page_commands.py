@@ -33,6 +33,7 @@ RUN_ELSEWHERE = {
     "--service",
     "my_ship.py:my_loop",
     "fan.toml",
+    "set-point=60rpm",
 }
 # What a command calls when it begins to calculate.
 BEGINS = {

@@ -39,8 +39,8 @@ from shaftprint.models._structure import Structure
 from shaftprint.models.equations._flow import Flow
 from shaftprint.models.equations._formula import Formula, maximum
 
-# Speed and torque are given early by this time [s]: the largest latency of the set point.
 AHEAD_S = T_SP.upper
+"""How early ``limited_governor`` is given speed and torque, in s: the largest latency of the set point."""
 OBSERVER_PER_S = 0.1
 # Below this speed, over that of the working point, the load counts as that of this speed.
 LEAST_SPEED = 0.1

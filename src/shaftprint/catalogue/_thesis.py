@@ -215,6 +215,7 @@ STRUCTURES: Mapping[str, Callable[[], Structure]] = {
     "FREE-LOG": free_log,
     "FREE-PITCH": free_pitch,
 }
+"""Functions that make the shipped structures, by the name that ``identify --structure`` takes."""
 
 
 def structure(name: str) -> Structure:

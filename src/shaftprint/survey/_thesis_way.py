@@ -19,6 +19,7 @@ from shaftprint.survey._thesis_mode import SET_POINT_OFF, ThesisMode
 from shaftprint.survey._trial import Trial
 
 GAUGE = "GAUGE-CLOSED"
+"""Structure of a governed line at the quay, beside those of the thesis."""
 OF_THE_THESIS = ("OL1", "OL2", "OL3", "OL4", "OL5", "BENCHMARK", "CL1", "CL3", "CL4")
 GOVERNORS = ("OL2", "OL3", "OL4", "OL5")
 WITH_PICK_UP = "GAUGE-CORE"
