@@ -6,6 +6,8 @@ from re import match, search
 import numpy as np
 import pytest
 
+from tests.known_fits import known_signals, known_working_point
+
 from shaftprint.catalogue import ShipRole
 from shaftprint.fingerprint import physical_quantities
 from shaftprint.fingerprint._findings import findings_of
@@ -58,6 +60,31 @@ def test_sharp_fit_of_a_good_line_says_only_that_it_is_stable(sharp):
 def test_gain_margin_in_words(gauge_fit, put_by_hand, gain, words):
     stable = one(found(put_by_hand(gauge_fit, values={"K_p": gain})), "The governed line is stable")
     assert stable.endswith(f"rad/s is {words}.")
+
+
+def test_a_margin_that_is_not_known_is_not_called_small_beside_a_verdict_that_says_so(fit, take, truth):
+    """With two in a hundred of noise the gain margin may be small or not; a sharp test knows."""
+    settings = Settings(starts=20, priors={"g": Prior(0.0, 0.1)})
+    for share, known in ((0.02, False), (0.001, True)):
+        fingerprint = take(fit("GAUGE-CLOSED", truth, share=share, settings=settings))
+        assert ("gain margin" not in fingerprint.verdict.not_trusted) is known
+        stable = one(fingerprint.findings, "The governed line is stable; its gain margin of 1.6")
+        assert stable.endswith("is small." if known else "is not known well enough to call it small or ample.")
+        assert any("is small is not known" in text for text in fingerprint.verdict.cautions) is not known
+
+
+def test_a_sentence_has_the_interval_of_the_table(fit, take, truth):
+    """A load that wanders by a fifth widens what the noise alone would leave, in both."""
+    wandering = known_signals(replace(known_working_point(), load_std=0.2, shaft_torque_std_nm=345.0))
+    settings = Settings(starts=20, priors={"g": Prior(0.0, 0.1)})
+    fingerprint = take(fit("GAUGE-CLOSED", truth, share=0.03, settings=settings), signals=wandering)
+    told = [search(r"^(\S+) = \S+ \(95 % interval (-?[\d.]+) to (-?[\d.]+)", text) for text in fingerprint.findings]
+    compared = {found[1]: found.groups()[1:] for found in told if found}
+    assert {"tau_up", "t_d"} <= set(compared)
+    for name, ends in compared.items():
+        (number,) = (one for one in fingerprint.parameters if one.name == name)
+        last = 10.0 ** -max(len(end.partition(".")[2]) for end in ends)
+        assert [float(end) for end in ends] == pytest.approx(number.interval_95, abs=0.51 * last), name
 
 
 def test_unstable_line(gauge_fit, put_by_hand):

@@ -1,9 +1,12 @@
 """Which numbers rest on what was taken as known."""
 
+import re
+
 import numpy as np
+from tests.known_fits import TRUTH, noisy_response
 
 from shaftprint.catalogue import structure
-from shaftprint.fingerprint._assumptions import resting_on
+from shaftprint.fingerprint._assumptions import assumptions_of, resting_on
 from shaftprint.identify import Prior, Settings, identify, profile_intervals
 from shaftprint.spectra import FrequencyResponse
 
@@ -33,3 +36,48 @@ def test_gains_rest_on_the_inertia_upstream_and_ratios_of_one_recording_do_not()
     assert resting_on(fit, (), intervals, name="tau_up", at=(1.0,)) == ()
     # beyond the bounds of the search is at them: as far as 0
     assert "K_p" in resting_on(fit, (), intervals, name="tau_up", at=(-1.0,))
+
+
+def said_of(vessel, *, tau_up_std, share):
+    """Return what is said to rest on inertia and slope of a fit, its intervals, and a way to fit it with one held."""
+    settings = Settings(starts=12, priors={"tau_up": Prior(1.016, tau_up_std), "g": Prior(0.0, 0.1)})
+    measured = noisy_response(GAUGE, TRUTH, share=share, seed=3)
+    fit = identify(GAUGE, measured, rng=np.random.default_rng(1), settings=settings)
+    intervals = profile_intervals(fit)
+
+    def again(name, value):
+        priors = {other: prior for other, prior in settings.priors.items() if other != name}
+        held = identify(
+            GAUGE.held_at(**{name: value}),
+            measured,
+            rng=np.random.default_rng(1),
+            settings=Settings(starts=12, priors=priors),
+        )
+        numbers = {one.name: one.value for one in (*held.parameters, *held.combinations)}
+        return {
+            number
+            for number, found in numbers.items()
+            if number in intervals and not intervals[number].lower <= found <= intervals[number].upper
+        }
+
+    return [text for text in assumptions_of(fit, vessel, (), intervals) if "leave" in text], again
+
+
+def test_what_is_said_to_leave_its_interval_leaves_it_when_it_is_fitted_again(vessel):
+    """The drawing knows the inertia better than the test: gains follow it."""
+    (of_inertia, of_slope), again = said_of(vessel, tau_up_std=0.03, share=0.001)
+    left = again("tau_up", 0.8 * 1.016) | again("tau_up", 1.2 * 1.016)
+    assert {"K_p", "K_i"} <= left
+    told, _, ground = of_inertia.partition(" rest on the inertia upstream of the gauge, 54")
+    assert ground.endswith("with one 20 % smaller or larger they would leave their intervals.")
+    assert set(re.split(", | and ", told)) == left
+    assert "with g = -0.5 as of some engines" in of_slope
+
+
+def test_an_inertia_that_moves_nothing_is_not_said_to_move_anything(vessel):
+    """The test knows the inertia as well as the drawing: with another one the gains stay in their intervals."""
+    (of_slope,), again = said_of(vessel, tau_up_std=0.5, share=0.01)
+    assert not {"K_p", "K_i"} & (again("tau_up", 0.8 * 1.016) | again("tau_up", 1.2 * 1.016))
+    assert "inertia" not in of_slope
+    assert "K_p" in again("g", -0.5)
+    assert of_slope.startswith("K_p")

@@ -84,27 +84,29 @@ def _of_engine_side(
     priors = identification.settings.priors
     if inertia not in intervals:
         return
-    elsewhere = {inertia: [share * priors[inertia].mean for share in OTHER_INERTIAS]}
-    said = f"an inertia {PERCENT * (OTHER_INERTIAS[1] - 1.0):.0f} % smaller or larger"
-    if slope is not None and slope in priors and slope in intervals:
-        elsewhere[slope] = [STEEPEST_ENGINE]
-        said += f", or g = {STEEPEST_ENGINE:g} as of some engines"
-    resting = dict.fromkeys(
-        number
-        for name, at in elsewhere.items()
-        for number in resting_on(identification, margins, intervals, name=name, at=at)
+    rest = resting_on(
+        identification, margins, intervals, name=inertia, at=[share * priors[inertia].mean for share in OTHER_INERTIAS]
     )
-    if resting:
-        yield (
-            f"{listed(list(resting))} {'rests' if len(resting) == 1 else 'rest'} on the inertia upstream of the gauge, "
-            f"{stated(vessel.inertia_upstream_kg_m2, vessel.inertia_upstream_std_kg_m2, 'kg m2')}, and on "
-            + (
-                "an engine torque that hardly changes with speed (g)"
-                if vessel.motor is None
-                else "a motor torque that does not change with speed"
-            )
-            + f": with {said} they would leave their intervals."
-        )
+    if rest:
+        known = stated(vessel.inertia_upstream_kg_m2, vessel.inertia_upstream_std_kg_m2, "kg m2")
+        also = "" if vessel.motor is None else ", and on a motor torque that does not change with speed"
+        other = f"one {PERCENT * (OTHER_INERTIAS[1] - 1.0):.0f} % smaller or larger"
+        yield _resting(rest, f"the inertia upstream of the gauge, {known}{also}", other)
+    if slope is None or slope not in priors or slope not in intervals:
+        return
+    rest = resting_on(identification, margins, intervals, name=slope, at=[STEEPEST_ENGINE])
+    if rest:
+        other = f"{slope} = {STEEPEST_ENGINE:g} as of some engines"
+        yield _resting(rest, f"an engine torque that hardly changes with speed ({slope})", other)
+
+
+def _resting(numbers: Sequence[str], ground: str, other: str) -> str:
+    """Return that numbers rest on what is taken as known, and what would move them out of their intervals."""
+    alone = len(numbers) == 1
+    return (
+        f"{listed(list(numbers))} {'rests' if alone else 'rest'} on {ground}: with {other} "
+        f"{'it would leave its interval' if alone else 'they would leave their intervals'}."
+    )
 
 
 def _widths(identification: "Identification") -> str:

@@ -1,6 +1,7 @@
 """What a reader of a fingerprint must know, in words."""
 
-from collections.abc import Sequence
+from collections.abc import Collection, Mapping, Sequence
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -38,7 +39,9 @@ MOST_NAMED = 4
 # What the test itself measures: sources whose names begin so.
 MEASURED = ("noise of ", "working-point ", LOAD_WANDER)
 PERCENT = 100.0
+_NONE: Mapping[str, Estimate] = MappingProxyType({})
 AMPLE, SMALL = 2.0, 1.3
+GAIN_MARGIN = "gain margin"
 WHY = {
     "I": " A torque gauge shows only the inertia downstream of it: compare with that, or fit a gauge-aware structure.",
     "K_Q": " The propeller, its inflow or the torque gauge has changed.",
@@ -52,21 +55,24 @@ def findings_of(
     left_out: dict[str, str],
     profile: Profile | None = None,
     *,
+    numbers: Mapping[str, Estimate] = _NONE,
+    not_trusted: Collection[str] = (),
     vessel: "Vessel | None" = None,
     reasons: Sequence[Reason] = (),
 ) -> tuple[str, ...]:
     """Return the findings of one identification, most important first.
 
-    What is poorly determined is decided by the rule of the verdict, with the same profile likelihood. With a vessel
+    What is poorly determined is decided by the rule of the verdict, with the same profile likelihood; it is written as
+    ``numbers`` have it, those of the fingerprint by name. ``not_trusted``: names of the verdict. With a vessel
     whose file states the torque coefficient of both directions, one that is that of the other is said to be. What
     reasons explain by a scale of the files is no fault of the ship.
     """
     return (
-        *_stability(identification),
+        *_stability(identification, not_trusted),
         *_misfit(identification),
         *_bounds(identification),
         *_search(identification),
-        *_poorly_determined(identification, profile),
+        *_poorly_determined(identification, profile, numbers),
         *_resting_on_priors(identification, uncertainty),
         *_gauge_zero(physical),
         *_against_expected(physical, vessel, by_scale=bool(reasons)),
@@ -74,7 +80,7 @@ def findings_of(
     )
 
 
-def _stability(identification: Identification) -> list[str]:
+def _stability(identification: Identification, not_trusted: Collection[str]) -> list[str]:
     margin = identification.margins
     if margin is None:
         return []
@@ -84,9 +90,10 @@ def _stability(identification: Identification) -> list[str]:
         return ["The governed line is stable, and no gain of the governor makes it hunt."]
     reserve = max(margin.gain_margin, 1.0 / margin.gain_margin)
     words = "ample" if reserve >= AMPLE else "small" if reserve >= SMALL else "very small"
+    known = f"is {words}" if GAIN_MARGIN not in not_trusted else "is not known well enough to call it small or ample"
     return [
         f"The governed line is stable; its gain margin of {margin.gain_margin:.2f} at "
-        f"{margin.gain_margin_rad_s:.1f} rad/s is {words}."
+        f"{margin.gain_margin_rad_s:.1f} rad/s {known}."
     ]
 
 
@@ -117,16 +124,18 @@ def _search(identification: Identification) -> list[str]:
     return [f"Only {reached} of {starts} starts reached the optimum: use more starts."]
 
 
-def _poorly_determined(identification: Identification, profile: Profile | None) -> list[str]:
+def _poorly_determined(
+    identification: Identification, profile: Profile | None, numbers: Mapping[str, Estimate]
+) -> list[str]:
     """Return the parameters that the verdict does not trust, with the combinations that are determined better."""
     doubts = doubts_of(identification, identification.parameters, profile)
     findings = []
     for estimate in identification.parameters:
         if estimate.name not in doubts or estimate.name in identification.settings.priors or estimate.at_bound:
             continue
-        text = f"{estimate.name} = {_written(estimate, profile)} is poorly determined by this test"
+        text = f"{estimate.name} = {_written(numbers.get(estimate.name, estimate))} is poorly determined by this test"
         better = [c for c in identification.combinations if _is_better(c, estimate, identification)]
-        precise = ", ".join(f"{c.name} = {_written(c, profile)}" for c in better)
+        precise = ", ".join(f"{c.name} = {_written(numbers.get(c.name, c))}" for c in better)
         findings.append(text + (f"; better determined: {precise}." if better else "."))
     return findings
 
@@ -226,13 +235,12 @@ def _other_direction(quantity: Estimate, vessel: "Vessel | None") -> str:
     return f" Of a shaft that turns {way} it states {other:.4g}: check direction of its working point."
 
 
-def _written(estimate: Estimate, profile: Profile | None) -> str:
-    """Return a number with its profile interval, or with its standard deviation where there is none."""
-    ends = None if profile is None else profile.intervals.get(estimate.name)
-    if ends is None:
-        return stated(estimate.value, estimate.std, estimate.unit)
-    std = 0.5 * (ends.upper - ends.lower) / NORMAL_95
-    return stated_interval(estimate.value, ends.lower, ends.upper, std, estimate.unit)
+def _written(number: Estimate) -> str:
+    """Return a number with its 95 % interval, or with its standard deviation where there is none."""
+    if number.interval_95 is None:
+        return stated(number.value, number.std, number.unit)
+    lower, upper = number.interval_95
+    return stated_interval(number.value, lower, upper, 0.5 * (upper - lower) / NORMAL_95, number.unit)
 
 
 def _unit(number: Estimate) -> str:

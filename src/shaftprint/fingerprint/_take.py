@@ -120,13 +120,16 @@ def take_fingerprint(
     left_out = _left_out(identification)
     profiled = profile(identification, margins) if identification.is_likelihood else None
     reported = _Reported(stated, {} if profiled is None else profiled.intervals)
+    parameters = tuple(reported.quantity(e) for e in identification.parameters)
+    combinations = tuple(reported.quantity(e) for e in identification.combinations)
     stated_conditions = conditions_stated(vessel, campaign.name, campaign.place, trial_conditions, tested_at)
     conditions = _conditions(identification, signals, vessel, left_out, stated_conditions)
     margin = margin_quantities(identification, profiled, stated)
     off = contradictions(physical, signals, vessel, campaign)
+    judged = with_speed_age(profiled, stated)
     verdict = assess(
         identification,
-        profile=with_speed_age(profiled, stated),
+        profile=judged,
         signal_to_noise=signal_to_noise,
         reasons=(*off, *reasons),
         further=[*physical, *margin, conditions.engine_speed, conditions.shaft_torque],
@@ -145,11 +148,11 @@ def take_fingerprint(
         noise=tuple(noise),
         torque_ripple=torque_ripple,
         structure=identification.structure.name,
-        parameters=tuple(reported.quantity(e) for e in identification.parameters),
+        parameters=parameters,
         held={p.name: p.value for p in identification.structure.parameters if p.held},
         priors=dict(identification.settings.priors),
         covariance=_rows(widened_covariance(identification.covariance, identification, shifts)),
-        combinations=tuple(reported.quantity(e) for e in identification.combinations),
+        combinations=combinations,
         physical=physical,
         margins=margin,
         joint=joint_numbers(identification, signals.working_point, vessel, shifts),
@@ -158,7 +161,17 @@ def take_fingerprint(
         calibration=calibration_quantities(signals, machine=vessel.machine.word),
         quality=_quality(identification, signals, signal_to_noise),
         verdict=verdict,
-        findings=findings_of(identification, physical, stated, left_out, profiled, vessel=vessel, reasons=off),
+        findings=findings_of(
+            identification,
+            physical,
+            stated,
+            left_out,
+            judged,
+            numbers={one.name: one for one in (*parameters, *combinations)},
+            not_trusted=verdict.not_trusted,
+            vessel=vessel,
+            reasons=off,
+        ),
     )
 
 
