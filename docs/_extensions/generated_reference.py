@@ -107,8 +107,7 @@ def _door(room: str, full: str, names: tuple[str, ...], line: str, pages: dict[s
         # a heading for who looks, not for the contents: the tables are short
         parts.append(f".. rubric:: {heading}\n\n.. list-table::\n   :widths: 30 70\n   :class: summary\n\n")
         parts += [
-            f"   * - :py:obj:`{name} <{full}.{name}>`\n     - {first_sentence(module, name)}\n"
-            for name in chosen
+            f"   * - :py:obj:`{name} <{full}.{name}>`\n     - {first_sentence(module, name)}\n" for name in chosen
         ]
         parts.append("\n")
     paths = []
@@ -191,7 +190,9 @@ def list_rooms(app: Sphinx, page: str, source: list[str]) -> None:
 def break_at_dots(app: Sphinx, page: str, template: str, context: dict[str, Any], doctree: object) -> None:
     """Let a browser break the full name of a module after its dots, in headings and in the contents of the page."""
     if page.startswith(FOLDER) and "body" in context:
-        context["body"] = re.sub(r"<h[1-6]>.*?</h[1-6]>", lambda found: with_breaks(found[0]), context["body"], flags=re.S)
+        context["body"] = re.sub(
+            r"<h[1-6]>.*?</h[1-6]>", lambda found: with_breaks(found[0]), context["body"], flags=re.S
+        )
         context["toc"] = with_breaks(context.get("toc", ""))
 
 

@@ -38,6 +38,12 @@ OTHER_SHIP = "whether the vessel file is of this ship"
 """What to check where numbers are as far off as only another ship's file makes them."""
 
 
+class Note(str):
+    """A sentence among findings that says how something was read or found; nothing has to be mended for it."""
+
+    __slots__ = ()
+
+
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Reason:
     """Why some numbers may not be trusted."""

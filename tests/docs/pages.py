@@ -76,7 +76,9 @@ def _words(line):
 @cache
 def shell_lines(page):
     """Return what a page asks of a shell in its blocks, each line as program and arguments."""
-    texts = [text for kind, text in blocks(page) if kind in SHELL and not text.startswith((SHOWN.get(page, "\0"), DIALOGUE))]
+    texts = [
+        text for kind, text in blocks(page) if kind in SHELL and not text.startswith((SHOWN.get(page, "\0"), DIALOGUE))
+    ]
     lines = "\n".join(texts).replace("\\\n", " ").splitlines()
     return [words for words in map(_words, lines) if words]
 

@@ -5,13 +5,14 @@ from re import match, search
 
 import numpy as np
 import pytest
-
 from tests.known_fits import known_signals, known_working_point
 
 from shaftprint.catalogue import ShipRole
 from shaftprint.fingerprint import physical_quantities
 from shaftprint.fingerprint._findings import findings_of
 from shaftprint.identify import Budget, BudgetRow, Estimate, Prior, Settings, Unweighted, budget
+from shaftprint.reasons import Note
+from shaftprint.report.sections.first_page._cover_of import cover_of
 from shaftprint.vessel import load_vessel
 
 NO_BUDGET = Budget(sources=(), rows=())
@@ -85,6 +86,18 @@ def test_a_sentence_has_the_interval_of_the_table(fit, take, truth):
         (number,) = (one for one in fingerprint.parameters if one.name == name)
         last = 10.0 ** -max(len(end.partition(".")[2]) for end in ends)
         assert [float(end) for end in ends] == pytest.approx(number.interval_95, abs=0.51 * last), name
+
+
+def test_how_a_file_was_read_is_told_and_is_no_remark_on_the_signals(gauge_fit, take):
+    read, cut = Note("The text is no UTF-8 and was read as cp1252 (--encoding)."), "channel M_s: 3 samples are cut off"
+    fingerprint = take(gauge_fit, signals=replace(known_signals(known_working_point()), findings=(read, cut)))
+    assert fingerprint.quality.remarks == (cut,)
+    assert read in fingerprint.findings
+    (card,) = (card for card in cover_of(fingerprint).cards if card.question == "Were the measurements good?")
+    assert "There is one remark on the signals." in card.sentence
+    fine = take(gauge_fit, signals=replace(known_signals(known_working_point()), findings=(read,)))
+    (card,) = (card for card in cover_of(fine).cards if card.question == "Were the measurements good?")
+    assert (card.state, "remark" in card.sentence) == ("fine", False)
 
 
 def test_unstable_line(gauge_fit, put_by_hand):

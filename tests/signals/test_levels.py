@@ -7,6 +7,7 @@ import pytest
 
 from shaftprint.campaign import Campaign, setpoint
 from shaftprint.errors import SignalError
+from shaftprint.reasons import Note
 from shaftprint.signals import calibrate
 from shaftprint.signals.excitation._match import expect_campaign
 from shaftprint.signals.excitation._steps import find_step_delays
@@ -217,6 +218,8 @@ def test_noise_that_crosses_the_middle_of_a_step_hides_its_delay(steps, deviatio
     else:
         assert [delay.delay_s for delay in delays] == [None, None]
         assert findings[0].startswith("St: noise of the speed hides the delay of 2 of its steps")
+        # a plan adds steps to validate with, whether their delays are seen or not
+        assert isinstance(findings[0], Note)
 
 
 @pytest.mark.parametrize("start_s", [139.9, 160.0, 399.0])

@@ -40,7 +40,7 @@ from shaftprint.identify.judgement._verdict import assess
 from shaftprint.identify.uncertainty._budget import Budget, budget
 from shaftprint.identify.uncertainty._profile import Interval, profile
 from shaftprint.models._combination import Combination
-from shaftprint.reasons import Reason
+from shaftprint.reasons import Note, Reason
 from shaftprint.units import SECONDS_PER_MINUTE
 
 if TYPE_CHECKING:
@@ -161,16 +161,19 @@ def take_fingerprint(
         calibration=calibration_quantities(signals, machine=vessel.machine.word),
         quality=_quality(identification, signals, signal_to_noise),
         verdict=verdict,
-        findings=findings_of(
-            identification,
-            physical,
-            stated,
-            left_out,
-            judged,
-            numbers={one.name: one for one in (*parameters, *combinations)},
-            not_trusted=verdict.not_trusted,
-            vessel=vessel,
-            reasons=off,
+        findings=(
+            *findings_of(
+                identification,
+                physical,
+                stated,
+                left_out,
+                judged,
+                numbers={one.name: one for one in (*parameters, *combinations)},
+                not_trusted=verdict.not_trusted,
+                vessel=vessel,
+                reasons=off,
+            ),
+            *(str(one) for one in signals.findings if isinstance(one, Note)),
         ),
     )
 
@@ -301,5 +304,5 @@ def _quality(identification: Identification, signals: "Signals", signal_to_noise
             for channel, column in zip(signal_to_noise.channels, signal_to_noise.local_db.T.tolist(), strict=True)
         },
         repairs=dict(sorted(counts.items())),
-        remarks=(*signals.findings, *remarks),
+        remarks=(*(one for one in signals.findings if not isinstance(one, Note)), *remarks),
     )

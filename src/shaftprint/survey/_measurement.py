@@ -16,6 +16,7 @@ from shaftprint.identify.fit._measured_inputs import has_measured_inputs
 from shaftprint.memory import give_back_memory
 from shaftprint.models._structure import Structure
 from shaftprint.notebook._shown import Shown
+from shaftprint.reasons import Note
 from shaftprint.recording._level_watch import watch_levels
 from shaftprint.recording._levels import Levels
 from shaftprint.recording._read import read_recording
@@ -118,7 +119,7 @@ def measure(
     # without sines the leg of the working point is what everything is told of
     spectra = estimate_spectra(signals, trial.campaign, method=method) if trial.campaign.sines else legs[0].spectra
     influences = clock_influences(clocks, spectra=spectra, signals=signals)
-    signals = replace(signals, findings=(*signals.findings, *clock_findings(influences), *remarks))
+    signals = replace(signals, findings=(*signals.findings, *clock_findings(influences), *map(Note, remarks)))
     latency = trial.vessel.sensors.set_point.latency_s or 0.0
     further = {
         name: estimate_spectra(signals, trial.campaign, method=method, excitation=name)

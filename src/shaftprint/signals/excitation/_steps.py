@@ -9,6 +9,7 @@ import numpy as np
 from shaftprint.arrays import FloatArray
 from shaftprint.campaign._campaign import Campaign
 from shaftprint.campaign._excitations import Staircase
+from shaftprint.reasons import Note
 from shaftprint.signals._gaps import EVERYTHING, Coverage
 from shaftprint.signals._signals import StepDelay
 
@@ -67,8 +68,10 @@ def find_step_delays(
             )
     delays.sort(key=lambda delay: delay.set_point_time_s)
     findings += [
-        f"{name}: noise of the speed hides the delay of {len(heights)} of its steps: half of a step is "
-        f"{min(heights):.1f} standard deviations of the noise, {_CLEAR:g} or more are needed"
+        Note(
+            f"{name}: noise of the speed hides the delay of {len(heights)} of its steps: half of a step is "
+            f"{min(heights):.1f} standard deviations of the noise, {_CLEAR:g} or more are needed"
+        )
         for name, heights in hidden.items()
     ]
     return tuple(delays), tuple(findings)

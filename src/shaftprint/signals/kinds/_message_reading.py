@@ -7,6 +7,7 @@ import numpy as np
 
 from shaftprint.arrays import BoolArray, FloatArray
 from shaftprint.errors import SignalError
+from shaftprint.reasons import Note
 from shaftprint.recording._messages import Messages, messages_of, stamped_values
 from shaftprint.signals._gaps import Gap
 from shaftprint.signals.conditioning._condition import Reading
@@ -71,5 +72,5 @@ def read_messages(
         messages=messages,
         repairs=(),
         gaps=gaps,
-        findings=(f"Channel {channel.name} has times of its own: {messages.sentence}.",),
+        findings=(Note(f"Channel {channel.name} has times of its own: {messages.sentence}."),),
     )
