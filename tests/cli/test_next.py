@@ -99,7 +99,7 @@ def quantity(name):
     return SimpleNamespace(std=STDS[name])
 
 
-def following(campaign, *, reading=(), trustworthy=True, asked="short", kind="set-point shape"):
+def following(campaign, *, reading=(), trustworthy=True, asked="short", kind="set-point shape", is_undecided=False):
     reasons = () if trustworthy else (Reason(kind=kind, sentence=""),)
     verdict = SimpleNamespace(trustworthy=trustworthy, reasons=reasons)
     fingerprint = SimpleNamespace(verdict=verdict, quantity=quantity)
@@ -109,6 +109,7 @@ def following(campaign, *, reading=(), trustworthy=True, asked="short", kind="se
         load_vessel("stan-tug-1205"),
         load_campaign(asked),
         reading=reading,
+        is_undecided=is_undecided,
     )
 
 
@@ -137,7 +138,7 @@ def test_a_test_is_validated_and_then_the_next_one_is_planned(here):
 def test_a_plan_goes_on_while_a_wish_of_it_is_not_met(here, monkeypatch, targets, goes_on):
     (here / "plan").mkdir()
     (here / "plan" / "plan.json").write_text("{}")
-    planned = SimpleNamespace(plan=SimpleNamespace(targets=targets))
+    planned = SimpleNamespace(plan=SimpleNamespace(targets=targets, stairs_rpm=()))
     monkeypatch.setattr(_after_test, "_plan_json", SimpleNamespace(PLAN="plan.json", read_plan=lambda folder: planned))
     campaign = here / "plan" / "campaign.toml"
     last = [str(word) for word in following(campaign)[-1]]
@@ -145,6 +146,20 @@ def test_a_plan_goes_on_while_a_wish_of_it_is_not_met(here, monkeypatch, targets
         assert last == ["continue", "log.csv", "--plan", str(here / "plan"), "--vessel", "ship.toml"]
     else:
         assert last[0] == "plan"
+
+
+@pytest.mark.parametrize(("sentences", "is_validated"), [(["The steps may prove nothing."], False), ([], True)])
+def test_steps_that_the_plan_says_prove_nothing_are_not_offered(here, monkeypatch, sentences, is_validated):
+    (here / "plan.json").write_text("{}")
+    planned = SimpleNamespace(plan=SimpleNamespace(targets={}))
+    monkeypatch.setattr(_after_test, "_plan_json", SimpleNamespace(PLAN="plan.json", read_plan=lambda folder: planned))
+    monkeypatch.setattr(_after_test, "_hidden", SimpleNamespace(stairs_sentences=lambda plan: sentences))
+    commands = [words[0] for words in following(here / "campaign.toml")]
+    assert commands == (["validate"] if is_validated else []) + ["plan"]
+
+
+def test_steps_that_were_tried_and_say_nothing_are_not_tried_again(here):
+    assert [words[0] for words in following("test.toml", is_undecided=True)] == ["plan"]
 
 
 def test_a_plan_that_cannot_be_read_is_no_reason_to_refuse(here):

@@ -199,7 +199,7 @@ def expect_validation(folder, printed, words):
     # 1 V steps of 30 s from 10 s on
     for at in (10, 40, 70, 100, 130, 160, 190):
         assert f"St1, step at {at}.0 s" in printed
-    assert "overshoot [%]" in printed
+    assert "overshoot of n [%]" in printed
     written = {path.name for path in (folder / after(words, "-o")).glob("*.svg")}
     assert {"missed_beyond_noise.svg", "St1-whole-staircase.svg"} <= {name.replace(" ", "-") for name in written}
 

@@ -13,6 +13,8 @@ from shaftprint.late import late
 with late():
     from shaftprint.campaign._campaign import Campaign
     from shaftprint.design.files import _plan_folder, _plan_json
+    from shaftprint.design.plan._plan import Plan
+    from shaftprint.design.planned_test import _hidden
     from shaftprint.fingerprint._fingerprint import Fingerprint
     from shaftprint.vessel._vessel import Vessel
 
@@ -29,16 +31,18 @@ def after_test(
     *,
     reading: Sequence[object] = (),
     own: Sequence[object] = (),
+    is_undecided: bool = False,
 ) -> list[tuple[object, ...]]:
     """Return the next commands of a test, the first to be done first; none where something has to be mended before.
 
     A test that cannot be used is made anew where it lacks lines, and other structures are tried where one does not
     explain it; else its verdict says what to mend. Another one is validated, where there is what it can be validated
-    on; then its plan goes on where wishes of it are not met, or the next test is planned.
+    on and noise does not hide it; then its plan goes on where wishes of it are not met, or the next test is planned.
 
     ``files``: recording, vessel and campaign file. ``found``: where the result is, and its fingerprint. ``ship``,
     ``asked``: what is in the vessel and the campaign file. ``reading``: options with what the recording does not say
-    itself. ``own``: the option that names a structure of somebody's own.
+    itself. ``own``: the option that names a structure of somebody's own. ``is_undecided``: whether it was held against
+    its steps already, and noise hid how well it meets them.
     """
     recording, vessel, campaign = files
     result, fingerprint = found
@@ -48,25 +52,25 @@ def after_test(
             readable, steps = read_by_all(recording, reading)
             return [*steps, ("compare-structures", readable, "--vessel", vessel, "--campaign", campaign)]
         return [first_plan(vessel, ship)] if kinds & _LACKS_LINES else []
-    plan = _with_open_wishes(Path(campaign), fingerprint)
-    is_validated = bool(asked.staircases or asked.chirps)
-    readable, steps = read_by_all(recording, reading if is_validated or plan else ())
+    plan = _plan_of(Path(campaign))
+    goes_on = plan is not None and any(_is_open(fingerprint, *target) for target in plan.targets.items())
+    tells = not is_undecided and not (plan is not None and _hidden.stairs_sentences(plan))
+    is_validated = tells and bool(asked.staircases or asked.chirps)
+    readable, steps = read_by_all(recording, reading if is_validated or goes_on else ())
     if is_validated:
         steps += [("validate", readable, "--vessel", vessel, "--campaign", campaign, "--fingerprint", result, *own)]
-    if plan is None:
+    if not goes_on:
         return [*steps, (*plan_after(result, vessel, ship), *own)]
-    return [*steps, ("continue", readable, "--plan", plan, "--vessel", vessel, *own)]
+    return [*steps, ("continue", readable, "--plan", Path(campaign).parent, "--vessel", vessel, *own)]
 
 
-def _with_open_wishes(campaign: Path, fingerprint: Fingerprint) -> Path | None:
-    """Return the folder of the plan that a campaign file is of, where the test has not met all of its wishes."""
+def _plan_of(campaign: Path) -> Plan | None:
+    """Return the plan in the folder of a campaign file; None where there is none, or none that can be read."""
     folder = campaign.parent
-    if campaign.name != _plan_folder.CAMPAIGN or not (folder / _plan_json.PLAN).is_file():
-        return None
-    # a plan that cannot be read, or of a structure of somebody's own, is no reason to refuse what was identified
-    with suppress(ShaftprintError):
-        targets = _plan_json.read_plan(folder).plan.targets
-        return folder if any(_is_open(fingerprint, name, target) for name, target in targets.items()) else None
+    if campaign.name == _plan_folder.CAMPAIGN and (folder / _plan_json.PLAN).is_file():
+        # a plan that cannot be read, or of a structure of somebody's own, is no reason to refuse what was identified
+        with suppress(ShaftprintError):
+            return _plan_json.read_plan(folder).plan
     return None
 
 

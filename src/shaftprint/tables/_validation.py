@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from shaftprint.digits import p_value_text, plain, rounded, with_deviation
-from shaftprint.plain_table import Symbol, Table, numbers, texts
+from shaftprint.plain_table import Table, numbers, texts
 from shaftprint.units import MILLI
 
 if TYPE_CHECKING:
@@ -29,11 +29,12 @@ def misfit_table(validation: "Validation") -> Table:
     return Table(
         title=f"What {validation.model.name} misses of records that it has not seen",
         columns=(
-            *texts("excerpt", "output"),
+            *texts("excerpt and output"),
             *numbers("beyond noise", coverage, "p", "FitPercent", "right model", "delay left [ms]"),
             *texts("outcome"),
         ),
         rows=rows,
+        symbols=True,
         note=f"Shares of the motion in the excerpt. It passes where the interval lies below {allowed}, and fails where "
         "it lies above.",
     )
@@ -42,8 +43,7 @@ def misfit_table(validation: "Validation") -> Table:
 def _misfit_row(comparison: "ExcerptComparison", misfit: "Misfit", delay: "RemainingDelay") -> tuple[str, ...]:
     low, high = (PERCENT * end for end in misfit.error_interval)
     return (
-        excerpt_name(comparison),
-        Symbol(misfit.output),
+        f"{excerpt_name(comparison)}: {misfit.output}",
         f"{plain(PERCENT * misfit.error, 1)} %",
         f"{plain(low, 1)} to {plain(high, 1)} %",
         p_value_text(misfit.p_value),
@@ -61,6 +61,12 @@ def _milliseconds(delay: "RemainingDelay") -> str:
 def excerpt_name(comparison: "ExcerptComparison") -> str:
     """Return the name of an excerpt with its record."""
     return f"{comparison.excerpt.record}, {comparison.excerpt.title}".replace(" -", " −")
+
+
+def _of_step(comparison: "ExcerptComparison") -> str:
+    """Return the name of a step by its second alone, for rows that have more to say."""
+    at = comparison.excerpt.step_s
+    return excerpt_name(comparison) if at is None else f"{comparison.excerpt.record}, {at:.1f} s"
 
 
 def models_table(validations: "Sequence[Validation]") -> Table:
@@ -88,9 +94,7 @@ def step_number_table(validation: "Validation") -> Table:
     """Return overshoot, rise and settling of every step, measured and by the model."""
     rows = tuple(
         (
-            excerpt_name(comparison),
-            Symbol(number.output),
-            f"{number.name} [{number.unit}]",
+            f"{_of_step(comparison)}: {number.name} of {number.output} [{number.unit}]",
             _with_std(number.measured, number.measured_std),
             _with_std(number.expected, number.expected_std),
             _agreement(number),
@@ -101,8 +105,9 @@ def step_number_table(validation: "Validation") -> Table:
     )
     return Table(
         title="Numbers of the steps",
-        columns=texts("step", "output", "number", "measured ± noise", "model ± parameters", "agree"),
+        columns=texts("step and number", "measured ± noise", "model ± parameters", "agree"),
         rows=rows,
+        symbols=True,
     )
 
 

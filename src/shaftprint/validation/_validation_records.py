@@ -179,7 +179,7 @@ def _staircase(stairs: Staircase, campaign: Campaign, settings: ValidationSettin
             Excerpt(
                 record=stairs.name,
                 kind="step",
-                title=f"step at {at:.1f} s, {before_v:g} to {after_v:g} V",
+                title=f"step at {at:.1f} s, {before_v:.3g} to {after_v:.3g} V",
                 start_s=at - settings.zoom_before_s,
                 stop_s=at + after,
                 step_s=at,

@@ -212,6 +212,7 @@ def command(
         trial.campaign,
         reading=reading_words(**said),
         own=("--structure", names[0]) if names and ":" in names[0] else (),
+        is_undecided=any(one.outcome == "undecided" for one in survey.validations[:1]),
     )
     print_steps(*following)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import click
@@ -13,7 +14,7 @@ from shaftprint.cli._known_values import named_variable
 from shaftprint.cli._next import free, plan_after, print_next
 from shaftprint.cli._option_sections import SectionedCommand
 from shaftprint.cli._options import DEFAULT_HELP, OWN_FILE_HELP, campaign_option, vessel_option
-from shaftprint.cli._terminal import echo, print_findings
+from shaftprint.cli._terminal import echo, is_detailed, print_findings, say
 from shaftprint.cli.output._fingerprint_file import fingerprint_at
 from shaftprint.cli.output._json import give
 from shaftprint.cli.output._output_folder import force_option, output_folder
@@ -219,8 +220,17 @@ def _print_next(
 
 
 def print_validation(validation: Validation) -> None:
-    """Print the verdict, every excerpt, the numbers of every step, and how it was found."""
+    """Print the verdict, every excerpt that says something, the numbers of its steps, and how it was found."""
     give("misfits", {excerpt_name(c): c.misfits for c in validation.comparisons})
     print_findings(f"Validation: {validation.headline}", validation.sentences, is_answer=True)
-    print_tables([misfit_table(validation), step_number_table(validation)])
+    told = [one for one in validation.comparisons if one.outcome != "undecided" or one.excerpt.in_sample]
+    hidden = 0 if is_detailed() else len(validation.comparisons) - len(told)
+    shown = replace(validation, comparisons=tuple(told)) if hidden else validation
+    if shown.comparisons:
+        print_tables([misfit_table(shown), step_number_table(shown)])
+    if hidden:
+        say(
+            f"{hidden} {'excerpt' if hidden == 1 else 'excerpts'} of which noise hides how well the model meets "
+            f"{'it' if hidden == 1 else 'them'}: --verbose.\n"
+        )
     print_findings("How this was found", validation.findings)
