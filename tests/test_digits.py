@@ -76,6 +76,12 @@ def test_small_p_values_are_powers_of_ten(p_value, text, on_terminal):
     assert plain_letters(text) == on_terminal
 
 
+def test_a_number_of_almost_nothing_is_a_power_of_ten():
+    assert rounded(-6.7021e-13) == "−6.702·10⁻¹³"
+    assert plain_letters(rounded(-6.7021e-13)) == "-6.702e-13"
+    assert rounded(2.5e-6, 2) == "0.0000025"
+
+
 def test_sentences_of_a_page_have_powers_of_ten():
     assert typographic("(p = 6.6e-05), 0.12 +/- 0.02, p < 1e-7, the file 3e-x") == (
         "(p = 6.6·10⁻⁵), 0.12 ± 0.02, p < 1·10⁻⁷, the file 3e-x"

@@ -5,7 +5,7 @@ quantity                  digits
 ========================= ============================================================================
 standard deviation        two significant ones (JCGM 100, GUM 7.2.6)
 value, ends of interval   down to the decimal at which its standard deviation ends
-number without deviation  four significant ones
+number without deviation  four significant ones; as a power of ten below a millionth
 p-value                   two; as a power of ten below a thousandth
 ========================= ============================================================================
 
@@ -20,6 +20,7 @@ NARROW_SPACE = "\u202f"
 LEAST_DIGITS = 4
 DIGITS_OF_STD = 2
 NOT_KNOWN = "not known"
+SMALLEST_PLAIN = 1e-6
 SMALLEST_PLAIN_P, SMALLEST_P = 1e-3, 1e-300
 # A time shorter than this, its deviation and its interval included, is printed in milliseconds.
 SHORT_S = 0.01
@@ -71,6 +72,8 @@ def rounded(value: float, digits: int = LEAST_DIGITS) -> str:
     """Return a number with a few significant digits."""
     if value == 0.0 or not math.isfinite(value):
         return plain(value, 0)
+    if abs(value) < SMALLEST_PLAIN:
+        return _power(value, digits)
     return plain(value, max(0, digits - 1 - _exponent(value, digits)))
 
 
@@ -147,8 +150,8 @@ def p_value_text(p_value: float | None) -> str:
     return _power(p_value)
 
 
-def _power(number: float) -> str:
-    mantissa, _, exponent = f"{number:.{DIGITS_OF_STD - 1}e}".partition("e")
+def _power(number: float, digits: int = DIGITS_OF_STD) -> str:
+    mantissa, _, exponent = f"{number:.{digits - 1}e}".replace("-", "−", int(number < 0.0)).partition("e")
     return f"{mantissa}·10{str(int(exponent)).translate(_RAISED)}"
 
 

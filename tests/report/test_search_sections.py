@@ -40,6 +40,9 @@ def test_the_table_of_numbers_says_what_the_verdict_says(fingerprint):
     (table,) = number_section(SimpleNamespace(fingerprint=fingerprint)).tables
     told = {str(row[0]): row[-2] for row in table.rows}
     assert {name for name, words in told.items() if words == "yes"} == {*verdict.trusted} - {"n_0", "M_s0"}
+    # as many as page one counts, those of the working point above
+    assert "M_s0 and n_0, which stand above, are counted on page one too." in table.note
+    assert len(told) + 2 == len(verdict.trusted) + len(verdict.not_trusted)
     doubted = {name for name in verdict.not_trusted if name in told}
     assert doubted
     footnotes = dict(re.findall(r"(\(\d+\)) ([^;]+?)(?=; \(|\. ±)", table.note))
@@ -68,6 +71,21 @@ def test_a_fit_that_is_not_trustworthy_says_so_in_the_heading(fingerprint):
 
 
 # ---- search ----
+
+
+def test_a_value_of_nothing_is_not_printed_with_its_rounding_error(fits):
+    """The known line has no zero, but an optimum may lie at one: what the deviation leaves of it is nought."""
+    fit = fits["OL3"]
+    name, std = fit.parameters[0].name, fit.parameters[0].std
+    place = fit.objective.names.index(name)
+    winner = fit.clusters[0]
+    values = winner.values.copy()
+    values[place] = -6.7e-13 * std
+    at_zero = replace(fit, clusters=(replace(winner, values=values), *fit.clusters[1:]))
+    (table,) = search_section(SimpleNamespace(identification=at_zero)).tables
+    (row,) = (row for row in table.rows if str(row[0]).startswith(f"{name} ["))
+    assert float(row[1]) == 0.0
+    assert len(row[1]) < 8
 
 
 def test_every_optimum_has_a_column_with_its_parameters(fits):

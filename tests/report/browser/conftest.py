@@ -1,6 +1,7 @@
 """A real browser for the report: Debian's chromium, driven by Playwright, with no way out to a network."""
 
 import contextlib
+import re
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -35,6 +36,10 @@ class Visit:
         )
         self.wait_for(f"document.getElementById('plot-{name}').dataset.state === 'drawn'")
         return place
+
+    def sheets(self):
+        """Return how many sheets of A4 it takes on paper."""
+        return len(re.findall(rb"/Type\s*/Page\b", self.page.pdf(format="A4", prefer_css_page_size=True)))
 
     def axis(self, name, axis="xaxis"):
         """Return the ends of an axis as they are shown."""

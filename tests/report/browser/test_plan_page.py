@@ -55,7 +55,8 @@ def test_the_first_screen_says_what_is_missed_and_that_it_was_not_rehearsed(visi
     with visit(page) as found:
         words = " ".join(found.page.locator("#found").inner_text().split())
         assert "do not meet the wish for t_d" in words
-        assert "Was it rehearsed? ? Not known. No." in words
+        assert "Was it rehearsed? No. Its numbers are predictions" in words
+        assert "Not known" not in words
         assert "not rehearsed" in found.page.locator("#top").inner_text()
 
 
@@ -70,6 +71,16 @@ def test_predicted_numbers_have_their_meaning_and_the_limits_of_speed_lie_inside
         low, high = found.axis("set_point", "yaxis")
         assert low < 600.0
         assert high > 1800.0
+
+
+def test_paper_has_the_card_for_the_bridge_on_its_first_sheet(visit, page):
+    """What lies behind the first sheet is taken away: what is left still has the card."""
+    with visit(page) as found:
+        found.wait_for("document.readyState === 'complete'")
+        after = "document.querySelectorAll('section:has(#bridge) ~ section, section:has(#bridge) figure, footer')"
+        found.page.evaluate(f"{after}.forEach(e => e.remove())")
+        assert found.page.locator("#bridge").count() == 1
+        assert found.sheets() == 1
 
 
 def test_hostile_names_are_shown_as_they_are(visit, page):

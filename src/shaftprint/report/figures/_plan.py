@@ -8,10 +8,11 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.campaign._setpoint import setpoint
+from shaftprint.digits import plain
 from shaftprint.distributions import NORMAL_95
 from shaftprint.plain_table import Symbol
 from shaftprint.report.charts._chart import Chart, Panel, Scale
-from shaftprint.report.charts._marks import Band, Line, Mark, Points, Straight
+from shaftprint.report.charts._marks import Band, Dash, Line, Mark, Points, Straight
 from shaftprint.report.figures._envelope import envelope
 from shaftprint.units import SECONDS_PER_HOUR, SECONDS_PER_MINUTE
 
@@ -28,6 +29,7 @@ _ROOM = 0.06
 # Samples of the set point of a whole test.
 _SAMPLES = 20_000
 _NOISE = "noise, 95 %"
+_DASHES_OF_LIMITS: tuple[Dash, Dash] = ("dot", "dash")
 
 
 def planned_set_point_chart(test: "PlannedTest") -> Chart:
@@ -83,7 +85,8 @@ def length_chart(curve: "LengthCurve", plan: "Plan") -> Chart:
     """Return how well the same lines would make numbers known in other times: over the wish, or over the value."""
     minutes = curve.duration_s / SECONDS_PER_MINUTE
     targets = plan.targets
-    marks: list[Mark] = [Straight(at=plan.duration_s / SECONDS_PER_MINUTE, axis="x", name="this plan")]
+    planned_min = plan.duration_s / SECONDS_PER_MINUTE
+    marks: list[Mark] = [Straight(at=planned_min, axis="x", name=f"this plan, {plain(planned_min, 1)} min")]
     for shade, (name, relative) in enumerate(curve.relative_std.items()):
         scale = PERCENT
         if targets:
@@ -94,7 +97,7 @@ def length_chart(curve: "LengthCurve", plan: "Plan") -> Chart:
     title = "predicted std over wish" if targets else "predicted std [%]"
     levels = [value for mark in marks if isinstance(mark, Line) for value in mark.y.tolist()]
     upright = Scale(title=title, log=True, span=_around([*levels, 1.0] if targets else levels, log=True))
-    panel = Panel(marks=marks, x=Scale(title="length of the test [min]", log=True), y=upright)
+    panel = Panel(marks=marks, x=Scale(title="length of the test [min]"), y=upright)
     return Chart(panels=(panel,), heights_px=(320,))
 
 
@@ -140,7 +143,7 @@ def _speed_limits(plan: "Plan", near: FloatArray | None = None) -> list[Mark]:
     reach = np.inf if near is None else 0.6 * float(np.ptp(near))
     middle = 0.0 if near is None else float(np.mean(near))
     return [
-        Straight(at=speed, axis="y", name=name, shade="ink", dash="dot")
-        for name, speed in limits.items()
+        Straight(at=speed, axis="y", name=name, shade="ink", dash=dash)
+        for (name, speed), dash in zip(limits.items(), _DASHES_OF_LIMITS, strict=True)
         if near is None or abs(speed - middle) < reach + 0.5 * float(np.ptp(near))
     ]

@@ -132,7 +132,7 @@ def _cards(cards: "Sequence[Card]", looks: Looks) -> Any:
 
 
 def _card(card: "Card", looks: Looks) -> list[Any]:
-    answer = looks.answer(f"{card.mark} {card.word}.", card.sentence, PAPER_COLOURS[card.state])
+    answer = looks.answer(f"{card.word}.", card.sentence, PAPER_COLOURS[card.state])
     parts = [looks.paragraph(card.question, "question"), answer]
     return [*parts, looks.answer("What to do:", card.action)] if card.action else parts
 

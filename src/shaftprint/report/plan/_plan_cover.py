@@ -45,8 +45,8 @@ def _facts(test: "PlannedTest") -> list[tuple[str, str]]:
 def _wishes(test: "PlannedTest") -> Card:
     plan, question = test.plan, "Does it meet the wishes?"
     if not plan.wish.names:
-        words = "Nothing is wished: it makes all numbers of the line known as well as its limits allow."
-        return Card(question=question, state="open", sentence=words)
+        words = "It makes all numbers of the line known as well as its limits allow."
+        return Card(question=question, state="open", answer="None stated", sentence=words)
     ratios = plan.ratios
     missed = sorted((name for name, ratio in ratios.items() if not ratio <= 1.0), key=lambda name: -ratios[name])
     if not missed:
@@ -77,7 +77,8 @@ def _rehearsed(test: "PlannedTest") -> Card:
         return Card(
             question=question,
             state="open",
-            sentence="No. Its numbers are predictions that nobody has tried.",
+            answer="No",
+            sentence="Its numbers are predictions that nobody has tried.",
             action="Plan it again with --rehearse 20, which sails it on the simulated ship.",
         )
     sentences = rehearsal.sentences

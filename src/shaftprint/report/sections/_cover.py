@@ -32,16 +32,13 @@ class Card:
     """The answer with its number."""
     action: str = ""
     """What to do about it; empty where it is fine."""
-
-    @property
-    def mark(self) -> str:
-        """Sign of the state, so that nobody has to tell colours apart."""
-        return WORDS[self.state][0]
+    answer: str = ""
+    """A short answer that stands in place of the state in words, with no sign before it; empty where none does."""
 
     @property
     def word(self) -> str:
-        """State in words."""
-        return WORDS[self.state][1]
+        """State in words after its sign, so that nobody has to tell colours apart; or the short answer alone."""
+        return self.answer or " ".join(WORDS[self.state])
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -7,15 +7,15 @@ from shaftprint.digits import unit_text, with_deviation
 from shaftprint.plain_table import MEANING, Column
 from shaftprint.report.figures._covariance import budget_chart
 from shaftprint.report.sections._sections import Inputs, Picture, Section
+from shaftprint.spelling import listed
 from shaftprint.tables._fingerprint import quantity_table
 
 if TYPE_CHECKING:
     from shaftprint.fingerprint._fingerprint import Fingerprint
 
 BUDGET_OPENING = (
-    "Every estimate depends on the noise of the measured lines and on its prior: the inertias of the vessel file "
-    "(TVC), calculated or estimated, the accuracy of the torque gauge, the latency of its telemetry, and the slope g "
-    "of the engine. More lines or longer ones lower the share of the noise only."
+    "From the noise of the measured lines, and from priors: the inertias of the vessel file (TVC), scale and latency of "
+    "the torque gauge, the slope g of the engine. More lines or longer ones lower the share of the noise only."
 )
 
 
@@ -61,8 +61,12 @@ def number_section(inputs: Inputs) -> Section:
         for row, words in zip(table.rows, usable, strict=True)
     )
     columns = (*table.columns[:2], *(table.columns[i] for i in kept), Column("usable"), MEANING)
-    listed = "; ".join(f"({number}) {doubt}" for number, doubt in enumerate(doubts, start=1))
-    note = f"Not to be used: {listed}. {table.note}" if doubts else table.note
+    listed_doubts = "; ".join(f"({number}) {doubt}" for number, doubt in enumerate(doubts, start=1))
+    note = f"Not to be used: {listed_doubts}. {table.note}" if doubts else table.note
+    counted = {*fingerprint.verdict.trusted, *fingerprint.verdict.not_trusted}
+    others = sorted(counted - {quantity.name for quantity in quantities})
+    if others:
+        note += f" {listed(others)}, which stand above, are counted on page one too."
     shown = replace(table, columns=columns, rows=rows, note=note)
     return Section(key="numbers", title="What was identified", tables=(shown,))
 
@@ -88,7 +92,9 @@ def budget_section(inputs: Inputs) -> list[Section]:
             pictures=(
                 Picture(
                     name="budget",
-                    caption="Share of each source in the variance of every number; the appendix has them in numbers.",
+                    caption="Share of each source in the variance of every number; the appendix has them in numbers. A "
+                    "share is negative, and the others pass 100 %, where errors of the two outputs make up for each "
+                    "other.",
                     alt="One horizontal bar for each number, divided by the share of each source in its variance.",
                     chart=lambda: budget_chart(budget),
                 ),

@@ -1,8 +1,9 @@
 """The sections of a report on the search: its optima, and which structure the data want."""
 
+import math
 from typing import TYPE_CHECKING
 
-from shaftprint.digits import rounded, unit_text
+from shaftprint.digits import rounded, to_digit_of, unit_text
 from shaftprint.identify.fit._scan import scan
 from shaftprint.identify.judgement._search_report import report_search
 from shaftprint.models._delays import Delay
@@ -55,7 +56,7 @@ def _loop_delays(fit: "Identification") -> list[str]:
 
 def _optima(fit: "Identification", optima: "tuple[Optimum, ...]") -> Table:
     """Return the optima side by side, a column each: there are more parameters than optima."""
-    shown = optima[:MOST_OPTIMA]
+    shown, stds = optima[:MOST_OPTIMA], {estimate.name: estimate.std for estimate in fit.parameters}
     rows = [
         ("starts", *(str(optimum.starts) for optimum in shown)),
         ("cost", *(rounded(optimum.cost) for optimum in shown)),
@@ -64,7 +65,8 @@ def _optima(fit: "Identification", optima: "tuple[Optimum, ...]") -> Table:
     ]
     for parameter, index in zip(fit.objective.free_parameters, fit.objective.free, strict=True):
         name = Symbol(f"{parameter.name} [{unit_text(parameter.unit) or '-'}]")
-        rows.append((name, *(rounded(float(optimum.values[index])) for optimum in shown)))
+        std = stds.get(parameter.name, 0.0)
+        rows.append((name, *(_of_optimum(float(optimum.values[index]), std) for optimum in shown)))
     not_shown = len(optima) - len(shown)
     return Table(
         title="Optima of the search",
@@ -75,6 +77,11 @@ def _optima(fit: "Identification", optima: "tuple[Optimum, ...]") -> Table:
             f"well within the noise.{f' {not_shown} more of higher cost are not shown.' if not_shown else ''}"
         ),
     )
+
+
+def _of_optimum(value: float, std: float) -> str:
+    """Return a value down to the digit that the result is known to, where its deviation says so."""
+    return to_digit_of(value, std) if 0.0 < std < math.inf else rounded(value)
 
 
 def comparison_section(inputs: Inputs) -> list[Section]:

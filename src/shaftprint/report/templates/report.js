@@ -35,6 +35,15 @@
     window.addEventListener("afterprint", fold);
   }
 
+  // Paper has the findings, with what is assumed, though they are folded on the screen.
+  function prepareFindings() {
+    const findings = document.getElementById("summary")?.closest("details");
+    if (!findings) return;
+    let before = false;
+    window.addEventListener("beforeprint", () => { before = findings.open; findings.open = true; });
+    window.addEventListener("afterprint", () => { findings.open = before; });
+  }
+
   // A link to a folded section opens it; the menu of a narrow screen closes once it has been used.
   function prepareContents() {
     const parts = [...document.querySelectorAll("details")];
@@ -71,6 +80,7 @@
     if (document.readyState !== "interactive") return;
     prepareLook();
     prepareTables();
+    prepareFindings();
     prepareContents();
   });
 })();
