@@ -76,6 +76,13 @@ def test_small_p_values_are_powers_of_ten(p_value, text, on_terminal):
     assert plain_letters(text) == on_terminal
 
 
+def test_small_machines_have_fine_units():
+    assert stated(0.000310006, 0.000000053, "kg m2") == "3.10006 +/- 0.00053 kg cm2"
+    assert stated(0.00134916, 0.00000097, "H") == "1.34916 +/- 0.00097 mH"
+    assert stated(0.00002224, 0.00000033, "N m s/rad") == "0.02224 +/- 0.00033 mN m s/rad"
+    assert stated(17.0, 0.34, "kg m2") == "17.00 +/- 0.34 kg m2"
+
+
 def test_a_number_of_almost_nothing_is_a_power_of_ten():
     assert rounded(-6.7021e-13) == "−6.702·10⁻¹³"
     assert plain_letters(rounded(-6.7021e-13)) == "-6.702e-13"

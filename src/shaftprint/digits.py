@@ -24,7 +24,22 @@ SMALLEST_PLAIN = 1e-6
 SMALLEST_PLAIN_P, SMALLEST_P = 1e-3, 1e-300
 # A time shorter than this, its deviation and its interval included, is printed in milliseconds.
 SHORT_S = 0.01
-_UNITS = {"kg m2": "kg m²", "N m": "N·m", "N m/rpm": "N·m/rpm", "N m/(rpm s)": "N·m/(rpm·s)", "1/s": "s⁻¹", "-": ""}
+# By unit: below which size a finer one is taken, its factor and itself.
+_FINE_UNITS = {
+    "s": (SHORT_S, 1e3, "ms"),
+    "kg m2": (0.01, 1e4, "kg cm2"),
+    "H": (0.1, 1e3, "mH"),
+    "N m s/rad": (0.01, 1e3, "mN m s/rad"),
+}
+_UNITS = {
+    "kg cm2": "kg cm²",
+    "kg m2": "kg m²",
+    "N m": "N·m",
+    "N m/rpm": "N·m/rpm",
+    "N m/(rpm s)": "N·m/(rpm·s)",
+    "1/s": "s⁻¹",
+    "-": "",,
+}
 _RAISED = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
 _LOWERED = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻", "0123456789-")
 _POWER = "·10⁻"
@@ -124,7 +139,7 @@ def stated_interval(value: float, lower: float, upper: float, std: float, unit: 
 
 
 def fine_unit(unit: str, *numbers: float) -> tuple[float, str]:
-    """Return the factor and the unit in which numbers are printed: milliseconds where all are short times.
+    """Return the factor and the unit in which numbers are printed: a finer one, such as ms, where all are small.
 
     Parameters
     ----------
@@ -134,9 +149,8 @@ def fine_unit(unit: str, *numbers: float) -> tuple[float, str]:
         What stands in one row: value, standard deviation, ends of an interval.
     """
     sizes = [abs(number) for number in numbers if math.isfinite(number)]
-    if unit == "s" and sizes and 0.0 < max(sizes) < SHORT_S:
-        return 1e3, "ms"
-    return 1.0, unit
+    small, factor, fine = _FINE_UNITS.get(unit, (0.0, 1.0, unit))
+    return (factor, fine) if sizes and 0.0 < max(sizes) < small else (1.0, unit)
 
 
 def p_value_text(p_value: float | None) -> str:

@@ -82,6 +82,16 @@ def test_places_of_a_strip_chart():
     assert drawn["events"] == [{"x": "50.00%", "text": "1"}]
 
 
+def test_dates_at_the_ends_of_a_strip_are_written_inwards():
+    begin, end = datetime(2026, 2, 1, tzinfo=UTC), datetime(2026, 11, 30, tzinfo=UTC)
+    assert [(one["text"], one["anchor"]) for one in TimeAxis.over([begin, end]).ticks] == [
+        ("2026-02", "start"),
+        ("2026-11", "end"),
+    ]
+    ticks = TimeAxis.over([datetime(2025, 2, 1, tzinfo=UTC), datetime(2027, 1, 15, tzinfo=UTC)]).ticks
+    assert [(one["text"], one["anchor"]) for one in ticks] == [("2026", "middle"), ("2027", "end")]
+
+
 def test_strips_of_one_value_and_of_open_ends_are_drawn():
     at = datetime(2026, 1, 5, tzinfo=UTC)
     axis = TimeAxis.over([at])

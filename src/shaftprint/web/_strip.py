@@ -15,6 +15,8 @@ HEIGHT_PX: Final = 110
 _ABOVE_PX, _BELOW_PX = 8.0, 20.0
 _MARGIN: Final = 2.5
 _MOST_TICKS: Final = 6
+# Share of the axis at its ends within which words would be cut on a phone.
+_NEAR_END: Final = 0.1
 _STEPS: Final = (1.0, 2.0, 2.5, 5.0, 10.0)
 _WANTED_TICKS: Final = 3
 
@@ -35,9 +37,17 @@ class TimeAxis:
 
     def place(self, moment: datetime) -> str:
         """Return where a moment stands, in per cent."""
+        return f"{_MARGIN + (100.0 - 2.0 * _MARGIN) * self._share(moment):.2f}%"
+
+    def _share(self, moment: datetime) -> float:
         span = (self.end - self.begin).total_seconds()
-        share = 0.5 if span <= 0.0 else (moment - self.begin).total_seconds() / span
-        return f"{_MARGIN + (100.0 - 2.0 * _MARGIN) * share:.2f}%"
+        return 0.5 if span <= 0.0 else (moment - self.begin).total_seconds() / span
+
+    def _tick(self, moment: datetime, text: str) -> dict[str, str]:
+        """Return a tick with its words inside of the drawing: those at its ends go inwards."""
+        share = self._share(moment)
+        anchor = "start" if share < _NEAR_END else "end" if share > 1.0 - _NEAR_END else "middle"
+        return {"x": self.place(moment), "text": text, "anchor": anchor}
 
     @property
     def ticks(self) -> list[dict[str, str]]:
@@ -46,9 +56,9 @@ class TimeAxis:
         step = max(1, math.ceil(len(years) / _MOST_TICKS))
         found = [datetime(year, 1, 1, tzinfo=UTC) for year in years[::step]]
         if found:
-            return [{"x": self.place(one), "text": str(one.year)} for one in found]
+            return [self._tick(one, str(one.year)) for one in found]
         ends = [self.begin] if self.begin == self.end else [self.begin, self.end]
-        return [{"x": self.place(one), "text": f"{one:%Y-%m}"} for one in ends]
+        return [self._tick(one, f"{one:%Y-%m}") for one in ends]
 
 
 def strip(

@@ -14,8 +14,8 @@ if TYPE_CHECKING:
     from shaftprint.fingerprint._fingerprint import Fingerprint
 
 BUDGET_OPENING = (
-    "From the noise of the measured lines, and from priors: the inertias of the vessel file (TVC), scale and latency of "
-    "the torque gauge, the slope g of the engine. More lines or longer ones lower the share of the noise only."
+    "From the noise of the measured lines, and from priors: the inertias of the vessel file (TVC), scale and latency "
+    "of the torque gauge, the slope g of the engine. More lines or longer ones lower the share of the noise only."
 )
 
 

@@ -20,6 +20,7 @@ from shaftprint.cli.commands.formats._exported import (
     structure_option,
 )
 from shaftprint.cli.output._progress import no_progress_option, progress
+from shaftprint.digits import plain_letters, rounded
 from shaftprint.export._fmu_build import PLATFORMS
 from shaftprint.late import late
 
@@ -81,7 +82,7 @@ def command(
 
     FINGERPRINT is the JSON file, or the folder in which identify or demo has put it. The FMU is for
     co-simulation and model exchange, has exact delays and its sources, and every parameter of the
-    structure can be tuned. Inputs and outputs are in rpm and N m about the working point. Choose
+    structure can be tuned. Inputs and outputs are absolute rpm and N m, not deviations. Choose
     co-simulation where your tool has it: the FMU then takes its own steps.
     """
     if source_only and platforms:
@@ -108,7 +109,11 @@ def _print(written: WrittenFmu) -> None:
     kinds = "co-simulation and model exchange" if written.model_exchange else "co-simulation only"
     say(f"FMI {written.version}.0, {kinds}, sources, binaries for {', '.join(written.platforms) or 'no system'}")
     step_s = written.internal_step_s
-    stable = f"; stable up to {1e3 * STABLE / written.largest_pole_rad_s:.2g} ms" if written.largest_pole_rad_s else ""
+    stable = (
+        f"; stable up to {plain_letters(rounded(1e3 * STABLE / written.largest_pole_rad_s, 2))} ms"
+        if written.largest_pole_rad_s
+        else ""
+    )
     say(f"internal step {1e3 * step_s:g} ms{stable}")
     if written.model_exchange:
         say("choose co-simulation in your tool: in model exchange the tool's own solver must stop at every event")
