@@ -38,7 +38,7 @@ _UNITS = {
     "N m/rpm": "N·m/rpm",
     "N m/(rpm s)": "N·m/(rpm·s)",
     "1/s": "s⁻¹",
-    "-": "",,
+    "-": "",
 }
 _RAISED = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
 _LOWERED = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻", "0123456789-")

@@ -109,11 +109,8 @@ def _print(written: WrittenFmu) -> None:
     kinds = "co-simulation and model exchange" if written.model_exchange else "co-simulation only"
     say(f"FMI {written.version}.0, {kinds}, sources, binaries for {', '.join(written.platforms) or 'no system'}")
     step_s = written.internal_step_s
-    stable = (
-        f"; stable up to {plain_letters(rounded(1e3 * STABLE / written.largest_pole_rad_s, 2))} ms"
-        if written.largest_pole_rad_s
-        else ""
-    )
+    largest_ms = 1e3 * STABLE / written.largest_pole_rad_s if written.largest_pole_rad_s else 0.0
+    stable = f"; stable up to {plain_letters(rounded(largest_ms, 2))} ms" if largest_ms else ""
     say(f"internal step {1e3 * step_s:g} ms{stable}")
     if written.model_exchange:
         say("choose co-simulation in your tool: in model exchange the tool's own solver must stop at every event")
