@@ -286,12 +286,14 @@ def test_packets_of_two_engines_are_put_together(tmp_path, has_dbc):
     with can.Logger(tmp_path / "log.blf") as logger:
         for t, row in frames:
             logger.on_message_received(can.Message(timestamp=1.78e9 + t, arbitration_id=0x09F20103, data=row))
-    (tmp_path / "ship.dbc").write_text(
+    apart = tmp_path / "apart"
+    apart.mkdir()
+    (apart / "ship.dbc").write_text(
         f'VERSION ""\nBU_: X\nBO_ {0x09F20103 | 1 << 31} D: 26 X\n SG_ Instance : 0|8@1+ (1,0) [0|252] "" X\n'
         ' SG_ Fuel_rate : 72|16@1- (0.1,0) [0|0] "L/h" X\n SG_ Percent_engine_torque : 200|8@1- (1,0) [0|0] "%" X\n',
         encoding="utf-8",
     )
-    space, hints = ("_", {"dbc": tmp_path / "ship.dbc"}) if has_dbc else (" ", {})
+    space, hints = ("_", {"dbc": apart / "ship.dbc"}) if has_dbc else (" ", {})
     with read_recording(tmp_path / "log.blf", **hints) as recording:
         fuel = recording.channel(f"Fuel{space}rate, instance 1")
         assert fuel.unit == "L/h"

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import product
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -39,16 +40,17 @@ class RecordedDrive:
     """Channels on other clocks, or without a number."""
 
 
-def recorded_drive(recording: Path) -> RecordedDrive:
+def recorded_drive(recording: Path, **hints: Any) -> RecordedDrive:
     """Return a drive file with the channels of a recording.
 
     Where the channels are the signals of a shipped structure, each told by its unit, as voltage, current and speed are
     those of a motor, it is named. Else which channel is the input its name or its steps tell: a guess, as the lag from
     it to each other channel is.
 
-    Raises RecordingError if the recording has fewer than two channels on one clock.
+    ``hints``: what the recording does not say itself, as `read_recording` takes it. Raises RecordingError if the
+    recording has fewer than two channels on one clock.
     """
-    with read_recording(recording) as opened:
+    with read_recording(recording, **hints) as opened:
         channels = list(opened.channels.values())
         begun = {one.name: one.values(0, min(one.count, _MOST_SAMPLES)) for one in channels}
         values = {name: one for name, one in begun.items() if np.isfinite(one).any()}

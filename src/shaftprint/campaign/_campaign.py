@@ -28,6 +28,8 @@ class Campaign(Shown, Settings):
     """Name of the test."""
     place: Name | None = None
     """Where it is made, such as the harbour; shown on the first page of the report."""
+    read_off: Name | None = None
+    """File name of the recording whose set point the tests were read off; nothing of a test that was planned."""
     duration_s: PositiveNumber
     """Length of the recording that it needs [s]."""
     offset_v: Number
@@ -100,6 +102,10 @@ class Campaign(Shown, Settings):
         """Set points about which something that repeats itself is measured [V]: of the legs, and of the sines."""
         of_sines = {self.offset_v} if self.sines else set()
         return frozenset({leg.level_v for leg in self.legs} | of_sines)
+
+    def is_read_off(self, recording: Path) -> bool:
+        """Return whether the tests were read off a recording, in whichever format it is now."""
+        return self.read_off is not None and Path(self.read_off).stem == recording.stem
 
     def beside(self, leg: Leg) -> tuple[Multisine, ...]:
         """Return the multisines that move something else in the periods of a leg."""

@@ -16,6 +16,10 @@ class Pulses:
     """Pulses in one turn, or a wheel with gaps or further teeth such as ``60-2``."""
 
 
+ASSUMED_PULSES = Pulses(channel="PTM_e")
+"""The pick-up on the engine that is assumed where no speed is stated at all."""
+
+
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Gauge:
     """The torque gauge on the propeller shaft."""

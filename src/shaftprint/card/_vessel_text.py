@@ -3,7 +3,7 @@
 import math
 from collections.abc import Iterable
 
-from shaftprint.card._card import Card, Gauge, Pulses
+from shaftprint.card._card import ASSUMED_PULSES, Card, Gauge, Pulses
 from shaftprint.card._derived import (
     EFFICIENCY,
     Derived,
@@ -139,7 +139,7 @@ def _sensors(card: Card) -> Iterable[str]:
     of_shaft: tuple[Pulses | str, ...] = (*card.shaft_pulses, *card.shaft_speeds)
     if not (of_engine or of_shaft):
         lines.append("# No channel was named: one strip on the engine is assumed.")
-        of_engine = (Pulses(channel="PTM_e"),)
+        of_engine = (ASSUMED_PULSES,)
     for sensors, name, shaft in ((of_engine, "n_e", "engine"), (of_shaft, "n_s", "propeller")):
         for number, sensor in enumerate(sensors, start=1):
             lines += _speed(sensor, f"{name}{number if number > 1 else ''}", shaft)

@@ -181,6 +181,14 @@ def stated_of(said: Mapping[str, Any]) -> dict[str, Any]:
     return {field: value for field, value in said.items() if value not in (None, False, ())}
 
 
+def channels_of(said: Mapping[str, Any]) -> set[str]:
+    """Return the channels that the options of a card name."""
+    stated = stated_of(said)
+    names = {stated[field] for field in (f"{_OF_GAUGE}channel", "set_point_channel") if field in stated}
+    names |= {one.channel for field in _PULSES for one in stated.get(field, ())}
+    return names | {name for field in _SPEEDS for name in stated.get(field, ())}
+
+
 def card_of(said: Mapping[str, Any]) -> Card | None:
     """Return the card that the options state; None where there are none.
 

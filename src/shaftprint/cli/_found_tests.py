@@ -21,14 +21,20 @@ with late():
     from shaftprint.signals.excitation._proposed_campaign import proposed_campaign
 
 
-def print_found_tests(found: tuple[FoundTest, ...], campaign: Campaign) -> None:
-    """Print when and how every test was made; where that is other than planned, the lines that fit too."""
+def print_found_tests(found: tuple[FoundTest, ...], campaign: Campaign, recording: Path) -> None:
+    """Print when and how every test was made; where that is other than planned, the lines that fit too.
+
+    ``recording``: the file, off which the campaign may have been read.
+    """
+    same = "read off this recording" if campaign.is_read_off(recording) else "yes"
     columns = (
         *texts("test"),
         *numbers("planned at [s]", "begins at [s]", "phase [deg]", "frequency [Hz]", "amplitude [V]"),
         *texts("as planned"),
     )
-    print_table(Table(title="Tests in the recorded set point", columns=columns, rows=tuple(map(_row, found))))
+    print_table(
+        Table(title="Tests in the recorded set point", columns=columns, rows=tuple(_row(test, same) for test in found))
+    )
     if not any(test.differences for test in found):
         return
     shift_s = common_shift_s(found)
@@ -48,22 +54,23 @@ def print_found_tests(found: tuple[FoundTest, ...], campaign: Campaign) -> None:
         echo()
 
 
-def write_proposal(found: tuple[FoundTest, ...], campaign: Campaign, file: Path) -> None:
+def write_proposal(found: tuple[FoundTest, ...], campaign: Campaign, file: Path, recording: Path) -> None:
     """Write a campaign with its tests where the recorded set point shows them.
 
     ``found``: where they are. ``campaign``: what was asked. ``file``: the campaign file, which must not exist yet.
-    Raises SignalError if the set point shows too little of them.
+    ``recording``: the file that shows them. Raises SignalError if the set point shows too little of them.
     """
     expect_free(file, force=False)
     shift_s = common_shift_s(found)
     moved = f"; all of them {abs(shift_s):.2f} s {'later' if shift_s > 0.0 else 'earlier'}" if shift_s else ""
     remarks = f"{campaign.name}, with its tests at the times that the recorded set point shows{moved}."
-    text = campaign_text(proposed_campaign(found, campaign), remarks=remarks)
+    proposed = proposed_campaign(found, campaign).model_copy(update={"read_off": recording.name})
+    text = campaign_text(proposed, remarks=remarks)
     write_bytes(file, text.encode(), noun="campaign file", error=SettingsError)
     answer(f"{file}: {remarks}\n")
 
 
-def _row(test: FoundTest) -> tuple[str, ...]:
+def _row(test: FoundTest, same: str) -> tuple[str, ...]:
     planned = test.planned
     if not test.is_found:
         return (planned.name, f"{planned.start_s:g}", "not found", "", "", "", "no")
@@ -75,5 +82,5 @@ def _row(test: FoundTest) -> tuple[str, ...]:
         f"{round(test.phase_deg)}" if sine else ("180" if test.is_inverted else "0"),
         f"{test.frequency_hz:.5g}" if sine else "",
         f"{test.amplitude_v:.3g}" if sine else "",
-        "no: " + "; ".join(test.differences) if test.differences else "yes",
+        "no: " + "; ".join(test.differences) if test.differences else same,
     )

@@ -18,8 +18,8 @@ with late():
 _MOST_FILES = 500
 # Bytes of a text in which somebody notes something; a test is longer in any format.
 _NOTES = 10_000
-_SETTINGS, _TRUTH = ".toml", ".truth.json"
-_KINDS = ("vessels", "campaigns", "drives", "recordings", "results", "others")
+_SETTINGS, _TRUTH, _DATABASE = ".toml", ".truth.json", ".dbc"
+_KINDS = ("vessels", "campaigns", "drives", "recordings", "databases", "results", "others")
 # read as text or by chance, but no recording of a ship
 _NO_RECORDING = frozenset((_SETTINGS, ".json", ".html", ".md", ".py", ".pdf", ".svg", ".png", ".db", ".zip"))
 
@@ -32,6 +32,8 @@ class LyingFiles:
     campaigns: tuple[Path, ...] = ()
     drives: tuple[Path, ...] = ()
     recordings: tuple[Path, ...] = ()
+    databases: tuple[Path, ...] = ()
+    """What says what frames of a CAN bus hold."""
     results: tuple[Path, ...] = ()
     others: tuple[Path, ...] = ()
     """Files that are none of these."""
@@ -61,6 +63,8 @@ def _of(path: Path) -> Iterator[tuple[str, Path]]:
     if ending == _SETTINGS:
         kind = kind_of_file(path)
         yield f"{kind}s" if kind in ("vessel", "campaign", "drive") else "others", path
+    elif ending == _DATABASE:
+        yield "databases", path
     elif ending not in _NO_RECORDING and _is_recording(path):
         yield "recordings", path
     elif not path.name.lower().endswith(_TRUTH):

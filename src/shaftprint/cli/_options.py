@@ -1,6 +1,6 @@
 """Options that several commands have: vessel, campaign, and what a recording does not say itself."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -80,9 +80,22 @@ READING_SECTION = {
 """The options of ``reading_options`` in the help of a command that has its options in sections."""
 
 
+READING_BESIDE_CARD = {
+    "What a recording does not say itself, beside --sample-rate": READING_SECTION["What the file does not say itself"][
+        1:
+    ],
+}
+"""The options of ``further_reading_options`` in the help of a command that has those of a card too."""
+
+
 def reading_options(command: Callable[..., Any]) -> Callable[..., Any]:
     """Add the options that say what a file does not say itself: its rate, its columns, its letters, its messages."""
     rate = click.option("--sample-rate", type=float, help="Samples a second, where the file has no clock [Hz].")
+    return rate(further_reading_options(command))
+
+
+def further_reading_options(command: Callable[..., Any]) -> Callable[..., Any]:
+    """Add the same without the rate, which a card has too."""
     time_unit = click.option(
         "--time-unit", metavar="UNIT", help="Unit of times whose file gives none: s, ms, us, ns, min, h or days."
     )
@@ -100,7 +113,7 @@ def reading_options(command: Callable[..., Any]) -> Callable[..., Any]:
     interleaved = click.option(
         "--interleaved", type=click.IntRange(min=2), help="Signals that each TDMS channel holds, sample by sample."
     )
-    return rate(time_unit(columns(delimiter(decimal(encoding(dbc(interleaved(command))))))))
+    return time_unit(columns(delimiter(decimal(encoding(dbc(interleaved(command)))))))
 
 
 def output_options(what: str) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
@@ -136,7 +149,21 @@ def hints_of(**said: object) -> dict[str, Any]:
     return {names.get(name, name): value for name, value in said.items() if value is not None}
 
 
+def of_card_and_reading(said: Mapping[str, object]) -> tuple[dict[str, object], dict[str, object]]:
+    """Return the options of a card among those that were given, and those of ``further_reading_options``."""
+    names = [option.removeprefix("--").replace("-", "_") for option in next(iter(READING_BESIDE_CARD.values()))]
+    return (
+        {name: value for name, value in said.items() if name not in names},
+        {name: value for name, value in said.items() if name in names},
+    )
+
+
 def reading_words(**said: object) -> tuple[object, ...]:
     """Return the options of ``reading_options`` as they are typed, without those that were not said."""
     given = ((f"--{name.replace('_', '-')}", value) for name, value in said.items() if value is not None)
-    return tuple(word for option in given for word in option)
+    return tuple(word for name, value in given for word in (name, _typed(value)))
+
+
+def _typed(value: object) -> object:
+    """Return a value as it is typed: 2000 for the rate 2000.0."""
+    return f"{value:.12g}" if isinstance(value, float) else value

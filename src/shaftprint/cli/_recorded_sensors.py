@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -24,20 +24,40 @@ _LEVER_UNITS = ("V", "mA", "%", "rpm", "counts")
 _TORQUE_UNITS = ("V", "N m", "kN m")
 
 
-def recorded_sensors(recording: Path) -> dict[str, Any]:
-    """Return what names and units of a recording say of its sensors, by the names of the options of a card.
+@dataclass(frozen=True, kw_only=True, slots=True)
+class RecordedSensors:
+    """What a recording says of the sensors."""
 
-    Nothing where the file cannot be read. Pick-ups have one pulse a turn, for nothing says how many.
+    options: Mapping[str, Any]
+    """What names and units say, by the names of the options of a card; pick-ups have one pulse a turn, for nothing
+    says how many."""
+    channels: tuple[str, ...] = ()
+    """All channels; none where the file cannot be read."""
+    remarks: tuple[str, ...] = ()
+    """What was taken though the file does not say it, a sentence each."""
+    refusal: str = ""
+    """Why the file cannot be read; empty where it can."""
+
+    @property
+    def is_of_no_ship(self) -> bool:
+        """Whether there is neither a shaft torque nor a set point of a lever that its names would say."""
+        return not self.refusal and not {"gauge_channel", "set_point_channel"} & set(self.options)
+
+
+def recorded_sensors(recording: Path, hints: Mapping[str, Any]) -> RecordedSensors:
+    """Return what names and units of a recording say of its sensors.
+
+    ``hints``: what the file does not say itself, as `read_recording` takes it.
     """
     try:
         with progress(hidden=False) as steps:
             steps.begin(f"Reading {recording.name}")
-            opened = read_recording(recording)
+            opened = read_recording(recording, **hints)
         with opened:
             channels = [_begin(channel) for channel in opened.channels.values()]
             levels = _levels.levels_of(channels)
-    except ShaftprintError:
-        return {}
+    except ShaftprintError as error:
+        return RecordedSensors(options={}, refusal=str(error))
     seen = [
         Seen(channel=channel, is_pulses=level.is_pulses, is_empty=level.missing == channel.count)
         for channel, level in zip(channels, levels, strict=True)
@@ -60,7 +80,7 @@ def recorded_sensors(recording: Path) -> dict[str, Any]:
     found |= {field: tuple(sensors) for field, sensors in speeds.items()}
     if found:
         found["sample_rate_hz"] = max(channel.rate_hz for channel in channels)
-    return found
+    return RecordedSensors(options=found, channels=tuple(channel.name for channel in channels), remarks=opened.remarks)
 
 
 def with_recorded(said: Mapping[str, Any], recorded: Mapping[str, Any], file: Path) -> dict[str, Any]:
@@ -85,11 +105,6 @@ def with_recorded(said: Mapping[str, Any], recorded: Mapping[str, Any], file: Pa
     if sentences:
         answer(f"Taken from {file.name}: {'; '.join(sentences)}.")
     return {**taken, **answers}
-
-
-def is_of_no_ship(recorded: Mapping[str, Any]) -> bool:
-    """Return whether a recording has neither a shaft torque nor a set point of a lever that its names would say."""
-    return "gauge_channel" not in recorded and "set_point_channel" not in recorded
 
 
 _USES = {"set_point_channel": "set point", "gauge_channel": "shaft torque"}

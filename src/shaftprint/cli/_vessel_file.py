@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection, Sequence
 from pathlib import Path
 
 from shaftprint.cli._terminal import answer, print_findings
 from shaftprint.late import late
 
 with late():
-    from shaftprint.card._card import Card
+    from shaftprint.card._card import ASSUMED_PULSES, Card
     from shaftprint.card._disagreements import disagreements
     from shaftprint.card._write import write_vessel
     from shaftprint.vessel._vessel import Vessel, load_vessel
+
+_SHOWN = 8
 
 
 def print_disagreements(vessel: Vessel, file: str, *, is_recorded: bool = False) -> None:
@@ -36,9 +39,41 @@ def checked_vessel(file: str) -> Vessel:
     return vessel
 
 
-def write_from_card(card: Card, path: Path) -> None:
-    """Write the vessel file that follows from a card; whether it agrees with itself is said."""
+def write_from_card(
+    card: Card, path: Path, *, stated: Collection[str] = (), recording: Path | None = None, channels: Sequence[str] = ()
+) -> None:
+    """Write the vessel file that follows from a card; whether it agrees with itself, and what it assumes, is said.
+
+    ``stated``: channels that were named for it. ``recording``, ``channels``: the recording that is there, and what it
+    has; nothing where it cannot be read.
+    """
     print_disagreements(write_vessel(card, path), str(path))
     answer(
         f"{path}: a vessel file from the main particulars; its comments say what was derived and what is usual only."
     )
+    sensors = _sensors_of(card)
+    known = channels or stated
+    open_ones = [f"{channel} as {use}" for channel, use in sensors if channel not in known]
+    if not open_ones:
+        return
+    if recording is not None and channels:
+        found = f"{recording} has no such channel, but {', '.join(channels[:_SHOWN])}"
+        found += f" and {len(channels) - _SHOWN} more" if len(channels) > _SHOWN else ""
+    else:
+        found = "no recording was read that has them" if recording is None else f"{recording} was not read"
+    sentence = f"{'; '.join(open_ones)}: {found}. Put the names of your logger, with their units, into {path}."
+    print_findings("Sensors to be filled in", [sentence], is_answer=True)
+
+
+def _sensors_of(card: Card) -> list[tuple[str, str]]:
+    """Return the channel of each sensor that is written, and what it is used for."""
+    speeds = [
+        *(one.channel for one in (*card.engine_pulses, *card.shaft_pulses)),
+        *card.engine_speeds,
+        *card.shaft_speeds,
+    ]
+    return [
+        *((channel, "speed") for channel in speeds or [ASSUMED_PULSES.channel]),
+        (card.gauge.channel, "shaft torque"),
+        (card.set_point_channel, "set point"),
+    ]

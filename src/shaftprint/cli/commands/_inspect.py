@@ -11,7 +11,7 @@ import click
 from shaftprint.cli._found_tests import print_found_tests, write_proposal
 from shaftprint.cli._inspect_headline import headline, is_good_enough, lines_of, lost_parts, of_propeller
 from shaftprint.cli._limit_uses import print_limit_uses
-from shaftprint.cli._next import VESSEL_FILE, free, print_next, print_steps, read_by_all, vessel_file_near
+from shaftprint.cli._next import VESSEL_FILE, free, print_next, vessel_file_near
 from shaftprint.cli._option_sections import SectionedCommand
 from shaftprint.cli._options import NAMES, READING_SECTION, hints_of, reading_options, reading_words
 from shaftprint.cli._signal_tables import print_lines, print_signals, sensor_row
@@ -108,9 +108,9 @@ def command(
         print_tables([clock_map_table(clocks)])
         _print_sensors(reports)
         if test is not None and output is not None:
-            write_proposal(test.tests, test.planned, output)
+            write_proposal(test.tests, test.planned, output, recording)
         if test is not None:
-            _print_test(test)
+            _print_test(test, recording)
     _print_next(recording, reading, ("--vessel", vessel), campaign, output, test, good=good)
     # with the campaign as recorded what was asked for is there
     if test is not None and test.refusal is not None and output is None:
@@ -123,11 +123,9 @@ def _first_step(recording: Path, reading: tuple[object, ...], seen: Sequence[See
     if near is not None:
         return ("inspect", recording, *reading, "--vessel", near)
     if not {"set_point", "shaft_torque"} & set(uses_of(seen).values()):
-        return ("new", "drive", "--from", recording, "-o", free(f"{recording.stem}.toml"))
-    # `start` reads the file as it stands, and only where it lies
-    is_read_alone = not reading and recording.parent.is_dir()
+        return ("new", "drive", "--from", recording, *reading, "-o", free(f"{recording.stem}.toml"))
     at = () if recording.parent == Path() else (recording.parent,)
-    return ("start", *at) if is_read_alone else ("new", "vessel", free(VESSEL_FILE))
+    return ("start", *at, *reading) if recording.parent.is_dir() else ("new", "vessel", free(VESSEL_FILE))
 
 
 def _print_next(
@@ -143,8 +141,7 @@ def _print_next(
     """Print the next command; none where something has to be mended, or the recording made anew."""
     files = (recording, *reading, *vessel)
     if test is None or campaign is None:
-        readable, steps = read_by_all(recording, reading)
-        print_steps(*steps, ("new", "campaign", free("campaign.toml"), "--from", readable, *vessel))
+        print_next("new", "campaign", free("campaign.toml"), "--from", recording, *reading, *vessel)
     elif output is not None:
         print_next("inspect", *files, "--campaign", output)
     elif any(one.is_found and one.differences for one in test.tests):
@@ -363,9 +360,9 @@ def _print_lines(spectra: Spectra, legs: Sequence[LegMeasurement]) -> None:
             print_lines(leg.spectra)
 
 
-def _print_test(test: _Test) -> None:
+def _print_test(test: _Test, recording: Path) -> None:
     if test.tests:
-        print_found_tests(test.tests, test.planned)
+        print_found_tests(test.tests, test.planned, recording)
     if test.signals is None or test.spectra is None:
         return
     print_signals(test.signals)

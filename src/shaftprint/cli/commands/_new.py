@@ -4,14 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 import click
 
-from shaftprint.cli._card_options import CARD_SECTIONS, card_of, card_options
+from shaftprint.cli._card_options import CARD_SECTIONS, card_of, card_options, channels_of
 from shaftprint.cli._next import free, plan_words, print_next
 from shaftprint.cli._option_sections import SectionedCommand
-from shaftprint.cli._options import NAMES
+from shaftprint.cli._options import (
+    NAMES,
+    READING_BESIDE_CARD,
+    further_reading_options,
+    hints_of,
+    of_card_and_reading,
+    reading_words,
+)
 from shaftprint.cli._terminal import answer, echo, print_findings
 from shaftprint.cli._vessel_file import write_from_card
 from shaftprint.cli.output._file_to_write import expect_free
@@ -44,7 +51,7 @@ _CALLED = {"vessel": "a vessel", "campaign": "a campaign", "conditions": "the co
     "new",
     cls=SectionedCommand,
     example="shaftprint new vessel mine.toml\nshaftprint new campaign --test 12min test.toml",
-    sections={"File": ("--output", "--test", "--from", "--vessel"), **CARD_SECTIONS},
+    sections={"File": ("--output", "--test", "--from", "--vessel"), **READING_BESIDE_CARD, **CARD_SECTIONS},
 )
 @click.argument("kind", type=click.Choice(["vessel", "campaign", "conditions", "drive"]))
 @click.argument("file", type=click.Path(path_type=Path), required=False)
@@ -67,6 +74,7 @@ _CALLED = {"vessel": "a vessel", "campaign": "a campaign", "conditions": "the co
 )
 @click.option("-o", "--output", type=click.Path(path_type=Path), help="The file, in place of FILE.")
 @card_options
+@further_reading_options
 def command(
     kind: Literal["vessel", "campaign", "conditions", "drive"],
     file: Path | None,
@@ -90,7 +98,13 @@ def command(
     --diameter-m, --blades, --pitch-ratio and --ratio or --propeller-rpm; the rest is derived or usual, and comments in
     the file say where each number is from and how uncertain it is.
     """
-    card = card_of(said)
+    of_card, reading = of_card_and_reading(said)
+    if recorded is not None and kind != "vessel":
+        reading["sample_rate"] = of_card.pop("sample_rate_hz", None)
+    words, hints = reading_words(**reading), hints_of(**reading)
+    if words and recorded is None:
+        raise click.UsageError(f"{words[0]} says how a recording is read; name it with --from.")
+    card = card_of(of_card)
     path = _path(file, output)
     if test is not None and kind != "campaign":
         raise click.UsageError("--test names a campaign to begin with; write `shaftprint new campaign`.")
@@ -100,20 +114,20 @@ def command(
         if vessel is not None or test is not None or card is not None:
             raise click.UsageError("--from makes a drive file of a recording; write `shaftprint new drive` alone.")
         expect_free(path, force=False)
-        drive = recorded_drive(recorded)
+        drive = recorded_drive(recorded, **hints)
         write_bytes(path, drive.text.encode(), noun="drive file", error=SettingsError)
         answer(f"{path}: {len(drive.channels)} channels of {recorded}; {drive.moved} as the input, by a guess.")
         if drive.left_out:
             echo(f"On other clocks or without a number, and not in the file: {', '.join(drive.left_out)}.")
-        print_next("identify", recorded, "--drive", path, "-o", free("result"))
+        print_next("identify", recorded, *words, "--drive", path, "-o", free("result"))
         return
     if recorded is not None and vessel is not None:
         if kind != "campaign" or test is not None or card is not None:
             raise click.UsageError(
                 "--from makes a campaign file of a recording; write `shaftprint new campaign` alone."
             )
-        write_recorded_campaign(recorded, vessel, path)
-        print_next("inspect", recorded, "--vessel", vessel, "--campaign", path)
+        write_recorded_campaign(recorded, vessel, path, **hints)
+        print_next("inspect", recorded, *words, "--vessel", vessel, "--campaign", path)
         return
     if test is not None and vessel is not None:
         ship = load_vessel(vessel)
@@ -131,7 +145,7 @@ def command(
             "--from needs --vessel, which says what is in the recording, and --vessel --from or --test."
         )
     if card is not None:
-        write_from_card(card, path)
+        write_from_card(card, path, stated=channels_of(of_card))
         has_lever = bool(card.lever.pairs) or card.lever.unit == "rpm"
         print_next(*plan_words(path, has_lever=has_lever, rated_rpm=card.rated_speed_rpm))
         return
@@ -152,20 +166,21 @@ def _path(file: Path | None, output: Path | None) -> Path:
     raise click.UsageError("expected the file to write once: FILE or -o FILE.")
 
 
-def write_recorded_campaign(recording: Path, vessel: str, file: Path) -> None:
+def write_recorded_campaign(recording: Path, vessel: str, file: Path, **hints: Any) -> None:
     """Write the campaign that the set point of a recording shows.
 
     ``recording``, ``vessel``: the recording, and the vessel file that says which channel is the set point. ``file``:
-    the campaign file, which must not exist yet.
+    the campaign file, which must not exist yet. ``hints``: what the recording does not say itself.
     """
     expect_free(file, force=False)
-    with read_recording(recording) as opened:
+    with read_recording(recording, **hints) as opened:
         shown = describe_set_point(opened, load_vessel(vessel))
     lines = [
         f"What the set point of {recording.name} shows. Before settled_s the response to the begin dies out: a guess."
     ]
     lines += [f"Not described: {sentence}" for sentence in _left_out(shown)]
-    text = campaign_text(shown.campaign, remarks="\n".join(lines))
+    campaign = shown.campaign.model_copy(update={"read_off": recording.name})
+    text = campaign_text(campaign, remarks="\n".join(lines))
     write_bytes(file, text.encode(), noun="campaign file", error=SettingsError)
     tests = shown.campaign.summary().facts
     counts = [f"{kind}: {tests[kind]}" for kind in _KINDS if tests.get(kind)]

@@ -10,11 +10,18 @@ from typing import Any
 import click
 
 from shaftprint.cli._after_test import after_test
-from shaftprint.cli._card_options import CARD_SECTIONS, ask_card, card_of, card_options, stated_of
+from shaftprint.cli._card_options import CARD_SECTIONS, ask_card, card_of, card_options, channels_of, stated_of
 from shaftprint.cli._lying_files import LyingFiles, lying_files
 from shaftprint.cli._next import VESSEL_FILE, after_drive, first_plan, free, print_steps
 from shaftprint.cli._option_sections import SectionedCommand
-from shaftprint.cli._recorded_sensors import is_of_no_ship, recorded_sensors, with_recorded
+from shaftprint.cli._options import (
+    READING_BESIDE_CARD,
+    further_reading_options,
+    hints_of,
+    of_card_and_reading,
+    reading_words,
+)
+from shaftprint.cli._recorded_sensors import RecordedSensors, recorded_sensors, with_recorded
 from shaftprint.cli._terminal import answer, echo, print_findings
 from shaftprint.cli._vessel_file import print_disagreements, write_from_card
 from shaftprint.cli.output._fingerprint_file import fingerprint_at
@@ -30,11 +37,12 @@ with late():
     "start",
     cls=SectionedCommand,
     example="shaftprint start",
-    sections=CARD_SECTIONS,
+    sections={**READING_BESIDE_CARD, **CARD_SECTIONS},
 )
 @click.argument("folder", type=click.Path(path_type=Path, file_okay=False, exists=True), default=Path())
 @click.option("--yes", is_flag=True, help="Ask nothing: what is not stated is derived, or taken as usual.")
 @card_options
+@further_reading_options
 def command(folder: Path, *, yes: bool, **said: object) -> None:
     """Say what lies in a folder and what comes next; ask for the ship's main particulars first.
 
@@ -49,19 +57,49 @@ def command(folder: Path, *, yes: bool, **said: object) -> None:
     vessel = lying.vessels[-1] if lying.vessels else None
     if vessel is not None:
         print_disagreements(load_vessel(vessel), str(vessel), is_recorded=bool(lying.recordings))
-    is_said = bool(stated_of(said))
+    of_card, reading = of_card_and_reading(said)
+    is_said = bool(stated_of(of_card))
     if vessel is None:
-        recorded = recorded_sensors(lying.recordings[-1]) if lying.recordings and not lying.drives else {}
-        steps = None if is_said or yes else _of_drive(lying, recorded)
+        recorded, reading = _recorded(lying, reading, of_card.get("sample_rate_hz"))
+        words = reading_words(**reading)
+        steps = None if is_said or yes else _of_drive(lying, recorded, words)
         if steps is not None:
             print_steps(*steps)
             return
-        if yes and is_said and recorded:
-            said = with_recorded(said, recorded, lying.recordings[-1])
-        vessel = _written(folder, said if yes else _asked(said, recorded))
-    elif is_said:
-        answer(f"{vessel} is there: what was stated of the ship was not used. `shaftprint new vessel` writes another.")
-    print_steps(*_next(vessel, lying))
+        if yes and is_said and recorded.options:
+            of_card = with_recorded(of_card, recorded.options, lying.recordings[-1])
+        asked = of_card if yes else _asked(of_card, recorded.options)
+        vessel = _written(folder, asked, lying, recorded)
+        if recorded.refusal:
+            print_steps(("inspect", lying.recordings[-1], *words, "--vessel", vessel))
+            return
+    else:
+        words = reading_words(**reading)
+        if is_said:
+            there = f"{vessel} is there: what was stated of the ship was not used."
+            answer(f"{there} `shaftprint new vessel` writes another.")
+    print_steps(*_next(vessel, lying, words))
+
+
+def _recorded(
+    lying: LyingFiles, reading: dict[str, object], rate_hz: object
+) -> tuple[RecordedSensors, dict[str, object]]:
+    """Return what the newest recording says of the sensors, and the options with which it is read.
+
+    The rate of the card is that of the recording where this has no clock of its own.
+    """
+    if not lying.recordings or lying.drives:
+        return RecordedSensors(options={}), reading
+    file = lying.recordings[-1]
+    recorded = recorded_sensors(file, hints_of(**reading))
+    if recorded.refusal and rate_hz is not None:
+        reading = {**reading, "sample_rate": rate_hz}
+        recorded = recorded_sensors(file, hints_of(**reading))
+    if recorded.refusal:
+        print_findings("The recording cannot be read", [recorded.refusal], is_answer=True)
+    for remark in recorded.remarks:
+        answer(f"{file}: {remark}")
+    return recorded, reading
 
 
 def _print(lying: LyingFiles) -> None:
@@ -70,6 +108,7 @@ def _print(lying: LyingFiles) -> None:
         **({"Drive file": lying.drives} if lying.drives else {}),
         **({} if lying.drives and not lying.vessels else {"Vessel file": lying.vessels, "Campaign": lying.campaigns}),
         "Recording": lying.recordings,
+        **({"DBC file": lying.databases} if lying.databases else {}),
         "Result": lying.results,
     }
     sentences = []
@@ -84,7 +123,9 @@ def _print(lying: LyingFiles) -> None:
     print_findings("What lies here", sentences, is_answer=True)
 
 
-def _of_drive(lying: LyingFiles, recorded: Mapping[str, object]) -> list[tuple[object, ...]] | None:
+def _of_drive(
+    lying: LyingFiles, recorded: RecordedSensors, reading: tuple[object, ...]
+) -> list[tuple[object, ...]] | None:
     """Return the next commands where what lies there is of a drive that is no ship; None of a ship."""
     if not lying.recordings:
         return None
@@ -93,17 +134,17 @@ def _of_drive(lying: LyingFiles, recorded: Mapping[str, object]) -> list[tuple[o
         drive = lying.drives[-1]
         if lying.results and lying.results[-1].stat().st_mtime >= recording.stat().st_mtime:
             return [after_drive(drive, lying.results[-1])]
-        return [("identify", recording, "--drive", drive, "-o", free("result"))]
-    if not is_of_no_ship(recorded):
+        return [("identify", recording, *reading, "--drive", drive, "-o", free("result"))]
+    if not recorded.is_of_no_ship:
         return None
     answer(
         f"{recording} has neither a shaft torque nor a lever by its names and units: if it is of a motor or another "
         "drive, go on as below; if of a ship, state power and speed as well, --power-kw and --rated-rpm.\n"
     )
-    return [("new", "drive", "--from", recording, "-o", free(f"{recording.stem}.toml"))]
+    return [("new", "drive", "--from", recording, *reading, "-o", free(f"{recording.stem}.toml"))]
 
 
-def _written(folder: Path, said: Mapping[str, object]) -> Path:
+def _written(folder: Path, said: Mapping[str, object], lying: LyingFiles, recorded: RecordedSensors) -> Path:
     """Return the vessel file that is written from the card.
 
     Raises click.UsageError if the card lacks what cannot be derived.
@@ -114,7 +155,8 @@ def _written(folder: Path, said: Mapping[str, object]) -> Path:
             "--yes needs the ship's main particulars by options, such as --power-kw 221; see --help."
         )
     path = free(str(folder / VESSEL_FILE))
-    write_from_card(card, path)
+    file = lying.recordings[-1] if lying.recordings else None
+    write_from_card(card, path, stated=channels_of(said), recording=file, channels=recorded.channels)
     return path
 
 
@@ -139,7 +181,7 @@ def _prompt(text: str, kind: Any, default: object) -> object:
     return click.prompt(text, type=kind, default=default, err=True)
 
 
-def _next(vessel: Path, lying: LyingFiles) -> list[tuple[object, ...]]:
+def _next(vessel: Path, lying: LyingFiles, reading: tuple[object, ...]) -> list[tuple[object, ...]]:
     """Return the next commands, the first to be done first."""
     ship = load_vessel(vessel)
     if not lying.recordings:
@@ -147,7 +189,7 @@ def _next(vessel: Path, lying: LyingFiles) -> list[tuple[object, ...]]:
             return [first_plan(vessel, ship)]
         return [("sail", vessel, lying.campaigns[-1], "-o", free("sailed.nc"))]
     recording = lying.recordings[-1]
-    files = (recording, "--vessel", vessel)
+    files = (recording, *reading, "--vessel", vessel)
     if not lying.campaigns:
         return [("new", "campaign", free("campaign.toml"), "--from", *files)]
     # a campaign that was written after the recording is that of the next test
@@ -161,5 +203,7 @@ def _next(vessel: Path, lying: LyingFiles) -> list[tuple[object, ...]]:
         fingerprint = fingerprint_at(result)
     except ShaftprintError:
         return [("show", result)]
-    following = after_test((recording, vessel, campaign), (result, fingerprint), ship, load_campaign(campaign))
+    following = after_test(
+        (recording, vessel, campaign), (result, fingerprint), ship, load_campaign(campaign), reading=reading
+    )
     return following or [("show", result)]

@@ -2,6 +2,7 @@
 
 import contextlib
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
@@ -26,9 +27,9 @@ from shaftprint.recording.readers._mdf_records import MdfRecords, expect_in_reco
 from shaftprint.recording.readers._mdf_unfinished import FINISHED_HERE, bytes_to_read
 from shaftprint.recording.readers._mdf_values import by_formula, is_worked_out_here, numbers_of, unit_of
 from shaftprint.recording.readers._opened import Opened
+from shaftprint.recording.readers.can._beside import Chosen, chosen_database
 from shaftprint.recording.readers.can._channels import Decoded, decoded
-from shaftprint.recording.readers.can._database import Database
-from shaftprint.recording.readers.can._log import add_signals, database_of, expect_known, words_of_beside
+from shaftprint.recording.readers.can._log import add_signals, expect_known
 from shaftprint.units import plain_unit
 
 NAME = "MDF"
@@ -60,7 +61,6 @@ def read(path: Path, **hints: object) -> Recording:
     Raises RecordingError if the file is damaged or no channel can be used.
     """
     rate = rate_hint(path, hints, {"dbc": (str, Path)})
-    database = database_of(path, hints)
     asammdf = library(path, "asammdf", NAME)
     _close_in_silence(asammdf)
     _expect_version(path)
@@ -77,10 +77,10 @@ def read(path: Path, **hints: object) -> Recording:
     opened = Opened(path, closing.close)
     try:
         with told_as_damage(path, NAME):
-            gathered = _gather(path, file, opened, rate, database, closing)
+            gathered, words = _gather(path, file, opened, rate, hints, closing)
             gathered.left_out.update(remarks(said, "asammdf"))
             gathered.remarks.extend([FINISHED_HERE] * is_finished_here)
-            format = f"{NAME} {file.version}{words_of_beside(path, hints)}"
+            format = f"{NAME} {file.version}{words}"
             return gathered.recording_from_its_zero(format, opened.close, _date(file))
     except BaseException:
         opened.close()
@@ -147,12 +147,14 @@ def _gather(
     file: Any,
     opened: Opened,
     rate_hz: float | None,
-    database: Database,
+    hints: Mapping[str, object],
     closing: contextlib.ExitStack,
-) -> Gathered:
-    gathered = Gathered(path=path)
+) -> tuple[Gathered, str]:
+    """Return the channels, and what the name of the format says of the messages of a bus."""
     records = MdfRecords(file)
-    taken = _frames(path, file, records, database)
+    chosen = chosen_database(path, hints, lambda: frames_of(file, records))
+    gathered = Gathered(path=path, remarks=[chosen.remark] if chosen.remark else [])
+    taken = _frames(path, file, records, chosen)
     if taken is not None:
         closing.callback(taken.close)
     gathered.left_out.update(_other_buses(file, is_taken=taken is not None and bool(taken.named)))
@@ -172,25 +174,25 @@ def _gather(
         gathered.add(name, make)
     if taken is not None:
         add_signals(gathered, taken, names[len(places) :])
-    return gathered
+    return gathered, chosen.words
 
 
-def _frames(path: Path, file: Any, records: MdfRecords, database: Database) -> Decoded | None:
+def _frames(path: Path, file: Any, records: MdfRecords, chosen: Chosen) -> Decoded | None:
     """Return what the frames of a CAN bus hold; None where there are none.
 
     Raises RecordingError if there is a DBC file and it knows none of them, or there are none.
     """
     has_frames = any(holds_frames(group) and int(group.channel_group.cycles_nr) for group in file.groups)
-    if not has_frames and not database.name:
+    if not has_frames and not chosen.database.name:
         return None
     if not has_frames:
         raise RecordingError(
-            f"{path}: expected raw messages of a bus for {database.name}, found none; leave the DBC file out."
+            f"{path}: expected raw messages of a bus for {chosen.database.name}, found none; leave the DBC file out."
         )
-    taken = decoded(path, frames_of(file, records), database)
-    if database.name:
+    taken = decoded(path, frames_of(file, records), chosen.database)
+    if chosen.database.name:
         try:
-            expect_known(path, taken, database)
+            expect_known(path, taken, chosen)
         except RecordingError:
             taken.close()
             raise

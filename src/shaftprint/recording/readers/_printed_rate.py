@@ -23,10 +23,10 @@ def rate_of_step(printed: str) -> float | None:
     half = Decimal((0, (5,), int(exponent) - 1))
     # a step may be cut off in place of being rounded
     highest_hz = (1.0 + _ROUNDING) / float(max(step - half, step / 2))
-    return _round_rate(1.0 / float(step + 2 * half), highest_hz, float(1 / step))
+    return roundest_rate(1.0 / float(step + 2 * half), highest_hz, float(1 / step))
 
 
-def _round_rate(lowest_hz: float, highest_hz: float, nearest_hz: float) -> float:
+def roundest_rate(lowest_hz: float, highest_hz: float, nearest_hz: float) -> float:
     """Return the rate with the fewest digits in a range, of several the one nearest to another."""
     for digits in range(1, _MOST_DIGITS):
         unit = 10.0 ** (math.floor(math.log10(highest_hz)) - digits + 1)

@@ -15,7 +15,8 @@ import numpy as np
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import RecordingError
 from shaftprint.recording._channel import Times
-from shaftprint.recording.readers._clock import SampleClock, clock_of_times
+from shaftprint.recording.readers._clock import SampleClock
+from shaftprint.recording.readers._coarse_stamps import clock_of_stamps
 from shaftprint.recording.readers._epoch import LATER_THAN_ANY_TEST_S, reference_s
 from shaftprint.recording.readers._units import seconds_in
 
@@ -38,6 +39,8 @@ _FIRST, _BLOCK = 1001, 1_000_000
 _OF_DAY = 240_000.0
 # Days step by less than this down to 0.6 Hz; seconds that do are those of 50 kHz and more.
 _DAY_STEP, _MAY_BE_DAYS, _DAY_SHARE = 2e-5, 1e4, 1e-3
+# Days that several rows share have four decimals or more.
+_COARSE_DAY_STEP = 1.001e-4
 # No line is sampled faster than this, or slower for a whole file [Hz].
 FASTEST_HZ, SLOWEST_HZ = 1e6, 1e-2
 # Whole numbers that step by so much are rather those of a counter of milliseconds than of a slow clock.
@@ -113,9 +116,10 @@ class TimeScale:
             return lambda start, stop: _of_day_s(read(start, stop)) - self.zero
         return lambda start, stop: (np.asarray(read(start, stop), dtype=np.float64) - self.zero) * self.second
 
-    def clock(self, path: Path, name: str, count: int, read: Times) -> SampleClock:
-        """Return the clock of a column of such numbers, as `clock_of_times`; its start counts from 1970 with them."""
-        return clock_of_times(path, name, count, self.reading(read)).later_by(self.since_1970_s)
+    def clock(self, path: Path, name: str, count: int, read: Times, rate_hz: float | None) -> SampleClock:
+        """Return the clock of a column of such numbers, as `clock_of_stamps`; its start counts from 1970 with them."""
+        clock, _ = clock_of_stamps(path, name, count, self.reading(read), rate_hz=rate_hz)
+        return clock.later_by(self.since_1970_s)
 
 
 def unit_in_name(name: str) -> str | None:
@@ -186,6 +190,11 @@ def time_scale(path: Path, name: str, count: int, read: Times, *, unit: str = ""
     steps = steps[np.isfinite(steps)]
     first = float(numbers[0]) if numbers.size else np.nan
     step = float(np.median(steps)) if steps.size else 0.0
+    is_coarse = step == 0.0
+    if is_coarse:
+        # several rows have one time: what tells the unit is by how much that steps
+        further = np.diff(np.asarray(read(0, min(count, _BLOCK)), dtype=np.float64))
+        step = float(np.median(further[further > 0.0])) if np.any(further > 0.0) else 0.0
     since = _SINCE.fullmatch(unit)
     stated = asked or (since[1] if since else unit)
     if not asked and stated in ("", "s") and _are_of_day(numbers) and _go_on_as_of_day(count, read):
@@ -207,7 +216,8 @@ def time_scale(path: Path, name: str, count: int, read: Times, *, unit: str = ""
             return _since(where, since[2], first, second)
         scale = _in_unit(where, first, second, stated, is_asked=bool(asked))
     else:
-        scale = _by_size(where, first, step, is_whole=bool(np.all(numbers == np.rint(numbers))))
+        is_whole = bool(np.all(numbers == np.rint(numbers)))
+        scale = _by_size(where, first, step, _COARSE_DAY_STEP if is_coarse else _DAY_STEP, is_whole=is_whole)
     return replace(scale, remark=f"{name}: {scale.remark}") if scale.remark else scale
 
 
@@ -267,12 +277,12 @@ def _in_unit(where: str, first: float, second: float, unit: str, *, is_asked: bo
     return TimeScale(second=second)
 
 
-def _by_size(where: str, first: float, step: float, *, is_whole: bool) -> TimeScale:
+def _by_size(where: str, first: float, step: float, day_step: float, *, is_whole: bool) -> TimeScale:
     """Return the scale of numbers without a unit, by their size: seconds, unless they cannot be."""
     for zero in _COUNTERS:
         if zero.lowest <= first <= zero.highest:
             return _scale(zero, first)
-    for zero in _DAYS if 0.0 < step <= _DAY_STEP else ():
+    for zero in _DAYS if 0.0 < step <= day_step else ():
         if zero.lowest <= first <= zero.highest:
             return _scale(zero, first)
     for zero in (_SINCE_1970, _SINCE_1904):

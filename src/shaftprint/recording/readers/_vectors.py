@@ -77,7 +77,7 @@ def gather_vectors(
     def clock_of(time: Vector) -> SampleClock:
         key = (time.group, time.name, time.count)
         if key not in clocks:
-            clocks[key] = _clock_of_times(path, time, gathered.scales, time_unit)
+            clocks[key] = _clock_of_times(path, time, gathered.scales, time_unit, rate_hz)
         return clocks[key]
 
     def make(vector: Vector, name: str) -> Channel:
@@ -199,7 +199,9 @@ def _nearest(vector: Vector, vectors: Iterable[Vector], names: Collection[str]) 
     return []
 
 
-def _clock_of_times(path: Path, time: Vector, scales: list[TimeScale], time_unit: str) -> SampleClock:
+def _clock_of_times(
+    path: Path, time: Vector, scales: list[TimeScale], time_unit: str, rate_hz: float | None
+) -> SampleClock:
     unit = _text(time.attributes, _UNITS) or unit_in_name(time.name) or ""
 
     def read(start: int, stop: int) -> FloatArray:
@@ -213,7 +215,7 @@ def _clock_of_times(path: Path, time: Vector, scales: list[TimeScale], time_unit
             f'{path}, variable {time.name}: expected times since the date of the others, found "{unit}"; write all '
             "since one date."
         )
-    clock = scale.clock(path, f"variable {time.name}", time.count, read)
+    clock = scale.clock(path, f"variable {time.name}", time.count, read, rate_hz)
     scales.append(scale)
     return clock
 

@@ -12,7 +12,7 @@ from typing import Any
 from shaftprint.escape import dbc_text
 from shaftprint.files import written_whole
 from shaftprint.recording.readers._extra import library
-from shaftprint.recording.readers.can._log import dbc_path
+from shaftprint.recording.readers.can._beside import dbc_path
 from shaftprint.recording.writers._bus_messages import Frame, Sent, first_time_s
 from shaftprint.recording.writers._refused import told_as_refused
 

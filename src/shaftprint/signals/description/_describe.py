@@ -4,7 +4,7 @@ import math
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import groupby
+from itertools import groupby, product
 from typing import Any
 
 import numpy as np
@@ -12,6 +12,7 @@ from pydantic import ValidationError
 
 from shaftprint.arrays import FloatArray
 from shaftprint.campaign._campaign import Campaign
+from shaftprint.campaign._moves import length_of_move_s
 from shaftprint.campaign._setpoint import setpoint
 from shaftprint.errors import SignalError
 from shaftprint.signals.description._course import Course, course_of, runs
@@ -157,12 +158,15 @@ class _Fields:
         # where the ramps of one leg find no room, the rest is proposed without it
         tries = [tests, *({**tests, kind: tuple(one for one in tests[kind] if one is not leg)} for kind, leg in legs)]
         faults = ""
-        for tried in tries:
-            for faster in _FASTER:
-                try:
-                    return Campaign.model_validate(values | tried | ramps_made_faster(ramps, faster))
-                except ValidationError as error:
-                    faults = faults or "; ".join(str(fault["msg"]) for fault in error.errors())
+        # a recording that breaks off within a leg lacks the ramp behind it
+        room_s = length_of_move_s(course.range_v, ramp_s=ramps.get("ramp_s"), ramp_v_per_s=ramps.get("ramp_v_per_s"))
+        lengths = ({}, {"duration_s": values["duration_s"] + math.ceil(room_s)}) if ramps else ({},)
+        for tried, length, faster in product(tries, lengths, _FASTER):
+            with_ramps = values | length | tried | ramps_made_faster(ramps, faster)
+            try:
+                return Campaign.model_validate(with_ramps)
+            except ValidationError as error:
+                faults = faults or "; ".join(str(fault["msg"]) for fault in error.errors())
         raise SignalError(f"the set point was taken apart, but not to a campaign that can be sailed: {faults}")
 
     def _ramps(self, pieces: list[Piece | Unexplained]) -> dict[str, float]:

@@ -2,7 +2,6 @@
 
 import contextlib
 import io
-from collections.abc import Mapping
 from pathlib import Path
 
 from shaftprint.errors import RecordingError
@@ -13,9 +12,9 @@ from shaftprint.recording.readers._gather import Gathered, reasons_in_words, uni
 from shaftprint.recording.readers._hints import expect_hints
 from shaftprint.recording.readers._opened import Opened
 from shaftprint.recording.readers._packed import FIRST_BYTES, first_bytes, open_unpacked
+from shaftprint.recording.readers.can._beside import Chosen, chosen_database, dbc_path
 from shaftprint.recording.readers.can._blf import SIGNATURE, open_blf
 from shaftprint.recording.readers.can._channels import Decoded, decoded
-from shaftprint.recording.readers.can._database import Database, known_messages, read_database
 from shaftprint.recording.readers.can._frames import FrameLog
 from shaftprint.recording.readers.can._text_logs import kind_of, open_text_log
 
@@ -36,51 +35,29 @@ def begins_as_log(path: Path, begin: bytes) -> bool:
 def read(path: Path, **hints: object) -> Recording:
     """Open a log of frames; its signals are laid into a temporary file, which is deleted when it is closed.
 
-    Hints: ``dbc``, the DBC or ARXML file that says what the frames hold. Without it that beside the log is taken, its
-    name with ``.dbc`` behind; without one the messages of engines, gearboxes and rudders by SAE J1939 and NMEA 2000.
+    Hints: ``dbc``, the DBC or ARXML file that says what the frames hold. Without it one beside the log is taken, of its
+    name with ``.dbc`` behind, or the only one of the folder that knows its messages; without one the messages of
+    engines, gearboxes and rudders by SAE J1939 and NMEA 2000.
 
     Raises RecordingError if the file is damaged or holds no message that is known.
     """
     expect_hints(path, hints, {"dbc": (str, Path)})
-    database = database_of(path, hints)
     with contextlib.ExitStack() as stack, told_as_damage(path, NAME):
+        chosen = chosen_database(path, hints, lambda: _open(path, stack))
         log = _open(path, stack)
-        taken = decoded(path, log, database)
+        taken = decoded(path, log, chosen.database)
     opened = Opened(path, taken.close)
     try:
-        expect_known(path, taken, database)
-        gathered = Gathered(path=path)
+        expect_known(path, taken, chosen)
+        gathered = Gathered(path=path, remarks=[chosen.remark] if chosen.remark else [])
         add_signals(gathered, taken, unique_names(list(taken.named)))
-        return gathered.recording(f"{NAME} ({log.kind}){words_of_beside(path, hints)}", opened.close, log.began)
+        return gathered.recording(f"{NAME} ({log.kind}){chosen.words}", opened.close, log.began)
     except BaseException:
         opened.close()
         raise
 
 
-def database_of(path: Path, hints: Mapping[str, object]) -> Database:
-    """Return what the hint ``dbc`` names, else what lies beside a log, else the messages that need no file.
-
-    Raises RecordingError if that file cannot be read.
-    """
-    if hints.get("dbc") is not None:
-        return read_database(Path(str(hints["dbc"])))
-    return read_database(dbc_path(path)) if _is_beside(path) else known_messages()
-
-
-def words_of_beside(path: Path, hints: Mapping[str, object]) -> str:
-    """Return what is said where the DBC file beside a log was taken."""
-    return f" with {dbc_path(path).name} beside it" if hints.get("dbc") is None and _is_beside(path) else ""
-
-
-def _is_beside(path: Path) -> bool:
-    try:
-        return dbc_path(path).is_file()
-    except OSError:
-        # with the ending the name is longer than a name may be
-        return False
-
-
-def expect_known(path: Path, taken: Decoded, database: Database) -> None:
+def expect_known(path: Path, taken: Decoded, chosen: Chosen) -> None:
     """Refuse a log of which no message is known.
 
     Raises RecordingError if there is none.
@@ -89,21 +66,18 @@ def expect_known(path: Path, taken: Decoded, database: Database) -> None:
         return
     unknown = reasons_in_words(taken.left_out(()), most=3)
     in_brackets = f" ({unknown})" if unknown else ""
-    if database.name:
+    if chosen.doubt:
+        raise RecordingError(f"{path}: expected one file that says what its frames hold, found that {chosen.doubt}.")
+    if chosen.database.name:
         raise RecordingError(
-            f"{path}: expected messages that {database.name} knows, found none of them in the log{in_brackets}; take "
-            "the DBC file of this ship."
+            f"{path}: expected messages that {chosen.database.name} knows, found none of them in the log{in_brackets}; "
+            "take the DBC file of this ship."
         )
     raise RecordingError(
         f"{path}: expected messages of engine, gearbox or rudder by SAE J1939 or NMEA 2000, found none of them in the "
         f"log{in_brackets}; give the DBC file that says what the frames hold, dbc= (--dbc), "
         f"or lay it beside as {dbc_path(path).name}."
     )
-
-
-def dbc_path(path: Path) -> Path:
-    """Return the DBC file that is written and looked for beside a log."""
-    return path.with_name(f"{path.name}.dbc")
 
 
 def add_signals(gathered: Gathered, taken: Decoded, names: list[str]) -> None:

@@ -32,7 +32,12 @@ from shaftprint.recording.readers.csv._long_form import (
 )
 from shaftprint.recording.readers.csv._scope_export import began_of_export, width_of_export
 from shaftprint.recording.readers.csv._table import Table, find_table
-from shaftprint.recording.readers.csv._time_columns import TimeColumns, expect_no_words_as_times, time_columns
+from shaftprint.recording.readers.csv._time_columns import (
+    TimeColumns,
+    expect_no_words_as_times,
+    time_columns,
+    without_times,
+)
 from shaftprint.recording.readers.csv._time_titles import is_time_title
 from shaftprint.recording.readers.csv._titles import (
     counts_rows,
@@ -179,11 +184,8 @@ def read_header(
     where = f"{path}, line {max(table.first, 1)}"
     if times.place is None and not has_rate and facts.rate_hz is None:
         expect_no_words_as_times(path, table, names)
-        proposal = ",".join(["time [s]", *(name or "-" for name in names[1:])])
-        raise RecordingError(
-            f'{where}: expected a column "time [s]", found "{"; ".join(titles)[:_SHOWN]}"; name the columns, columns='
-            f' (--columns "{proposal[:_SHOWN]}"), or pass sample_rate_hz= (--sample-rate) where there are no times.'
-        )
+        advice = without_times(table, [name for name, _ in parsed])
+        raise RecordingError(f'{where}: expected a column "time [s]", found "{"; ".join(titles)[:_SHOWN]}"; {advice}.')
     names = told_apart(told_apart_by_remarks(titles, names))
     kept, left_out = _chosen(table, names, times)
     if not set(kept) - {times.place} and (has_rate or len(names) > 1):

@@ -12,6 +12,7 @@ from shaftprint.errors import RecordingError
 from shaftprint.recording._channel import Channel, Times
 from shaftprint.recording._spool import Spool
 from shaftprint.recording.readers._clock import SampleClock, clock_of_times, on_clock
+from shaftprint.recording.readers._coarse_stamps import clock_of_stamps, coarse_stamps
 from shaftprint.recording.readers._gather import names_in_words
 from shaftprint.recording.readers._hints import OF_HINT, expect_one_rate
 from shaftprint.recording.readers._time_scale import TimeScale, time_scale
@@ -219,19 +220,17 @@ def _clock(
     if header.time_column is None or read is None:
         return SampleClock(rate_hz=cast(float, rate_hz), start_s=header.start_s), ""
     name = f"column {header.names[header.time_column]}"
-    rows, stamp_s = _rows_of_a_stamp(read, done.count) if header.dated else (1, 0.0)
     stated_hz = header.stated_rate_hz
-    if rows > 1 and rate_hz is None and stated_hz and abs(stated_hz * stamp_s - rows) <= 1.0 + _STATED_AGREEMENT * rows:
-        rate_hz = stated_hz
-    if rows > 1 and rate_hz is None:
-        raise RecordingError(
-            f"{path}, {name}: expected times of the rows, found about {rows} rows with each stamp; pass their rate, "
-            f"sample_rate_hz= (--sample-rate {rows})."
-        )
-    if rows > 1:
-        remark = f"{name}: {rows} rows have each stamp; the rows are placed by the rate of {rate_hz:g} Hz."
-        return SampleClock(rate_hz=cast(float, rate_hz), start_s=0.0), remark
-    clock = clock_of_times(path, name, count, read, joins_doubled=True)
+    if rate_hz is None and stated_hz:
+        stamps = coarse_stamps(count, read) if header.dated else None
+        known_hz = stated_hz if stamps is not None and stamps.allows(stated_hz) else None
+    else:
+        known_hz = rate_hz
+    clock, stamps = clock_of_stamps(path, name, count, read, rate_hz=known_hz, joins_doubled=True)
+    if stamps is not None:
+        lost = "; where they step further, rows are missing" if clock.holes else ""
+        each = f"{round(stamps.rows, 1):g} rows have each stamp"
+        return clock, f"{name}: {each}; the rows are placed by the rate of {clock.rate_hz:g} Hz{lost}."
     if rate_hz is not None:
         expect_one_rate(path, {name: clock.rate_hz, OF_HINT: rate_hz}, _RATE_AGREEMENT)
     if stated_hz and rate_hz is None and abs(clock.rate_hz / stated_hz - 1.0) > _STATED_AGREEMENT:
@@ -256,12 +255,3 @@ def _change_of_hour(name: str, clock: SampleClock, read: Times, done: Unpacked) 
                 "that change to or from summer time; write them in UTC or with their offset."
             )
     return ""
-
-
-def _rows_of_a_stamp(read: Times, count: int) -> tuple[int, float]:
-    """Return how many rows have one stamp, in most places, and by how much the stamps step [s]."""
-    seconds = read(0, min(count, _STAMPS))
-    changes = np.flatnonzero(np.diff(seconds))
-    if 2 * changes.size > seconds.size or changes.size < 2:
-        return 1, 0.0
-    return int(np.median(np.diff(changes))), float(np.median(np.diff(seconds)[changes]))

@@ -15,7 +15,8 @@ from shaftprint.errors import RecordingError
 from shaftprint.escape import printable
 from shaftprint.recording._channel import Channel
 from shaftprint.recording._recording import Recording
-from shaftprint.recording.readers._clock import SampleClock, clock_of_times, on_clock
+from shaftprint.recording.readers._clock import SampleClock, on_clock
+from shaftprint.recording.readers._coarse_stamps import clock_of_stamps
 from shaftprint.recording.readers._damage import expect_plausible, told_as_damage
 from shaftprint.recording.readers._epoch import seconds_from
 from shaftprint.recording.readers._extra import library
@@ -145,7 +146,7 @@ class _Source:
                 def seconds(start: int, stop: int) -> FloatArray:
                     return seconds_from(first, np.asarray(time.read_data(start, stop - start)))
 
-                clock = clock_of_times(self.path, name, len(time), seconds)
+                clock, _ = clock_of_stamps(self.path, name, len(time), seconds, rate_hz=self.rate_hz)
                 return _Group(time=time, clock=clock, began=first)
 
             def numbers(start: int, stop: int) -> FloatArray:
@@ -153,7 +154,7 @@ class _Source:
 
             unit = _unit(time.properties) or unit_in_name(time.name) or ""
             scale = time_scale(self.path, name, len(time), numbers, unit=unit, asked=self.time_unit)
-            clock = clock_of_times(self.path, name, len(time), scale.reading(numbers))
+            clock, _ = clock_of_stamps(self.path, name, len(time), scale.reading(numbers), rate_hz=self.rate_hz)
         except RecordingError as error:
             return error
         self.gathered.scales.append(scale)
