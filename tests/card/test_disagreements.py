@@ -1,12 +1,14 @@
 """A vessel file that contradicts itself, one field wrong at a time; the numbers are worked out by hand."""
 
 import math
+from dataclasses import replace
 
 import pytest
 
 from shaftprint.card import disagreements
 from shaftprint.card._card import Card
 from shaftprint.card._write import write_vessel
+from shaftprint.errors import SettingsError
 from shaftprint.settings import write_template
 from shaftprint.vessel import load_vessel
 
@@ -310,3 +312,94 @@ def test_torque_coefficient_astern_that_disagrees():
     wrong = only(astern(blades=3, astern_torque_coefficient=0.4943), "propeller.astern_torque_coefficient")
     assert wrong.is_contradiction
     assert wrong.expected.startswith("0.04943, as -1725 N m at 1183.8 rpm")
+
+
+OF_ELBE = Card(
+    rated_power_kw=880.0,
+    rated_speed_rpm=1800.0,
+    cylinders=8,
+    diameter_m=1.38,
+    blades=5,
+    pitch_ratio=1.05,
+    gear_ratio=3.6,
+)
+
+
+def with_lines(tmp_path, *changes, **fields):
+    """The vessel file of a card with some of its lines changed."""
+    path = tmp_path / "card.toml"
+    path.unlink(missing_ok=True)
+    write_vessel(replace(OF_ELBE, **fields), path)
+    text = path.read_text(encoding="utf-8")
+    for old, new in changes:
+        assert text.count(old) == 1
+        text = text.replace(old, new)
+    path.write_text(text, encoding="utf-8")
+    return load_vessel(path)
+
+
+def test_a_pitch_in_metres_is_told_with_the_series_that_does_not_hold_it(tmp_path):
+    """1.449 m are 1.05 of 1.38 m; Wageningen B5 was tested from 0.5 to 1.4."""
+    found = only(with_lines(tmp_path, pitch_ratio=1.449), "propeller.pitch_ratio")
+    assert not found.is_contradiction
+    assert "from 0.5 to 1.4, where Wageningen B5-55 was tested" in found.expected
+    assert found.found == "1.449, so that no torque is taken from the series; 1.449 m would be 1.05 of the diameter"
+    assert not [one for one in disagreements(with_lines(tmp_path)) if one.field.startswith("propeller")]
+
+
+def test_blades_that_the_series_was_not_tested_with_are_told(tmp_path):
+    found = only(with_lines(tmp_path, blades=8), "propeller.series")
+    assert "from 2 to 7 blades, found 8" in found.found
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "found", "advice"),
+    [
+        ("inertia_kg_m2 = 14.86 ", "inertia_kg_m2 = 192.6 ", "192.6, which is 14.86 · 3.6²", "the propeller shaft"),
+        ("inertia_kg_m2 = 14.86 ", "inertia_kg_m2 = 1.147 ", "1.147, which is 14.87 / 3.6²", "the propeller shaft"),
+        # 24.355 of the dry propeller and 7.657 of its water are 32.012
+        ("inertia_kg_m2 = 24.355 ", "inertia_kg_m2 = 407.2 ", "414.9, which is 32.01 · 3.6²", "the engine shaft"),
+    ],
+)
+def test_an_inertia_of_the_other_shaft_is_told_by_the_square_of_the_ratio(tmp_path, old, new, found, advice):
+    told = only(with_lines(tmp_path, (old, new)), "inertia")
+    assert told.found == found
+    assert told.advice.startswith(f"is it referred to {advice}? ")
+    assert not told.is_contradiction
+
+
+def test_an_inertia_that_the_ratio_does_not_explain_is_not_held_against_it(tmp_path):
+    for doubled in ("28.0 ", "7.0 ", "90.0 ", "400.0 "):
+        vessel = with_lines(tmp_path, ("inertia_kg_m2 = 14.86 ", f"inertia_kg_m2 = {doubled}"))
+        assert not [one for one in disagreements(vessel) if one.field == "inertia"]
+    # of a ratio of 1.8 the square is within what the estimate may be off
+    vessel = with_lines(tmp_path, ("inertia_kg_m2 = 14.86 ", "inertia_kg_m2 = 48.1 "), gear_ratio=1.8)
+    assert not [one for one in disagreements(vessel) if one.field == "inertia"]
+
+
+def test_a_full_scale_in_kilonewton_metres_is_told_as_such(tmp_path):
+    vessel = with_lines(tmp_path, ("full_scale_nm = 24454.0", "full_scale_nm = 24.454"))
+    assert only(vessel, "sensors.shaft_torque.full_scale_nm").found == (
+        "24.454 N m, which in kN m would be right: 24454 N m"
+    )
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "found"),
+    [
+        (
+            "water_density_kg_m3 = 1025.0",
+            "water_density_kg_m3 = 1.025",
+            r"water_density_kg_m3: expected the density of water, 900 to 1100 kg/m3, found 1\.025; 1\.025 t/m3 are 1025 ",
+        ),
+        ("water_density_kg_m3 = 1025.0", "water_density_kg_m3 = 1200.0", r"900 to 1100 kg/m3, found 1200\."),
+        (
+            "latency_s = 0.005",
+            "latency_s = 5.0",
+            r"shaft_torque\.latency_s: expected a latency of at most 1 s, found 5 s; 5 ms are 0\.005 s",
+        ),
+    ],
+)
+def test_numbers_in_another_unit_are_refused_with_the_number_that_was_meant(tmp_path, old, new, found):
+    with pytest.raises(SettingsError, match=found):
+        with_lines(tmp_path, (old, new))

@@ -214,7 +214,9 @@ def test_a_long_help_has_every_option_once_below_an_example_that_can_be_typed(na
 
 def test_what_is_needed_comes_first(run):
     lines = run("identify", "--help").output.splitlines()
-    needed = lines[lines.index("Needed:") + 1 : lines.index("Test:")]
+    needed = lines[
+        lines.index("Needed (a ship: --vessel and --campaign; a drive: --drive):") + 1 : lines.index("Test:")
+    ]
     assert [line.split()[0] for line in needed if line.startswith("  -")] == [
         "--vessel",
         "--campaign",
@@ -222,6 +224,9 @@ def test_what_is_needed_comes_first(run):
         "--drive",
     ]
     assert "\n\nOptions:" not in run("identify", "--help").output
+    # what a ship alone needs is not called required beside a drive file
+    assert [line for line in needed if "[required]" in line] == [line for line in needed if line.startswith("  -o,")]
+    assert "[required]" in run("sensitivity", "--help").output
 
 
 def test_the_ends_of_a_card_do_not_stand_in_the_help(run):

@@ -108,3 +108,12 @@ def test_a_campaign_that_was_read_off_is_not_told_as_planned(run, here):
     planned = words(run("inspect", "log.csv", *vessel, "--campaign", "5min").output)
     assert "read off" not in planned
     assert planned.count(" yes ") == 2
+
+
+def test_channels_in_another_unit_than_the_vessel_file_has_are_told(run, here):
+    assert run("start", "--yes", *CARD, "--sample-rate", 100).exit_code == 0
+    files = ("log.csv", "--sample-rate", 100, "--vessel", "vessel.toml")
+    assert "Other units" not in run("inspect", *files).output
+    text = (here / "vessel.toml").read_text().replace('unit = "kN m"\nscale_nm_per_unit = 1000.0', 'unit = "N m"')
+    (here / "vessel.toml").write_text(text)
+    assert "Drehmoment: kN m in the recording, N m in the vessel file; converted" in run("inspect", *files).output

@@ -210,6 +210,23 @@ def test_channels_of_the_recording_are_what_is_asked_for(run, here):
     assert (sensors.set_point.channel, sensors.set_point.unit) == ("Hebel", "mA")
 
 
+def test_numbers_may_be_typed_with_their_unit_and_a_speed_may_be_in_rpm(run, here):
+    """An empty answer, another unit and half a blade are told, and asked for again."""
+    card = "Tug\n1325kW\n1600 hp\n1600 rpm\n12\n2.1 m\n1.38\n4\n0.95\n5.2\n"
+    said = run("start", input=f"{card}EngineSpeed=rpm\n\nkN m\n\nmA\n4=500\n\n20=1650\n")
+    assert said.exit_code == 0, said.output
+    vessel = load_vessel(here / "vessel.toml")
+    assert (vessel.engine.rated_power_kw, vessel.propeller.diameter_m, vessel.propeller.blades) == (1325.0, 2.1, 4)
+    (speed,) = vessel.sensors.speed
+    assert (speed.channel, speed.unit) == ("EngineSpeed", "rpm")
+    for told in (
+        "expected a number in rpm, found '1600 hp'",
+        "expected a whole number from 1 to 1000, found '1.38'",
+        "an answer is needed",
+    ):
+        assert said.stderr.count(told) == 1
+
+
 def test_where_nobody_answers_it_is_said_how_to_go_on(run, here):
     refused = run("start", input="Kiel Tug\n")
     assert refused.exit_code == 2
@@ -256,6 +273,13 @@ def test_a_recording_and_a_vessel_file_that_are_swapped_are_told(run, here, sett
         said = run(command, *words, *more)
         assert said.exit_code == 2
         assert "my ship.toml is a vessel file and log.csv is none: they are swapped." in " ".join(said.stderr.split())
+
+
+def test_a_number_of_an_option_may_have_its_unit(run, here):
+    assert run("new", "vessel", "y.toml", "--power-kw", "1325kW", *CARD[2:], "--density", "1000 kg/m3").exit_code == 0
+    assert load_vessel(here / "y.toml").water_density_kg_m3 == 1000.0
+    assert "expected a number in kW, found '1325hp'" in run("new", "vessel", "z.toml", "--power-kw", "1325hp").stderr
+    assert "expected a whole number" in run("new", "vessel", "z.toml", "--cylinders", "1.5").stderr
 
 
 @pytest.mark.parametrize(("typed", "advice"), [("1,325", "write 1.325 with a decimal point, or 1325"), ("5,2", "5.2")])

@@ -236,6 +236,17 @@ def test_dead_and_saturated_gauge(spoiled, vessel, campaign):
     )
 
 
+def test_a_full_scale_in_another_unit_is_no_gap(spoiled, vessel, campaign):
+    """Nearly all samples are beyond 5 N m: that was "a recording with 1 gaps"."""
+    refused(
+        spoiled(),
+        with_gauge(vessel, full_scale_nm=5.0),
+        campaign,
+        r"channel M_s: expected a full scale of the telemetry above the torque, 1\d{3} N m, found 5 N m, which in kN m "
+        r"would be right: 5000 N m; correct sensors\.shaft_torque\.full_scale_nm",
+    )
+
+
 def test_crests_cut_off_below_the_stated_full_scale_are_no_dropouts(spoiled, vessel, campaign):
     refused(
         spoiled(M_s=lambda counts: np.minimum(counts, 13_504)),

@@ -8,7 +8,8 @@ import numpy as np
 from shaftprint.card._disagreement import Disagreement
 from shaftprint.card._engine_load import CURVE_TOLERANCE, engine_load, propeller_law
 from shaftprint.card._first_mode import first_mode
-from shaftprint.card._series import open_water_curve, series_torque, tested_pitch
+from shaftprint.card._referred_inertia import referred_inertia
+from shaftprint.card._series import open_water_curve, series_torque, tested_pitch, why_untested
 from shaftprint.digits import in_nm
 from shaftprint.units import rev_s_from_rpm
 from shaftprint.vessel._vessel import Vessel
@@ -19,6 +20,8 @@ _ROUNDED_RATIO, _WRONG_RATIO = 0.005, 0.02
 # Tips of propellers that are built, at rated speed [m/s]: 20 to 45, with a wide margin.
 _TIP_SPEEDS = (5.0, 100.0)
 _FINDING, _CONTRADICTION = 1.25, 2.0
+# The series of open propellers that is known, by the begin of its name.
+_TESTED = "wageningen"
 _TORQUES = ("working_point.shaft_torque_nm", "propeller.torque_coefficient", "propeller.astern_torque_coefficient")
 
 
@@ -27,10 +30,11 @@ def disagreements(vessel: Vessel, *, is_recorded: bool = False) -> tuple[Disagre
 
     Held against each other are gear ratio, engine and propeller speed; working speed, idle and highest speed; working
     torque, full-load curve, rated power and full scale of the gauge; what a clutch holds and the full-load curve; the
-    power of the propeller at rated speed; working torque, torque coefficient and propeller series; a controllable pitch
-    and the series; underway the speed of the ship, at which thrust is to meet resistance; inertias and stiffnesses of
-    the links; the pulses of a pick-up at the highest speed and the rate of the logger. A torque that is off by a factor
-    of two contradicts the series, by a quarter it is strange; so are pulses that are shown at the working point.
+    power of the propeller at rated speed; working torque, torque coefficient and propeller series; a pitch and what was
+    tested of the series; underway the speed of the ship, at which thrust is to meet resistance; inertias and
+    stiffnesses of the links; inertias and the square of the gear ratio; the pulses of a pick-up at the highest speed
+    and the rate of the logger. A torque that is off by a factor of two contradicts the series, by a quarter it is
+    strange; so are pulses that are shown at the working point.
 
     ``is_recorded``: whether there is a recording, which shows itself how the logger took the pulses.
     """
@@ -44,6 +48,8 @@ def disagreements(vessel: Vessel, *, is_recorded: bool = False) -> tuple[Disagre
         _clutch,
         *of_propeller,
         _pitch,
+        _untested,
+        referred_inertia,
         _full_scale,
         first_mode,
         *(() if is_recorded else (_pulses,)),
@@ -234,6 +240,38 @@ def _thrust(vessel: Vessel) -> Iterator[Disagreement]:
         )
 
 
+def _untested(vessel: Vessel) -> Iterator[Disagreement]:
+    """Tell a propeller that the series it names does not hold: then nothing of that is held against it."""
+    propeller = vessel.propeller
+    if propeller.series is None or vessel.pitch is not None:
+        return
+    tested = tested_pitch(propeller)
+    if tested is None and not propeller.series.lower().startswith(_TESTED):
+        return
+    if tested is None:
+        yield Disagreement(
+            field="propeller.series",
+            expected="blades and area_ratio that it was tested with",
+            found=f"others, so that no torque is taken from it ({why_untested(propeller).rstrip('.')})",
+            advice="correct them, or leave out propeller.series",
+            is_contradiction=False,
+        )
+        return
+    if tested[1] <= propeller.pitch_ratio <= tested[2]:
+        return
+    name, lowest, highest = tested
+    over_diameter = propeller.pitch_ratio / propeller.diameter_m
+    is_in_metres = lowest <= over_diameter <= highest
+    yield Disagreement(
+        field="propeller.pitch_ratio",
+        expected=f"a pitch over diameter from {lowest:g} to {highest:g}, where {name} was tested",
+        found=f"{propeller.pitch_ratio:g}, so that no torque is taken from the series"
+        + (f"; {propeller.pitch_ratio:g} m would be {over_diameter:.4g} of the diameter" if is_in_metres else ""),
+        advice="correct it, or leave out propeller.series",
+        is_contradiction=False,
+    )
+
+
 def _pitch(vessel: Vessel) -> Iterator[Disagreement]:
     """Hold a controllable pitch against the series that is to say what it does to the torque."""
     pitch, propeller = vessel.pitch, vessel.propeller
@@ -271,7 +309,7 @@ def _full_scale(vessel: Vessel) -> Iterator[Disagreement]:
         yield Disagreement(
             field="sensors.shaft_torque.full_scale_nm",
             expected=f"more than the torque of the working point, {torque_nm:g} N m",
-            found=f"{full_scale_nm:g} N m",
+            found=f"{full_scale_nm:g} N m{vessel.sensors.shaft_torque.full_scale_words(torque_nm)}",
             advice="correct it, in N m at the propeller shaft, or the working point",
             is_contradiction=True,
         )

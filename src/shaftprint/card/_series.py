@@ -103,6 +103,20 @@ def tested_pitch(propeller: Propeller) -> tuple[str, float, float] | None:
     return curve.name, curve.lowest_pitch_ratio, curve.highest_pitch_ratio
 
 
+def why_untested(propeller: Propeller) -> str:
+    """Return why the series that a propeller names was not tested for its blades; empty where it was, or none is named.
+
+    The pitch is not looked at.
+    """
+    if propeller.series is None:
+        return ""
+    try:
+        _curve(propeller.series, propeller.blades, propeller.area_ratio)
+    except PropellerError as error:
+        return str(error)
+    return ""
+
+
 def is_in_nozzle(series: str | None) -> bool:
     """Return whether the name of a series says that the propeller turns in a nozzle."""
     return series is not None and any(word in series.lower() for word in _IN_NOZZLE)

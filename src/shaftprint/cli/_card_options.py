@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable, Mapping
 from typing import Any, Literal, cast
 
 import click
 
+from shaftprint.cli._option_sections import comma_words
 from shaftprint.late import late
 
 with late():
@@ -19,27 +21,59 @@ LEAST, MOST = 1e-6, 1e9
 
 
 class _Positive(click.types.FloatParamType):
-    """A number of a ship; the help does not show its ends, which tell nothing."""
+    """A number of a ship, with its unit behind it or without; the help does not show its ends, which tell nothing."""
 
     name = "number"
 
+    def __init__(self, unit: str = "") -> None:
+        self.unit = unit
+
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> float:
-        """Return the number; one that no ship has fails."""
+        """Return the number; one that no ship has, or in another unit, fails."""
+        if isinstance(value, str):
+            value = self._without_unit(value, param, ctx)
         number = float(super().convert(value, param, ctx))
         if not LEAST <= number <= MOST:
             self.fail(f"{number} is not in the range {LEAST:g} to {MOST:g}.", param, ctx)
         return number
 
+    def _without_unit(self, text: str, param: click.Parameter | None, ctx: click.Context | None) -> str:
+        advice = comma_words(text)
+        if advice:
+            self.fail(advice, param, ctx)
+        typed = None if _PLAIN.fullmatch(text.strip()) else _WITH_UNIT.fullmatch(text.strip())
+        if typed is None:
+            return text
+        number, unit = typed.groups()
+        if unit.replace(" ", "").lower() != self.unit.replace(" ", "").lower():
+            self.fail(
+                f"expected {f'a number in {self.unit}' if self.unit else 'a number'}, found '{text}'.", param, ctx
+            )
+        return number
 
+
+class _Whole(click.IntRange):
+    """A number of things."""
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """Return the number; what is not whole fails with what is expected."""
+        if isinstance(value, str) and not value.strip().lstrip("+-").isdecimal():
+            advice = comma_words(value) or f"expected a whole number from {self.min} to {self.max}, found '{value}'."
+            self.fail(advice, param, ctx)
+        return super().convert(value, param, ctx)
+
+
+_NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
+_PLAIN, _WITH_UNIT = re.compile(_NUMBER), re.compile(rf"({_NUMBER})\s*([A-Za-z%°][A-Za-z0-9%°/ ]*)")
 _POSITIVE = _Positive()
-_COUNT = click.IntRange(1, 1000)
+_COUNT = _Whole(1, 1000)
 
 # Fields of a card by their option; the first six and one of the two of the gear are needed.
 _NEEDED: Mapping[str, tuple[str, Any, str]] = {
-    "rated_power_kw": ("--power-kw", _POSITIVE, "Brake power of one engine at rated speed [kW]."),
-    "rated_speed_rpm": ("--rated-rpm", _POSITIVE, "Rated engine speed [rpm]."),
+    "rated_power_kw": ("--power-kw", _Positive("kW"), "Brake power of one engine at rated speed [kW]."),
+    "rated_speed_rpm": ("--rated-rpm", _Positive("rpm"), "Rated engine speed [rpm]."),
     "cylinders": ("--cylinders", _COUNT, "Cylinders of the engine."),
-    "diameter_m": ("--diameter-m", _POSITIVE, "Diameter of the propeller [m]."),
+    "diameter_m": ("--diameter-m", _Positive("m"), "Diameter of the propeller [m]."),
     "blades": ("--blades", _COUNT, "Blades of the propeller."),
     "pitch_ratio": ("--pitch-ratio", _POSITIVE, "Pitch of the propeller over its diameter."),
 }
@@ -47,44 +81,48 @@ _GEAR: Mapping[str, tuple[str, Any, str]] = {
     "gear_ratio": ("--ratio", _POSITIVE, "Engine speed over propeller speed."),
     "propeller_rated_rpm": (
         "--propeller-rpm",
-        _POSITIVE,
+        _Positive("rpm"),
         "Propeller speed at rated engine speed [rpm], instead of --ratio or to check it.",
     ),
 }
 _FURTHER: Mapping[str, tuple[str, Any, str]] = {
     "name": ("--name", click.STRING, "Name of ship and shaft line."),
-    "strokes_per_cycle": ("--strokes", click.IntRange(min=2, max=4), "Strokes in a cycle, 2 or 4; 4 by default."),
+    "strokes_per_cycle": ("--strokes", _Whole(min=2, max=4), "Strokes in a cycle, 2 or 4; 4 by default."),
     "area_ratio": ("--area-ratio", click.FloatRange(0.0, 1.0, min_open=True), "Blade area over disc area."),
     "engine_speed_rpm": (
         "--test-rpm",
-        _POSITIVE,
+        _Positive("rpm"),
         "Engine speed of the test [rpm]; two thirds of rated speed by default.",
     ),
     "shaft_torque_nm": (
         "--torque-nm",
-        _POSITIVE,
+        _Positive("N m"),
         "Torque of the propeller shaft at that speed, where it is known [N m].",
     ),
-    "idle_speed_rpm": ("--idle-rpm", _POSITIVE, "Idle speed [rpm]; a third of rated speed by default."),
+    "idle_speed_rpm": ("--idle-rpm", _Positive("rpm"), "Idle speed [rpm]; a third of rated speed by default."),
     "inertia_upstream_kg_m2": (
         "--inertia-upstream",
-        _POSITIVE,
+        _Positive("kg m2"),
         "Inertia from engine to gauge at the propeller shaft [kg m2].",
     ),
     "inertia_downstream_kg_m2": (
         "--inertia-downstream",
-        _POSITIVE,
+        _Positive("kg m2"),
         "Inertia from gauge to propeller, with its water [kg m2].",
     ),
-    "water_density_kg_m3": ("--density", _POSITIVE, "Density of the water [kg/m3]; 1025 by default, sea water."),
+    "water_density_kg_m3": (
+        "--density",
+        _Positive("kg/m3"),
+        "Density of the water [kg/m3]; 1025 by default, sea water.",
+    ),
     "set_point_channel": ("--set-point", click.STRING, "Channel of the set point; U_setpoint by default."),
-    "sample_rate_hz": ("--sample-rate", _POSITIVE, "Samples a second of the logger [Hz]; 2000 by default."),
+    "sample_rate_hz": ("--sample-rate", _Positive("Hz"), "Samples a second of the logger [Hz]; 2000 by default."),
 }
 _GAUGE: Mapping[str, tuple[str, Any, str]] = {
     "channel": ("--torque", click.STRING, "Channel of the shaft torque; M_s by default."),
     "unit": ("--torque-unit", click.Choice(["V", "N m", "kN m"]), "Unit of that channel; N m by default."),
     "scale_nm_per_unit": ("--torque-scale", click.FLOAT, "Torque for one unit of that channel [N m]; needed for V."),
-    "full_scale_nm": ("--full-scale-nm", _POSITIVE, "Largest torque that the gauge passes on [N m]."),
+    "full_scale_nm": ("--full-scale-nm", _Positive("N m"), "Largest torque that the gauge passes on [N m]."),
 }
 _LEVER = ("V", "mA", "%", "rpm", "counts")
 _FLAGS = {
@@ -131,6 +169,19 @@ def pulses(text: str) -> Pulses:
     if not channel or not wheel:
         raise click.BadParameter(f'expected CHANNEL=PULSES such as PTM_e=1 or gear=60-2, found "{text}".')
     return Pulses(channel=channel, wheel=wheel)
+
+
+def speed(text: str) -> Pulses | str:
+    """Return the pick-up of ``CHANNEL=PULSES``, or the channel in rpm of ``CHANNEL=rpm``.
+
+    Raises click.BadParameter if the text is something else.
+    """
+    channel, _, what = text.rpartition("=")
+    if not channel or not what.strip():
+        raise click.BadParameter(
+            f'expected CHANNEL=PULSES such as PTM_e=1 or gear=60-2, or CHANNEL=rpm of a speed in rpm, found "{text}".'
+        )
+    return channel if what.strip().lower() in _IN_RPM else pulses(text)
 
 
 def lever_pair(text: str) -> tuple[float, float]:
@@ -258,12 +309,14 @@ def _asked_speeds(ask: Callable[[str, Any, Any], Any], shown: Mapping[str, Any])
         return in_rpm
     answers: dict[str, Any] = {}
     first = next((one.channel for field in _PULSES for one in shown.get(field, ())), "PTM_e")
-    answers["engine_pulses"] = (ask("Pick-up on the engine, CHANNEL=PULSES a turn", pulses, f"{first}=1"),)
+    words = "Speed of the engine, CHANNEL=PULSES a turn of a pick-up, or CHANNEL=rpm"
+    typed = ask(words, speed, f"{first}=1")
+    answers["engine_speeds" if isinstance(typed, str) else "engine_pulses"] = (typed,)
     others = [one.channel for one in shown.get("shaft_pulses", ()) if one.channel != first]
     if others:
-        words = f"Pick-up on the propeller shaft, {others[0]}=PULSES a turn, or {_NONE}"
-        typed = ask(words, _or_none(pulses), None)
-        answers |= {} if typed == _NONE else {"shaft_pulses": (typed,)}
+        words = f"Pick-up on the propeller shaft, {others[0]}=PULSES a turn, or =rpm, or {_NONE}"
+        typed = ask(words, _or_none(speed), None)
+        answers |= {} if typed == _NONE else {"shaft_speeds" if isinstance(typed, str) else "shaft_pulses": (typed,)}
     return answers
 
 
@@ -279,6 +332,7 @@ def _asked_lever(ask: Callable[[str, Any, Any], Any], unit: str) -> tuple[tuple[
 
 
 _NONE = "none"
+_IN_RPM = ("rpm", "1/min", "min-1")
 
 
 def _or_none(kind: Callable[[str], Any]) -> Callable[[str], Any]:

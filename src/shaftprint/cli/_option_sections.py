@@ -12,7 +12,20 @@ WIDEST_COLUMN = 30
 """Letters that the names of options have beside their help."""
 
 
-_COMMA = re.compile(r"^'(-?\d+),(\d+)' is not a valid")
+_WITH_COMMA = re.compile(r"(-?\d+),(\d+)")
+_COMMA = re.compile(r"^'(-?\d+,\d+)' is not a valid")
+
+
+def comma_words(text: str) -> str:
+    """Return what to do about a number with a comma; empty where a text is none."""
+    found = _WITH_COMMA.fullmatch(text.strip())
+    if found is None:
+        return ""
+    whole, behind = found.groups()
+    return (
+        f"'{whole},{behind}' has a comma: write {whole}.{behind} with a decimal point, or {whole}{behind} if it stands "
+        "between thousands."
+    )
 
 
 class MissingParameters(click.MissingParameter):
@@ -48,13 +61,7 @@ class SectionedCommand(click.Command):
             found = _COMMA.search(error.message)
             if found is None:
                 raise
-            whole, behind = found.groups()
-            raise click.BadParameter(
-                f"'{whole},{behind}' has a comma: write {whole}.{behind} with a decimal point, or {whole}{behind} if "
-                "it stands between thousands.",
-                ctx,
-                error.param,
-            ) from None
+            raise click.BadParameter(comma_words(found[1]), ctx, error.param) from None
         swapped = swapped_words(self, ctx)
         if swapped:
             raise click.UsageError(swapped, ctx)

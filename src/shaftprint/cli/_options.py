@@ -21,6 +21,10 @@ LIMITED_HELP = (
 NAMES = "a path, or the name of a shipped one such as"
 
 
+NEEDED_BESIDE_DRIVE = "Needed (a ship: --vessel and --campaign; a drive: --drive)"
+"""Heading of what a command needs that takes a ship or a drive."""
+
+
 class SettingsPath(click.types.StringParamType):
     """The path or name of a settings file; where it is missing, how to come by one is said."""
 
@@ -39,6 +43,12 @@ class SettingsPath(click.types.StringParamType):
 
 class NeededOfShips(click.Option):
     """An option that has to be given, but beside ``--drive``."""
+
+    def get_help_record(self, ctx: click.Context) -> tuple[str, str] | None:
+        """Return name and help; beside ``--drive`` the heading says of what it is needed."""
+        record = super().get_help_record(ctx)
+        has_drive = any(one.name == "drive_file" for one in ctx.command.params)
+        return (record[0], record[1].replace("  [required]", "")) if record is not None and has_drive else record
 
     def process_value(self, ctx: click.Context, value: object) -> object:
         """Return the value; None where it is missing beside ``--drive``."""

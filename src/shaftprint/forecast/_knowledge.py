@@ -39,8 +39,8 @@ from shaftprint.vessel._vessel import Vessel
 FIRST_TEST_S = 160.0
 """Length of a first test [s]: two legs of 45 s, with ramps between them and back."""
 _SET_POINT_LIMIT = (
-    "--limit set-point=..., the largest deviation of the set point from the level of a leg, in V or rpm, such as "
-    "--limit set-point=1.0V"
+    "--limit set-point=..., the largest deviation of the set point from the level of a leg, in V, rpm or the unit of "
+    "the lever, such as --limit set-point=1.0V"
 )
 
 
@@ -239,7 +239,7 @@ def _line(stated: _Stated) -> SetPointLine:
 
 
 def _limits(stated: _Stated, line: SetPointLine) -> Limits:
-    set_point_rpm = set_point_rpm_of(stated.limits, line.slope_rpm_per_v)
+    set_point_rpm = set_point_rpm_of(stated.limits, line)
     if set_point_rpm is None:
         raise RequestError(f"expected {_SET_POINT_LIMIT}.")
     limits = limits_from_vessel(stated.vessel, set_point_rpm=set_point_rpm)

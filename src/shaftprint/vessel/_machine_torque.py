@@ -4,7 +4,8 @@ from typing import Literal, Self
 
 from pydantic import model_validator
 
-from shaftprint.settings import Name, NotNegativeNumber, Number, PositiveNumber, Settings
+from shaftprint.settings import Name, Number, PositiveNumber, Settings
+from shaftprint.vessel._latency import LatencySeconds
 from shaftprint.vessel._usual import MACHINE_TORQUE_STD
 
 
@@ -22,7 +23,7 @@ class MachineTorqueSensor(Settings):
     """Torque at the shaft of the machine for one volt [N m/V]."""
     torque_nm_at_zero_v: Number = 0.0
     """Torque at no voltage [N m]."""
-    latency_s: NotNegativeNumber = 0.0
+    latency_s: LatencySeconds = 0.0
     """Time by which the channel is late [s]."""
     scale_std_fraction: PositiveNumber | None = None
     """Relative standard deviation of the torque it shows; see ``scale_std`` where it is not stated."""

@@ -5,6 +5,7 @@ from typing import Literal, Self
 from pydantic import model_validator
 
 from shaftprint.settings import Name, NotNegativeNumber, Number, PositiveNumber, Settings
+from shaftprint.vessel._latency import LatencySeconds
 from shaftprint.vessel._usual import PITCH_SENSOR_STD
 
 
@@ -34,7 +35,7 @@ class PitchSensor(Settings):
     """Pitch over diameter for one volt [1/V]."""
     pitch_ratio_at_zero_v: Number
     """Pitch over diameter at no voltage [-]."""
-    latency_s: NotNegativeNumber = 0.0
+    latency_s: LatencySeconds = 0.0
     """Time by which it is late [s]."""
     scale_std_fraction: PositiveNumber | None = None
     """Relative standard deviation of a change of pitch over the pitch, as it shows them; see ``scale_std`` where it is

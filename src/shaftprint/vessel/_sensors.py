@@ -12,6 +12,7 @@ from shaftprint.arrays import FloatArray
 from shaftprint.local_ids import SPEED
 from shaftprint.settings import Name, NotNegativeNumber, Number, PositiveInteger, PositiveNumber, Settings, names_twice
 from shaftprint.units import ANGLES_REV, M_S_PER_KNOT, REV_S_PER_UNIT
+from shaftprint.vessel._latency import LatencySeconds
 from shaftprint.vessel._local_ids import ChannelName, wrong_local_ids
 from shaftprint.vessel._machine_torque import MachineTorqueSensor
 from shaftprint.vessel._machinery import Machine
@@ -62,9 +63,9 @@ class SpeedSensor(Settings):
     rolls_over_at: PositiveNumber | None = None
     """What an encoder turns until its angle begins again, in the unit of the channel, such as 65536 counts; where not
     given, one turn if the angle stays within it, else it goes on."""
-    latency_s: NotNegativeNumber = 0.0
+    latency_s: LatencySeconds = 0.0
     """Time by which a speed is late, that of an instrument or its filter [s]; none for pulses."""
-    latency_std_s: NotNegativeNumber | None = None
+    latency_std_s: LatencySeconds | None = None
     """Standard deviation of that time where the speed comes in messages [s]; where not stated, that of values which are
     up to a message old."""
     edge: Literal["rising", "falling"] = "rising"
@@ -209,9 +210,9 @@ class RackSensor(Settings):
     """Step of the value [%]."""
     resolution_l_h: PositiveNumber = 0.05
     """Step of a fuel rate [L/h]."""
-    latency_s: NotNegativeNumber
+    latency_s: LatencySeconds
     """Time by which a value is late behind the output of the governor [s]."""
-    latency_std_s: NotNegativeNumber | None = None
+    latency_std_s: LatencySeconds | None = None
     """Standard deviation of the latency [s]."""
 
     @model_validator(mode="after")
@@ -279,9 +280,9 @@ class DemandSensor(Settings):
     """Unit of the channel; its scale does not matter."""
     cycle_s: PositiveNumber
     """Time from one message to the next [s]."""
-    latency_s: NotNegativeNumber
+    latency_s: LatencySeconds
     """Time by which a value is late behind the demand [s]."""
-    latency_std_s: NotNegativeNumber | None = None
+    latency_std_s: LatencySeconds | None = None
     """Standard deviation of the latency [s]."""
 
 

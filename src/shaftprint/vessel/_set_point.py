@@ -9,6 +9,7 @@ from pydantic import Field, model_validator
 
 from shaftprint.arrays import FloatArray
 from shaftprint.settings import Name, NotNegativeNumber, Number, PositiveNumber, Settings
+from shaftprint.vessel._latency import LatencySeconds
 from shaftprint.vessel._plain_unit import PLAIN_UNIT, in_volts_or_milliamperes
 from shaftprint.vessel._usual import BEND_OF_DEMAND_STD, BEND_STD
 
@@ -41,14 +42,14 @@ class SetPointSensor(Settings):
     shape (pairs, 2)."""
     noise_v: NotNegativeNumber | None = None
     """Standard deviation of the logger's noise [V]."""
-    latency_s: NotNegativeNumber | None = None
+    latency_s: LatencySeconds | None = None
     """Time from the voltage to the demanded speed that the engine's control unit has [s]; None where not measured."""
     latency_std_s: PositiveNumber | None = None
     """Standard deviation of that time [s]."""
     bend_std: PositiveNumber | None = None
     """Standard deviation of the share by which the line is steeper at twice the speed of the working point; see
     ``line_bend_std`` where it is not stated."""
-    message_latency_s: NotNegativeNumber = 0.0
+    message_latency_s: LatencySeconds = 0.0
     """Time by which messages are late behind what they show [s]; 0 for samples of a voltage."""
     is_obeyed: bool = False
     """Whether messages are the demand itself, each of which the governor holds until the next, not a report of it."""

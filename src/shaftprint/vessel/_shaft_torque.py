@@ -12,6 +12,7 @@ from shaftprint.arrays import FloatArray
 from shaftprint.settings import Name, NotNegativeNumber, Number, PositiveNumber, Settings
 from shaftprint.units import MILLI, NM_PER_UNIT
 from shaftprint.vessel._current_loop import ALIVE_MA
+from shaftprint.vessel._latency import LatencySeconds
 from shaftprint.vessel._plain_unit import PLAIN_UNIT, as_plain_unit, in_volts_or_milliamperes
 from shaftprint.vessel._usual import GAUGE_SCALE_STD, GAUGE_ZERO_SHARE, LATENCY_STD_S
 
@@ -23,6 +24,8 @@ _PASCAL_PER_GPA = 1e9
 _REACH = {"mA": ALIVE_MA, "V": (-10.5, 10.5), "%": (10.5, 110.0)}
 # A torque this factor around the expected one is the load of another day.
 _NEAR = 1.3
+# A telemetry passes on a little more, or some times as much, as is expected.
+_FITS = (1.0, 20.0)
 # Written with fewer digits and read again, a scale is still that of its shaft.
 _SAME_SCALE = 1e-6
 
@@ -96,9 +99,9 @@ class ShaftTorqueSensor(Settings):
     """Torque that the scaled channel shows when there is none [N m]; it is subtracted."""
     zero_std_nm: NotNegativeNumber | None = None
     """Standard deviation of the zero [N m]; see ``zero_std`` where it is not stated."""
-    latency_s: NotNegativeNumber
+    latency_s: LatencySeconds
     """Time by which the telemetry is late [s]."""
-    latency_std_s: NotNegativeNumber | None = None
+    latency_std_s: LatencySeconds | None = None
     """Standard deviation of the latency [s]; see ``latency_std`` where it is not stated."""
     full_scale_nm: PositiveNumber
     """Largest torque that the telemetry can pass on [N m], either sign."""
@@ -166,6 +169,13 @@ class ShaftTorqueSensor(Settings):
         if self.shaft is not None:
             return f"set reversed = {str(not self.shaft.reversed).lower()} in sensors.shaft_torque.shaft"
         return "turn the sign of scale_nm_per_unit"
+
+    def full_scale_words(self, torque_nm: float) -> str:
+        """Return, in words, that a full scale below a torque is right in kN m; empty where it is not [N m]."""
+        in_kilo = 1000.0 * self.full_scale_nm
+        return (
+            f", which in kN m would be right: {in_kilo:g} N m" if _FITS[0] < in_kilo / abs(torque_nm) < _FITS[1] else ""
+        )
 
     def torque_nm(self, reading: ArrayLike) -> FloatArray:
         """Return the shaft torque [N m] for readings in the channel's unit, of any shape."""

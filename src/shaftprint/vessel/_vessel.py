@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any, Literal, Self
 
 from numpy.typing import ArrayLike
-from pydantic import Field, model_validator
+from pydantic import Field, field_validator, model_validator
 
 from shaftprint.arguments import refusing_none
 from shaftprint.arrays import FloatArray
@@ -29,6 +29,9 @@ from shaftprint.vessel._shaft_machine import ShaftMachine, wrong_shaft_machine
 from shaftprint.vessel._ship import Ship
 from shaftprint.vessel._usual import INERTIA_STD, WASH_SHARE_STD
 from shaftprint.vessel._working_point import WorkingPoint
+
+# Fresh water that is warm to the saltest sea, with a margin [kg/m3].
+_DENSITIES = (900.0, 1100.0)
 
 
 class Vessel(Shown, Settings):
@@ -105,6 +108,18 @@ class Vessel(Shown, Settings):
     @classmethod
     def _shafts_by_one_name(cls, content: Any) -> Any:
         return in_file_words(content)
+
+    @field_validator("water_density_kg_m3")
+    @classmethod
+    def _is_of_water(cls, density: float) -> float:
+        lowest, highest = _DENSITIES
+        if not lowest <= density <= highest:
+            meant = 1000.0 * density
+            hint = f"; {density:g} t/m3 are {meant:g} kg/m3" if lowest <= meant <= highest else ""
+            raise ValueError(
+                f"expected the density of water, {lowest:g} to {highest:g} kg/m3, found {density:g}{hint}."
+            )
+        return density
 
     @model_validator(mode="after")
     def _one_machine_drives(self) -> Self:

@@ -14,6 +14,7 @@ from shaftprint.cli._next import print_steps
 from shaftprint.cli._option_sections import SectionedCommand
 from shaftprint.cli._options import (
     DEFAULT_HELP,
+    NEEDED_BESIDE_DRIVE,
     OWN_FILE_HELP,
     READING_SECTION,
     campaign_option,
@@ -61,7 +62,7 @@ with late():
     cls=SectionedCommand,
     example="shaftprint identify log.csv --vessel mine.toml --campaign test.toml -o result",
     sections={
-        "Needed": ("--vessel", "--campaign", "--output", "--drive"),
+        NEEDED_BESIDE_DRIVE: ("--vessel", "--campaign", "--output", "--drive"),
         "Test": ("--leg", "--starboard", "--tested-at", "--conditions", "--previous"),
         "Model": ("--structure", "--with", "--prior", "--free", "--hold"),
         "Fit": ("--mode", "--unweighted", "--starts", "--seed"),

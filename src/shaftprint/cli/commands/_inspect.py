@@ -105,6 +105,7 @@ def command(
         reports = channel_reports(readings, levels)
         good = _print_answer(test, reports, ship, missing=readings.missing)
         _print_channels(opened, levels)
+        _print_converted(opened, readings)
         print_tables([clock_map_table(clocks)])
         _print_sensors(reports)
         if test is not None and output is not None:
@@ -302,6 +303,18 @@ def _print_channels(opened: Recording, levels_of: Mapping[str, Levels]) -> list[
     if opened.began is not None:
         echo(f"Second 0 is {opened.began.isoformat(sep=' ')} by the logger's clock.\n")
     return seen
+
+
+def _print_converted(opened: Recording, readings: ChannelReadings) -> None:
+    """Print which channels the vessel file has in another unit than the recording."""
+    units = {source.channel.name: source.channel.unit for source in readings.sources}
+    sentences = [
+        f"{name}: {opened.channel(name).unit} in the recording, {unit} in the vessel file; converted"
+        for name, unit in units.items()
+        if name in opened.channels and opened.channel(name).unit not in ("", unit)
+    ]
+    if sentences:
+        print_findings("Other units", sentences)
 
 
 def _jumps(opened: Recording) -> list[str]:

@@ -57,7 +57,7 @@ _OF_SHIPS = (
     cls=SectionedCommand,
     example="shaftprint plan --vessel mine.toml --within 12min --wish t_d=20% --wish K_p=6% -o my_plan",
     sections={
-        "Needed": ("--vessel", "--output", "--drive"),
+        "Needed (a ship: --vessel; a drive: --drive)": ("--vessel", "--output", "--drive"),
         "Test": ("--within", "--wish", "--shortest", "--staircase", "--name"),
         "Lever and limits": ("--rpm-per-volt", "--offset", "--limit", "--speeds"),
         "What is known of the ship": (
@@ -100,7 +100,8 @@ _OF_SHIPS = (
     metavar="NAME=VALUE",
     type=limit_of,
     multiple=True,
-    help=f"Limit, such as set-point=1.0V or rate=600rpm/s; one of {', '.join(STATED_LIMITS)}.",
+    help="Limit, such as set-point=1.0V (or in rpm, or in mA, % or counts of the lever) or rate=600rpm/s; one of "
+    f"{', '.join(STATED_LIMITS)}.",
 )
 @click.option(
     "--speeds",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -178,7 +178,21 @@ def _asked(said: Mapping[str, object], recorded: Mapping[str, object]) -> dict[s
 
 def _prompt(text: str, kind: Any, default: object) -> object:
     """Ask for one answer on the error output, so that the output holds what was found alone."""
-    return click.prompt(text, type=kind, default=default, err=True)
+    if default is not None:
+        return click.prompt(text, type=kind, default=default, err=True)
+    return click.prompt(text, default="", show_default=False, value_proc=_answered(kind), err=True)
+
+
+def _answered(kind: Any) -> Callable[[str], object]:
+    """Return a type of answers that says of an empty one that it is none, where click would ask again for ever."""
+    of_kind = click.types.convert_type(kind)
+
+    def convert(text: str) -> object:
+        if not text.strip():
+            raise click.UsageError("an answer is needed; Ctrl+C ends.")
+        return of_kind(text)
+
+    return convert
 
 
 def _next(vessel: Path, lying: LyingFiles, reading: tuple[object, ...]) -> list[tuple[object, ...]]:

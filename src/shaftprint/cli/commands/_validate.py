@@ -13,7 +13,7 @@ from shaftprint.cli._fit_options import fit_options
 from shaftprint.cli._known_values import named_variable
 from shaftprint.cli._next import free, plan_after, print_next
 from shaftprint.cli._option_sections import SectionedCommand
-from shaftprint.cli._options import DEFAULT_HELP, OWN_FILE_HELP, campaign_option, vessel_option
+from shaftprint.cli._options import DEFAULT_HELP, NEEDED_BESIDE_DRIVE, OWN_FILE_HELP, campaign_option, vessel_option
 from shaftprint.cli._terminal import echo, is_detailed, print_findings, say
 from shaftprint.cli.output._fingerprint_file import fingerprint_at
 from shaftprint.cli.output._json import give
@@ -48,7 +48,7 @@ with late():
     cls=SectionedCommand,
     example="shaftprint validate log.csv --vessel mine.toml --campaign test.toml --fingerprint result",
     sections={
-        "Needed": ("--vessel", "--campaign", "--fingerprint", "--drive"),
+        NEEDED_BESIDE_DRIVE: ("--vessel", "--campaign", "--fingerprint", "--drive"),
         "Which records": ("--record", "--used", "--allow-in-sample"),
         "Model": ("--structure", "--model", "--model-variable", "--linear", "--linear-torque", "--thesis-sets"),
         "Fit, without a fingerprint": (

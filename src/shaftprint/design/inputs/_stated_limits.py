@@ -6,6 +6,8 @@ from typing import Any, Final
 
 from shaftprint.design.inputs._gauge_range import GaugeRange
 from shaftprint.design.inputs._limits import Limits
+from shaftprint.design.inputs._set_point_line import SetPointLine
+from shaftprint.errors import RequestError
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -22,7 +24,9 @@ class LimitKind:
 
 _RPM = {"rpm": 1.0}
 LIMITS: Final[Mapping[str, LimitKind]] = {
-    "set-point": LimitKind(field="", units={"V": 1.0, "rpm": 1.0}, example="set-point=1.0V"),
+    "set-point": LimitKind(
+        field="", units={"V": 1.0, "rpm": 1.0, "mA": 1.0, "%": 1.0, "counts": 1.0}, example="set-point=1.0V"
+    ),
     "rate": LimitKind(field="demand_rate_limit_rpm_per_s", units={"rpm/s": 1.0}, example="rate=600rpm/s"),
     "lowest-speed": LimitKind(field="lowest_speed_rpm", units=_RPM, example="lowest-speed=600rpm"),
     "highest-speed": LimitKind(field="highest_speed_rpm", units=_RPM, example="highest-speed=1700rpm"),
@@ -51,11 +55,26 @@ class StatedLimit:
     """Unit that was typed."""
 
 
-def set_point_rpm_of(stated: Sequence[StatedLimit], slope_rpm_per_v: float) -> float | None:
-    """Return the largest deviation of the set point [rpm]; None where it is not stated."""
+def set_point_rpm_of(stated: Sequence[StatedLimit], line: SetPointLine) -> float | None:
+    """Return the largest deviation of the set point [rpm]; None where it is not stated.
+
+    It may be stated in rpm, in volts of the campaign, or in the unit of the lever. Raises RequestError if the lever has
+    another unit.
+    """
     for limit in stated:
-        if limit.name == "set-point":
-            return limit.value * abs(slope_rpm_per_v) if limit.unit == "V" else limit.value
+        if limit.name != "set-point":
+            continue
+        if limit.unit == "rpm":
+            return limit.value
+        if limit.unit == "V":
+            return limit.value * abs(line.slope_rpm_per_v)
+        if line.lever is None or line.lever.unit != limit.unit:
+            units = dict.fromkeys(("V", "rpm", *(() if line.lever is None else (line.lever.unit,))))
+            raise RequestError(
+                f"expected --limit set-point in {' or '.join(units)}, as "
+                f"sensors.set_point of the vessel file has it, found {limit.value:g} {limit.unit}."
+            )
+        return limit.value * abs(line.lever.v_per_unit * line.slope_rpm_per_v)
     return None
 
 

@@ -123,6 +123,12 @@ def expect_unit(channel: "Channel", vessel: "Vessel") -> None:
             f"channel {channel.name}: expected a torque around {in_nm(expected)} by working_point of the vessel file "
             f"and within the full scale of {in_nm(sensor.full_scale_nm)}, found {in_nm(torque)}; check {_CHECK}."
         )
+    if abs(torque) > sensor.full_scale_nm:
+        raise SignalError(
+            f"channel {channel.name}: expected a full scale of the telemetry above the torque, {in_nm(torque)}, found "
+            f"{sensor.full_scale_nm:g} N m{sensor.full_scale_words(torque)}; correct "
+            "sensors.shaft_torque.full_scale_nm."
+        )
 
 
 def judge_saturation(channel: "Channel", repairs: Sequence[Repair], vessel: "Vessel") -> tuple[str, ...]:
