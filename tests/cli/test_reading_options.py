@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from shaftprint.campaign import load_campaign, setpoint
+from shaftprint.recording import read_recording
 from shaftprint.vessel import load_vessel
 
 RATE_HZ = 100.0
@@ -33,9 +34,7 @@ def test_a_campaign_is_made_of_a_file_without_a_clock(run, here):
     files = ("campaign", "test.toml", "--from", "log.csv", "--vessel", "stan-tug-1205")
     refused = run("new", *files)
     assert refused.exit_code == 1
-    assert "no column ascends as times do: pass the rate of the rows, sample_rate_hz= (--sample-rate)" in words(
-        refused.stderr
-    )
+    assert "no column ascends as times do: pass sample_rate_hz= (--sample-rate)" in words(refused.stderr)
     assert "--columns" not in refused.stderr
     made = run("new", *files, "--sample-rate", 100)
     assert made.exit_code == 0, made.stderr
@@ -117,3 +116,15 @@ def test_channels_in_another_unit_than_the_vessel_file_has_are_told(run, here):
     text = (here / "vessel.toml").read_text().replace('unit = "kN m"\nscale_nm_per_unit = 1000.0', 'unit = "N m"')
     (here / "vessel.toml").write_text(text)
     assert "Drehmoment: kN m in the recording, N m in the vessel file; converted" in run("inspect", *files).output
+
+
+def test_what_is_converted_keeps_the_date_of_its_stamps(run, here):
+    text = (here / "log.csv").read_text().splitlines()
+    rows = [f"30.11.2026 10:15:{number // 100:02d};{row.replace(',', ';')}" for number, row in enumerate(text[1:5001])]
+    (here / "log.csv").write_text("\n".join([f"Zeit;{text[0].replace(',', ';')}", *rows]))
+    assert run("convert", "log.csv", "--sample-rate", 100, "-o", "log.nc").exit_code == 0
+    with read_recording(here / "log.nc") as recording:
+        assert recording.began.isoformat() == "2026-11-30T10:15:00"
+        assert recording.channel("U_setpoint").rate_hz == 100.0
+    refused = run("convert", "log.csv", "--sample-rate", 50, "-o", "other.nc")
+    assert "100 Hz for 4800 rows in 48 s, found 50 Hz" in words(refused.stderr)

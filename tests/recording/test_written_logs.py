@@ -90,6 +90,13 @@ def test_frames_as_another_library_takes_them_apart(source, tmp_path):
     assert {identifier >> 16 & 0xFF for identifier in frames} == {0xFF}
 
 
+def _moved(path):
+    """A file in another folder, where it is beside no log."""
+    folder = path.parent / "elsewhere"
+    folder.mkdir(exist_ok=True)
+    return path.rename(folder / path.name)
+
+
 def test_messages_of_nmea_2000(source, tmp_path):
     remarks = write_by_ending(tmp_path / "log.log", source.channels.values(), format="nmea2000")
     assert "n_e is sent 300 times for 1500 samples, unfiltered." in remarks
@@ -102,10 +109,10 @@ def test_messages_of_nmea_2000(source, tmp_path):
     assert np.max(np.abs(0.25 * np.array(counts) - newest)) <= 0.125
     assert {one.data[0] for one in messages} == {0}
     # without the DBC file the standard says what the speed is
-    (tmp_path / "log.log.dbc").rename(tmp_path / "elsewhere.dbc")
+    elsewhere = _moved(tmp_path / "log.log.dbc")
     with read_recording(tmp_path / "log.log") as recording:
         assert recording.channel("Engine speed").rate_hz == pytest.approx(10.0)
-    with read_recording(tmp_path / "log.log", dbc=tmp_path / "elsewhere.dbc") as recording:
+    with read_recording(tmp_path / "log.log", dbc=elsewhere) as recording:
         assert set(recording.channels) == {"M_s", "U", "n_e", "slow"}
         # ten times a second: every tenth sample
         assert np.array_equal(
@@ -125,8 +132,8 @@ def test_a_fast_packet_of_nmea_2000(tmp_path):
     assert frames[0][1] == 26
     # the last byte of the packet, the sixth of its fourth frame, is the torque: 0 %, then 5 % half a second later
     assert [frames[3][6], frames[7][6]] == [0, 5]
-    (tmp_path / "log.blf.dbc").rename(tmp_path / "elsewhere.dbc")
-    for hints in ({}, {"dbc": tmp_path / "elsewhere.dbc"}):
+    elsewhere = _moved(tmp_path / "log.blf.dbc")
+    for hints in ({}, {"dbc": elsewhere}):
         with read_recording(tmp_path / "log.blf", **hints) as recording:
             channel = recording.channel("percent_torque" if hints else "Percent engine torque")
             assert channel.values(0, channel.count).tolist() == [5.0 * k % 100.0 for k in range(24)]
@@ -230,6 +237,6 @@ def test_a_log_without_a_date_has_none(source, tmp_path):
         # the file beside it is read with it; away from there it is asked for
         with read_recording(tmp_path / name) as recording:
             assert set(recording.channels) == {"slow"}
-        (tmp_path / f"{name}.dbc").rename(tmp_path / "elsewhere.dbc")
+        _moved(tmp_path / f"{name}.dbc")
         with pytest.raises(RecordingError, match="--dbc"):
             read_recording(tmp_path / name)

@@ -28,8 +28,6 @@ class Campaign(Shown, Settings):
     """Name of the test."""
     place: Name | None = None
     """Where it is made, such as the harbour; shown on the first page of the report."""
-    read_off: Name | None = None
-    """File name of the recording whose set point the tests were read off; nothing of a test that was planned."""
     duration_s: PositiveNumber
     """Length of the recording that it needs [s]."""
     offset_v: Number
@@ -48,6 +46,8 @@ class Campaign(Shown, Settings):
     """Time in which the set point goes to a leg, from one to the next, and back to the offset [s]."""
     ramp_v_per_s: PositiveNumber | None = None
     """The same as a rate [V/s]; one of the two is needed where there are legs."""
+    read_off: Name | None = None
+    """File name of the recording whose set point the tests were read off; nothing of a test that was planned."""
     sines: tuple[Sine, ...] = ()
     """Sines of constant frequency."""
     multisines: tuple[Multisine, ...] = ()

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 from shaftprint.card._card import Card
 from shaftprint.card._series import series_torque
+from shaftprint.card._usual_inertia import engine_inertia_kg_m2, propeller_inertia_kg_m2, water_inertia_kg_m2
 from shaftprint.errors import SettingsError
 from shaftprint.units import rev_s_from_rpm
 
@@ -27,11 +28,8 @@ _FULL_LOAD = (
 _IDLE_SHARE, _WORKING_SHARE = 1.0 / 3.0, 2.0 / 3.0
 # Torque without fuel over rated torque, at a third of rated speed and at rated speed.
 _MOTORING_SHARES = (0.19, 0.32)
-# Time for which the energy of crankshaft, flywheel, coupling and gears at rated speed would give rated power [s].
-_ENERGY_S, _ENERGY_STD = 0.3, 0.5
-_BRONZE_KG_M3 = 7600.0
-# Blades of 0.028 D mean thickness that fill 0.7 of it, with a radius of gyration of 0.275 D.
-_BLADE_INERTIA, _BLADE_INERTIA_STD = 0.7 * 0.25 * math.pi * 0.028 * 0.275**2, 0.4
+# Of the usual inertias of engine, blades and water.
+_ENERGY_STD, _BLADE_INERTIA_STD = 0.5, 0.4
 _WATER_STD = 0.3
 _FULL_SCALE_SHARE = 1.5
 # Of a torque by a propeller series at zero advance, and by the propeller law through rated power.
@@ -142,30 +140,28 @@ def motoring(card: Card) -> tuple[tuple[float, float], tuple[float, float]]:
 
 
 def engine_inertia(card: Card) -> Derived:
-    """Return the inertia of engine, flywheel, coupling and gears at the engine shaft [kg m2].
-
-    Its energy at rated speed is 0.3 s of rated power, ``I = 2 P t / omega^2``; 0.29 s for the table of the Stan Tug.
-    """
-    omega = 2.0 * math.pi * rev_s_from_rpm(card.rated_speed_rpm)
-    value = 2.0 * _ENERGY_S * 1000.0 * card.rated_power_kw / omega**2
+    """Return the inertia of engine, flywheel, coupling and gears at the engine shaft [kg m2]."""
+    value = engine_inertia_kg_m2(rated_power_kw=card.rated_power_kw, rated_speed_rpm=card.rated_speed_rpm)
     origin = "usual: at rated speed the energy of 0.3 s of rated power, +/- 50 %"
     return Derived(value=value, origin=origin, std=_ENERGY_STD * value)
 
 
 def propeller_inertia(card: Card) -> Derived:
-    """Return the inertia of the dry propeller [kg m2], blades of bronze, ``0.0012 rho_b D^5 A_E/A_0``."""
-    value = _BLADE_INERTIA * _BRONZE_KG_M3 * card.diameter_m**5 * card.usual_area_ratio
+    """Return the inertia of the dry propeller [kg m2]."""
+    value = propeller_inertia_kg_m2(diameter_m=card.diameter_m, area_ratio=card.usual_area_ratio)
     origin = "bronze blades of usual thickness, +/- 40 %"
     return Derived(value=value, origin=origin, std=_BLADE_INERTIA_STD * value)
 
 
 def water_inertia(card: Card) -> Derived:
-    """Return the inertia of the entrained water [kg m2].
-
-    ``J_w = 0.0703 / (pi Z) (P/D)^2 (A_E/A_0)^2 rho D^5`` (Schwanecke, 1963).
-    """
-    shape = (card.pitch_ratio * card.usual_area_ratio) ** 2 / (math.pi * card.blades)
-    value = 0.0703 * shape * card.water_density_kg_m3 * card.diameter_m**5
+    """Return the inertia of the entrained water [kg m2]."""
+    value = water_inertia_kg_m2(
+        diameter_m=card.diameter_m,
+        area_ratio=card.usual_area_ratio,
+        pitch_ratio=card.pitch_ratio,
+        blades=card.blades,
+        water_density_kg_m3=card.water_density_kg_m3,
+    )
     return Derived(value=value, origin="Schwanecke (1963), +/- 30 %", std=_WATER_STD * value)
 
 

@@ -117,6 +117,13 @@ def why_untested(propeller: Propeller) -> str:
     return ""
 
 
+def usual_area_ratio(propeller: Propeller) -> float:
+    """Return the blade area ratio of a propeller as stated, or as usual with or without a nozzle."""
+    if propeller.area_ratio is not None:
+        return propeller.area_ratio
+    return NOZZLE_AREA_RATIO if is_in_nozzle(propeller.series) else OPEN_AREA_RATIO
+
+
 def is_in_nozzle(series: str | None) -> bool:
     """Return whether the name of a series says that the propeller turns in a nozzle."""
     return series is not None and any(word in series.lower() for word in _IN_NOZZLE)

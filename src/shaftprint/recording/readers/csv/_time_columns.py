@@ -72,17 +72,17 @@ def expect_no_words_as_times(path: Path, table: Table, names: Sequence[str]) -> 
 
 def without_times(table: Table, names: Sequence[str]) -> str:
     """Return what to do about a table in which no column is one of times: only one that ascends may be."""
-    rate = "pass the rate of the rows, sample_rate_hz= (--sample-rate)"
+    rate = "pass sample_rate_hz= (--sample-rate)"
     numbers = [place for place, kind in enumerate(table.kinds) if kind == NUMBER]
     ascending = [place for place in numbers if _ascends([row[place] for row in table.rows])]
     if not ascending:
-        return f"no column ascends as times do: {rate}"
+        return f"no column ascends as times do: {rate}, the rate of the rows"
     place = ascending[0]
     if names[place]:
         proposal = f"{printable(names[place])}=time [s]"
     else:
         proposal = ",".join("time [s]" if at == place else name or "-" for at, name in enumerate(names))
-    return f'where one holds them name it, columns= (--columns "{proposal}"), else {rate}'
+    return f'name the columns, columns= (--columns "{proposal}"), or {rate} where there are no times'
 
 
 def _instead(field: str) -> str:
