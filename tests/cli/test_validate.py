@@ -5,8 +5,14 @@ A saved fingerprint is validated in ``tests/docs``, as the page shows it.
 
 import re
 import shutil
+from dataclasses import dataclass
+from types import SimpleNamespace
 
 import pytest
+
+from shaftprint.catalogue import structure
+from shaftprint.cli.commands._validate import print_validation
+from shaftprint.validation import ValidationSettings
 
 GIVEN = ("--vessel", "stan-tug-1205", "--campaign", "short", "--no-progress")
 
@@ -81,3 +87,52 @@ def test_a_model_is_named_alone(run, recording, demo):
         result = run("validate", recording, *GIVEN, *words)
         assert result.exit_code == 2
         assert said in " ".join(result.stderr.split())
+
+
+MODEL = structure("GAUGE-CLOSED")
+SETTINGS = ValidationSettings()
+
+
+@dataclass(frozen=True)
+class Found:
+    """A validation as it is printed."""
+
+    comparisons: tuple
+    headline: str = "nothing is proved"
+    sentences: tuple = ()
+    findings: tuple = ()
+    model: object = MODEL
+    settings: object = SETTINGS
+
+
+def step_at(second, outcome):
+    number = SimpleNamespace(output="n", unit="%", measured=54.0, measured_std=15.0, expected=70.49, expected_std=0.11)
+    misfit = SimpleNamespace(
+        output="n", error=0.1, error_interval=(0.0, 0.4), p_value=0.4, fit_percent=41.5, fit_ceiling=40.3
+    )
+    misfit.outcome = outcome
+    title = f"step at {second:.1f} s, 6.46 to 6.82 V"
+    return SimpleNamespace(
+        excerpt=SimpleNamespace(record="St1", title=title, step_s=second, in_sample=False),
+        misfits=(misfit,),
+        delays=(SimpleNamespace(delay_s=0.038, std_s=0.089),),
+        step_numbers=[SimpleNamespace(**vars(number), name=name, agrees=True) for name in ("overshoot", "peak time")],
+        outcome=outcome,
+    )
+
+
+def test_excerpts_that_noise_hides_are_counted_and_others_named_in_every_row(capsys, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "100")
+    print_validation(Found(comparisons=(step_at(656.3, "undecided"), step_at(666.3, "passes"))))
+    printed = capsys.readouterr().out
+    assert "1 excerpt of which noise hides how well the model meets it: --verbose." in printed
+    assert "656.3" not in printed
+    heading, _, *rows = printed.partition(" step and number")[2].splitlines()
+    assert heading.split()[-1] == "agree"
+    assert [row.split("   ")[0].strip() for row in rows[:2]] == [
+        "St1, 666.3 s: overshoot of n [%]",
+        "St1, 666.3 s: peak time of n [%]",
+    ]
+    print_validation(Found(comparisons=(step_at(656.3, "undecided"),)))
+    # no table at all
+    assert "\u2500" not in capsys.readouterr().out

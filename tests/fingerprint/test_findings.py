@@ -12,7 +12,6 @@ from shaftprint.fingerprint import physical_quantities
 from shaftprint.fingerprint._findings import findings_of
 from shaftprint.identify import Budget, BudgetRow, Estimate, Prior, Settings, Unweighted, budget
 from shaftprint.reasons import Note
-from shaftprint.report.sections.first_page._cover_of import cover_of
 from shaftprint.vessel import load_vessel
 
 NO_BUDGET = Budget(sources=(), rows=())
@@ -93,11 +92,6 @@ def test_how_a_file_was_read_is_told_and_is_no_remark_on_the_signals(gauge_fit, 
     fingerprint = take(gauge_fit, signals=replace(known_signals(known_working_point()), findings=(read, cut)))
     assert fingerprint.quality.remarks == (cut,)
     assert read in fingerprint.findings
-    (card,) = (card for card in cover_of(fingerprint).cards if card.question == "Were the measurements good?")
-    assert "There is one remark on the signals." in card.sentence
-    fine = take(gauge_fit, signals=replace(known_signals(known_working_point()), findings=(read,)))
-    (card,) = (card for card in cover_of(fine).cards if card.question == "Were the measurements good?")
-    assert (card.state, "remark" in card.sentence) == ("fine", False)
 
 
 def test_unstable_line(gauge_fit, put_by_hand):

@@ -8,13 +8,11 @@ from tests.tug.ideal_signals import simulate_signals
 
 from shaftprint.campaign import load_campaign, setpoint
 from shaftprint.catalogue import structure
-from shaftprint.cli.commands._validate import print_validation
 from shaftprint.errors import ValidationError
 from shaftprint.identify import Prior, Settings, identify
 from shaftprint.signals import Gap
 from shaftprint.signals._orders import TrackedOrder
 from shaftprint.spectra import estimate_response
-from shaftprint.tables._validation import misfit_table, step_number_table
 from shaftprint.tug import Noise, Tug
 from shaftprint.validation import ValidationSettings, validate
 from shaftprint.validation._model import model_of
@@ -309,7 +307,7 @@ def test_records_of_the_identification_are_marked_and_do_not_count(made, campaig
     assert any("was identified from C11, which does not count" in finding for finding in found.findings)
 
 
-def test_where_noise_hides_everything_nothing_is_proved(signals_from, campaign, made, capsys):
+def test_where_noise_hides_everything_nothing_is_proved(signals_from, campaign, made):
     _, values = made
     rng, from_volts, model = np.random.default_rng(1), _volts(campaign), structure("CL4")
     speed, torque = linear_prediction(model, model.vector(values), from_volts, rate_hz=RATE_HZ)[0]
@@ -318,28 +316,6 @@ def test_where_noise_hides_everything_nothing_is_proved(signals_from, campaign, 
     found = validate(model_of(model, values), hidden, campaign, rng=np.random.default_rng(6), records=("C11",))
     assert {c.outcome for c in found.comparisons} == {"undecided"}
     assert found.headline == "nothing is proved: noise hides how well the linear model meets what was recorded"
-    print_validation(found)
-    printed = capsys.readouterr().out
-    hidden = len(found.comparisons)
-    assert f"{hidden} {'excerpts' if hidden > 1 else 'excerpt'} of which noise hides how well" in printed
-    # no row of a table
-    assert "\u2500" not in printed
-
-
-def test_each_row_of_the_tables_says_what_it_is_of(made, campaign, capsys, monkeypatch):
-    """A narrow terminal sets further columns below, with the first of them again."""
-    signals, values = made
-    model = model_of(structure("CL4"), values)
-    found = validate(model, signals, campaign, rng=np.random.default_rng(6), records=("St1",))
-    steps = step_number_table(found)
-    for table in (misfit_table(found), steps):
-        first = [row[0] for row in table.rows]
-        assert len(set(first)) == len(first)
-    assert {"overshoot", "rise time"} <= {row[0].split(": ")[1].partition(" of ")[0] for row in steps.rows}
-    monkeypatch.setenv("COLUMNS", "100")
-    print_validation(found)
-    heading = next(line for line in capsys.readouterr().out.splitlines() if "step and number" in line)
-    assert heading.split()[-1] == "agree"
 
 
 def test_a_structure_is_taken_with_its_default_values(made, campaign):
