@@ -271,7 +271,7 @@ def _data_words(evidence: Evidence) -> str:
         count = "1 record" if len(records) == 1 else f"{len(records)} records"
         low, high = min(percents), max(percents)
         percent = f"{low:.1f}" if low == high else f"{low:.1f} to {high:.1f}"
-        words.append(f"{count} of {sum(part.seconds for part in records):.0f} s (FitPercent {percent} %)")
+        words.append(f"{count} of {sum(part.seconds for part in records):.3g} s (FitPercent {percent} %)")
     return listed(words)
 
 
