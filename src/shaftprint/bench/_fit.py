@@ -100,7 +100,8 @@ def identify_drive(
     Raises
     ------
     IdentificationError
-        If there are too few data, or no start reached a model that stays within bounds.
+        If there are too few data, no start reached a model that stays within bounds, or an output counts the other way
+        round.
     SettingsError
         If the start is known of a state that the equations do not have.
     """

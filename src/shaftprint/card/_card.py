@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Literal
 
-from shaftprint.card._series import NOZZLE_AREA_RATIO, OPEN_AREA_RATIO
+from shaftprint.card._series import usual_area_ratio
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -111,6 +111,4 @@ class Card:
     @property
     def usual_area_ratio(self) -> float:
         """Blade area ratio as stated, or as usual with or without nozzle."""
-        if self.area_ratio is not None:
-            return self.area_ratio
-        return NOZZLE_AREA_RATIO if self.in_nozzle else OPEN_AREA_RATIO
+        return usual_area_ratio(self.area_ratio, self.series)

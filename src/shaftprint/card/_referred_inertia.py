@@ -24,7 +24,7 @@ def referred_inertia(vessel: Vessel) -> Iterator[Disagreement]:
         return
     machine, propeller = vessel.machine, vessel.propeller
     usual_engine = engine_inertia_kg_m2(rated_power_kw=machine.rated_power_kw, rated_speed_rpm=machine.rated_speed_rpm)
-    area_ratio = usual_area_ratio(propeller)
+    area_ratio = usual_area_ratio(propeller.area_ratio, propeller.series)
     usual_propeller = propeller_inertia_kg_m2(diameter_m=propeller.diameter_m, area_ratio=area_ratio)
     usual_propeller += water_inertia_kg_m2(
         diameter_m=propeller.diameter_m,

@@ -117,11 +117,11 @@ def why_untested(propeller: Propeller) -> str:
     return ""
 
 
-def usual_area_ratio(propeller: Propeller) -> float:
-    """Return the blade area ratio of a propeller as stated, or as usual with or without a nozzle."""
-    if propeller.area_ratio is not None:
-        return propeller.area_ratio
-    return NOZZLE_AREA_RATIO if is_in_nozzle(propeller.series) else OPEN_AREA_RATIO
+def usual_area_ratio(area_ratio: float | None, series: str | None) -> float:
+    """Return the blade area ratio as stated, or as usual with or without a nozzle by the name of the series."""
+    if area_ratio is not None:
+        return area_ratio
+    return NOZZLE_AREA_RATIO if is_in_nozzle(series) else OPEN_AREA_RATIO
 
 
 def is_in_nozzle(series: str | None) -> bool:

@@ -10,6 +10,7 @@ from typing import Any, Literal, cast
 import click
 
 from shaftprint.cli._option_sections import comma_words
+from shaftprint.cli._typed_numbers import number_and_unit
 from shaftprint.late import late
 
 with late():
@@ -41,15 +42,14 @@ class _Positive(click.types.FloatParamType):
         advice = comma_words(text)
         if advice:
             self.fail(advice, param, ctx)
-        typed = None if _PLAIN.fullmatch(text.strip()) else _WITH_UNIT.fullmatch(text.strip())
-        if typed is None:
+        number, unit = number_and_unit(text)
+        if number is None or not _UNIT.match(unit):
             return text
-        number, unit = typed.groups()
         if unit.replace(" ", "").lower() != self.unit.replace(" ", "").lower():
             self.fail(
                 f"expected {f'a number in {self.unit}' if self.unit else 'a number'}, found '{text}'.", param, ctx
             )
-        return number
+        return text.strip().removesuffix(unit)
 
 
 class _Whole(click.IntRange):
@@ -63,8 +63,7 @@ class _Whole(click.IntRange):
         return super().convert(value, param, ctx)
 
 
-_NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
-_PLAIN, _WITH_UNIT = re.compile(_NUMBER), re.compile(rf"({_NUMBER})\s*([A-Za-z%°][A-Za-z0-9%°/ ]*)")
+_UNIT = re.compile(r"[A-Za-z%°][A-Za-z0-9%°/ ]*$")
 _POSITIVE = _Positive()
 _COUNT = _Whole(1, 1000)
 

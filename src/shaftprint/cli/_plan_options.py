@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import math
-import re
 from collections.abc import Sequence
 
 import click
 
+from shaftprint.cli._typed_numbers import number_and_unit
 from shaftprint.late import late
 from shaftprint.spelling import meant
 
@@ -17,7 +16,6 @@ with late():
     from shaftprint.design.inputs._wish import Wish
 
 
-_NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*([^\d\s].*?)?\s*$")
 _SECONDS = {"s": 1.0, "sec": 1.0, "min": 60.0, "h": 3600.0}
 _PERCENT = 100.0
 
@@ -28,7 +26,7 @@ def wish_of(text: str) -> tuple[str, float, bool]:
     Raises click.BadParameter if the text is not of that form.
     """
     name, _, stated = text.rpartition("=")
-    number, unit = _number(stated)
+    number, unit = number_and_unit(stated)
     if not name.strip() or number is None or not number > 0.0 or unit not in ("", "%"):
         raise click.BadParameter(
             f"expected a number of the line and how well it is to be known, such as t_d=10% or, in its own unit, "
@@ -60,7 +58,7 @@ def limit_of(text: str) -> StatedLimit:
     if kind is None:
         advice = meant(name.strip(), _stated_limits.LIMITS)
         raise click.BadParameter(f"expected one of {', '.join(_stated_limits.LIMITS)}, found {name.strip()!r}.{advice}")
-    number, unit = _number(stated)
+    number, unit = number_and_unit(stated)
     if number is None or not number > 0.0 or unit not in kind.units:
         units = " or ".join(one or "no unit" for one in kind.units)
         raise click.BadParameter(f"expected a positive number in {units} such as {kind.example}, found {text!r}.")
@@ -72,7 +70,7 @@ def seconds_of(text: str) -> float:
 
     Raises click.BadParameter if the text is not of that form.
     """
-    number, unit = _number(text)
+    number, unit = number_and_unit(text)
     if number is None or not number > 0.0 or unit not in _SECONDS:
         raise click.BadParameter(f"expected a length of time such as 12min, 90s or 1h, found {text!r}.")
     return number * _SECONDS[unit]
@@ -83,16 +81,7 @@ def shares_of(text: str) -> tuple[float, ...]:
 
     Raises click.BadParameter if the text is not of that form.
     """
-    numbers = [_number(one) for one in text.split(",")]
+    numbers = [number_and_unit(one) for one in text.split(",")]
     if any(number is None or not number > 0.0 or unit for number, unit in numbers):
         raise click.BadParameter(f"expected speeds over that of the working point, such as 0.78,1.15, found {text!r}.")
     return tuple(number for number, _ in numbers if number is not None)
-
-
-def _number(text: str) -> tuple[float | None, str]:
-    """Return the finite number at the beginning of a text and the unit behind it; None where there is none."""
-    match = _NUMBER.match(text)
-    if match is None:
-        return None, ""
-    number = float(match[1])
-    return (number if math.isfinite(number) else None), match[2] or ""

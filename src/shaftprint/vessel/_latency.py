@@ -5,16 +5,17 @@ from typing import Annotated, TypeAlias
 from pydantic import AfterValidator
 
 from shaftprint.settings import NotNegativeNumber
+from shaftprint.units import MILLI
 
 # Telemetries, filters and messages of a bus are late by milliseconds to tenths of a second [s].
-_LONGEST_S, _MS_PER_S = 1.0, 1000.0
+_LONGEST_S = 1.0
 
 
 def _of_an_instrument(seconds: float) -> float:
     if seconds > _LONGEST_S:
         raise ValueError(
             f"expected a latency of at most {_LONGEST_S:g} s, found {seconds:g} s; {seconds:g} ms are "
-            f"{seconds / _MS_PER_S:g} s."
+            f"{seconds / MILLI:g} s."
         )
     return seconds
 

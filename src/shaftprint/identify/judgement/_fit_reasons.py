@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from shaftprint.catalogue._roles import ShipRole
 from shaftprint.identify.fit._identification import Identification
 from shaftprint.identify.fit._optima import WITHIN
 from shaftprint.identify.judgement._evidence import Evidence
@@ -11,8 +12,7 @@ from shaftprint.identify.judgement._phrases import probability
 from shaftprint.identify.judgement._search_words import rival_words
 from shaftprint.spelling import listed
 
-# What the delays of a loop are made of.
-_OF_DELAY = frozenset(("delay", "governor"))
+_DELAYS = (ShipRole.LOOP_DELAY, ShipRole.SET_POINT_LATENCY)
 # A delay below it is none [s].
 _NOTHING_S = 1e-5
 
@@ -92,7 +92,7 @@ def _stopped(fit: Identification) -> str:
 def late_set_point(evidence: Evidence) -> str:
     """Return that the line seems to answer before the set point moves: its channel comes late."""
     fit = evidence.identification
-    delays = [one for one in fit.parameters if one.role is not None and one.role.basis == _OF_DELAY]
+    delays = [one for one in fit.parameters if one.role in _DELAYS]
     if not delays or not all(one.at_bound and one.value < _NOTHING_S for one in delays):
         return ""
     if explained(fit, rejected=evidence.requirements.lowest_p_value):

@@ -73,12 +73,20 @@ class CoarseStamps:
 
 
 def clock_of_stamps(
-    path: Path, name: str, count: int, read: Times, *, rate_hz: float | None, joins_doubled: bool = False
+    path: Path,
+    name: str,
+    count: int,
+    read: Times,
+    *,
+    rate_hz: float | None,
+    stated_hz: float | None = None,
+    joins_doubled: bool = False,
 ) -> tuple[SampleClock, CoarseStamps | None]:
     """Return the clock of a column of times, and the stamps where several rows have each: then the rate is needed.
 
     ``path``, ``name``, ``count``, ``read``, ``joins_doubled``: as for `clock_of_times`. ``rate_hz``: rate that is known
-    [Hz]. Raises RecordingError if the times are those of no clock, if stamps lack their rate, or contradict it.
+    [Hz]. ``stated_hz``: rate that is taken without it where the stamps allow it [Hz]. Raises RecordingError if the
+    times are those of no clock, if stamps lack their rate, or contradict it.
     """
     try:
         clock = clock_of_times(path, name, count, read, joins_doubled=joins_doubled)
@@ -91,6 +99,8 @@ def clock_of_stamps(
         if stamps is None:
             return clock, None
     found = f"about {round(stamps.rows, 1):g} rows with each stamp"
+    if rate_hz is None and stated_hz and stamps.allows(stated_hz):
+        rate_hz = stated_hz
     if rate_hz is None:
         told = f" (--sample-rate {stamps.rate_hz:g})" if np.isfinite(stamps.rate_hz) else " (--sample-rate)"
         raise RecordingError(

@@ -12,7 +12,7 @@ from shaftprint.errors import RecordingError
 from shaftprint.recording._channel import Channel, Times
 from shaftprint.recording._spool import Spool
 from shaftprint.recording.readers._clock import SampleClock, clock_of_times, on_clock
-from shaftprint.recording.readers._coarse_stamps import clock_of_stamps, coarse_stamps
+from shaftprint.recording.readers._coarse_stamps import clock_of_stamps
 from shaftprint.recording.readers._gather import names_in_words
 from shaftprint.recording.readers._hints import OF_HINT, expect_one_rate
 from shaftprint.recording.readers._time_scale import TimeScale, time_scale
@@ -221,12 +221,9 @@ def _clock(
         return SampleClock(rate_hz=cast(float, rate_hz), start_s=header.start_s), ""
     name = f"column {header.names[header.time_column]}"
     stated_hz = header.stated_rate_hz
-    if rate_hz is None and stated_hz:
-        stamps = coarse_stamps(count, read) if header.dated else None
-        known_hz = stated_hz if stamps is not None and stamps.allows(stated_hz) else None
-    else:
-        known_hz = rate_hz
-    clock, stamps = clock_of_stamps(path, name, count, read, rate_hz=known_hz, joins_doubled=True)
+    clock, stamps = clock_of_stamps(
+        path, name, count, read, rate_hz=rate_hz, stated_hz=stated_hz if header.dated else None, joins_doubled=True
+    )
     if stamps is not None:
         lost = "; where they step further, rows are missing" if clock.holes else ""
         each = f"{round(stamps.rows, 1):g} rows have each stamp"
