@@ -9,15 +9,17 @@ from functools import cache
 from itertools import pairwise
 from pathlib import Path
 from types import ModuleType
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 from page_shell import WIDTH
 from room_diagram import with_rooms
-from sphinx.application import Sphinx
 
 import shaftprint
 from shaftprint.cli import shaftprint as program
+
+if TYPE_CHECKING:  # tests of the reference run where the documentation is not built
+    from sphinx.application import Sphinx
 
 FOLDER = "reference/generated"
 COMMANDS_PAGE = "commands"
@@ -153,7 +155,7 @@ def _command(name: str) -> str:
     return f"\n{name}\n{'~' * len(name)}\n\n.. code-block:: none\n\n{text}\n"
 
 
-def write_pages(app: Sphinx) -> None:
+def write_pages(app: "Sphinx") -> None:
     """Write the pages; one that has not changed is left alone, so that it is not built again."""
     folder = Path(app.srcdir) / FOLDER
     folder.mkdir(parents=True, exist_ok=True)
@@ -170,24 +172,24 @@ def write_pages(app: Sphinx) -> None:
             path.unlink()
 
 
-def keep_dashes(app: Sphinx, what: str, name: str, value: object, options: object, lines: list[str]) -> None:
+def keep_dashes(app: "Sphinx", what: str, name: str, value: object, options: object, lines: list[str]) -> None:
     """Show a lone dash in a table, which stands for no unit, as a dash and not as a point of a list."""
     lines[:] = [re.sub(r"(?<=  )- (?= )", r"\\-", line) for line in lines]
 
 
-def link_names(app: Sphinx, page: str, source: list[str]) -> None:
+def link_names(app: "Sphinx", page: str, source: list[str]) -> None:
     """Make links to the reference of the public names in the table of equations."""
     if page == "theory/equations":
         source[0] = re.sub(r"`(shaftprint(?:\.[a-z]\w*)+\.[A-Za-z]\w*)`", r"{py:obj}`\1`", source[0])
 
 
-def list_rooms(app: Sphinx, page: str, source: list[str]) -> None:
+def list_rooms(app: "Sphinx", page: str, source: list[str]) -> None:
     """Put a table of the rooms, with what each is for, and their pages on the page of the reference."""
     if page == "reference/index":
         source[0] = with_rooms(source[0])
 
 
-def break_at_dots(app: Sphinx, page: str, template: str, context: dict[str, Any], doctree: object) -> None:
+def break_at_dots(app: "Sphinx", page: str, template: str, context: dict[str, Any], doctree: object) -> None:
     """Let a browser break the full name of a module after its dots, in headings and in the contents of the page."""
     if page.startswith(FOLDER) and "body" in context:
         context["body"] = re.sub(
@@ -201,7 +203,7 @@ def with_breaks(html: str) -> str:
     return re.sub(r"(?<=\w\.)(?=\w)(?![^<]*>)", "<wbr>", html)
 
 
-def setup(app: Sphinx) -> dict[str, bool]:
+def setup(app: "Sphinx") -> dict[str, bool]:
     """Write the pages before any is read."""
     app.connect("builder-inited", write_pages)
     app.connect("autodoc-process-docstring", keep_dashes)

@@ -4,13 +4,11 @@ import importlib
 import re
 from pathlib import Path
 
-import pydata_sphinx_theme
 import pytest
 from generated_reference import directive, first_sentence, public_names, rooms, with_breaks
 from pages import ROOT
 from room_diagram import TASKS, listed_rooms, with_rooms
 
-THEME = Path(pydata_sphinx_theme.__file__).parent / "theme" / "pydata_sphinx_theme" / "static" / "styles"
 OWN = ROOT / "docs" / "_static" / "shaftprint.css"
 
 
@@ -49,11 +47,13 @@ class="highlight"><pre>{line}</pre></div></div><p>{long}</p><h2>The end</h2></ar
 @pytest.mark.slow
 def test_a_page_prints_as_text_that_no_sheet_cuts(browser, tmp_path):
     """A command of one long line is wrapped, and nothing has an end of its own below the text."""
+    packaged = Path(pytest.importorskip("pydata_sphinx_theme").__file__).parent
+    theme = packaged / "theme" / "pydata_sphinx_theme" / "static" / "styles" / "pydata-sphinx-theme.css"
     place = tmp_path / "page.html"
     line = "shaftprint plan --vessel mine.toml " + "--wish t_d=20% " * 12
     place.write_text(
         PAGE.format(
-            theme=(THEME / "pydata-sphinx-theme.css").as_uri(),
+            theme=theme.as_uri(),
             own=OWN.read_text(encoding="utf-8"),
             long="A sentence of a page. " * 900,
             line=line,
