@@ -8,6 +8,7 @@ ReasonKind: TypeAlias = Literal[
     "channel clock",
     "held samples",
     "set-point band",
+    "late set point",
     "clipping",
     "gauge steadiness",
     "engine limit",

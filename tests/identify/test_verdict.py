@@ -1,12 +1,11 @@
 """The verdict on cases whose right answer is known: each branch of the rule once, and what is only a caution."""
 
 from dataclasses import replace
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from shaftprint.catalogue import ShipRole, structure
+from shaftprint.catalogue import structure
 from shaftprint.identify import (
     Estimate,
     Prior,
@@ -18,7 +17,6 @@ from shaftprint.identify import (
     identify_jointly,
     profile,
 )
-from shaftprint.identify.judgement._fit_reasons import late_set_point
 from shaftprint.models import Delay, Gain, Parameter, PIGovernor, Sensitivity, Shaft, Structure
 from shaftprint.spectra import FrequencyResponse, SignalToNoise
 
@@ -309,18 +307,3 @@ def test_a_joint_fit_has_one_verdict(draw):
     verdict = assess(fit)
     assert verdict.trustworthy
     assert "CL4 explains 48 good spectral lines" in verdict.reason
-
-
-@pytest.mark.parametrize(
-    ("t_d", "t_sp", "p_value", "told"),
-    [(0.0, 0.0, 1e-6, True), (0.0, 0.0, 0.3, False), (0.0, 0.02, 1e-6, False), (0.05, 0.0, 1e-6, False)],
-)
-def test_delays_that_stop_at_nothing_before_a_misfit_are_a_set_point_that_comes_late(t_d, t_sp, p_value, told):
-    roles = {"t_d": (t_d, ShipRole.LOOP_DELAY), "t_sp": (t_sp, ShipRole.SET_POINT_LATENCY), "K_p": (0.0, None)}
-    parameters = tuple(
-        Estimate(name=name, unit="s", value=value, std=0.01, at_bound=value == 0.0, role=role)
-        for name, (value, role) in roles.items()
-    )
-    fit = SimpleNamespace(parameters=parameters, p_value=p_value, is_likelihood=True, line_tests={}, records=())
-    evidence = SimpleNamespace(identification=fit, requirements=Requirements())
-    assert late_set_point(evidence).startswith("The set point comes late: t_d and t_sp stopped") == told

@@ -21,6 +21,7 @@ SCALE = "scale"
 GAUGE_CHANGES = "(gain|zero|torque over the square).*chang|chang.*(gain|zero)"
 CLIPPED = "cut off|clipp|sticks|saturat|full scale"
 LATE_TORQUE = "torque gauge comes late|torque gauge smooths|latency|t_gauge"
+LATE_SET_POINT = "set point comes late"
 LATE_SPEED = "speed pick-up (comes late|is late|smooths)|t_pickup"
 CLOCK = "clock|sample rate|rate_hz|rate of"
 CAMPAIGN = "campaign|set point"
@@ -156,7 +157,9 @@ SET_POINTS = (
          change=lambda trial: trial.with_values(
              SET_POINT, trial.values(SET_POINT) + 0.02 * trial.values(TORQUE))),
     Case(name="set point 60 s late", cause=CAMPAIGN, change=m.late(60.0, SET_POINT)),
-    Case(name="set point 0.2 s late", both=True, cause=f"{CAMPAIGN}|delay|bound", change=m.late(0.2, SET_POINT)),
+    Case(name="set point 0.1 s late", both=True, cause=LATE_SET_POINT, assumption=SET_POINT_CLOCK,
+         change=m.late(0.1, SET_POINT)),
+    Case(name="set point 0.2 s late", both=True, cause=LATE_SET_POINT, change=m.late(0.2, SET_POINT)),
     Case(name="set point 0.2 s early", both=True,
          cause=NOTHING, assumption=SET_POINT_CLOCK, change=m.late(-0.2, SET_POINT),
          fast=True),

@@ -1,11 +1,12 @@
 """Wrong recordings are refused or not trusted, with the cause; wrong and trusted: none."""
 
 import pytest
+from tests.wrong_recordings import mutations
 from tests.wrong_recordings.case import Case
 from tests.wrong_recordings.cases import CASES
 from tests.wrong_recordings.judged import answer, fingerprint_of, is_right, true_values
 from tests.wrong_recordings.legs import CASES_OF_LEGS
-from tests.wrong_recordings.trial import ONE_SPEED, TWO_SPEEDS, clean
+from tests.wrong_recordings.trial import ONE_SPEED, SET_POINT, TWO_SPEEDS, clean
 
 FAST = tuple(case for case in CASES if case.fast)
 # neighbours in the list are of one kind: of those that are not dear, one in four stands for them before a release
@@ -43,6 +44,21 @@ def expect_trusted_and_right(test):
 
 def test_the_recording_that_was_not_spoilt_is_trusted_and_right():
     expect_trusted_and_right(ONE_SPEED)
+
+
+@pytest.mark.parametrize("late_s", [0.1, pytest.param(0.3, marks=pytest.mark.wrong_recordings)])
+def test_a_set_point_that_is_logged_late_costs_what_rests_on_its_clock_alone(late_s):
+    """All else is what it is without: where the latency stopped at nothing, 0.1 s pulled the delay margin by 35 %."""
+    trial = clean(ONE_SPEED)[0]
+    clock = ("t_sp", "t_d + t_sp")
+    sound, late = fingerprint_of(trial), fingerprint_of(mutations.late(late_s, SET_POINT)(trial))
+    for one in (*late.parameters, *late.combinations, *late.margins):
+        before = sound.quantity(one.name)
+        moved = late_s if one.name in clock else 0.0
+        # its slow lines tell the slope of the set point, its noise is another at each moment
+        assert one.value == pytest.approx(before.value - moved, abs=(1.0 if one.name == "c_set" else 0.05) * before.std)
+    assert set(sound.verdict.trusted) - set(late.verdict.trusted) == ({"t_d + t_sp"} if late_s > 0.2 else set())
+    assert "t_sp" not in late.verdict.trusted
 
 
 @pytest.mark.wrong_recordings

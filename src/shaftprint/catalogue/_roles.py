@@ -97,9 +97,9 @@ class ShipRole:
     """Slope of the propeller torque with the speed of the slipstream."""
     LOOP_DELAY: Final = _line("loop delay", "s", "delay", "governor")
     """Delay inside the loop."""
-    SET_POINT_LATENCY: Final = _line("set-point latency", "s", "delay", "governor")
-    """Latency of the set point, outside the loop."""
-    TOTAL_DELAY: Final = _line("total delay", "s", "delay")
+    SET_POINT_LATENCY: Final = _line("set-point latency", "s", "delay", "clock", "governor")
+    """Latency of the set point, outside the loop; below nothing where its channel is logged later than that."""
+    TOTAL_DELAY: Final = _line("total delay", "s", "delay", "clock")
     """All delays from set point to torque, a combination."""
     ACTUATOR_FREQUENCY: Final = _line("actuator frequency", "rad/s", "governor")
     """Natural frequency of the actuator's lag."""

@@ -152,16 +152,46 @@ def fit(
     progress.begin("Fitting the structures", total=float(len(structures)))
     fits = []
     for structure in structures:
-        pairs, how = pairs_of(structure, measurement), settings[structure.name]
+        how = settings[structure.name]
         try:
-            fits.append(fit_of(pairs, rng=copy.deepcopy(rng), settings=how))
+            fits.append(_fitted(structure, measurement, settings=how, rng=rng))
         except IdentificationError as error:
-            against = by_weight([reason for _, response in pairs for reason in response.reasons])
+            responses = [response for _, response in pairs_of(structure, measurement)]
+            against = by_weight([reason for response in responses for reason in response.reasons])
             if not against:
                 raise
             raise IdentificationError(f"{against[0].sentence} So the fit failed: {error}") from error
         progress.advance(1.0)
     return tuple(fits)
+
+
+def _fitted(
+    structure: Structure, measurement: Measurement, *, settings: Settings, rng: np.random.Generator
+) -> Identification:
+    """Return the fit of a structure; with a set point that may be logged late where its latency stopped at nothing.
+
+    Held there, it would pull the delay of the loop, and the margins with it, to where the sum of both is right; a set
+    point that is late by more leaves no stable loop.
+    """
+    late = {
+        one.name: (-one.upper, one.upper)
+        for one in structure.free
+        if one.role == ShipRole.SET_POINT_LATENCY and one.lower == 0.0
+    }
+    stopped: IdentificationError | None = None
+    try:
+        found = fit_of(pairs_of(structure, measurement), rng=copy.deepcopy(rng), settings=settings)
+        if all(one.value > 0.0 for one in found.parameters if one.name in late):
+            return found
+    except IdentificationError as error:
+        stopped = error
+    try:
+        again = pairs_of(structure.free_between(**late), measurement)
+        return fit_of(again, rng=copy.deepcopy(rng), settings=settings)
+    except IdentificationError:
+        if stopped is None:
+            return found
+        raise stopped from None
 
 
 def comparisons_of(

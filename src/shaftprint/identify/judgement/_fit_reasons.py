@@ -3,6 +3,7 @@
 import numpy as np
 
 from shaftprint.catalogue._roles import ShipRole
+from shaftprint.digits import stated
 from shaftprint.identify.fit._identification import Identification
 from shaftprint.identify.fit._optima import WITHIN
 from shaftprint.identify.judgement._evidence import Evidence
@@ -10,11 +11,11 @@ from shaftprint.identify.judgement._line_quality import gap_at_crossing
 from shaftprint.identify.judgement._misfit import explained, misfit_words
 from shaftprint.identify.judgement._phrases import probability
 from shaftprint.identify.judgement._search_words import rival_words
+from shaftprint.reasons import Reason
 from shaftprint.spelling import listed
 
-_DELAYS = (ShipRole.LOOP_DELAY, ShipRole.SET_POINT_LATENCY)
-# A delay below it is none [s].
-_NOTHING_S = 1e-5
+# A latency that many standard deviations below nothing is no chance: once in 160 tests of a line that has none.
+_BEYOND_CHANCE = 2.5
 
 
 def too_few_good_data(evidence: Evidence) -> str:
@@ -89,18 +90,21 @@ def _stopped(fit: Identification) -> str:
     return f" {listed(names)} stopped at {bounds}: the data would go on."
 
 
-def late_set_point(evidence: Evidence) -> str:
-    """Return that the line seems to answer before the set point moves: its channel comes late."""
-    fit = evidence.identification
-    delays = [one for one in fit.parameters if one.role in _DELAYS]
-    if not delays or not all(one.at_bound and one.value < _NOTHING_S for one in delays):
-        return ""
-    if explained(fit, rejected=evidence.requirements.lowest_p_value):
-        return ""
-    return (
-        f"The set point comes late: {listed([one.name for one in delays])} stopped at nothing, for speed and torque "
-        "answer before the logged set point moves; look for what delays its channel, such as a filter, a gateway or "
-        "its clock."
+def late_set_points(identification: Identification) -> tuple[Reason, ...]:
+    """Return that the line answers before the set point moves, beyond chance: its channel comes late.
+
+    Nothing but the latency of the set point and the sum of the delays depends on it.
+    """
+    return tuple(
+        Reason(
+            kind="late set point",
+            where=one.name,
+            sentence=f"The set point comes late: {one.name} is {stated(one.value, one.std, one.unit)}, for speed and "
+            "torque answer before the logged set point moves; look for what delays its channel, such as a gateway or "
+            "its clock.",
+        )
+        for one in identification.parameters
+        if one.role == ShipRole.SET_POINT_LATENCY and one.value < -_BEYOND_CHANCE * one.std
     )
 
 

@@ -105,6 +105,9 @@ def _size(identification: Identification, estimate: Estimate) -> float:
     """
     if estimate.unit == "%":
         return WHOLE_PERCENT
+    if estimate.role == ShipRole.SET_POINT_LATENCY:
+        # below nothing it is the clock's: nobody knows what is the governor's
+        return max(estimate.value, 0.0)
     bounds: Mapping[str, tuple[float, float]] = {
         parameter.name: (parameter.lower, parameter.upper) for parameter in identification.objective.free_parameters
     }

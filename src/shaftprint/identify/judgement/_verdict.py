@@ -29,7 +29,7 @@ from shaftprint.identify.judgement._evidence import Evidence
 from shaftprint.identify.judgement._fit_reasons import (
     better_when_unstable,
     gap_where_it_matters,
-    late_set_point,
+    late_set_points,
     not_explained,
     not_unique,
     too_few_good_data,
@@ -55,7 +55,6 @@ if TYPE_CHECKING:
 QUESTIONS: tuple[tuple[ReasonKind, Callable[[Evidence], str]], ...] = (
     ("too few data", too_few_good_data),
     ("gap", gap_where_it_matters),
-    ("set-point band", late_set_point),
     ("misfit", not_explained),
     ("contradicting data", contradicting_data),
     ("lines left out", not_predicted),
@@ -72,6 +71,7 @@ BEFORE_DRIFT: frozenset[ReasonKind] = frozenset(
         "channel clock",
         "held samples",
         "set-point band",
+        "late set point",
         "gauge latency",
         "speed scale",
         "gauge scale",
@@ -170,10 +170,11 @@ def assess(
     suspects = tuple(suspect for suspect in suspects if suspect.share > explained_share)
     hints = tuple(Reason(kind="suspect", sentence=suspect.sentence) for suspect in suspects)
     of_data = tuple(reason for part in identification.experiments for reason in part.response.reasons)
-    is_explained = any(reason.kind in BEFORE_DRIFT for reason in (*of_data, *reasons))
+    late = late_set_points(identification)
+    is_explained = any(reason.kind in BEFORE_DRIFT for reason in (*of_data, *reasons, *late))
     drifts = () if is_explained else drift_reasons(identification)
     pulled = contradicted_priors(identification)
-    every = by_weight((*of_data, *reasons, *drifts, *pulled, *of_fit, *hints))
+    every = by_weight((*of_data, *reasons, *late, *drifts, *pulled, *of_fit, *hints))
     if rejected and identification.is_likelihood and beyond_priors(identification):
         every = _with_misfit_before(pulled, every)
         if not (of_data or reasons or drifts or hints or explained_share) and is_gross(identification):

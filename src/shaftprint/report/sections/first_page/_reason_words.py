@@ -59,6 +59,10 @@ _WORDS: "Mapping[ReasonKind, tuple[str, str]]" = {
         "The speed set point was not recorded as it was sent.",
         "Log the set point where it enters the governor, without a filter, and repeat the test.",
     ),
+    "late set point": (
+        "The speed set point was logged late.",
+        "Ask what delays its channel, such as a gateway; gains and margins do not depend on it.",
+    ),
     "set-point scale": (
         "The scale of the speed set point is in doubt.",
         "Add a staircase of speed steps to the test, or check the wiring of the set point.",
