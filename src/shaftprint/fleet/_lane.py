@@ -92,9 +92,7 @@ class Lane:
         self.job = job
         self.report(Event(job=job, what="begun"))
         try:
-            sentence = self.forbidden(job)
-            outcome = self.computer.compute(job.args, self._note) if sentence is None else Outcome(sentence=sentence)
-            self.report(self._settled(job, outcome))
+            self.report(self._settled(job, self._outcome(job)))
         except ShaftprintError:
             raise
         except Exception as error:
@@ -103,6 +101,12 @@ class Lane:
             self.report(self._refused(job, _FAILED.format(kind=type(error).__name__)))
         finally:
             self.job = None
+
+    def _outcome(self, job: Job) -> Outcome:
+        sentence = self.forbidden(job)
+        if sentence is not None or self.stop.is_set():
+            return Outcome(sentence=sentence)
+        return self.computer.compute(job.args, self._note)
 
     def _note(self, step: str) -> None:
         self.step = step
