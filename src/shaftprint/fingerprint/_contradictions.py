@@ -16,7 +16,7 @@ from shaftprint.fingerprint._physical import GAUGE_ZERO, PERCENT
 from shaftprint.identify.fit._estimate import Estimate
 from shaftprint.reasons import Reason
 from shaftprint.signals._scale_reasons import FAR, propeller_reason, scale_reasons, what_fits
-from shaftprint.signals.levels._gauge_zero import zero_of_share, zero_reason
+from shaftprint.signals.levels._gauge_zero import zero_between, zero_of_share, zero_reason
 from shaftprint.signals.levels._speed_scale import ScaleEvidence, load_over_expected
 
 if TYPE_CHECKING:
@@ -24,6 +24,8 @@ if TYPE_CHECKING:
     from shaftprint.signals._signals import Signals
     from shaftprint.vessel._vessel import Vessel
 
+# No propeller has so small a part of the inertia that masses and entrained water give it.
+_HIDDEN = 0.25
 # The inertia agrees with the factor of the torque coefficient within so many standard deviations.
 ALIKE = 2.5
 
@@ -47,13 +49,39 @@ def contradictions(
     was made, what was tested, and what was asked of it.
     """
     named = {quantity.name: quantity for quantity in physical}
-    off = _by_a_factor(named, signals, vessel, campaign)
+    off = _by_a_factor(named, signals, vessel, campaign) or _hidden_inertia(named.get("I_dn"), vessel)
     zero = named.get(GAUGE_ZERO)
     if off or zero is None:
         return off
     torque_nm = signals.working_point.shaft_torque_nm
-    doubt = zero_reason(*zero_of_share(zero.value / PERCENT, zero.std / PERCENT, torque_nm), torque_nm, vessel)
+    by_slope = not signals.legs or zero_between([leg.working_point for leg in signals.legs]) is None
+    found = zero_of_share(zero.value / PERCENT, zero.std / PERCENT, torque_nm)
+    doubt = zero_reason(*found, torque_nm, vessel, by_slope=by_slope)
     return () if doubt is None else (doubt,)
+
+
+def _hidden_inertia(inertia: Estimate | None, vessel: "Vessel") -> tuple[Reason, ...]:
+    """Return that the torque shows no inertia behind the gauge, as where a filter of it cancels its lead.
+
+    ``(tau_dn s + k) / (T s + 1)`` of a low-pass with ``T = tau_dn / k`` is a load alone, which any structure explains.
+    """
+    if inertia is None or not inertia.expected or not math.isfinite(inertia.std):
+        return ()
+    most = max(inertia.value + ALIKE * inertia.std, 0.0)
+    usual = inertia.expected * math.exp(-ALIKE * (inertia.expected_std or 0.0) / inertia.expected)
+    if most >= min(_HIDDEN * inertia.expected, usual):
+        return ()
+    return (
+        Reason(
+            kind="hidden inertia",
+            where=vessel.sensors.shaft_torque.channel,
+            sentence=(
+                f"The torque shows next to no inertia behind the gauge, {most:.2g} kg m2 at most where the vessel file "
+                f"has {inertia.expected:.3g}: switch the filter of the gauge, its telemetry or the logger off, or set "
+                "it to 20 Hz and more; or check the masses on the propeller's shaft in the vessel file."
+            ),
+        ),
+    )
 
 
 def _by_a_factor(

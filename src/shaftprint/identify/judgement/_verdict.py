@@ -76,6 +76,7 @@ BEFORE_DRIFT: frozenset[ReasonKind] = frozenset(
         "speed scale",
         "gauge scale",
         "gauge zero",
+        "gauge line",
     )
 )
 

@@ -41,10 +41,13 @@ def zero_of_share(share: float, std: float, torque_nm: float) -> tuple[float, fl
     return torque_nm * share / (1.0 + share), torque_nm * std / (1.0 + share) ** 2
 
 
-def zero_reason(zero_nm: float, std_nm: float, torque_nm: float, vessel: "Vessel") -> Reason | None:
+def zero_reason(
+    zero_nm: float, std_nm: float, torque_nm: float, vessel: "Vessel", *, by_slope: bool = False
+) -> Reason | None:
     """Return why the level of the torque is in doubt; None where its zero is as near as the vessel file says.
 
     ``zero_nm``, ``std_nm``: zero that was found, and its standard deviation [N m]. ``torque_nm``: torque of the test.
+    ``by_slope``: whether the slope of the load about one speed tells it, where a gauge that bends looks alike.
     Underway the torque goes with the speed of the ship as well, and nothing tells the two apart.
     """
     sensor = vessel.sensors.shaft_torque
@@ -53,12 +56,13 @@ def zero_reason(zero_nm: float, std_nm: float, torque_nm: float, vessel: "Vessel
         return None
     # the torque of a shaft that turns astern is counted the other way round
     right = sensor.zero_nm + (-zero_nm if vessel.working_point.is_astern else zero_nm)
+    bent = "; at one speed a gauge whose line bends looks alike, a test at two tells them apart" if by_slope else ""
     return Reason(
-        kind="gauge zero",
+        kind="gauge line" if by_slope else "gauge zero",
         where=sensor.channel,
         sentence=(
             "The zero of the torque gauge is in doubt: the torque follows the square of the speed where "
             f"{stated(zero_nm, std_nm, 'N m')} are taken off, and the vessel file allows {in_nm(sensor.zero_std)}; "
-            f"take the zero with the shaft standing free, or state zero_nm = {right:.0f}, and identify once more."
+            f"take the zero with the shaft standing free, or state zero_nm = {right:.0f}, and identify once more{bent}."
         ),
     )

@@ -51,6 +51,10 @@ _WORDS: "Mapping[ReasonKind, tuple[str, str]]" = {
         "The torque gauge does not show nothing where there is no torque.",
         "Take its zero with the shaft standing free, correct it in the vessel file, then identify once more.",
     ),
+    "gauge line": (
+        "The torque gauge has a zero, or shows large torques by another factor than small ones.",
+        "Take its zero with the shaft standing free, and test at two speeds; then identify once more.",
+    ),
     "speed scale": (
         "The speed is off by one factor.",
         "Check how many pulses the pick-up gives in a turn, correct the vessel file, then identify once more.",
@@ -70,6 +74,10 @@ _WORDS: "Mapping[ReasonKind, tuple[str, str]]" = {
     "gauge latency": (
         "The delay of the torque telemetry is not what the vessel file says.",
         "Ask its maker for the delay and correct the vessel file, then identify once more.",
+    ),
+    "hidden inertia": (
+        "The torque does not show the inertia of the propeller.",
+        "Switch off the filter of the torque gauge, or check the masses in the vessel file; then repeat the test.",
     ),
     "prior": (
         "The measurement contradicts what was assumed of the ship.",
