@@ -3,6 +3,7 @@
 import copy
 import math
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import replace
 
 import numpy as np
@@ -15,6 +16,7 @@ from shaftprint.identify.comparison._comparison import StructureComparison
 from shaftprint.identify.fit._fit_of import fit_of
 from shaftprint.identify.fit._identification import Identification
 from shaftprint.identify.judgement._affected_numbers import by_weight
+from shaftprint.identify.judgement._misfit import explained
 from shaftprint.identify.judgement._prior_contradictions import NOMINAL
 from shaftprint.identify.likelihood._known import SHARE_ROUNDING, priors_from_vessel
 from shaftprint.identify.likelihood._prior import Prior
@@ -168,30 +170,31 @@ def fit(
 def _fitted(
     structure: Structure, measurement: Measurement, *, settings: Settings, rng: np.random.Generator
 ) -> Identification:
-    """Return the fit of a structure; with a set point that may be logged late where its latency stopped at nothing.
+    """Return the fit of a structure; with a set point that may be logged late where that explains the data.
 
-    Held there, it would pull the delay of the loop, and the margins with it, to where the sum of both is right; a set
-    point that is late by more leaves no stable loop.
+    A latency that stops at nothing pulls the delay of the loop, and the margins with it, to where the sum of both is
+    right; a set point that is late by more leaves no stable loop. A misfit of another cause is left as it is.
     """
     late = {
         one.name: (-one.upper, one.upper)
         for one in structure.free
         if one.role == ShipRole.SET_POINT_LATENCY and one.lower == 0.0
     }
-    stopped: IdentificationError | None = None
+    found: Identification | IdentificationError
     try:
         found = fit_of(pairs_of(structure, measurement), rng=copy.deepcopy(rng), settings=settings)
         if all(one.value > 0.0 for one in found.parameters if one.name in late):
             return found
     except IdentificationError as error:
-        stopped = error
-    try:
+        found = error
+    with suppress(IdentificationError):
         again = pairs_of(structure.free_between(**late), measurement)
-        return fit_of(again, rng=copy.deepcopy(rng), settings=settings)
-    except IdentificationError:
-        if stopped is None:
-            return found
-        raise stopped from None
+        beyond = fit_of(again, rng=copy.deepcopy(rng), settings=settings)
+        if explained(beyond):
+            return beyond
+    if isinstance(found, IdentificationError):
+        raise found
+    return found
 
 
 def comparisons_of(
