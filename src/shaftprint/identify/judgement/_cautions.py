@@ -115,7 +115,7 @@ def _below_nothing(evidence: Evidence) -> list[str]:
         f"{one.name} = {stated(one.value, one.std, one.unit)} is below nothing: by chance, or the set point is logged "
         "later than it acts; gains, delay of the loop and margins hold either way."
         for one in evidence.identification.parameters
-        if one.role == ShipRole.SET_POINT_LATENCY and one.value < 0.0 and not late_set_points(evidence.identification)
+        if one.role == ShipRole.SET_POINT_LATENCY and one.value < 0.0 and not late_set_points(evidence)
     ]
 
 

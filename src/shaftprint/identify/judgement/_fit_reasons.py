@@ -14,9 +14,6 @@ from shaftprint.identify.judgement._search_words import rival_words
 from shaftprint.reasons import Reason
 from shaftprint.spelling import listed
 
-# A latency that many standard deviations below nothing is no chance: once in 160 tests of a line that has none.
-_BEYOND_CHANCE = 2.5
-
 
 def too_few_good_data(evidence: Evidence) -> str:
     """Return that lines are too few or too noisy for the parameters."""
@@ -90,11 +87,13 @@ def _stopped(fit: Identification) -> str:
     return f" {listed(names)} stopped at {bounds}: the data would go on."
 
 
-def late_set_points(identification: Identification) -> tuple[Reason, ...]:
+def late_set_points(evidence: Evidence) -> tuple[Reason, ...]:
     """Return that the line answers before the set point moves, beyond chance: its channel comes late.
 
-    Nothing but the latency of the set point and the sum of the delays depends on it.
+    Nothing but the latency of the set point and the sum of the delays depends on it. Its profile decides: a standard
+    deviation tells little at the end of a valley.
     """
+    intervals = {} if evidence.profile is None else evidence.profile.intervals
     return tuple(
         Reason(
             kind="late set point",
@@ -103,8 +102,9 @@ def late_set_points(identification: Identification) -> tuple[Reason, ...]:
             "torque answer before the logged set point moves; look for what delays its channel, such as a gateway or "
             "its clock.",
         )
-        for one in identification.parameters
-        if one.role == ShipRole.SET_POINT_LATENCY and one.value < -_BEYOND_CHANCE * one.std
+        for one in evidence.identification.parameters
+        if one.role == ShipRole.SET_POINT_LATENCY
+        and (intervals[one.name].upper if one.name in intervals else one.limits_95[1]) < 0.0
     )
 
 

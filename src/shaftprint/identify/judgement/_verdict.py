@@ -171,7 +171,7 @@ def assess(
     suspects = tuple(suspect for suspect in suspects if suspect.share > explained_share)
     hints = tuple(Reason(kind="suspect", sentence=suspect.sentence) for suspect in suspects)
     of_data = tuple(reason for part in identification.experiments for reason in part.response.reasons)
-    late = late_set_points(identification)
+    late = late_set_points(evidence)
     is_explained = any(reason.kind in BEFORE_DRIFT for reason in (*of_data, *reasons, *late))
     drifts = () if is_explained else drift_reasons(identification)
     pulled = contradicted_priors(identification)
